@@ -1,0 +1,35 @@
+# Language level, warning and floating-point flags, build options.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+option(CANYON_TESTS "Build the tests" ON)
+option(CANYON_BENCH "Build the benchmarks" OFF)
+option(CANYON_WERROR "Treat warnings as errors" ON)
+option(CANYON_WITH_PCL "Registration methods that need PCL (gicp)" ON)
+set(CANYON_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
+
+add_library(canyon_flags INTERFACE)
+target_include_directories(canyon_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+# -ffp-contract=off: a result must not depend on whether the compiler found a fused multiply-add.
+target_compile_options(canyon_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+if(CANYON_WERROR)
+  target_compile_options(canyon_flags INTERFACE -Werror)
+endif()
+if(CANYON_SANITIZE)
+  target_compile_options(canyon_flags INTERFACE -fsanitize=${CANYON_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(canyon_flags INTERFACE -fsanitize=${CANYON_SANITIZE})
+endif()
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()

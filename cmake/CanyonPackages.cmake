@@ -1,0 +1,25 @@
+# The libraries Canyon stands on. Each is linked by one floor only (see docs/design.md).
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(TBB REQUIRED)
+find_package(embree 3 REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+
+# Debian's GeographicLib installs its find module outside CMake's own search path.
+find_path(GeographicLib_INCLUDE_DIR GeographicLib/Geocentric.hpp REQUIRED)
+find_library(GeographicLib_LIBRARY NAMES GeographicLib Geographic REQUIRED)
+add_library(canyon_geographiclib INTERFACE)
+target_include_directories(canyon_geographiclib SYSTEM INTERFACE ${GeographicLib_INCLUDE_DIR})
+target_link_libraries(canyon_geographiclib INTERFACE ${GeographicLib_LIBRARY})
+
+# Header-only.
+find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
+find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
+
+if(CANYON_WITH_PCL)
+  # pcl_io alone pulls in some sixty more shared libraries; Canyon writes its own cloud files.
+  find_package(PCL 1.13 REQUIRED COMPONENTS common search kdtree filters registration)
+endif()

@@ -1,0 +1,49 @@
+# canyon_library(NAME [LINK libs...] [PRIVATE libs...]): every .cpp of the folder, one static library canyon_NAME.
+function(canyon_library name)
+  cmake_parse_arguments(ARG "" "" "LINK;PRIVATE;EXCLUDE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  foreach(pattern IN LISTS ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${pattern})
+  endforeach()
+  add_library(canyon_${name} STATIC ${sources})
+  target_link_libraries(canyon_${name} PUBLIC canyon_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE})
+endfunction()
+
+# canyon_embed(OUT_VARIABLE FILE...): sources that hold the files' bytes and the table that core/embedded.cpp reads.
+function(canyon_embed out_variable)
+  set(sources "")
+  set(declarations "")
+  set(rows "")
+  foreach(file IN LISTS ARGN)
+    file(RELATIVE_PATH key ${CMAKE_SOURCE_DIR} ${file})
+    string(MAKE_C_IDENTIFIER "embedded_${key}" identifier)
+    set(out ${CMAKE_BINARY_DIR}/generated/embedded/${identifier}.cpp)
+    add_custom_command(
+      OUTPUT ${out}
+      COMMAND ${CMAKE_COMMAND} -DIN=${file} -DIDENTIFIER=${identifier} -DOUT=${out} -P ${CMAKE_SOURCE_DIR}/cmake/embed.cmake
+      DEPENDS ${file} ${CMAKE_SOURCE_DIR}/cmake/embed.cmake
+      VERBATIM)
+    list(APPEND sources ${out})
+    string(APPEND declarations "extern const unsigned char ${identifier}[];\nextern const unsigned long ${identifier}_size;\n")
+    string(APPEND rows "    {\"${key}\", ${identifier}, ${identifier}_size},\n")
+  endforeach()
+  set(table ${CMAKE_BINARY_DIR}/generated/embedded/table.inc)
+  file(CONFIGURE OUTPUT ${table} CONTENT "${declarations}const EmbeddedRow kEmbeddedRows[] = {\n${rows}    {\"\", nullptr, 0},\n};\n" @ONLY)
+  set(${out_variable} ${sources} PARENT_SCOPE)
+endfunction()
+
+# canyon_test(FOLDER LINK libs...): every tests/FOLDER/*_test.cpp in one executable, one ctest entry per test case.
+# A name that contains "Nightly" gets the label nightly and is left out of ./test.sh.
+function(canyon_test folder)
+  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  set(target canyon_${folder}_tests)
+  add_executable(${target} ${sources})
+  target_link_libraries(${target} PRIVATE canyon_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "-*Nightly*" PROPERTIES LABELS ${folder} TIMEOUT 300)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "*Nightly*" TEST_LIST ${target}_nightly
+                       PROPERTIES LABELS "nightly" TIMEOUT 3600)
+endfunction()

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace canyon {
+
+/// Sets the number of threads for everything (own loops, Embree builds, solvers). 0 = all cores. Call before any work.
+void set_threads(int threads);
+int threads();
+
+/// body(begin, end) over [0, n) in fixed chunks of `chunk`. Chunk borders do not depend on the number of threads,
+/// so a caller that keeps one result slot per chunk and combines them in order gets bit-identical results.
+void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body);
+
+}  // namespace canyon

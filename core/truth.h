@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/messages.h"
+#include "core/rotation.h"
+#include "core/time.h"
+
+/// Truth records: what only recorder and scorer may see. Each runs parallel to a message, with the same index.
+namespace canyon {
+
+/// Rigid-body kinematics of B in W at an instant. W is fixed to the Earth.
+struct KinematicState {
+  GpsTime t;
+  Pose X_WB;
+  Eigen::Vector3d v_WB_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d a_WB_W = Eigen::Vector3d::Zero();      ///< derivative of v_WB_W, m/s^2
+  Eigen::Vector3d w_WB_B = Eigen::Vector3d::Zero();      ///< rad/s
+  Eigen::Vector3d alpha_WB_B = Eigen::Vector3d::Zero();  ///< derivative of w_WB_B, rad/s^2
+};
+
+/// True errors of one GnssObservation.
+struct GnssObservationTruth {
+  SatelliteId sv;
+  double elevation_rad = 0.0;
+  double azimuth_rad = 0.0;      ///< from true north, clockwise
+  bool line_of_sight = true;     ///< direct path free
+  bool tracked = true;           ///< the receiver has a measurement of it
+  int reflections = 0;           ///< specular paths found within the cut-off
+  double range_m = 0.0;          ///< geometric range of the direct path
+  double multipath_m = 0.0;      ///< error from reflected or NLOS-only reception
+  double ionosphere_m = 0.0;     ///< residual after the receiver's correction
+  double troposphere_m = 0.0;    ///< residual after the receiver's correction
+  double ephemeris_m = 0.0;      ///< orbit and satellite clock, residual
+  double noise_m = 0.0;          ///< code noise
+};
+
+/// True facts of one GNSS epoch.
+struct GnssTruth {
+  GpsTime t;
+  Eigen::Vector3d p_A_E = Eigen::Vector3d::Zero();
+  double receiver_clock_m = 0.0;
+  std::vector<GnssObservationTruth> satellites;  ///< above the mask, tracked or not
+};
+
+/// True facts of one LIDAR return; same index as LidarScan::points.
+struct LidarPointTruth {
+  float range_m = 0;
+  float cos_incidence = 0;
+  std::uint16_t material = 0;  ///< index into the scene's materials
+  std::uint32_t object = 0;    ///< index into the scene's objects
+};
+
+}  // namespace canyon

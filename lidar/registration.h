@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/config.h"
+#include "core/messages.h"
+#include "core/result.h"
+#include "core/rotation.h"
+
+namespace canyon::lidar {
+
+/// [registration] of a mission file.
+struct RegistrationConfig {
+  std::string method = "gicp";  ///< none | gicp
+  double leaf_m = 0.5;          ///< voxel size of both clouds
+  double max_correspondence_m = 1.0;
+  std::int64_t max_iterations = 20;
+  std::int64_t submap_keyframes = 10;  ///< keyframes that form the target
+  double keyframe_distance_m = 2.0;
+  double keyframe_angle_deg = 10.0;
+};
+void visit(FieldVisitor& f, RegistrationConfig& c);
+
+enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints };
+
+struct RegistrationResult {
+  RegistrationStatus status = RegistrationStatus::kNotConverged;
+  Pose X_TS;                                          ///< a point of source in target's frame
+  Matrix6d covariance = Matrix6d::Constant(kNaN);     ///< of xi, source frame; from the cost's curvature
+  int iterations = 0;
+  double rms_m = kNaN;                                ///< of inlier correspondences
+};
+
+/// A keyframe's cloud made ready for registration: thinned, with per-point covariances.
+class PreparedCloud;
+
+/// Registration of clouds. prepare() once per cloud, then align as often as wanted.
+class Registration {
+ public:
+  virtual ~Registration() = default;
+  /// `points` in the cloud's own frame, m.
+  virtual std::shared_ptr<const PreparedCloud> prepare(std::span<const Eigen::Vector3f> points) const = 0;
+  struct Placed {
+    std::shared_ptr<const PreparedCloud> cloud;
+    Pose X_TC;  ///< pose of the cloud in the target frame
+  };
+  /// Aligns `source` onto the union of `targets`, starting from `guess` = X_TS.
+  virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets, const Pose& guess) const = 0;
+};
+
+Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config);
+
+/// Names of the compiled-in methods.
+std::vector<std::string> registration_methods();
+
+}  // namespace canyon::lidar

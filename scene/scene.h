@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/local_frame.h"
+#include "scene/facet.h"
+#include "scene/material.h"
+#include "scene/street_graph.h"
+
+namespace canyon::scene {
+
+/// Triangles in W, single precision (that is what the ray tracer works in).
+struct Mesh {
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint16_t> material;  ///< per triangle, index into Scene::materials()
+  std::vector<std::uint32_t> object;    ///< per triangle, index into Scene::objects()
+};
+
+enum class ObjectKind : std::uint8_t { kTerrain, kBuilding, kVehicle, kTree, kWall, kPole, kOther };
+
+struct SceneObject {
+  std::string name;  ///< "building 17"; unique
+  ObjectKind kind = ObjectKind::kOther;
+};
+
+/// A building as planners and reports see it; its surfaces are in the mesh.
+struct Building {
+  std::string name;
+  std::uint32_t object = 0;
+  std::vector<Eigen::Vector2d> footprint_W;  ///< counter-clockwise
+  double base_m = 0.0;                       ///< lowest ground at the footprint, W height
+  double height_m = 0.0;                     ///< roof above base
+};
+
+/// A tree crown: an ellipsoid of leaves. Attenuates GNSS, and has its own porous triangles in the mesh for LIDAR.
+struct Foliage {
+  Eigen::Vector3d center_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d radii_m = Eigen::Vector3d::Ones();
+};
+
+/// Everything a scene is made of, before it becomes immutable.
+struct SceneParts {
+  std::string name;
+  LocalFrame frame;
+  double undulation_m = 0.0;  ///< geoid undulation used to set the origin's ellipsoidal height
+  Mesh mesh;
+  std::vector<Material> materials;
+  std::vector<SceneObject> objects;
+  std::vector<Building> buildings;
+  std::vector<Foliage> foliage;
+  StreetGraph streets;
+};
+
+struct Extent {
+  Eigen::Vector3d min = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+};
+
+/// A static scene: immutable and shared by all runs and threads.
+class Scene {
+ public:
+  explicit Scene(SceneParts parts);
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  const SceneParts& parts() const { return parts_; }
+  const std::string& name() const { return parts_.name; }
+  const LocalFrame& frame() const { return parts_.frame; }
+  const Mesh& mesh() const { return parts_.mesh; }
+  const std::vector<Material>& materials() const { return parts_.materials; }
+  const std::vector<SceneObject>& objects() const { return parts_.objects; }
+  const std::vector<Building>& buildings() const { return parts_.buildings; }
+  const std::vector<Foliage>& foliage() const { return parts_.foliage; }
+  const StreetGraph& streets() const { return parts_.streets; }
+  const Extent& extent() const { return extent_; }
+
+  /// Large planar surfaces merged from triangles, with their spatial index; built on first use, so that a scene whose
+  /// sensors need no reflections never pays for them. Thread-safe.
+  const FacetIndex& facets() const;
+  bool facets_built() const;
+
+  /// Height of the terrain (ObjectKind::kTerrain only) at x, y in W and its upward unit normal; nullopt outside.
+  struct Ground {
+    double height_m = 0.0;
+    Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();
+  };
+  std::optional<Ground> ground(double x, double y) const;
+
+  /// Name of the building whose footprint contains (x, y); nullptr if none.
+  const Building* building_at(const Eigen::Vector2d& xy) const;
+
+  /// SHA-256 over geometry, materials and frame, for the manifest.
+  std::string hash() const;
+
+ private:
+  friend class SceneAt;
+  struct Tracer;  // Embree, in embree_tracer.cpp
+  SceneParts parts_;
+  Extent extent_;
+  std::unique_ptr<Tracer> tracer_;
+  mutable std::unique_ptr<FacetIndex> facets_;
+  mutable std::unique_ptr<struct LazyFacets> lazy_;
+};
+
+}  // namespace canyon::scene
