@@ -29,12 +29,15 @@ struct GnssCounters {
 };
 
 /// A GNSS receiver in the scene. `index` is the number of the epoch since the start (the random streams' sample index).
+/// What measure() returns depends on its arguments alone, not on which epochs were asked for before.
 class GnssSensor {
  public:
   virtual ~GnssSensor() = default;
   virtual GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                              const scene::SceneAt& scene) = 0;
   virtual GnssCounters counters() const = 0;
+  /// What a user should be told once: damaged records of the navigation file that were skipped, one line each.
+  virtual std::vector<std::string> warnings() const { return {}; }
 };
 
 /// [gnss] of a mission file. Each `choice` names a row of that effect's table.
@@ -49,28 +52,48 @@ struct GnssConfig {
   double isotropic_max_m = 0.5;
   double isotropic_sigma_m = 0.23;  ///< what the fix claims per axis: sqrt(mean square / 3)
 
-  // pseudorange
-  std::string mode = "dgps";             ///< single | dgps
-  double baseline_km = 5.0;              ///< distance of the base station, dgps
+  // pseudorange: what acts on the range, and what the receiver corrects
+  std::string mode = "dgps";                    ///< single | single_uncorrected | dgps | dgps_paper
+  double baseline_km = 5.0;                     ///< distance of the base station, dgps
+  double ionosphere_gradient_mm_per_km = 2.0;   ///< 1-sigma of the vertical delay's difference to the base, dgps
+  double troposphere_gradient_mm_per_km = 1.0;  ///< the same for the zenith wet delay
+  double base_error_scale = 1.0;                ///< base station's own code noise and multipath, 1 = GAD-B; dgps
   std::string ionosphere = "single_layer";
   double vtec_tecu = 12.0;
+  std::string ionosphere_correction = "half";  ///< what the receiver subtracts in mode single
   std::string troposphere = "saastamoinen_niell";
   double pressure_hpa = 1022.0;
   double temperature_c = 12.8;
   double relative_humidity = 0.80;
   std::string ephemeris_error = "gauss_markov";
-  std::string paths = "specular1";       ///< none | visibility | specular1
+  double ephemeris_sigma_m = 1.0;
+  double ephemeris_tau_s = 3600.0;
+  std::string receiver_clock = "tcxo";
+
+  // pseudorange: propagation in the scene and reception
+  std::string paths = "specular1";  ///< none | visibility | specular1
+  double reflection_reach_m = 150.0;
+  double foliage_db_per_m = 0.25;
+  double foliage_max_db = 28.0;
   std::string multipath_rule = "paper_first_return";
   double cutoff_ns = 150.0;
-  double code_noise_m = 0.3;             ///< 1-sigma at zenith-like C/N0 of 45 dB-Hz
+  double correlator_spacing_chips = 0.5;
+  double cn0_zenith_dbhz = 45.0;
+  double antenna_horizon_loss_db = 7.0;
+  double lhcp_rejection_db = 10.0;
+  double tracking_threshold_dbhz = 25.0;
+  double code_noise_m = 0.3;  ///< 1-sigma at zenith-like C/N0 of 45 dB-Hz
+
+  // pseudorange: position
   std::string solver = "least_squares";
-  double solver_sigma_m = 0.5;           ///< assumed 1-sigma of a corrected pseudorange at zenith
-  std::string nav_file;                  ///< RINEX navigation file; empty = built-in 24-slot constellation
+  double solver_sigma_m = 0.5;  ///< assumed 1-sigma of a corrected pseudorange at zenith
+  double max_gdop = 100.0;
+  std::string nav_file;  ///< RINEX navigation file; empty = built-in 24-slot constellation
 };
 void visit(FieldVisitor& f, GnssConfig& c);
 
 /// Builds the configured sensor: reads the navigation file if one is named and checks that it covers [start, end].
-Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start, GpsTime end,
-                                                     const scene::Scene& scene);
+Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
+                                                     GpsTime end, const scene::Scene& scene);
 
 }  // namespace canyon::gnss

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "gnss/sensor.h"
+
+namespace canyon::gnss {
+
+/// truth_plus_isotropic: the fix is the truth plus an isotropic direction times U(min, max); see isotropic_sensor.cpp.
+Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
+                                                          GpsTime end, const scene::Scene& scene);
+
+/// pseudorange: satellites, delays, paths, receiver and solver; see pseudorange_sensor.cpp.
+Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
+                                                            GpsTime end, const scene::Scene& scene);
+
+}  // namespace canyon::gnss
