@@ -24,10 +24,10 @@ std::string join_values(const Args&... args) {
 }
 
 /// Always on, also in release builds: CANYON_CHECK(rate > 0, "rate = ", rate).
-#define CANYON_CHECK(condition, ...)                                                                             \
-  do {                                                                                                           \
-    if (!(condition))                                                                                            \
-      ::canyon::throw_failed_check(#condition, __FILE__, __LINE__, ::canyon::join_values(__VA_ARGS__));          \
+#define CANYON_CHECK(condition, ...)                                                                    \
+  do {                                                                                                  \
+    if (!(condition))                                                                                   \
+      ::canyon::throw_failed_check(#condition, __FILE__, __LINE__, ::canyon::join_values(__VA_ARGS__)); \
   } while (false)
 
 }  // namespace canyon

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
@@ -76,7 +77,8 @@ class FieldVisitor {
   virtual void flag(const char* key, bool& value, const char* doc) = 0;
   virtual void text(const char* key, std::string& value, const char* doc) = 0;
   /// A name out of a model table or other fixed list.
-  virtual void choice(const char* key, std::string& value, const std::vector<std::string>& allowed, const char* doc) = 0;
+  virtual void choice(const char* key, std::string& value, const std::vector<std::string>& allowed,
+                      const char* doc) = 0;
   /// A list of numbers; `size` > 0 demands exactly that many.
   virtual void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char* doc) = 0;
   virtual void texts(const char* key, std::vector<std::string>& value, const char* doc) = 0;
@@ -98,7 +100,8 @@ class FieldVisitor {
 
  protected:
   virtual void group_impl(const char* key, const char* doc, const std::function<void(FieldVisitor&)>& body) = 0;
-  virtual void list_impl(const char* key, const char* doc, std::size_t size, const std::function<void(std::size_t)>& resize,
+  virtual void list_impl(const char* key, const char* doc, std::size_t size,
+                         const std::function<void(std::size_t)>& resize,
                          const std::function<void(std::size_t, FieldVisitor&)>& item) = 0;
 };
 

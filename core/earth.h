@@ -14,7 +14,9 @@ struct Wgs84 {
 };
 
 /// Earth rotation rate used by inertial generator and filter alike, w_IE_E = (0, 0, rate).
-inline Eigen::Vector3d earth_rate_E() { return {0.0, 0.0, Wgs84::rate_rad_s}; }
+inline Eigen::Vector3d earth_rate_E() {
+  return {0.0, 0.0, Wgs84::rate_rad_s};
+}
 
 struct Geodetic {
   double lat_rad = 0.0;

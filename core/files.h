@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.h"
 
@@ -15,8 +16,8 @@ Status write_text_file(const std::string& path, std::string_view text);
 /// SHA-256 of bytes as 64 hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
 
-/// A directory that becomes visible under its final name only when complete. Until commit() everything is written under a
-/// temporary name beside it; the destructor removes what was not committed.
+/// A directory that becomes visible under its final name only when complete. Until commit() everything is written under
+/// a temporary name beside it; the destructor removes what was not committed.
 class StagedDirectory {
  public:
   /// Fails (exit 2) if `path` exists and `force` is false, or if it cannot be written.
@@ -30,9 +31,10 @@ class StagedDirectory {
   Status commit();
 
  private:
-  StagedDirectory(std::string final_path, std::string staging, bool force);
+  StagedDirectory(std::string final_path, std::string staging, bool force, std::vector<std::string> created_parents);
   std::string final_, staging_;
   bool force_ = false;
+  std::vector<std::string> created_parents_;  ///< outermost first; taken away again if nothing is committed
 };
 
 }  // namespace canyon

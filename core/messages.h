@@ -10,7 +10,8 @@
 #include "core/rotation.h"
 #include "core/time.h"
 
-/// What real sensors and estimators output. Floor-2 folders meet only here. Truth has records of its own (core/truth.h).
+/// What real sensors and estimators output. Floor-2 folders meet only here. Truth has records of its own
+/// (core/truth.h).
 namespace canyon {
 
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -39,16 +40,17 @@ struct SatelliteId {
 /// One satellite's measurements and all that a tightly coupled filter needs beside them.
 struct GnssObservation {
   SatelliteId sv;
-  double pseudorange_m = kNaN;      ///< as measured: true range + clocks + delays + noise
-  double doppler_hz = kNaN;         ///< positive when the range shrinks
+  double pseudorange_m = kNaN;  ///< as measured: true range + clocks + delays + noise
+  double doppler_hz = kNaN;     ///< positive when the range shrinks
   double carrier_phase_cycles = kNaN;
   double cn0_dbhz = kNaN;
-  double sigma_m = kNaN;            ///< 1-sigma the receiver assumes for the corrected pseudorange
-  Eigen::Vector3d p_E = Eigen::Vector3d::Constant(kNaN);  ///< satellite at transmission, in E of the time of reception (Sagnac applied)
+  double sigma_m = kNaN;  ///< 1-sigma the receiver assumes for the corrected pseudorange
+  Eigen::Vector3d p_E =
+      Eigen::Vector3d::Constant(kNaN);  ///< satellite at transmission, in E of the time of reception (Sagnac applied)
   Eigen::Vector3d v_E = Eigen::Vector3d::Constant(kNaN);
-  double clock_m = 0.0;             ///< satellite clock incl. relativity and group delay, times c; added to the pseudorange
-  double correction_m = 0.0;        ///< modelled atmosphere or differential correction, subtracted from the pseudorange
-  bool used = false;                ///< used in the receiver's own fix
+  double clock_m = 0.0;       ///< satellite clock incl. relativity and group delay, times c; added to the pseudorange
+  double correction_m = 0.0;  ///< modelled atmosphere or differential correction, subtracted from the pseudorange
+  bool used = false;          ///< used in the receiver's own fix
 
   /// What a solver fits: range + receiver clock + unmodelled errors.
   double corrected_m() const { return pseudorange_m + clock_m - correction_m; }
@@ -80,9 +82,9 @@ struct GnssFix {
 
 /// One LIDAR return in the sensor frame L at its own firing time (not deskewed).
 struct LidarPoint {
-  float x = 0, y = 0, z = 0;      ///< m, in L
-  float intensity = 0;            ///< 0..1, calibrated reflectivity as the sensor reports it
-  float time_s = 0;               ///< firing time minus scan stamp, <= 0
+  float x = 0, y = 0, z = 0;  ///< m, in L
+  float intensity = 0;        ///< 0..1, calibrated reflectivity as the sensor reports it
+  float time_s = 0;           ///< firing time minus scan stamp, <= 0
   std::uint16_t ring = 0;
   std::uint8_t return_index = 0;  ///< 0 = first
 };
@@ -126,7 +128,7 @@ struct NavEstimate {
   Eigen::Vector3d v_WB_W = Eigen::Vector3d::Zero();
   Eigen::Vector3d gyro_bias_U = Eigen::Vector3d::Zero();   ///< rad/s
   Eigen::Vector3d accel_bias_U = Eigen::Vector3d::Zero();  ///< m/s^2
-  Matrix6d pose_covariance = Matrix6d::Zero();             ///< of xi = [rotation; translation], right perturbation, body frame
+  Matrix6d pose_covariance = Matrix6d::Zero();  ///< of xi = [rotation; translation], right perturbation, body frame
   Eigen::Matrix3d velocity_covariance_W = Eigen::Matrix3d::Zero();
 };
 

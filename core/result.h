@@ -64,11 +64,12 @@ using Status = Result<Ok>;
   declaration = *std::move(tmp)
 
 /// CANYON_TRY(auto x, f()): declares x = the value of f(), or returns f()'s Error from the enclosing function.
-#define CANYON_TRY(declaration, expression) CANYON_TRY_INNER(CANYON_CONCAT(canyon_try_, __LINE__), declaration, expression)
+#define CANYON_TRY(declaration, expression) \
+  CANYON_TRY_INNER(CANYON_CONCAT(canyon_try_, __LINE__), declaration, expression)
 
 /// CANYON_TRY_STATUS(f()): returns f()'s Error, if any, from the enclosing function.
-#define CANYON_TRY_STATUS(expression)                                    \
-  do {                                                                   \
+#define CANYON_TRY_STATUS(expression)                                                         \
+  do {                                                                                        \
     if (auto canyon_status = (expression); !canyon_status.ok()) return canyon_status.error(); \
   } while (false)
 

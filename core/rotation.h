@@ -17,7 +17,8 @@ Eigen::Vector3d so3_log(const Eigen::Quaterniond& q);
 /// Right Jacobian of SO(3): Exp(v + d) = Exp(v) Exp(Jr(v) d) to first order.
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& v);
 
-/// Yaw (from east, counter-clockwise), pitch (nose down positive about y-left), roll of R_WB, rad; R = Rz(yaw) Ry(pitch) Rx(roll).
+/// Yaw (from east, counter-clockwise), pitch (nose down positive about y-left), roll of R_WB, rad; R = Rz(yaw)
+/// Ry(pitch) Rx(roll).
 struct YawPitchRoll {
   double yaw_rad = 0.0;
   double pitch_rad = 0.0;

@@ -23,10 +23,10 @@ struct GpsTime {
   static Result<GpsTime> parse(std::string_view text, std::string_view origin);
 
   int week() const;
-  double sow_s() const;            ///< seconds of week, [0, 604800)
-  std::int64_t sow_ns() const;     ///< nanoseconds of week, exact
-  double day_of_year() const;      ///< 1.0 = 1 January 00:00 GPS time
-  int leap_seconds() const;        ///< GPS minus UTC at this instant, s
+  double sow_s() const;                     ///< seconds of week, [0, 604800)
+  std::int64_t sow_ns() const;              ///< nanoseconds of week, exact
+  double day_of_year() const;               ///< 1.0 = 1 January 00:00 GPS time
+  int leap_seconds() const;                 ///< GPS minus UTC at this instant, s
   std::string iso(int decimals = 3) const;  ///< "2010-07-01T13:00:00.000", GPS time
 
   auto operator<=>(const GpsTime&) const = default;

@@ -26,16 +26,16 @@ struct KinematicState {
 struct GnssObservationTruth {
   SatelliteId sv;
   double elevation_rad = 0.0;
-  double azimuth_rad = 0.0;      ///< from true north, clockwise
-  bool line_of_sight = true;     ///< direct path free
-  bool tracked = true;           ///< the receiver has a measurement of it
-  int reflections = 0;           ///< specular paths found within the cut-off
-  double range_m = 0.0;          ///< geometric range of the direct path
-  double multipath_m = 0.0;      ///< error from reflected or NLOS-only reception
-  double ionosphere_m = 0.0;     ///< residual after the receiver's correction
-  double troposphere_m = 0.0;    ///< residual after the receiver's correction
-  double ephemeris_m = 0.0;      ///< orbit and satellite clock, residual
-  double noise_m = 0.0;          ///< code noise
+  double azimuth_rad = 0.0;    ///< from true north, clockwise
+  bool line_of_sight = true;   ///< direct path free
+  bool tracked = true;         ///< the receiver has a measurement of it
+  int reflections = 0;         ///< specular paths found within the cut-off
+  double range_m = 0.0;        ///< geometric range of the direct path
+  double multipath_m = 0.0;    ///< error from reflected or NLOS-only reception
+  double ionosphere_m = 0.0;   ///< residual after the receiver's correction
+  double troposphere_m = 0.0;  ///< residual after the receiver's correction
+  double ephemeris_m = 0.0;    ///< orbit and satellite clock, residual
+  double noise_m = 0.0;        ///< code noise
 };
 
 /// True facts of one GNSS epoch.

@@ -1,0 +1,272 @@
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <string_view>
+
+#include "core/files.h"
+#include "core/trajectory.h"
+
+namespace canyon {
+namespace {
+
+/// A text file line by line, with what its errors need.
+class LineReader {
+ public:
+  LineReader(const std::string& path, std::string text) : path_(path), text_(std::move(text)) {}
+
+  /// The next line that is neither empty nor a comment (#), without its end.
+  bool next(std::string_view& line) {
+    while (position_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+      line = std::string_view(text_).substr(position_, end - position_);
+      position_ = end + 1;
+      ++number_;
+      while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
+      if (!line.empty() && line.front() != '#') return true;
+    }
+    return false;
+  }
+
+  Error error(std::string what, std::string expected) const {
+    Error e;
+    e.file = path_;
+    e.line = number_;
+    e.what = std::move(what);
+    e.expected = std::move(expected);
+    return e;
+  }
+  Error empty_file() const {
+    Error e;
+    e.file = path_;
+    e.what = "holds no poses";
+    e.expected = "at least one line of numbers";
+    return e;
+  }
+
+ private:
+  std::string path_;
+  std::string text_;
+  std::size_t position_ = 0;
+  int number_ = 0;
+};
+
+std::vector<std::string_view> split(std::string_view line, std::string_view separators, bool join_separators) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t end = line.find_first_of(separators);
+    const std::string_view field = line.substr(0, end);
+    if (!join_separators || !field.empty()) fields.push_back(field);
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+std::string_view trimmed(std::string_view field) {
+  while (!field.empty() && (field.front() == ' ' || field.front() == '\t')) field.remove_prefix(1);
+  while (!field.empty() && (field.back() == ' ' || field.back() == '\t')) field.remove_suffix(1);
+  return field;
+}
+
+Result<double> parse_number(const LineReader& in, std::string_view field) {
+  const std::string_view text = trimmed(field);
+  double value = 0.0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || status != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+    return in.error("\"" + std::string(field) + "\" is not a finite number", "a number");
+  }
+  return value;
+}
+
+/// Seconds as nanoseconds. Plain decimals are read digit by digit: as a double, GPS seconds of today would lose 0.1 us.
+Result<std::int64_t> parse_seconds(const LineReader& in, std::string_view field) {
+  CANYON_TRY(const double seconds, parse_number(in, field));
+  if (std::abs(seconds) >= 9.2e9)
+    return in.error("\"" + std::string(field) + "\" is not a time", "seconds since the GPS epoch");
+  const std::string_view text = trimmed(field);
+  const std::size_t point = text.find('.');
+  std::int64_t whole = 0;
+  const std::string_view before = text.substr(0, point);
+  const auto [end, status] = std::from_chars(before.data(), before.data() + before.size(), whole);
+  const bool plain = status == std::errc{} && end == before.data() + before.size() && text.front() != '-';
+  const std::string_view after = point == std::string_view::npos ? std::string_view{} : text.substr(point + 1);
+  if (!plain || after.find_first_not_of("0123456789") != std::string_view::npos) return (GpsTime{} + seconds).ns;
+  std::int64_t fraction = 0;
+  for (std::size_t i = 0; i < 9; ++i) fraction = 10 * fraction + (i < after.size() ? after[i] - '0' : 0);
+  if (after.size() > 9 && after[9] >= '5') ++fraction;
+  return whole * kNsPerSecond + fraction;
+}
+
+/// Unit quaternion from four numbers of a file, written with at least three digits.
+Result<Eigen::Quaterniond> parse_quaternion(const LineReader& in, double w, double x, double y, double z) {
+  Eigen::Quaterniond q(w, x, y, z);
+  const double norm = q.norm();
+  if (std::abs(norm - 1.0) > 0.01) return in.error("quaternion of norm " + std::to_string(norm), "norm 1");
+  // What is normalised up to rounding stays as it is, so that a written file reads back to the same bits.
+  if (std::abs(norm - 1.0) > 1e-15) q.normalize();
+  return q;
+}
+
+Status append_in_order(const LineReader& in, Trajectory& trajectory, GpsTime t, const Pose& X_WB) {
+  if (!trajectory.empty() && !(trajectory.poses().back().t < t)) {
+    return in.error("time does not increase", "poses in the order of time");
+  }
+  trajectory.append({t, X_WB});
+  return Ok{};
+}
+
+/// Shortest text that reads back to the same bits.
+void append_number(std::string& out, double value) {
+  char buffer[32];
+  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  out.append(buffer, end);
+}
+
+/// Seconds with nine decimals from whole nanoseconds.
+void append_seconds(std::string& out, std::int64_t ns) {
+  char buffer[32];
+  const std::int64_t magnitude = ns < 0 ? -ns : ns;
+  std::snprintf(buffer, sizeof buffer, "%s%lld.%09lld", ns < 0 ? "-" : "",
+                static_cast<long long>(magnitude / kNsPerSecond), static_cast<long long>(magnitude % kNsPerSecond));
+  out += buffer;
+}
+
+void append_row(std::string& out, std::span<const double> values, char separator, bool first_of_line) {
+  for (const double value : values) {
+    if (!first_of_line) out += separator;
+    first_of_line = false;
+    append_number(out, value);
+  }
+  out += '\n';
+}
+
+}  // namespace
+
+Result<Trajectory> read_tum(const std::string& path) {
+  CANYON_TRY(std::string text, read_text_file(path));
+  LineReader in(path, std::move(text));
+  Trajectory trajectory;
+  std::string_view line;
+  while (in.next(line)) {
+    const auto fields = split(line, " \t,", true);
+    if (fields.size() != 8) return in.error(std::to_string(fields.size()) + " columns", "8: t x y z qx qy qz qw");
+    CANYON_TRY(const std::int64_t ns, parse_seconds(in, fields[0]));
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < 7; ++i) {
+      CANYON_TRY(v[i], parse_number(in, fields[i + 1]));
+    }
+    CANYON_TRY(const Eigen::Quaterniond q, parse_quaternion(in, v[6], v[3], v[4], v[5]));
+    CANYON_TRY_STATUS(append_in_order(in, trajectory, GpsTime{ns}, {q, {v[0], v[1], v[2]}}));
+  }
+  if (trajectory.empty()) return in.empty_file();
+  return trajectory;
+}
+
+Status write_tum(const std::string& path, const Trajectory& trajectory) {
+  std::string out = "# t_s x_m y_m z_m qx qy qz qw; t in GPS seconds since 1980-01-06\n";
+  for (const StampedPose& pose : trajectory.poses()) {
+    const Eigen::Vector3d& p = pose.X_WB.p;
+    const Eigen::Quaterniond& q = pose.X_WB.R;
+    append_seconds(out, pose.t.ns);
+    append_row(out, std::array{p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}, ' ', false);
+  }
+  return write_text_file(path, out);
+}
+
+Result<Trajectory> read_kitti(const std::string& path, GpsTime start, double rate_hz) {
+  CANYON_TRY(std::string text, read_text_file(path));
+  LineReader in(path, std::move(text));
+  Trajectory trajectory;
+  std::string_view line;
+  while (in.next(line)) {
+    const auto fields = split(line, " \t,", true);
+    if (fields.size() != 12)
+      return in.error(std::to_string(fields.size()) + " columns", "12: a 3 x 4 matrix, row by row");
+    Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+    for (std::size_t i = 0; i < 12; ++i) {
+      CANYON_TRY(T(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)), parse_number(in, fields[i]));
+    }
+    const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+    const double defect = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    if (defect > 0.01 || R.determinant() < 0.0)
+      return in.error("first three columns are not a rotation", "orthonormal axes");
+    const auto k = static_cast<std::int64_t>(trajectory.poses().size());
+    CANYON_TRY_STATUS(append_in_order(in, trajectory, tick(start, k, rate_hz), Pose::from_matrix(T)));
+  }
+  if (trajectory.empty()) return in.empty_file();
+  return trajectory;
+}
+
+Status write_kitti(const std::string& path, const Trajectory& trajectory) {
+  std::string out;
+  for (const StampedPose& pose : trajectory.poses()) {
+    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = pose.X_WB.matrix().topRows<3>();
+    append_row(out, std::span(rows.data(), 12), ' ', true);
+  }
+  return write_text_file(path, out);
+}
+
+namespace {
+
+constexpr std::array<std::string_view, 9> kCsvColumns = {"gps_week", "sow", "x_m", "y_m", "z_m",
+                                                         "qw",       "qx",  "qy",  "qz"};
+
+std::string csv_header() {
+  std::string header;
+  for (const std::string_view column : kCsvColumns) header += (header.empty() ? "" : ",") + std::string(column);
+  return header;
+}
+
+}  // namespace
+
+/// Columns are found by their names, so further ones and another order do no harm.
+Result<Trajectory> read_csv_trajectory(const std::string& path) {
+  CANYON_TRY(std::string text, read_text_file(path));
+  LineReader in(path, std::move(text));
+  std::string_view line;
+  if (!in.next(line)) return in.empty_file();
+  const auto names = split(line, ",", false);
+  std::array<std::size_t, kCsvColumns.size()> place{};
+  for (std::size_t c = 0; c < kCsvColumns.size(); ++c) {
+    while (place[c] < names.size() && trimmed(names[place[c]]) != kCsvColumns[c]) ++place[c];
+    if (place[c] == names.size()) {
+      return in.error("no column \"" + std::string(kCsvColumns[c]) + "\"", "the header " + csv_header());
+    }
+  }
+  Trajectory trajectory;
+  while (in.next(line)) {
+    const auto fields = split(line, ",", false);
+    if (fields.size() != names.size()) {
+      return in.error(std::to_string(fields.size()) + " columns", std::to_string(names.size()) + " as in the header");
+    }
+    CANYON_TRY(const double week, parse_number(in, fields[place[0]]));
+    if (week != std::floor(week) || week < 0.0 || week > 14000.0) {
+      return in.error("\"" + std::string(fields[place[0]]) + "\" is not a GPS week", "a whole number from 0 to 14000");
+    }
+    CANYON_TRY(const std::int64_t sow_ns, parse_seconds(in, fields[place[1]]));
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < 7; ++i) {
+      CANYON_TRY(v[i], parse_number(in, fields[place[i + 2]]));
+    }
+    CANYON_TRY(const Eigen::Quaterniond q, parse_quaternion(in, v[3], v[4], v[5], v[6]));
+    const GpsTime t{GpsTime::from_week_sow(static_cast<int>(week), 0.0).ns + sow_ns};
+    CANYON_TRY_STATUS(append_in_order(in, trajectory, t, {q, {v[0], v[1], v[2]}}));
+  }
+  if (trajectory.empty()) return in.empty_file();
+  return trajectory;
+}
+
+Status write_csv_trajectory(const std::string& path, const Trajectory& trajectory) {
+  std::string out = csv_header() + "\n";
+  for (const StampedPose& pose : trajectory.poses()) {
+    const Eigen::Vector3d& p = pose.X_WB.p;
+    const Eigen::Quaterniond& q = pose.X_WB.R;
+    out += std::to_string(pose.t.week()) + ",";
+    append_seconds(out, pose.t.sow_ns());
+    append_row(out, std::array{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}, ',', false);
+  }
+  return write_text_file(path, out);
+}
+
+}  // namespace canyon
