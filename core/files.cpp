@@ -82,7 +82,7 @@ Result<std::string> read_text_file(const std::string& path) {
 
 Result<std::string> read_text_or_gzip_file(const std::string& path) {
   CANYON_TRY(std::string bytes, read_text_file(path));
-  const bool gzip = bytes.size() >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b';
+  const bool gzip = bytes.compare(0, 2, "\x1f\x8b") == 0;
   if (!gzip) return bytes;
   return gunzip(path, bytes);
 }
