@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/config.h"
+#include "core/messages.h"
+#include "core/result.h"
+#include "mission/path.h"
+#include "scene/street_graph.h"
+
+namespace canyon::mission {
+
+/// A place of the mission, known beforehand. A mission waypoint is one with a building to look at.
+struct Waypoint {
+  std::string name;
+  Eigen::Vector2d p_m{0, 0};  ///< x, y in W
+  std::string observe;        ///< name of the building of interest; empty = pass through
+  bool is_mission() const { return !observe.empty(); }
+};
+void visit(FieldVisitor& f, Waypoint& w);
+
+/// [autonomy] of a mission file.
+struct AutonomyConfig {
+  std::string model = "reference";
+  std::string map = "prior";          ///< pose it works with: the filter's ("prior") or corrected by the last keyframe ("registered")
+  double cruise_m_s = 5.0;
+  double lateral_m_s2 = 1.2;          ///< lateral acceleration in corners
+  double braking_m_s2 = 1.2;
+  double corner_radius_m = 6.5;
+  double hold_s = 6.0;                ///< how long it looks at a building
+  double max_offset_m = 3.5;          ///< how far it may leave the street's centre line
+  double clearance_m = 1.0;           ///< from its axis to an obstacle
+  double blind_after_s = 0.5;         ///< stops when no scan with returns came for this long
+  std::vector<Waypoint> waypoints;
+};
+void visit(FieldVisitor& f, AutonomyConfig& c);
+
+enum class AutonomyState { kDriving, kObserving, kBlocked, kBlind, kDone };
+const char* name(AutonomyState state);
+
+/// What the vehicle knows before it starts: streets and waypoints, no obstacles.
+struct PriorKnowledge {
+  Path route;
+  std::vector<double> waypoint_s_m;  ///< arc length of each waypoint along the route
+};
+/// Error (without file and line) if the streets do not connect the waypoints.
+Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets, const Eigen::Vector2d& start_m);
+
+/// Drives the vehicle on estimates and scans alone; never sees truth.
+class Autonomy {
+ public:
+  virtual ~Autonomy() = default;
+  /// A deskewed scan in L at its stamp, placed by the estimate at that stamp.
+  virtual void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) = 0;
+  virtual DriveCommand drive(const NavEstimate& estimate) = 0;
+  virtual AutonomyState state() const = 0;
+  virtual int next_waypoint() const = 0;  ///< 0-based; number of waypoints when done
+};
+
+std::unique_ptr<Autonomy> make_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start);
+std::vector<std::string> autonomy_models();
+
+}  // namespace canyon::mission

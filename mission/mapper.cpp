@@ -1,0 +1,91 @@
+#include "mission/mapper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "core/units.h"
+
+namespace canyon::mission {
+
+namespace {
+
+constexpr double kPriorCorrelation = 10.0;         // s, how long the error of a fix stays alike in a street
+constexpr double kFloorRotation = 0.05 * kDegree;  // rad, 1-sigma per alignment beyond what its covariance says
+constexpr double kFloorTranslation = 0.02;         // m, likewise
+
+/// Covariance of a pose error moved from frame B to a frame L rigidly attached to it: xi_L = Ad(X_LB) xi_B.
+Matrix6d moved(const Matrix6d& covariance_B, const Pose& X_BL) {
+  const Pose X_LB = X_BL.inverse();
+  const Eigen::Matrix3d R = X_LB.R.toRotationMatrix();
+  Matrix6d adjoint = Matrix6d::Zero();
+  adjoint.topLeftCorner<3, 3>() = R;
+  adjoint.bottomRightCorner<3, 3>() = R;
+  adjoint.bottomLeftCorner<3, 3>() = skew(X_LB.p) * R;
+  return adjoint * covariance_B * adjoint.transpose();
+}
+
+}  // namespace
+
+Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration, const Pose& X_BL)
+    : config_(config), registration_(std::move(registration)), X_BL_(X_BL) {}
+
+const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate) {
+  const Pose prior = estimate.X_WB * X_BL_;
+  if (has_last_) {
+    const Pose moved_by = last_.X_WL_prior.inverse() * prior;
+    if (moved_by.p.norm() < config_.keyframe_distance_m && so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree)
+      return nullptr;
+  }
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(scan.points.size());
+  for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);
+
+  Keyframe keyframe;
+  keyframe.t = scan.t;
+  keyframe.X_WL_prior = prior;
+  keyframe.X_WL_registered = prior;
+  keyframe.points = points.size();
+  const Matrix6d prior_covariance = moved(estimate.pose_covariance, X_BL_);
+  Matrix6d covariance = prior_covariance;
+  const auto cloud = registration_->prepare(points);
+
+  if (!has_last_) {
+    keyframe.status = lidar::RegistrationStatus::kConverged;  // the first one defines the map
+  } else if (config_.method != "none") {
+    // In the frame of the last keyframe, where numbers stay small.
+    const Pose X_LW = last_.X_WL_registered.inverse();
+    std::vector<lidar::Registration::Placed> targets;
+    for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LW * placed.X_WL});
+    const Pose guess = last_.X_WL_prior.inverse() * prior;
+    const lidar::RegistrationResult result = registration_->align(*cloud, targets, guess);
+    keyframe.status = result.status;
+    keyframe.iterations = result.iterations;
+    keyframe.rms_m = result.rms_m;
+    if (result.status == lidar::RegistrationStatus::kConverged) {
+      const Pose registered = last_.X_WL_registered * result.X_TS;
+      Matrix6d floor = Matrix6d::Zero();
+      floor.diagonal() << Eigen::Vector3d::Constant(kFloorRotation * kFloorRotation),
+          Eigen::Vector3d::Constant(kFloorTranslation * kFloorTranslation);
+      const Matrix6d P_Z = moved(last_covariance_, result.X_TS) + result.covariance + floor;
+      const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
+      const Matrix6d P_Y = prior_covariance * std::max(1.0, kPriorCorrelation / elapsed_s);
+      const Matrix6d K = (P_Z + P_Y).transpose().partialPivLu().solve(P_Z.transpose()).transpose();
+      const Vector6d xi = (registered.inverse() * prior).log();
+      keyframe.X_WL_registered = registered * Pose::exp(K * xi);
+      const Matrix6d left = Matrix6d::Identity() - K;
+      covariance = left * P_Z * left.transpose() + K * P_Y * K.transpose();
+    }
+  }
+
+  submap_.push_back({cloud, keyframe.X_WL_registered});
+  while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
+  last_ = keyframe;
+  last_covariance_ = 0.5 * (covariance + covariance.transpose());
+  has_last_ = true;
+  correction_ = keyframe.X_WL_registered * keyframe.X_WL_prior.inverse();
+  return &last_;
+}
+
+}  // namespace canyon::mission

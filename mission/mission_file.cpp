@@ -1,0 +1,148 @@
+#include "mission/mission_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/embedded.h"
+#include "core/units.h"
+
+namespace canyon::mission {
+
+namespace {
+
+constexpr const char* kFidelityFile = "missions/fidelities.toml";
+
+std::string mission_key(const std::string& name) { return "missions/" + name + ".toml"; }
+
+std::vector<std::string> builtin_missions() {
+  std::vector<std::string> names;
+  for (const std::string_view key : embedded_files("missions/")) {
+    if (key == kFidelityFile) continue;
+    std::string name(key.substr(std::string_view("missions/").size()));
+    names.push_back(name.substr(0, name.size() - std::string(".toml").size()));
+  }
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+Result<ConfigNode> load_builtin(const std::string& key) {
+  const auto text = embedded_file(key);
+  CANYON_CHECK(text.has_value(), "no embedded file ", key);
+  return ConfigNode::parse(*text, key);
+}
+
+std::vector<std::string> table_keys(const ConfigNode* node) {
+  std::vector<std::string> keys;
+  if (node != nullptr && node->table() != nullptr)
+    for (const auto& [key, value] : *node->table()) keys.push_back(key);
+  return keys;
+}
+
+}  // namespace
+
+Result<MissionFile> MissionFile::load(const std::string& path) {
+  if (path.empty()) return parse("base = \"" + std::string(kDefaultMission) + "\"\n", mission_key(kDefaultMission));
+  CANYON_TRY(ConfigNode tree, ConfigNode::load(path));
+  return from_tree(std::move(tree), path);
+}
+
+Result<MissionFile> MissionFile::parse(std::string_view toml, const std::string& file_name) {
+  CANYON_TRY(ConfigNode tree, ConfigNode::parse(toml, file_name));
+  return from_tree(std::move(tree), file_name);
+}
+
+Result<MissionFile> MissionFile::from_tree(ConfigNode tree, const std::string& file_name) {
+  MissionFile mission;
+  mission.file_ = file_name;
+  mission.user_ = std::move(tree);
+  CANYON_TRY(mission.builtin_fidelities_, load_builtin(kFidelityFile));
+  if (const ConfigNode* base = mission.user_.find("base")) {
+    const auto* name = std::get_if<std::string>(&base->value_);
+    const auto known = builtin_missions();
+    if (name == nullptr || std::find(known.begin(), known.end(), *name) == known.end())
+      return base->error("base", base->describe() + " is not a built-in mission", "one of " + joined(known));
+    CANYON_TRY(mission.base_, load_builtin(mission_key(*name)));
+    mission.user_.erase("base");
+  }
+  return mission;
+}
+
+void MissionFile::set_option(const std::string& key, ConfigNode value, const std::string& option) {
+  options_.set(key, std::move(value), option);
+}
+
+std::vector<std::string> MissionFile::fidelities() const {
+  std::vector<std::string> names = table_keys(builtin_fidelities_.find("fidelity"));
+  for (const ConfigNode* tree : {&base_, &user_})
+    for (const auto& key : table_keys(tree->find("fidelity")))
+      if (std::find(names.begin(), names.end(), key) == names.end()) names.push_back(key);
+  return names;
+}
+
+Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const {
+  const auto known = fidelities();
+  if (std::find(known.begin(), known.end(), fidelity) == known.end())
+    return Error{.file = file_, .key = "fidelity." + fidelity, .what = "unknown fidelity", .expected = "one of " + joined(known)};
+  ConfigNode tree = base_;
+  const auto lay_fidelity = [&](const ConfigNode& from) {
+    if (const ConfigNode* over = from.find("fidelity." + fidelity)) tree.overlay(*over);
+  };
+  lay_fidelity(base_);
+  lay_fidelity(builtin_fidelities_);
+  tree.overlay(user_);
+  lay_fidelity(user_);
+  tree.overlay(options_);
+  tree.erase("fidelity");
+  return tree;
+}
+
+Result<MissionConfig> MissionFile::resolve(const std::string& fidelity) const {
+  CANYON_TRY(const ConfigNode tree, resolved_tree(fidelity));
+  MissionConfig config;
+  CANYON_TRY_STATUS(read_config(&tree, "", config));
+  return config;
+}
+
+Result<MissionConfig> MissionFile::resolve_mixed(const std::string& gnss, const std::string& imu) const {
+  CANYON_TRY(MissionConfig config, resolve(gnss));
+  CANYON_TRY(const MissionConfig other, resolve(imu));
+  config.imu = other.imu;
+  config.run.initial_attitude_error_deg = other.run.initial_attitude_error_deg;
+  return config;
+}
+
+Error MissionFile::locate(Error error) const {
+  if (!error.file.empty()) return error;
+  // Where was the key (or its nearest parent) set last?
+  const auto find_in = [&](const ConfigNode& tree) {
+    std::string key = error.key;
+    while (!key.empty()) {
+      std::string dotted = key;
+      std::size_t item = 0;  // waypoint[3] -> the third element of the array
+      if (const auto bracket = dotted.rfind('['); bracket != std::string::npos) {
+        item = static_cast<std::size_t>(std::stoul(dotted.substr(bracket + 1)));
+        dotted = dotted.substr(0, bracket);
+      }
+      if (const ConfigNode* node = tree.find(dotted)) {
+        if (item > 0 && node->array() != nullptr && item <= node->array()->size()) node = &(*node->array())[item - 1];
+        error.file = node->file_;
+        error.line = node->line_;
+        return true;
+      }
+      const auto dot = key.rfind('.');
+      key = dot == std::string::npos ? "" : key.substr(0, dot);
+    }
+    return false;
+  };
+  if (find_in(options_) || find_in(user_) || find_in(base_)) return error;
+  error.file = file_;
+  return error;
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/check.h"
+#include "mission/mission_file.h"
+
+namespace canyon::mission {
+
+namespace {
+
+std::string place(const Eigen::Vector2d& p) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.1f, %.1f)", p.x(), p.y());
+  return text;
+}
+
+/// A point where a vehicle can stand: on the terrain, outside buildings.
+Status check_standing_place(const scene::Scene& scene, const Eigen::Vector2d& p, const std::string& key) {
+  const auto& extent = scene.extent();
+  if (!scene.ground(p.x(), p.y()))
+    return Error{.key = key,
+                 .what = place(p) + " lies outside the scene",
+                 .expected = join_values("x from ", extent.min.x(), " to ", extent.max.x(), ", y from ", extent.min.y(), " to ",
+                                         extent.max.y())};
+  if (const scene::Building* building = scene.building_at(p))
+    return Error{.key = key, .what = place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
+  return Ok{};
+}
+
+Status check_rate(double imu_hz, double rate_hz, const std::string& key) {
+  const double ratio = imu_hz / rate_hz;
+  if (std::abs(ratio - std::round(ratio)) > 1e-9)
+    return Error{.key = key,
+                 .what = join_values(rate_hz, " Hz does not divide the IMU's ", imu_hz, " Hz"),
+                 .expected = "imu.rate_hz divided by a whole number"};
+  return Ok{};
+}
+
+}  // namespace
+
+std::shared_ptr<const scene::Scene> SceneCache::get(const scene::CityConfig& config) {
+  scene::CityConfig copy = config;
+  auto& slot = scenes_[fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); })];
+  if (!slot) slot = std::make_shared<scene::Scene>(scene::make_city(config));
+  return slot;
+}
+
+Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes) {
+  PreparedMission mission;
+  auto start = GpsTime::parse(config.time.start, "");
+  if (!start) {
+    Error error = start.error();
+    error.key = "time.start";
+    error.file.clear();
+    return error;
+  }
+  mission.start = *start;
+  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.gnss.rate_hz, "gnss.rate_hz"));
+  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.lidar.rate_hz, "lidar.rate_hz"));
+  if (config.autonomy.waypoints.empty())
+    return Error{.key = "autonomy.waypoint", .what = "no waypoints", .expected = "at least one [[autonomy.waypoint]]"};
+
+  mission.scene = scenes.get(config.scene);
+  const scene::Scene& scene = *mission.scene;
+  CANYON_TRY_STATUS(check_standing_place(scene, config.vehicle.start_m, "vehicle.start_m"));
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.autonomy.waypoints[i];
+    const std::string key = "autonomy.waypoint[" + std::to_string(i + 1) + "]";
+    CANYON_TRY_STATUS(check_standing_place(scene, waypoint.p_m, key));
+    if (!waypoint.is_mission() || config.scene.empty) continue;
+    std::vector<std::string> names;
+    for (const auto& building : scene.buildings()) names.push_back(building.name);
+    if (std::find(names.begin(), names.end(), waypoint.observe) == names.end())
+      return Error{.key = key,
+                   .what = "no building named \"" + waypoint.observe + "\"",
+                   .expected = "a building of the scene; nearest is \"" + nearest_word(waypoint.observe, names) + "\""};
+  }
+
+  CANYON_TRY(mission.prior, plan_route(config.autonomy, scene.streets(), config.vehicle.start_m));
+  std::vector<double> stops{mission.prior.route.length_m()};
+  double holds_s = 0.0;
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    if (!config.autonomy.waypoints[i].is_mission()) continue;
+    stops.push_back(mission.prior.waypoint_s_m[i]);
+    holds_s += config.autonomy.hold_s;
+  }
+  mission.nominal_s = holds_s + nominal_drive_time_s(mission.prior.route,
+                                                     {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2,
+                                                      config.vehicle.max_acceleration_m_s2, config.autonomy.braking_m_s2},
+                                                     stops);
+  mission.time_limit_s = config.time.limit_factor * mission.nominal_s;
+  return mission;
+}
+
+}  // namespace canyon::mission
