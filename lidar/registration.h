@@ -30,10 +30,10 @@ enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints };
 
 struct RegistrationResult {
   RegistrationStatus status = RegistrationStatus::kNotConverged;
-  Pose X_TS;                                          ///< a point of source in target's frame
-  Matrix6d covariance = Matrix6d::Constant(kNaN);     ///< of xi, source frame; from the cost's curvature
+  Pose X_TS;                                       ///< a point of source in target's frame
+  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of xi, source frame; from the cost's curvature
   int iterations = 0;
-  double rms_m = kNaN;                                ///< of inlier correspondences
+  double rms_m = kNaN;  ///< of inlier correspondences
 };
 
 /// A keyframe's cloud made ready for registration: thinned, with per-point covariances.
@@ -50,7 +50,8 @@ class Registration {
     Pose X_TC;  ///< pose of the cloud in the target frame
   };
   /// Aligns `source` onto the union of `targets`, starting from `guess` = X_TS.
-  virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets, const Pose& guess) const = 0;
+  virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
+                                   const Pose& guess) const = 0;
 };
 
 Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config);

@@ -17,17 +17,17 @@ namespace canyon::lidar {
 
 /// [lidar] of a mission file.
 struct LidarConfig {
-  std::string beams = "vlp16";        ///< table in lidar/beams
+  std::string beams = "vlp16";  ///< table in lidar/beams
   std::string model = "single_ray";
-  double rate_hz = 10.0;              ///< revolutions per second
-  std::int64_t azimuth_steps = 1800;  ///< firings per revolution
+  double rate_hz = 10.0;                              ///< revolutions per second
+  std::int64_t azimuth_steps = 1800;                  ///< firings per revolution
   Eigen::Vector3d mount_m{0.3, 0.0, 1.8};             ///< L in B
   Eigen::Vector3d mount_yaw_pitch_roll_deg{0, 0, 0};  ///< R_BL
   double min_range_m = 0.9;
   double max_range_m = 100.0;
-  double range_noise_m = 0.02;        ///< 1-sigma; VLP-16 manual: +-3 cm typical accuracy
+  double range_noise_m = 0.02;  ///< 1-sigma; VLP-16 manual: +-3 cm typical accuracy
   double range_quantum_m = 0.002;
-  bool blinded = false;               ///< returns nothing (coupling studies)
+  bool blinded = false;  ///< returns nothing (coupling studies)
 };
 void visit(FieldVisitor& f, LidarConfig& c);
 

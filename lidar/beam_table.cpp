@@ -1,0 +1,145 @@
+#include "lidar/beam_table.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "core/config.h"
+#include "core/embedded.h"
+#include "core/files.h"
+#include "core/units.h"
+
+namespace canyon::lidar {
+namespace {
+
+constexpr std::string_view kFolder = "lidar/beams/";
+constexpr std::string_view kHeader = "laser,elevation_deg,azimuth_offset_deg,origin_up_mm,firing_us";
+
+struct Field {
+  const char* name;
+  double min, max;
+};
+// A firing cycle longer than 100 ms would not fit into the slowest revolution.
+constexpr std::array<Field, 5> kFields{{{"laser", 0, 1023},
+                                        {"elevation_deg", -90, 90},
+                                        {"azimuth_offset_deg", -180, 180},
+                                        {"origin_up_mm", -1000, 1000},
+                                        {"firing_us", 0, 1e5}}};
+constexpr Field kCycle{"cycle_us", 0, 1e5};
+
+std::string_view trim(std::string_view s) {
+  const auto first = s.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view line) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const auto comma = line.find(',');
+    parts.push_back(trim(line.substr(0, comma)));
+    if (comma == std::string_view::npos) return parts;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+Result<double> number(std::string_view text, const Field& field, const std::string& file, int line) {
+  double value = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool parsed = code == std::errc() && end == text.data() + text.size();
+  if (!parsed || !(value >= field.min && value <= field.max)) {
+    return Error{file, line, field.name, '"' + std::string(text) + '"',
+                 join_values("a number from ", field.min, " to ", field.max)};
+  }
+  return value;
+}
+
+/// A text file's lines without comments and blanks, with their numbers.
+struct Line {
+  int number;
+  std::string_view text;
+};
+std::vector<Line> content_lines(std::string_view text) {
+  std::vector<Line> lines;
+  for (int number = 1; !text.empty(); ++number) {
+    const auto end = text.find('\n');
+    const std::string_view line = trim(text.substr(0, end));
+    if (!line.empty() && line.front() != '#') lines.push_back({number, line});
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return lines;
+}
+
+}  // namespace
+
+double BeamTable::last_firing_s() const {
+  double last = 0;
+  for (const Beam& beam : beams) last = std::max(last, beam.firing_s);
+  return last;
+}
+
+Result<BeamTable> parse_beam_table(std::string_view csv, const std::string& file_name) {
+  const std::vector<Line> lines = content_lines(csv);
+  const auto wrong = [&](std::size_t i, std::string expected) {
+    const bool there = i < lines.size();
+    return Error{file_name, there ? lines[i].number : 0, "",
+                 there ? '"' + std::string(lines[i].text) + '"' : "the file ends early", std::move(expected)};
+  };
+  BeamTable table;
+  if (lines.empty() || !lines[0].text.starts_with("cycle_us,")) return wrong(0, "cycle_us,VALUE");
+  CANYON_TRY(const double cycle_us, number(trim(lines[0].text.substr(9)), kCycle, file_name, lines[0].number));
+  table.cycle_s = cycle_us * 1e-6;
+  if (lines.size() < 2 || lines[1].text != kHeader) return wrong(1, std::string(kHeader));
+  if (lines.size() < 3) return wrong(2, "one line per laser");
+  for (std::size_t i = 2; i < lines.size(); ++i) {
+    const auto parts = split(lines[i].text);
+    if (parts.size() != kFields.size()) return wrong(i, "5 values: " + std::string(kHeader));
+    std::array<double, kFields.size()> values{};
+    for (std::size_t k = 0; k < kFields.size(); ++k) {
+      CANYON_TRY(values[k], number(parts[k], kFields[k], file_name, lines[i].number));
+    }
+    if (values[0] != static_cast<double>(i - 2)) return wrong(i, join_values("laser ", i - 2));
+    table.beams.push_back({.elevation_rad = values[1] * kDegree,
+                           .azimuth_offset_rad = values[2] * kDegree,
+                           .origin_up_m = values[3] * 1e-3,
+                           .firing_s = values[4] * 1e-6});
+  }
+  if (table.cycle_s > 0 && table.last_firing_s() >= table.cycle_s) {
+    return Error{file_name, lines[0].number, "cycle_us", join_values(cycle_us),
+                 join_values("more than the last firing_us, ", table.last_firing_s() * 1e6)};
+  }
+  return table;
+}
+
+Result<BeamTable> load_beam_table(const std::string& name_or_path) {
+  if (name_or_path.ends_with(".csv")) {
+    CANYON_TRY(const std::string text, read_text_file(name_or_path));
+    CANYON_TRY(BeamTable table, parse_beam_table(text, name_or_path));
+    table.name = name_or_path;
+    return table;
+  }
+  const std::string key = std::string(kFolder) + name_or_path + ".csv";
+  if (const auto text = embedded_file(key)) {
+    CANYON_TRY(BeamTable table, parse_beam_table(*text, key));
+    table.name = name_or_path;
+    return table;
+  }
+  std::string known;
+  for (const std::string& name : builtin_beam_tables()) known += (known.empty() ? "" : ", ") + name;
+  const std::string nearest = nearest_word(name_or_path, builtin_beam_tables());
+  return Error{
+      "", 0, "lidar.beams",
+      "unknown beam table \"" + name_or_path + '"' + (nearest.empty() ? "" : " (did you mean \"" + nearest + "\"?)"),
+      "one of " + known + ", or the path of a .csv file"};
+}
+
+std::vector<std::string> builtin_beam_tables() {
+  std::vector<std::string> names;
+  for (std::string_view key : embedded_files(kFolder)) {
+    if (key.ends_with(".csv")) names.emplace_back(key.substr(kFolder.size(), key.size() - kFolder.size() - 4));
+  }
+  return names;
+}
+
+}  // namespace canyon::lidar

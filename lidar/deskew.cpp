@@ -1,0 +1,26 @@
+#include "lidar/scanner.h"
+#include "lidar/sweep_motion.h"
+
+namespace canyon::lidar {
+
+LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_BL) {
+  LidarScan out{.t = scan.t, .period_s = scan.period_s, .points = {}};
+  const auto X_WB = motion.at(scan.t);
+  if (!X_WB) return out;
+  const Pose X_LW = (*X_WB * X_BL).inverse();
+  const SweepMotion sweep(motion, scan.t, -scan.period_s, 0.0, X_LW, X_BL);
+  out.points.reserve(scan.points.size());
+  std::size_t hint = 0;
+  for (LidarPoint point : scan.points) {
+    if (!sweep.covers(point.time_s)) continue;
+    const Eigen::Vector3d p = sweep.at(point.time_s, hint) * Eigen::Vector3d(point.x, point.y, point.z);
+    point.x = static_cast<float>(p.x());
+    point.y = static_cast<float>(p.y());
+    point.z = static_cast<float>(p.z());
+    point.time_s = 0;
+    out.points.push_back(point);
+  }
+  return out;
+}
+
+}  // namespace canyon::lidar

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace canyon::lidar {
+
+/// A cloud made ready for registration, in its own frame: thinned, each point with the plane its neighbours form.
+class PreparedCloud {
+ public:
+  std::vector<Eigen::Vector3f> points;
+  /// Unit normal of the surface at the point, sign arbitrary; zero where the neighbours do not form a plane.
+  std::vector<Eigen::Vector3f> normals;
+  /// 1-sigma squared of the normal's tilt, rad^2, from the scatter of the neighbours about the plane.
+  std::vector<float> tilt_variance;
+};
+
+/// Thins to one centroid per voxel of leaf_m and fits a plane to the 20 nearest neighbours of each point. Points that
+/// are not finite, or exactly (0, 0, 0) as some sensors mark a missing return, are left out.
+PreparedCloud prepare_cloud(std::span<const Eigen::Vector3f> points, double leaf_m);
+
+}  // namespace canyon::lidar

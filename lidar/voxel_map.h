@@ -1,0 +1,32 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lidar/cloud_files.h"
+#include "lidar/voxel_index.h"
+
+namespace canyon::lidar {
+
+/// A growing map cloud thinned to one point per voxel: the first to come stays, as it was measured. Deterministic.
+class VoxelMap {
+ public:
+  /// `leaf_m` > 0: edge of a voxel.
+  explicit VoxelMap(double leaf_m) : index_(leaf_m) {}
+
+  /// True if the point was kept. Its position must be finite and within 2^20 voxels of the origin.
+  bool insert(const MapPoint& point);
+
+  const std::vector<MapPoint>& points() const { return points_; }
+  std::vector<MapPoint> take() && { return std::move(points_); }
+
+ private:
+  VoxelIndex index_;
+  std::vector<MapPoint> points_;
+};
+
+/// The centroid of the points in each voxel, in the order in which the voxels are first met. Points that are not finite
+/// are left out.
+std::vector<Eigen::Vector3f> voxel_centroids(std::span<const Eigen::Vector3f> points, double leaf_m);
+
+}  // namespace canyon::lidar
