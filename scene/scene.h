@@ -1,9 +1,12 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,9 +67,13 @@ struct Extent {
   Eigen::Vector3d max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
 };
 
+class Tracer;
+
 /// A static scene: immutable and shared by all runs and threads.
 class Scene {
  public:
+  /// Triangles that no ray can meet (a vertex not finite, or thinner than a micrometre) are dropped from the mesh and
+  /// counted. Index errors (a vertex, material or object that does not exist) are a programmer's mistake and throw.
   explicit Scene(SceneParts parts);
   ~Scene();
   Scene(const Scene&) = delete;
@@ -82,9 +89,11 @@ class Scene {
   const std::vector<Foliage>& foliage() const { return parts_.foliage; }
   const StreetGraph& streets() const { return parts_.streets; }
   const Extent& extent() const { return extent_; }
+  std::size_t dropped_triangles() const { return dropped_triangles_; }
 
-  /// Large planar surfaces merged from triangles, with their spatial index; built on first use, so that a scene whose
-  /// sensors need no reflections never pays for them. Thread-safe.
+  /// Planar surfaces of at least kMinFacetArea_m2 merged from triangles, with their spatial index; built on first use,
+  /// so that a scene whose sensors need no reflections never pays for them. Thread-safe.
+  static constexpr double kMinFacetArea_m2 = 1.0;
   const FacetIndex& facets() const;
   bool facets_built() const;
 
@@ -95,7 +104,7 @@ class Scene {
   };
   std::optional<Ground> ground(double x, double y) const;
 
-  /// Name of the building whose footprint contains (x, y); nullptr if none.
+  /// The building whose footprint contains (x, y); nullptr if none.
   const Building* building_at(const Eigen::Vector2d& xy) const;
 
   /// SHA-256 over geometry, materials and frame, for the manifest.
@@ -103,12 +112,13 @@ class Scene {
 
  private:
   friend class SceneAt;
-  struct Tracer;  // Embree, in embree_tracer.cpp
   SceneParts parts_;
   Extent extent_;
+  std::size_t dropped_triangles_ = 0;
   std::unique_ptr<Tracer> tracer_;
-  mutable std::unique_ptr<FacetIndex> facets_;
-  mutable std::unique_ptr<struct LazyFacets> lazy_;
+  mutable std::once_flag facets_once_;
+  mutable std::atomic<bool> facets_built_{false};
+  mutable FacetIndex facets_;
 };
 
 }  // namespace canyon::scene

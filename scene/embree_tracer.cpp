@@ -1,0 +1,234 @@
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "core/check.h"
+#include "scene/tracer.h"
+#include "scene/triangle.h"
+
+namespace canyon::scene {
+namespace {
+
+constexpr std::size_t kPacket = 16;
+
+/// One device for the whole process. It builds with one thread: the order in which a parallel build places triangles in
+/// the tree may vary, and with it which of two triangles a ray through their common edge meets.
+RTCDevice device() {
+  static const RTCDevice instance = [] {
+    RTCDevice made = rtcNewDevice("threads=1");
+    CANYON_CHECK(made != nullptr, "Embree error ", static_cast<int>(rtcGetDeviceError(nullptr)));
+    CANYON_CHECK(rtcGetDeviceProperty(made, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0,
+                 "this Embree was built without ray masks");
+    return made;
+  }();
+  return instance;
+}
+
+void check_no_error(const char* during) {
+  const RTCError error = rtcGetDeviceError(device());
+  CANYON_CHECK(error == RTC_ERROR_NONE, "Embree error ", static_cast<int>(error), " during ", during);
+}
+
+bool finite(const Ray& ray) {
+  return ray.origin.allFinite() && ray.direction.allFinite() && !std::isnan(ray.max_m);
+}
+
+}  // namespace
+
+struct Tracer::Embree {
+  explicit Embree(const Mesh& the_mesh) : mesh(the_mesh) {}
+  ~Embree() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+
+  const Mesh& mesh;
+  RTCScene scene = nullptr;
+  /// Terrain, solids and trees are separate geometries, told apart by their masks; here: their triangles' indices in
+  /// the mesh.
+  std::array<std::vector<std::uint32_t>, 3> members;
+
+  void add_geometry(unsigned geometry_id, RTCBuffer vertices) {
+    const std::vector<std::uint32_t>& triangles = members[geometry_id];
+    if (triangles.empty()) return;
+    RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(Eigen::Vector3f),
+                         mesh.vertices.size());
+    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      std::copy(mesh.triangles[triangles[i]].begin(), mesh.triangles[triangles[i]].end(), indices + 3 * i);
+    }
+    rtcSetGeometryMask(geometry, 1u << geometry_id);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, geometry_id);
+    rtcReleaseGeometry(geometry);
+  }
+
+  /// The range in double precision, from the plane of the triangle that Embree found.
+  Hit hit(const Ray& ray, unsigned geometry_id, unsigned primitive_id, float embree_range_m) const {
+    Hit result;
+    if (geometry_id == RTC_INVALID_GEOMETRY_ID) return result;
+    result.triangle = members[geometry_id][primitive_id];
+    const Triangle triangle = Triangle::of(mesh, result.triangle);
+    const Eigen::Vector3d direction = ray.direction.cast<double>();
+    Eigen::Vector3d normal = triangle.area_normal().normalized();
+    const double approach = normal.dot(direction);
+    const double range_m = normal.dot(triangle.a - ray.origin.cast<double>()) / approach;
+    // A ray within its own plane's rounding of grazing keeps the single-precision range.
+    const bool plausible = std::abs(range_m - embree_range_m) <= 1e-3 * (1.0 + embree_range_m);
+    result.range_m = plausible ? static_cast<float>(std::max(range_m, 0.0)) : embree_range_m;
+    if (approach > 0.0) normal = -normal;
+    result.normal = normal.cast<float>();
+    return result;
+  }
+};
+
+Tracer::Tracer(const SceneParts& parts) : embree_(std::make_unique<Embree>(parts.mesh)) {
+  const Mesh& mesh = parts.mesh;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const ObjectKind kind = parts.objects[mesh.object[i]].kind;
+    embree_->members[kind == ObjectKind::kTerrain ? 0 : kind == ObjectKind::kTree ? 2 : 1].push_back(i);
+  }
+
+  embree_->scene = rtcNewScene(device());
+  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+  // Embree reads each vertex as four floats, so one float beyond the last must be readable.
+  const std::size_t bytes = mesh.vertices.size() * sizeof(Eigen::Vector3f);
+  RTCBuffer vertices = rtcNewBuffer(device(), bytes + 16);
+  if (bytes > 0) std::memcpy(rtcGetBufferData(vertices), mesh.vertices.data(), bytes);
+  for (unsigned id = 0; id < 3; ++id) embree_->add_geometry(id, vertices);
+  rtcReleaseBuffer(vertices);
+  rtcCommitScene(embree_->scene);
+  check_no_error("the building of the acceleration structure");
+}
+
+Tracer::~Tracer() = default;
+
+Hit Tracer::trace(const Ray& ray) const {
+  CANYON_CHECK(finite(ray), "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
+  query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
+  query.ray.tnear = 0.0f;
+  query.ray.tfar = ray.max_m;
+  query.ray.mask = kTraceAll;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->scene, &context, &query);
+  return embree_->hit(ray, query.hit.geomID, query.hit.primID, query.ray.tfar);
+}
+
+void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
+  CANYON_CHECK(rays.size() == hits.size(), "rays = ", rays.size(), ", hits = ", hits.size());
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(64) RTCRayHit16 query;
+  for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
+    const std::size_t count = std::min(kPacket, rays.size() - begin);
+    alignas(64) int valid[kPacket];
+    for (std::size_t lane = 0; lane < kPacket; ++lane) {
+      valid[lane] = lane < count ? -1 : 0;
+      const Ray& ray = rays[begin + std::min(lane, count - 1)];
+      CANYON_CHECK(finite(ray), "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
+      query.ray.org_x[lane] = ray.origin.x(), query.ray.org_y[lane] = ray.origin.y(),
+      query.ray.org_z[lane] = ray.origin.z();
+      query.ray.dir_x[lane] = ray.direction.x(), query.ray.dir_y[lane] = ray.direction.y();
+      query.ray.dir_z[lane] = ray.direction.z();
+      query.ray.tnear[lane] = 0.0f;
+      query.ray.tfar[lane] = ray.max_m;
+      query.ray.time[lane] = 0.0f;
+      query.ray.mask[lane] = kTraceAll;
+      query.ray.id[lane] = 0;
+      query.ray.flags[lane] = 0;
+      query.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect16(valid, embree_->scene, &context, &query);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      hits[begin + lane] =
+          embree_->hit(rays[begin + lane], query.hit.geomID[lane], query.hit.primID[lane], query.ray.tfar[lane]);
+    }
+  }
+}
+
+bool Tracer::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m,
+                      std::uint32_t mask) const {
+  CANYON_CHECK(origin.allFinite() && direction.allFinite(), "origin ", origin.transpose(), " direction ",
+               direction.transpose());
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay query{};
+  query.org_x = origin.x(), query.org_y = origin.y(), query.org_z = origin.z();
+  query.dir_x = direction.x(), query.dir_y = direction.y(), query.dir_z = direction.z();
+  query.tnear = min_m;
+  query.tfar = max_m;
+  query.mask = mask;
+  rtcOccluded1(embree_->scene, &context, &query);
+  return query.tfar < 0.0f;  // Embree sets -infinity
+}
+
+std::uint32_t Tracer::terrain_triangle(double x, double y) const {
+  if (embree_->members[0].empty() || !std::isfinite(x) || !std::isfinite(y)) return Hit::kMiss;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray.org_x = static_cast<float>(x), query.ray.org_y = static_cast<float>(y), query.ray.org_z = 1e4f;
+  query.ray.dir_z = -1.0f;
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = kTraceTerrain;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(embree_->scene, &context, &query);
+  return query.hit.geomID == RTC_INVALID_GEOMETRY_ID ? Hit::kMiss : embree_->members[0][query.hit.primID];
+}
+
+namespace {
+
+struct NearestQuery {
+  const Mesh* mesh;
+  const std::array<std::vector<std::uint32_t>, 3>* members;
+  Eigen::Vector3d p_W;
+  double slack_m;
+  NearestSurface best;
+};
+
+bool visit_candidate(RTCPointQueryFunctionArguments* arguments) {
+  auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
+  const std::uint32_t index = (*query.members)[arguments->geomID][arguments->primID];
+  const Eigen::Vector3d point = Triangle::of(*query.mesh, index).closest_point(query.p_W);
+  const double distance_m = (point - query.p_W).norm();
+  // Equal distances (a common edge): the lower index, whatever the order of visits.
+  const bool nearer =
+      distance_m < query.best.distance_m || (distance_m == query.best.distance_m && index < query.best.triangle);
+  if (!nearer) return false;
+  query.best = {distance_m, point, index};
+  const float radius = static_cast<float>(distance_m + query.slack_m);
+  if (radius >= arguments->query->radius) return false;
+  arguments->query->radius = radius;
+  return true;
+}
+
+}  // namespace
+
+NearestSurface Tracer::nearest(const Eigen::Vector3d& p_W, double max_m) const {
+  CANYON_CHECK(p_W.allFinite() && max_m >= 0.0, "p = ", p_W.transpose(), ", max_m = ", max_m);
+  // The tree is searched around the point rounded to single precision; the slack covers that rounding.
+  const double slack_m = 1e-6 * (1.0 + p_W.cwiseAbs().maxCoeff() + std::min(max_m, 1e6));
+  NearestQuery search{&embree_->mesh, &embree_->members, p_W, slack_m, {}};
+  search.best.distance_m = max_m;
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  RTCPointQuery query{};
+  query.x = static_cast<float>(p_W.x()), query.y = static_cast<float>(p_W.y()), query.z = static_cast<float>(p_W.z());
+  query.radius = static_cast<float>(std::min(max_m, 1e6) + slack_m);
+  rtcPointQuery(embree_->scene, &query, &context, visit_candidate, &search);
+  return search.best.triangle == Hit::kMiss ? NearestSurface{} : search.best;
+}
+
+}  // namespace canyon::scene

@@ -1,0 +1,144 @@
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/check.h"
+#include "core/files.h"
+#include "scene/tracer.h"
+#include "scene/triangle.h"
+
+namespace canyon::scene {
+namespace {
+
+void check_indices(const SceneParts& parts) {
+  const Mesh& mesh = parts.mesh;
+  CANYON_CHECK(mesh.material.size() == mesh.triangles.size() && mesh.object.size() == mesh.triangles.size(),
+               "triangles = ", mesh.triangles.size(), ", material = ", mesh.material.size(),
+               ", object = ", mesh.object.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t v : mesh.triangles[i]) {
+      CANYON_CHECK(v < mesh.vertices.size(), "triangle ", i, " vertex ", v, " of ", mesh.vertices.size());
+    }
+    CANYON_CHECK(mesh.material[i] < parts.materials.size(), "triangle ", i, " material ", mesh.material[i]);
+    CANYON_CHECK(mesh.object[i] < parts.objects.size(), "triangle ", i, " object ", mesh.object[i]);
+  }
+  for (const Building& b : parts.buildings) CANYON_CHECK(b.object < parts.objects.size(), b.name, " object ", b.object);
+}
+
+std::size_t drop_unusable_triangles(Mesh& mesh) {
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!Triangle::of(mesh, i).usable()) continue;
+    mesh.triangles[kept] = mesh.triangles[i];
+    mesh.material[kept] = mesh.material[i];
+    mesh.object[kept] = mesh.object[i];
+    ++kept;
+  }
+  const std::size_t dropped = mesh.triangles.size() - kept;
+  mesh.triangles.resize(kept);
+  mesh.material.resize(kept);
+  mesh.object.resize(kept);
+  return dropped;
+}
+
+Extent extent_of(const Mesh& mesh) {
+  Extent extent;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      const Eigen::Vector3d p = mesh.vertices[v].cast<double>();
+      extent.min = extent.min.cwiseMin(p);
+      extent.max = extent.max.cwiseMax(p);
+    }
+  }
+  return extent;
+}
+
+bool polygon_contains(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Eigen::Vector2d &a = polygon[i], &b = polygon[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y())) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
+template <class T>
+void append_bytes(std::string& bytes, const T* values, std::size_t count) {
+  const std::uint64_t n = count;
+  bytes.append(reinterpret_cast<const char*>(&n), sizeof n);
+  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+}
+
+}  // namespace
+
+Scene::Scene(SceneParts parts) : parts_(std::move(parts)) {
+  check_indices(parts_);
+  dropped_triangles_ = drop_unusable_triangles(parts_.mesh);
+  extent_ = extent_of(parts_.mesh);
+  tracer_ = std::make_unique<Tracer>(parts_);
+}
+
+Scene::~Scene() = default;
+
+const FacetIndex& Scene::facets() const {
+  std::call_once(facets_once_, [this] {
+    facets_ = FacetIndex(merge_planar_facets(*this, kMinFacetArea_m2));
+    facets_built_.store(true, std::memory_order_release);
+  });
+  return facets_;
+}
+
+bool Scene::facets_built() const {
+  return facets_built_.load(std::memory_order_acquire);
+}
+
+std::optional<Scene::Ground> Scene::ground(double x, double y) const {
+  const std::uint32_t index = tracer_->terrain_triangle(x, y);
+  if (index == Hit::kMiss) return std::nullopt;
+  const Triangle triangle = Triangle::of(parts_.mesh, index);
+  Eigen::Vector3d normal = triangle.area_normal().normalized();
+  if (normal.z() < 0.0) normal = -normal;
+  const double height_m =
+      triangle.a.z() - (normal.x() * (x - triangle.a.x()) + normal.y() * (y - triangle.a.y())) / normal.z();
+  return Ground{height_m, normal};
+}
+
+const Building* Scene::building_at(const Eigen::Vector2d& xy) const {
+  for (const Building& building : parts_.buildings) {
+    if (polygon_contains(building.footprint_W, xy)) return &building;
+  }
+  return nullptr;
+}
+
+std::string Scene::hash() const {
+  const Mesh& mesh = parts_.mesh;
+  std::string bytes;
+  bytes.reserve(mesh.vertices.size() * 12 + mesh.triangles.size() * 18 + 65536);
+  append_bytes(bytes, mesh.vertices.data(), mesh.vertices.size());
+  append_bytes(bytes, mesh.triangles.data(), mesh.triangles.size());
+  append_bytes(bytes, mesh.material.data(), mesh.material.size());
+  append_bytes(bytes, mesh.object.data(), mesh.object.size());
+  for (const Material& m : parts_.materials) {
+    const double values[] = {m.itu_a, m.itu_b, m.itu_c, m.itu_d, m.lidar_reflectance, m.rf_absorbing ? 1.0 : 0.0};
+    append_bytes(bytes, m.name.data(), m.name.size());
+    append_bytes(bytes, values, std::size(values));
+  }
+  for (const SceneObject& o : parts_.objects) {
+    const auto kind = static_cast<std::uint8_t>(o.kind);
+    append_bytes(bytes, o.name.data(), o.name.size());
+    append_bytes(bytes, &kind, 1);
+  }
+  for (const Foliage& f : parts_.foliage) {
+    append_bytes(bytes, f.center_W.data(), 3);
+    append_bytes(bytes, f.radii_m.data(), 3);
+  }
+  const Geodetic& origin = parts_.frame.origin();
+  const double frame[] = {origin.lat_rad, origin.lon_rad, origin.h_m, parts_.undulation_m};
+  append_bytes(bytes, frame, std::size(frame));
+  return sha256_hex(bytes);
+}
+
+}  // namespace canyon::scene
