@@ -21,27 +21,34 @@ struct Words {
   std::uint32_t w0[kBlocks], w1[kBlocks], w2[kBlocks], w3[kBlocks];
 };
 
+struct Block {
+  std::uint32_t w0, w1, w2, w3, k0, k1;
+};
+
+[[gnu::always_inline]] inline Block philox_round(const Block& b) {
+  const std::uint64_t product0 = std::uint64_t{b.w0} * 0xD2511F53u;
+  const std::uint64_t product1 = std::uint64_t{b.w2} * 0xCD9E8D57u;
+  return {static_cast<std::uint32_t>(product1 >> 32) ^ b.w1 ^ b.k0,
+          static_cast<std::uint32_t>(product1),
+          static_cast<std::uint32_t>(product0 >> 32) ^ b.w3 ^ b.k1,
+          static_cast<std::uint32_t>(product0),
+          b.k0 + 0x9E3779B9u,   // golden ratio
+          b.k1 + 0xBB67AE85u};  // sqrt(3) - 1
+}
+
 [[gnu::always_inline]] inline void philox_tile(std::uint64_t key, std::uint32_t entity, std::uint64_t first_block,
                                                std::uint32_t n, Words& w) {
   for (std::size_t i = 0; i < kBlocks; ++i) {
-    w.w0[i] = static_cast<std::uint32_t>(first_block + i);
-    w.w1[i] = static_cast<std::uint32_t>((first_block + i) >> 32);
-    w.w2[i] = entity;
-    w.w3[i] = n;
-  }
-  std::uint32_t k0 = static_cast<std::uint32_t>(key);
-  std::uint32_t k1 = static_cast<std::uint32_t>(key >> 32);
-  for (int round = 0; round < 10; ++round) {
-    for (std::size_t i = 0; i < kBlocks; ++i) {
-      const std::uint64_t product0 = std::uint64_t{w.w0[i]} * 0xD2511F53u;
-      const std::uint64_t product1 = std::uint64_t{w.w2[i]} * 0xCD9E8D57u;
-      w.w0[i] = static_cast<std::uint32_t>(product1 >> 32) ^ w.w1[i] ^ k0;
-      w.w1[i] = static_cast<std::uint32_t>(product1);
-      w.w2[i] = static_cast<std::uint32_t>(product0 >> 32) ^ w.w3[i] ^ k1;
-      w.w3[i] = static_cast<std::uint32_t>(product0);
-    }
-    k0 += 0x9E3779B9u;  // golden ratio
-    k1 += 0xBB67AE85u;  // sqrt(3) - 1
+    const std::uint64_t block = first_block + i;
+    Block b = {static_cast<std::uint32_t>(block), static_cast<std::uint32_t>(block >> 32), entity, n,
+               static_cast<std::uint32_t>(key),   static_cast<std::uint32_t>(key >> 32)};
+    // Written out: a loop in here would keep compilers from working on several blocks at once.
+    b = philox_round(philox_round(philox_round(philox_round(philox_round(b)))));
+    b = philox_round(philox_round(philox_round(philox_round(philox_round(b)))));
+    w.w0[i] = b.w0;
+    w.w1[i] = b.w1;
+    w.w2[i] = b.w2;
+    w.w3[i] = b.w3;
   }
 }
 
