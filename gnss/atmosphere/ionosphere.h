@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "gnss/atmosphere/klobuchar.h"
+#include "gnss/model_table.h"
+#include "gnss/sky_view.h"
+
+namespace canyon::gnss {
+
+/// Group delay of the ionosphere at L1 along the line of sight.
+class IonosphereModel {
+ public:
+  virtual ~IonosphereModel() = default;
+  /// m, >= 0, for elevations in [0, pi/2].
+  virtual double delay_m(const SkyView& view) const = 0;
+};
+
+struct IonosphereParameters {
+  double vtec_tecu = 0.0;           ///< vertical total electron content, 1 TECU = 1e16 electrons/m^2
+  KlobucharCoefficients klobuchar;  ///< of the navigation file
+};
+
+using MakeIonosphere = std::unique_ptr<IonosphereModel>(const IonosphereParameters&);
+std::span<const ModelRow<MakeIonosphere>> ionosphere_models();
+
+std::unique_ptr<IonosphereModel> make_single_layer(const IonosphereParameters& p);
+std::unique_ptr<IonosphereModel> make_klobuchar(const IonosphereParameters& p);
+std::unique_ptr<IonosphereModel> make_paper_ionosphere(const IonosphereParameters& p);
+std::unique_ptr<IonosphereModel> make_paper_printed_ionosphere(const IonosphereParameters& p);
+
+/// Vertical delay at L1, m: 40.3 m^3/s^2 x electrons / f^2.
+double vertical_ionosphere_m(double vtec_tecu);
+/// Obliquity of a thin shell at 350 km over a sphere of 6371 km: 1 / sqrt(1 - (R cos e / (R + h))^2).
+double single_layer_obliquity(double elevation_rad);
+/// Lear's mapping as Montenbruck & Garcia-Fernandez (2005) give it: 2.037 / (sqrt(sin^2 e + 0.076) + sin e).
+double lear_mapping(double elevation_rad);
+
+}  // namespace canyon::gnss

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+
+#include "core/time.h"
+
+namespace canyon::gnss {
+
+/// Coefficients of the broadcast ionosphere model (IS-GPS-200 20.3.3.5.2.5), as transmitted: s, s/semicircle, ...
+struct KlobucharCoefficients {
+  std::array<double, 4> alpha{};
+  std::array<double, 4> beta{};
+};
+
+/// What the built-in constellation broadcasts: the coefficients of 1 July 2010 (solar minimum), IGS file brdc1820.10n.
+inline constexpr KlobucharCoefficients kBuiltInKlobuchar{{0.4657e-8, 0.1490e-7, -0.5960e-7, -0.1192e-6},
+                                                         {0.8192e5, 0.8192e5, -0.6554e5, -0.5243e6}};
+
+/// Slant delay at L1, m, for a receiver at geodetic latitude and longitude that sees a satellite at azimuth (from
+/// north, clockwise) and elevation in [0, pi/2].
+double klobuchar_delay_m(const KlobucharCoefficients& coefficients, GpsTime t, double lat_rad, double lon_rad,
+                         double azimuth_rad, double elevation_rad);
+
+/// Its obliquity factor F = 1 + 16 (0.53 - E)^3, E in semicircles.
+double klobuchar_obliquity(double elevation_rad);
+
+}  // namespace canyon::gnss

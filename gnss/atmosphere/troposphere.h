@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "gnss/atmosphere/weather.h"
+#include "gnss/model_table.h"
+#include "gnss/sky_view.h"
+
+namespace canyon::gnss {
+
+/// Delay of the neutral atmosphere along the line of sight.
+class TroposphereModel {
+ public:
+  virtual ~TroposphereModel() = default;
+  /// m, for elevations in [0, pi/2].
+  virtual double delay_m(const SkyView& view) const = 0;
+};
+
+using MakeTroposphere = std::unique_ptr<TroposphereModel>(const Weather& at_receiver);
+std::span<const ModelRow<MakeTroposphere>> troposphere_models();
+
+std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const Weather& at_receiver);
+std::unique_ptr<TroposphereModel> make_paper_printed_troposphere(const Weather& at_receiver);
+std::unique_ptr<TroposphereModel> make_paper_corrected_troposphere(const Weather& at_receiver);
+
+/// The paper's dry delay, m: 2.2779 P / (1 - 0.00266 cos 2 lat - per_km h), P in hPa, h in km, result printed in mm.
+double paper_dry_delay_m(double pressure_hpa, double lat_rad, double height_m, double per_km);
+
+/// Saastamoinen and Niell with standard_weather(height of the receiver): what a receiver corrects with.
+double standard_troposphere_m(const SkyView& view);
+
+}  // namespace canyon::gnss

@@ -1,0 +1,19 @@
+#pragma once
+
+namespace canyon::gnss {
+
+/// Air at the receiver.
+struct Weather {
+  double pressure_hpa = 1013.25;
+  double temperature_c = 15.0;
+  double relative_humidity = 0.5;  ///< 0..1
+};
+
+/// Standard atmosphere at a height above mean sea level (ICAO troposphere, relative humidity 50 %): what a receiver
+/// without weather sensors assumes. Heights are held within [-500, 11000] m.
+Weather standard_weather(double height_m);
+
+/// Partial pressure of water vapour, hPa: Magnus formula with the WMO (2008) constants.
+double vapour_pressure_hpa(const Weather& w);
+
+}  // namespace canyon::gnss

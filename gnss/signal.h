@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/units.h"
+
+/// Constants of the GPS signal and of its user algorithms (IS-GPS-200). They differ from core/earth.h in the last
+/// digits on purpose: a broadcast ephemeris is fitted with exactly these values and must be evaluated with them.
+namespace canyon::gnss {
+
+inline constexpr double kGpsMu = 3.986005e14;               ///< m^3/s^2, IS-GPS-200 table 20-IV
+inline constexpr double kGpsEarthRate = 7.2921151467e-5;    ///< rad/s, IS-GPS-200 table 20-IV
+inline constexpr double kGpsRelativity = -4.442807633e-10;  ///< F of IS-GPS-200 20.3.3.3.3.1, s/sqrt(m)
+inline constexpr double kL1Hz = 1575.42e6;
+inline constexpr double kL1WavelengthM = kSpeedOfLight / kL1Hz;
+inline constexpr double kCaChipM = kSpeedOfLight / 1.023e6;  ///< length of a C/A code chip, 293.05 m
+
+}  // namespace canyon::gnss
