@@ -20,6 +20,8 @@ find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
 find_path(RANDOM123_INCLUDE_DIR Random123/philox.h REQUIRED)
 
 if(CANYON_WITH_PCL)
-  # pcl_io alone pulls in some sixty more shared libraries; Canyon writes its own cloud files.
+  # pcl_io alone pulls in some sixty more shared libraries; Canyon writes its own cloud files. VTK, which PCL's configuration
+  # looks for although none of these components needs it, would bring its libraries along, and wants MPI to be installed.
+  set(CMAKE_DISABLE_FIND_PACKAGE_VTK ON)
   find_package(PCL 1.13 REQUIRED COMPONENTS common search kdtree filters registration)
 endif()
