@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""check_layers.py [TREE]: checks what may include what; one line `file:line: what is wrong` for each breach.
+
+A folder includes only folders of lower floors, each heavy library stays in its few named .cpp files, headers stay light, and
+truth does not reach those who must not see it. The rules are the tables below; docs/design.md says why.
+"""
+
+import fnmatch
+import pathlib
+import re
+import sys
+
+# What each folder may include beside itself. Folders of one floor never include one another.
+SENSORS = ["gnss", "inertial", "lidar", "fusion"]
+FLOORS = {
+    "core": [],
+    "scene": ["core"],
+    "gnss": ["core", "scene"],
+    "inertial": ["core"],
+    "lidar": ["core", "scene"],
+    "fusion": ["core"],
+    "mission": ["core", "scene", *SENSORS],
+    "study": ["core", "scene", *SENSORS, "mission"],
+    "report": ["core"],
+    "apps": ["core", "scene", *SENSORS, "mission", "study", "report"],
+}
+# Outside the floors: free to include any of them.
+OUTSIDE = ["tests", "bench", "python", "viewer", "examples"]
+
+# Heavy libraries: which includes are theirs, and the only files that may have them.
+LIBRARIES = [
+    ("Embree", r"embree\d?/", ["scene/embree_tracer.cpp"]),
+    ("PCL", r"pcl/", ["lidar/pcl_*.cpp"]),
+    ("toml++", r"toml\+\+/", ["core/*.cpp"]),
+    ("GeographicLib", r"GeographicLib/", ["core/*.cpp"]),
+    ("Random123", r"Random123/", ["core/random*.cpp"]),
+    ("oneTBB", r"(tbb|oneapi)/", ["core/*.cpp"]),
+    ("OpenSSL", r"openssl/", ["core/*.cpp"]),
+    ("zlib", r"zlib\.h", ["core/*.cpp", "report/*.cpp"]),
+    ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp"]),
+    ("CLI11", r"CLI/", ["apps/*.cpp"]),
+    ("Ceres", r"ceres/", ["inertial/*.cpp", "fusion/*.cpp"]),
+    ("assimp", r"assimp/", ["scene/*.cpp"]),
+    ("GDAL", r"(gdal|ogr|cpl)_?\w*\.h", ["scene/*.cpp"]),
+    ("PROJ", r"proj\w*\.h", ["scene/*.cpp"]),
+    ("SQLite", r"sqlite3\.h", ["study/*.cpp"]),
+]
+# PCL's registration headers take 18 s and 1.4 GB per file.
+REGISTRATION_FILES_MAX = 3
+
+STANDARD = r"[a-z_0-9]+"
+EIGEN = r"(unsupported/)?Eigen/\w+"
+FORWARD_DECLARATIONS = r"nlohmann/json_fwd\.hpp"
+SYSTEM = r"(unistd|fcntl|signal|termios|poll|dlfcn|sched|immintrin|cpuid|x86intrin)\.h|(sys|arpa|netinet)/\w+\.h"
+
+# Truth is for sensors, recorder and scorer: these files must not see it, not even through another header.
+TRUTH = "core/truth.h"
+BLIND_TO_TRUTH = ["fusion/*", "lidar/*registration*", "lidar/pcl_*", "mission/*autonomy*", "mission/local_grid*"]
+
+# Random numbers come from core/random.h: the standard's distributions differ from library to library.
+OTHER_RANDOMNESS = r"std::(\w+_distribution|mt19937(_64)?|default_random_engine|random_device)\b"
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
+
+
+def without_comments(text):
+    """The text with comments blanked, lines kept."""
+    pattern = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.S)
+    return pattern.sub(lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text)
+
+
+def matches(name, patterns):
+    return any(fnmatch.fnmatch(name, pattern) for pattern in patterns)
+
+
+class Tree:
+    """All sources of a tree: breaches are gathered by check()."""
+
+    def __init__(self, root):
+        self.root = pathlib.Path(root)
+        self.breaches = []
+        self.lines = {}  # name -> lines without comments
+        self.includes = {}  # name -> [(line number, path in quotes or None, path in angles or None)]
+        for folder in [*FLOORS, *OUTSIDE]:
+            for path in sorted((self.root / folder).rglob("*")):
+                if path.suffix in (".h", ".cpp") and path.is_file():
+                    self.read(path)
+
+    def read(self, path):
+        name = path.relative_to(self.root).as_posix()
+        self.lines[name] = without_comments(path.read_text(encoding="utf-8")).split("\n")
+        found = [(number, INCLUDE.match(line)) for number, line in enumerate(self.lines[name], 1)]
+        self.includes[name] = [(number, match[1], match[2]) for number, match in found if match]
+
+    def breach(self, name, number, what):
+        self.breaches.append(f"{name}:{number}: {what}")
+
+    def check(self):
+        for name in self.lines:
+            folder = name.split("/")[0]
+            if name.endswith(".h"):
+                self.check_pragma_once(name)
+            else:
+                self.check_own_header(name)
+            for number, quoted, angled in self.includes[name]:
+                if quoted:
+                    self.check_quoted(name, folder, number, quoted)
+                elif folder in FLOORS:
+                    self.check_angled(name, number, angled)
+            if folder in FLOORS:
+                self.check_randomness(name)
+            if matches(name, BLIND_TO_TRUTH):
+                self.check_truth(name)
+        self.check_registration_files()
+        for folder in FLOORS:
+            self.check_links(folder)
+        return self.breaches
+
+    def check_pragma_once(self, name):
+        for number, line in enumerate(self.lines[name], 1):
+            if line.strip():
+                if line.strip() != "#pragma once":
+                    self.breach(name, number, "a header starts with #pragma once")
+                return
+
+    def check_own_header(self, name):
+        own = name.removesuffix(".cpp") + ".h"
+        if own in self.lines and (not self.includes[name] or self.includes[name][0][1] != own):
+            number = self.includes[name][0][0] if self.includes[name] else 1
+            self.breach(name, number, f'the first include is the own header, "{own}"')
+
+    def check_quoted(self, name, folder, number, quoted):
+        target = quoted.split("/")[0]
+        if target == "embedded" and folder == "core":  # generated from the data files
+            return
+        if "/" not in quoted or (target not in FLOORS and target not in OUTSIDE):
+            self.breach(name, number, f'"{quoted}" is not named from the root of the tree ("{folder}/...")')
+        elif quoted not in self.lines:
+            self.breach(name, number, f'"{quoted}" does not exist')
+        elif folder in FLOORS and target != folder and target not in FLOORS[folder]:
+            allowed = ", ".join(FLOORS[folder]) or "no other folder"
+            self.breach(name, number, f'{folder}/ may not include "{quoted}"; it may include {allowed}')
+
+    def check_angled(self, name, number, angled):
+        library = next((row for row in LIBRARIES if re.match(row[1], angled)), None)
+        if re.fullmatch(STANDARD, angled) or re.fullmatch(EIGEN, angled):
+            return
+        if name.endswith(".h"):
+            if re.fullmatch(FORWARD_DECLARATIONS, angled):
+                return
+            self.breach(name, number, f"<{angled}> in a header; headers take only the standard library and Eigen")
+        elif library and not matches(name, library[2]):
+            self.breach(name, number, f"<{angled}>: {library[0]} belongs in {' or '.join(library[2])}")
+        elif not library and not re.fullmatch(SYSTEM, angled):
+            self.breach(name, number, f"<{angled}> is of a library that has no place in cmake/check_layers.py")
+
+    def check_randomness(self, name):
+        for number, line in enumerate(self.lines[name], 1):
+            found = re.search(OTHER_RANDOMNESS, line)
+            if found:
+                self.breach(name, number, f"{found[0]}: random numbers come from core/random.h")
+
+    def check_truth(self, name):
+        """Breadth first through the includes, so that the shortest way to the truth is the one told."""
+        ways = [(number, [quoted]) for number, quoted, _ in self.includes[name] if quoted]
+        seen = set()
+        while ways:
+            number, way = ways.pop(0)
+            if way[-1] == TRUTH:
+                through = f" (through {' -> '.join(way[:-1])})" if len(way) > 1 else ""
+                self.breach(name, number, f'"{TRUTH}"{through}: truth is for sensors, recorder and scorer only')
+                return
+            if way[-1] not in seen:
+                seen.add(way[-1])
+                ways += [(number, [*way, quoted]) for _, quoted, _ in self.includes.get(way[-1], []) if quoted]
+
+    def check_registration_files(self):
+        heavy = [name for name in self.lines if any(a and a.startswith("pcl/registration/") for _, _, a in self.includes[name])]
+        for name in heavy[REGISTRATION_FILES_MAX:]:
+            self.breach(name, 1, f"more than {REGISTRATION_FILES_MAX} files include PCL's registration headers (18 s each)")
+
+    def check_links(self, folder):
+        """A folder links what it may include, no more."""
+        path = self.root / folder / "CMakeLists.txt"
+        if not path.is_file():
+            return
+        for number, line in enumerate(path.read_text(encoding="utf-8").split("\n"), 1):
+            for target in re.findall(r"\bcanyon_(\w+)", line.split("#")[0]):
+                if target in FLOORS and target != folder and target not in FLOORS[folder]:
+                    self.breach(f"{folder}/CMakeLists.txt", number, f"{folder}/ may not link canyon_{target}")
+
+
+def main():
+    root = sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent
+    tree = Tree(root)
+    breaches = tree.check()
+    print("\n".join(breaches) if breaches else f"layers: {len(tree.lines)} files, no breach")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""check_layers.py on small trees, each with one thing wrong: what it says, word for word, and that it says nothing else."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "cmake" / "check_layers.py"
+
+GOOD = {
+    "core/time.h": '#pragma once\n\n#include <cstdint>\n\n#include <Eigen/Core>\n',
+    "core/time.cpp": '#include "core/time.h"\n\n#include <toml++/toml.h>\n',
+    "core/truth.h": '// Truth.\n#pragma once\n#include "core/time.h"\n',
+    "core/CMakeLists.txt": "canyon_library(core LINK Eigen3::Eigen)\n",
+    "scene/scene.h": '#pragma once\n#include "core/time.h"\n',
+    "scene/embree_tracer.cpp": '#include <embree3/rtcore.h>\n\n#include "scene/scene.h"\n',
+    "gnss/sensor.h": '#pragma once\n#include "core/truth.h"\n#include "scene/scene.h"\n',
+    "gnss/CMakeLists.txt": "canyon_library(gnss LINK canyon_scene)  # never canyon_lidar\n",
+    "fusion/filter.h": '#pragma once\n#include "core/time.h"\n',
+    "mission/run.cpp": '#include <nlohmann/json.hpp>\n#include "gnss/sensor.h"\n#include "fusion/filter.h"\n',
+    "report/page.cpp": '/* #include "mission/run.h" */\n#include <cstdio>\n#include <unistd.h>\n',
+    "tests/gnss/sensor_test.cpp": '#include <gtest/gtest.h>\n#include "gnss/sensor.h"\n',
+}
+
+
+def check(extra):
+    """Exit status and lines of the script for the good tree with these files added or replaced."""
+    with tempfile.TemporaryDirectory() as folder:
+        for name, text in {**GOOD, **extra}.items():
+            path = pathlib.Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        done = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout.splitlines()
+
+
+class CheckLayers(unittest.TestCase):
+    def assert_breach(self, extra, *lines):
+        self.assertEqual(check(extra), (1, list(lines)))
+
+    def test_a_good_tree_passes(self):
+        self.assertEqual(check({}), (0, ["layers: 10 files, no breach"]))
+
+    def test_lower_floor_may_not_include_a_higher_one(self):
+        self.assert_breach(
+            {"core/map.cpp": '#include "scene/scene.h"\n'},
+            'core/map.cpp:1: core/ may not include "scene/scene.h"; it may include no other folder')
+
+    def test_folders_of_one_floor_may_not_include_one_another(self):
+        self.assert_breach(
+            {"gnss/tight.cpp": '// tight\n#include "fusion/filter.h"\n'},
+            'gnss/tight.cpp:2: gnss/ may not include "fusion/filter.h"; it may include core, scene')
+
+    def test_fusion_never_sees_the_scene(self):
+        self.assert_breach(
+            {"fusion/filter.cpp": '#include "fusion/filter.h"\n#include "scene/scene.h"\n'},
+            'fusion/filter.cpp:2: fusion/ may not include "scene/scene.h"; it may include core')
+
+    def test_report_reads_results_through_core_only(self):
+        self.assert_breach(
+            {"mission/run.h": "#pragma once\n", "report/page.cpp": '#include "mission/run.h"\n',
+             "mission/run.cpp": '#include "mission/run.h"\n'},
+            'report/page.cpp:1: report/ may not include "mission/run.h"; it may include core')
+
+    def test_embree_stays_in_its_file(self):
+        self.assert_breach(
+            {"scene/scene_at.cpp": "#include <embree3/rtcore.h>\n"},
+            "scene/scene_at.cpp:1: <embree3/rtcore.h>: Embree belongs in scene/embree_tracer.cpp")
+
+    def test_headers_are_light(self):
+        self.assert_breach(
+            {"lidar/pcl_gicp.h": "#pragma once\n\n#include <pcl/point_types.h>\n"},
+            "lidar/pcl_gicp.h:3: <pcl/point_types.h> in a header; headers take only the standard library and Eigen")
+
+    def test_an_unknown_library_needs_a_place(self):
+        self.assert_breach(
+            {"mission/run.cpp": "#include <fmt/format.h>\n"},
+            "mission/run.cpp:1: <fmt/format.h> is of a library that has no place in cmake/check_layers.py")
+
+    def test_at_most_three_files_pay_for_pcl_registration(self):
+        files = {f"lidar/pcl_{letter}.cpp": "#include <pcl/registration/gicp.h>\n" for letter in "abcd"}
+        self.assert_breach(
+            files, "lidar/pcl_d.cpp:1: more than 3 files include PCL's registration headers (18 s each)")
+
+    def test_pragma_once(self):
+        self.assert_breach(
+            {"core/units.h": "// Units.\n#include <numbers>\n"}, "core/units.h:2: a header starts with #pragma once")
+
+    def test_own_header_first(self):
+        self.assert_breach(
+            {"scene/scene.cpp": '#include <cmath>\n\n#include "scene/scene.h"\n'},
+            'scene/scene.cpp:1: the first include is the own header, "scene/scene.h"')
+
+    def test_includes_are_named_from_the_root(self):
+        self.assert_breach(
+            {"scene/city.cpp": '#include "scene.h"\n'},
+            'scene/city.cpp:1: "scene.h" is not named from the root of the tree ("scene/...")')
+
+    def test_included_files_exist(self):
+        self.assert_breach(
+            {"tests/gnss/sensor_test.cpp": '#include "gnss/sensors.h"\n'},
+            'tests/gnss/sensor_test.cpp:1: "gnss/sensors.h" does not exist')
+
+    def test_truth_does_not_reach_the_filter(self):
+        self.assert_breach(
+            {"core/log.h": '#pragma once\n#include "core/truth.h"\n',
+             "fusion/filter.h": '#pragma once\n#include <vector>\n#include "core/log.h"\n'},
+            'fusion/filter.h:3: "core/truth.h" (through core/log.h): truth is for sensors, recorder and scorer only')
+
+    def test_truth_does_not_reach_the_autonomy(self):
+        self.assert_breach(
+            {"mission/reference_autonomy.cpp": '#include "core/truth.h"\n'},
+            'mission/reference_autonomy.cpp:1: "core/truth.h": truth is for sensors, recorder and scorer only')
+
+    def test_no_other_random_numbers(self):
+        self.assert_breach(
+            {"gnss/noise.cpp": "#include <random>\nstd::normal_distribution<double> noise; // std::mt19937\n"},
+            "gnss/noise.cpp:2: std::normal_distribution: random numbers come from core/random.h")
+
+    def test_a_folder_links_what_it_may_include(self):
+        self.assert_breach(
+            {"gnss/CMakeLists.txt": "canyon_library(gnss LINK canyon_scene canyon_fusion)\n"},
+            "gnss/CMakeLists.txt:1: gnss/ may not link canyon_fusion")
+
+
+if __name__ == "__main__":
+    unittest.main()
