@@ -63,7 +63,10 @@ SceneParts make_city(const CityConfig& config) {
   parts.streets = plan.streets;
   if (!config.empty) {
     city::add_buildings(config, plan, terrain, parts);
-    city::add_furniture(config, plan, terrain, parts);
+    city::add_vehicles(config, plan, terrain, parts);
+    city::add_trees(config, plan, terrain, parts);
+    city::add_poles(config, plan, terrain, parts);
+    city::add_garden_walls(config, plan, terrain, parts);
   }
   return parts;
 }

@@ -106,7 +106,7 @@ std::vector<Design> design_block(const Block& block, std::size_t number, const R
       d.bounds.y1 = ys[j + 1] - margin(j + 2 == ys.size());
       if (block.zone == Zone::kLow) {
         // A house does not fill its plot: keep the street corner, trim the rest.
-        const double width_m = draws.between(9.0, 15.0), depth_m = draws.between(8.0, 12.0);
+        const double width_m = draws.between(10.0, 17.0), depth_m = draws.between(9.0, 13.0);
         if (d.bounds.width() > width_m)
           (i == 0 ? d.bounds.x1 = d.bounds.x0 + width_m : d.bounds.x0 = d.bounds.x1 - width_m);
         if (d.bounds.depth() > depth_m)

@@ -30,7 +30,7 @@ Zone zone_of(const Block& block, int ring, const Rectangle& quarter, Draws draws
   const bool open = draws.chance(open_share);
   if (from_center < 1.0) return Zone::kTall;
   if (open) return Zone::kOpen;
-  return from_center < 1.9 ? Zone::kMiddle : Zone::kLow;
+  return from_center + draws.between(-0.3, 0.3) < 2.1 ? Zone::kMiddle : Zone::kLow;
 }
 
 /// All nodes still reachable from the first?

@@ -8,6 +8,11 @@ namespace canyon::scene::city {
 
 enum class Zone : std::uint8_t { kTall, kMiddle, kLow, kOpen };
 
+/// Picks by zone.
+constexpr double by_zone(Zone zone, double tall, double middle, double low, double open) {
+  return zone == Zone::kTall ? tall : zone == Zone::kMiddle ? middle : zone == Zone::kLow ? low : open;
+}
+
 struct Rectangle {
   double x0, y0, x1, y1;
   double width() const { return x1 - x0; }

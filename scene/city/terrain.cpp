@@ -10,7 +10,7 @@
 namespace canyon::scene::city {
 namespace {
 
-constexpr double kHillSpacing_m = 200.0;
+constexpr double kHillSpacing_m = 250.0;
 
 /// Weights of the uniform cubic B-spline at 0 <= u < 1: twice differentiable, and of + - * only, so that the ground has
 /// the same bits on every machine.
