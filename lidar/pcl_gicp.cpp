@@ -115,9 +115,12 @@ class Gicp final : public PclGicp {
     H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
     const Vector6d xi = -H.ldlt().solve(g);
     if (!xi.allFinite()) PCL_THROW_EXCEPTION(pcl::SolverDidntConvergeException, "singular geometry");
-    const Pose moved = Pose::from_matrix(transform) * Pose::exp(xi);
-    transform = moved.matrix();
-    settled_ = xi.head<3>().norm() < kRotationEpsilon_rad && xi.tail<3>().norm() < kTranslationEpsilon_m;
+    const Matrix4 moved = (Pose::from_matrix(transform) * Pose::exp(xi)).matrix();
+    // PCL stops by the same rule, element by element, but does not say so if it stops for the iterations' sake.
+    const Eigen::Array44d change = (moved - transform).array().abs();
+    settled_ = (change.topLeftCorner<3, 3>() < kRotationEpsilon_rad).all() &&
+               (change.topRightCorner<3, 1>() < kTranslationEpsilon_m).all();
+    transform = moved;
   }
 
   pcl::Indices source_indices_, target_indices_;
