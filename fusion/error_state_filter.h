@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "core/imu_noise.h"
 #include "core/local_frame.h"
 #include "core/messages.h"
+#include "fusion/error_propagation.h"
+#include "fusion/strapdown.h"
 
 namespace canyon::fusion {
 
@@ -19,8 +22,12 @@ struct FilterConfig {
   double initial_attitude_sigma_deg_heading = 1.0;
   double initial_position_sigma_m = 0.5;
   double initial_velocity_sigma_m_s = 0.05;
-  double gate_sigma = 0.0;        ///< innovation gate on NIS as a one-dimensional equivalent; 0 = accept every fix
-  double fix_sigma_floor_m = 0.0; ///< lower bound on a fix's 1-sigma per axis
+  double gate_sigma = 0.0;         ///< innovation gate on NIS as a one-dimensional equivalent; 0 = accept every fix
+  double fix_sigma_floor_m = 0.0;  ///< lower bound on a fix's 1-sigma per axis
+  std::string integrator = "two_sample";  ///< a row of strapdown_models()
+  /// What becomes of the IMU's scale factors and misalignments. "consider": their uncertainty enters the covariance,
+  /// they are not estimated (Schmidt); "estimate": they are estimated; "ignore": the filter does not know of them.
+  std::string imu_gains = "consider";
 };
 void visit(FieldVisitor& f, FilterConfig& c);
 
@@ -28,44 +35,68 @@ void visit(FieldVisitor& f, FilterConfig& c);
 struct UpdateReport {
   GpsTime t;
   bool accepted = false;
-  double nis = 0.0;  ///< normalized innovation squared
-  int dimension = 0;
+  double nis = 0.0;                                      ///< normalized innovation squared
+  int dimension = 0;                                     ///< 0: there was no fix to use
   Eigen::Vector3d innovation = Eigen::Vector3d::Zero();  ///< m, in E
 };
 
 /// 15-state error-state Kalman filter, loosely coupled: strapdown in E with Earth rate and gravity, error state
-/// [dtheta, dp, dv, b_g, b_a]; attitude error is a right perturbation R_EB = R_hat Exp(dtheta); dp, dv in E.
-/// Joseph-form updates; the covariance is kept symmetric and positive definite. Never sees a simulator.
+/// [dtheta, dp, dv, b_g, b_a]; attitude error is a right perturbation R_EB = R_hat Exp(dtheta); dp, dv in E, of the
+/// IMU. Joseph-form updates; the covariance is kept symmetric and positive definite. Never sees a simulator.
+///
+/// Beside the 15 states the covariance carries the 18 gain errors of the IMU (fusion/error_propagation.h), because in a
+/// 90 degree turn 500 ppm and 1 mrad make heading and tilt errors larger than the noise does.
 class ErrorStateFilter {
  public:
-  static constexpr int kStates = 15;
+  static constexpr int kStates = ErrorIndex::kNavigation;
   using StateVector = Eigen::Matrix<double, kStates, 1>;
   using StateMatrix = Eigen::Matrix<double, kStates, kStates>;
 
   /// `lever_U_B` position of the IMU, `lever_A_B` of the antenna, both in B from B's origin, m.
-  ErrorStateFilter(const FilterConfig& config, const ImuNoise& noise, const LocalFrame& frame, const Eigen::Vector3d& lever_U_B,
-                   const Eigen::Vector3d& lever_A_B);
+  ErrorStateFilter(const FilterConfig& config, const ImuNoise& noise, const LocalFrame& frame,
+                   const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B);
 
-  /// Starts at a pose of B in W and a velocity in W.
+  /// Starts at a pose of B in W and a velocity in W (body not turning), with zero biases and the configured
+  /// uncertainty.
   void initialize(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W);
+
+  /// Moves state and covariance over one IMU interval. Samples must follow one another without gap or overlap.
+  /// A sample that is not finite, or not contiguous, is refused with a ProgramError that names the IMU.
   void predict(const ImuSample& imu);
+
+  /// Corrects with a position of the antenna. A fix with status kNone changes nothing (dimension 0); so does one that
+  /// the gate refuses (accepted false). The fix may be up to 0.1 s away from the last IMU sample: the antenna is then
+  /// carried there with the estimated velocity. A fix that is not finite, or whose covariance is not positive definite,
+  /// is refused with a ProgramError that names the receiver.
   UpdateReport update(const GnssFix& fix);
 
   NavEstimate estimate() const;
-  const StateMatrix& covariance() const { return P_; }
+  /// Of the 15 states, in the order of the class comment; SI.
+  StateMatrix covariance() const { return P_.topLeftCorner<kStates, kStates>(); }
+  /// State of the IMU frame in E and the present calibration, for consistency checks.
+  const NavState& nav_state() const { return state_; }
+  const Calibration& calibration() const { return calibration_; }
 
  private:
+  enum class Gains { kIgnore, kConsider, kEstimate };
+
+  void inject(const Eigen::Matrix<double, ErrorIndex::kAll, 1>& error);
+
   FilterConfig config_;
+  Gains gains_ = Gains::kConsider;
+  bool with_gains_ = false;
   ImuNoise noise_;
+  BiasModel gyro_bias_, accel_bias_;
   LocalFrame frame_;
   Eigen::Vector3d lever_U_B_, lever_A_B_;
-  GpsTime t_;
-  Eigen::Quaterniond R_EU_ = Eigen::Quaterniond::Identity();
-  Eigen::Vector3d p_EU_E_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d v_EU_E_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d gyro_bias_ = Eigen::Vector3d::Zero(), accel_bias_ = Eigen::Vector3d::Zero();
+  std::unique_ptr<Strapdown> strapdown_;
+
+  NavState state_;
+  Calibration calibration_;
   Eigen::Vector3d w_EU_U_ = Eigen::Vector3d::Zero();  ///< last angular rate, for lever arms
-  StateMatrix P_ = StateMatrix::Identity();
+  Eigen::Matrix3d gravity_gradient_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d gravity_gradient_at_E_ = Eigen::Vector3d::Zero();
+  ErrorMatrix P_ = ErrorMatrix::Zero();
 };
 
 }  // namespace canyon::fusion

@@ -27,8 +27,8 @@ void visit(FieldVisitor& f, ImuConfig& c);
 class ImuModel {
  public:
   virtual ~ImuModel() = default;
-  /// Sample k over (nodes.front().t, nodes.back().t]. `nodes` are equally spaced kinematic states of the true motion, an odd
-  /// number >= 3 (Simpson) or 5 (Boole); the increments are quadratures of w_IU_U and f_U over them.
+  /// Sample k over (nodes.front().t, nodes.back().t]. `nodes` are equally spaced kinematic states of the true motion,
+  /// an odd number >= 3 (Simpson) or 5 (Boole); the increments are quadratures of w_IU_U and f_U over them.
   virtual ImuSample sample(std::int64_t k, std::span<const KinematicState> nodes) = 0;
   /// What the filter should be told of this unit.
   virtual const ImuNoise& noise() const = 0;

@@ -1,0 +1,248 @@
+#include "fusion/error_state_filter.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "core/check.h"
+#include "core/earth.h"
+#include "core/rotation.h"
+#include "core/units.h"
+#include "fusion/consistency.h"
+
+namespace canyon::fusion {
+namespace {
+
+using Index = ErrorIndex;
+constexpr double kMaxFixAge_s = 0.1;
+/// Moving this far changes the gravity gradient by 1e-4 of itself, which no covariance notices.
+constexpr double kGradientReach_m = 500.0;
+
+void check_finite(const ImuSample& imu) {
+  const bool good = std::isfinite(imu.dt_s) && imu.dt_s > 0.0 && imu.dtheta_U.allFinite() && imu.dv_U.allFinite();
+  CANYON_CHECK(good, "IMU sample at ", imu.t.iso(), ": dt_s = ", imu.dt_s, ", dtheta = ", imu.dtheta_U.transpose(),
+               ", dv = ", imu.dv_U.transpose());
+}
+
+void check_finite(const GnssFix& fix) {
+  const bool good = fix.p_A_E.allFinite() && fix.covariance_E.allFinite();
+  CANYON_CHECK(good, "GNSS fix at ", fix.t.iso(), ": p_A_E = ", fix.p_A_E.transpose(),
+               ", covariance diagonal = ", fix.covariance_E.diagonal().transpose());
+}
+
+/// Covariance of the fix with the configured floor; raising diagonal terms keeps it positive definite.
+Eigen::Matrix3d fix_covariance(const GnssFix& fix, double floor_m) {
+  Eigen::Matrix3d R = 0.5 * (fix.covariance_E + fix.covariance_E.transpose());
+  for (int i = 0; i < 3; ++i) R(i, i) = std::max(R(i, i), floor_m * floor_m);
+  CANYON_CHECK(Eigen::LLT<Eigen::Matrix3d>(R).info() == Eigen::Success, "covariance of the GNSS fix at ", fix.t.iso(),
+               " is not positive definite: diagonal ", R.diagonal().transpose());
+  return R;
+}
+
+}  // namespace
+
+void visit(FieldVisitor& f, FilterConfig& c) {
+  f.number("initial_attitude_sigma_deg_roll_pitch", c.initial_attitude_sigma_deg_roll_pitch, {1e-6, 180},
+           "1-sigma of roll and pitch at the start");
+  f.number("initial_attitude_sigma_deg_heading", c.initial_attitude_sigma_deg_heading, {1e-6, 180},
+           "1-sigma of heading at the start");
+  f.number("initial_position_sigma_m", c.initial_position_sigma_m, {1e-6, 1e6},
+           "1-sigma of position per axis at the start");
+  f.number("initial_velocity_sigma_m_s", c.initial_velocity_sigma_m_s, {1e-6, 1e3},
+           "1-sigma of velocity per axis at the start");
+  f.number("gate_sigma", c.gate_sigma, {0, 20},
+           "fixes less likely than a deviation of this many sigma are refused; 0 accepts every fix");
+  f.number("fix_sigma_floor_m", c.fix_sigma_floor_m, {0, 1e3}, "lower bound on a fix's 1-sigma per axis");
+  f.choice("integrator", c.integrator, strapdown_names(), "strapdown integrator");
+  f.choice("imu_gains", c.imu_gains, {"consider", "estimate", "ignore"},
+           "scale factors and misalignments of the IMU: in the covariance only, estimated, or left out");
+}
+
+ErrorStateFilter::ErrorStateFilter(const FilterConfig& config, const ImuNoise& noise, const LocalFrame& frame,
+                                   const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B)
+    : config_(config),
+      noise_(noise),
+      gyro_bias_(noise.gyro),
+      accel_bias_(noise.accel),
+      frame_(frame),
+      lever_U_B_(lever_U_B),
+      lever_A_B_(lever_A_B),
+      strapdown_(make_strapdown(config.integrator)) {
+  if (config.imu_gains == "ignore") {
+    gains_ = Gains::kIgnore;
+  } else if (config.imu_gains == "estimate") {
+    gains_ = Gains::kEstimate;
+  } else {
+    CANYON_CHECK(config.imu_gains == "consider", "imu_gains = ", config.imu_gains);
+  }
+  const bool has_gains = noise.gyro.scale_sigma > 0.0 || noise.gyro.misalignment_sigma_rad > 0.0 ||
+                         noise.accel.scale_sigma > 0.0 || noise.accel.misalignment_sigma_rad > 0.0;
+  with_gains_ = has_gains && gains_ != Gains::kIgnore;
+}
+
+void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W) {
+  CANYON_CHECK(X_WB.R.coeffs().allFinite() && X_WB.p.allFinite() && v_WB_W.allFinite(), "initial state at ", t.iso());
+  const Eigen::Matrix3d& R_EW = frame_.R_EW();
+  const Eigen::Matrix3d R_WB = X_WB.R.toRotationMatrix();
+  state_ = {.t = t,
+            .R_EU = (Eigen::Quaterniond(R_EW) * X_WB.R).normalized(),
+            .p_EU_E = frame_.to_E(X_WB * lever_U_B_),
+            .v_EU_E = R_EW * v_WB_W};
+  calibration_ = {};
+  w_EU_U_.setZero();
+  strapdown_->reset();
+  gravity_gradient_at_E_ = state_.p_EU_E;
+  gravity_gradient_ = gravity_gradient_E(state_.p_EU_E);
+
+  const double tilt = config_.initial_attitude_sigma_deg_roll_pitch * kDegree;
+  const double heading = config_.initial_attitude_sigma_deg_heading * kDegree;
+  const Eigen::Matrix3d P_theta =
+      R_WB.transpose() * Eigen::Vector3d(tilt * tilt, tilt * tilt, heading * heading).asDiagonal() * R_WB;
+  // The configured position is B's; the state's is U's, so the lever arm couples it to attitude.
+  const Eigen::Matrix3d p_theta = -(R_EW * R_WB) * skew(lever_U_B_);
+
+  P_.setZero();
+  P_.block<3, 3>(Index::kTheta, Index::kTheta) = P_theta;
+  P_.block<3, 3>(Index::kPosition, Index::kTheta) = p_theta * P_theta;
+  P_.block<3, 3>(Index::kTheta, Index::kPosition) = P_theta * p_theta.transpose();
+  P_.block<3, 3>(Index::kPosition, Index::kPosition) = p_theta * P_theta * p_theta.transpose();
+  for (int i = 0; i < 3; ++i) {
+    P_(Index::kPosition + i, Index::kPosition + i) +=
+        config_.initial_position_sigma_m * config_.initial_position_sigma_m;
+    P_(Index::kVelocity + i, Index::kVelocity + i) =
+        config_.initial_velocity_sigma_m_s * config_.initial_velocity_sigma_m_s;
+    P_(Index::kGyroBias + i, Index::kGyroBias + i) = gyro_bias_.sigma * gyro_bias_.sigma;
+    P_(Index::kAccelBias + i, Index::kAccelBias + i) = accel_bias_.sigma * accel_bias_.sigma;
+  }
+  if (with_gains_) {
+    for (int i = 0; i < 9; ++i) {
+      const bool diagonal = i % 4 == 0;
+      const double gyro = diagonal ? noise_.gyro.scale_sigma : noise_.gyro.misalignment_sigma_rad;
+      const double accel = diagonal ? noise_.accel.scale_sigma : noise_.accel.misalignment_sigma_rad;
+      P_(Index::kGyroGain + i, Index::kGyroGain + i) = gyro * gyro;
+      P_(Index::kAccelGain + i, Index::kAccelGain + i) = accel * accel;
+    }
+  }
+  P_ = 0.5 * (P_ + P_.transpose()).eval();
+}
+
+void ErrorStateFilter::predict(const ImuSample& imu) {
+  check_finite(imu);
+  const double elapsed_s = imu.t - state_.t;
+  CANYON_CHECK(std::abs(elapsed_s - imu.dt_s) <= 0.5 * imu.dt_s, "IMU sample at ", imu.t.iso(), " covers ", imu.dt_s,
+               " s, but ", elapsed_s, " s have passed since the last one");
+  if ((state_.p_EU_E - gravity_gradient_at_E_).squaredNorm() > kGradientReach_m * kGradientReach_m) {
+    gravity_gradient_at_E_ = state_.p_EU_E;
+    gravity_gradient_ = gravity_gradient_E(state_.p_EU_E);
+  }
+
+  const Increments in = calibration_.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
+  const StepJacobian step(state_, in, gravity_gradient_);
+  propagate_covariance(P_, step, in, calibration_, noise_, gyro_bias_, accel_bias_, with_gains_);
+
+  strapdown_->advance(state_, in);
+  state_.t = imu.t;
+  w_EU_U_ = in.dtheta_U / in.dt_s - state_.R_EU.conjugate() * earth_rate_E();
+  calibration_.gyro_bias *= gyro_bias_.decay(imu.dt_s);
+  calibration_.accel_bias *= accel_bias_.decay(imu.dt_s);
+}
+
+UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
+  UpdateReport report;
+  report.t = fix.t;
+  if (fix.status == FixStatus::kNone) return report;
+  check_finite(fix);
+  const double age_s = fix.t - state_.t;
+  CANYON_CHECK(std::abs(age_s) <= kMaxFixAge_s, "GNSS fix at ", fix.t.iso(), " is ", age_s,
+               " s away from the last IMU sample");
+
+  const Eigen::Matrix3d R_EU = state_.R_EU.toRotationMatrix();
+  const Eigen::Vector3d arm_U = lever_A_B_ - lever_U_B_;
+  const Eigen::Vector3d arm_rate_U = w_EU_U_.cross(arm_U);
+  const Eigen::Vector3d predicted_E = state_.p_EU_E + R_EU * arm_U + age_s * (state_.v_EU_E + R_EU * arm_rate_U);
+  report.innovation = fix.p_A_E - predicted_E;
+  report.dimension = 3;
+
+  Eigen::Matrix<double, 3, Index::kAll> H = Eigen::Matrix<double, 3, Index::kAll>::Zero();
+  H.block<3, 3>(0, Index::kTheta) = -R_EU * skew(arm_U + age_s * arm_rate_U);
+  H.block<3, 3>(0, Index::kPosition).setIdentity();
+  H.block<3, 3>(0, Index::kVelocity) = age_s * Eigen::Matrix3d::Identity();
+
+  const Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
+  using Gain = Eigen::Matrix<double, Index::kAll, 3>;
+  const Gain PHt = P_.leftCols<9>() * H.leftCols<9>().transpose();
+  Eigen::Matrix3d S = H.leftCols<9>() * PHt.topRows<9>() + R;
+  S = 0.5 * (S + S.transpose()).eval();
+  const Eigen::LLT<Eigen::Matrix3d> S_llt(S);
+  CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
+               S.diagonal().transpose());
+  report.nis = report.innovation.dot(S_llt.solve(report.innovation));
+  if (config_.gate_sigma > 0.0 && chi_square_tail(report.nis, 3) < normal_two_sided_tail(config_.gate_sigma))
+    return report;
+  report.accepted = true;
+
+  Gain K = S_llt.solve(PHt.transpose()).transpose();
+  if (gains_ != Gains::kEstimate) K.bottomRows<Index::kAll - Index::kNavigation>().setZero();
+
+  // Joseph: (I - K H) P (I - K H)' + K R K', as two rank-3 corrections; right for any K, so for the Schmidt gain too.
+  P_ -= K * PHt.transpose();
+  const Gain MHt = P_.leftCols<9>() * H.leftCols<9>().transpose();
+  P_ -= MHt * K.transpose();
+  P_ += K * R * K.transpose();
+  P_ = 0.5 * (P_ + P_.transpose()).eval();
+
+  inject(K * report.innovation);
+  return report;
+}
+
+void ErrorStateFilter::inject(const Eigen::Matrix<double, Index::kAll, 1>& error) {
+  const Eigen::Vector3d theta = error.segment<3>(Index::kTheta);
+  state_.R_EU = (state_.R_EU * so3_exp(theta)).normalized();
+  state_.p_EU_E += error.segment<3>(Index::kPosition);
+  state_.v_EU_E += error.segment<3>(Index::kVelocity);
+  calibration_.gyro_bias += error.segment<3>(Index::kGyroBias);
+  calibration_.accel_bias += error.segment<3>(Index::kAccelBias);
+  if (gains_ == Gains::kEstimate && with_gains_) {
+    for (int i = 0; i < 9; ++i) {
+      calibration_.gyro_gain(i / 3, i % 3) += error[Index::kGyroGain + i];
+      calibration_.accel_gain(i / 3, i % 3) += error[Index::kAccelGain + i];
+    }
+  }
+  // The attitude error is now counted from the corrected attitude: Exp(theta + e) = Exp(theta) Exp(Jr(theta) e).
+  const Eigen::Matrix3d reset = so3_right_jacobian(theta);
+  P_.topRows<3>() = (reset * P_.topRows<3>()).eval();
+  P_.leftCols<3>() = (P_.leftCols<3>() * reset.transpose()).eval();
+  P_.topLeftCorner<3, 3>() = 0.5 * (P_.topLeftCorner<3, 3>() + P_.topLeftCorner<3, 3>().transpose()).eval();
+}
+
+NavEstimate ErrorStateFilter::estimate() const {
+  const Eigen::Matrix3d R_WE = frame_.R_EW().transpose();
+  const Eigen::Matrix3d R_EB = state_.R_EU.toRotationMatrix();  // axes of U are parallel to B
+  NavEstimate out;
+  out.t = state_.t;
+  out.X_WB.R = (Eigen::Quaterniond(R_WE) * state_.R_EU).normalized();
+  out.X_WB.p = frame_.to_W(state_.p_EU_E) - out.X_WB.R * lever_U_B_;
+  out.v_WB_W = R_WE * (state_.v_EU_E - R_EB * w_EU_U_.cross(lever_U_B_));
+  out.gyro_bias_U = calibration_.gyro_bias;
+  out.accel_bias_U = calibration_.accel_bias;
+
+  // xi = [theta; R' dp_B], and dp_B = dp_U + R [l]x theta.
+  Eigen::Matrix<double, 6, kStates> J = Eigen::Matrix<double, 6, kStates>::Zero();
+  J.block<3, 3>(0, Index::kTheta).setIdentity();
+  J.block<3, 3>(3, Index::kTheta) = skew(lever_U_B_);
+  J.block<3, 3>(3, Index::kPosition) = R_EB.transpose();
+  const StateMatrix P = covariance();
+  out.pose_covariance = J * P * J.transpose();
+  out.pose_covariance = 0.5 * (out.pose_covariance + out.pose_covariance.transpose()).eval();
+
+  // dv_B = dv_U + R [w x l]x theta - R [l]x b_g, in W.
+  Eigen::Matrix<double, 3, kStates> V = Eigen::Matrix<double, 3, kStates>::Zero();
+  V.block<3, 3>(0, Index::kTheta) = R_WE * R_EB * skew(w_EU_U_.cross(lever_U_B_));
+  V.block<3, 3>(0, Index::kVelocity) = R_WE;
+  V.block<3, 3>(0, Index::kGyroBias) = -R_WE * R_EB * skew(lever_U_B_);
+  out.velocity_covariance_W = V * P * V.transpose();
+  out.velocity_covariance_W = 0.5 * (out.velocity_covariance_W + out.velocity_covariance_W.transpose()).eval();
+  return out;
+}
+
+}  // namespace canyon::fusion

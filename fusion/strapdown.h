@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/time.h"
+
+namespace canyon::fusion {
+
+/// Motion of the IMU frame U relative to the Earth, in E.
+struct NavState {
+  GpsTime t;
+  Eigen::Quaterniond R_EU = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d p_EU_E = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d v_EU_E = Eigen::Vector3d::Zero();  ///< m/s, velocity over ground
+};
+
+/// Increments over one interval, free of known errors: integrals of w_IU_U (rad) and f_U (m/s) in the turning frame U.
+struct Increments {
+  double dt_s = 0.0;
+  Eigen::Vector3d dtheta_U = Eigen::Vector3d::Zero();
+  Eigen::Vector3d dv_U = Eigen::Vector3d::Zero();
+};
+
+/// What an integrator makes of increments: the rotation of U over the interval, as a rotation vector against inertial
+/// space, and the velocity change by specific force, expressed in U as it stood at the interval's start.
+struct InertialStep {
+  Eigen::Vector3d rotation_U = Eigen::Vector3d::Zero();
+  Eigen::Vector3d dv_start_U = Eigen::Vector3d::Zero();
+};
+
+/// Integrates increments to attitude, velocity and position in E. One-level interface; the models are in the table
+/// below.
+///
+/// All share the frame: E turns by w_IE dt exactly, gravity is WGS84 normal gravity, gravity and Coriolis are taken at
+/// the middle of the interval, position is the trapezoid of velocity. They differ in how they treat the turning of U
+/// within the interval (coning and sculling).
+class Strapdown {
+ public:
+  virtual ~Strapdown() = default;
+  /// Forgets past increments, as at a start or after a gap.
+  virtual void reset() = 0;
+  /// Moves `state` (its time too) over one interval and returns what was integrated, for linearization.
+  virtual InertialStep advance(NavState& state, const Increments& increments) = 0;
+};
+
+/// One row of the table of integrators. `order` is the order of the global error in the interval for smooth motion and
+/// exact increments.
+struct StrapdownRow {
+  const char* name;
+  std::unique_ptr<Strapdown> (*make)();
+  int order;
+  const char* doc;
+};
+
+std::span<const StrapdownRow> strapdown_models();
+std::vector<std::string> strapdown_names();
+/// A model by name; throws ProgramError for a name that is not in the table (check user input against
+/// strapdown_names()).
+std::unique_ptr<Strapdown> make_strapdown(std::string_view name);
+
+}  // namespace canyon::fusion
