@@ -97,7 +97,7 @@ install_packages() {
 build_as_owner() {
   if [ "$(id -u)" = 0 ] && [ "${SUDO_UID:-0}" != 0 ] && [ "$(stat -c %u "$root")" = "$SUDO_UID" ]; then
     chown -R "$SUDO_UID:${SUDO_GID:-$SUDO_UID}" "$root/build"
-    exec runuser -u "$SUDO_USER" -- "$@"
+    exec runuser -u "$SUDO_USER" -- env HOME="$(getent passwd "$SUDO_USER" | cut -d: -f6)" "$@"
   fi
 }
 
@@ -131,4 +131,23 @@ build() {
   cmake --build "$root/build/release" --target "$target" -- -j"$(parallelism)" 2>&1 | show_progress "building" "$log" ||
     fail "the build failed" "$log"
   if ! grep -q 'no work to do' "$log"; then say "built in $((SECONDS - started)) s"; fi
+}
+
+# count_skipped: passes ctest's output on, but holds its closing lines back until the skipped tests have been counted and named.
+count_skipped() {
+  local line held=() skipped=()
+  while IFS= read -r line; do
+    if ((${#held[@]})) || [[ $line =~ ^[0-9]+%\ tests\ passed ]]; then
+      held+=("$line")
+      if [[ $line =~ ^[[:space:]]+[0-9]+\ -\ (.+)\ \(Skipped\) ]]; then skipped+=("${BASH_REMATCH[1]}"); fi
+    else
+      printf '%s\n' "$line"
+    fi
+  done
+  case ${#skipped[@]} in
+    0) printf '0 tests skipped\n' ;;
+    1) printf '1 test skipped: %s\n' "${skipped[0]}" ;;
+    *) printf '%d tests skipped: %s\n' "${#skipped[@]}" "$(printf '%s, ' "${skipped[@]}" | sed 's/, $//')" ;;
+  esac
+  if ((${#held[@]})); then printf '%s\n' "${held[@]}"; fi
 }
