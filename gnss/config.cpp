@@ -1,9 +1,17 @@
-#include "gnss/sensor.h"
+#include "gnss/atmosphere/ionosphere.h"
+#include "gnss/atmosphere/troposphere.h"
+#include "gnss/errors/ephemeris_error.h"
+#include "gnss/paths/path_model.h"
+#include "gnss/receiver/multipath_rule.h"
+#include "gnss/receiver/receiver_clock.h"
+#include "gnss/receiver/receiver_mode.h"
+#include "gnss/sensor_models.h"
+#include "gnss/solver/position_solver.h"
 
 namespace canyon::gnss {
 
 void visit(FieldVisitor& f, GnssConfig& c) {
-  f.choice("model", c.model, {"pseudorange", "truth_plus_isotropic"}, "how a fix is made");
+  f.choice("model", c.model, model_names(sensor_models()), "how a fix is made");
   f.number("rate_hz", c.rate_hz, {0.01, 50.0}, "fixes per second");
   f.number("mask_deg", c.mask_deg, {0.0, 60.0}, "satellites below this elevation are not used");
   f.vector3("lever_arm_m", c.lever_arm_m, {-50.0, 50.0}, "antenna in the vehicle's frame B (x forward, y left, z up)");
@@ -13,7 +21,7 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.number("isotropic_sigma_m", c.isotropic_sigma_m, {1e-6, 1e4},
            "truth_plus_isotropic: 1-sigma per axis that the fix claims");
 
-  f.choice("mode", c.mode, {"single", "single_uncorrected", "dgps", "dgps_paper"}, "what the receiver corrects");
+  f.choice("mode", c.mode, model_names(receiver_modes()), "what the receiver corrects");
   f.number("baseline_km", c.baseline_km, {0.0, 500.0}, "dgps: distance of the base station");
   f.number("ionosphere_gradient_mm_per_km", c.ionosphere_gradient_mm_per_km, {0.0, 1000.0},
            "dgps: 1-sigma of the difference of the vertical ionospheric delay to the base");
@@ -21,28 +29,26 @@ void visit(FieldVisitor& f, GnssConfig& c) {
            "dgps: 1-sigma of the difference of the zenith wet delay to the base");
   f.number("base_error_scale", c.base_error_scale, {0.0, 100.0},
            "dgps: base station's own error, 1 = ground accuracy designator B");
-  f.choice("ionosphere", c.ionosphere, {"none", "single_layer", "klobuchar", "paper", "paper_printed"},
-           "ionospheric delay");
+  f.choice("ionosphere", c.ionosphere, model_names(ionosphere_models()), "ionospheric delay");
   f.number("vtec_tecu", c.vtec_tecu, {0.0, 500.0}, "vertical total electron content");
-  f.choice("ionosphere_correction", c.ionosphere_correction, {"none", "half", "klobuchar"},
+  f.choice("ionosphere_correction", c.ionosphere_correction, ionosphere_corrections(),
            "mode single: what the receiver subtracts for the ionosphere");
-  f.choice("troposphere", c.troposphere, {"none", "saastamoinen_niell", "paper_printed", "paper_corrected"},
-           "tropospheric delay");
+  f.choice("troposphere", c.troposphere, model_names(troposphere_models()), "tropospheric delay");
   f.number("pressure_hpa", c.pressure_hpa, {100.0, 1100.0}, "air pressure at the receiver");
   f.number("temperature_c", c.temperature_c, {-80.0, 60.0}, "air temperature at the receiver");
   f.number("relative_humidity", c.relative_humidity, {0.0, 1.0}, "relative humidity at the receiver");
-  f.choice("ephemeris_error", c.ephemeris_error, {"none", "gauss_markov", "paper_printed", "paper_corrected"},
+  f.choice("ephemeris_error", c.ephemeris_error, model_names(ephemeris_error_models()),
            "error of the broadcast orbit and satellite clock");
   f.number("ephemeris_sigma_m", c.ephemeris_sigma_m, {0.0, 1000.0}, "gauss_markov: 1-sigma of the range error");
   f.number("ephemeris_tau_s", c.ephemeris_tau_s, {60.0, 1e6}, "gauss_markov: correlation time");
-  f.choice("receiver_clock", c.receiver_clock, {"none", "tcxo"}, "receiver clock error");
+  f.choice("receiver_clock", c.receiver_clock, model_names(receiver_clock_models()), "receiver clock error");
 
-  f.choice("paths", c.paths, {"none", "visibility", "specular1"}, "propagation in the scene");
+  f.choice("paths", c.paths, model_names(path_models()), "propagation in the scene");
   f.number("reflection_reach_m", c.reflection_reach_m, {1.0, 5000.0},
            "specular1: farthest reflection point from the antenna");
   f.number("foliage_db_per_m", c.foliage_db_per_m, {0.0, 10.0}, "specific attenuation of tree crowns");
   f.number("foliage_max_db", c.foliage_max_db, {0.1, 100.0}, "largest attenuation by foliage");
-  f.choice("multipath_rule", c.multipath_rule, {"none", "paper_first_return", "correlator"},
+  f.choice("multipath_rule", c.multipath_rule, model_names(multipath_rules()),
            "range error from direct and reflected signals");
   f.number("cutoff_ns", c.cutoff_ns, {0.0, 10000.0}, "reflections later than this do not disturb a direct signal");
   f.number("correlator_spacing_chips", c.correlator_spacing_chips, {0.01, 1.0}, "early minus late");
@@ -55,7 +61,7 @@ void visit(FieldVisitor& f, GnssConfig& c) {
            "signals weaker than this are not tracked");
   f.number("code_noise_m", c.code_noise_m, {0.0, 100.0}, "1-sigma code noise at 45 dB-Hz");
 
-  f.choice("solver", c.solver, {"least_squares", "trilateration"}, "how ranges become a position");
+  f.choice("solver", c.solver, model_names(position_solvers()), "how ranges become a position");
   f.number("solver_sigma_m", c.solver_sigma_m, {1e-3, 1000.0},
            "1-sigma the solver assumes for a corrected pseudorange at the zenith");
   f.number("max_gdop", c.max_gdop, {1.0, 1e6}, "fixes with a larger GDOP are refused");

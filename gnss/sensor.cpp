@@ -1,26 +1,27 @@
 #include "gnss/sensor.h"
 
-#include "gnss/model_table.h"
 #include "gnss/sensor_models.h"
 
 namespace canyon::gnss {
 namespace {
 
-using MakeSensor = Result<std::unique_ptr<GnssSensor>>(const GnssConfig&, std::uint64_t, GpsTime, GpsTime,
-                                                       const scene::Scene&);
-
 constexpr ModelRow<MakeSensor> kSensors[] = {
+    {"pseudorange", make_pseudorange_sensor, "satellites, delays, paths in the scene, receiver and solver"},
     {"truth_plus_isotropic", make_isotropic_sensor,
      "truth plus a random direction times U(min, max), independent per fix"},
 };
 
 }  // namespace
 
+std::span<const ModelRow<MakeSensor>> sensor_models() {
+  return kSensors;
+}
+
 Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
                                                      GpsTime end, const scene::Scene& scene) {
-  const auto* row = find_model<MakeSensor>(kSensors, config.model);
+  const auto* row = find_model(sensor_models(), config.model);
   if (row == nullptr)
-    return Error{"", 0, "gnss.model", "\"" + config.model + "\" is not a model", "truth_plus_isotropic"};
+    return Error{"", 0, "gnss.model", "\"" + config.model + "\" is not a model", "pseudorange or truth_plus_isotropic"};
   return row->make(config, seed, start, end, scene);
 }
 

@@ -2,10 +2,16 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
+#include "gnss/model_table.h"
 #include "gnss/sensor.h"
 
 namespace canyon::gnss {
+
+using MakeSensor = Result<std::unique_ptr<GnssSensor>>(const GnssConfig&, std::uint64_t, GpsTime start, GpsTime end,
+                                                       const scene::Scene&);
+std::span<const ModelRow<MakeSensor>> sensor_models();
 
 /// truth_plus_isotropic: the fix is the truth plus an isotropic direction times U(min, max); see isotropic_sensor.cpp.
 Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,

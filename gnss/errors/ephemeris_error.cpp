@@ -1,0 +1,29 @@
+#include "gnss/errors/ephemeris_error.h"
+
+namespace canyon::gnss {
+namespace {
+
+class NoEphemerisError final : public EphemerisError {
+ public:
+  double range_m(SatelliteId, const Eigen::Vector3d&, GpsTime) const override { return 0.0; }
+};
+
+std::unique_ptr<EphemerisError> make_none(const EphemerisErrorParameters&) {
+  return std::make_unique<NoEphemerisError>();
+}
+
+constexpr ModelRow<MakeEphemerisError> kModels[] = {
+    {"none", make_none, "the broadcast is exact"},
+    {"gauss_markov", make_gauss_markov_ephemeris,
+     "per satellite, correlated over ephemeris_tau_s, ephemeris_sigma_m RMS"},
+    {"paper_printed", make_paper_printed_ephemeris, "Durst & Goodin (2012) as printed: 8 to 12 m"},
+    {"paper_corrected", make_paper_corrected_ephemeris, "the form their table 1 suggests: about 1.1 m"},
+};
+
+}  // namespace
+
+std::span<const ModelRow<MakeEphemerisError>> ephemeris_error_models() {
+  return kModels;
+}
+
+}  // namespace canyon::gnss

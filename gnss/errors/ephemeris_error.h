@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "gnss/model_table.h"
+#include "gnss/satellites/constellation.h"
+
+namespace canyon::gnss {
+
+/// Error of the broadcast orbit and satellite clock, as it acts on the range: broadcast minus true satellite, along the
+/// line of sight.
+class EphemerisError {
+ public:
+  virtual ~EphemerisError() = default;
+  virtual double range_m(SatelliteId sv, const Eigen::Vector3d& satellite_E, GpsTime t) const = 0;
+};
+
+struct EphemerisErrorParameters {
+  std::uint64_t seed = 0;
+  double sigma_m = 1.0;
+  double tau_s = 3600.0;
+};
+
+using MakeEphemerisError = std::unique_ptr<EphemerisError>(const EphemerisErrorParameters&);
+std::span<const ModelRow<MakeEphemerisError>> ephemeris_error_models();
+
+std::unique_ptr<EphemerisError> make_gauss_markov_ephemeris(const EphemerisErrorParameters& p);
+std::unique_ptr<EphemerisError> make_paper_printed_ephemeris(const EphemerisErrorParameters& p);
+std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris(const EphemerisErrorParameters& p);
+
+}  // namespace canyon::gnss

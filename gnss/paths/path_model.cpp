@@ -1,0 +1,32 @@
+#include "gnss/paths/path_model.h"
+
+#include <algorithm>
+
+namespace canyon::gnss {
+namespace {
+
+class OpenSky final : public PathModel {
+ public:
+  void trace(const Eigen::Vector3d&, std::span<const Eigen::Vector3d>, const scene::SceneAt&,
+             std::span<SignalPaths> out, GnssCounters&) const override {
+    std::fill(out.begin(), out.end(), SignalPaths{});
+  }
+};
+
+std::unique_ptr<PathModel> make_none(const PathParameters&) {
+  return std::make_unique<OpenSky>();
+}
+
+constexpr ModelRow<MakePathModel> kModels[] = {
+    {"none", make_none, "every satellite above the mask is clear, nothing reflects"},
+    {"visibility", make_visibility, "occlusion rays against the scene, nothing reflects"},
+    {"specular1", make_specular1, "occlusion and single specular reflections off the scene's facets"},
+};
+
+}  // namespace
+
+std::span<const ModelRow<MakePathModel>> path_models() {
+  return kModels;
+}
+
+}  // namespace canyon::gnss

@@ -1,0 +1,26 @@
+#include "gnss/receiver/receiver_clock.h"
+
+namespace canyon::gnss {
+namespace {
+
+class PerfectClock final : public ReceiverClock {
+ public:
+  double offset_m(std::int64_t) override { return 0.0; }
+};
+
+std::unique_ptr<ReceiverClock> make_none(const ReceiverClockParameters&) {
+  return std::make_unique<PerfectClock>();
+}
+
+constexpr ModelRow<MakeReceiverClock> kModels[] = {
+    {"none", make_none, "the receiver knows GPS time exactly"},
+    {"tcxo", make_tcxo, "two-state clock of a temperature-compensated crystal"},
+};
+
+}  // namespace
+
+std::span<const ModelRow<MakeReceiverClock>> receiver_clock_models() {
+  return kModels;
+}
+
+}  // namespace canyon::gnss

@@ -1,0 +1,74 @@
+#include "gnss/receiver/receiver_fix.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/units.h"
+#include "gnss/satellites/transmission.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr double kLowestElevationRad =
+    5.0 * kDegree;  // models and weights are held there, wherever a poor guess puts the horizon
+
+/// Satellites as told by the pseudoranges; what has no valid ephemeris there stays NaN.
+std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, const Constellation& constellation) {
+  std::vector<RangeMeasurement> ranges;
+  for (auto& o : epoch.observations) {
+    const auto view = transmission_from_pseudorange(constellation, o.sv, epoch.t, o.pseudorange_m);
+    CANYON_CHECK(view.has_value(), "no ephemeris for ", o.sv.str(), " that was just simulated at ", epoch.t.iso());
+    o.clock_m = kSpeedOfLight * view->state.clock_s;
+    o.v_E = view->state.v_E;
+    ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0});
+  }
+  return ranges;
+}
+
+}  // namespace
+
+GnssFix FixComputer::compute(GnssEpoch& epoch, GpsTime t, std::span<CorrectionInput> inputs,
+                             std::vector<Correction>& corrections) const {
+  auto& observations = epoch.observations;
+  CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
+               " observations");
+  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, constellation);
+  corrections.assign(observations.size(), {});
+
+  // Where am I, roughly: uncorrected ranges are good for some tens of metres, and elevations need no more.
+  Eigen::Vector3d at_E = guess_E;
+  if (const auto rough = solver.solve(ranges, guess_E); rough.ok) at_E = rough.p_E;
+
+  const Horizon horizon(at_E);
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    auto& o = observations[i];
+    const double travel_s = (ranges[i].p_E - at_E).norm() / kSpeedOfLight;
+    o.p_E = turned_by_earth(ranges[i].p_E, travel_s);
+    o.v_E = turned_by_earth(o.v_E, travel_s);
+    SkyView& view = inputs[i].receivers_view;
+    view = horizon.view(t, o.p_E);
+    view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
+    corrections[i] = mode.correction(inputs[i]);
+    o.correction_m = corrections[i].total_m();
+    o.sigma_m = zenith_sigma_m / std::sin(view.elevation_rad);
+    ranges[i].range_m = o.corrected_m();
+    ranges[i].sigma_m = o.sigma_m;
+  }
+
+  const PositionSolution solution = solver.solve(ranges, at_E);
+  GnssFix fix;
+  fix.t = t;
+  fix.dop = solution.dop;
+  fix.reason = solution.reason;
+  if (!solution.ok) return fix;
+  fix.status = mode.status();
+  fix.p_A_E = solution.p_E;
+  fix.covariance_E = solution.covariance_E;
+  fix.clock_m = solution.clock_m;
+  fix.satellites = static_cast<int>(observations.size());
+  for (auto& o : observations) o.used = true;
+  return fix;
+}
+
+}  // namespace canyon::gnss
