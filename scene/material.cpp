@@ -48,14 +48,15 @@ Result<std::vector<Material>> parse_materials(std::string_view toml, const std::
   const auto& rows = *root.find("material")->array();
   for (std::size_t i = 0; i < file.materials.size(); ++i) {
     const Material& m = file.materials[i];
-    if (m.name.empty()) return rows[i].error("material.name", "missing", "a name");
-    if (!(m.itu_a >= 1.0))
-      return rows[i].error("material.itu", join_values("a = ", m.itu_a), "a permittivity of at least 1");
-    if (!(m.itu_c >= 0.0))
-      return rows[i].error("material.itu", join_values("c = ", m.itu_c), "a conductivity of at least 0");
+    const auto mistake = [&](const char* key, std::string what, std::string expected) {
+      const ConfigNode* at = rows[i].find(key);
+      return (at ? *at : rows[i]).error(join_values("material[", i, "].", key), std::move(what), std::move(expected));
+    };
+    if (m.name.empty()) return mistake("name", "missing", "a name");
+    if (!(m.itu_a >= 1.0)) return mistake("itu", join_values("a = ", m.itu_a), "a permittivity of at least 1");
+    if (!(m.itu_c >= 0.0)) return mistake("itu", join_values("c = ", m.itu_c), "a conductivity of at least 0");
     for (std::size_t j = 0; j < i; ++j) {
-      if (file.materials[j].name == m.name)
-        return rows[i].error("material.name", "\"" + m.name + "\" appears twice", "unique names");
+      if (file.materials[j].name == m.name) return mistake("name", "\"" + m.name + "\" appears twice", "unique names");
     }
   }
   return std::move(file.materials);

