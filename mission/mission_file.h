@@ -68,4 +68,8 @@ class SceneCache {
 /// known, rates that divide the IMU's. Errors name the key; MissionFile::locate adds file and line.
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes);
 
+/// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry before
+/// any time is spent.
+Status check_sensors(const MissionConfig& config, const PreparedMission& mission);
+
 }  // namespace canyon::mission

@@ -93,4 +93,14 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
   return mission;
 }
 
+Status check_sensors(const MissionConfig& config, const PreparedMission& mission) {
+  const auto seed = static_cast<std::uint64_t>(config.run.seed);
+  const GpsTime end = mission.start + mission.time_limit_s;
+  CANYON_TRY_STATUS(gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, *mission.scene));
+  CANYON_TRY_STATUS(inertial::make_imu(config.imu, seed, mission.scene->frame()));
+  CANYON_TRY_STATUS(lidar::make_scanner(config.lidar, seed));
+  CANYON_TRY_STATUS(lidar::make_registration(config.registration));
+  return Ok{};
+}
+
 }  // namespace canyon::mission

@@ -1,0 +1,60 @@
+#include "apps/command_line.h"
+
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/verb.h"
+#include "core/progress.h"
+#include "core/version.h"
+
+namespace canyon::apps {
+
+namespace {
+
+int complain(const Error& error) {
+  std::fprintf(stderr, "%s\n", error.str().c_str());
+  return error.exit_code;
+}
+
+}  // namespace
+
+void declare_common(CLI::App& app, CommonOptions& options) {
+  app.add_option("--threads", options.threads, "threads for everything; 0 = all cores")->check(CLI::Range(0, 1024));
+  app.add_flag("--json", options.json, "print one JSON object on stdout and nothing else");
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{"Canyon: how much navigation fidelity does an autonomous vehicle's test need, and what does it cost?"};
+  app.name("canyon");
+  app.set_version_flag("--version", std::string("canyon ") + kVersion);
+  app.require_subcommand(1);
+  std::map<const CLI::App*, VerbAction> actions;
+  for (const Verb& verb : {compare_verb(), run_verb(), report_verb()}) {
+    CLI::App* sub = app.add_subcommand(verb.name, verb.summary);
+    sub->footer(std::string("\nExample:\n  ") + verb.example);
+    actions[sub] = verb.declare(*sub);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return complain({.key = "command line", .what = error.what(), .expected = "see canyon --help"});
+  }
+
+  install_cancel_handler();
+  try {
+    const auto result = actions.at(app.get_subcommands().front())();
+    return result ? *result : complain(result.error());
+  } catch (const Cancelled&) {
+    std::fprintf(stderr, "interrupted: nothing was written\n");
+    return 130;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "canyon could not finish: %s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace canyon::apps

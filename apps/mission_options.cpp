@@ -1,0 +1,37 @@
+#include "apps/mission_options.h"
+
+#include <ctime>
+
+#include <CLI/CLI.hpp>
+
+namespace canyon::apps {
+
+void declare_mission_options(CLI::App& app, MissionOptions& options) {
+  declare_common(app, options.common);
+  app.add_option("mission", options.mission, "mission file (TOML); without it the built-in mission")->type_name("MISSION.toml");
+  app.add_option("--seed", options.seed, "seed of every random stream");
+  app.add_option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
+  app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+  app.add_option("--out", options.out, "results directory; default results/<mission>-<seed>-<time>");
+  app.add_flag("--force", options.force, "replace the results directory if it exists");
+}
+
+Result<mission::MissionFile> load_mission(const MissionOptions& options) {
+  CANYON_TRY(auto file, mission::MissionFile::load(options.mission));
+  if (options.seed) file.set_option("run.seed", ConfigNode::of(*options.seed), "--seed");
+  if (!options.nav.empty()) file.set_option("gnss.nav_file", ConfigNode::of(options.nav), "--nav");
+  if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
+  return file;
+}
+
+std::string output_directory(const MissionOptions& options, const mission::MissionConfig& config) {
+  if (!options.out.empty()) return options.out;
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  return "results/" + config.run.name + "-" + std::to_string(config.run.seed) + "-" + stamp;
+}
+
+}  // namespace canyon::apps

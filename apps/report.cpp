@@ -1,0 +1,42 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/verb.h"
+#include "report/html_report.h"
+
+namespace canyon::apps {
+
+namespace {
+
+VerbAction declare(CLI::App& app) {
+  struct Options {
+    CommonOptions common;
+    std::string directory;
+  };
+  const auto options = std::make_shared<Options>();
+  declare_common(app, options->common);
+  app.add_option("directory", options->directory, "results directory of compare or run")->required();
+  return [options]() -> Result<int> {
+    const std::string file = options->directory + "/report.html";
+    CANYON_TRY_STATUS(report::write_html_report(options->directory, file));
+    if (options->common.json) {
+      std::printf("%s\n", nlohmann::json{{"report", file}}.dump().c_str());
+    } else {
+      std::printf("Report: %s\n", std::filesystem::absolute(file).lexically_normal().c_str());
+    }
+    return 0;
+  };
+}
+
+}  // namespace
+
+Verb report_verb() {
+  return {"report", "the HTML report again, from a stored results directory", "canyon report results/first", declare};
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace CLI {
+class App;
+}
+
+namespace canyon::apps {
+
+/// What the arguments of a verb ask for; runs it, and returns the exit status or an Error.
+using VerbAction = std::function<Result<int>()>;
+
+/// One verb of the command line. A new verb is one file and one row in command_line.cpp.
+struct Verb {
+  const char* name;
+  const char* summary;
+  const char* example;  ///< shown by --help
+  /// Declares the arguments on `app` and returns what to do once they are parsed.
+  VerbAction (*declare)(CLI::App& app);
+};
+
+Verb compare_verb();
+Verb run_verb();
+Verb report_verb();
+
+/// Options that every verb has.
+struct CommonOptions {
+  int threads = 0;
+  bool json = false;
+};
+void declare_common(CLI::App& app, CommonOptions& options);
+
+}  // namespace canyon::apps

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace canyon::mission {
+
+/// Builds a CSV text row by row. Numbers have a fixed number of decimals and no locale; undefined (not finite) values are empty.
+class CsvWriter {
+ public:
+  explicit CsvWriter(std::string_view header) : text_(header) { text_ += '\n'; }
+
+  CsvWriter& number(double value, int decimals) {
+    separate();
+    if (!std::isfinite(value)) return *this;
+    char buffer[64];
+    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals);
+    text_.append(buffer, end.ptr);
+    return *this;
+  }
+  template <class... Values>
+  CsvWriter& numbers(int decimals, Values... values) {
+    (number(values, decimals), ...);
+    return *this;
+  }
+  CsvWriter& integer(std::int64_t value) {
+    separate();
+    text_ += std::to_string(value);
+    return *this;
+  }
+  /// A word without commas, quotes or line breaks; such characters become blanks.
+  CsvWriter& word(std::string_view value) {
+    separate();
+    for (const char c : value) text_ += c == ',' || c == '"' || c == '\n' ? ' ' : c;
+    return *this;
+  }
+  void end_row() {
+    text_ += '\n';
+    row_started_ = false;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void separate() {
+    if (row_started_) text_ += ',';
+    row_started_ = true;
+  }
+  std::string text_;
+  bool row_started_ = false;
+};
+
+}  // namespace canyon::mission

@@ -1,0 +1,263 @@
+#include "mission/results.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "core/units.h"
+#include "core/version.h"
+
+namespace canyon::mission {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Undefined is null, never 0 or NaN.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json point(const Eigen::Vector2d& p) { return Json::array({p.x(), p.y()}); }
+
+void add_statistics(Json& out, const std::string& prefix, const ErrorStatistics& statistics) {
+  out[prefix + "_rms_m"] = number(statistics.rms);
+  out[prefix + "_p95_m"] = number(statistics.p95);
+  out[prefix + "_max_m"] = number(statistics.max);
+}
+
+Json waypoints_json(const MissionConfig& config) {
+  Json out = Json::array();
+  for (const Waypoint& waypoint : config.autonomy.waypoints)
+    out.push_back({{"name", waypoint.name},
+                   {"x_m", waypoint.p_m.x()},
+                   {"y_m", waypoint.p_m.y()},
+                   {"mission", waypoint.is_mission()},
+                   {"building", waypoint.is_mission() ? Json(waypoint.observe) : Json(nullptr)}});
+  return out;
+}
+
+/// The 2 x 2 of GNSS and IMU fidelity, if all four runs are there.
+Json two_by_two(const std::vector<RunSummary>& summaries) {
+  const std::vector<std::string> levels{"low", "high"};
+  Json out{{"gnss", levels}, {"imu", levels}};
+  for (const char* key : {"outcome", "position_error_rms_m", "registration_error_rms_m", "map_error_prior_rms_m"}) {
+    Json rows = Json::array();
+    for (const auto& gnss : levels) {
+      Json row = Json::array();
+      for (const auto& imu : levels) {
+        const auto found = std::find_if(summaries.begin(), summaries.end(),
+                                        [&](const RunSummary& s) { return s.gnss == gnss && s.imu == imu; });
+        if (found == summaries.end()) return nullptr;
+        row.push_back(run_json(*found)[key]);
+      }
+      rows.push_back(row);
+    }
+    out[key] = rows;
+  }
+  return out;
+}
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void remove_timing(Json& node) {
+  if (node.is_object()) node.erase("timing");
+  if (node.is_structured())
+    for (auto& child : node) remove_timing(child);
+}
+
+/// SHA-256 over the files of epochs/ and clouds/ by name, and summary.json without timing.
+Result<std::string> results_hash(const std::string& directory, Json summary) {
+  std::vector<std::string> files;
+  for (const char* folder : {"epochs", "clouds"})
+    for (const auto& entry : std::filesystem::directory_iterator(directory + "/" + folder))
+      files.push_back(std::string(folder) + "/" + entry.path().filename().string());
+  std::sort(files.begin(), files.end());
+  std::string digest;
+  for (const auto& file : files) {
+    CANYON_TRY(const std::string bytes, read_text_file(directory + "/" + file));
+    digest += file + " " + sha256_hex(bytes) + "\n";
+  }
+  remove_timing(summary);
+  return sha256_hex(digest + summary.dump());
+}
+
+Json manifest_json(const Results& results) {
+  Json runs = Json::object();
+  for (const RunRecord& record : results.records) {
+    MissionConfig config = record.config;
+    runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
+  }
+  return {{"schema", 1},
+          {"version", kVersion},
+          {"seed", results.records.front().config.run.seed},
+          {"start", results.mission->start.iso()},
+          {"instruction_set", instruction_set()},
+          {"scene_hash", results.mission->scene->hash()},
+          {"configuration", runs}};
+}
+
+}  // namespace
+
+Json run_json(const RunSummary& s) {
+  Json out;
+  out["fidelity"] = s.name;
+  out["gnss"] = s.gnss;
+  out["imu"] = s.imu;
+  out["outcome"] = s.outcome;
+  out["failure"] = nullptr;
+  if (s.failure)
+    out["failure"] = {{"kind", s.failure->kind},
+                      {"t_s", s.failure->t_s},
+                      {"x_m", s.failure->p_W.x()},
+                      {"y_m", s.failure->p_W.y()},
+                      {"detail", s.failure->detail}};
+  out["waypoints_reached"] = s.waypoints_reached;
+  out["mission_waypoints_reached"] = s.mission_waypoints_reached;
+  out["duration_s"] = s.duration_s;
+  out["distance_m"] = s.distance_m;
+  add_statistics(out, "position_error", s.position_m);
+  add_statistics(out, "position_error_e", s.east_m);
+  add_statistics(out, "position_error_n", s.north_m);
+  add_statistics(out, "position_error_up", s.up_m);
+  out["attitude_error_roll_rms_deg"] = number(s.roll_rms_deg);
+  out["attitude_error_pitch_rms_deg"] = number(s.pitch_rms_deg);
+  out["attitude_error_yaw_rms_deg"] = number(s.yaw_rms_deg);
+  out["gdop_median"] = number(s.gdop_median);
+  out["gdop_max"] = number(s.gdop_max);
+  out["pdop_median"] = number(s.pdop_median);
+  out["dop_jumps"] = s.dop_jumps;
+  out["satellites_mean"] = number(s.satellites_mean);
+  out["nlos_share"] = number(s.nlos_share);
+  out["multipath_share"] = number(s.multipath_share);
+  out["fix_error_rms_m"] = number(s.fix_error_rms_m);
+  out["fixes_due"] = s.fixes_due;
+  out["fixes_lost"] = s.fixes_lost;
+  out["registration_error_rms_m"] = number(s.registration_rms_m);
+  out["registration_error_prior_rms_m"] = number(s.registration_prior_rms_m);
+  out["keyframes"] = s.keyframes;
+  out["keyframes_converged"] = s.keyframes_converged;
+  out["map_error_rms_m"] = number(s.registered_map.map_error_rms_m);
+  out["map_error_prior_rms_m"] = number(s.prior_map.map_error_rms_m);
+  out["map_error_up_rms_m"] = number(s.registered_map.map_error_up_rms_m);
+  out["map_error_up_prior_rms_m"] = number(s.prior_map.map_error_up_rms_m);
+  out["map_error_p95_m"] = number(s.registered_map.map_error_p95_m);
+  out["map_error_p95_prior_m"] = number(s.prior_map.map_error_p95_m);
+  out["map_points"] = s.registered_map.points;
+  out["mission_waypoints"] = Json::array();
+  for (const WaypointScore& waypoint : s.waypoints) {
+    if (!waypoint.mission) continue;
+    out["mission_waypoints"].push_back({{"name", waypoint.name},
+                                        {"reached", waypoint.reached},
+                                        {"closest_m", waypoint.closest_m},
+                                        {"stopped_s", waypoint.stopped_s},
+                                        {"facade_seen_share", waypoint.facade_seen_share}});
+  }
+  out["counters"] = s.counters;
+  Json parts = Json::array();
+  for (const auto& [part, cpu_s] : s.cpu_parts_s) parts.push_back({{"name", part}, {"cpu_s", cpu_s}});
+  out["timing"] = {{"real_time_factor", number(s.real_time_factor())}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}, {"parts", parts}};
+  return out;
+}
+
+Json summary_json(const Results& results) {
+  const PreparedMission& mission = *results.mission;
+  const MissionConfig& config = results.records.front().config;
+  const scene::Scene& scene = *mission.scene;
+  Json route = Json::array();
+  const auto& points = mission.prior.route.points();
+  for (std::size_t i = 0; i < points.size(); i += 8) route.push_back(point(points[i]));
+  if (!points.empty()) route.push_back(point(points.back()));
+
+  Json out;
+  out["schema"] = 1;
+  out["mission"] = {{"name", config.run.name},
+                    {"seed", config.run.seed},
+                    {"start", mission.start.iso()},
+                    {"route_length_m", mission.prior.route.length_m()},
+                    {"nominal_duration_s", mission.nominal_s},
+                    {"time_limit_s", mission.time_limit_s},
+                    {"route", route},
+                    {"waypoints", waypoints_json(config)}};
+  const Eigen::Vector3d extent = scene.extent().max - scene.extent().min;
+  out["scene"] = {{"name", scene.name()},
+                  {"buildings", scene.buildings().size()},
+                  {"triangles", scene.mesh().triangles.size()},
+                  {"extent_m", {extent.x(), extent.y(), extent.z()}},
+                  {"origin",
+                   {{"lat_deg", scene.frame().origin().lat_rad / kDegree},
+                    {"lon_deg", scene.frame().origin().lon_rad / kDegree},
+                    {"h_m", scene.frame().origin().h_m}}}};
+  out["runs"] = Json::array();
+  double cpu_s = 0.0;
+  for (const RunSummary& summary : results.summaries) {
+    out["runs"].push_back(run_json(summary));
+    cpu_s += summary.cpu_s;
+  }
+  out["two_by_two"] = two_by_two(results.summaries);
+  out["timing"] = {{"wall_s", results.wall_s}, {"cpu_s", cpu_s}, {"peak_memory_mb", peak_memory_mb()}, {"threads", results.threads}};
+  return out;
+}
+
+Json scene_json(const scene::Scene& scene) {
+  Json out;
+  const auto& extent = scene.extent();
+  out["extent_m"] = {{"min", {extent.min.x(), extent.min.y(), extent.min.z()}},
+                     {"max", {extent.max.x(), extent.max.y(), extent.max.z()}}};
+  out["buildings"] = Json::array();
+  for (const scene::Building& building : scene.buildings()) {
+    Json footprint = Json::array();
+    for (const auto& corner : building.footprint_W) footprint.push_back(point(corner));
+    out["buildings"].push_back(
+        {{"name", building.name}, {"base_m", building.base_m}, {"height_m", building.height_m}, {"footprint", footprint}});
+  }
+  out["streets"] = Json::array();
+  const scene::StreetGraph& streets = scene.streets();
+  for (const auto& edge : streets.edges)
+    out["streets"].push_back(
+        {{"a", point(streets.nodes_W[edge.a])}, {"b", point(streets.nodes_W[edge.b])}, {"width_m", edge.width_m}});
+  out["trees"] = Json::array();
+  for (const scene::Foliage& tree : scene.foliage())
+    out["trees"].push_back({tree.center_W.x(), tree.center_W.y(), std::max(tree.radii_m.x(), tree.radii_m.y())});
+  // Parked vehicles: the centre of each object's triangles.
+  std::vector<Eigen::Vector2d> sum(scene.objects().size(), Eigen::Vector2d::Zero());
+  std::vector<double> count(scene.objects().size(), 0.0);
+  const scene::Mesh& mesh = scene.mesh();
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (scene.objects()[mesh.object[i]].kind != scene::ObjectKind::kVehicle) continue;
+    for (const std::uint32_t v : mesh.triangles[i]) sum[mesh.object[i]] += mesh.vertices[v].head<2>().cast<double>();
+    count[mesh.object[i]] += 3.0;
+  }
+  out["vehicles"] = Json::array();
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    if (count[i] > 0.0) out["vehicles"].push_back(point(sum[i] / count[i]));
+  return out;
+}
+
+Result<std::string> write_results(const std::string& directory, const Results& results) {
+  std::error_code ignored;
+  std::filesystem::create_directories(directory + "/epochs", ignored);
+  std::filesystem::create_directories(directory + "/clouds", ignored);
+  for (const RunRecord& record : results.records) {
+    CANYON_TRY_STATUS(write_epochs(directory, record));
+    const std::string stem = directory + "/clouds/" + record.name;
+    CANYON_TRY_STATUS(lidar::write_pcd(stem + "_prior.pcd", record.prior_map));
+    CANYON_TRY_STATUS(lidar::write_pcd(stem + "_registered.pcd", record.registered_map));
+  }
+  Json summary = summary_json(results);
+  CANYON_TRY(const std::string hash, results_hash(directory, summary));
+  summary["hash"] = hash;
+  CANYON_TRY_STATUS(write_text_file(directory + "/summary.json", summary.dump(1) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory + "/manifest.json", manifest_json(results).dump(1) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory + "/scene.json", scene_json(*results.mission->scene).dump() + "\n"));
+  return hash;
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "core/result.h"
+#include "mission/mission_file.h"
+#include "mission/run_record.h"
+#include "mission/summary.h"
+
+namespace canyon::mission {
+
+/// What a results directory is made from (docs/results.md).
+struct Results {
+  const PreparedMission* mission = nullptr;  ///< scene, route and limits shared by the runs
+  std::vector<RunRecord> records;
+  std::vector<RunSummary> summaries;  ///< same index
+  double wall_s = 0.0;
+  int threads = 0;
+};
+
+/// One element of summary.json's `runs`.
+nlohmann::ordered_json run_json(const RunSummary& summary);
+/// The whole of summary.json but its hash.
+nlohmann::ordered_json summary_json(const Results& results);
+
+/// Writes summary.json, manifest.json, scene.json, epochs/ and clouds/ into an existing directory; returns the hash.
+Result<std::string> write_results(const std::string& directory, const Results& results);
+
+/// The CSV files of one run, into directory/epochs.
+Status write_epochs(const std::string& directory, const RunRecord& record);
+/// The scene from above, for drawing.
+nlohmann::ordered_json scene_json(const scene::Scene& scene);
+
+}  // namespace canyon::mission

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/local_frame.h"
+#include "core/messages.h"
+#include "core/truth.h"
+#include "fusion/error_state_filter.h"
+#include "lidar/cloud_files.h"
+#include "lidar/map_quality.h"
+#include "mission/autonomy.h"
+#include "mission/mission_config.h"
+#include "mission/part_clock.h"
+#include "mission/scorer.h"
+
+namespace canyon::mission {
+
+/// One row per LIDAR scan.
+struct NavRow {
+  GpsTime t;
+  Pose X_WB_true;
+  double true_speed_m_s = 0.0;
+  NavEstimate estimate;
+  DriveCommand command;
+  int waypoint = 0;  ///< 1-based number of the waypoint the autonomy heads for
+  AutonomyState state = AutonomyState::kBlind;
+};
+
+/// One row per due GNSS epoch.
+struct GnssRow {
+  GnssFix fix;
+  GnssTruth truth;
+  std::vector<double> cn0_dbhz;  ///< by satellite of the truth record; NaN where not tracked
+  Eigen::Vector3d p_A_W_true = Eigen::Vector3d::Zero();
+  bool withheld = false;
+  fusion::UpdateReport update;
+};
+
+/// One row per keyframe.
+struct KeyframeRow {
+  GpsTime t;
+  std::size_t points = 0;
+  Pose X_WL_true, X_WL_prior, X_WL_registered;
+  lidar::RegistrationStatus status = lidar::RegistrationStatus::kNotConverged;
+  int iterations = 0;
+  double rms_m = kNaN;
+};
+
+/// All that one run leaves behind; results and reports are made from it.
+struct RunRecord {
+  std::string name;  ///< file name of the run: "low", "high_gnss_low_imu"
+  std::string gnss, imu;  ///< whose fidelity each comes from
+  MissionConfig config;
+
+  LocalFrame frame;
+  GpsTime start;
+  double simulated_s = 0.0;
+  double distance_m = 0.0;
+  std::string outcome;
+  std::optional<Failure> failure;
+  std::vector<WaypointScore> waypoints;
+
+  std::vector<NavRow> nav;
+  std::vector<GnssRow> gnss_rows;
+  std::vector<KeyframeRow> keyframes;
+  std::vector<lidar::MapPoint> prior_map, registered_map;
+  lidar::MapQuality prior_quality, registered_quality;
+
+  std::map<std::string, std::int64_t> counters;
+  PartClock clock;
+  double wall_s = 0.0;
+};
+
+}  // namespace canyon::mission

@@ -1,0 +1,145 @@
+#include "mission/summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.h"
+
+namespace canyon::mission {
+
+ErrorStatistics error_statistics(std::vector<double> x) {
+  ErrorStatistics out;
+  if (x.empty()) return out;
+  double sum = 0.0;
+  for (double& v : x) {
+    v = std::abs(v);
+    sum += v * v;
+  }
+  std::sort(x.begin(), x.end());
+  const auto n = static_cast<double>(x.size());
+  out.rms = std::sqrt(sum / n);
+  out.p95 = x[static_cast<std::size_t>(std::ceil(0.95 * n)) - 1];
+  out.max = x.back();
+  return out;
+}
+
+double median(std::vector<double> x) {
+  if (x.empty()) return kNaN;
+  std::sort(x.begin(), x.end());
+  const std::size_t half = x.size() / 2;
+  return x.size() % 2 == 1 ? x[half] : 0.5 * (x[half - 1] + x[half]);
+}
+
+NavError nav_error(const NavRow& row) {
+  return {row.estimate.X_WB.p - row.X_WB_true.p, so3_log(row.X_WB_true.R.conjugate() * row.estimate.X_WB.R) / kDegree};
+}
+
+namespace {
+
+void summarize_navigation(const RunRecord& record, RunSummary& out) {
+  std::vector<double> total, east, north, up, roll, pitch, yaw;
+  for (const NavRow& row : record.nav) {
+    const NavError error = nav_error(row);
+    total.push_back(error.position_W_m.norm());
+    east.push_back(error.position_W_m.x());
+    north.push_back(error.position_W_m.y());
+    up.push_back(error.position_W_m.z());
+    roll.push_back(error.attitude_deg.x());
+    pitch.push_back(error.attitude_deg.y());
+    yaw.push_back(error.attitude_deg.z());
+  }
+  out.position_m = error_statistics(std::move(total));
+  out.east_m = error_statistics(std::move(east));
+  out.north_m = error_statistics(std::move(north));
+  out.up_m = error_statistics(std::move(up));
+  out.roll_rms_deg = error_statistics(std::move(roll)).rms;
+  out.pitch_rms_deg = error_statistics(std::move(pitch)).rms;
+  out.yaw_rms_deg = error_statistics(std::move(yaw)).rms;
+}
+
+void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary& out) {
+  std::vector<double> gdop, pdop, fix_error;
+  double satellites = 0.0;
+  std::int64_t tracked = 0, nlos = 0, multipath = 0;
+  bool forms_pseudoranges = false, has_dop = false, had_fix = false, first = true;
+  double last_gdop = kNaN;
+  for (const GnssRow& row : record.gnss_rows) {
+    const bool fixed = row.fix.status != FixStatus::kNone;
+    ++out.fixes_due;
+    if (fixed) {
+      fix_error.push_back((frame.to_W(row.fix.p_A_E) - row.p_A_W_true).norm());
+      satellites += row.fix.satellites;
+    } else {
+      ++out.fixes_lost;
+    }
+    if (fixed && std::isfinite(row.fix.dop.gdop)) {
+      gdop.push_back(row.fix.dop.gdop);
+      pdop.push_back(row.fix.dop.pdop);
+      has_dop = true;
+    }
+    const bool dop_step = fixed && had_fix && std::abs(row.fix.dop.gdop - last_gdop) > kDopJump;
+    if (!first && (fixed != had_fix || dop_step)) ++out.dop_jumps;
+    first = false;
+    had_fix = fixed;
+    last_gdop = row.fix.dop.gdop;
+    for (const GnssObservationTruth& satellite : row.truth.satellites) {
+      forms_pseudoranges = true;
+      if (!satellite.tracked) continue;
+      ++tracked;
+      nlos += satellite.line_of_sight ? 0 : 1;
+      multipath += satellite.line_of_sight && satellite.reflections > 0 ? 1 : 0;
+    }
+  }
+  out.gdop_median = median(gdop);
+  out.pdop_median = median(std::move(pdop));
+  if (has_dop) out.gdop_max = *std::max_element(gdop.begin(), gdop.end());
+  if (forms_pseudoranges && !fix_error.empty()) out.satellites_mean = satellites / static_cast<double>(fix_error.size());
+  if (tracked > 0) {
+    out.nlos_share = static_cast<double>(nlos) / static_cast<double>(tracked);
+    out.multipath_share = static_cast<double>(multipath) / static_cast<double>(tracked);
+  }
+  out.fix_error_rms_m = error_statistics(std::move(fix_error)).rms;
+}
+
+void summarize_registration(const RunRecord& record, RunSummary& out) {
+  std::vector<double> prior, registered;
+  for (const KeyframeRow& row : record.keyframes) {
+    prior.push_back((row.X_WL_prior.p - row.X_WL_true.p).norm());
+    registered.push_back((row.X_WL_registered.p - row.X_WL_true.p).norm());
+    out.keyframes_converged += row.status == lidar::RegistrationStatus::kConverged ? 1 : 0;
+  }
+  out.keyframes = static_cast<int>(record.keyframes.size());
+  out.registration_prior_rms_m = error_statistics(std::move(prior)).rms;
+  out.registration_rms_m = error_statistics(std::move(registered)).rms;
+  out.prior_map = record.prior_quality;
+  out.registered_map = record.registered_quality;
+}
+
+}  // namespace
+
+RunSummary summarize(const RunRecord& record) {
+  RunSummary out;
+  out.name = record.name;
+  out.gnss = record.gnss;
+  out.imu = record.imu;
+  out.outcome = record.outcome;
+  out.failure = record.failure;
+  out.waypoints = record.waypoints;
+  for (const WaypointScore& waypoint : record.waypoints) {
+    out.waypoints_reached += waypoint.reached ? 1 : 0;
+    out.mission_waypoints_reached += waypoint.reached && waypoint.mission ? 1 : 0;
+  }
+  out.duration_s = record.simulated_s;
+  out.distance_m = record.distance_m;
+  summarize_navigation(record, out);
+  summarize_gnss(record, record.frame, out);
+  summarize_registration(record, out);
+  out.counters = record.counters;
+  out.wall_s = record.wall_s;
+  out.cpu_s = record.clock.total_s();
+  for (std::size_t part = 0; part < static_cast<std::size_t>(Part::kCount); ++part)
+    out.cpu_parts_s.emplace_back(mission::name(static_cast<Part>(part)), record.clock.cpu_s(static_cast<Part>(part)));
+  return out;
+}
+
+}  // namespace canyon::mission

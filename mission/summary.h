@@ -1,0 +1,58 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mission/run_record.h"
+
+namespace canyon::mission {
+
+/// Statistics of an error over time; NaN without samples.
+struct ErrorStatistics {
+  double rms = kNaN, p95 = kNaN, max = kNaN;
+};
+/// Of |x|; p95 by nearest rank.
+ErrorStatistics error_statistics(std::vector<double> x);
+double median(std::vector<double> x);
+
+/// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
+struct RunSummary {
+  std::string name, gnss, imu, outcome;
+  std::optional<Failure> failure;
+  std::vector<WaypointScore> waypoints;
+  int waypoints_reached = 0, mission_waypoints_reached = 0;
+  double duration_s = 0, distance_m = 0;
+
+  ErrorStatistics position_m, east_m, north_m, up_m;
+  double roll_rms_deg = kNaN, pitch_rms_deg = kNaN, yaw_rms_deg = kNaN;
+
+  double gdop_median = kNaN, gdop_max = kNaN, pdop_median = kNaN;
+  int dop_jumps = 0;
+  double satellites_mean = kNaN, nlos_share = kNaN, multipath_share = kNaN, fix_error_rms_m = kNaN;
+  int fixes_due = 0, fixes_lost = 0;
+
+  double registration_rms_m = kNaN, registration_prior_rms_m = kNaN;
+  int keyframes = 0, keyframes_converged = 0;
+  lidar::MapQuality prior_map, registered_map;
+
+  std::map<std::string, std::int64_t> counters;
+  double wall_s = 0, cpu_s = 0;
+  std::vector<std::pair<std::string, double>> cpu_parts_s;
+  double real_time_factor() const { return wall_s > 0 ? duration_s / wall_s : kNaN; }
+};
+
+/// |dGDOP| beyond which consecutive epochs count as a jump.
+inline constexpr double kDopJump = 2.0;
+
+RunSummary summarize(const RunRecord& record);
+
+/// Error of a pose in W: east, north, up and, as a rotation vector in the true body, roll, pitch, yaw in degrees.
+struct NavError {
+  Eigen::Vector3d position_W_m;
+  Eigen::Vector3d attitude_deg;
+};
+NavError nav_error(const NavRow& row);
+
+}  // namespace canyon::mission

@@ -1,0 +1,74 @@
+#include "study/compare.h"
+
+#include <algorithm>
+#include <chrono>
+#include <mutex>
+#include <optional>
+
+#include "core/parallel.h"
+#include "core/progress.h"
+#include "mission/run.h"
+
+namespace canyon::study {
+
+std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two) {
+  std::vector<RunPlan> plan;
+  for (const auto& fidelity : fidelities) plan.push_back({fidelity, fidelity, fidelity});
+  if (two_by_two) {
+    plan.push_back({"high_gnss_low_imu", "high", "low"});
+    plan.push_back({"low_gnss_high_imu", "low", "high"});
+  }
+  return plan;
+}
+
+Result<Comparison> prepare_comparison(const mission::MissionFile& file, const std::vector<RunPlan>& plan) {
+  Comparison comparison;
+  comparison.plan = plan;
+  mission::SceneCache scenes;
+  for (const RunPlan& run : plan) {
+    auto config = run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu);
+    if (!config) return file.locate(config.error());
+    auto prepared = mission::prepare(*config, scenes);
+    if (!prepared) return file.locate(prepared.error());
+    if (auto sensors = mission::check_sensors(*config, *prepared); !sensors) return file.locate(sensors.error());
+    comparison.configs.push_back(*std::move(config));
+    comparison.missions.push_back(*std::move(prepared));
+  }
+  return comparison;
+}
+
+Result<mission::Results> compare(const Comparison& comparison, bool show_progress) {
+  const auto wall_start = std::chrono::steady_clock::now();
+  const std::size_t count = comparison.plan.size();
+  double total_s = 0.0;
+  for (const auto& mission : comparison.missions) total_s += mission.nominal_s;
+  Progress progress("driving " + std::to_string(count) + (count == 1 ? " run" : " runs"), total_s, show_progress);
+
+  std::vector<std::optional<mission::RunRecord>> records(count);
+  std::vector<std::optional<Error>> errors(count);
+  parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      auto record = mission::run_mission(comparison.configs[i], comparison.missions[i], &progress);
+      if (record) {
+        records[i] = *std::move(record);
+      } else {
+        errors[i] = record.error();
+      }
+    }
+  });
+  mission::Results results;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (errors[i]) return *errors[i];
+    records[i]->name = comparison.plan[i].name;
+    records[i]->gnss = comparison.plan[i].gnss;
+    records[i]->imu = comparison.plan[i].imu;
+    results.summaries.push_back(mission::summarize(*records[i]));
+    results.records.push_back(*std::move(records[i]));
+  }
+  results.mission = &comparison.missions.front();
+  results.threads = threads();
+  results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
+  return results;
+}
+
+}  // namespace canyon::study

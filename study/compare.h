@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "mission/mission_file.h"
+#include "mission/results.h"
+
+namespace canyon::study {
+
+/// One run of a comparison: whose GNSS and whose IMU.
+struct RunPlan {
+  std::string name;  ///< "low", "high_gnss_low_imu"
+  std::string gnss, imu;
+};
+
+/// One run per fidelity; with `two_by_two` also the mixed runs low/high GNSS x low/high IMU.
+std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two);
+
+/// A comparison that has been read and checked; nothing has been driven yet.
+struct Comparison {
+  std::vector<RunPlan> plan;
+  std::vector<mission::MissionConfig> configs;    ///< same index
+  std::vector<mission::PreparedMission> missions;  ///< same index; equal scenes are shared
+};
+/// Every mistake of the mission file is found here, before any time is spent.
+Result<Comparison> prepare_comparison(const mission::MissionFile& file, const std::vector<RunPlan>& plan);
+
+/// Drives all runs, each on one thread, side by side; the same seed and so the same random numbers in all.
+/// The returned Results point into `comparison`, which must outlive them.
+Result<mission::Results> compare(const Comparison& comparison, bool show_progress);
+
+/// The terminal table: one column per run, and the ratio of the second to the first.
+std::string comparison_table(const mission::Results& results);
+
+}  // namespace canyon::study

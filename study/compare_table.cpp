@@ -1,0 +1,190 @@
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "study/compare.h"
+
+namespace canyon::study {
+
+namespace {
+
+using mission::RunSummary;
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+std::string padded(const std::string& text, std::size_t width, bool left) {
+  const std::string blanks(text.size() < width ? width - text.size() : 0, ' ');
+  return left ? text + blanks : blanks + text;
+}
+
+/// One line of the table: a word, or a number whose ratio makes sense.
+struct Line {
+  std::string label;
+  std::vector<std::string> cells;
+  std::string ratio;
+};
+
+class Table {
+ public:
+  explicit Table(const std::vector<RunSummary>& runs) : runs_(runs) {}
+
+  void section(const std::string& title) { lines_.push_back({title, {}, ""}); }
+  void words(const std::string& label, const std::function<std::string(const RunSummary&)>& value) {
+    Line line{label, {}, ""};
+    for (const RunSummary& run : runs_) line.cells.push_back(value(run));
+    lines_.push_back(std::move(line));
+  }
+  void numbers(const std::string& label, int decimals, const std::function<double(const RunSummary&)>& value) {
+    Line line{label, {}, ""};
+    for (const RunSummary& run : runs_) line.cells.push_back(fixed(value(run), decimals));
+    if (runs_.size() > 1) {
+      const double ratio = value(runs_[1]) / value(runs_[0]);
+      line.ratio = fixed(ratio, ratio < 10 ? 2 : 1);
+    }
+    lines_.push_back(std::move(line));
+  }
+
+  std::string str() const {
+    std::size_t label_width = 0;
+    for (const Line& line : lines_)
+      if (!line.cells.empty()) label_width = std::max(label_width, line.label.size() + 2);
+    std::vector<std::size_t> widths;
+    for (std::size_t i = 0; i < runs_.size(); ++i) {
+      widths.push_back(runs_[i].name.size());
+      for (const Line& line : lines_)
+        if (i < line.cells.size()) widths.back() = std::max(widths.back(), line.cells[i].size());
+    }
+    const std::string ratio_title = runs_.size() > 1 ? runs_[1].name + "/" + runs_[0].name : "";
+    std::string out = padded("", label_width, true);
+    for (std::size_t i = 0; i < runs_.size(); ++i) out += "  " + padded(runs_[i].name, widths[i], false);
+    if (!ratio_title.empty()) out += "  " + ratio_title;
+    out += "\n";
+    for (const Line& line : lines_) {
+      if (line.cells.empty()) {
+        out += line.label + "\n";
+        continue;
+      }
+      std::string row = padded("  " + line.label, label_width, true);
+      for (std::size_t i = 0; i < line.cells.size(); ++i) row += "  " + padded(line.cells[i], widths[i], false);
+      if (!line.ratio.empty()) row += "  " + padded(line.ratio, ratio_title.size(), false);
+      out += row + "\n";
+    }
+    return out;
+  }
+
+ private:
+  const std::vector<RunSummary>& runs_;
+  std::vector<Line> lines_;
+};
+
+int mission_waypoints(const RunSummary& run) {
+  int count = 0;
+  for (const auto& waypoint : run.waypoints) count += waypoint.mission ? 1 : 0;
+  return count;
+}
+
+std::string cell(const std::string& word, double value, int decimals, const char* unit) {
+  return word + "  " + fixed(value, decimals) + unit;
+}
+
+/// The 2 x 2 of GNSS and IMU fidelity as lines of text; empty unless all four runs are there.
+std::string two_by_two(const std::vector<RunSummary>& runs) {
+  std::string out;
+  for (const char* gnss : {"low", "high"}) {
+    std::string row;
+    for (const char* imu : {"low", "high"}) {
+      const RunSummary* found = nullptr;
+      for (const RunSummary& run : runs)
+        if (run.gnss == gnss && run.imu == imu) found = &run;
+      if (found == nullptr) return "";
+      row += "  " + padded(cell(found->outcome, found->position_m.rms, 2, " m"), 26, true);
+    }
+    out += padded(std::string("  ") + gnss + " GNSS", 14, true) + row + "\n";
+  }
+  return "2 x 2: outcome and position error RMS\n" + padded("", 14, true) + "  " + padded("low IMU", 26, true) + "  high IMU\n" + out;
+}
+
+}  // namespace
+
+std::string comparison_table(const mission::Results& results) {
+  // The mixed runs have a table of their own.
+  std::vector<RunSummary> runs;
+  for (const RunSummary& run : results.summaries)
+    if (run.gnss == run.imu) runs.push_back(run);
+
+  Table table(runs);
+  table.section("mission");
+  table.words("outcome", [](const RunSummary& r) { return r.outcome; });
+  table.words("waypoints reached",
+              [](const RunSummary& r) { return std::to_string(r.waypoints_reached) + " of " + std::to_string(r.waypoints.size()); });
+  table.words("mission waypoints reached", [](const RunSummary& r) {
+    return std::to_string(r.mission_waypoints_reached) + " of " + std::to_string(mission_waypoints(r));
+  });
+  table.numbers("duration, s", 1, [](const RunSummary& r) { return r.duration_s; });
+  table.numbers("distance, m", 0, [](const RunSummary& r) { return r.distance_m; });
+
+  table.section("position error of the estimate, m");
+  const auto axis = [&](const std::string& label, mission::ErrorStatistics RunSummary::*member) {
+    table.numbers(label + ", RMS", 3, [member](const RunSummary& r) { return (r.*member).rms; });
+    table.numbers(label + ", 95 %", 3, [member](const RunSummary& r) { return (r.*member).p95; });
+    table.numbers(label + ", max", 3, [member](const RunSummary& r) { return (r.*member).max; });
+  };
+  axis("east", &RunSummary::east_m);
+  axis("north", &RunSummary::north_m);
+  axis("up", &RunSummary::up_m);
+  axis("3-D", &RunSummary::position_m);
+
+  table.section("attitude error, deg RMS");
+  table.numbers("roll", 3, [](const RunSummary& r) { return r.roll_rms_deg; });
+  table.numbers("pitch", 3, [](const RunSummary& r) { return r.pitch_rms_deg; });
+  table.numbers("yaw", 3, [](const RunSummary& r) { return r.yaw_rms_deg; });
+
+  table.section("satellites");
+  table.numbers("GDOP, median", 2, [](const RunSummary& r) { return r.gdop_median; });
+  table.numbers("GDOP, max", 2, [](const RunSummary& r) { return r.gdop_max; });
+  table.words("DOP jumps (|dGDOP| > 2 or fix lost/regained)", [](const RunSummary& r) { return std::to_string(r.dop_jumps); });
+  table.numbers("satellites in the fix, mean", 1, [](const RunSummary& r) { return r.satellites_mean; });
+  table.numbers("NLOS share of tracked, %", 1, [](const RunSummary& r) { return 100 * r.nlos_share; });
+  table.numbers("multipath share of tracked, %", 1, [](const RunSummary& r) { return 100 * r.multipath_share; });
+  table.numbers("fix error, RMS, m", 3, [](const RunSummary& r) { return r.fix_error_rms_m; });
+  table.words("fixes lost",
+              [](const RunSummary& r) { return std::to_string(r.fixes_lost) + " of " + std::to_string(r.fixes_due); });
+
+  table.section("registration and map, m");
+  table.numbers("keyframe pose RMS, prior alone", 3, [](const RunSummary& r) { return r.registration_prior_rms_m; });
+  table.numbers("keyframe pose RMS, registered", 3, [](const RunSummary& r) { return r.registration_rms_m; });
+  table.words("keyframes registered", [](const RunSummary& r) {
+    return std::to_string(r.keyframes_converged) + " of " + std::to_string(r.keyframes);
+  });
+  table.numbers("map to true surface RMS, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_rms_m; });
+  table.numbers("map to true surface RMS, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_rms_m; });
+  table.numbers("map to true surface 95 %, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_p95_m; });
+  table.numbers("map to true surface 95 %, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_p95_m; });
+  table.numbers("map up RMS, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_up_rms_m; });
+  table.numbers("map up RMS, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_up_rms_m; });
+
+  table.section("cost");
+  table.numbers("real-time factor", 1, [](const RunSummary& r) { return r.real_time_factor(); });
+  table.numbers("CPU time, s", 1, [](const RunSummary& r) { return r.cpu_s; });
+  if (!runs.empty())
+    for (std::size_t part = 0; part < runs.front().cpu_parts_s.size(); ++part)
+      table.numbers("  " + runs.front().cpu_parts_s[part].first + ", s", 2,
+                    [part](const RunSummary& r) { return r.cpu_parts_s[part].second; });
+
+  std::string out = table.str();
+  for (const RunSummary& run : results.summaries) {
+    if (!run.failure) continue;
+    out += "\n" + run.name + ": " + run.failure->kind + " at " + fixed(run.failure->t_s, 1) + " s, x " +
+           fixed(run.failure->p_W.x(), 1) + " m, y " + fixed(run.failure->p_W.y(), 1) + " m (" + run.failure->detail + ")";
+  }
+  if (out.back() != '\n') out += "\n";
+  if (const std::string square = two_by_two(results.summaries); !square.empty()) out += "\n" + square;
+  return out;
+}
+
+}  // namespace canyon::study
