@@ -8,15 +8,22 @@ if [ -z "$formatter" ] || ! "$formatter" --version | grep -q 'version 14\.'; the
   echo "check_format: clang-format 14 is needed (package clang-format-14)" >&2
   exit 1
 fi
-mode=(--dry-run --Werror)
-if [ "${1:-}" = --fix ]; then mode=(-i); fi
 
 folders=(core scene gnss inertial lidar fusion mission study report apps tests bench python viewer examples)
 existing=()
 for folder in "${folders[@]}"; do
   if [ -d "$folder" ]; then existing+=("$folder"); fi
 done
-find "${existing[@]}" \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z | xargs -0 -r -n 40 -P 2 "$formatter" "${mode[@]}" || {
+sources() { find "${existing[@]}" \( -name '*.h' -o -name '*.cpp' \) -print0 | sort -z; }
+
+if [ "${1:-}" = --fix ]; then
+  sources | xargs -0 -r -n 40 -P 2 "$formatter" -i
+  exit
+fi
+# shellcheck disable=SC2016 # expanded by the inner shell
+wrong=$(sources | xargs -0 -r -n 20 -P 2 bash -c 'for f; do "$0" "$f" | cmp -s - "$f" || echo "$f: not formatted"; done' "$formatter")
+if [ -n "$wrong" ]; then
+  printf '%s\n' "$wrong" | sort
   echo "check_format: run cmake/check_format.sh --fix" >&2
   exit 1
-}
+fi
