@@ -18,78 +18,73 @@ using Row3 = RowMatrix<3, 3>;
 
 constexpr int kMoving = 9;  // theta, p, v
 
-/// x+ from x and z, for any number of columns at once.
-template <int Columns>
-RowMatrix<kMoving, Columns> apply(const StepJacobian& s, const RowMatrix<kMoving, Columns>& x,
-                                  const RowMatrix<6, Columns>& z) {
-  const RowMatrix<3, Columns> theta = x.template topRows<3>();
-  const RowMatrix<3, Columns> p = x.template middleRows<3>(3);
-  const RowMatrix<3, Columns> v = x.template bottomRows<3>();
-  const RowMatrix<3, Columns> zg = z.template topRows<3>();
-  const RowMatrix<3, Columns> za = z.template bottomRows<3>();
-  RowMatrix<3, Columns> v_next = s.v_v.lazyProduct(v);
-  v_next += s.v_p.lazyProduct(p);
-  v_next += s.v_theta.lazyProduct(theta);
-  v_next += s.v_zg.lazyProduct(zg);
-  v_next += s.v_za.lazyProduct(za);
+/// sum_j m(i, j) rows.row(j), one pass over the columns.
+template <class Rows>
+auto combine(const Eigen::Matrix3d& m, int i, const Rows& rows) {
+  return m(i, 0) * rows.row(0) + m(i, 1) * rows.row(1) + m(i, 2) * rows.row(2);
+}
+
+/// Rows of x after the step, from rows of x before it and rows of z, for any number of columns at once.
+template <int Columns, class X>
+RowMatrix<kMoving, Columns> apply(const StepJacobian& s, const X& x, const RowMatrix<6, Columns>& z) {
+  const auto theta = x.template topRows<3>();
+  const auto p = x.template middleRows<3>(3);
+  const auto v = x.template bottomRows<3>();
+  const auto zg = z.template topRows<3>();
+  const auto za = z.template bottomRows<3>();
   RowMatrix<kMoving, Columns> next;
-  next.template topRows<3>() = s.theta_theta.lazyProduct(theta);
-  next.template topRows<3>() += s.theta_zg.lazyProduct(zg);
-  next.template middleRows<3>(3) = p + (0.5 * s.dt_s) * (v + v_next);
-  next.template bottomRows<3>() = v_next;
+  for (int i = 0; i < 3; ++i) {
+    next.row(i) = combine(s.theta_theta, i, theta) + combine(s.theta_zg, i, zg);
+    next.row(6 + i) = combine(s.v_theta, i, theta) + combine(s.v_p, i, p) + combine(s.v_v, i, v) +
+                      combine(s.v_zg, i, zg) + combine(s.v_za, i, za);
+    next.row(3 + i) = p.row(i) + (0.5 * s.dt_s) * (v.row(i) + next.row(6 + i));
+  }
   return next;
 }
 
 /// Rows z = E y for rows y of the parameters [b_g, b_a, K_g, K_a] (or only the biases): the error of an increment is
 /// -(I + K_hat)^-1 (b dt + K increment).
-template <int Parameters, int Columns>
-RowMatrix<6, Columns> increment_errors(const RowMatrix<Parameters, Columns>& y, const Increments& in,
-                                       const Calibration& c) {
+template <int Parameters, int Columns, class Y>
+RowMatrix<6, Columns> increment_errors(const Y& y, const Increments& in, const Calibration& c) {
   RowMatrix<6, Columns> raw;
-  raw.template topRows<3>() = in.dt_s * y.template topRows<3>();
-  raw.template bottomRows<3>() = in.dt_s * y.template middleRows<3>(3);
-  if constexpr (Parameters > 6) {
-    for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3; ++i) {
+    if constexpr (Parameters > 6) {
       const int g = 6 + 3 * i, a = 15 + 3 * i;
-      raw.row(i) += in.dtheta_U.x() * y.row(g) + in.dtheta_U.y() * y.row(g + 1) + in.dtheta_U.z() * y.row(g + 2);
-      raw.row(3 + i) += in.dv_U.x() * y.row(a) + in.dv_U.y() * y.row(a + 1) + in.dv_U.z() * y.row(a + 2);
+      raw.row(i) = in.dt_s * y.row(i) + in.dtheta_U.x() * y.row(g) + in.dtheta_U.y() * y.row(g + 1) +
+                   in.dtheta_U.z() * y.row(g + 2);
+      raw.row(3 + i) =
+          in.dt_s * y.row(3 + i) + in.dv_U.x() * y.row(a) + in.dv_U.y() * y.row(a + 1) + in.dv_U.z() * y.row(a + 2);
+    } else {
+      raw.row(i) = in.dt_s * y.row(i);
+      raw.row(3 + i) = in.dt_s * y.row(3 + i);
     }
-    if (c.gyro_gain.isZero(0.0) && c.accel_gain.isZero(0.0)) return -raw;
-    const Eigen::Matrix3d gyro = -(Eigen::Matrix3d::Identity() + c.gyro_gain).inverse();
-    const Eigen::Matrix3d accel = -(Eigen::Matrix3d::Identity() + c.accel_gain).inverse();
-    RowMatrix<6, Columns> z;
-    z.template topRows<3>() = gyro.lazyProduct(raw.template topRows<3>());
-    z.template bottomRows<3>() = accel.lazyProduct(raw.template bottomRows<3>());
-    return z;
-  } else {
-    return -raw;
   }
+  RowMatrix<6, Columns> z;
+  for (int i = 0; i < 3; ++i) {
+    z.row(i) = -combine(c.gyro_inverse, i, raw.template topRows<3>());
+    z.row(3 + i) = -combine(c.accel_inverse, i, raw.template bottomRows<3>());
+  }
+  return z;
 }
 
 template <int Parameters>
 void propagate(ErrorMatrix& P, const StepJacobian& step, const Increments& in, const Calibration& c) {
-  // Covariance of [x; z] before the step, z being the part of the increments' error that the parameters make.
-  const RowMatrix<kMoving, Parameters> P_xy = P.template block<kMoving, Parameters>(0, kMoving);
-  const RowMatrix<Parameters, Parameters> P_yy = P.template block<Parameters, Parameters>(kMoving, kMoving);
-  const RowMatrix<Parameters, kMoving> P_yx = P_xy.transpose();
-  const RowMatrix<6, Parameters> P_zy = increment_errors<Parameters, Parameters>(P_yy, in, c);
-  const RowMatrix<6, kMoving> P_zx = increment_errors<Parameters, kMoving>(P_yx, in, c);
-  const RowMatrix<Parameters, 6> P_yz = P_zy.transpose();
-  const RowMatrix<6, 6> P_zz = increment_errors<Parameters, 6>(P_yz, in, c);
+  constexpr int kWidth = kMoving + Parameters;
+  // cov(x+, [x, y]) from cov([x, z], [x, y]), z being the part of the increments' error that the parameters y make.
+  const auto P_x = P.template topLeftCorner<kMoving, kWidth>();
+  const auto P_y = P.template block<Parameters, kWidth>(kMoving, 0);
+  const RowMatrix<6, kWidth> P_z = increment_errors<Parameters, kWidth>(P_y, in, c);
+  const RowMatrix<kMoving, kWidth> half = apply<kWidth>(step, P_x, P_z);
 
-  RowMatrix<kMoving, 15> top;  // [P_xx, P_xz]
-  top << P.template topLeftCorner<kMoving, kMoving>(), P_zx.transpose();
-  RowMatrix<6, 15> bottom;
-  bottom << P_zx, P_zz;
-  const RowMatrix<kMoving, 15> left = apply<15>(step, top, bottom);
-  const RowMatrix<kMoving, kMoving> left_x = left.template leftCols<kMoving>().transpose();
-  const RowMatrix<6, kMoving> left_z = left.template rightCols<6>().transpose();
-  const RowMatrix<kMoving, kMoving> P_xx = apply<kMoving>(step, left_x, left_z);
-  const RowMatrix<kMoving, Parameters> P_xy_next = apply<Parameters>(step, P_xy, P_zy);
+  // Then cov(x+, x+) from cov([x, z], x+).
+  const RowMatrix<kMoving, kMoving> x_half = half.template leftCols<kMoving>().transpose();
+  const RowMatrix<Parameters, kMoving> y_half = half.template rightCols<Parameters>().transpose();
+  const RowMatrix<6, kMoving> z_half = increment_errors<Parameters, kMoving>(y_half, in, c);
+  const RowMatrix<kMoving, kMoving> P_xx = apply<kMoving>(step, x_half, z_half);
 
   P.template topLeftCorner<kMoving, kMoving>() = 0.5 * (P_xx + P_xx.transpose());
-  P.template block<kMoving, Parameters>(0, kMoving) = P_xy_next;
-  P.template block<Parameters, kMoving>(kMoving, 0) = P_xy_next.transpose();
+  P.template block<kMoving, Parameters>(0, kMoving) = half.template rightCols<Parameters>();
+  P.template block<Parameters, kMoving>(kMoving, 0) = y_half;
 }
 
 /// White noise enters half before and half after the step: its effect through the step is then right to second order.
@@ -112,7 +107,23 @@ void decay_bias(ErrorMatrix& P, int first, const BiasModel& model, double dt_s) 
   for (int i = 0; i < 3; ++i) P(first + i, first + i) += added;
 }
 
+void decay_gains(ErrorMatrix& P, const ErrorProcesses& processes, double dt_s) {
+  const double decay = std::exp(-dt_s / processes.gain_tau_s);
+  const double share = -std::expm1(-2.0 * dt_s / processes.gain_tau_s);
+  P.bottomRows<Index::kAll - Index::kNavigation>() *= decay;
+  P.rightCols<Index::kAll - Index::kNavigation>() *= decay;
+  for (int i = 0; i < 9; ++i) {
+    P(Index::kGyroGain + i, Index::kGyroGain + i) += share * gain_variance(processes.noise.gyro, i);
+    P(Index::kAccelGain + i, Index::kAccelGain + i) += share * gain_variance(processes.noise.accel, i);
+  }
+}
+
 }  // namespace
+
+double gain_variance(const TriadNoise& noise, int element) {
+  const double sigma = element % 4 == 0 ? noise.scale_sigma : noise.misalignment_sigma_rad;
+  return sigma * sigma;
+}
 
 BiasModel::BiasModel(const TriadNoise& noise) {
   const double constant = noise.turn_on_bias_sigma * noise.turn_on_bias_sigma;
@@ -151,24 +162,33 @@ StepJacobian::StepJacobian(const NavState& before, const Increments& in, const E
 }
 
 Increments Calibration::apply(double dt_s, const Eigen::Vector3d& dtheta_raw, const Eigen::Vector3d& dv_raw) const {
-  Increments out{.dt_s = dt_s, .dtheta_U = dtheta_raw - dt_s * gyro_bias, .dv_U = dv_raw - dt_s * accel_bias};
-  if (!gyro_gain.isZero(0.0)) out.dtheta_U = (Eigen::Matrix3d::Identity() + gyro_gain).inverse() * out.dtheta_U;
-  if (!accel_gain.isZero(0.0)) out.dv_U = (Eigen::Matrix3d::Identity() + accel_gain).inverse() * out.dv_U;
-  return out;
+  return {.dt_s = dt_s,
+          .dtheta_U = gyro_inverse * (dtheta_raw - dt_s * gyro_bias),
+          .dv_U = accel_inverse * (dv_raw - dt_s * accel_bias)};
 }
 
+void Calibration::set_gains(const Eigen::Matrix3d& gyro, const Eigen::Matrix3d& accel) {
+  gyro_gain = gyro;
+  accel_gain = accel;
+  gyro_inverse = (Eigen::Matrix3d::Identity() + gyro).inverse();
+  accel_inverse = (Eigen::Matrix3d::Identity() + accel).inverse();
+}
+
+ErrorProcesses::ErrorProcesses(const ImuNoise& imu, bool gains, double tau_s)
+    : noise(imu), gyro_bias(imu.gyro), accel_bias(imu.accel), with_gains(gains), gain_tau_s(tau_s) {}
+
 void propagate_covariance(ErrorMatrix& P, const StepJacobian& step, const Increments& in,
-                          const Calibration& calibration, const ImuNoise& noise, const BiasModel& gyro_bias,
-                          const BiasModel& accel_bias, bool with_gains) {
-  add_half_white(P, noise, step.dt_s);
-  if (with_gains) {
+                          const Calibration& calibration, const ErrorProcesses& processes) {
+  add_half_white(P, processes.noise, step.dt_s);
+  if (processes.with_gains) {
     propagate<Index::kAll - kMoving>(P, step, in, calibration);
   } else {
     propagate<6>(P, step, in, calibration);
   }
-  add_half_white(P, noise, step.dt_s);
-  decay_bias(P, Index::kGyroBias, gyro_bias, step.dt_s);
-  decay_bias(P, Index::kAccelBias, accel_bias, step.dt_s);
+  add_half_white(P, processes.noise, step.dt_s);
+  decay_bias(P, Index::kGyroBias, processes.gyro_bias, step.dt_s);
+  decay_bias(P, Index::kAccelBias, processes.accel_bias, step.dt_s);
+  if (processes.with_gains && processes.gain_tau_s > 0.0) decay_gains(P, processes, step.dt_s);
 }
 
 }  // namespace canyon::fusion

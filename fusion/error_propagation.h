@@ -40,6 +40,10 @@ struct BiasModel {
   double added_variance(double dt_s) const;  ///< sigma^2 (1 - decay^2)
 };
 
+/// Variance of element `element` (0..8, row-major) of a triad's gain error: scale factor on the diagonal, else
+/// misalignment.
+double gain_variance(const TriadNoise& noise, int element);
+
 /// Linearization of one strapdown step: x = [theta, p, v] after it, from x before it and the errors z = [dtheta, dv] of
 /// the increments fed in:
 ///   theta+ = theta_theta theta + theta_z z_g
@@ -54,18 +58,31 @@ struct StepJacobian {
   StepJacobian(const NavState& before, const Increments& in, const Eigen::Matrix3d& gravity_gradient);
 };
 
-/// The inverse gains (I + K_hat)^-1 that the filter applies to raw increments, and the biases it subtracts first.
+/// What the filter knows of the IMU's errors: biases and gain errors K, taken out of raw increments.
 struct Calibration {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero(), accel_bias = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d gyro_gain = Eigen::Matrix3d::Zero(), accel_gain = Eigen::Matrix3d::Zero();  ///< K_hat
+  Eigen::Matrix3d gyro_gain = Eigen::Matrix3d::Zero(), accel_gain = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d gyro_inverse = Eigen::Matrix3d::Identity(), accel_inverse = Eigen::Matrix3d::Identity();
 
+  /// Sets the gain errors and with them the inverses (I + K)^-1.
+  void set_gains(const Eigen::Matrix3d& gyro, const Eigen::Matrix3d& accel);
+  /// (I + K)^-1 (raw - bias dt).
   Increments apply(double dt_s, const Eigen::Vector3d& dtheta_raw, const Eigen::Vector3d& dv_raw) const;
 };
 
-/// Covariance over one step: white noise of the increments, bias processes, and the errors of biases and (if
-/// `with_gains`) gains. Keeps P exactly symmetric. `in` are the calibrated increments.
+/// The processes behind the errors of the increments.
+struct ErrorProcesses {
+  ErrorProcesses(const ImuNoise& noise, bool with_gains, double gain_tau_s);
+
+  ImuNoise noise;
+  BiasModel gyro_bias, accel_bias;
+  bool with_gains;    ///< the 18 gain errors take part
+  double gain_tau_s;  ///< their correlation time; 0: constant
+};
+
+/// Covariance over one step: white noise of the increments, bias and gain processes, and what the errors of biases and
+/// gains do to attitude, velocity and position. Keeps P exactly symmetric. `in` are the calibrated increments.
 void propagate_covariance(ErrorMatrix& P, const StepJacobian& step, const Increments& in,
-                          const Calibration& calibration, const ImuNoise& noise, const BiasModel& gyro_bias,
-                          const BiasModel& accel_bias, bool with_gains);
+                          const Calibration& calibration, const ErrorProcesses& processes);
 
 }  // namespace canyon::fusion

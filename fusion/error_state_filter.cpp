@@ -8,6 +8,7 @@
 #include "core/earth.h"
 #include "core/rotation.h"
 #include "core/units.h"
+#include "fusion/antenna_position.h"
 #include "fusion/consistency.h"
 
 namespace canyon::fusion {
@@ -39,6 +40,14 @@ Eigen::Matrix3d fix_covariance(const GnssFix& fix, double floor_m) {
   return R;
 }
 
+bool estimates_gains(const FilterConfig& config, const ImuNoise& noise) {
+  CANYON_CHECK(config.imu_gains == "estimate" || config.imu_gains == "ignore", "imu_gains = ", config.imu_gains);
+  const auto has_gain_errors = [](const TriadNoise& n) {
+    return n.scale_sigma > 0.0 || n.misalignment_sigma_rad > 0.0;
+  };
+  return config.imu_gains == "estimate" && (has_gain_errors(noise.gyro) || has_gain_errors(noise.accel));
+}
+
 }  // namespace
 
 void visit(FieldVisitor& f, FilterConfig& c) {
@@ -54,31 +63,18 @@ void visit(FieldVisitor& f, FilterConfig& c) {
            "fixes less likely than a deviation of this many sigma are refused; 0 accepts every fix");
   f.number("fix_sigma_floor_m", c.fix_sigma_floor_m, {0, 1e3}, "lower bound on a fix's 1-sigma per axis");
   f.choice("integrator", c.integrator, strapdown_names(), "strapdown integrator");
-  f.choice("imu_gains", c.imu_gains, {"consider", "estimate", "ignore"},
-           "scale factors and misalignments of the IMU: in the covariance only, estimated, or left out");
+  f.choice("imu_gains", c.imu_gains, {"estimate", "ignore"}, "scale factors and misalignments of the IMU");
+  f.number("imu_gain_tau_s", c.imu_gain_tau_s, {0, 1e9}, "their correlation time; 0: constant over a run");
 }
 
 ErrorStateFilter::ErrorStateFilter(const FilterConfig& config, const ImuNoise& noise, const LocalFrame& frame,
                                    const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B)
     : config_(config),
-      noise_(noise),
-      gyro_bias_(noise.gyro),
-      accel_bias_(noise.accel),
+      processes_(noise, estimates_gains(config, noise), config.imu_gain_tau_s),
       frame_(frame),
       lever_U_B_(lever_U_B),
       lever_A_B_(lever_A_B),
-      strapdown_(make_strapdown(config.integrator)) {
-  if (config.imu_gains == "ignore") {
-    gains_ = Gains::kIgnore;
-  } else if (config.imu_gains == "estimate") {
-    gains_ = Gains::kEstimate;
-  } else {
-    CANYON_CHECK(config.imu_gains == "consider", "imu_gains = ", config.imu_gains);
-  }
-  const bool has_gains = noise.gyro.scale_sigma > 0.0 || noise.gyro.misalignment_sigma_rad > 0.0 ||
-                         noise.accel.scale_sigma > 0.0 || noise.accel.misalignment_sigma_rad > 0.0;
-  with_gains_ = has_gains && gains_ != Gains::kIgnore;
-}
+      strapdown_(make_strapdown(config.integrator)) {}
 
 void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W) {
   CANYON_CHECK(X_WB.R.coeffs().allFinite() && X_WB.p.allFinite() && v_WB_W.allFinite(), "initial state at ", t.iso());
@@ -111,16 +107,13 @@ void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vect
         config_.initial_position_sigma_m * config_.initial_position_sigma_m;
     P_(Index::kVelocity + i, Index::kVelocity + i) =
         config_.initial_velocity_sigma_m_s * config_.initial_velocity_sigma_m_s;
-    P_(Index::kGyroBias + i, Index::kGyroBias + i) = gyro_bias_.sigma * gyro_bias_.sigma;
-    P_(Index::kAccelBias + i, Index::kAccelBias + i) = accel_bias_.sigma * accel_bias_.sigma;
+    P_(Index::kGyroBias + i, Index::kGyroBias + i) = processes_.gyro_bias.sigma * processes_.gyro_bias.sigma;
+    P_(Index::kAccelBias + i, Index::kAccelBias + i) = processes_.accel_bias.sigma * processes_.accel_bias.sigma;
   }
-  if (with_gains_) {
+  if (processes_.with_gains) {
     for (int i = 0; i < 9; ++i) {
-      const bool diagonal = i % 4 == 0;
-      const double gyro = diagonal ? noise_.gyro.scale_sigma : noise_.gyro.misalignment_sigma_rad;
-      const double accel = diagonal ? noise_.accel.scale_sigma : noise_.accel.misalignment_sigma_rad;
-      P_(Index::kGyroGain + i, Index::kGyroGain + i) = gyro * gyro;
-      P_(Index::kAccelGain + i, Index::kAccelGain + i) = accel * accel;
+      P_(Index::kGyroGain + i, Index::kGyroGain + i) = gain_variance(processes_.noise.gyro, i);
+      P_(Index::kAccelGain + i, Index::kAccelGain + i) = gain_variance(processes_.noise.accel, i);
     }
   }
   P_ = 0.5 * (P_ + P_.transpose()).eval();
@@ -138,13 +131,17 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
 
   const Increments in = calibration_.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
   const StepJacobian step(state_, in, gravity_gradient_);
-  propagate_covariance(P_, step, in, calibration_, noise_, gyro_bias_, accel_bias_, with_gains_);
+  propagate_covariance(P_, step, in, calibration_, processes_);
 
   strapdown_->advance(state_, in);
   state_.t = imu.t;
   w_EU_U_ = in.dtheta_U / in.dt_s - state_.R_EU.conjugate() * earth_rate_E();
-  calibration_.gyro_bias *= gyro_bias_.decay(imu.dt_s);
-  calibration_.accel_bias *= accel_bias_.decay(imu.dt_s);
+  calibration_.gyro_bias *= processes_.gyro_bias.decay(imu.dt_s);
+  calibration_.accel_bias *= processes_.accel_bias.decay(imu.dt_s);
+  if (processes_.with_gains && config_.imu_gain_tau_s > 0.0) {
+    const double decay = std::exp(-imu.dt_s / config_.imu_gain_tau_s);
+    calibration_.set_gains(decay * calibration_.gyro_gain, decay * calibration_.accel_gain);
+  }
 }
 
 UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
@@ -156,22 +153,15 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   CANYON_CHECK(std::abs(age_s) <= kMaxFixAge_s, "GNSS fix at ", fix.t.iso(), " is ", age_s,
                " s away from the last IMU sample");
 
-  const Eigen::Matrix3d R_EU = state_.R_EU.toRotationMatrix();
-  const Eigen::Vector3d arm_U = lever_A_B_ - lever_U_B_;
-  const Eigen::Vector3d arm_rate_U = w_EU_U_.cross(arm_U);
-  const Eigen::Vector3d predicted_E = state_.p_EU_E + R_EU * arm_U + age_s * (state_.v_EU_E + R_EU * arm_rate_U);
-  report.innovation = fix.p_A_E - predicted_E;
+  const AntennaPosition antenna = antenna_position(state_, w_EU_U_, lever_A_B_ - lever_U_B_, age_s);
+  const Eigen::Matrix<double, 3, 9>& H = antenna.H;
+  report.innovation = fix.p_A_E - antenna.p_A_E;
   report.dimension = 3;
-
-  Eigen::Matrix<double, 3, Index::kAll> H = Eigen::Matrix<double, 3, Index::kAll>::Zero();
-  H.block<3, 3>(0, Index::kTheta) = -R_EU * skew(arm_U + age_s * arm_rate_U);
-  H.block<3, 3>(0, Index::kPosition).setIdentity();
-  H.block<3, 3>(0, Index::kVelocity) = age_s * Eigen::Matrix3d::Identity();
 
   const Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
   using Gain = Eigen::Matrix<double, Index::kAll, 3>;
-  const Gain PHt = P_.leftCols<9>() * H.leftCols<9>().transpose();
-  Eigen::Matrix3d S = H.leftCols<9>() * PHt.topRows<9>() + R;
+  const Gain PHt = P_.leftCols<9>() * H.transpose();
+  Eigen::Matrix3d S = H * PHt.topRows<9>() + R;
   S = 0.5 * (S + S.transpose()).eval();
   const Eigen::LLT<Eigen::Matrix3d> S_llt(S);
   CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
@@ -181,12 +171,11 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
     return report;
   report.accepted = true;
 
-  Gain K = S_llt.solve(PHt.transpose()).transpose();
-  if (gains_ != Gains::kEstimate) K.bottomRows<Index::kAll - Index::kNavigation>().setZero();
+  const Gain K = S_llt.solve(PHt.transpose()).transpose();
 
-  // Joseph: (I - K H) P (I - K H)' + K R K', as two rank-3 corrections; right for any K, so for the Schmidt gain too.
+  // Joseph: (I - K H) P (I - K H)' + K R K', as rank-3 corrections.
   P_ -= K * PHt.transpose();
-  const Gain MHt = P_.leftCols<9>() * H.leftCols<9>().transpose();
+  const Gain MHt = P_.leftCols<9>() * H.transpose();
   P_ -= MHt * K.transpose();
   P_ += K * R * K.transpose();
   P_ = 0.5 * (P_ + P_.transpose()).eval();
@@ -202,17 +191,20 @@ void ErrorStateFilter::inject(const Eigen::Matrix<double, Index::kAll, 1>& error
   state_.v_EU_E += error.segment<3>(Index::kVelocity);
   calibration_.gyro_bias += error.segment<3>(Index::kGyroBias);
   calibration_.accel_bias += error.segment<3>(Index::kAccelBias);
-  if (gains_ == Gains::kEstimate && with_gains_) {
-    for (int i = 0; i < 9; ++i) {
-      calibration_.gyro_gain(i / 3, i % 3) += error[Index::kGyroGain + i];
-      calibration_.accel_gain(i / 3, i % 3) += error[Index::kAccelGain + i];
-    }
+  if (processes_.with_gains) {
+    using Gain = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    const Eigen::Matrix<double, 9, 1> gyro = error.segment<9>(Index::kGyroGain);
+    const Eigen::Matrix<double, 9, 1> accel = error.segment<9>(Index::kAccelGain);
+    calibration_.set_gains(calibration_.gyro_gain + Eigen::Map<const Gain>(gyro.data()),
+                           calibration_.accel_gain + Eigen::Map<const Gain>(accel.data()));
   }
   // The attitude error is now counted from the corrected attitude: Exp(theta + e) = Exp(theta) Exp(Jr(theta) e).
   const Eigen::Matrix3d reset = so3_right_jacobian(theta);
-  P_.topRows<3>() = (reset * P_.topRows<3>()).eval();
-  P_.leftCols<3>() = (P_.leftCols<3>() * reset.transpose()).eval();
-  P_.topLeftCorner<3, 3>() = 0.5 * (P_.topLeftCorner<3, 3>() + P_.topLeftCorner<3, 3>().transpose()).eval();
+  Eigen::Matrix<double, 3, Index::kAll> rows = reset * P_.topRows<3>();
+  const Eigen::Matrix3d P_theta = rows.leftCols<3>() * reset.transpose();
+  rows.leftCols<3>() = 0.5 * (P_theta + P_theta.transpose());
+  P_.topRows<3>() = rows;
+  P_.leftCols<3>() = rows.transpose();
 }
 
 NavEstimate ErrorStateFilter::estimate() const {

@@ -8,7 +8,7 @@ namespace canyon::fusion {
 namespace {
 
 /// The part that all integrators share.
-void move(NavState& state, const InertialStep& step, double dt_s) {
+void move(NavState& state, const InertialStep& step, double dt_s, GravityFunction gravity_at) {
   const Eigen::Vector3d earth_rate = earth_rate_E();
   // E itself turns under U: a vector fixed in inertial space turns by -w_IE dt in E, half of it on average.
   const Eigen::Quaterniond half_turn = so3_exp(-0.5 * dt_s * earth_rate);
@@ -18,7 +18,7 @@ void move(NavState& state, const InertialStep& step, double dt_s) {
   // dt.
   const Eigen::Vector3d& v = state.v_EU_E;
   const Eigen::Vector3d p_mid = state.p_EU_E + 0.5 * dt_s * v;
-  const Eigen::Vector3d gravity = gravity_E(p_mid);
+  const Eigen::Vector3d gravity = gravity_at(p_mid);
   const Eigen::Vector3d v_mid = v + 0.5 * (dv_force + (gravity - 2.0 * earth_rate.cross(v)) * dt_s);
   const Eigen::Vector3d v_next = v + dv_force + (gravity - 2.0 * earth_rate.cross(v_mid)) * dt_s;
 
@@ -32,12 +32,16 @@ void move(NavState& state, const InertialStep& step, double dt_s) {
 /// the force.
 class Euler final : public Strapdown {
  public:
+  explicit Euler(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override {}
   InertialStep advance(NavState& state, const Increments& now) override {
     const InertialStep step{.rotation_U = now.dtheta_U, .dv_start_U = now.dv_U};
-    move(state, step, now.dt_s);
+    move(state, step, now.dt_s, gravity_);
     return step;
   }
+
+ private:
+  GravityFunction gravity_;
 };
 
 /// Two-sample algorithm: rate and force linear in time over the previous and the present interval.
@@ -48,6 +52,7 @@ class Euler final : public Strapdown {
 /// vanishes.
 class TwoSample final : public Strapdown {
  public:
+  explicit TwoSample(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override { have_previous_ = false; }
   InertialStep advance(NavState& state, const Increments& now) override {
     const Eigen::Vector3d& dtheta = now.dtheta_U;
@@ -64,20 +69,21 @@ class TwoSample final : public Strapdown {
     }
     previous_ = now;
     have_previous_ = true;
-    move(state, step, now.dt_s);
+    move(state, step, now.dt_s, gravity_);
     return step;
   }
 
  private:
+  GravityFunction gravity_;
   Increments previous_;
   bool have_previous_ = false;
 };
 
-std::unique_ptr<Strapdown> make_euler() {
-  return std::make_unique<Euler>();
+std::unique_ptr<Strapdown> make_euler(GravityFunction gravity) {
+  return std::make_unique<Euler>(gravity);
 }
-std::unique_ptr<Strapdown> make_two_sample() {
-  return std::make_unique<TwoSample>();
+std::unique_ptr<Strapdown> make_two_sample(GravityFunction gravity) {
+  return std::make_unique<TwoSample>(gravity);
 }
 
 constexpr StrapdownRow kRows[] = {
@@ -98,9 +104,9 @@ std::vector<std::string> strapdown_names() {
   return names;
 }
 
-std::unique_ptr<Strapdown> make_strapdown(std::string_view name) {
+std::unique_ptr<Strapdown> make_strapdown(std::string_view name, GravityFunction gravity) {
   for (const StrapdownRow& row : kRows) {
-    if (name == row.name) return row.make();
+    if (name == row.name) return row.make(gravity);
   }
   CANYON_CHECK(false, "no strapdown model \"", name, "\"");
   return nullptr;
