@@ -100,7 +100,8 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
     const auto wished = static_cast<std::size_t>(land.width() * land.depth() / area_per_tree_m2);
     for (std::size_t i = 0; i < wished; ++i) {
       Draws draws(parks, b, i);
-      const Eigen::Vector2d xy(draws.between(land.x0, land.x1), draws.between(land.y0, land.y1));
+      const double x = draws.between(land.x0, land.x1), y = draws.between(land.y0, land.y1);
+      const Eigen::Vector2d xy(x, y);
       const double radius_m = draws.between(1.8, 3.5), tall_m = draws.between(2.0, 3.2),
                    center_m = draws.between(5.5, 7.0);
       if (!clear_of_buildings(xy, radius_m + 0.5, parts.buildings)) continue;
