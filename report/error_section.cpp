@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "report/format.h"
+#include "report/html.h"
+#include "report/run_story.h"
+#include "report/sections.h"
+#include "report/time_charts.h"
+
+namespace canyon::report {
+namespace {
+
+struct AxisColumns {
+  const char* title;
+  const char* error;
+  const char* sigma;
+};
+constexpr std::array<AxisColumns, 3> kAxes{{{"East error", "error_e_m", "sigma_e_m"},
+                                            {"North error", "error_n_m", "sigma_n_m"},
+                                            {"Up error", "error_u_m", "sigma_u_m"}}};
+
+/// A long error is drawn no finer than this on the logarithmic panel: below, it is nobody's concern.
+constexpr double kSmallestShown_m = 1e-3;
+
+Line norm_line(const Results& results, std::size_t i) {
+  const EpochTable& nav = *results.runs[i].nav;
+  Line line{.run = i, .name = results.runs[i].fidelity, .x = nav["t_s"], .y = {}};
+  for (std::size_t k = 0; k < nav.rows; ++k) line.y.push_back(error_norm_m(nav, k));
+  return line;
+}
+
+Panel norm_panel(const std::vector<Line>& lines) {
+  Panel panel{.title = "Position error, 3-D (logarithmic)", .unit = "m"};
+  const Extremes e = positive_extremes_of(lines);
+  panel.y = Axis::logarithmic(std::max(e.drawn ? e.min : 0.01, kSmallestShown_m),
+                              std::max(e.drawn ? e.max : 1.0, 2 * kSmallestShown_m));
+  panel.lines = lines;
+  panel.height_px = 150;
+  return panel;
+}
+
+Panel axis_panel(const Results& results, const std::vector<std::size_t>& drawn, const AxisColumns& columns) {
+  Panel panel{.title = columns.title, .unit = "m"};
+  panel.zero_line = true;
+  panel.height_px = 130;
+  std::vector<double> sigmas;
+  for (const std::size_t i : drawn) {
+    const EpochTable& nav = *results.runs[i].nav;
+    panel.lines.push_back(column_line(results, i, nav, columns.error));
+    Band band{.run = i, .x = nav["t_s"], .low = {}, .high = {}};
+    for (const double sigma : nav[columns.sigma]) {
+      band.low.push_back(-sigma);
+      band.high.push_back(sigma);
+      if (std::isfinite(sigma)) sigmas.push_back(sigma);
+    }
+    panel.bands.push_back(std::move(band));
+  }
+  const Extremes e = extremes_of(panel.lines);
+  // The frame holds all errors, and the usual sigma too; a sigma that grows without bound in an outage is cut off.
+  double reach_m = e.drawn ? std::max(std::abs(e.min), std::abs(e.max)) : 1.0;
+  if (!sigmas.empty()) {
+    std::nth_element(sigmas.begin(), sigmas.begin() + static_cast<std::ptrdiff_t>(sigmas.size() / 2), sigmas.end());
+    reach_m = std::max(reach_m, sigmas[sigmas.size() / 2]);
+  }
+  panel.y = Axis::linear_rounded(e.drawn ? std::min(e.min, -0.2 * reach_m) : -1,
+                                 e.drawn ? std::max(e.max, 0.2 * reach_m) : 1, 4);
+  return panel;
+}
+
+/// "low: RMS 0.21 m, inside its own ±1σ 66 % of the time (68 % expected), ±3σ 99 % (99.7 %)".
+std::string consistency(const Results& results, std::size_t i) {
+  const Run& run = results.runs[i];
+  const double one = share_within_sigma(*run.nav, 1), three = share_within_sigma(*run.nav, 3);
+  std::string text = run_tag(results.runs, i) + " largest 3-D error ";
+  double largest_m = std::nan(""), at_s = 0;
+  for (std::size_t k = 0; k < run.nav->rows; ++k) {
+    const double error_m = error_norm_m(*run.nav, k);
+    if (std::isfinite(error_m) && !(error_m <= largest_m)) largest_m = error_m, at_s = (*run.nav)["t_s"][k];
+  }
+  if (!std::isfinite(largest_m)) return text + "undefined.";
+  text += show_quantity(largest_m, "m") + " at " + show_quantity(at_s, "s");
+  if (std::isfinite(one)) {
+    text +=
+        "; errors lie within the filter\xE2\x80\x99s own \xC2\xB1"
+        "1\xCF\x83 in " +
+        show_share(one) +
+        ", within \xC2\xB1"
+        "3\xCF\x83 in " +
+        show_share(three) + " of cases";
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+std::string error_section(const Results& results) {
+  std::vector<std::size_t> drawn;
+  std::string missing;
+  for (const std::size_t i : pure_runs(results)) {
+    const Run& run = results.runs[i];
+    if (run.nav && run.nav->rows > 0) {
+      drawn.push_back(i);
+    } else {
+      missing += note(missing_file(run, "navigation epochs", "_nav.csv"));
+    }
+  }
+  const std::string intro =
+      "The filter\xE2\x80\x99s estimate minus truth. Bands: what the filter itself claims, \xC2\xB1"
+      "1\xCF\x83. An honest filter has 68.3 % of its errors "
+      "within \xC2\xB1"
+      "1\xCF\x83 and 99.7 % within \xC2\xB1"
+      "3\xCF\x83.";
+  if (drawn.empty()) return section("errors", "Position error against time", {}, missing);
+
+  Chart chart = time_chart(results, "error-chart", "Position error against time");
+  std::vector<Line> norms;
+  std::string caption;
+  for (const std::size_t i : drawn) {
+    norms.push_back(norm_line(results, i));
+    caption += (caption.empty() ? "" : "<br>") + consistency(results, i);
+    const Extremes e = extremes_of({norms.back()});
+    if (e.drawn) chart.description += results.runs[i].fidelity + ": up to " + show_quantity(e.max, "m") + ". ";
+  }
+  chart.panels.push_back(norm_panel(norms));
+  for (const AxisColumns& columns : kAxes) chart.panels.push_back(axis_panel(results, drawn, columns));
+  return section("errors", "Position error against time", intro,
+                 run_legend(results.runs, drawn) + figure(draw(chart), caption) + missing);
+}
+
+}  // namespace canyon::report

@@ -1,0 +1,93 @@
+#include "report/figures.h"
+
+#include <array>
+
+#include "core/messages.h"
+
+namespace canyon::report {
+namespace {
+
+using enum FigureRow::Kind;
+constexpr std::string_view kDeg = "\xC2\xB0";
+
+constexpr std::array kRows{
+    FigureRow{"Mission", "waypoints_reached", "waypoints reached", "", kCount, ""},
+    FigureRow{"Mission", "mission_waypoints_reached", "mission waypoints reached", "", kCount,
+              "within 3 m on truth, with its stop and its view of the building"},
+    FigureRow{"Mission", "duration_s", "duration", "s", kQuantity, ""},
+    FigureRow{"Mission", "distance_m", "distance driven", "m", kQuantity, ""},
+
+    FigureRow{"Position error", "position_error_rms_m", "3-D, RMS", "m", kQuantity,
+              "filter\xE2\x80\x99s estimate against truth"},
+    FigureRow{"Position error", "position_error_p95_m", "3-D, 95 %", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_max_m", "3-D, largest", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_e_rms_m", "east, RMS", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_e_p95_m", "east, 95 %", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_e_max_m", "east, largest", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_n_rms_m", "north, RMS", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_n_p95_m", "north, 95 %", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_n_max_m", "north, largest", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_up_rms_m", "up, RMS", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_up_p95_m", "up, 95 %", "m", kQuantity, ""},
+    FigureRow{"Position error", "position_error_up_max_m", "up, largest", "m", kQuantity, ""},
+
+    FigureRow{"Attitude error", "attitude_error_roll_rms_deg", "roll, RMS", kDeg, kQuantity, ""},
+    FigureRow{"Attitude error", "attitude_error_pitch_rms_deg", "pitch, RMS", kDeg, kQuantity, ""},
+    FigureRow{"Attitude error", "attitude_error_yaw_rms_deg", "yaw, RMS", kDeg, kQuantity, ""},
+
+    FigureRow{"Satellites", "fixes_due", "fixes due", "", kCount, ""},
+    FigureRow{"Satellites", "fixes_lost", "fixes lost", "", kCount, "due epochs without a solution"},
+    FigureRow{"Satellites", "fix_error_rms_m", "fix error, 3-D, RMS", "m", kQuantity,
+              "receiver\xE2\x80\x99s fix against truth"},
+    FigureRow{"Satellites", "gdop_median", "GDOP, median", "", kQuantity, "over solved epochs"},
+    FigureRow{"Satellites", "gdop_max", "GDOP, largest", "", kQuantity, ""},
+    FigureRow{"Satellites", "pdop_median", "PDOP, median", "", kQuantity, ""},
+    FigureRow{"Satellites", "dop_jumps", "DOP jumps", "", kCount,
+              "epoch to epoch |\xCE\x94GDOP| > 2, or between fix and no fix"},
+    FigureRow{"Satellites", "satellites_mean", "satellites used, mean", "", kQuantity, ""},
+    FigureRow{"Satellites", "nlos_share", "NLOS share", "%", kShare, "tracked satellites whose direct path is blocked"},
+    FigureRow{"Satellites", "multipath_share", "multipath share", "%", kShare,
+              "tracked satellites received directly and by reflection"},
+
+    FigureRow{"Registration and map", "keyframes", "keyframes", "", kCount, ""},
+    FigureRow{"Registration and map", "keyframes_converged", "keyframes converged", "", kCount, ""},
+    FigureRow{"Registration and map", "registration_error_prior_rms_m", "keyframe error, prior, RMS", "m", kQuantity,
+              "placed by the filter alone"},
+    FigureRow{"Registration and map", "registration_error_rms_m", "keyframe error, registered, RMS", "m", kQuantity,
+              ""},
+    FigureRow{"Registration and map", "map_error_prior_rms_m", "map error, prior, RMS", "m", kQuantity,
+              "map points to the nearest true surface"},
+    FigureRow{"Registration and map", "map_error_rms_m", "map error, registered, RMS", "m", kQuantity, ""},
+    FigureRow{"Registration and map", "map_error_p95_prior_m", "map error, prior, 95 %", "m", kQuantity, ""},
+    FigureRow{"Registration and map", "map_error_p95_m", "map error, registered, 95 %", "m", kQuantity, ""},
+    FigureRow{"Registration and map", "map_error_up_prior_rms_m", "map error up, prior, RMS", "m", kQuantity, ""},
+    FigureRow{"Registration and map", "map_error_up_rms_m", "map error up, registered, RMS", "m", kQuantity, ""},
+    FigureRow{"Registration and map", "map_points", "map points", "", kCount, ""},
+
+    FigureRow{"Cost", "timing.real_time_factor", "real-time factor", "", kQuantity,
+              "simulated seconds per second of wall time"},
+    FigureRow{"Cost", "timing.wall_s", "wall time", "s", kQuantity, ""},
+    FigureRow{"Cost", "timing.cpu_s", "CPU time", "s", kQuantity, "its parts: see Cost"},
+};
+
+}  // namespace
+
+std::span<const FigureRow> figure_rows() {
+  return kRows;
+}
+
+double figure_value(const Run& run, const FigureRow& row) {
+  if (row.key == "timing.real_time_factor") return run.real_time_factor;
+  if (row.key == "timing.wall_s") return run.wall_s;
+  if (row.key == "timing.cpu_s") return run.cpu_s;
+  return run.figure(row.key);
+}
+
+bool is_known_figure(std::string_view key) {
+  for (const FigureRow& row : kRows) {
+    if (row.key == key) return true;
+  }
+  return false;
+}
+
+}  // namespace canyon::report

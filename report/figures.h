@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "report/results.h"
+
+namespace canyon::report {
+
+/// One line of the table: a figure of a run and how to show it.
+struct FigureRow {
+  enum class Kind { kQuantity, kCount, kShare };
+  std::string_view group;
+  std::string_view key;  ///< of summary.json's run; "timing.cpu_s" and the like inside its timing
+  std::string_view label;
+  std::string_view unit;
+  Kind kind = Kind::kQuantity;
+  std::string_view meaning;  ///< what a newcomer might ask; may be empty
+};
+
+/// All lines in the order of the table, groups together.
+std::span<const FigureRow> figure_rows();
+
+/// The run's figure; NaN if undefined.
+double figure_value(const Run& run, const FigureRow& row);
+
+/// A key that summary.json must give as a number or null.
+bool is_known_figure(std::string_view key);
+
+}  // namespace canyon::report

@@ -1,0 +1,89 @@
+#include "report/html_report.h"
+
+#include <algorithm>
+
+#include "core/embedded.h"
+#include "core/files.h"
+#include "report/format.h"
+#include "report/html.h"
+#include "report/read_results.h"
+#include "report/sections.h"
+#include "report/theme.h"
+
+namespace canyon::report {
+namespace {
+
+std::string asset(std::string_view key) {
+  const auto bytes = embedded_file(key);
+  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
+  return std::string(*bytes);
+}
+
+/// Drawing order, which also gives the colours: low, high, other pure runs, mixed runs.
+int rank(const Run& run) {
+  if (!run.is_pure()) return 3;
+  return run.fidelity == "low" ? 0 : run.fidelity == "high" ? 1 : 2;
+}
+
+/// Check boxes that show and hide runs; they work by CSS alone, so they stand before everything they govern.
+std::string run_boxes(const Results& results) {
+  std::string boxes, labels;
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    const std::string id = "show-" + run_class(i);
+    boxes += "<input class=\"show\" type=\"checkbox\" id=\"" + id + "\" checked aria-label=\"show run " +
+             escape_html(results.runs[i].fidelity) + "\">\n";
+    labels += "<label for=\"" + id + "\">" + run_tag(results.runs, i) + "</label>\n";
+  }
+  return boxes + "<div class=\"runbar\"><span class=\"runbar-title\">Show</span>\n" + labels + "</div>\n";
+}
+
+std::string contents() {
+  return "<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> <a href=\"#figures\">Figures</a> <a "
+         "href=\"#scene-section\">From above</a> <a "
+         "href=\"#errors\">Error</a> <a href=\"#satellites\">Satellites</a> <a href=\"#multipath\">Multipath</a> <a "
+         "href=\"#maps\">Maps</a> <a "
+         "href=\"#registration\">Registration</a> <a href=\"#two-by-two\">GNSS or IMU?</a> <a href=\"#cost\">Cost</a> "
+         "<a href=\"#made\">How it was "
+         "made</a></nav>\n";
+}
+
+std::string page(const Results& results) {
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
+      "content=\"light dark\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<title>Canyon: ";
+  out += escape_html(results.mission.name) + "</title>\n<style>\n" + theme_css(results.runs.size()) +
+         asset("report/assets/report.css") + "</style>\n</head>\n<body>\n" + run_boxes(results) +
+         "<main>\n<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
+         (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) + "</p>\n<h1>" +
+         escape_html(headline(results)) + "</h1>\n" + contents() + "</header>\n";
+  out += verdict_section(results);
+  out += figures_section(results);
+  out += scene_section(results);
+  out += error_section(results);
+  out += satellites_section(results);
+  out += multipath_section(results);
+  out += maps_section(results);
+  out += registration_section(results);
+  out += two_by_two_section(results);
+  out += cost_section(results);
+  out += provenance_section(results);
+  return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace
+
+Result<std::string> html_report(const std::string& results_dir) {
+  CANYON_TRY(Results results, read_results(results_dir));
+  std::stable_sort(results.runs.begin(), results.runs.end(),
+                   [](const Run& a, const Run& b) { return rank(a) < rank(b); });
+  return page(results);
+}
+
+Status write_html_report(const std::string& results_dir, const std::string& out_file) {
+  CANYON_TRY(const std::string html, html_report(results_dir));
+  return write_text_file(out_file, html);
+}
+
+}  // namespace canyon::report

@@ -1,0 +1,37 @@
+#include "report/time_charts.h"
+
+#include <cmath>
+
+#include "report/format.h"
+#include "report/html.h"
+#include "report/run_story.h"
+
+namespace canyon::report {
+
+Chart time_chart(const Results& results, std::string id, std::string title) {
+  Chart chart;
+  chart.id = std::move(id);
+  chart.title = std::move(title);
+  chart.time = true;
+  chart.x = Axis::seconds(0, last_epoch_s(results));
+  chart.x_label = "time from start, s";
+  for (const std::size_t i : pure_runs(results)) {
+    const Run& run = results.runs[i];
+    if (!run.failure || !std::isfinite(run.failure->t_s)) continue;
+    chart.marks.push_back(
+        {i, run.failure->t_s, "\xE2\x9C\x95 " + run.fidelity + " " + show_quantity(run.failure->t_s, "s")});
+  }
+  return chart;
+}
+
+Line column_line(const Results& results, std::size_t i, const EpochTable& table, std::string_view column,
+                 Line::Style style) {
+  return {.run = i, .name = results.runs[i].fidelity, .x = table["t_s"], .y = table[column], .style = style};
+}
+
+std::string missing_file(const Run& run, std::string_view what, std::string_view suffix) {
+  return "Run " + run.fidelity + " is not drawn: the results hold no " + std::string(what) + " of it (epochs/" +
+         run.fidelity + std::string(suffix) + ").";
+}
+
+}  // namespace canyon::report

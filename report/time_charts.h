@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/chart.h"
+#include "report/results.h"
+
+namespace canyon::report {
+
+/// A chart over mission time that all runs fit on, with the runs' failures marked.
+Chart time_chart(const Results& results, std::string id, std::string title);
+
+/// A column of a table as a line of run i.
+Line column_line(const Results& results, std::size_t i, const EpochTable& table, std::string_view column,
+                 Line::Style style = Line::Style::kNormal);
+
+/// What is said where a run has no such file.
+std::string missing_file(const Run& run, std::string_view what, std::string_view suffix);
+
+}  // namespace canyon::report

@@ -1,0 +1,369 @@
+#include "report/html_report.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/report/synthetic_results.h"
+#include "tests/report/temporary_directory.h"
+
+namespace canyon::report {
+namespace {
+
+using canyon::testing::edit_json;
+using canyon::testing::load;
+using canyon::testing::store;
+using canyon::testing::SyntheticOptions;
+using canyon::testing::TemporaryDirectory;
+using canyon::testing::write_synthetic_results;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The text without what stands between (and with) the marks. Not by a regular expression: those recurse once per character.
+std::string without(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t start; (start = text.find(from)) != std::string::npos;) {
+    const std::size_t end = text.find(to, start + from.size());
+    if (end == std::string::npos) break;
+    text.erase(start, end + to.size() - start);
+  }
+  return text;
+}
+
+/// A complete synthetic directory and its page, made once.
+class HtmlReport : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryDirectory;
+    write_synthetic_results(folder_->path());
+    const auto page = html_report(folder_->path());
+    ASSERT_TRUE(page.ok()) << page.error().str();
+    page_ = new std::string(*page);
+    // For a look at it: CANYON_KEEP_REPORT=FILE.
+    if (const char* keep = std::getenv("CANYON_KEEP_REPORT")) store(keep, *page);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    delete page_;
+  }
+  static const std::string& page() { return *page_; }
+
+  /// Text of the section with this id.
+  static std::string section(const std::string& html, const std::string& id) {
+    const std::size_t start = html.find("<section id=\"" + id + "\"");
+    if (start == std::string::npos) return {};
+    return html.substr(start, html.find("</section>", start) - start);
+  }
+
+ private:
+  static inline TemporaryDirectory* folder_ = nullptr;
+  static inline std::string* page_ = nullptr;
+};
+
+/// A small directory of its own, to be damaged.
+class DamagedResults : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write_synthetic_results(folder_.path(),
+                            {.speed_m_s = 16, .paper = false, .mixed = false, .cloud_points_per_keyframe = 5});
+  }
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  std::string page() const {
+    const auto html = html_report(folder_.path());
+    EXPECT_TRUE(html.ok()) << html.error().str();
+    return html.ok() ? *html : std::string();
+  }
+  /// The error with the directory's path cut off.
+  std::string error() const {
+    const auto html = html_report(folder_.path());
+    if (html.ok()) return "no error";
+    EXPECT_EQ(html.error().exit_code, 2);
+    const std::string text = html.error().str();
+    return text.rfind(folder_.path() + "/", 0) == 0 ? text.substr(folder_.path().size() + 1) : text;
+  }
+  TemporaryDirectory folder_;
+};
+
+TEST_F(HtmlReport, IsWrittenToTheFile) {
+  const TemporaryDirectory folder;
+  write_synthetic_results(folder.path(),
+                          {.speed_m_s = 16, .paper = false, .mixed = false, .cloud_points_per_keyframe = 5});
+  const std::string out = folder.file("report.html");
+  ASSERT_TRUE(write_html_report(folder.path(), out).ok());
+  EXPECT_EQ(load(out), *html_report(folder.path()));
+}
+
+TEST_F(HtmlReport, HasAllSectionsInOrder) {
+  std::size_t last = 0;
+  for (const char* id : {"verdict", "figures", "scene-section", "errors", "satellites", "multipath", "maps",
+                         "registration", "two-by-two", "cost", "made"}) {
+    const std::size_t at = page().find("<section id=\"" + std::string(id) + "\"");
+    ASSERT_NE(at, std::string::npos) << id;
+    EXPECT_GT(at, last) << id;
+    last = at;
+  }
+}
+
+TEST_F(HtmlReport, RefersToNothingOutsideItself) {
+  EXPECT_THAT(page(), Not(HasSubstr("http:")));
+  EXPECT_THAT(page(), Not(HasSubstr("https:")));
+  EXPECT_THAT(page(), Not(HasSubstr("@import")));
+  EXPECT_THAT(page(), Not(HasSubstr("url(")));
+  // Every href and src is a place on the page or data inside it.
+  const std::regex reference("(href|src|srcset)=\"([^\"]{0,12})");
+  int references = 0;
+  for (std::sregex_iterator i(page().begin(), page().end(), reference), end; i != end; ++i, ++references) {
+    const std::string target = (*i)[2];
+    EXPECT_TRUE(target[0] == '#' || target.rfind("data:", 0) == 0) << target;
+  }
+  EXPECT_GT(references, 10);
+}
+
+TEST_F(HtmlReport, RefersOnlyToIdentifiersThatExistOnce) {
+  std::set<std::string> ids;
+  const std::regex id(" id=\"([^\"]*)\"");
+  for (std::sregex_iterator i(page().begin(), page().end(), id), end; i != end; ++i) {
+    EXPECT_TRUE(ids.insert((*i)[1]).second) << (*i)[1];
+  }
+  const std::regex reference("(?:href=\"#|for=\"|aria-labelledby=\")([^\"]*)\"");
+  for (std::sregex_iterator i(page().begin(), page().end(), reference), end; i != end; ++i) {
+    std::istringstream words((*i)[1]);
+    for (std::string word; words >> word;) EXPECT_TRUE(ids.count(word)) << word;
+  }
+}
+
+TEST_F(HtmlReport, TagsAreBalanced) {
+  std::vector<std::string> open;
+  const std::set<std::string> empty{"meta", "link", "input", "br"};
+  // Scripts and styles hold < that are no tags.
+  const std::string body = without(without(page(), "<script>", "</script>"), "<style>", "</style>");
+  const std::regex tag("<(/?)([a-z0-9-]+)[^>]*?(/?)>", std::regex::icase);
+  for (std::sregex_iterator i(body.begin(), body.end(), tag), end; i != end; ++i) {
+    const std::string name = (*i)[2];
+    if ((*i)[3] == "/" || empty.count(name)) continue;
+    if ((*i)[1] != "/") {
+      open.push_back(name);
+      continue;
+    }
+    ASSERT_FALSE(open.empty()) << name;
+    ASSERT_EQ(open.back(), name);
+    open.pop_back();
+  }
+  EXPECT_TRUE(open.empty());
+}
+
+TEST_F(HtmlReport, EveryDrawingHasATitle) {
+  const std::regex drawing("<svg [^>]*role=\"img\"[^>]*>(.{0,8})");
+  int drawings = 0;
+  for (std::sregex_iterator i(page().begin(), page().end(), drawing), end; i != end; ++i) {
+    const bool named = (*i)[0].str().find("aria-label=") != std::string::npos;
+    EXPECT_TRUE(named || (*i)[1].str().rfind("<title", 0) == 0) << (*i)[0];
+    ++drawings;
+  }
+  EXPECT_GE(drawings, 15);
+}
+
+TEST_F(HtmlReport, IsBelowFiveMegabytes) {
+  EXPECT_LT(page().size(), 5'000'000u);
+}
+
+TEST_F(HtmlReport, HasNoUndefinedNumbersInIt) {
+  const std::string body = without(page(), "base64,", "\"");
+  EXPECT_FALSE(std::regex_search(body, std::regex("\\b(nan|NaN|inf)\\b")));
+}
+
+TEST_F(HtmlReport, SaysTheVerdictFromTheNumbers) {
+  EXPECT_THAT(page(), HasSubstr("<h1>The low-fidelity run completes the mission; the high-fidelity run fails after "));
+  const std::string verdict = section(page(), "verdict");
+  EXPECT_THAT(verdict,
+              HasSubstr("<strong>low</strong> completed the mission: 11 of 11 waypoints and 3 of 3 mission waypoints"));
+  EXPECT_THAT(verdict, HasSubstr("<strong>high</strong> failed: it hit an obstacle after "));
+  EXPECT_THAT(verdict, HasSubstr("it had reached 6 of 11 waypoints and 0 of 3 mission waypoints."));
+  EXPECT_THAT(verdict, HasSubstr("Front right corner touched building 217."));
+}
+
+TEST_F(HtmlReport, TellsThatALowGnssHasNoSatellites) {
+  EXPECT_THAT(section(page(), "satellites"), HasSubstr("Run low has no satellites"));
+  EXPECT_THAT(section(page(), "multipath"), HasSubstr("Run low has no satellites to show"));
+}
+
+TEST_F(DamagedResults, ASingleRunHasNoRatio) {
+  edit_json(file("summary.json"), [](auto& json) { json["runs"].erase(0); });
+  const std::string html = page();
+  EXPECT_THAT(html, HasSubstr("<h1>The high-fidelity run fails after "));
+  EXPECT_THAT(html, Not(HasSubstr("class=\"ratio")));
+}
+
+TEST_F(DamagedResults, TwoEqualOutcomesAreComparedByTheirErrors) {
+  edit_json(file("summary.json"), [](auto& json) {
+    for (auto& run : json["runs"]) run["outcome"] = "success", run["failure"] = nullptr;
+    json["runs"][0]["position_error_rms_m"] = 0.25;
+    json["runs"][1]["position_error_rms_m"] = 3.0;
+  });
+  EXPECT_THAT(page(), HasSubstr("<h1>Both runs complete the mission; the position error is 12.0 times as large in the "
+                                "high-fidelity run.</h1>"));
+}
+
+TEST_F(DamagedResults, WithoutEpochsAndCloudsItSaysSo) {
+  std::filesystem::remove_all(file("epochs"));
+  std::filesystem::remove_all(file("clouds"));
+  std::filesystem::remove(file("manifest.json"));
+  const std::string html = page();
+  EXPECT_THAT(html, HasSubstr("The path of run high is missing: the results hold no epochs/high_nav.csv."));
+  EXPECT_THAT(html,
+              HasSubstr("Run low is not drawn: the results hold no navigation epochs of it (epochs/low_nav.csv)."));
+  EXPECT_THAT(html, HasSubstr("Run low is not drawn: the results hold no GNSS epochs of it (epochs/low_gnss.csv)."));
+  EXPECT_THAT(html, HasSubstr("Run high has no satellites to show: its GNSS model has none, or the results hold no "
+                              "epochs/high_satellites.csv."));
+  EXPECT_THAT(html, HasSubstr("Run low: the results hold no prior and registered map cloud with points."));
+  EXPECT_THAT(html,
+              HasSubstr("Run high is not drawn: the results hold no keyframes of it (epochs/high_keyframes.csv)."));
+  EXPECT_THAT(html, HasSubstr("The mixed runs (one sensor of low, the other of high fidelity) were not made."));
+  EXPECT_THAT(html, HasSubstr("<dt>Canyon version</dt><dd><span class=\"undefined\">not recorded</span>"));
+}
+
+TEST_F(DamagedResults, EveryFigureMayBeNull) {
+  edit_json(file("summary.json"), [](auto& json) {
+    for (auto& run : json["runs"]) {
+      for (auto& [key, value] : run.items()) {
+        if (value.is_number()) value = nullptr;
+      }
+      run["timing"] = nullptr;
+      run["counters"] = nullptr;
+      if (!run["failure"].is_null())
+        run["failure"] = {{"kind", "stuck"}, {"t_s", nullptr}, {"x_m", nullptr}, {"y_m", nullptr}, {"detail", nullptr}};
+    }
+    json["scene"] = nullptr;
+    json["timing"] = nullptr;
+    json["hash"] = nullptr;
+  });
+  const std::string html = page();
+  EXPECT_THAT(html, HasSubstr("<td class=\"undefined\"><span aria-label=\"undefined\">"));
+  EXPECT_THAT(html, HasSubstr("; the high-fidelity run fails.</h1>"));
+  EXPECT_THAT(html, HasSubstr("failed: it got stuck."));
+  EXPECT_THAT(html, HasSubstr("The results hold no CPU times of the parts."));
+}
+
+TEST_F(DamagedResults, EmptyTablesAndCloudsAreNoMistake) {
+  for (const char* name : {"low_nav.csv", "low_gnss.csv", "low_keyframes.csv", "high_satellites.csv"}) {
+    const std::string path = file(std::string("epochs/") + name);
+    const std::string csv = load(path);
+    store(path, csv.substr(0, csv.find('\n') + 1));
+  }
+  const std::string cloud = load(file("clouds/low_prior.pcd"));
+  std::string header = cloud.substr(0, cloud.find("DATA binary\n") + 12);
+  header = std::regex_replace(header, std::regex("(WIDTH|POINTS) [0-9]+"), "$1 0");
+  store(file("clouds/low_prior.pcd"), header);
+  EXPECT_THAT(page(), HasSubstr("Run low: the results hold no prior map cloud with points."));
+}
+
+TEST_F(DamagedResults, NamesAreEscaped) {
+  const std::string evil = "<script>alert('x')</script>\"&";
+  edit_json(file("summary.json"), [&](auto& json) {
+    json["mission"]["name"] = evil;
+    json["mission"]["waypoints"][3]["name"] = evil;
+    json["scene"]["name"] = evil;
+    json["runs"][1]["failure"]["detail"] = evil;
+    json["runs"][1]["failure"]["kind"] = evil;
+    json["runs"][1]["outcome"] = evil;
+    json["runs"][1]["counters"][evil] = 3;
+    json["runs"][1]["timing"]["parts"][0]["name"] = evil;
+    json["runs"][1]["mission_waypoints"][0]["name"] = evil;
+    json["hash"] = evil;
+  });
+  edit_json(file("manifest.json"), [&](auto& json) { json["version"] = evil; });
+  edit_json(file("scene.json"), [&](auto& json) { json["buildings"][0]["name"] = evil; });
+  std::string csv = load(file("epochs/high_satellites.csv"));
+  csv = std::regex_replace(csv, std::regex("G02"), "<b>G02");
+  store(file("epochs/high_satellites.csv"), csv);
+  const std::string html = page();
+  EXPECT_THAT(html, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(html, Not(HasSubstr("<b>G02")));
+  EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;&quot;&amp;"));
+}
+
+TEST_F(DamagedResults, AFidelityNameIsEscapedToo) {
+  edit_json(file("summary.json"), [](auto& json) {
+    for (const char* key : {"fidelity", "gnss", "imu"}) json["runs"][1][key] = "a<b>\"c";
+  });
+  const std::string html = page();
+  EXPECT_THAT(html, Not(HasSubstr("a<b>")));
+  EXPECT_THAT(html, HasSubstr("a&lt;b&gt;&quot;c"));
+}
+
+TEST_F(DamagedResults, MistakesAreToldByFileLineAndKey) {
+  const std::string summary = load(file("summary.json"));
+  const auto line_of = [&](const std::string& needle) {
+    const std::string text = load(file("summary.json"));
+    return std::to_string(
+        1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(needle)), '\n'));
+  };
+  edit_json(file("summary.json"), [](auto& json) { json["runs"][1]["gdop_max"] = "high"; });
+  EXPECT_EQ(error(), "summary.json:" + line_of("\"gdop_max\": \"high\"") +
+                         ": runs[1].gdop_max: string \"high\", expected a number or null");
+
+  store(file("summary.json"), summary);
+  edit_json(file("summary.json"), [](auto& json) { json["runs"][0].erase("outcome"); });
+  EXPECT_THAT(error(), ::testing::MatchesRegex("summary.json:[0-9]+: runs\\[0\\].outcome: missing, expected a string"));
+
+  store(file("summary.json"), summary);
+  edit_json(file("summary.json"), [](auto& json) { json["runs"][1]["nlos_share"] = 12; });
+  EXPECT_THAT(error(), ::testing::MatchesRegex(
+                           "summary.json:[0-9]+: runs\\[1\\].nlos_share: number 12, expected a share between 0 and 1"));
+
+  store(file("summary.json"), summary.substr(0, summary.size() / 2));
+  EXPECT_THAT(error(), ::testing::MatchesRegex(
+                           "summary.json:[0-9]+: the JSON text ends too early, expected a complete JSON value"));
+
+  store(file("summary.json"), "{\n\"schema\": 1,\n \"mission\": oops }");
+  EXPECT_THAT(error(), HasSubstr("summary.json:3: not JSON near"));
+
+  store(file("summary.json"), summary);
+  edit_json(file("summary.json"), [](auto& json) { json["schema"] = 2; });
+  EXPECT_EQ(error(), "summary.json:2: schema: number 2, expected 1");
+
+  std::filesystem::remove(file("summary.json"));
+  EXPECT_THAT(error(), HasSubstr("summary.json"));
+}
+
+TEST_F(DamagedResults, MistakesInEpochsAreToldByLineAndColumn) {
+  const std::string path = file("epochs/high_nav.csv");
+  const std::string csv = load(path);
+  const std::size_t second_row = csv.find('\n', csv.find('\n') + 1) + 1;
+  store(path, csv.substr(0, second_row) + "abc" + csv.substr(csv.find(',', second_row)));
+  EXPECT_EQ(error(), "epochs/high_nav.csv:3: t_s: 'abc', expected a finite number or an empty field");
+  store(path, csv.substr(0, second_row) + "1,2,3\n");
+  EXPECT_EQ(error(), "epochs/high_nav.csv:3: 3 fields, expected 31 as in the first line");
+  store(path, std::regex_replace(csv, std::regex("sigma_n_m"), "sigma_x_m"));
+  EXPECT_EQ(error(), "epochs/high_nav.csv:1: sigma_n_m: column missing, expected a column of that name");
+}
+
+TEST_F(DamagedResults, MistakesInCloudsAndSceneAreTold) {
+  const std::string path = file("clouds/high_registered.pcd");
+  const std::string cloud = load(path);
+  store(path, cloud.substr(0, cloud.size() - 30));
+  EXPECT_THAT(
+      error(),
+      ::testing::MatchesRegex(
+          "clouds/high_registered.pcd: POINTS: the file holds [0-9]+ points, expected [0-9]+ as its header says"));
+  store(path, cloud);
+  edit_json(file("scene.json"), [](auto& json) { json["buildings"][2]["footprint"][1] = "corner"; });
+  EXPECT_THAT(
+      error(),
+      ::testing::MatchesRegex(
+          "scene.json:[0-9]+: buildings\\[2\\].footprint\\[1\\]: string \"corner\", expected a list of 2 numbers"));
+}
+
+TEST(HtmlReportErrors, AMissingDirectoryIsTold) {
+  const auto html = html_report("/no/such/results");
+  ASSERT_FALSE(html.ok());
+  EXPECT_EQ(html.error().str(), "/no/such/results: no such directory, expected a results directory");
+}
+
+}  // namespace
+}  // namespace canyon::report
