@@ -32,7 +32,7 @@ std::unique_ptr<IonosphereModel> make_paper_printed_ionosphere(const IonosphereP
 
 /// Vertical delay at L1, m: 40.3 m^3/s^2 x electrons / f^2.
 double vertical_ionosphere_m(double vtec_tecu);
-/// Obliquity of a thin shell at 350 km over a sphere of 6371 km: 1 / sqrt(1 - (R cos e / (R + h))^2).
+/// Obliquity of a thin shell at 350 km over a sphere of 6378.137 km: 1 / sqrt(1 - (R cos e / (R + h))^2).
 double single_layer_obliquity(double elevation_rad);
 /// Lear's mapping as Montenbruck & Garcia-Fernandez (2005) give it: 2.037 / (sqrt(sin^2 e + 0.076) + sin e).
 double lear_mapping(double elevation_rad);

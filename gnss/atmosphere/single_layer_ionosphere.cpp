@@ -17,7 +17,7 @@ class SingleLayer final : public IonosphereModel {
 }  // namespace
 
 double single_layer_obliquity(double elevation_rad) {
-  constexpr double kEarthKm = 6371.0, kShellKm = 350.0;
+  constexpr double kEarthKm = 6378.137, kShellKm = 350.0;
   const double sin_zenith = kEarthKm / (kEarthKm + kShellKm) * std::cos(elevation_rad);
   return 1.0 / std::sqrt(1.0 - sin_zenith * sin_zenith);
 }

@@ -1,0 +1,148 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "gnss/atmosphere/ionosphere.h"
+#include "gnss/atmosphere/niell.h"
+#include "gnss/atmosphere/troposphere.h"
+#include "gnss/atmosphere/zenith_delay.h"
+
+namespace canyon::gnss {
+namespace {
+
+// Vicksburg, 17 November 2010 13:00 GPS time: day of year 321.54. Reference figures were computed independently and are
+// given to the digits shown, so the tolerance is half a unit of the last digit.
+constexpr double kLat = 32.35 * kDegree;
+constexpr double kHeight_m = 60.0;
+constexpr double kDay = 321.0 + 13.0 / 24.0;
+
+SkyView view_at(double elevation_deg, double azimuth_deg = 0.0) {
+  return {GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0),
+          {kLat, -90.88 * kDegree, kHeight_m},
+          elevation_deg * kDegree,
+          azimuth_deg * kDegree};
+}
+
+TEST(Niell, CoefficientsAtVicksburg) {
+  const auto h = niell_hydrostatic_coefficients(kLat, kDay);
+  EXPECT_NEAR(h.a, 1.259989e-3, 0.5e-9);
+  EXPECT_NEAR(h.b, 2.909824e-3, 0.5e-9);
+  EXPECT_NEAR(h.c, 6.294854e-2, 0.5e-8);
+  const auto w = niell_wet_coefficients(kLat);
+  EXPECT_NEAR(w.a, 5.700214e-4, 0.5e-10);
+  EXPECT_NEAR(w.b, 1.504997e-3, 0.5e-9);
+  EXPECT_NEAR(w.c, 4.628762e-2, 0.5e-8);
+}
+
+TEST(Niell, MappingAtVicksburg) {
+  const double elevation_deg[] = {5.0, 10.0, 30.0, 90.0};
+  const double hydrostatic[] = {10.117, 5.550, 1.993, 1.000};
+  const double wet[] = {10.765, 5.659, 1.997, 1.000};
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(niell_hydrostatic(elevation_deg[i] * kDegree, kLat, kHeight_m, kDay), hydrostatic[i], 0.5e-3);
+    EXPECT_NEAR(niell_wet(elevation_deg[i] * kDegree, kLat), wet[i], 0.5e-3);
+  }
+}
+
+// Every latitude node of every table is reached, the seasons are opposite in the two hemispheres, and beyond 15 and 75
+// deg the functions are constant in latitude (Niell 1996).
+TEST(Niell, LatitudeAndSeason) {
+  for (const double lat_deg : {15.0, 30.0, 45.0, 60.0, 75.0}) {
+    const auto north = niell_hydrostatic_coefficients(lat_deg * kDegree, 28.0);
+    const auto south = niell_hydrostatic_coefficients(-lat_deg * kDegree, 28.0 + 0.5 * 365.25);
+    EXPECT_NEAR(north.a, south.a, 1e-15);
+    EXPECT_NEAR(north.c, south.c, 1e-13);
+  }
+  EXPECT_EQ(niell_wet_coefficients(0.0).a, 5.8021897e-4);
+  EXPECT_EQ(niell_wet_coefficients(90.0 * kDegree).c, 5.4736038e-2);
+  EXPECT_EQ(niell_hydrostatic_coefficients(80.0 * kDegree, 28.0).a, 1.2045996e-3 - 4.1202191e-5);
+  EXPECT_EQ(niell_hydrostatic_coefficients(0.0, 200.0).b, 2.9153695e-3);  // no seasons in the tropics
+}
+
+TEST(Niell, FiniteAtTheHorizon) {
+  for (const double height_m : {-400.0, 0.0, 20000.0})
+    EXPECT_TRUE(std::isfinite(niell_hydrostatic(0.0, kLat, height_m, kDay)));
+  EXPECT_TRUE(std::isfinite(niell_wet(0.0, kLat)));
+}
+
+TEST(Troposphere, ZenithDelaysAtVicksburg) {
+  EXPECT_NEAR(zenith_hydrostatic_m(1022.0, kLat, kHeight_m), 2.3296, 0.5e-4);
+  EXPECT_NEAR(zenith_wet_m(12.8, vapour_pressure_hpa({1022.0, 12.8, 0.80})), 0.12, 0.005);
+  EXPECT_EQ(zenith_wet_m(12.8, 0.0), 0.0);
+}
+
+TEST(Troposphere, SaastamoinenNiellIsTheSumOfItsParts) {
+  const Weather weather{1022.0, 12.8, 0.80};
+  const auto model = make_saastamoinen_niell(weather);
+  const double wet_m = zenith_wet_m(12.8, vapour_pressure_hpa(weather));
+  EXPECT_DOUBLE_EQ(model->delay_m(view_at(10.0)),
+                   zenith_hydrostatic_m(1022.0, kLat, kHeight_m) *
+                           niell_hydrostatic(10.0 * kDegree, kLat, kHeight_m, view_at(10).t.day_of_year()) +
+                       wet_m * niell_wet(10.0 * kDegree, kLat));
+}
+
+// As printed the wet term is a mapping read as metres: 10.765 m at 5 deg where 0.12 m x 10.765 is meant; the dry one
+// has no mapping.
+TEST(Troposphere, PaperAsPrintedAndCorrected) {
+  const Weather weather{1022.0, 12.8, 0.80};
+  const double dry_mm = 2.2779 * 1022.0 / (1.0 - 0.00266 * std::cos(2.0 * kLat) - 0.0028 * 0.060);
+  EXPECT_NEAR(make_paper_printed_troposphere(weather)->delay_m(view_at(5.0)), 10.765 + 1e-3 * dry_mm, 0.5e-3);
+  // The two dry constants, 2.2779 and 2.2768 mm/hPa, differ by 5e-4.
+  const double good_m = make_saastamoinen_niell(weather)->delay_m(view_at(30.0));
+  EXPECT_NEAR(make_paper_corrected_troposphere(weather)->delay_m(view_at(30.0)), good_m, 5e-4 * good_m);
+  // With h in metres the printed height term would make the denominator vanish near 357 m; in km it is harmless.
+  EXPECT_NEAR(paper_dry_delay_m(1022.0, kLat, 357.0, 0.0028), 2.33, 0.01);
+}
+
+TEST(Troposphere, StandardAtmosphere) {
+  EXPECT_DOUBLE_EQ(standard_weather(0.0).pressure_hpa, 1013.25);
+  EXPECT_NEAR(standard_weather(5000.0).pressure_hpa, 540.2, 0.1);  // ICAO: 540.2 hPa
+  EXPECT_TRUE(std::isfinite(standard_weather(1e9).pressure_hpa));
+  EXPECT_TRUE(std::isfinite(standard_weather(-6.4e6).pressure_hpa));
+}
+
+TEST(Ionosphere, MappingsAndZenithDelay) {
+  EXPECT_NEAR(vertical_ionosphere_m(12.0), 1.948, 0.5e-3);
+  const double elevation_deg[] = {5.0, 10.0, 30.0};
+  const double lear[] = {5.413, 4.078, 1.902}, layer[] = {3.041, 2.790, 1.751}, klobuchar[] = {3.027, 2.709, 1.767};
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(lear_mapping(elevation_deg[i] * kDegree), lear[i], 0.5e-3);
+    EXPECT_NEAR(single_layer_obliquity(elevation_deg[i] * kDegree), layer[i], 0.5e-3);
+    EXPECT_NEAR(klobuchar_obliquity(elevation_deg[i] * kDegree), klobuchar[i], 0.5e-3);
+  }
+  EXPECT_NEAR(lear_mapping(kPi / 2), 0.9999, 0.5e-4);
+  EXPECT_NEAR(single_layer_obliquity(kPi / 2), 1.0, 1e-15);
+}
+
+TEST(Ionosphere, Ladder) {
+  const IonosphereParameters p{12.0, kBuiltInKlobuchar};
+  const auto find = [&](const char* name) {
+    return find_model(ionosphere_models(), name)->make(p)->delay_m(view_at(30.0));
+  };
+  EXPECT_EQ(find("none"), 0.0);
+  EXPECT_NEAR(find("single_layer"), 1.948 * 1.751, 2e-3);
+  EXPECT_NEAR(find("paper"), 1.948 * 1.902, 2e-3);
+  EXPECT_NEAR(find("paper_printed"), 1.902, 0.5e-3);  // no zenith delay: metres by name only
+}
+
+// Worked example of the algorithm, step by step from IS-GPS-200 figure 20-4, for a receiver at 40 N 100 W that looks at
+// a satellite at azimuth 210, elevation 20, at 20:45:00 on a Saturday, with the coefficients of the much-copied example
+// (J. Klobuchar).
+TEST(Ionosphere, KlobucharWorkedExample) {
+  const KlobucharCoefficients c{{0.3820e-7, 0.1490e-7, -0.1790e-6, 0.0}, {0.1430e6, 0.0, -0.3280e6, 0.1130e6}};
+  const GpsTime t = GpsTime::from_week_sow(1042, 593100.0);
+  const double delay_m = klobuchar_delay_m(c, t, 40.0 * kDegree, 260.0 * kDegree, 210.0 * kDegree, 20.0 * kDegree);
+  // Published result: 77.6 ns, 23.784 m (Gao, "Ionospheric correction using Klobuchar model").
+  EXPECT_NEAR(delay_m, 23.784, 0.5e-3);
+}
+
+TEST(Ionosphere, KlobucharAtNightIsFiveNanosecondsTimesObliquity) {
+  const auto view = view_at(40.0, 75.0);  // 13 UT = 7 h local
+  const double delay_m = klobuchar_delay_m(kBuiltInKlobuchar, view.t + -7.0 * 3600.0, view.receiver.lat_rad,
+                                           view.receiver.lon_rad, view.azimuth_rad, view.elevation_rad);
+  EXPECT_NEAR(delay_m, kSpeedOfLight * 5e-9 * klobuchar_obliquity(view.elevation_rad), 1e-12);
+}
+
+}  // namespace
+}  // namespace canyon::gnss
