@@ -61,6 +61,8 @@ Result<MissionFile> MissionFile::from_tree(ConfigNode tree, const std::string& f
   MissionFile mission;
   mission.file_ = file_name;
   mission.user_ = std::move(tree);
+  mission.base_.value_ = ConfigNode::Table{};
+  mission.options_.value_ = ConfigNode::Table{};
   CANYON_TRY(mission.builtin_fidelities_, load_builtin(kFidelityFile));
   if (const ConfigNode* base = mission.user_.find("base")) {
     const auto* name = std::get_if<std::string>(&base->value_);

@@ -16,6 +16,7 @@ constexpr double kStopMargin = 3.0;      // m, kept free ahead of the rear axle 
 constexpr double kComfortClearance = 2;  // m; closer than this costs
 constexpr double kStopTolerance = 0.4;   // m, along the route
 constexpr double kPassTolerance = 1.0;   // m, along the route
+constexpr double kTurnAround = 1.0;      // 1/m; full lock when the path lies behind
 constexpr int kEnoughReturns = 100;      // fewer count as blind
 
 /// The path from arc length s0 on, moving sideways from offset d0 to d1 over `blend` metres.
@@ -132,6 +133,7 @@ class ReferenceAutonomy final : public Autonomy {
     const double ahead = std::cos(yaw) * d.x() + std::sin(yaw) * d.y(), left = -std::sin(yaw) * d.x() + std::cos(yaw) * d.y();
     const double distance2 = ahead * ahead + left * left;
     if (distance2 < 0.25) return 0.0;
+    if (ahead < 0.0) return left >= 0.0 ? kTurnAround : -kTurnAround;
     return 2.0 * left / distance2;
   }
 
