@@ -20,7 +20,7 @@ class ChartWriter {
   explicit ChartWriter(const Chart& chart) : chart_(chart) {}
 
   std::string write() {
-    out_ = "<div class=\"chart\" id=\"" + chart_.id + "\"";
+    out_ = std::string("<div class=\"chart") + (chart_.solid ? " solid" : "") + "\" id=\"" + chart_.id + "\"";
     if (chart_.time) out_ += " data-time=\"\"";
     out_ += " data-x=\"" + axis_data(chart_.x) + "\">\n";
     for (std::size_t i = 0; i < chart_.panels.size(); ++i) panel(chart_.panels[i], i);
@@ -57,7 +57,8 @@ class ChartWriter {
     grid(panel, height_px);
     for (const Band& band : panel.bands) draw_band(panel, band);
     for (const Mark& mark : chart_.marks) draw_mark(mark, height_px);
-    for (const Line& line : panel.lines) draw_line(panel, line);
+    // The first line lies uppermost.
+    for (auto line = panel.lines.rbegin(); line != panel.lines.rend(); ++line) draw_line(panel, *line);
     lanes(panel);
     out_ += "</svg>\n";
     y_labels(panel, height_px);
@@ -133,11 +134,16 @@ class ChartWriter {
   }
 
   void mark_labels() {
-    for (const Mark& mark : chart_.marks) {
+    for (std::size_t i = 0; i < chart_.marks.size(); ++i) {
+      const Mark& mark = chart_.marks[i];
       if (!std::isfinite(mark.x)) continue;
       const double place = chart_.x.place(mark.x);
+      // Words that would cover one another stand on lines of their own.
+      int line = 0;
+      for (std::size_t k = 0; k < i; ++k) line += std::abs(chart_.x.place(chart_.marks[k].x) - place) < 0.25 ? 1 : 0;
       out_ += "<span class=\"mark-label " + run_class(mark.run) + (place > 0.5 ? " left" : "") +
-              "\" style=\"left:" + fixed(100 * place, 2) + "%\">" + escape_html(mark.text) + "</span>\n";
+              "\" style=\"left:" + fixed(100 * place, 2) + "%;top:" + fixed(0.1 + line * 1.05, 2) + "rem\">" +
+              escape_html(mark.text) + "</span>\n";
     }
   }
 

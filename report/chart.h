@@ -55,6 +55,7 @@ struct Chart {
   std::string id;  ///< of the HTML element; letters, digits, '-'
   Axis x = Axis::linear(0, 1);
   std::string x_label;      ///< "time from start, s"
+  bool solid = false;       ///< no dashes: each panel shows one run
   bool time = false;        ///< x is mission time: the cursor is shared with all such charts and the map
   std::string title;        ///< for screen readers
   std::string description;  ///< for screen readers: what there is to see, in numbers

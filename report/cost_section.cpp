@@ -46,16 +46,15 @@ std::string bar(std::size_t run, double cpu_s, double longest_s) {
 }
 
 std::string totals(const Results& results) {
-  std::vector<std::string> parts;
-  if (std::isfinite(results.wall_s))
-    parts.push_back("all runs together took " + show_quantity(results.wall_s, "s") + " of wall time");
-  if (std::isfinite(results.cpu_s)) parts.push_back(show_quantity(results.cpu_s, "s") + " of CPU time");
+  std::vector<std::string> times;
+  if (std::isfinite(results.wall_s)) times.push_back(show_quantity(results.wall_s, "s") + " of wall time");
+  if (std::isfinite(results.cpu_s)) times.push_back(show_quantity(results.cpu_s, "s") + " of CPU time");
+  if (times.empty()) return {};
+  std::string text = "All runs together took " + listed(times);
+  if (std::isfinite(results.threads)) text += " on " + count_of(results.threads, "thread", "threads");
   if (std::isfinite(results.peak_memory_mb))
-    parts.push_back("at most " + show_quantity(results.peak_memory_mb, "MB") + " of memory");
-  if (std::isfinite(results.threads)) parts.push_back(count_of(results.threads, "thread", "threads"));
-  std::string text = listed(parts);
-  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
-  return text.empty() ? text : text + ".";
+    text += ", with at most " + show_quantity(results.peak_memory_mb, "MB") + " of memory";
+  return text + ".";
 }
 
 std::string counters(const Results& results, const std::vector<std::size_t>& which) {

@@ -125,24 +125,33 @@ class FiguresTable {
 
 /// What the vehicle did at each mission waypoint, for all runs.
 std::string mission_waypoints(const Results& results) {
-  std::string rows;
+  std::string bodies;
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
-    for (const MissionWaypoint& w : results.runs[i].mission_waypoints) {
-      rows += "<tr><th scope=\"row\">" + run_tag(results.runs, i) + "</th><td class=\"text\">" + escape_html(w.name) +
-              "</td><td class=\"outcome " + (w.reached ? "good\">\xE2\x9C\x93 yes" : "bad\">\xE2\x9C\x95 no") +
-              "</td>" + cell(show_quantity(w.closest_m, "m"), !std::isfinite(w.closest_m)) +
-              cell(show_quantity(w.stopped_s, "s"), !std::isfinite(w.stopped_s)) +
-              cell(show_share(w.facade_seen_share), !std::isfinite(w.facade_seen_share)) + "</tr>\n";
+    const std::vector<MissionWaypoint>& waypoints = results.runs[i].mission_waypoints;
+    if (waypoints.empty()) continue;
+    bodies += "<tbody>";
+    for (std::size_t k = 0; k < waypoints.size(); ++k) {
+      const MissionWaypoint& w = waypoints[k];
+      bodies += "<tr>";
+      if (k == 0) {
+        bodies += "<th scope=\"rowgroup\" rowspan=\"" + std::to_string(waypoints.size()) + "\">" +
+                  run_tag(results.runs, i) + "</th>";
+      }
+      bodies += "<td class=\"text\">" + escape_html(w.name) + "</td><td class=\"outcome " +
+                (w.reached ? "good\">\xE2\x9C\x93 yes" : "bad\">\xE2\x9C\x95 no") + "</td>" +
+                cell(show_quantity(w.closest_m, "m"), !std::isfinite(w.closest_m)) +
+                cell(show_quantity(w.stopped_s, "s"), !std::isfinite(w.stopped_s)) +
+                cell(show_share(w.facade_seen_share), !std::isfinite(w.facade_seen_share)) + "</tr>\n";
     }
+    bodies += "</tbody>\n";
   }
-  if (rows.empty()) return note("The results say nothing about single mission waypoints.");
+  if (bodies.empty()) return note("The results say nothing about single mission waypoints.");
   return "<h3>At the mission waypoints</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Mission "
-         "waypoints\"><table>\n"
-         "<thead><tr><th scope=\"col\">run</th><th scope=\"col\" class=\"text\">waypoint</th><th scope=\"col\" "
-         "class=\"text\">reached</th>"
-         "<th scope=\"col\">closest</th><th scope=\"col\">stopped</th><th scope=\"col\">fa\xC3\xA7"
-         "ade seen</th></tr></thead>\n<tbody>" +
-         rows + "</tbody></table></div>\n";
+         "waypoints\"><table class=\"grouped\">\n<thead><tr><th scope=\"col\" class=\"text\">run</th><th scope=\"col\" "
+         "class=\"text\">waypoint</th><th scope=\"col\" class=\"text\">reached</th><th scope=\"col\">closest</th><th "
+         "scope=\"col\">stopped</th><th scope=\"col\">fa\xC3\xA7"
+         "ade seen</th></tr></thead>\n" +
+         bodies + "</table></div>\n";
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ std::string scale_and_north(const MapWindow& window) {
   const double length_m = nice_step(window.size_m().x() / 4, 1);
   const double shown_m = length_m > 0.3 * window.size_m().x() ? length_m / 2 : length_m;
   return "<div class=\"scalebar\" aria-hidden=\"true\" style=\"width:" + fixed(100 * shown_m / window.size_m().x(), 2) +
-         "%\"><span>" + show_quantity(shown_m, "m") +
+         "%\"><span>" + fixed(shown_m, 3) + "\xC2\xA0m" +
          "</span></div>\n<svg class=\"north\" viewBox=\"0 0 20 34\" aria-label=\"north is up\" role=\"img\"><path "
          "d=\"M10 1L17 20 10 15 3 20Z\"/>"
          "<path class=\"letter\" d=\"M6 33V24L14 33V24\"/></svg>\n";

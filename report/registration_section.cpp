@@ -19,7 +19,7 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   prior.name = "prior";
   Line registered = column_line(results, i, keyframes, "registered_error_m");
   registered.name = "registered";
-  panel.lines = {std::move(prior), std::move(registered)};
+  panel.lines = {std::move(registered), std::move(prior)};
   Lane failed{.run = i, .name = "registration did not converge"};
   double unconverged = 0;
   for (std::size_t k = 0; k < keyframes.rows; ++k) {
@@ -55,6 +55,7 @@ std::string improvement(const Results& results, std::size_t i) {
 std::string registration_section(const Results& results) {
   const std::string title = "Registration";
   Chart chart = time_chart(results, "registration-chart", "Registration error by keyframe");
+  chart.solid = true;
   std::vector<std::size_t> drawn;
   std::vector<Line> all;
   std::string missing, caption;

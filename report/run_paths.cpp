@@ -48,14 +48,18 @@ std::string path_of(const MapDrawing& map, const std::vector<double>& x, const s
 
 }  // namespace
 
-std::string draw_paths(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow* window,
-                       double tolerance_m) {
+std::string draw_ribbon(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow* window,
+                        double tolerance_m, double width_px) {
   if (!run.nav) return {};
-  const EpochTable& nav = *run.nav;
-  const std::string c = run_class(run_number);
-  return "<path class=\"ribbon " + c + "\" d=\"" + path_of(map, nav["true_x_m"], nav["true_y_m"], window, tolerance_m) +
-         "\"/>\n<path class=\"line estimate " + c + "\" d=\"" +
-         path_of(map, nav["est_x_m"], nav["est_y_m"], window, tolerance_m) + "\"/>\n";
+  return "<path class=\"ribbon " + run_class(run_number) + "\" style=\"stroke-width:" + fixed(width_px, 1) +
+         "px\" d=\"" + path_of(map, (*run.nav)["true_x_m"], (*run.nav)["true_y_m"], window, tolerance_m) + "\"/>\n";
+}
+
+std::string draw_estimate(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow* window,
+                          double tolerance_m) {
+  if (!run.nav) return {};
+  return "<path class=\"line estimate " + run_class(run_number) + "\" d=\"" +
+         path_of(map, (*run.nav)["est_x_m"], (*run.nav)["est_y_m"], window, tolerance_m) + "\"/>\n";
 }
 
 std::string draw_error_ties(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow& window,

@@ -8,11 +8,14 @@
 
 namespace canyon::report {
 
-/// Where a run really went (a broad, pale ribbon) and where it believed to be (a fine line), as SVG for a plan: while
-/// both agree the line stays inside the ribbon. Epochs outside `window`, if given, are left out. `tolerance_m` of
-/// simplification.
-std::string draw_paths(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow* window,
-                       double tolerance_m);
+/// Where a run really went, as a pale ribbon of that width for a plan; an estimate that is good stays inside it. Epochs
+/// far outside `window`, if given, are left out. `tolerance_m` of simplification. Empty without epochs.
+std::string draw_ribbon(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow* window,
+                        double tolerance_m, double width_px);
+
+/// Where a run believed to be, as a fine line.
+std::string draw_estimate(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow* window,
+                          double tolerance_m);
 
 /// Fine lines from truth to estimate about once every `every_s` in a window.
 std::string draw_error_ties(const MapDrawing& map, const Run& run, std::size_t run_number, const MapWindow& window,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "report/format.h"
 #include "report/html.h"
@@ -29,34 +30,61 @@ std::string waypoint_markers(const Mission& mission, const MapWindow& window) {
   return html;
 }
 
-std::string failure_marker(const Run& run, std::size_t run_number, const MapWindow& window) {
-  if (!run.failure || !std::isfinite(run.failure->x_m) || !std::isfinite(run.failure->y_m)) return {};
-  const Eigen::Vector2d p_W(run.failure->x_m, run.failure->y_m);
+std::optional<Eigen::Vector2d> failure_place(const Run& run) {
+  if (!run.failure || !std::isfinite(run.failure->x_m) || !std::isfinite(run.failure->y_m)) return std::nullopt;
+  return Eigen::Vector2d(run.failure->x_m, run.failure->y_m);
+}
+
+/// `line`: how many labels stand at this place already.
+std::string failure_marker(const Run& run, std::size_t run_number, const MapWindow& window, int line) {
+  const auto p_W = failure_place(run);
+  if (!p_W) return {};
   const std::string words = run.fidelity + ": " + outcome_label(run.failure->kind) +
                             (std::isfinite(run.failure->t_s) ? " at " + show_quantity(run.failure->t_s, "s") : "");
-  const bool right = (p_W.x() - window.min_W.x()) > 0.6 * window.size_m().x();
+  const bool right = (p_W->x() - window.min_W.x()) > 0.5 * window.size_m().x();
   return "<span class=\"failure " + run_class(run_number) + (right ? " left" : "") + (run.is_pure() ? "" : " mixed") +
-         "\" style=\"" + MapDrawing::place(window, p_W) +
+         "\" style=\"" + MapDrawing::place(window, *p_W) +
          "\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><path class=\"halo\" d=\"M3 3L13 13M13 3L3 13\"/><path "
-         "d=\"M3 3L13 13M13 3L3 13\"/></svg><span class=\"words\">" +
-         escape_html(words) + "</span></span>\n";
+         "d=\"M3 "
+         "3L13 13M13 3L3 13\"/></svg><span class=\"words\" style=\"top:" +
+         fixed(-0.15 + 1.15 * line, 2) + "rem\">" + escape_html(words) + "</span></span>\n";
+}
+
+/// All failures; labels of neighbouring ones stand beneath one another.
+std::string failure_markers(const Results& results, const MapWindow& window) {
+  std::string html;
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    const auto p_W = failure_place(results.runs[i]);
+    if (!p_W) continue;
+    int line = 0;
+    for (std::size_t k = 0; k < i; ++k) {
+      const auto q_W = failure_place(results.runs[k]);
+      if (q_W && (*q_W - *p_W).norm() < 0.06 * window.size_m().maxCoeff()) ++line;
+    }
+    html += failure_marker(results.runs[i], i, window, line);
+  }
+  return html;
 }
 
 std::string overview(const Results& results, const MapDrawing& map) {
   const MapWindow window{results.drawing.min_W, results.drawing.max_W};
-  std::string svg = "<path class=\"route\" d=\"" + map.path(results.mission.route_W) + "\"/>\n";
+  std::string ribbons, estimates, tracks, missing;
   std::string html = waypoint_markers(results.mission, window);
-  std::string missing;
   const double tolerance_m = 1e-4 * window.size_m().maxCoeff();
-  // Mixed runs first, so that the compared pair lies on top.
-  for (std::size_t i = results.runs.size(); i-- > 0;) {
+  // Ribbons lie in one another, each narrower than the one before, so that the runs show where they drove the same way;
+  // of the estimates the first run's is uppermost.
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
     const Run& run = results.runs[i];
-    svg += draw_paths(map, run, i, nullptr, tolerance_m) + draw_track(map, run, i);
-    html += failure_marker(run, i, window);
+    ribbons += draw_ribbon(map, run, i, nullptr, tolerance_m, std::max(2.0, 11 - 2.8 * static_cast<double>(i)));
+    estimates.insert(0, draw_estimate(map, run, i, nullptr, tolerance_m));
+    tracks += draw_track(map, run, i);
     if (!run.nav)
       missing += note("The path of run " + run.fidelity + " is missing: the results hold no epochs/" + run.fidelity +
                       "_nav.csv.");
   }
+  html += failure_markers(results, window);
+  const std::string svg =
+      ribbons + "<path class=\"route\" d=\"" + map.path(results.mission.route_W) + "\"/>\n" + estimates + tracks;
   std::string description = show_count(static_cast<double>(results.drawing.buildings.size())) +
                             " buildings, the planned route through " +
                             count_of(static_cast<double>(results.mission.waypoints.size()), "waypoint", "waypoints") +
@@ -109,14 +137,15 @@ std::string close_up(const Results& results, const MapDrawing& map, std::size_t 
   const std::string what = failed ? outcome_label(run.failure->kind) : "largest horizontal error";
   const double t_s = nav["t_s"][*row];
   std::string svg = "<path class=\"route\" d=\"" + map.path(results.mission.route_W) + "\"/>\n";
-  svg += draw_paths(map, run, i, &window, 1e-3 * half_m) + draw_error_ties(map, run, i, window, 1.0);
-  std::string html = failure_marker(run, i, window);
+  svg += draw_ribbon(map, run, i, &window, 1e-3 * half_m, 7) + draw_estimate(map, run, i, &window, 1e-3 * half_m) +
+         draw_error_ties(map, run, i, window, 1.0);
+  std::string html = failure_marker(run, i, window, 0);
   if (!failed)
     html += "<span class=\"spot " + run_class(i) + "\" style=\"" + MapDrawing::place(window, truth) + "\"></span>\n";
   const std::string words =
       what + " at " + show_quantity(t_s, "s") +
       (std::isfinite(horizontal_m) ? ", estimate " + show_quantity(horizontal_m, "m") + " from truth" : "");
-  return "<figure class=\"" + run_class(i) + "\">\n" +
+  return "<figure class=\"solid " + run_class(i) + "\">\n" +
          map.window(window, "scene", "close-up-" + std::to_string(i), "Close-up of run " + run.fidelity, words + ".",
                     svg, html) +
          "<figcaption>" + run_tag(results.runs, i) + " " + escape_html(words) + "</figcaption>\n</figure>\n";

@@ -26,9 +26,9 @@ constexpr std::array<RunColour, 6> kRuns{{{"#0067a6", "#5ab8ee", "none"},
 
 /// Viridis at eight places: from pale to dark on a light page, from muted to bright on a dark one.
 constexpr std::size_t kErrorColours = 8;
-constexpr std::array<std::uint32_t, kErrorColours> kErrorLight{0xb6d54a, 0x73c766, 0x35b079, 0x1f958b,
-                                                               0x287a8e, 0x375a8c, 0x453781, 0x42023f};
-constexpr std::array<std::uint32_t, kErrorColours> kErrorDark{0x46408a, 0x39588c, 0x2e6f8e, 0x23888e,
+constexpr std::array<std::uint32_t, kErrorColours> kErrorLight{0xc4d296, 0x9dcb76, 0x58b97a, 0x259e86,
+                                                               0x247f8e, 0x375a8c, 0x453781, 0x42023f};
+constexpr std::array<std::uint32_t, kErrorColours> kErrorDark{0x433f6e, 0x3d5588, 0x2e6f8e, 0x23888e,
                                                               0x22a785, 0x5ec962, 0xaedc30, 0xfff15c};
 
 std::string hex(std::uint32_t rgb) {

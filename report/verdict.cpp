@@ -113,7 +113,7 @@ std::string circumstances(const Run& run) {
                     count_of(static_cast<double>(r.epochs), "epoch", "epochs") + " without a fix");
   }
   if (parts.empty()) return text;
-  return text + (text.empty() ? "" : " ") + "In the " + show_quantity(kBeforeFailure_s, "s") +
+  return text + (text.empty() ? "" : " ") + "In the " + show_quantity(kBeforeFailure_s, "s", 2) +
          " before: " + listed(parts) + ".";
 }
 

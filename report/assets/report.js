@@ -46,7 +46,7 @@
 
   const linesOf = (p) => {
     if (!p.lines) {
-      p.lines = [...p.plot.querySelectorAll(".line")].map((path) => ({ path, name: path.dataset.name, points: pointsOf(path) }));
+      p.lines = [...p.plot.querySelectorAll(".line")].map((path) => ({ path, name: path.dataset.name, points: pointsOf(path) })).reverse();
     }
     return p.lines;
   };

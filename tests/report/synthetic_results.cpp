@@ -68,7 +68,8 @@ void write_synthetic_results(const std::string& directory, const SyntheticOption
     const auto figure = [&](const char* key) {
       const auto of = [&](std::size_t i) { return summary["runs"][i][key]; };
       const std::size_t mixed = options.paper ? 3 : 2;
-      return ordered_json::array({ordered_json::array({of(0), of(mixed + 1)}), ordered_json::array({of(mixed), of(1)})});
+      return ordered_json::array(
+          {ordered_json::array({of(0), of(mixed + 1)}), ordered_json::array({of(mixed), of(1)})});
     };
     summary["two_by_two"] = {{"gnss", ordered_json::array({"low", "high"})},
                              {"imu", ordered_json::array({"low", "high"})},

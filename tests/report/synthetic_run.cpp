@@ -62,7 +62,7 @@ SyntheticRun::SyntheticRun(const SyntheticCity& city, const SyntheticOptions& op
 
 void SyntheticRun::drive() {
   const double length_m = city_.route_length_m();
-  const double end_m = fails_ ? 0.62 * length_m : length_m;
+  const double end_m = length_m * (!fails_ ? 1.0 : gnss_ == "paper" ? 0.84 : imu_ == "low" ? 0.63 : 0.62);
   double along_m = 0, stopped_s = 0;
   std::size_t next = 0;
   for (int k = 0; along_m < end_m || stopped_s > 0; ++k) {
@@ -92,7 +92,7 @@ const SyntheticRun::Epoch& SyntheticRun::epoch_at(double t_s) const {
 }
 
 SyntheticRun::Fix SyntheticRun::receive_at(std::size_t k, const Epoch& epoch) const {
-  const RandomStream random(kSeed, "synthetic.gnss");
+  const RandomStream random(kSeed, gnss_ == "paper" ? "synthetic.gnss.paper" : "synthetic.gnss");
   Fix fix{.t_s = epoch.t_s,
           .p = epoch.p,
           .solved = true,
@@ -260,16 +260,16 @@ void SyntheticRun::map() {
 nlohmann::ordered_json SyntheticRun::summary() const {
   using nlohmann::ordered_json;
   const auto or_null = [](double v) { return std::isfinite(v) ? ordered_json(v) : ordered_json(nullptr); };
-  ordered_json out{
-      {"fidelity", fidelity_}, {"gnss", gnss_}, {"imu", imu_}, {"outcome", fails_ ? "collision" : "success"}};
+  const char* kind = !fails_ ? "success" : gnss_ == "paper" ? "stuck" : "collision";
+  ordered_json out{{"fidelity", fidelity_}, {"gnss", gnss_}, {"imu", imu_}, {"outcome", kind}};
   const Epoch& last = epochs_.back();
   out["failure"] = nullptr;
   if (fails_) {
-    out["failure"] = {{"kind", "collision"},
+    out["failure"] = {{"kind", kind},
                       {"t_s", last.t_s},
                       {"x_m", last.p.x()},
                       {"y_m", last.p.y()},
-                      {"detail", "front right corner touched building 217"}};
+                      {"detail", gnss_ == "paper" ? "blocked for 20 s" : "front right corner touched building 217"}};
   }
   int reached = 0, mission_reached = 0;
   for (const auto& w : city_.waypoints) {
