@@ -131,7 +131,10 @@ GpsTime operator+(GpsTime t, double seconds) {
   CANYON_CHECK(std::abs(seconds) < 9.2e9, "seconds = ", seconds);  // also refuses NaN
   // Whole seconds apart: in one product, beyond 104 days the nanoseconds would not fit a double.
   const double whole = std::floor(seconds);
-  return {t.ns + static_cast<std::int64_t>(whole) * kNsPerSecond + std::llround((seconds - whole) * 1e9)};
+  const std::int64_t added = static_cast<std::int64_t>(whole) * kNsPerSecond + std::llround((seconds - whole) * 1e9);
+  std::int64_t sum = 0;
+  CANYON_CHECK(!__builtin_add_overflow(t.ns, added, &sum), "t = ", t.ns, " ns, seconds = ", seconds);
+  return {sum};
 }
 
 GpsTime operator-(GpsTime t, double seconds) {

@@ -40,7 +40,8 @@ struct CalendarTime {
 /// Calendar fields in GPS time. For UTC pass t minus leap_seconds().
 CalendarTime calendar(GpsTime t);
 
-/// t plus a duration in seconds, rounded to the nearest nanosecond.
+/// t plus a duration in seconds, rounded to the nearest nanosecond. A duration that is not finite, or leaves the range
+/// of 64 bits (year 2272), throws.
 GpsTime operator+(GpsTime t, double seconds);
 GpsTime operator-(GpsTime t, double seconds);
 /// a - b in seconds; exact to 1 ns for |a - b| < 104 days.

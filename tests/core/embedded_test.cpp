@@ -10,7 +10,9 @@
 namespace canyon {
 namespace {
 
-const std::filesystem::path kSourceTree = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
+const std::filesystem::path kSourceTree =
+#include "embedded/source_folder.inc"
+    ;
 
 TEST(Embedded, EveryFileHasTheBytesOfTheSourceTree) {
   for (const std::string_view key : embedded_files("")) {
