@@ -6,10 +6,11 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/gicp.h>
 
-#include "lidar/neighbour_grid.h"
+#include "lidar/neighbour_tree.h"
 #include "lidar/prepared_cloud.h"
 #include "lidar/registration_covariance.h"
 #include "lidar/registration_methods.h"
+#include "lidar/voxel_index.h"
 
 namespace canyon::lidar {
 namespace {
@@ -23,34 +24,33 @@ constexpr double kPlaneThickness =
     1e-3;  // epsilon of Segal et al. 2009: variance across a plane over variance along it
 constexpr double kTranslationEpsilon_m = 2e-4;
 constexpr double kRotationEpsilon_rad = 2e-5;
+// Normals come from neighbours up to some eight leaves away, so residuals correlate over twice that.
+constexpr double kBlock_leaves = 16.0;
 constexpr std::size_t kFewestPoints = 50;  // in the source, the target, and matched
 
-/// PCL's interface over our own grid: exact within the radius, and several times faster than FLANN's tree, which would
-/// be rebuilt for every new union of target clouds.
-class GridSearch final : public pcl::search::KdTree<Point> {
+/// PCL's interface over our own tree, which is bounded by the correspondence distance and builds and answers faster.
+/// Where nothing lies within it the distance is infinite: PCL takes "none found" for a broken tree and gives up.
+class TreeSearch final : public pcl::search::KdTree<Point> {
  public:
-  GridSearch(std::span<const Eigen::Vector3f> points, double cell_m, double radius_m)
-      : grid_(points, cell_m), radius_m_(radius_m) {}
+  TreeSearch(std::span<const Eigen::Vector3f> points, double radius_m)
+      : tree_(points), radius_m_(static_cast<float>(radius_m)) {}
 
-  int nearestKSearch(const Point& query, int k, pcl::Indices& indices, std::vector<float>& squared_m) const override {
-    indices.resize(1);
-    squared_m.resize(1);
-    grid_.nearest(query.getVector3fMap(), static_cast<std::size_t>(k), radius_m_, found_);
-    // PCL takes "none found" for a broken tree and gives up; a neighbour beyond its threshold is what it can digest.
-    indices[0] = found_.empty() ? 0 : static_cast<int>(found_[0].index);
-    squared_m[0] = found_.empty() ? std::numeric_limits<float>::max() : found_[0].squared_m;
+  int nearestKSearch(const Point& query, int, pcl::Indices& indices, std::vector<float>& squared_m) const override {
+    NeighbourTree::Neighbour nearest{std::numeric_limits<float>::infinity(), 0};
+    tree_.nearest(query.getVector3fMap(), radius_m_, {&nearest, 1});
+    indices.assign(1, static_cast<int>(nearest.index));
+    squared_m.assign(1, nearest.squared_m);
     return 1;
   }
 
  private:
-  NeighbourGrid grid_;
-  double radius_m_;
-  mutable std::vector<NeighbourGrid::Neighbour> found_;
+  NeighbourTree tree_;
+  float radius_m_;
 };
 
-/// PCL 1.13's generalized ICP with what it lacks: a Newton step in place of BFGS for the inner problem (PCL 1.14 made
-/// the same change; BFGS takes some hundred passes over the matches), the matches for a covariance, and an honest
-/// convergence flag (PCL reports "converged" also when it ran out of iterations).
+/// PCL 1.13's generalized ICP with what it lacks: a Newton step in place of BFGS for the inner problem (PCL 1.14
+/// made the same change; BFGS takes some hundred passes over the matches), the matches for a covariance, and an
+/// honest convergence flag (PCL reports "converged" also when it ran out of iterations).
 class Gicp final : public PclGicp {
  public:
   Gicp() {
@@ -139,30 +139,16 @@ class GicpRegistration final : public Registration {
     return std::make_shared<PreparedCloud>(prepare_cloud(points, config_.leaf_m));
   }
 
-  /// Works in the frame G of the guess: there PCL's own guess is the identity, so that single precision is spent on the
-  /// small correction and not on map coordinates.
+  /// Works in the frame G of the guess: there PCL's own guess is the identity, so that single precision is spent on
+  /// the small correction and not on map coordinates.
   RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
                            const Pose& guess) const override {
     RegistrationResult result;
     result.status = RegistrationStatus::kTooFewPoints;
     result.X_TS = guess;
 
-    const auto target_cloud = pcl::make_shared<Cloud>();
-    const auto target_covariances = pcl::make_shared<Matrices>();
-    std::vector<Eigen::Vector3f> target_points;
-    std::vector<float> target_tilt;
-    for (const Placed& placed : targets) {
-      const Pose X_GC = guess.inverse() * placed.X_TC;
-      const Eigen::Matrix3d R_GC = X_GC.R.toRotationMatrix();
-      for (std::size_t i = 0; i < placed.cloud->points.size(); ++i) {
-        const Eigen::Vector3f p = (R_GC * placed.cloud->points[i].cast<double>() + X_GC.p).cast<float>();
-        target_points.push_back(p);
-        target_cloud->push_back(Point(p.x(), p.y(), p.z()));
-        target_covariances->push_back(plane_covariance(R_GC * placed.cloud->normals[i].cast<double>()));
-        target_tilt.push_back(placed.cloud->tilt_variance[i]);
-      }
-    }
-    if (source.points.size() < kFewestPoints || target_points.size() < kFewestPoints) return result;
+    const Target target = unite(targets, guess);
+    if (source.points.size() < kFewestPoints || target.points.size() < kFewestPoints) return result;
 
     const auto source_cloud = pcl::make_shared<Cloud>();
     const auto source_covariances = pcl::make_shared<Matrices>();
@@ -179,13 +165,12 @@ class GicpRegistration final : public Registration {
     gicp.setTransformationEpsilon(kTranslationEpsilon_m);
     gicp.setRotationEpsilon(kRotationEpsilon_rad);
     // "true": PCL must not rebuild either tree; the source's is never asked.
-    gicp.setSearchMethodTarget(
-        pcl::make_shared<GridSearch>(target_points, config_.leaf_m, config_.max_correspondence_m), true);
+    gicp.setSearchMethodTarget(pcl::make_shared<TreeSearch>(target.points, config_.max_correspondence_m), true);
     gicp.setSearchMethodSource(pcl::make_shared<pcl::search::KdTree<Point>>(), true);
     gicp.setInputSource(source_cloud);
-    gicp.setInputTarget(target_cloud);
+    gicp.setInputTarget(target.cloud);
     gicp.setSourceCovariances(source_covariances);  // after the clouds, which reset them
-    gicp.setTargetCovariances(target_covariances);
+    gicp.setTargetCovariances(target.covariances);
     Cloud aligned;
     gicp.align(aligned);
 
@@ -194,14 +179,46 @@ class GicpRegistration final : public Registration {
     const Eigen::Matrix4d X_GS = gicp.getFinalTransformation();
     result.X_TS = guess * Pose::from_matrix(X_GS);
     result.status = gicp.settled() ? RegistrationStatus::kConverged : RegistrationStatus::kNotConverged;
-    const auto matches = gicp.correspondences(source, target_tilt, X_GS);
-    const RegistrationPrecision precision = registration_precision(matches, X_GS.topLeftCorner<3, 3>());
+    const auto matches = gicp.correspondences(source, target.tilt_variance, X_GS);
+    const RegistrationPrecision precision =
+        registration_precision(matches, X_GS.topLeftCorner<3, 3>(), kBlock_leaves * config_.leaf_m);
     result.covariance = precision.covariance;
     result.rms_m = precision.rms_m;
     return result;
   }
 
  private:
+  struct Target {
+    std::vector<Eigen::Vector3f> points;
+    std::vector<float> tilt_variance;
+    Cloud::Ptr cloud = pcl::make_shared<Cloud>();
+    PclGicp::MatricesVectorPtr covariances;
+  };
+
+  /// The union of the placed clouds in the frame of the guess. Where clouds overlap, a voxel belongs to the cloud
+  /// given last, normally the newest and thus best placed: the whole of ten overlapping keyframes costs twice as
+  /// much and registers no better.
+  Target unite(std::span<const Placed> targets, const Pose& guess) const {
+    Target target;
+    target.covariances = pcl::make_shared<Matrices>();
+    VoxelIndex voxels(config_.leaf_m, 10000);
+    for (std::size_t k = targets.size(); k-- > 0;) {
+      const PreparedCloud& cloud = *targets[k].cloud;
+      const Pose X_GC = guess.inverse() * targets[k].X_TC;
+      const Eigen::Matrix3d R_GC = X_GC.R.toRotationMatrix();
+      const std::uint32_t occupied = voxels.size();
+      for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+        const Eigen::Vector3f p = (R_GC * cloud.points[i].cast<double>() + X_GC.p).cast<float>();
+        if (voxels.insert(voxels.coordinates(p)) < occupied) continue;
+        target.points.push_back(p);
+        target.tilt_variance.push_back(cloud.tilt_variance[i]);
+        target.cloud->push_back(Point(p.x(), p.y(), p.z()));
+        target.covariances->push_back(plane_covariance(R_GC * cloud.normals[i].cast<double>()));
+      }
+    }
+    return target;
+  }
+
   RegistrationConfig config_;
 };
 

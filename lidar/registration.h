@@ -31,9 +31,9 @@ enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints };
 struct RegistrationResult {
   RegistrationStatus status = RegistrationStatus::kNotConverged;
   Pose X_TS;                                       ///< a point of source in target's frame
-  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of xi, source frame; from the cost's curvature
+  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of xi, source frame; see registration_covariance.h
   int iterations = 0;
-  double rms_m = kNaN;  ///< of inlier correspondences
+  double rms_m = kNaN;  ///< of the matched points' distances along the surface normals
 };
 
 /// A keyframe's cloud made ready for registration: thinned, with per-point covariances.
@@ -49,7 +49,8 @@ class Registration {
     std::shared_ptr<const PreparedCloud> cloud;
     Pose X_TC;  ///< pose of the cloud in the target frame
   };
-  /// Aligns `source` onto the union of `targets`, starting from `guess` = X_TS.
+  /// Aligns `source` onto the union of `targets`, starting from `guess` = X_TS. Where targets overlap the last one
+  /// counts.
   virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
                                    const Pose& guess) const = 0;
 };

@@ -1,58 +1,99 @@
 #include "lidar/registration_covariance.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include "core/check.h"
+#include "lidar/voxel_index.h"
 
 namespace canyon::lidar {
 namespace {
 
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
-// Below 1 mm the residuals of noise-free test data say more about rounding than about the sensor.
-constexpr double kSmallestRms_m = 1e-3;
+constexpr double kAlongSurface = 0.5;  // eigenvalue of M in the plane of two unit-variance patches
+constexpr std::size_t kFewestBlocks = 24;
 // Curvature must exceed what errors of the normals alone would show by this factor.
 constexpr double kSignificance = 2.0;
 
-}  // namespace
-
-RegistrationPrecision registration_precision(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS) {
-  CANYON_CHECK(matches.size() > 6, "matches = ", matches.size());
+/// Sums over all matches; names as in the header.
+struct Sums {
+  Matrix6d A = Matrix6d::Zero();
   Matrix6d H = Matrix6d::Zero();
   Matrix6d N = Matrix6d::Zero();
-  double cost = 0, weight_sum = 0, radius2 = 0;
+  double cost = 0;     // d^T M' d
+  double weight = 0;   // tr M'
+  double radius2 = 0;  // |p_S|^2
+  std::vector<Vector6d> block_gradients;
+};
+
+Sums sum_up(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS, double block_m) {
+  Sums sums;
+  VoxelIndex blocks(block_m);
   for (const Correspondence& match : matches) {
     Matrix36d J;
     J << -R_TS * skew(match.p_S), R_TS;
-    const Eigen::Matrix3d across = match.information - 0.5 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d across = match.information - kAlongSurface * Eigen::Matrix3d::Identity();
     const double weight = across.trace();
-    H += J.transpose() * across * J;
-    N += match.tilt_variance * (weight * (J.transpose() * J) - J.transpose() * across * J);
-    cost += match.residual.dot(across * match.residual);
-    weight_sum += weight;
-    radius2 += match.p_S.squaredNorm();
+    const Matrix6d JtJ = J.transpose() * J;
+    const Matrix6d curvature = J.transpose() * across * J;
+    sums.A += curvature + kAlongSurface * JtJ;
+    sums.H += curvature;
+    sums.N += match.tilt_variance * (weight * JtJ - curvature);
+    sums.cost += match.residual.dot(across * match.residual);
+    sums.weight += weight;
+    sums.radius2 += match.p_S.squaredNorm();
+    const std::uint32_t block = blocks.insert(blocks.coordinates(match.p_S.cast<float>()));
+    if (block == sums.block_gradients.size()) sums.block_gradients.push_back(Vector6d::Zero());
+    sums.block_gradients[block] += J.transpose() * (match.information * match.residual);
   }
+  return sums;
+}
+
+Matrix6d gradient_scatter(const Sums& sums, double n) {
+  const auto b = static_cast<double>(sums.block_gradients.size());
+  if (sums.block_gradients.size() < kFewestBlocks) return sums.cost / (n - 6.0) * (n / b) * sums.A;
+  Matrix6d B = Matrix6d::Zero();
+  for (const Vector6d& g : sums.block_gradients) B += g * g.transpose();
+  return b / (b - 6.0) * B;
+}
+
+}  // namespace
+
+RegistrationPrecision registration_precision(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS,
+                                             double block_m) {
+  CANYON_CHECK(matches.size() > 6, "matches = ", matches.size());
+  const Sums sums = sum_up(matches, R_TS, block_m);
   const auto n = static_cast<double>(matches.size());
   RegistrationPrecision precision;
-  precision.rms_m = std::sqrt(cost / weight_sum);
-  const double variance = std::max(cost, kSmallestRms_m * kSmallestRms_m * weight_sum) / (n - 6.0);
+  precision.rms_m = sums.weight > 0 ? std::sqrt(std::max(0.0, sums.cost) / sums.weight) : 0.0;
 
-  // A trace of isotropic noise keeps N positive definite when the normals are perfect.
+  // Metres and radians made comparable at the cloud's rms radius; a trace of it keeps N definite when normals are
+  // perfect.
   Matrix6d metric = Matrix6d::Identity();
-  metric.topLeftCorner<3, 3>() *= radius2 / n;
-  N += 1e-9 * weight_sum * metric;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> eigen(H, N);
-  precision.covariance.setZero();
+  metric.topLeftCorner<3, 3>() *= sums.radius2 / n;
+  const Matrix6d N = sums.N + 1e-9 * (sums.weight + kAlongSurface * n) * metric;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix6d> eigen(sums.H, N);
+  const Matrix6d& V = eigen.eigenvectors();  // V^T N V = I
+  Vector6d gain = Vector6d::Zero();
+  Matrix6d open = Matrix6d::Zero();
   for (int k = 0; k < 6; ++k) {
-    const Vector6d v = eigen.eigenvectors().col(k);  // v^T N v = 1
-    const double curvature = eigen.eigenvalues()[k] - kSignificance;
-    const double open = kUnconstrainedSigma_m * kUnconstrainedSigma_m / v.dot(metric * v);
-    const double along = curvature > 0 ? variance / curvature : open;
-    precision.unconstrained += !(along < open);
-    precision.covariance += std::min(along, open) * v * v.transpose();
+    const double ratio = eigen.eigenvalues()[k];
+    if (ratio > kSignificance) {
+      gain[k] = ratio / (ratio - kSignificance);
+      continue;
+    }
+    const Vector6d v = V.col(k);
+    open += kUnconstrainedSigma_m * kUnconstrainedSigma_m / v.dot(metric * v) * v * v.transpose();
+    ++precision.unconstrained;
   }
+  const Matrix6d T = V * gain.asDiagonal() * V.transpose() * N * sums.A.inverse();
+  precision.covariance = T * gradient_scatter(sums, n) * T.transpose() + open;
+  precision.covariance = 0.5 * (precision.covariance + precision.covariance.transpose()).eval();
   return precision;
 }
 
