@@ -16,6 +16,8 @@ enum TraceMask : std::uint32_t { kTraceTerrain = 1, kTraceSolid = 2, kTraceTree 
 ///
 /// The ray tracer finds the triangle in single precision (watertight); the range is then computed in double precision
 /// from the ray and that triangle, so that it is the same on every CPU and for single rays and packets alike.
+/// Embree advises to flush denormal numbers to zero; that mode is not set, since it belongs to the calling thread and
+/// would change the arithmetic of everything else there.
 class Tracer {
  public:
   explicit Tracer(const SceneParts& parts);
@@ -23,6 +25,7 @@ class Tracer {
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
+  /// As SceneAt's; origins, directions and points must be finite.
   Hit trace(const Ray& ray) const;
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
   /// Anything of `mask` at ranges (min_m, max_m)?
