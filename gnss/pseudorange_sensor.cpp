@@ -78,10 +78,10 @@ class PseudorangeSensor final : public GnssSensor {
       out.truth.satellites.push_back(truth);
     }
 
-    const FixComputer receiver{*parts_.constellation, *parts_.mode, *parts_.solver, config_.solver_sigma_m,
-                               frame_.origin_E()};
+    const ReceiverParts receiver{*parts_.constellation, *parts_.mode, *parts_.solver, config_.solver_sigma_m,
+                                 frame_.origin_E()};
     std::vector<Correction> corrections;
-    out.fix = receiver.compute(out.epoch, t, inputs, corrections);
+    out.fix = compute_fix(receiver, t, out.epoch, inputs, corrections);
     for (std::size_t k = 0; k < corrections.size(); ++k)
       keep_residual(corrections[k], out.truth.satellites[truth_of[k]]);
     return out;

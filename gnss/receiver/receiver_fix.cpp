@@ -26,43 +26,56 @@ std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, con
   return ranges;
 }
 
-}  // namespace
-
-GnssFix FixComputer::compute(GnssEpoch& epoch, GpsTime t, std::span<CorrectionInput> inputs,
-                             std::vector<Correction>& corrections) const {
-  auto& observations = epoch.observations;
-  CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
-               " observations");
-  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, constellation);
-  corrections.assign(observations.size(), {});
-
-  // Where am I, roughly: uncorrected ranges are good for some tens of metres, and elevations need no more.
-  Eigen::Vector3d at_E = guess_E;
-  if (const auto rough = solver.solve(ranges, guess_E); rough.ok) at_E = rough.p_E;
-
+/// Everything that depends on where the receiver believes to be.
+void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at_E, GnssEpoch& epoch,
+             std::span<CorrectionInput> inputs, std::vector<Correction>& corrections,
+             std::vector<RangeMeasurement>& ranges) {
   const Horizon horizon(at_E);
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    auto& o = observations[i];
-    const double travel_s = (ranges[i].p_E - at_E).norm() / kSpeedOfLight;
-    o.p_E = turned_by_earth(ranges[i].p_E, travel_s);
-    o.v_E = turned_by_earth(o.v_E, travel_s);
+  for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
+    auto& o = epoch.observations[i];
+    o.p_E = turned_by_earth(ranges[i].p_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
     SkyView& view = inputs[i].receivers_view;
     view = horizon.view(t, o.p_E);
     view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
-    corrections[i] = mode.correction(inputs[i]);
+    corrections[i] = receiver.mode.correction(inputs[i]);
     o.correction_m = corrections[i].total_m();
-    o.sigma_m = zenith_sigma_m / std::sin(view.elevation_rad);
+    o.sigma_m = receiver.zenith_sigma_m / std::sin(view.elevation_rad);
     ranges[i].range_m = o.corrected_m();
     ranges[i].sigma_m = o.sigma_m;
   }
+}
 
-  const PositionSolution solution = solver.solve(ranges, at_E);
+}  // namespace
+
+GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
+                    std::vector<Correction>& corrections) {
+  auto& observations = epoch.observations;
+  CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
+               " observations");
+  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation);
+  corrections.assign(observations.size(), {});
+
+  // Uncorrected ranges tell the position to some tens of metres; corrected for elevations and heights there, to metres;
+  // a third pass would change corrections by less than a millimetre.
+  Eigen::Vector3d at_E = receiver.guess_E;
+  if (const auto rough = receiver.solver.solve(ranges, receiver.guess_E); rough.ok) at_E = rough.p_E;
+  PositionSolution solution;
+  constexpr int kPasses = 2;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    correct(receiver, t, at_E, epoch, inputs, corrections, ranges);
+    solution = receiver.solver.solve(ranges, at_E);
+    if (solution.ok) at_E = solution.p_E;
+  }
+
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    observations[i].v_E = turned_by_earth(observations[i].v_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
+
   GnssFix fix;
   fix.t = t;
   fix.dop = solution.dop;
   fix.reason = solution.reason;
   if (!solution.ok) return fix;
-  fix.status = mode.status();
+  fix.status = receiver.mode.status();
   fix.p_A_E = solution.p_E;
   fix.covariance_E = solution.covariance_E;
   fix.clock_m = solution.clock_m;

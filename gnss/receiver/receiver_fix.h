@@ -10,20 +10,20 @@
 
 namespace canyon::gnss {
 
-/// The receiver's own work: from pseudoranges to a fix, knowing only what a receiver knows.
-struct FixComputer {
+/// What a receiver knows and uses.
+struct ReceiverParts {
   const Constellation& constellation;
   const ReceiverMode& mode;
   const PositionSolver& solver;
   double zenith_sigma_m = 0.5;  ///< assumed for a corrected pseudorange, grows with 1 / sin(elevation)
-  Eigen::Vector3d guess_E;  ///< rough position, for elevations before there is a fix; some kilometres are good enough
-
-  /// Completes the observations (satellite position, velocity, clock, correction, sigma, used) and solves them.
-  /// `inputs` runs parallel to epoch.observations; its receivers_view is filled in. `corrections` gets what was
-  /// subtracted. The fix carries the time `t` and not the receiver clock's reading epoch.t: a receiver corrects its own
-  /// time tag with the clock that it solves.
-  GnssFix compute(GnssEpoch& epoch, GpsTime t, std::span<CorrectionInput> inputs,
-                  std::vector<Correction>& corrections) const;
+  Eigen::Vector3d guess_E;      ///< rough position, used while there is no fix; some kilometres are good enough
 };
+
+/// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,
+/// clock, correction, sigma, used) and solves them. `inputs` runs parallel to epoch.observations; its receivers_view is
+/// filled in. `corrections` gets what was subtracted. The fix carries the time `t` and not the receiver clock's reading
+/// epoch.t: a receiver corrects its own time tag with the clock that it solves.
+GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
+                    std::vector<Correction>& corrections);
 
 }  // namespace canyon::gnss

@@ -1,0 +1,79 @@
+#include "gnss/paths/fresnel.h"
+
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "gnss/signal.h"
+#include "scene/material.h"
+#include "tests/support/test_data.h"
+
+namespace canyon::gnss {
+namespace {
+
+void expect_row(std::complex<double> eta, double incidence_deg, double te, double tm, double cross, double co) {
+  const Fresnel r = fresnel(eta, incidence_deg * kDegree);
+  EXPECT_NEAR(std::abs(r.te), te, 1e-3) << eta << " at " << incidence_deg;
+  EXPECT_NEAR(std::abs(r.tm), tm, 1e-3) << eta << " at " << incidence_deg;
+  EXPECT_NEAR(std::abs(r.cross), cross, 1e-3) << eta << " at " << incidence_deg;
+  EXPECT_NEAR(std::abs(r.co), co, 1e-3) << eta << " at " << incidence_deg;
+}
+
+// The whole table of an independent computation, to its three digits.
+TEST(Fresnel, TablesAtL1) {
+  CANYON_REAL_DATA(path, "materials/fresnel_L1_tables.txt");
+  std::ifstream file(path);
+  std::string line;
+  double eps = 0.0, sigma = 0.0;
+  int rows = 0;
+  while (std::getline(file, line)) {
+    double angle, te, tm, cross, co;
+    if (const auto at = line.find(" eps "); at != std::string::npos) {
+      ASSERT_EQ(std::sscanf(line.c_str() + at, " eps %lf sigma %lf", &eps, &sigma), 2);
+    } else if (std::sscanf(line.c_str(), " %lf: TE %lf TM %lf | RHCP->LHCP %lf (%*f dB) RHCP->RHCP %lf", &angle, &te,
+                           &tm, &cross, &co) == 5) {
+      expect_row({eps, -17.98 * sigma / (kL1Hz * 1e-9)}, angle, te, tm, cross, co);
+      ++rows;
+    }
+  }
+  EXPECT_GE(rows, 60);
+}
+
+// Twin: rows of that table for concrete and metal, with the permittivities of the built-in materials.
+TEST(Fresnel, ConcreteAndMetal) {
+  for (const auto& m : scene::builtin_materials()) {
+    const auto eta = m.permittivity(kL1Hz);
+    if (m.name == "concrete") {
+      expect_row(eta, 0, 0.396, 0.396, 0.396, 0.000);
+      expect_row(eta, 45, 0.513, 0.264, 0.388, 0.125);
+      expect_row(eta, 60, 0.621, 0.111, 0.365, 0.257);
+      expect_row(eta, 85, 0.920, 0.637, 0.142, 0.778);
+    }
+    if (m.name == "metal") expect_row(eta, 60, 1.0, 1.0, 1.0, 0.0);
+  }
+}
+
+TEST(Fresnel, LimitsAndBrewster) {
+  const std::complex<double> glass(6.31, 0.0);
+  // Normal incidence: (1 - n)/(1 + n), the sense of rotation reverses whole. Grazing: -1, it stays whole.
+  const double n = std::sqrt(6.31);
+  EXPECT_NEAR(std::abs(fresnel(glass, 0.0).te), (n - 1.0) / (n + 1.0), 1e-15);
+  EXPECT_NEAR(std::abs(fresnel(glass, 0.0).co), 0.0, 1e-15);
+  EXPECT_NEAR(std::abs(fresnel(glass, kPi / 2).co), 1.0, 1e-14);
+  // Without loss the TM part vanishes at tan(i) = n; both circular parts are then equal.
+  const Fresnel b = fresnel(glass, std::atan(n));
+  EXPECT_NEAR(std::abs(b.tm), 0.0, 1e-14);
+  EXPECT_NEAR(std::abs(b.co), std::abs(b.cross), 1e-14);
+  // Vacuum reflects nothing.
+  EXPECT_EQ(std::abs(fresnel(1.0, 1.0).te), 0.0);
+  // A passive surface never gives back more than it gets: |co|^2 + |cross|^2 <= 1.
+  for (double incidence = 0.0; incidence < kPi / 2; incidence += 0.01) {
+    const Fresnel r = fresnel({15.0, -3.0}, incidence);
+    EXPECT_LE(std::norm(r.co) + std::norm(r.cross), 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace canyon::gnss

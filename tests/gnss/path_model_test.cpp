@@ -1,0 +1,187 @@
+#include "gnss/paths/path_model.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "core/units.h"
+#include "gnss/signal.h"
+#include "tests/gnss/wall_scene.h"
+
+namespace canyon::gnss {
+namespace {
+
+using testing::direction;
+using testing::WallScene;
+
+const Eigen::Vector3d kAntenna(0.0, 0.0, 2.0);
+
+std::vector<SignalPaths> trace(const PathModel& model, const scene::Scene& scene,
+                               const std::vector<Eigen::Vector3d>& directions,
+                               const Eigen::Vector3d& antenna = kAntenna, GnssCounters* counters = nullptr) {
+  std::vector<SignalPaths> out(directions.size());
+  GnssCounters own;
+  model.trace(antenna, directions, scene::SceneAt(scene), out, counters != nullptr ? *counters : own);
+  return out;
+}
+
+/// A wall x = -distance that faces east.
+WallScene west_wall(double distance_m, double half_width_m = 400.0, double height_m = 800.0,
+                    const std::string& material = "concrete") {
+  return WallScene().wall({-distance_m, -half_width_m, -50.0}, {0, 2.0 * half_width_m, 0}, {0, 0, height_m}, material);
+}
+
+TEST(PathModel, NoneSeesEverything) {
+  const auto scene = west_wall(5.0).build();
+  for (const auto& p :
+       trace(*find_model(path_models(), "none")->make({}), *scene, {direction(270, 20), direction(90, 20)})) {
+    EXPECT_TRUE(p.line_of_sight);
+    EXPECT_TRUE(p.reflections.empty());
+  }
+}
+
+TEST(PathModel, VisibilityIsTheSilhouette) {
+  const auto scene = WallScene().box({-30, -500, 0}, {-20, 500, 22}).build();
+  const auto model = make_visibility({});
+  GnssCounters counters;
+  // The roof edge stands 20 m above the antenna at 20 m: 45 deg towards the west.
+  const auto paths =
+      trace(*model, *scene, {direction(270, 44.9), direction(270, 45.1), direction(90, 10)}, kAntenna, &counters);
+  EXPECT_FALSE(paths[0].line_of_sight);
+  EXPECT_TRUE(paths[1].line_of_sight);
+  EXPECT_TRUE(paths[2].line_of_sight);
+  EXPECT_EQ(counters.occlusion_rays, 3);
+  EXPECT_FALSE(scene->facets_built());  // visibility alone never pays for facets
+}
+
+TEST(PathModel, FoliageAttenuatesAndDoesNotBlock) {
+  const auto scene = WallScene().box({-3000, -3000, -20}, {-2990, -2990, -10}).crown({10, 0, 12}, {4, 4, 4}).build();
+  const auto paths = trace(*make_visibility({}), *scene, {direction(90, 45), direction(270, 45)});
+  EXPECT_TRUE(paths[0].line_of_sight);
+  EXPECT_NEAR(paths[0].foliage_m, 8.0, 1e-6);  // through the centre
+  EXPECT_EQ(paths[1].foliage_m, 0.0);
+}
+
+// One wall, closed form: excess 2 d cos(i), cos(i) = cos(el) sin(az) for a wall that faces east; a reflection exists
+// exactly for the satellites in front of it.
+TEST(Specular1, SingleWallAgainstTheClosedForm) {
+  const double distance_m = 12.5;
+  const auto scene = west_wall(distance_m).build();
+  const auto model = make_specular1({1000.0});
+  int found = 0;
+  for (double az = 2.0; az < 360.0; az += 7.0) {
+    for (double el = 5.0; el < 80.0; el += 7.5) {
+      const auto paths = trace(*model, *scene, {direction(az, el)});
+      const double cos_incidence = std::cos(el * kDegree) * std::sin(az * kDegree);
+      const double leg_m = distance_m / std::abs(cos_incidence);
+      // Where the wave, reflected or direct, meets the plane of the wall: within its 2 x 400 m and up to 750 m?
+      const double y_m = leg_m * std::cos(el * kDegree) * std::cos(az * kDegree),
+                   z_m = 2.0 + leg_m * std::sin(el * kDegree);
+      const bool meets = std::abs(y_m) <= 400.0 && z_m <= 750.0;
+      const bool expected = cos_incidence > 0.0 && leg_m <= 1000.0 && meets;
+      ASSERT_EQ(paths[0].reflections.size(), expected ? 1u : 0u) << az << " " << el;
+      EXPECT_EQ(paths[0].line_of_sight, cos_incidence > 0.0 || !meets) << az << " " << el;
+      if (!expected) continue;
+      const Reflection& r = paths[0].reflections[0];
+      EXPECT_NEAR(r.excess_m, 2.0 * distance_m * cos_incidence, 1e-12 * leg_m);
+      EXPECT_NEAR(std::cos(r.incidence_rad), cos_incidence, 1e-12);
+      EXPECT_NEAR(r.arrival_W.norm(), 1.0, 1e-14);
+      // Plane wave: the excess is also leg - leg . direction, whatever formula gave it.
+      EXPECT_NEAR(r.excess_m, leg_m * (1.0 - r.arrival_W.dot(direction(az, el))), 1e-11 * leg_m);
+      ++found;
+    }
+  }
+  EXPECT_GT(found, 150);
+}
+
+TEST(Specular1, ReachIsTheDistanceOfTheReflectionPoint) {
+  const auto scene = west_wall(40.0).build();
+  const Eigen::Vector3d s = direction(90, 60);  // cos(i) = 0.5: the reflection point is 80 m away, excess 40 m
+  EXPECT_EQ(trace(*make_specular1({79.9}), *scene, {s})[0].reflections.size(), 0u);
+  EXPECT_EQ(trace(*make_specular1({80.1}), *scene, {s})[0].reflections.size(), 1u);
+}
+
+TEST(Specular1, BlockedLegsGiveNothing) {
+  const Eigen::Vector3d s = direction(90, 30);
+  const auto model = make_specular1({150.0});
+  // Reflection point at (-20, 0, 2 + 20 tan 30 = 13.5).
+  EXPECT_EQ(trace(*model, *west_wall(20.0).build(), {s})[0].reflections.size(), 1u);
+  // A screen between antenna and reflection point, which leaves the direct way free.
+  auto inner = west_wall(20.0);
+  inner.box({-10.5, -1, 6}, {-10, 1, 9}, "absorber");
+  const auto inside = trace(*model, *inner.build(), {s})[0];
+  EXPECT_TRUE(inside.line_of_sight);
+  EXPECT_EQ(inside.reflections.size(), 0u);
+  // A screen between reflection point and satellite: the incoming way is 11.55 m above the direct one at the antenna's
+  // x = 0.
+  auto outer = west_wall(20.0);
+  outer.box({5, -1, 26}, {5.5, 1, 30}, "absorber");
+  const auto outside = trace(*model, *outer.build(), {s})[0];
+  EXPECT_TRUE(outside.line_of_sight);
+  EXPECT_EQ(outside.reflections.size(), 0u);
+  // A screen that blocks only the direct way.
+  auto direct = west_wall(20.0);
+  direct.box({5, -1, 3.5}, {5.5, 1, 6.5}, "absorber");
+  const auto nlos = trace(*model, *direct.build(), {s})[0];
+  EXPECT_FALSE(nlos.line_of_sight);
+  ASSERT_EQ(nlos.reflections.size(), 1u);
+  EXPECT_NEAR(nlos.reflections[0].excess_m, 40.0 * std::cos(30 * kDegree), 1e-9);
+}
+
+TEST(Specular1, AbsorbersReflectNothingAndBlockStill) {
+  const auto scene = west_wall(20.0, 400.0, 800.0, "absorber").build();
+  const auto paths = trace(*make_specular1({150.0}), *scene, {direction(90, 30), direction(270, 30)});
+  EXPECT_TRUE(paths[0].reflections.empty());
+  EXPECT_FALSE(paths[1].line_of_sight);
+}
+
+TEST(Specular1, MaterialGivesTheCoefficients) {
+  const auto scene = west_wall(20.0, 400.0, 800.0, "glass").build();
+  const auto paths = trace(*make_specular1({150.0}), *scene, {direction(90, 45)});
+  ASSERT_EQ(paths[0].reflections.size(), 1u);
+  EXPECT_NEAR(std::abs(paths[0].reflections[0].coefficients.cross), 0.422, 1e-3);  // glass at 45 deg
+}
+
+// Reflections come sorted by excess, and each satisfies the law of reflection with a clear way; the street canyon has
+// two walls.
+TEST(Specular1, StreetCanyon) {
+  auto walls = WallScene().box({-60, -300, 0}, {-12, 300, 60});
+  walls.box({9, -300, 0}, {60, 300, 60}, "glass");
+  const auto scene = walls.build();
+  const RandomStream random(3, "test.directions");
+  std::vector<Eigen::Vector3d> directions;
+  for (std::uint64_t i = 0; i < 400; ++i)
+    directions.push_back(direction(random.uniform(0, 360, 0, i), random.uniform(5, 89, 1, i)));
+  const auto paths = trace(*make_specular1({150.0}), *scene, directions);
+  std::size_t reflections = 0, blocked = 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    blocked += paths[i].line_of_sight ? 0u : 1u;
+    for (std::size_t k = 0; k < paths[i].reflections.size(); ++k) {
+      const Reflection& r = paths[i].reflections[k];
+      ++reflections;
+      EXPECT_GE(r.excess_m, k > 0 ? paths[i].reflections[k - 1].excess_m : 0.0);
+      const scene::Facet& f = scene->facets().facets()[r.facet];
+      const double to_plane_m = f.normal_W.dot(kAntenna) - f.offset_m;
+      EXPECT_NEAR(r.excess_m, 2.0 * to_plane_m * f.normal_W.dot(directions[i]), 1e-9);
+      EXPECT_NEAR((r.arrival_W - directions[i]).cross(f.normal_W).norm(), 0.0, 1e-12);
+    }
+  }
+  EXPECT_GT(reflections, 50u);
+  EXPECT_GT(blocked, 100u);
+}
+
+TEST(Specular1, FoliageOnEitherLegCounts) {
+  const Eigen::Vector3d s = direction(90, 30);
+  auto walls = west_wall(20.0);
+  walls.crown({-10, 0, 2 + 10 * std::tan(30 * kDegree)}, {2, 2, 2});
+  const auto paths = trace(*make_specular1({150.0}), *walls.build(), {s});
+  ASSERT_EQ(paths[0].reflections.size(), 1u);
+  EXPECT_EQ(paths[0].foliage_m, 0.0);
+  // The traced leg ends 2 cm in front of the wall, so it passes the crown's centre within 2 cm: the chord is short of 4
+  // m by 1e-4.
+  EXPECT_NEAR(paths[0].reflections[0].foliage_m, 4.0, 2e-4);
+}
+
+}  // namespace
+}  // namespace canyon::gnss

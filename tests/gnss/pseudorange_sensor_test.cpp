@@ -1,0 +1,431 @@
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/files.h"
+#include "core/units.h"
+#include "gnss/sensor.h"
+#include "gnss/signal.h"
+#include "scene/scene_at.h"
+#include "tests/gnss/nav_text.h"
+#include "tests/gnss/wall_scene.h"
+#include "tests/support/test_data.h"
+
+namespace canyon::gnss {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::WallScene;
+
+const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+
+/// Every error off, clocks and Earth rotation on.
+GnssConfig errors_off() {
+  GnssConfig c;
+  c.mode = "single_uncorrected";
+  c.ionosphere = c.troposphere = c.ephemeris_error = "none";
+  c.paths = c.multipath_rule = "none";
+  c.code_noise_m = 0.0;
+  c.mask_deg = 5.0;
+  return c;
+}
+
+/// Errors on, open sky.
+GnssConfig open_sky(const std::string& mode) {
+  GnssConfig c;
+  c.mode = mode;
+  c.paths = c.multipath_rule = "none";
+  return c;
+}
+
+class PseudorangeSensorTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<GnssSensor> make(const GnssConfig& config, std::uint64_t seed = 1, GpsTime start = kStart) {
+    auto sensor = make_gnss_sensor(config, seed, start, start + 480.0, *scene);
+    EXPECT_TRUE(sensor.ok()) << sensor.error().str();
+    return *std::move(sensor);
+  }
+  std::string error_of(const GnssConfig& config) {
+    const auto sensor = make_gnss_sensor(config, 1, kStart, kStart + 480.0, *scene);
+    return sensor.ok() ? "no error" : sensor.error().str();
+  }
+  GnssOutput measure(GnssSensor& sensor, std::int64_t index, GpsTime start = kStart) {
+    return sensor.measure(index, start + 0.5 * static_cast<double>(index), antenna_W, still, scene::SceneAt(*scene));
+  }
+  Eigen::Vector3d truth_E() const { return scene->frame().to_E(antenna_W); }
+
+  // A street canyon: walls 12 m to the west and 9 m to the east, open to north and south.
+  std::unique_ptr<scene::Scene> scene =
+      WallScene().box({-60, -300, 0}, {-12, 300, 30}).box({9, -300, 0}, {60, 300, 18}, "glass").build();
+  Eigen::Vector3d antenna_W{0, 0, 2}, still = Eigen::Vector3d::Zero();
+};
+
+TEST_F(PseudorangeSensorTest, WithoutErrorsTheFixIsTheTruth) {
+  for (const char* clock : {"none", "tcxo"}) {
+    GnssConfig c = errors_off();
+    c.receiver_clock = clock;
+    const auto sensor = make(c);
+    for (const std::int64_t k : {0, 1, 100, 100000}) {
+      const GnssOutput out = measure(*sensor, k);
+      ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+      // 1 ns of time resolution moves a satellite by 4e-6 m; times the DOP.
+      EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4) << clock << " " << k;
+      EXPECT_NEAR(out.fix.clock_m, out.truth.receiver_clock_m, 1e-4);
+      EXPECT_EQ(out.fix.t, out.truth.t);
+      EXPECT_NEAR(out.epoch.t - out.fix.t, out.truth.receiver_clock_m / kSpeedOfLight, 1e-9);
+    }
+  }
+}
+
+TEST_F(PseudorangeSensorTest, TrilaterationWithoutErrorsIsTheTruth) {
+  GnssConfig c = errors_off();
+  c.solver = "trilateration";
+  c.receiver_clock = "none";
+  const GnssOutput out = measure(*make(c), 7);
+  ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+  EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4);
+  EXPECT_TRUE(std::isnan(out.fix.clock_m));
+}
+
+// The truth record accounts for every metre of every pseudorange, in every mode.
+TEST_F(PseudorangeSensorTest, ErrorsOfTheTruthRecordAddUp) {
+  for (const char* mode : {"single", "single_uncorrected", "dgps", "dgps_paper"}) {
+    GnssConfig c;
+    c.mode = mode;
+    c.multipath_rule = "correlator";
+    const auto sensor = make(c);
+    int checked = 0;
+    for (std::int64_t k = 0; k < 20; ++k) {
+      const GnssOutput out = measure(*sensor, k);
+      std::size_t i = 0;
+      for (const auto& truth : out.truth.satellites) {
+        if (!truth.tracked) continue;
+        const GnssObservation& o = out.epoch.observations[i++];
+        ASSERT_EQ(o.sv, truth.sv);
+        const double error_m =
+            truth.multipath_m + truth.ionosphere_m + truth.troposphere_m + truth.ephemeris_m + truth.noise_m;
+        // eps of 2.5e7 m, and satellites told from the pseudorange: delays of up to 100 m shift them by 0.3 mm along
+        // the line.
+        EXPECT_NEAR(o.corrected_m() - truth.range_m - out.truth.receiver_clock_m, error_m, 1e-3) << mode << o.sv.str();
+        EXPECT_NEAR((o.p_E - out.truth.p_A_E).norm(), truth.range_m,
+                    1e-3 + 3e-6 * std::abs(error_m) + 1e-5 * std::abs(truth.multipath_m));
+        ++checked;
+      }
+      EXPECT_EQ(i, out.epoch.observations.size());
+    }
+    EXPECT_GT(checked, 40) << mode;
+  }
+}
+
+TEST_F(PseudorangeSensorTest, SameSeedSameBitsInAnyOrder) {
+  GnssConfig c;
+  const auto a = make(c), b = make(c);
+  std::vector<GnssOutput> forward;
+  for (std::int64_t k = 0; k < 8; ++k) forward.push_back(measure(*a, k));
+  for (std::int64_t k = 7; k >= 0; --k) {
+    const GnssOutput out = measure(*b, k);
+    const GnssOutput& want = forward[static_cast<std::size_t>(k)];
+    ASSERT_EQ(out.epoch.observations.size(), want.epoch.observations.size());
+    for (std::size_t i = 0; i < out.epoch.observations.size(); ++i)
+      EXPECT_EQ(out.epoch.observations[i].pseudorange_m, want.epoch.observations[i].pseudorange_m);
+    EXPECT_EQ(out.fix.status, want.fix.status);
+    if (want.fix.status != FixStatus::kNone) {
+      EXPECT_EQ(out.fix.p_A_E, want.fix.p_A_E);
+    }
+  }
+  const GnssOutput other = measure(*make(c, 2), 3);
+  EXPECT_NE(other.epoch.observations[0].pseudorange_m, forward[3].epoch.observations[0].pseudorange_m);
+}
+
+// Switching any effect off, or on, leaves the others' draws untouched to the bit.
+TEST_F(PseudorangeSensorTest, EffectsDrawFromTheirOwnStreams) {
+  const GnssConfig base = open_sky("single");
+  const GnssOutput all = measure(*make(base), 5);
+  const auto compare = [&](GnssConfig c, const char* what) {
+    const GnssOutput out = measure(*make(c), 5);
+    ASSERT_EQ(out.truth.satellites.size(), all.truth.satellites.size());
+    for (std::size_t i = 0; i < out.truth.satellites.size(); ++i) {
+      const auto &got = out.truth.satellites[i], &want = all.truth.satellites[i];
+      const std::string off = what;
+      if (off != "noise") {
+        EXPECT_EQ(got.noise_m, want.noise_m) << what;
+      }
+      if (off != "ephemeris") {
+        EXPECT_EQ(got.ephemeris_m, want.ephemeris_m) << what;
+      }
+      if (off != "ionosphere") {
+        EXPECT_EQ(got.ionosphere_m, want.ionosphere_m) << what;
+      }
+      // The correction is computed at the receiver's own estimate, which feels every error: 1 hPa or 2 mm at the
+      // zenith for 8 m of height.
+      if (off != "troposphere") {
+        EXPECT_NEAR(got.troposphere_m, want.troposphere_m, 2e-3) << what;
+      }
+    }
+    if (std::string(what) != "clock") {
+      EXPECT_EQ(out.truth.receiver_clock_m, all.truth.receiver_clock_m) << what;
+    }
+  };
+  GnssConfig c = base;
+  c.code_noise_m = 0.0;
+  compare(c, "noise");
+  c = base;
+  c.ephemeris_error = "none";
+  compare(c, "ephemeris");
+  c = base;
+  c.ionosphere = "none";
+  compare(c, "ionosphere");
+  c = base;
+  c.troposphere = "none";
+  compare(c, "troposphere");
+  c = base;
+  c.receiver_clock = "none";
+  compare(c, "clock");
+  c = base;
+  c.paths = "visibility";  // fewer satellites tracked, the same draws for those that are
+  const GnssOutput street = measure(*make(c), 5);
+  for (std::size_t i = 0; i < street.truth.satellites.size(); ++i)
+    if (street.truth.satellites[i].tracked) {
+      EXPECT_EQ(street.truth.satellites[i].ephemeris_m, all.truth.satellites[i].ephemeris_m);
+    }
+}
+
+TEST_F(PseudorangeSensorTest, ModesLeaveWhatTheySay) {
+  const GnssOutput raw = measure(*make(open_sky("single_uncorrected")), 3),
+                   single = measure(*make(open_sky("single")), 3), dgps = measure(*make(open_sky("dgps")), 3),
+                   paper = measure(*make(open_sky("dgps_paper")), 3);
+  ASSERT_GE(raw.truth.satellites.size(), 5u);
+  for (std::size_t i = 0; i < raw.truth.satellites.size(); ++i) {
+    const auto &r = raw.truth.satellites[i], &s = single.truth.satellites[i], &d = dgps.truth.satellites[i],
+               &p = paper.truth.satellites[i];
+    EXPECT_GT(r.ionosphere_m, 1.9);
+    EXPECT_GT(r.troposphere_m, 2.4);
+    EXPECT_DOUBLE_EQ(s.ionosphere_m, 0.5 * r.ionosphere_m);
+    EXPECT_LT(std::abs(s.troposphere_m), 0.1 * r.troposphere_m);
+    EXPECT_EQ(s.ephemeris_m, r.ephemeris_m);
+    // 5 km of baseline: 2 mm/km x 5 km x obliquity 3 x 4 sigma; orbit x 5 km / 20,000 km.
+    EXPECT_LT(std::abs(d.ionosphere_m), 4 * 0.010 * 3.1);
+    EXPECT_LT(std::abs(d.troposphere_m), 4 * 0.005 * 6.0);
+    EXPECT_NEAR(d.ephemeris_m, r.ephemeris_m * 5e3 / r.range_m, 1e-9);
+    EXPECT_NE(d.ionosphere_m, 0.0);
+    EXPECT_NE(d.noise_m, r.noise_m);  // the base's own error comes with its correction
+    EXPECT_EQ(p.ionosphere_m, 0.0);
+    EXPECT_EQ(p.ephemeris_m, 0.0);
+    EXPECT_EQ(p.troposphere_m, r.troposphere_m);
+  }
+  EXPECT_EQ(raw.fix.status, FixStatus::kSingle);
+  EXPECT_EQ(dgps.fix.status, FixStatus::kDifferential);
+  EXPECT_EQ(paper.fix.status, FixStatus::kDifferential);
+}
+
+TEST_F(PseudorangeSensorTest, DgpsResidualsGrowWithTheBaseline) {
+  GnssConfig c = open_sky("dgps");
+  c.base_error_scale = 0.0;
+  c.code_noise_m = 0.0;
+  const auto error_at = [&](double baseline_km) {
+    c.baseline_km = baseline_km;
+    const auto sensor = make(c);
+    return (measure(*sensor, 1).fix.p_A_E - truth_E()).norm();
+  };
+  EXPECT_LT(error_at(0.0), 1e-4);
+  const double near_m = error_at(5.0);
+  EXPECT_GT(near_m, 1e-3);
+  EXPECT_NEAR(error_at(50.0), 10.0 * near_m, 1e-2 * 10.0 * near_m);  // linear, but for the curvature of the ranges
+}
+
+// Sum of squared errors over the satellites, 200 epochs 100 s apart, in the noise of the code alone: against the loop
+// formula.
+TEST_F(PseudorangeSensorTest, CodeNoiseHasItsSigma) {
+  GnssConfig c = errors_off();
+  c.code_noise_m = 0.3;
+  c.antenna_horizon_loss_db = 0.0;  // 45 dB-Hz everywhere
+  const auto sensor = make(c);
+  double sum = 0.0;
+  int n = 0;
+  for (std::int64_t k = 0; k < 400; ++k) {
+    for (const auto& s : measure(*sensor, k).truth.satellites) {
+      sum += s.noise_m * s.noise_m;
+      ++n;
+    }
+  }
+  EXPECT_NEAR(sum / n, 0.09, 5.0 * std::sqrt(2.0 / n) * 0.09);
+}
+
+TEST_F(PseudorangeSensorTest, StreetCanyonBlocksAndReflects) {
+  GnssConfig c;
+  c.multipath_rule = "correlator";
+  const auto sensor = make(c);
+  int blocked = 0, reflected = 0, nlos = 0;
+  double worst_m = 0.0;
+  for (std::int64_t k = 0; k < 1000; k += 10) {
+    const GnssOutput out = measure(*sensor, k);
+    for (const auto& s : out.truth.satellites) {
+      blocked += s.line_of_sight ? 0 : 1;
+      reflected += s.reflections > 0 ? 1 : 0;
+      nlos += !s.line_of_sight && s.tracked ? 1 : 0;
+      worst_m = std::max(worst_m, std::abs(s.multipath_m));
+      if (!s.line_of_sight && s.tracked) {
+        EXPECT_GT(s.multipath_m, 0.0);
+      }
+      if (!s.tracked) {
+        EXPECT_EQ(s.multipath_m, 0.0);
+      }
+    }
+  }
+  EXPECT_GT(blocked, 0);
+  EXPECT_GT(reflected, 0);
+  EXPECT_GT(nlos, 0);
+  EXPECT_GT(worst_m, 0.1);
+  const GnssCounters counters = sensor->counters();
+  EXPECT_EQ(counters.epochs, 100);
+  EXPECT_GT(counters.occlusion_rays, 0);
+  EXPECT_GT(counters.facets_tested, 0);
+  EXPECT_GT(counters.reflected_paths, 0);
+}
+
+// The coupling cut: with every surface absorbing, reflections and multipath vanish and only blockage stays.
+TEST_F(PseudorangeSensorTest, AbsorbingWallsLeaveNoMultipath) {
+  scene =
+      WallScene().box({-60, -300, 0}, {-12, 300, 30}, "absorber").box({9, -300, 0}, {60, 300, 18}, "absorber").build();
+  for (const char* rule : {"paper_first_return", "correlator"}) {
+    GnssConfig c;
+    c.multipath_rule = rule;
+    const auto sensor = make(c);
+    int blocked = 0;
+    for (std::int64_t k = 0; k < 500; k += 25) {
+      for (const auto& s : measure(*sensor, k).truth.satellites) {
+        EXPECT_EQ(s.reflections, 0);
+        EXPECT_EQ(s.multipath_m, 0.0);
+        EXPECT_EQ(s.tracked, s.line_of_sight);
+        blocked += s.line_of_sight ? 0 : 1;
+      }
+    }
+    EXPECT_GT(blocked, 0);
+    EXPECT_EQ(sensor->counters().reflected_paths, 0);
+  }
+}
+
+TEST_F(PseudorangeSensorTest, InsideABuildingThereIsNoFix) {
+  antenna_W = {-30, 0, 5};
+  const GnssOutput out = measure(*make(GnssConfig{}), 0);
+  EXPECT_EQ(out.fix.status, FixStatus::kNone);
+  EXPECT_EQ(out.fix.reason, "0 satellites, a fix needs 4");
+  EXPECT_TRUE(out.epoch.observations.empty());
+  EXPECT_GE(out.truth.satellites.size(), 5u);
+}
+
+TEST_F(PseudorangeSensorTest, FewSatellitesAreAStatusAndStillObserved) {
+  GnssConfig c = errors_off();
+  c.mask_deg = 45.0;
+  const auto sensor = make(c);
+  bool seen = false;
+  for (std::int64_t k = 0; k < 200000 && !seen; k += 400) {
+    const GnssOutput out = measure(*sensor, k);
+    const std::size_t n = out.epoch.observations.size();
+    if (n != 3) continue;
+    seen = true;
+    EXPECT_EQ(out.fix.status, FixStatus::kNone);
+    EXPECT_EQ(out.fix.reason, "3 satellites, a fix needs 4");
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& o = out.epoch.observations[i];
+      EXPECT_FALSE(o.used);
+      EXPECT_GT(o.sigma_m, 0.0);
+      // A tightly coupled filter can use them all the same: the satellite is known to centimetres even without a fix.
+      EXPECT_NEAR((o.p_E - truth_E()).norm(), out.truth.satellites[i].range_m, 0.02);
+      EXPECT_TRUE(o.v_E.allFinite());
+    }
+  }
+  EXPECT_TRUE(seen);
+}
+
+TEST_F(PseudorangeSensorTest, OpenSkyAccuracyIsAsClaimed) {
+  const auto sensor = make(open_sky("dgps"));
+  double worst_m = 0.0;
+  for (std::int64_t k = 0; k < 100; ++k) {
+    const GnssOutput out = measure(*sensor, k);
+    ASSERT_EQ(out.fix.status, FixStatus::kDifferential);
+    const Eigen::Vector3d e = out.fix.p_A_E - truth_E();
+    // Mahalanobis distance of three degrees of freedom; 5 sigma-equivalent is 32, and the claimed sigma (0.5 m at the
+    // zenith) is deliberately not smaller than what acts (0.3 m of noise and 0.2 m of the base's).
+    EXPECT_LT(e.dot(out.fix.covariance_E.ldlt().solve(e)), 32.0);
+    worst_m = std::max(worst_m, e.norm());
+    EXPECT_GT(out.fix.dop.gdop, 1.0);
+    EXPECT_NEAR(out.fix.dop.gdop, std::hypot(out.fix.dop.pdop, out.fix.dop.tdop), 1e-9);
+    EXPECT_EQ(out.fix.satellites, static_cast<int>(out.epoch.observations.size()));
+  }
+  EXPECT_GT(worst_m, 0.1);
+}
+
+TEST_F(PseudorangeSensorTest, NavigationFileFromDisk) {
+  const GpsTime day = GpsTime::from_calendar(2010, 7, 1, 0, 0, 0.0);
+  const std::string path = ::testing::TempDir() + "canyon_sensor_test.10n";
+  std::string text = testing::navigation_text(day, 31, 3, false);
+  text.resize(text.size() - 100);
+  ASSERT_TRUE(write_text_file(path, text).ok());
+  GnssConfig c = errors_off();
+  c.nav_file = path;
+  const auto sensor = make(c, 1, day);
+  for (const std::int64_t k : {0, 60, 960}) {
+    const GnssOutput out = measure(*sensor, k, day);
+    ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+    EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4);
+    for (const auto& o : out.epoch.observations) EXPECT_NE(o.clock_m, 0.0);
+  }
+  ASSERT_EQ(sensor->warnings().size(), 1u);
+  EXPECT_THAT(sensor->warnings()[0], HasSubstr("G31: the record has 7 lines, expected 8; skipped"));
+  EXPECT_THAT(
+      error_of(c),
+      HasSubstr(": gnss.nav_file: covers 2010-06-30T22:00:00 to 2010-07-01T06:00:00 GPS time, not the mission's"));
+  std::remove(path.c_str());
+  EXPECT_THAT(error_of(c), HasSubstr("canyon_sensor_test.10n"));
+}
+
+TEST_F(PseudorangeSensorTest, RealNavigationFile) {
+  CANYON_REAL_DATA(path, "gnss/orbit_2010_182/brdc1820.10n");
+  const GpsTime start = GpsTime::from_calendar(2010, 7, 1, 13, 0, 0.0);
+  GnssConfig c = errors_off();
+  c.nav_file = path;
+  const auto sensor = make(c, 1, start);
+  std::set<std::size_t> counts;
+  for (std::int64_t k = 0; k <= 960; k += 60) {
+    const GnssOutput out = measure(*sensor, k, start);
+    ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+    EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4);
+    counts.insert(out.epoch.observations.size());
+  }
+  EXPECT_GE(*counts.begin(), 6u);  // 30 healthy satellites that day
+  EXPECT_LE(*counts.rbegin(), 14u);
+}
+
+TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
+  GnssConfig c;
+  c.model = "gps";
+  EXPECT_EQ(error_of(c), "gnss.model: \"gps\" is not a model, expected pseudorange or truth_plus_isotropic");
+  c = GnssConfig{};
+  c.ionosphere = "iri";
+  EXPECT_EQ(error_of(c),
+            "gnss.ionosphere: \"iri\" is not a model, expected none, single_layer, klobuchar, paper, paper_printed");
+  c = GnssConfig{};
+  c.solver = "trilateration";
+  EXPECT_EQ(error_of(c),
+            "gnss.receiver_clock: is \"tcxo\", but solver \"trilateration\" has no unknown for it, expected \"none\"");
+}
+
+TEST(GnssConfig, ReadsAndRefuses) {
+  GnssConfig c;
+  const auto good = ConfigNode::parse("mode = \"single\"\nmultipath_rule = \"correlator\"\nrate_hz = 5\n", "m.toml");
+  ASSERT_TRUE(good.ok());
+  EXPECT_TRUE(read_config(&*good, "gnss", c).ok());
+  EXPECT_EQ(c.mode, "single");
+  EXPECT_EQ(c.rate_hz, 5.0);
+  const auto bad = ConfigNode::parse("\nmultipath_rule = \"corelator\"\n", "m.toml");
+  const auto status = read_config(&*bad, "gnss", c);
+  ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.error().str(), HasSubstr("m.toml:2: gnss.multipath_rule:"));
+  EXPECT_THAT(status.error().str(), HasSubstr("correlator"));
+}
+
+}  // namespace
+}  // namespace canyon::gnss

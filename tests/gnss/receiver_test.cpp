@@ -1,0 +1,153 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/check.h"
+#include "core/units.h"
+#include "gnss/receiver/code_noise.h"
+#include "gnss/receiver/link_budget.h"
+#include "gnss/receiver/multipath_rule.h"
+#include "gnss/receiver/receiver_clock.h"
+#include "gnss/signal.h"
+
+namespace canyon::gnss {
+namespace {
+
+TEST(LinkBudget, ElevationAndFoliage) {
+  const LinkBudget link;
+  EXPECT_EQ(link.direct_cn0_dbhz(kPi / 2, 0.0), 45.0);
+  EXPECT_EQ(link.direct_cn0_dbhz(0.0, 0.0), 38.0);
+  // ITU-R P.833: gamma d for a short way, A_m for a long one.
+  EXPECT_NEAR(link.foliage_db(0.01), 0.0025, 1e-6);
+  EXPECT_NEAR(link.foliage_db(1e4), 28.0, 1e-9);
+  EXPECT_EQ(link.foliage_db(0.0), 0.0);
+}
+
+Reflection reflection(double excess_m, double incidence_deg, std::complex<double> eta) {
+  Reflection r;
+  r.excess_m = excess_m;
+  r.incidence_rad = incidence_deg * kDegree;
+  r.arrival_W = {1.0, 0.0, 0.0};
+  r.coefficients = fresnel(eta, r.incidence_rad);
+  return r;
+}
+
+TEST(LinkBudget, ReflectionLosesByFresnelAndAntenna) {
+  LinkBudget link;
+  const std::complex<double> metal(1.0, -1e8);
+  // A mirror at normal incidence reverses the sense of rotation whole, so that only the antenna's rejection is lost.
+  const auto r = receive(reflection(20.0, 0.0, metal), link, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(r.cn0_dbhz, 38.0 - 10.0, 1e-2);
+  link.lhcp_rejection_db = 0.0;
+  EXPECT_NEAR(receive(reflection(20.0, 0.0, metal), link, Eigen::Vector3d::UnitZ()).cn0_dbhz, 38.0, 1e-2);
+  // Concrete at 45 deg: cross-polar 0.388, co-polar 0.125.
+  const auto c = receive(reflection(20.0, 45.0, {5.24, -0.752}), LinkBudget{}, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(c.cn0_dbhz, 38.0 + 10.0 * std::log10(0.388 * 0.388 * 0.1 + 0.125 * 0.125), 0.05);
+  // Nothing comes back from vacuum, and the figure is finite.
+  const auto none = receive(reflection(20.0, 45.0, 1.0), LinkBudget{}, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(std::isfinite(none.cn0_dbhz));
+  EXPECT_LT(none.cn0_dbhz, -100.0);
+}
+
+TEST(LinkBudget, CarrierPhaseTurnsWithTheExcess) {
+  const std::complex<double> metal(1.0, -1e8);
+  const auto phase = [&](double excess_m) {
+    return receive(reflection(excess_m, 0.0, metal), LinkBudget{}, Eigen::Vector3d::UnitZ()).phase_rad;
+  };
+  EXPECT_NEAR(std::remainder(phase(10.0) - phase(10.0 + kL1WavelengthM), 2 * kPi), 0.0, 1e-9);
+  EXPECT_NEAR(std::abs(std::remainder(phase(10.0) - phase(10.0 + 0.5 * kL1WavelengthM), 2 * kPi)), kPi, 1e-9);
+}
+
+TEST(CodeNoise, FollowsTheLoopFormula) {
+  EXPECT_EQ(relative_code_noise(45.0, 0.5), 1.0);
+  // sigma^2 ~ 1/(C/N0) (1 + 2/(T C/N0 (2 - d))), written out at 30 dB-Hz: 1000 Hz, T = 20 ms.
+  const double strong = std::pow(10.0, 4.5);
+  const double expected =
+      std::sqrt((1.0 + 2.0 / (0.02 * 1000.0 * 1.5)) / 1000.0 / ((1.0 + 2.0 / (0.02 * strong * 1.5)) / strong));
+  EXPECT_NEAR(relative_code_noise(30.0, 0.5), expected, 1e-12);
+  EXPECT_GT(relative_code_noise(25.0, 0.5), 10.0);
+}
+
+const MultipathParameters kRule{45.0, 25.0, 0.5};
+
+TEST(MultipathRule, NoneTracksOnlyWhatIsClear) {
+  const auto rule = find_model(multipath_rules(), "none")->make(kRule);
+  const ReceivedReflection strong{20.0, 40.0, 0.0};
+  EXPECT_FALSE(rule->receive(std::nullopt, {&strong, 1}).tracked);
+  EXPECT_FALSE(rule->receive(24.9, {&strong, 1}).tracked);
+  const Reception r = rule->receive(44.0, {&strong, 1});
+  EXPECT_TRUE(r.tracked);
+  EXPECT_EQ(r.error_m, 0.0);
+  EXPECT_EQ(r.cn0_dbhz, 44.0);
+}
+
+TEST(MultipathRule, PaperFirstReturn) {
+  const auto rule = make_paper_first_return(kRule);
+  const ReceivedReflection weak{5.0, 20.0, 0.0}, near{20.0, 30.0, 0.0}, late{60.0, 35.0, 0.0};
+  const ReceivedReflection all[] = {weak, near, late};
+  // The first return that can be tracked lies within 45 m: its whole excess becomes the error.
+  EXPECT_EQ(rule->receive(44.0, all).error_m, 20.0);
+  // Later than the cut-off: separable, the direct range stands. So does a reflection too weak to track.
+  EXPECT_EQ(rule->receive(44.0, {&late, 1}).error_m, 0.0);
+  EXPECT_EQ(rule->receive(44.0, {&weak, 1}).error_m, 0.0);
+  EXPECT_EQ(rule->receive(44.0, {}).error_m, 0.0);
+}
+
+TEST(MultipathRule, NlosOnlyTracksTheStrongest) {
+  const ReceivedReflection reflections[] = {{5.0, 20.0, 0.0}, {20.0, 30.0, 0.0}, {130.0, 35.0, 0.0}};
+  for (const char* name : {"paper_first_return", "correlator"}) {
+    const auto rule = find_model(multipath_rules(), name)->make(kRule);
+    const Reception r = rule->receive(std::nullopt, reflections);
+    EXPECT_TRUE(r.tracked) << name;
+    EXPECT_EQ(r.error_m, 130.0) << name;  // whole, beyond the cut-off too: nothing else is there to lock on to
+    EXPECT_EQ(r.cn0_dbhz, 35.0) << name;
+    EXPECT_FALSE(rule->receive(std::nullopt, {reflections, 1}).tracked) << name;
+    EXPECT_FALSE(rule->receive(std::nullopt, {}).tracked) << name;
+  }
+}
+
+TEST(MultipathRule, CorrelatorWeighsByAmplitude) {
+  const auto rule = make_correlator(kRule);
+  // 20 dB below, in phase, beyond the first corner: a d / 2 of a chip.
+  const ReceivedReflection weak{100.0, 24.0, 0.0};
+  EXPECT_NEAR(rule->receive(44.0, {&weak, 1}).error_m, 0.1 * 0.25 * kCaChipM, 1e-9);
+  EXPECT_NEAR(rule->receive(44.0, {&weak, 1}).cn0_dbhz, 44.0 + 20 * std::log10(1.0 + 0.1 * (1.0 - 100.0 / kCaChipM)),
+              1e-9);
+  // An equal echo in opposite phase cancels the signal: lost.
+  const ReceivedReflection opposite{0.0, 44.0, kPi};
+  EXPECT_FALSE(rule->receive(44.0, {&opposite, 1}).tracked);
+}
+
+TEST(ReceiverClock, IsAFunctionOfTheEpoch) {
+  const auto a = make_tcxo({7, 0.5}), b = make_tcxo({7, 0.5});
+  const double at_100_m = a->offset_m(100);
+  a->offset_m(500);
+  EXPECT_EQ(a->offset_m(100), at_100_m);
+  EXPECT_EQ(b->offset_m(100), at_100_m);
+  EXPECT_NE(make_tcxo({8, 0.5})->offset_m(100), at_100_m);
+  EXPECT_EQ(find_model(receiver_clock_models(), "none")->make({7, 0.5})->offset_m(100), 0.0);
+}
+
+// Second differences of the bias over T: variance of the two-state model is 2 S_f T + 2/3 S_g T^3, S_f = h0/2, S_g = 2
+// pi^2 h-2. They are taken 2 T apart, so that white frequency noise shares no samples; random walk correlates
+// neighbours by 1/4. N = 4000: the estimate's relative sigma is sqrt(2/N (1 + 2/16)) = 2.4 %; 5 sigma, one false alarm
+// in 1.7 million.
+TEST(ReceiverClock, TcxoHasItsAllanVariance) {
+  const double T = 1.0;
+  const auto clock = make_tcxo({11, T});
+  double sum = 0.0;
+  constexpr int kN = 4000;
+  double x0 = clock->offset_m(0), x1, x2;
+  for (int k = 0; k < kN; ++k) {
+    x1 = clock->offset_m(2 * k + 1);
+    x2 = clock->offset_m(2 * k + 2);
+    const double d = (x2 - 2.0 * x1 + x0) / kSpeedOfLight;
+    sum += d * d;
+    x0 = x2;
+  }
+  const double expected = 2.0 * 1e-19 * T + 2.0 / 3.0 * 2.0 * kPi * kPi * 2e-20 * T * T * T;
+  EXPECT_NEAR(sum / kN, expected, 5.0 * std::sqrt(2.0 / kN * 1.125) * expected);
+}
+
+}  // namespace
+}  // namespace canyon::gnss
