@@ -69,12 +69,8 @@ class PseudorangeSensor final : public GnssSensor {
     for (std::size_t i = 0; i < sights.size(); ++i) {
       GnssObservationTruth truth = describe(sights[i], paths[i]);
       const Reception reception = receive_signals(sights[i], paths[i], horizon);
-      truth.tracked = reception.tracked;
-      if (reception.tracked) {
-        truth.multipath_m = reception.error_m;
-        measure_range(index, t, sights[i], reception, out, truth, inputs);
-        truth_of.push_back(i);
-      }
+      truth.tracked = reception.tracked && measure_range(index, t, sights[i], reception, out, truth, inputs);
+      if (truth.tracked) truth_of.push_back(i);
       out.truth.satellites.push_back(truth);
     }
 
@@ -144,27 +140,33 @@ class PseudorangeSensor final : public GnssSensor {
     return parts_.multipath->receive(direct_cn0_dbhz, reflections);
   }
 
-  void measure_range(std::int64_t index, GpsTime t, const Sight& sight, const Reception& reception, GnssOutput& out,
+  /// Appends the observation. False, and nothing appended, in the millisecond in which a satellite's last ephemeris
+  /// expires between the true time of transmission and the satellite clock's reading.
+  bool measure_range(std::int64_t index, GpsTime t, const Sight& sight, const Reception& reception, GnssOutput& out,
                      GnssObservationTruth& truth, std::vector<CorrectionInput>& inputs) const {
     const RangeDelays raw{parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
                           parts_.ephemeris_error->range_m(sight.sv, sight.signal.state.p_E, t)};
     const RangeDelays acting = parts_.mode->acting(raw);
-    truth.ionosphere_m = acting.ionosphere_m;
-    truth.troposphere_m = acting.troposphere_m;
-    truth.ephemeris_m = acting.ephemeris_m;
-    truth.noise_m = config_.code_noise_m * relative_code_noise(reception.cn0_dbhz, config_.correlator_spacing_chips) *
-                    code_noise_.normal(sight.sv.entity(), static_cast<std::uint64_t>(index));
-
+    const double noise_m = config_.code_noise_m *
+                           relative_code_noise(reception.cn0_dbhz, config_.correlator_spacing_chips) *
+                           code_noise_.normal(sight.sv.entity(), static_cast<std::uint64_t>(index));
     GnssObservation o;
     o.sv = sight.sv;
     o.cn0_dbhz = reception.cn0_dbhz;
     o.pseudorange_m = sight.signal.range_m + out.truth.receiver_clock_m - kSpeedOfLight * sight.signal.state.clock_s +
-                      acting.ionosphere_m + acting.troposphere_m + acting.ephemeris_m + truth.multipath_m +
-                      truth.noise_m;
+                      acting.ionosphere_m + acting.troposphere_m + acting.ephemeris_m + reception.error_m + noise_m;
     CANYON_CHECK(std::isfinite(o.pseudorange_m) && std::isfinite(o.cn0_dbhz), "pseudorange sensor, ", o.sv.str(),
                  ": pseudorange_m = ", o.pseudorange_m, ", cn0_dbhz = ", o.cn0_dbhz);
+    if (!transmission_from_pseudorange(*parts_.constellation, o.sv, out.epoch.t, o.pseudorange_m)) return false;
+
+    truth.ionosphere_m = acting.ionosphere_m;
+    truth.troposphere_m = acting.troposphere_m;
+    truth.ephemeris_m = acting.ephemeris_m;
+    truth.multipath_m = reception.error_m;
+    truth.noise_m = noise_m;
     out.epoch.observations.push_back(o);
     inputs.push_back({sight.sv, t, sight.view, {}, sight.signal.range_m, acting});
+    return true;
   }
 
   /// The truth record keeps what the receiver's corrections leave; the base station's error counts as noise.

@@ -382,6 +382,25 @@ TEST_F(PseudorangeSensorTest, NavigationFileFromDisk) {
   EXPECT_THAT(error_of(c), HasSubstr("canyon_sensor_test.10n"));
 }
 
+// Satellites fade out one by one, each when its light time puts the transmission past the fit interval; clocks are off
+// by up to 0.3 ms, so that for moments the truth still has an ephemeris and the receiver none.
+TEST_F(PseudorangeSensorTest, EphemeridesExpireGracefully) {
+  const GpsTime day = GpsTime::from_calendar(2010, 7, 1, 0, 0, 0.0);
+  const std::string path = ::testing::TempDir() + "canyon_expiry_test.10n";
+  ASSERT_TRUE(write_text_file(path, testing::navigation_text(day, 31, 1, false)).ok());
+  GnssConfig c = errors_off();
+  c.nav_file = path;
+  const auto sensor = make(c, 1, day);
+  std::size_t before = 99;
+  for (double dt_s = 0.060; dt_s < 0.095; dt_s += 2e-5) {
+    const auto out = sensor->measure(0, day + (7200.0 + dt_s), antenna_W, still, scene::SceneAt(*scene));
+    EXPECT_LE(out.epoch.observations.size(), before);
+    before = out.epoch.observations.size();
+  }
+  EXPECT_EQ(before, 0u);
+  std::remove(path.c_str());
+}
+
 TEST_F(PseudorangeSensorTest, RealNavigationFile) {
   CANYON_REAL_DATA(path, "gnss/orbit_2010_182/brdc1820.10n");
   const GpsTime start = GpsTime::from_calendar(2010, 7, 1, 13, 0, 0.0);
