@@ -1,0 +1,85 @@
+#include "inertial/catalogue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+#include "inertial/imu_model.h"
+
+namespace canyon::inertial {
+namespace {
+
+TEST(Catalogue, HoldsTheBuiltInUnits) {
+  EXPECT_THAT(catalogue_names(), ::testing::IsSupersetOf({"adis16405", "adis16465", "high_grade_mems", "ideal",
+                                                          "paper_low", "phidget_3_3_3", "stim300"}));
+  for (const std::string& name : catalogue_names()) {
+    const auto entry = load_catalogue_entry(name);
+    ASSERT_TRUE(entry.ok()) << entry.error().str();
+    EXPECT_EQ((*entry).name, name) << "the entry's name is its file's";
+    EXPECT_FALSE((*entry).description.empty());
+  }
+}
+
+TEST(Catalogue, ConvertsSheetUnitsOnce) {
+  const auto noise = catalogue_noise("stim300");
+  ASSERT_TRUE(noise.ok());
+  // 0.15 deg/sqrt(h) = 4.3633e-5 rad/sqrt(s); 0.5 deg/h = 2.4241e-6 rad/s; 0.06 m/s/sqrt(h) = 1e-3; as NavToolkit
+  // prints them.
+  EXPECT_NEAR((*noise).gyro.white_per_sqrt_hz, 4.3633e-5, 5e-10);
+  EXPECT_NEAR((*noise).gyro.in_run_bias_sigma, 2.4241e-6, 5e-11);
+  EXPECT_NEAR((*noise).accel.white_per_sqrt_hz, 1e-3, 1e-15);
+  EXPECT_DOUBLE_EQ((*noise).accel.turn_on_bias_sigma, 0.75 * kMilliG);
+  EXPECT_DOUBLE_EQ((*noise).gyro.scale_sigma, 500e-6);
+  EXPECT_DOUBLE_EQ((*noise).gyro.misalignment_sigma_rad, 1e-3);
+}
+
+TEST(Catalogue, HighGradeDriftsAboutThreeDegreesPerHour) {
+  const ImuNoise noise = *catalogue_noise("high_grade_mems");
+  const double drift_deg_hr = noise.gyro.turn_on_bias_sigma / kDegree * kHour;
+  EXPECT_NEAR(drift_deg_hr, 3.0, 1e-12);  // the paper, section 2.2
+}
+
+TEST(Catalogue, LowFidelityIsTheSameUnitPerfectlyCalibrated) {
+  const ImuNoise high = *catalogue_noise("high_grade_mems");
+  const ImuNoise low = *catalogue_noise("paper_low");
+  EXPECT_EQ(low.gyro.white_per_sqrt_hz, high.gyro.white_per_sqrt_hz);
+  EXPECT_EQ(low.accel.white_per_sqrt_hz, high.accel.white_per_sqrt_hz);
+  for (const TriadNoise& n : {low.gyro, low.accel}) {
+    EXPECT_EQ(n.turn_on_bias_sigma, 0.0);
+    EXPECT_EQ(n.in_run_bias_sigma, 0.0);
+    EXPECT_EQ(n.scale_sigma, 0.0);
+    EXPECT_EQ(n.misalignment_sigma_rad, 0.0);
+    EXPECT_EQ(n.in_run_bias_tau_s, 1500.0);
+  }
+}
+
+TEST(Catalogue, NamesTheNearestSensor) {
+  const auto entry = load_catalogue_entry("stim30");
+  ASSERT_FALSE(entry.ok());
+  EXPECT_EQ(entry.error().str(), "imu.sensor: no sensor \"stim30\" in the catalogue, expected \"stim300\"?");
+  EXPECT_EQ(entry.error().exit_code, 2);
+}
+
+TEST(Catalogue, RefusesAFigureWithoutSource) {
+  const auto entry = parse_catalogue_entry(
+      "name = \"mine\"\n"
+      "[gyro]\n"
+      "arw_deg_per_sqrt_hr = 0.3\n",
+      "mine.toml");
+  ASSERT_FALSE(entry.ok());
+  EXPECT_THAT(entry.error().str(), ::testing::HasSubstr("gyro.arw_source"));
+  EXPECT_THAT(entry.error().str(), ::testing::StartsWith("mine.toml:"));
+}
+
+TEST(Catalogue, RefusesUnknownKeysAndValuesOutOfRange) {
+  const auto typo = parse_catalogue_entry("name = \"mine\"\n[gyro]\narw_deg_per_sqr_hr = 0.3\n", "mine.toml");
+  ASSERT_FALSE(typo.ok());
+  EXPECT_THAT(typo.error().str(), ::testing::AllOf(::testing::StartsWith("mine.toml:3: gyro.arw_deg_per_sqr_hr"),
+                                                   ::testing::HasSubstr("arw_deg_per_sqrt_hr")));
+  const auto negative = parse_catalogue_entry("name = \"mine\"\n[accel]\nscale_ppm = -1.0\n", "mine.toml");
+  ASSERT_FALSE(negative.ok());
+  EXPECT_THAT(negative.error().str(), ::testing::StartsWith("mine.toml:3: accel.scale_ppm"));
+}
+
+}  // namespace
+}  // namespace canyon::inertial
