@@ -104,7 +104,7 @@ class ChartWriter {
         last_y_px = py;
       }
       if (piece.size() == 1)
-        path += fixed(x_px(line.x[piece[0]]), 1) + " " + fixed(last_y_px, 2) + " ";  // a dot, by its round caps
+        path += fixed(x_px(line.x[piece[0]]) + 0.1, 1) + " " + fixed(last_y_px, 2) + " ";  // a dot, by its round caps
     }
     if (!path.empty()) path.pop_back();
     out_ += "<path class=\"line " + run_class(line.run) + (line.style == Line::Style::kThin ? " thin" : "") +

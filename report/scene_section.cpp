@@ -77,7 +77,7 @@ std::string overview(const Results& results, const MapDrawing& map) {
     const Run& run = results.runs[i];
     ribbons += draw_ribbon(map, run, i, nullptr, tolerance_m, std::max(2.0, 11 - 2.8 * static_cast<double>(i)));
     estimates.insert(0, draw_estimate(map, run, i, nullptr, tolerance_m));
-    tracks += draw_track(map, run, i);
+    tracks.insert(0, draw_track(map, run, i));
     if (!run.nav)
       missing += note("The path of run " + run.fidelity + " is missing: the results hold no epochs/" + run.fidelity +
                       "_nav.csv.");

@@ -89,7 +89,7 @@
         if (list[2 * i] === "-") continue;
         const dot = document.createElementNS(track.group.namespaceURI, "path");
         dot.setAttribute("class", kind);
-        dot.setAttribute("d", "M" + list[2 * i] + " " + list[2 * i + 1] + "h0");
+        dot.setAttribute("d", "M" + list[2 * i] + " " + list[2 * i + 1] + "h.01");
         track.group.append(dot);
       }
     }
