@@ -15,7 +15,7 @@ namespace canyon {
 ///
 /// Generator: Philox 4x32-10 (Salmon et al. 2011). Key = splitmix64(seed) xor FNV-1a-64(name).
 /// Counter words = {low(index / 2), high(index / 2), entity, n}; lane = index % 2.
-/// uniform: lane 0 takes output words 0-1, lane 1 words 2-3, as a 53-bit number in [0, 1).
+/// uniform: lane 0 takes output words 0-1, lane 1 words 2-3 (the second is the high one); the upper 53 bits, in [0, 1).
 /// normal: Box-Muller of the two uniforms of the block, u1 in (0, 1]; lane 0 the cosine, lane 1 the sine branch; log,
 /// sine and cosine are our own, of + - * / sqrt only, so that the same bits come out on every machine and in vector
 /// code.
