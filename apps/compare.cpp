@@ -16,7 +16,8 @@ VerbAction declare(CLI::App& app) {
   };
   const auto options = std::make_shared<Options>();
   declare_mission_options(app, options->mission);
-  app.add_option("--fidelities", options->fidelities, "runs to compare; the ratio is second over first")->delimiter(',');
+  app.add_option("--fidelities", options->fidelities, "runs to compare; the ratio is second over first")
+      ->delimiter(',');
   app.add_flag("--no-2x2", options->no_two_by_two, "leave out the mixed runs low/high GNSS x low/high IMU");
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));

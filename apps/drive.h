@@ -8,7 +8,9 @@
 
 namespace canyon::apps {
 
-/// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run share.
-Result<int> drive_and_report(const MissionOptions& options, const mission::MissionFile& file, const std::vector<study::RunPlan>& plan);
+/// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run
+/// share.
+Result<int> drive_and_report(const MissionOptions& options, const mission::MissionFile& file,
+                             const std::vector<study::RunPlan>& plan);
 
 }  // namespace canyon::apps

@@ -1,3 +1,5 @@
 #include "apps/command_line.h"
 
-int main(int argc, char** argv) { return canyon::apps::run_command_line(argc, argv); }
+int main(int argc, char** argv) {
+  return canyon::apps::run_command_line(argc, argv);
+}

@@ -8,7 +8,8 @@ namespace canyon::apps {
 
 void declare_mission_options(CLI::App& app, MissionOptions& options) {
   declare_common(app, options.common);
-  app.add_option("mission", options.mission, "mission file (TOML); without it the built-in mission")->type_name("MISSION.toml");
+  app.add_option("mission", options.mission, "mission file (TOML); without it the built-in mission")
+      ->type_name("MISSION.toml");
   app.add_option("--seed", options.seed, "seed of every random stream");
   app.add_option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
   app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");

@@ -15,7 +15,8 @@ VerbAction declare(CLI::App& app) {
   };
   const auto options = std::make_shared<Options>();
   declare_mission_options(app, options->mission);
-  app.add_option("--fidelity", options->fidelity, "low, paper, high, or one of the mission file's own")->capture_default_str();
+  app.add_option("--fidelity", options->fidelity, "low, paper, high, or one of the mission file's own")
+      ->capture_default_str();
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
     return drive_and_report(options->mission, file, study::plan_runs({options->fidelity}, false));

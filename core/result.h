@@ -11,12 +11,12 @@ namespace canyon {
 /// A mistake in what the user gave us (a file, a key, an option), told in one line.
 /// Physics is never an Error: too few satellites or a failed mission are statuses inside a result.
 struct Error {
-  std::string file{};    ///< file or option the mistake is in; may be empty
-  int line = 0;          ///< 1-based; 0 = not tied to a line
-  std::string key{};     ///< dotted configuration key or field name; may be empty
-  std::string what{};    ///< what is wrong, with the offending value
+  std::string file{};      ///< file or option the mistake is in; may be empty
+  int line = 0;            ///< 1-based; 0 = not tied to a line
+  std::string key{};       ///< dotted configuration key or field name; may be empty
+  std::string what{};      ///< what is wrong, with the offending value
   std::string expected{};  ///< what was expected; may be empty
-  int exit_code = 2;     ///< 2 = bad input, 1 = the computation could not finish
+  int exit_code = 2;       ///< 2 = bad input, 1 = the computation could not finish
 
   /// `file:line: key: what, expected ...`, parts that are empty left out.
   std::string str() const;

@@ -26,7 +26,8 @@ void visit(FieldVisitor& f, Waypoint& w) {
 
 void visit(FieldVisitor& f, AutonomyConfig& c) {
   f.choice("model", c.model, autonomy_models(), "which autonomy drives");
-  f.choice("map", c.map, {"prior", "registered"}, "pose it works with: the filter's, or corrected by the last registered keyframe");
+  f.choice("map", c.map, {"prior", "registered"},
+           "pose it works with: the filter's, or corrected by the last registered keyframe");
   f.number("cruise_m_s", c.cruise_m_s, {0.2, 30}, "speed on a free, straight street");
   f.number("lateral_m_s2", c.lateral_m_s2, {0.1, 10}, "lateral acceleration allowed in corners");
   f.number("braking_m_s2", c.braking_m_s2, {0.1, 10}, "deceleration it plans with");
@@ -40,16 +41,22 @@ void visit(FieldVisitor& f, AutonomyConfig& c) {
 
 const char* name(AutonomyState state) {
   switch (state) {
-    case AutonomyState::kDriving: return "driving";
-    case AutonomyState::kObserving: return "observing";
-    case AutonomyState::kBlocked: return "blocked";
-    case AutonomyState::kBlind: return "blind";
-    case AutonomyState::kDone: return "done";
+    case AutonomyState::kDriving:
+      return "driving";
+    case AutonomyState::kObserving:
+      return "observing";
+    case AutonomyState::kBlocked:
+      return "blocked";
+    case AutonomyState::kBlind:
+      return "blind";
+    case AutonomyState::kDone:
+      return "done";
   }
   return "unknown";
 }
 
-Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets, const Eigen::Vector2d& start_m) {
+Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets,
+                                  const Eigen::Vector2d& start_m) {
   std::vector<Eigen::Vector2d> polyline{start_m};
   std::vector<std::size_t> corner;  // index into polyline of each waypoint
   Eigen::Vector2d from = start_m;

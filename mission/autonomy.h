@@ -26,15 +26,16 @@ void visit(FieldVisitor& f, Waypoint& w);
 /// [autonomy] of a mission file.
 struct AutonomyConfig {
   std::string model = "reference";
-  std::string map = "prior";          ///< pose it works with: the filter's ("prior") or corrected by the last keyframe ("registered")
+  std::string map =
+      "prior";  ///< pose it works with: the filter's ("prior") or corrected by the last keyframe ("registered")
   double cruise_m_s = 5.0;
-  double lateral_m_s2 = 1.2;          ///< lateral acceleration in corners
+  double lateral_m_s2 = 1.2;  ///< lateral acceleration in corners
   double braking_m_s2 = 1.2;
   double corner_radius_m = 6.5;
-  double hold_s = 6.0;                ///< how long it looks at a building
-  double max_offset_m = 3.5;          ///< how far it may leave the street's centre line
-  double clearance_m = 1.0;           ///< from its axis to an obstacle
-  double blind_after_s = 0.5;         ///< stops when no scan with returns came for this long
+  double hold_s = 6.0;         ///< how long it looks at a building
+  double max_offset_m = 3.5;   ///< how far it may leave the street's centre line
+  double clearance_m = 1.0;    ///< from its axis to an obstacle
+  double blind_after_s = 0.5;  ///< stops when no scan with returns came for this long
   std::vector<Waypoint> waypoints;
 };
 void visit(FieldVisitor& f, AutonomyConfig& c);
@@ -48,7 +49,8 @@ struct PriorKnowledge {
   std::vector<double> waypoint_s_m;  ///< arc length of each waypoint along the route
 };
 /// Error (without file and line) if the streets do not connect the waypoints.
-Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets, const Eigen::Vector2d& start_m);
+Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets,
+                                  const Eigen::Vector2d& start_m);
 
 /// Drives the vehicle on estimates and scans alone; never sees truth.
 class Autonomy {

@@ -8,7 +8,8 @@
 
 namespace canyon::mission {
 
-/// Builds a CSV text row by row. Numbers have a fixed number of decimals and no locale; undefined (not finite) values are empty.
+/// Builds a CSV text row by row. Numbers have a fixed number of decimals and no locale; undefined (not finite) values
+/// are empty.
 class CsvWriter {
  public:
   explicit CsvWriter(std::string_view header) : text_(header) { text_ += '\n'; }

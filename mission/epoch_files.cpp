@@ -11,18 +11,24 @@ namespace {
 
 const char* word(FixStatus status) {
   switch (status) {
-    case FixStatus::kNone: return "none";
-    case FixStatus::kSingle: return "single";
-    case FixStatus::kDifferential: return "differential";
+    case FixStatus::kNone:
+      return "none";
+    case FixStatus::kSingle:
+      return "single";
+    case FixStatus::kDifferential:
+      return "differential";
   }
   return "";
 }
 
 const char* word(lidar::RegistrationStatus status) {
   switch (status) {
-    case lidar::RegistrationStatus::kConverged: return "converged";
-    case lidar::RegistrationStatus::kNotConverged: return "not_converged";
-    case lidar::RegistrationStatus::kTooFewPoints: return "too_few_points";
+    case lidar::RegistrationStatus::kConverged:
+      return "converged";
+    case lidar::RegistrationStatus::kNotConverged:
+      return "not_converged";
+    case lidar::RegistrationStatus::kTooFewPoints:
+      return "too_few_points";
   }
   return "";
 }
@@ -35,8 +41,10 @@ void time_columns(CsvWriter& csv, GpsTime t, GpsTime start) {
 
 std::string nav_csv(const RunRecord& record) {
   CsvWriter csv(
-      "t_s,gps_week,sow,true_x_m,true_y_m,true_z_m,true_yaw_deg,true_pitch_deg,true_roll_deg,true_speed_m_s,est_x_m,est_y_m,est_z_m,"
-      "est_yaw_deg,est_pitch_deg,est_roll_deg,est_speed_m_s,sigma_e_m,sigma_n_m,sigma_u_m,sigma_yaw_deg,error_e_m,error_n_m,"
+      "t_s,gps_week,sow,true_x_m,true_y_m,true_z_m,true_yaw_deg,true_pitch_deg,true_roll_deg,true_speed_m_s,est_x_m,"
+      "est_y_m,est_z_m,"
+      "est_yaw_deg,est_pitch_deg,est_roll_deg,est_speed_m_s,sigma_e_m,sigma_n_m,sigma_u_m,sigma_yaw_deg,error_e_m,"
+      "error_n_m,"
       "error_u_m,error_roll_deg,error_pitch_deg,error_yaw_deg,command_speed_m_s,command_curvature_1_m,waypoint,state");
   for (const NavRow& row : record.nav) {
     time_columns(csv, row.t, record.start);
@@ -60,8 +68,10 @@ std::string nav_csv(const RunRecord& record) {
 
 std::string gnss_csv(const RunRecord& record) {
   CsvWriter csv(
-      "t_s,gps_week,sow,status,satellites,above_mask,tracked,nlos,reflected,gdop,pdop,hdop,vdop,fix_x_m,fix_y_m,fix_z_m,sigma_e_m,"
-      "sigma_n_m,sigma_u_m,true_x_m,true_y_m,true_z_m,error_e_m,error_n_m,error_u_m,multipath_max_m,accepted,nis,reason");
+      "t_s,gps_week,sow,status,satellites,above_mask,tracked,nlos,reflected,gdop,pdop,hdop,vdop,fix_x_m,fix_y_m,fix_z_"
+      "m,sigma_e_m,"
+      "sigma_n_m,sigma_u_m,true_x_m,true_y_m,true_z_m,error_e_m,error_n_m,error_u_m,multipath_max_m,accepted,nis,"
+      "reason");
   const Eigen::Matrix3d R_WE = record.frame.R_EW().transpose();
   for (const GnssRow& row : record.gnss_rows) {
     time_columns(csv, row.fix.t, record.start);
@@ -74,15 +84,18 @@ std::string gnss_csv(const RunRecord& record) {
       reflected += satellite.line_of_sight && satellite.reflections > 0 ? 1 : 0;
       if (std::abs(satellite.multipath_m) > std::abs(multipath)) multipath = satellite.multipath_m;
     }
-    csv.word(word(row.fix.status)).integer(row.fix.satellites).integer(static_cast<std::int64_t>(row.truth.satellites.size()));
+    csv.word(word(row.fix.status))
+        .integer(row.fix.satellites)
+        .integer(static_cast<std::int64_t>(row.truth.satellites.size()));
     csv.integer(tracked).integer(nlos).integer(reflected);
     csv.numbers(3, row.fix.dop.gdop, row.fix.dop.pdop, row.fix.dop.hdop, row.fix.dop.vdop);
     const bool fixed = row.fix.status != FixStatus::kNone;
     const Eigen::Vector3d p = fixed ? record.frame.to_W(row.fix.p_A_E) : Eigen::Vector3d::Constant(kNaN);
     const Eigen::Matrix3d covariance = R_WE * row.fix.covariance_E * R_WE.transpose();
     const Eigen::Vector3d& truth = row.p_A_W_true;
-    csv.numbers(4, p.x(), p.y(), p.z(), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2)),
-                truth.x(), truth.y(), truth.z(), p.x() - truth.x(), p.y() - truth.y(), p.z() - truth.z(), multipath);
+    csv.numbers(4, p.x(), p.y(), p.z(), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
+                std::sqrt(covariance(2, 2)), truth.x(), truth.y(), truth.z(), p.x() - truth.x(), p.y() - truth.y(),
+                p.z() - truth.z(), multipath);
     csv.integer(row.update.accepted ? 1 : 0).number(row.update.dimension > 0 ? row.update.nis : kNaN, 4);
     csv.word(row.withheld ? "withheld" : row.fix.reason).end_row();
   }
@@ -91,7 +104,8 @@ std::string gnss_csv(const RunRecord& record) {
 
 std::string satellites_csv(const RunRecord& record) {
   CsvWriter csv(
-      "t_s,satellite,elevation_deg,azimuth_deg,line_of_sight,tracked,reflections,cn0_dbhz,multipath_m,ionosphere_m,troposphere_m,"
+      "t_s,satellite,elevation_deg,azimuth_deg,line_of_sight,tracked,reflections,cn0_dbhz,multipath_m,ionosphere_m,"
+      "troposphere_m,"
       "ephemeris_m,noise_m");
   for (const GnssRow& row : record.gnss_rows) {
     for (std::size_t i = 0; i < row.truth.satellites.size(); ++i) {
@@ -108,7 +122,8 @@ std::string satellites_csv(const RunRecord& record) {
 
 std::string keyframes_csv(const RunRecord& record) {
   CsvWriter csv(
-      "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,status,"
+      "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
+      "status,"
       "iterations,rms_m");
   for (const KeyframeRow& row : record.keyframes) {
     const Eigen::Vector3d& p = row.X_WL_true.p;

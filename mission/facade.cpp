@@ -34,7 +34,8 @@ std::vector<Eigen::Vector3d> facade_points(const scene::Building& building, cons
   return points;
 }
 
-double visible_share(const scene::SceneAt& scene, const Eigen::Vector3d& camera_W, const std::vector<Eigen::Vector3d>& points_W) {
+double visible_share(const scene::SceneAt& scene, const Eigen::Vector3d& camera_W,
+                     const std::vector<Eigen::Vector3d>& points_W) {
   if (points_W.empty()) return 0.0;
   int seen = 0;
   for (const auto& point : points_W) seen += scene.blocked(camera_W, point) ? 0 : 1;

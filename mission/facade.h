@@ -12,6 +12,7 @@ namespace canyon::mission {
 std::vector<Eigen::Vector3d> facade_points(const scene::Building& building, const Eigen::Vector2d& from_W);
 
 /// Share of the points in sight of `camera_W`.
-double visible_share(const scene::SceneAt& scene, const Eigen::Vector3d& camera_W, const std::vector<Eigen::Vector3d>& points_W);
+double visible_share(const scene::SceneAt& scene, const Eigen::Vector3d& camera_W,
+                     const std::vector<Eigen::Vector3d>& points_W);
 
 }  // namespace canyon::mission

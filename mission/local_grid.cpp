@@ -128,7 +128,8 @@ void LocalGrid::update_distances() {
     for (std::size_t iy = 0; iy < n; ++iy) {
       const std::int64_t gx = x0 + static_cast<std::int64_t>(ix), gy = y0 + static_cast<std::int64_t>(iy);
       const double d = config_.cell_m * std::sqrt(static_cast<double>(out[iy]));
-      distance_[index(static_cast<int>(modulo(gx, n_)), static_cast<int>(modulo(gy, n_)))] = static_cast<float>(std::min(d, kFar));
+      distance_[index(static_cast<int>(modulo(gx, n_)), static_cast<int>(modulo(gy, n_)))] =
+          static_cast<float>(std::min(d, kFar));
     }
   }
 }

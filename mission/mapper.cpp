@@ -28,14 +28,16 @@ Matrix6d moved(const Matrix6d& covariance_B, const Pose& X_BL) {
 
 }  // namespace
 
-Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration, const Pose& X_BL)
+Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration,
+               const Pose& X_BL)
     : config_(config), registration_(std::move(registration)), X_BL_(X_BL) {}
 
 const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate) {
   const Pose prior = estimate.X_WB * X_BL_;
   if (has_last_) {
     const Pose moved_by = last_.X_WL_prior.inverse() * prior;
-    if (moved_by.p.norm() < config_.keyframe_distance_m && so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree)
+    if (moved_by.p.norm() < config_.keyframe_distance_m &&
+        so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree)
       return nullptr;
   }
   std::vector<Eigen::Vector3f> points;

@@ -26,7 +26,8 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.number("map_range_m", c.map_range_m, {1, 1000}, "returns beyond are not mapped");
   f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy and map get the true pose");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
-  f.number("withhold_fixes_after_s", c.withhold_fixes_after_s, {-1, 1e5}, "no fix reaches the filter from then on; -1 = never");
+  f.number("withhold_fixes_after_s", c.withhold_fixes_after_s, {-1, 1e5},
+           "no fix reaches the filter from then on; -1 = never");
 }
 
 void visit(FieldVisitor& f, MissionConfig& c) {

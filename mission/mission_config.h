@@ -41,12 +41,12 @@ struct RunConfig {
   std::int64_t seed = 1;
   /// 1-sigma of the seeded error of the initial attitude: roll, pitch, heading.
   Eigen::Vector3d initial_attitude_error_deg{0.1, 0.1, 1.0};
-  double map_leaf_m = 0.25;       ///< one scored map point per voxel of this size
-  double map_range_m = 40.0;      ///< returns beyond are not mapped
+  double map_leaf_m = 0.25;   ///< one scored map point per voxel of this size
+  double map_range_m = 40.0;  ///< returns beyond are not mapped
   // Couplings that a study may cut on purpose.
-  bool truth_as_pose = false;               ///< hands the true pose on instead of the filter's
-  double estimate_up_offset_m = 0.0;        ///< added to the estimate's height
-  double withhold_fixes_after_s = -1.0;     ///< if >= 0: no fix reaches the filter from then on
+  bool truth_as_pose = false;            ///< hands the true pose on instead of the filter's
+  double estimate_up_offset_m = 0.0;     ///< added to the estimate's height
+  double withhold_fixes_after_s = -1.0;  ///< if >= 0: no fix reaches the filter from then on
 };
 void visit(FieldVisitor& f, RunConfig& c);
 

@@ -13,7 +13,9 @@ namespace {
 
 constexpr const char* kFidelityFile = "missions/fidelities.toml";
 
-std::string mission_key(const std::string& name) { return "missions/" + name + ".toml"; }
+std::string mission_key(const std::string& name) {
+  return "missions/" + name + ".toml";
+}
 
 std::vector<std::string> builtin_missions() {
   std::vector<std::string> names;
@@ -90,7 +92,10 @@ std::vector<std::string> MissionFile::fidelities() const {
 Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const {
   const auto known = fidelities();
   if (std::find(known.begin(), known.end(), fidelity) == known.end())
-    return Error{.file = file_, .key = "fidelity." + fidelity, .what = "unknown fidelity", .expected = "one of " + joined(known)};
+    return Error{.file = file_,
+                 .key = "fidelity." + fidelity,
+                 .what = "unknown fidelity",
+                 .expected = "one of " + joined(known)};
   ConfigNode tree = base_;
   const auto lay_fidelity = [&](const ConfigNode& from) {
     if (const ConfigNode* over = from.find("fidelity." + fidelity)) tree.overlay(*over);

@@ -18,8 +18,9 @@ inline constexpr const char* kDefaultMission = "vicksburg";
 
 /// A mission as the user states it: one description, and fidelities that override parts of it.
 ///
-/// Layers, later ones win: the base mission (`base = "vicksburg"`, a built-in), the built-in fidelity, the user's sections, the
-/// user's [fidelity.NAME], options of the command line. So a user's `[gnss] rate_hz = 5` holds for every fidelity.
+/// Layers, later ones win: the base mission (`base = "vicksburg"`, a built-in), the built-in fidelity, the user's
+/// sections, the user's [fidelity.NAME], options of the command line. So a user's `[gnss] rate_hz = 5` holds for every
+/// fidelity.
 class MissionFile {
  public:
   /// Reads a mission file; an empty path gives the built-in mission.
@@ -64,12 +65,12 @@ class SceneCache {
   std::map<std::string, std::shared_ptr<const scene::Scene>> scenes_;
 };
 
-/// Builds the scene and checks what needs it: start and waypoints inside the scene and outside buildings, observed buildings
-/// known, rates that divide the IMU's. Errors name the key; MissionFile::locate adds file and line.
+/// Builds the scene and checks what needs it: start and waypoints inside the scene and outside buildings, observed
+/// buildings known, rates that divide the IMU's. Errors name the key; MissionFile::locate adds file and line.
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes);
 
-/// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry before
-/// any time is spent.
+/// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry
+/// before any time is spent.
 Status check_sensors(const MissionConfig& config, const PreparedMission& mission);
 
 }  // namespace canyon::mission

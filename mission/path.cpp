@@ -9,7 +9,9 @@ namespace canyon::mission {
 
 namespace {
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 std::vector<Eigen::Vector2d> without_repeats(const std::vector<Eigen::Vector2d>& polyline) {
   std::vector<Eigen::Vector2d> out;
@@ -103,7 +105,9 @@ double Path::project(const Eigen::Vector2d& p, double from_m, double to_m) const
   return best;
 }
 
-double Path::offset(const Eigen::Vector2d& p, double s_m) const { return cross(direction(s_m), p - at(s_m)); }
+double Path::offset(const Eigen::Vector2d& p, double s_m) const {
+  return cross(direction(s_m), p - at(s_m));
+}
 
 double nominal_drive_time_s(const Path& path, const SpeedLimits& limits, const std::vector<double>& stops_m) {
   constexpr double kStep = 0.5;
@@ -115,7 +119,8 @@ double nominal_drive_time_s(const Path& path, const SpeedLimits& limits, const s
   }
   for (const double stop : stops_m) v[std::min(n - 1, static_cast<std::size_t>(std::llround(stop / kStep)))] = 0.0;
   v.front() = 0.0;
-  for (std::size_t i = 1; i < n; ++i) v[i] = std::min(v[i], std::sqrt(v[i - 1] * v[i - 1] + 2 * limits.acceleration_m_s2 * kStep));
+  for (std::size_t i = 1; i < n; ++i)
+    v[i] = std::min(v[i], std::sqrt(v[i - 1] * v[i - 1] + 2 * limits.acceleration_m_s2 * kStep));
   for (std::size_t i = n - 1; i-- > 0;)
     v[i] = std::min(v[i], std::sqrt(v[i + 1] * v[i + 1] + 2 * limits.deceleration_m_s2 * kStep));
   double time_s = 0.0;

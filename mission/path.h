@@ -11,8 +11,8 @@ namespace canyon::mission {
 class Path {
  public:
   Path() = default;
-  /// Rounds the corners of a polyline with arcs of at most `corner_radius_m` (less where a leg is too short) and samples every
-  /// `spacing_m`. Repeated points are merged.
+  /// Rounds the corners of a polyline with arcs of at most `corner_radius_m` (less where a leg is too short) and
+  /// samples every `spacing_m`. Repeated points are merged.
   Path(const std::vector<Eigen::Vector2d>& polyline, double corner_radius_m, double spacing_m = 0.25);
 
   bool empty() const { return points_.size() < 2; }

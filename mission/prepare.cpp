@@ -21,10 +21,11 @@ Status check_standing_place(const scene::Scene& scene, const Eigen::Vector2d& p,
   if (!scene.ground(p.x(), p.y()))
     return Error{.key = key,
                  .what = place(p) + " lies outside the scene",
-                 .expected = join_values("x from ", extent.min.x(), " to ", extent.max.x(), ", y from ", extent.min.y(), " to ",
-                                         extent.max.y())};
+                 .expected = join_values("x from ", extent.min.x(), " to ", extent.max.x(), ", y from ", extent.min.y(),
+                                         " to ", extent.max.y())};
   if (const scene::Building* building = scene.building_at(p))
-    return Error{.key = key, .what = place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
+    return Error{
+        .key = key, .what = place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
   return Ok{};
 }
 
@@ -85,10 +86,11 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
     stops.push_back(mission.prior.waypoint_s_m[i]);
     holds_s += config.autonomy.hold_s;
   }
-  mission.nominal_s = holds_s + nominal_drive_time_s(mission.prior.route,
-                                                     {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2,
-                                                      config.vehicle.max_acceleration_m_s2, config.autonomy.braking_m_s2},
-                                                     stops);
+  mission.nominal_s =
+      holds_s + nominal_drive_time_s(mission.prior.route,
+                                     {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2,
+                                      config.vehicle.max_acceleration_m_s2, config.autonomy.braking_m_s2},
+                                     stops);
   mission.time_limit_s = config.time.limit_factor * mission.nominal_s;
   return mission;
 }

@@ -130,7 +130,8 @@ class ReferenceAutonomy final : public Autonomy {
     const Eigen::Vector2d target = chosen_.at(prior_.route, s_target);
     const double yaw = yaw_pitch_roll(estimate.X_WB.R).yaw_rad;
     const Eigen::Vector2d d = target - estimate.X_WB.p.head<2>();
-    const double ahead = std::cos(yaw) * d.x() + std::sin(yaw) * d.y(), left = -std::sin(yaw) * d.x() + std::cos(yaw) * d.y();
+    const double ahead = std::cos(yaw) * d.x() + std::sin(yaw) * d.y(),
+                 left = -std::sin(yaw) * d.x() + std::cos(yaw) * d.y();
     const double distance2 = ahead * ahead + left * left;
     if (distance2 < 0.25) return 0.0;
     if (ahead < 0.0) return left >= 0.0 ? kTurnAround : -kTurnAround;
@@ -139,7 +140,9 @@ class ReferenceAutonomy final : public Autonomy {
 
   double allowed_speed() const {
     double v = config_.cruise_m_s;
-    const auto braking_to = [&](double distance) { return std::sqrt(2.0 * config_.braking_m_s2 * std::max(0.0, distance)); };
+    const auto braking_to = [&](double distance) {
+      return std::sqrt(2.0 * config_.braking_m_s2 * std::max(0.0, distance));
+    };
     for (double x = 0.0; x <= 12.0; x += 1.0) {
       const double curvature = std::abs(prior_.route.curvature(s_ + x));
       if (curvature < 1e-4) continue;
@@ -175,7 +178,8 @@ class ReferenceAutonomy final : public Autonomy {
 
 }  // namespace
 
-std::unique_ptr<Autonomy> make_reference_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
+std::unique_ptr<Autonomy> make_reference_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior,
+                                                  GpsTime start) {
   return std::make_unique<ReferenceAutonomy>(config, prior, start);
 }
 

@@ -19,9 +19,13 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 /// Undefined is null, never 0 or NaN.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
 
-Json point(const Eigen::Vector2d& p) { return Json::array({p.x(), p.y()}); }
+Json point(const Eigen::Vector2d& p) {
+  return Json::array({p.x(), p.y()});
+}
 
 void add_statistics(Json& out, const std::string& prefix, const ErrorStatistics& statistics) {
   out[prefix + "_rms_m"] = number(statistics.rms);
@@ -163,7 +167,8 @@ Json run_json(const RunSummary& s) {
   out["counters"] = s.counters;
   Json parts = Json::array();
   for (const auto& [part, cpu_s] : s.cpu_parts_s) parts.push_back({{"name", part}, {"cpu_s", cpu_s}});
-  out["timing"] = {{"real_time_factor", number(s.real_time_factor())}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}, {"parts", parts}};
+  out["timing"] = {
+      {"real_time_factor", number(s.real_time_factor())}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}, {"parts", parts}};
   return out;
 }
 
@@ -202,7 +207,8 @@ Json summary_json(const Results& results) {
     cpu_s += summary.cpu_s;
   }
   out["two_by_two"] = two_by_two(results.summaries);
-  out["timing"] = {{"wall_s", results.wall_s}, {"cpu_s", cpu_s}, {"peak_memory_mb", peak_memory_mb()}, {"threads", results.threads}};
+  out["timing"] = {
+      {"wall_s", results.wall_s}, {"cpu_s", cpu_s}, {"peak_memory_mb", peak_memory_mb()}, {"threads", results.threads}};
   return out;
 }
 
@@ -215,8 +221,10 @@ Json scene_json(const scene::Scene& scene) {
   for (const scene::Building& building : scene.buildings()) {
     Json footprint = Json::array();
     for (const auto& corner : building.footprint_W) footprint.push_back(point(corner));
-    out["buildings"].push_back(
-        {{"name", building.name}, {"base_m", building.base_m}, {"height_m", building.height_m}, {"footprint", footprint}});
+    out["buildings"].push_back({{"name", building.name},
+                                {"base_m", building.base_m},
+                                {"height_m", building.height_m},
+                                {"footprint", footprint}});
   }
   out["streets"] = Json::array();
   const scene::StreetGraph& streets = scene.streets();

@@ -8,8 +8,9 @@
 
 namespace canyon::mission {
 
-/// Road roughness as a fixed field over the plane: plane waves of random direction and phase whose displacement spectrum along
-/// any line follows ISO 8608, G(n) = G(n0) (n / n0)^-2, n0 = 0.1 cycles/m, for wavelengths from 0.7 to 20 m.
+/// Road roughness as a fixed field over the plane: plane waves of random direction and phase whose displacement
+/// spectrum along any line follows ISO 8608, G(n) = G(n0) (n / n0)^-2, n0 = 0.1 cycles/m, for wavelengths from 0.7 to
+/// 20 m.
 class RoadRoughness {
  public:
   /// `road_class` "A" to "E" (ISO 8608 geometric mean values: 16, 64, 256, 1024, 4096 e-6 m^3), or "none".

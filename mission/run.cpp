@@ -52,17 +52,24 @@ class MissionRun {
   RunRecord record_;
 };
 
-MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& mission, std::unique_ptr<gnss::GnssSensor> gnss,
-                       std::unique_ptr<inertial::ImuModel> imu, std::unique_ptr<lidar::Scanner> scanner,
-                       std::unique_ptr<lidar::Registration> registration)
-    : config_(config), mission_(mission), scene_(*mission.scene),
-      vehicle_(config.vehicle, *mission.scene, static_cast<std::uint64_t>(config.run.seed), mission.start), gnss_(std::move(gnss)),
-      imu_(std::move(imu)), scanner_(std::move(scanner)),
+MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& mission,
+                       std::unique_ptr<gnss::GnssSensor> gnss, std::unique_ptr<inertial::ImuModel> imu,
+                       std::unique_ptr<lidar::Scanner> scanner, std::unique_ptr<lidar::Registration> registration)
+    : config_(config),
+      mission_(mission),
+      scene_(*mission.scene),
+      vehicle_(config.vehicle, *mission.scene, static_cast<std::uint64_t>(config.run.seed), mission.start),
+      gnss_(std::move(gnss)),
+      imu_(std::move(imu)),
+      scanner_(std::move(scanner)),
       filter_(config.fusion, imu_->noise(), mission.scene->frame(), config.imu.lever_arm_m, config.gnss.lever_arm_m),
       mapper_(config.registration, std::move(registration), lidar::sensor_in_body(config.lidar)),
-      autonomy_(make_autonomy(config.autonomy, mission.prior, mission.start)), scorer_(config, mission, scene_),
-      X_BL_(lidar::sensor_in_body(config.lidar)), imu_per_gnss_(std::llround(config.imu.rate_hz / config.gnss.rate_hz)),
-      imu_per_scan_(std::llround(config.imu.rate_hz / config.lidar.rate_hz)), prior_map_(config.run.map_leaf_m),
+      autonomy_(make_autonomy(config.autonomy, mission.prior, mission.start)),
+      scorer_(config, mission, scene_),
+      X_BL_(lidar::sensor_in_body(config.lidar)),
+      imu_per_gnss_(std::llround(config.imu.rate_hz / config.gnss.rate_hz)),
+      imu_per_scan_(std::llround(config.imu.rate_hz / config.lidar.rate_hz)),
+      prior_map_(config.run.map_leaf_m),
       registered_map_(config.run.map_leaf_m) {
   record_.config = config;
   record_.frame = mission.scene->frame();
@@ -105,7 +112,8 @@ bool MissionRun::step() {
   const GpsTime t = tick(mission_.start, k_, config_.imu.rate_hz);
   PartClock& clock = record_.clock;
 
-  const Vehicle::Step& nodes = clock.charge(Part::kVehicle, [&]() -> const Vehicle::Step& { return vehicle_.advance(command_, t); });
+  const Vehicle::Step& nodes =
+      clock.charge(Part::kVehicle, [&]() -> const Vehicle::Step& { return vehicle_.advance(command_, t); });
   const ImuSample sample = clock.charge(Part::kImu, [&] { return imu_->sample(k_, nodes); });
   clock.charge(Part::kFilter, [&] { filter_.predict(sample); });
   if (k_ % imu_per_gnss_ == 0) receive_gnss();
@@ -120,8 +128,8 @@ bool MissionRun::step() {
   command_ = clock.charge(Part::kAutonomy, [&] { return autonomy_->drive(seen); });
 
   if (scan_due)
-    record_.nav.push_back({t, vehicle_.state().X_WB, vehicle_.speed_m_s(), estimate(), command_, autonomy_->next_waypoint() + 1,
-                           autonomy_->state()});
+    record_.nav.push_back({t, vehicle_.state().X_WB, vehicle_.speed_m_s(), estimate(), command_,
+                           autonomy_->next_waypoint() + 1, autonomy_->state()});
   const AutonomyState state = autonomy_->state();
   const bool on_purpose = state == AutonomyState::kObserving || state == AutonomyState::kDone;
   const bool go_on = clock.charge(Part::kScoring, [&] {
@@ -165,11 +173,13 @@ void MissionRun::take_scan() {
 
   const lidar::LidarOutput output =
       clock.charge(Part::kLidar, [&] { return scanner_->scan(k_ / imu_per_scan_, t, true_motion_, scene_); });
-  const LidarScan deskewed = clock.charge(Part::kLidar, [&] { return lidar::deskew(output.scan, estimated_motion_, X_BL_); });
+  const LidarScan deskewed =
+      clock.charge(Part::kLidar, [&] { return lidar::deskew(output.scan, estimated_motion_, X_BL_); });
   record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());
 
   const Keyframe* keyframe = nullptr;
-  if (!deskewed.points.empty()) keyframe = clock.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
+  if (!deskewed.points.empty())
+    keyframe = clock.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
   if (keyframe != nullptr) add_keyframe(deskewed, *keyframe);
 
   NavEstimate seen = now;

@@ -52,7 +52,7 @@ struct KeyframeRow {
 
 /// All that one run leaves behind; results and reports are made from it.
 struct RunRecord {
-  std::string name;  ///< file name of the run: "low", "high_gnss_low_imu"
+  std::string name;       ///< file name of the run: "low", "high_gnss_low_imu"
   std::string gnss, imu;  ///< whose fidelity each comes from
   MissionConfig config;
 

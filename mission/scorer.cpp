@@ -21,9 +21,15 @@ std::string number(double value, const char* unit) {
 }  // namespace
 
 Scorer::Scorer(const MissionConfig& config, const PreparedMission& mission, const scene::SceneAt& scene)
-    : config_(config.success), vehicle_(config.vehicle), places_(config.autonomy.waypoints), scene_(scene), start_(mission.start),
-      time_limit_s_(mission.time_limit_s), hard_limit_s_(config.time.limit_s),
-      last_checked_(Eigen::Vector2d::Constant(1e9)), last_t_(mission.start) {
+    : config_(config.success),
+      vehicle_(config.vehicle),
+      places_(config.autonomy.waypoints),
+      scene_(scene),
+      start_(mission.start),
+      time_limit_s_(mission.time_limit_s),
+      hard_limit_s_(config.time.limit_s),
+      last_checked_(Eigen::Vector2d::Constant(1e9)),
+      last_t_(mission.start) {
   for (const Waypoint& place : places_) {
     waypoints_.push_back({.name = place.name, .mission = place.is_mission()});
     facades_.emplace_back();
@@ -39,7 +45,8 @@ void Scorer::fail(const char* kind, const KinematicState& truth, std::string det
 }
 
 std::string Scorer::collides(const KinematicState& truth) const {
-  // Segments through the body at two heights: outline, and lines along it at most 0.4 m apart, so that no pole fits between.
+  // Segments through the body at two heights: outline, and lines along it at most 0.4 m apart, so that no pole fits
+  // between.
   const double rear = -0.5 * (vehicle_.length_m - vehicle_.wheelbase_m), front = rear + vehicle_.length_m;
   const double half = 0.5 * vehicle_.width_m;
   const int lines = std::max(2, static_cast<int>(std::ceil(vehicle_.width_m / 0.4)) + 1);
@@ -47,7 +54,8 @@ std::string Scorer::collides(const KinematicState& truth) const {
     const auto touched = [&](double x0, double y0, double x1, double y1) -> std::string {
       const Eigen::Vector3d a = truth.X_WB * Eigen::Vector3d(x0, y0, z), b = truth.X_WB * Eigen::Vector3d(x1, y1, z);
       const Eigen::Vector3d d = b - a;
-      const scene::Hit hit = scene_.trace({a.cast<float>(), d.normalized().cast<float>(), static_cast<float>(d.norm())});
+      const scene::Hit hit =
+          scene_.trace({a.cast<float>(), d.normalized().cast<float>(), static_cast<float>(d.norm())});
       if (!hit.hit()) return {};
       return scene_.scene().objects()[scene_.scene().mesh().object[hit.triangle]].name;
     };
@@ -123,9 +131,11 @@ void Scorer::finish(const KinematicState& truth, bool done) {
     if (!score.mission) continue;
     if (!score.reached) {
       fail("missed_waypoint", truth,
-           score.name + ": came within " + number(score.closest_m, "m") + ", stood there for " + number(score.stopped_s, "s"));
+           score.name + ": came within " + number(score.closest_m, "m") + ", stood there for " +
+               number(score.stopped_s, "s"));
     } else if (!facades_[i].empty() && score.facade_seen_share < config_.facade_share) {
-      fail("no_line_of_sight", truth, score.name + ": " + number(100.0 * score.facade_seen_share, "% of the facade in sight"));
+      fail("no_line_of_sight", truth,
+           score.name + ": " + number(100.0 * score.facade_seen_share, "% of the facade in sight"));
     }
   }
 }

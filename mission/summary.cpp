@@ -93,7 +93,8 @@ void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary
   out.gdop_median = median(gdop);
   out.pdop_median = median(std::move(pdop));
   if (has_dop) out.gdop_max = *std::max_element(gdop.begin(), gdop.end());
-  if (forms_pseudoranges && !fix_error.empty()) out.satellites_mean = satellites / static_cast<double>(fix_error.size());
+  if (forms_pseudoranges && !fix_error.empty())
+    out.satellites_mean = satellites / static_cast<double>(fix_error.size());
   if (tracked > 0) {
     out.nlos_share = static_cast<double>(nlos) / static_cast<double>(tracked);
     out.multipath_share = static_cast<double>(multipath) / static_cast<double>(tracked);

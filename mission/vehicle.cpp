@@ -27,7 +27,10 @@ void visit(FieldVisitor& f, VehicleConfig& c) {
 }
 
 Vehicle::Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start)
-    : config_(config), scene_(scene), roughness_(config.roughness, seed), p_(config.start_m),
+    : config_(config),
+      scene_(scene),
+      roughness_(config.roughness, seed),
+      p_(config.start_m),
       yaw_(yaw_from_heading(config.start_heading_deg * kDegree)) {
   last_inputs_ = terrain_inputs(p_, yaw_);
   heave_.x = last_inputs_.heave_m;
@@ -60,7 +63,8 @@ KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, double acce
                                    const Eigen::Vector2d& p) const {
   // Plan motion: v(tau) = v0 + a tau, kappa(tau) = kappa0 + k' tau, yaw' = v kappa.
   const double v = speed_ + acceleration * tau, kappa = curvature_ + curvature_rate * tau;
-  const double yaw = yaw_ + speed_ * curvature_ * tau + 0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * tau * tau +
+  const double yaw = yaw_ + speed_ * curvature_ * tau +
+                     0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * tau * tau +
                      acceleration * curvature_rate * tau * tau * tau / 3.0;
   const double yaw_rate = v * kappa, yaw_acceleration = acceleration * kappa + v * curvature_rate;
 
@@ -70,7 +74,8 @@ KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, double acce
   };
   const auto at = [&](const Sprung& s) {
     const double jerk = (s.a_next - s.a) / dt;
-    return Value{s.x + tau * (s.v + tau * (0.5 * s.a + tau * jerk / 6.0)), s.v + tau * (s.a + 0.5 * tau * jerk), s.a + tau * jerk};
+    return Value{s.x + tau * (s.v + tau * (0.5 * s.a + tau * jerk / 6.0)), s.v + tau * (s.a + 0.5 * tau * jerk),
+                 s.a + tau * jerk};
   };
   const Value heave = at(heave_), pitch = at(pitch_), roll = at(roll_);
 
@@ -83,10 +88,11 @@ KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, double acce
   // Body rates of R = Rz(yaw) Ry(pitch) Rx(roll), and their derivatives.
   const double sp = std::sin(pitch.x), cp = std::cos(pitch.x), sr = std::sin(roll.x), cr = std::cos(roll.x);
   state.w_WB_B = {roll.v - yaw_rate * sp, pitch.v * cr + yaw_rate * sr * cp, -pitch.v * sr + yaw_rate * cr * cp};
-  state.alpha_WB_B = {
-      roll.a - yaw_acceleration * sp - yaw_rate * cp * pitch.v,
-      pitch.a * cr - pitch.v * sr * roll.v + yaw_acceleration * sr * cp + yaw_rate * (cr * cp * roll.v - sr * sp * pitch.v),
-      -pitch.a * sr - pitch.v * cr * roll.v + yaw_acceleration * cr * cp + yaw_rate * (-sr * cp * roll.v - cr * sp * pitch.v)};
+  state.alpha_WB_B = {roll.a - yaw_acceleration * sp - yaw_rate * cp * pitch.v,
+                      pitch.a * cr - pitch.v * sr * roll.v + yaw_acceleration * sr * cp +
+                          yaw_rate * (cr * cp * roll.v - sr * sp * pitch.v),
+                      -pitch.a * sr - pitch.v * cr * roll.v + yaw_acceleration * cr * cp +
+                          yaw_rate * (-sr * cp * roll.v - cr * sp * pitch.v)};
   return state;
 }
 
@@ -94,13 +100,13 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   const GpsTime t_start = step_.back().t;
   const double dt = t_end - t_start;
   CANYON_CHECK(dt > 0, "dt = ", dt);
-  CANYON_CHECK(std::isfinite(command.speed_m_s) && std::isfinite(command.curvature_1_m), "drive command from autonomy: speed ",
-               command.speed_m_s, ", curvature ", command.curvature_1_m);
+  CANYON_CHECK(std::isfinite(command.speed_m_s) && std::isfinite(command.curvature_1_m),
+               "drive command from autonomy: speed ", command.speed_m_s, ", curvature ", command.curvature_1_m);
 
   // Constant acceleration and steering rate over the step, as far as the limits allow.
   const double target_speed = std::clamp(command.speed_m_s, 0.0, config_.max_speed_m_s);
-  double acceleration =
-      std::clamp((target_speed - speed_) / std::max(dt, 0.1), -config_.max_deceleration_m_s2, config_.max_acceleration_m_s2);
+  double acceleration = std::clamp((target_speed - speed_) / std::max(dt, 0.1), -config_.max_deceleration_m_s2,
+                                   config_.max_acceleration_m_s2);
   if (speed_ + acceleration * dt < 1e-3 && target_speed == 0.0) acceleration = -speed_ / dt;  // comes to a true stop
   const double max_steering = config_.max_steering_deg * kDegree, max_rate = config_.max_steering_rate_deg_s * kDegree;
   const double steering = std::atan(curvature_ * config_.wheelbase_m);
@@ -109,7 +115,8 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   const double curvature_rate = (std::tan(next_steering) / config_.wheelbase_m - curvature_) / dt;
 
   // Plan position at the nodes by Gauss-Legendre quadrature (5 points: error below 1e-15 m at these rates).
-  constexpr double kAbscissa[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
+  constexpr double kAbscissa[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                   0.9061798459386640};
   constexpr double kWeight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                  0.2369268850561891};
   const auto plan_velocity = [&](double tau) {
@@ -128,7 +135,8 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   }
 
   // Sprung accelerations at the end of the step: springs towards the terrain there, from the predicted state.
-  const double end_yaw = yaw_ + speed_ * curvature_ * dt + 0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * dt * dt +
+  const double end_yaw = yaw_ + speed_ * curvature_ * dt +
+                         0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * dt * dt +
                          acceleration * curvature_rate * dt * dt * dt / 3.0;
   const Inputs inputs = terrain_inputs(p.back(), end_yaw);
   const double w = 2.0 * kPi * config_.suspension_hz, zeta = config_.suspension_damping;
@@ -146,7 +154,8 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   for (int i = 0; i < kNodes; ++i) {
     const double tau = i * h;
     const GpsTime t = i == kNodes - 1 ? t_end : t_start + tau;
-    step_[static_cast<std::size_t>(i)] = node_state(t, tau, dt, acceleration, curvature_rate, p[static_cast<std::size_t>(i)]);
+    step_[static_cast<std::size_t>(i)] =
+        node_state(t, tau, dt, acceleration, curvature_rate, p[static_cast<std::size_t>(i)]);
   }
 
   distance_ += speed_ * dt + 0.5 * acceleration * dt * dt;

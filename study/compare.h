@@ -21,7 +21,7 @@ std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool 
 /// A comparison that has been read and checked; nothing has been driven yet.
 struct Comparison {
   std::vector<RunPlan> plan;
-  std::vector<mission::MissionConfig> configs;    ///< same index
+  std::vector<mission::MissionConfig> configs;     ///< same index
   std::vector<mission::PreparedMission> missions;  ///< same index; equal scenes are shared
 };
 /// Every mistake of the mission file is found here, before any time is spent.

@@ -106,7 +106,8 @@ std::string two_by_two(const std::vector<RunSummary>& runs) {
     }
     out += padded(std::string("  ") + gnss + " GNSS", 14, true) + row + "\n";
   }
-  return "2 x 2: outcome and position error RMS\n" + padded("", 14, true) + "  " + padded("low IMU", 26, true) + "  high IMU\n" + out;
+  return "2 x 2: outcome and position error RMS\n" + padded("", 14, true) + "  " + padded("low IMU", 26, true) +
+         "  high IMU\n" + out;
 }
 
 }  // namespace
@@ -120,8 +121,9 @@ std::string comparison_table(const mission::Results& results) {
   Table table(runs);
   table.section("mission");
   table.words("outcome", [](const RunSummary& r) { return r.outcome; });
-  table.words("waypoints reached",
-              [](const RunSummary& r) { return std::to_string(r.waypoints_reached) + " of " + std::to_string(r.waypoints.size()); });
+  table.words("waypoints reached", [](const RunSummary& r) {
+    return std::to_string(r.waypoints_reached) + " of " + std::to_string(r.waypoints.size());
+  });
   table.words("mission waypoints reached", [](const RunSummary& r) {
     return std::to_string(r.mission_waypoints_reached) + " of " + std::to_string(mission_waypoints(r));
   });
@@ -147,7 +149,8 @@ std::string comparison_table(const mission::Results& results) {
   table.section("satellites");
   table.numbers("GDOP, median", 2, [](const RunSummary& r) { return r.gdop_median; });
   table.numbers("GDOP, max", 2, [](const RunSummary& r) { return r.gdop_max; });
-  table.words("DOP jumps (|dGDOP| > 2 or fix lost/regained)", [](const RunSummary& r) { return std::to_string(r.dop_jumps); });
+  table.words("DOP jumps (|dGDOP| > 2 or fix lost/regained)",
+              [](const RunSummary& r) { return std::to_string(r.dop_jumps); });
   table.numbers("satellites in the fix, mean", 1, [](const RunSummary& r) { return r.satellites_mean; });
   table.numbers("NLOS share of tracked, %", 1, [](const RunSummary& r) { return 100 * r.nlos_share; });
   table.numbers("multipath share of tracked, %", 1, [](const RunSummary& r) { return 100 * r.multipath_share; });
@@ -161,10 +164,14 @@ std::string comparison_table(const mission::Results& results) {
   table.words("keyframes registered", [](const RunSummary& r) {
     return std::to_string(r.keyframes_converged) + " of " + std::to_string(r.keyframes);
   });
-  table.numbers("map to true surface RMS, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_rms_m; });
-  table.numbers("map to true surface RMS, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_rms_m; });
-  table.numbers("map to true surface 95 %, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_p95_m; });
-  table.numbers("map to true surface 95 %, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_p95_m; });
+  table.numbers("map to true surface RMS, prior alone", 3,
+                [](const RunSummary& r) { return r.prior_map.map_error_rms_m; });
+  table.numbers("map to true surface RMS, registered", 3,
+                [](const RunSummary& r) { return r.registered_map.map_error_rms_m; });
+  table.numbers("map to true surface 95 %, prior alone", 3,
+                [](const RunSummary& r) { return r.prior_map.map_error_p95_m; });
+  table.numbers("map to true surface 95 %, registered", 3,
+                [](const RunSummary& r) { return r.registered_map.map_error_p95_m; });
   table.numbers("map up RMS, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_up_rms_m; });
   table.numbers("map up RMS, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_up_rms_m; });
 
@@ -180,7 +187,8 @@ std::string comparison_table(const mission::Results& results) {
   for (const RunSummary& run : results.summaries) {
     if (!run.failure) continue;
     out += "\n" + run.name + ": " + run.failure->kind + " at " + fixed(run.failure->t_s, 1) + " s, x " +
-           fixed(run.failure->p_W.x(), 1) + " m, y " + fixed(run.failure->p_W.y(), 1) + " m (" + run.failure->detail + ")";
+           fixed(run.failure->p_W.x(), 1) + " m, y " + fixed(run.failure->p_W.y(), 1) + " m (" + run.failure->detail +
+           ")";
   }
   if (out.back() != '\n') out += "\n";
   if (const std::string square = two_by_two(results.summaries); !square.empty()) out += "\n" + square;

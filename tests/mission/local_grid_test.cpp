@@ -16,7 +16,9 @@ std::vector<Eigen::Vector3f> street_with_wall(bool wall) {
   return points;
 }
 
-Pose at(double x, double y, double z) { return {Eigen::Quaterniond::Identity(), {x, y, z}}; }
+Pose at(double x, double y, double z) {
+  return {Eigen::Quaterniond::Identity(), {x, y, z}};
+}
 
 TEST(LocalGrid, FindsAWallAndItsDistance) {
   LocalGrid grid({});
@@ -37,7 +39,8 @@ TEST(LocalGrid, ALevelStreetIsFree) {
   EXPECT_EQ(grid.distance_m({0, 0}), LocalGrid::kFar);
 }
 
-// The coupling of the paper: a jump of the estimate's height turns the street itself into obstacles, until they are forgotten.
+// The coupling of the paper: a jump of the estimate's height turns the street itself into obstacles, until they are
+// forgotten.
 TEST(LocalGrid, AJumpInHeightMakesGhostsThatFade) {
   LocalGridConfig config;
   LocalGrid grid(config);
@@ -45,7 +48,8 @@ TEST(LocalGrid, AJumpInHeightMakesGhostsThatFade) {
   grid.add(street_with_wall(false), at(0, 0, 0.8), at(0, 0, 0.8), 0.1);
   grid.update_distances();
   EXPECT_GT(grid.obstacles(), 1000);
-  for (double t = 0.2; t < 2 * config.memory_s; t += 0.1) grid.add(street_with_wall(false), at(0, 0, 0.8), at(0, 0, 0.8), t);
+  for (double t = 0.2; t < 2 * config.memory_s; t += 0.1)
+    grid.add(street_with_wall(false), at(0, 0, 0.8), at(0, 0, 0.8), t);
   grid.update_distances();
   EXPECT_EQ(grid.obstacles(), 0);
 }
@@ -82,7 +86,8 @@ TEST(LocalGrid, DistancesAreEuclidean) {
   for (double x = -8; x < 8; x += 0.7) {
     for (double y = -8; y < 8; y += 0.7) {
       double expected = LocalGrid::kFar;
-      for (const auto& p : points) expected = std::min(expected, 0.25 * std::hypot(cell(p.x()) - cell(x), cell(p.y()) - cell(y)));
+      for (const auto& p : points)
+        expected = std::min(expected, 0.25 * std::hypot(cell(p.x()) - cell(x), cell(p.y()) - cell(y)));
       ASSERT_NEAR(grid.distance_m({x, y}), expected, 1e-5) << x << " " << y;
     }
   }

@@ -16,14 +16,16 @@ class VehicleTest : public ::testing::Test {
     scene_ = new scene::Scene(scene::make_city(config));
   }
   static void TearDownTestSuite() { delete scene_; }
-  static Vehicle make(const VehicleConfig& config = {}) { return {config, *scene_, 1, GpsTime::from_week_sow(1610, 305000)}; }
+  static Vehicle make(const VehicleConfig& config = {}) {
+    return {config, *scene_, 1, GpsTime::from_week_sow(1610, 305000)};
+  }
   static scene::Scene* scene_;
 };
 scene::Scene* VehicleTest::scene_ = nullptr;
 
-// Velocity and acceleration at the nodes are derivatives of the pose: integrating them over a step by Boole's rule gives the
-// change of position and velocity. Boole's error is h^7/1e3 times the sixth derivative, far below 1e-12 m here; what is left is
-// rounding, of the order of eps * |p| = 1e-13 m.
+// Velocity and acceleration at the nodes are derivatives of the pose: integrating them over a step by Boole's rule
+// gives the change of position and velocity. Boole's error is h^7/1e3 times the sixth derivative, far below 1e-12 m
+// here; what is left is rounding, of the order of eps * |p| = 1e-13 m.
 TEST_F(VehicleTest, NodesAreExactDerivativesOfOneAnother) {
   Vehicle vehicle = make();
   const GpsTime start = vehicle.state().t;
@@ -33,8 +35,9 @@ TEST_F(VehicleTest, NodesAreExactDerivativesOfOneAnother) {
     const auto& nodes = vehicle.advance({3.0, 0.1 * std::sin(s)}, tick(start, k, 100.0));
     const double h = (nodes[4].t - nodes[0].t) / 4;
     const auto boole = [&](auto member) {
-      return Eigen::Vector3d(2 * h / 45 * (7 * member(nodes[0]) + 32 * member(nodes[1]) + 12 * member(nodes[2]) +
-                                           32 * member(nodes[3]) + 7 * member(nodes[4])));
+      return Eigen::Vector3d(2 * h / 45 *
+                             (7 * member(nodes[0]) + 32 * member(nodes[1]) + 12 * member(nodes[2]) +
+                              32 * member(nodes[3]) + 7 * member(nodes[4])));
     };
     const Eigen::Vector3d dp = boole([](const KinematicState& n) { return n.v_WB_W; });
     const Eigen::Vector3d dv = boole([](const KinematicState& n) { return n.a_WB_W; });

@@ -1,0 +1,111 @@
+#include "study/compare.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/progress.h"
+
+namespace canyon::study {
+namespace {
+
+constexpr const char* kMission = R"(
+base = "vicksburg"
+[time]
+limit_s = 6.0
+[vehicle]
+start_m = [213.9, 30.0]
+start_heading_deg = 0.0
+[registration]
+method = "none"
+[autonomy]
+[[autonomy.waypoint]]
+name = "house"
+p_m = [213.9, 150.0]
+observe = "building 273"
+)";
+
+class CompareTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    auto file = mission::MissionFile::parse(kMission, "my.toml");
+    comparison_ = new Comparison(*prepare_comparison(*file, plan_runs({"low", "high"}, true)));
+    results_ = new mission::Results(*compare(*comparison_, false));
+  }
+  static void TearDownTestSuite() {
+    delete results_;
+    delete comparison_;
+  }
+  static Comparison* comparison_;
+  static mission::Results* results_;
+};
+Comparison* CompareTest::comparison_ = nullptr;
+mission::Results* CompareTest::results_ = nullptr;
+
+TEST(PlanRuns, TwoByTwoAddsTheMixedRuns) {
+  const auto plan = plan_runs({"low", "high", "paper"}, true);
+  ASSERT_EQ(plan.size(), 5U);
+  EXPECT_EQ(plan[3].name, "high_gnss_low_imu");
+  EXPECT_EQ(plan[3].gnss, "high");
+  EXPECT_EQ(plan[3].imu, "low");
+  EXPECT_EQ(plan_runs({"low"}, false).size(), 1U);
+}
+
+TEST_F(CompareTest, AllRunsShareOneScene) {
+  for (const auto& mission : comparison_->missions) EXPECT_EQ(mission.scene, comparison_->missions.front().scene);
+}
+
+TEST_F(CompareTest, RunsComeInTheOrderOfThePlan) {
+  ASSERT_EQ(results_->records.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(results_->records[i].name, comparison_->plan[i].name);
+}
+
+// Paired by common random numbers: the low GNSS of the pure and of the mixed run draws the same errors, so that their
+// first fixes, taken at nearly the same true place, have the same error to the bit of the draw.
+TEST_F(CompareTest, PairedRunsShareTheirNoise) {
+  const auto error = [&](std::size_t run) {
+    const auto& row = results_->records[run].gnss_rows.front();
+    return Eigen::Vector3d(results_->records[run].frame.to_W(row.fix.p_A_E) - row.p_A_W_true);
+  };
+  // ECEF positions of 6e6 m carry 1e-9 m.
+  EXPECT_LT((error(0) - error(3)).norm(), 1e-8);  // low and low_gnss_high_imu
+  EXPECT_LT((error(1) - error(2)).norm(),
+            1e-3);  // high and high_gnss_low_imu: ranges to a place that differs by the loop
+}
+
+TEST_F(CompareTest, JsonHasTheContractsKeysAndNoNaN) {
+  const auto json = mission::summary_json(*results_);
+  for (const auto& run : json["runs"]) {
+    for (const char* key : {"fidelity", "outcome", "waypoints_reached", "mission_waypoints_reached", "distance_m",
+                            "position_error_rms_m", "position_error_up_rms_m", "gdop_median", "gdop_max", "dop_jumps",
+                            "nlos_share", "fixes_lost", "registration_error_rms_m", "registration_error_prior_rms_m",
+                            "map_error_rms_m", "map_error_prior_rms_m", "map_error_up_rms_m", "map_error_p95_m"})
+      EXPECT_TRUE(run.contains(key)) << key;
+  }
+  // The low model forms no pseudoranges: its DOP is undefined, not zero.
+  EXPECT_TRUE(json["runs"][0]["gdop_median"].is_null());
+  EXPECT_TRUE(json["runs"][1]["gdop_median"].is_number());
+  EXPECT_EQ(json.dump().find("NaN"), std::string::npos);
+  EXPECT_FALSE(json["two_by_two"].is_null());
+}
+
+TEST_F(CompareTest, TableHasOneColumnPerRunAndARatio) {
+  const std::string table = comparison_table(*results_);
+  EXPECT_THAT(table, ::testing::HasSubstr("low"));
+  EXPECT_THAT(table, ::testing::HasSubstr("high/low"));
+  EXPECT_THAT(table, ::testing::HasSubstr("2 x 2: outcome and position error RMS"));
+  EXPECT_THAT(table, ::testing::HasSubstr("GDOP, median"));
+  EXPECT_THAT(table, ::testing::Not(::testing::HasSubstr("nan")));
+}
+
+TEST(Cancel, StopsARunAtOnce) {
+  auto file = mission::MissionFile::parse(kMission, "my.toml");
+  const auto comparison = prepare_comparison(*file, plan_runs({"low"}, false));
+  set_cancel_requested(true);
+  EXPECT_THROW((void)compare(*comparison, false), Cancelled);
+  set_cancel_requested(false);
+}
+
+}  // namespace
+}  // namespace canyon::study
