@@ -31,6 +31,15 @@ void check_finite(const GnssFix& fix) {
                ", covariance diagonal = ", fix.covariance_E.diagonal().transpose());
 }
 
+using Columns3 = Eigen::Matrix<double, Index::kAll, 3>;
+
+/// P += a b'.
+void add_outer(ErrorMatrix& P, const Columns3& a, const Columns3& b) {
+  const Eigen::Matrix<double, 3, Index::kAll, Eigen::RowMajor> rows = b.transpose();
+  for (int i = 0; i < Index::kAll; ++i)
+    P.row(i) += a(i, 0) * rows.row(0) + a(i, 1) * rows.row(1) + a(i, 2) * rows.row(2);
+}
+
 /// Covariance of the fix with the configured floor; raising diagonal terms keeps it positive definite.
 Eigen::Matrix3d fix_covariance(const GnssFix& fix, double floor_m) {
   Eigen::Matrix3d R = 0.5 * (fix.covariance_E + fix.covariance_E.transpose());
@@ -159,9 +168,8 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   report.dimension = 3;
 
   const Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
-  using Gain = Eigen::Matrix<double, Index::kAll, 3>;
-  const Gain PHt = P_.leftCols<9>() * H.transpose();
-  Eigen::Matrix3d S = H * PHt.topRows<9>() + R;
+  const Columns3 PHt = P_.leftCols<9>().lazyProduct(H.transpose());
+  Eigen::Matrix3d S = H.lazyProduct(PHt.topRows<9>()) + R;
   S = 0.5 * (S + S.transpose()).eval();
   const Eigen::LLT<Eigen::Matrix3d> S_llt(S);
   CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
@@ -171,16 +179,17 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
     return report;
   report.accepted = true;
 
-  const Gain K = S_llt.solve(PHt.transpose()).transpose();
+  const Eigen::Matrix3d S_inverse = S_llt.solve(Eigen::Matrix3d::Identity());
+  const Columns3 K = PHt.lazyProduct(S_inverse);
 
-  // Joseph: (I - K H) P (I - K H)' + K R K', as rank-3 corrections.
-  P_ -= K * PHt.transpose();
-  const Gain MHt = P_.leftCols<9>() * H.transpose();
-  P_ -= MHt * K.transpose();
-  P_ += K * R * K.transpose();
+  // Joseph: (I - K H) P (I - K H)' + K R K', as two rank-3 corrections from the left and from the right.
+  add_outer(P_, -K, PHt);
+  const Columns3 MHt = P_.leftCols<9>().lazyProduct(H.transpose());
+  const Columns3 right = K.lazyProduct(R) - MHt;
+  add_outer(P_, right, K);
   P_ = 0.5 * (P_ + P_.transpose()).eval();
 
-  inject(K * report.innovation);
+  inject(K.lazyProduct(report.innovation));
   return report;
 }
 
@@ -200,7 +209,7 @@ void ErrorStateFilter::inject(const Eigen::Matrix<double, Index::kAll, 1>& error
   }
   // The attitude error is now counted from the corrected attitude: Exp(theta + e) = Exp(theta) Exp(Jr(theta) e).
   const Eigen::Matrix3d reset = so3_right_jacobian(theta);
-  Eigen::Matrix<double, 3, Index::kAll> rows = reset * P_.topRows<3>();
+  Eigen::Matrix<double, 3, Index::kAll> rows = reset.lazyProduct(P_.topRows<3>());
   const Eigen::Matrix3d P_theta = rows.leftCols<3>() * reset.transpose();
   rows.leftCols<3>() = 0.5 * (P_theta + P_theta.transpose());
   P_.topRows<3>() = rows;
@@ -224,7 +233,7 @@ NavEstimate ErrorStateFilter::estimate() const {
   J.block<3, 3>(3, Index::kTheta) = skew(lever_U_B_);
   J.block<3, 3>(3, Index::kPosition) = R_EB.transpose();
   const StateMatrix P = covariance();
-  out.pose_covariance = J * P * J.transpose();
+  out.pose_covariance = J.lazyProduct(P).eval().lazyProduct(J.transpose());
   out.pose_covariance = 0.5 * (out.pose_covariance + out.pose_covariance.transpose()).eval();
 
   // dv_B = dv_U + R [w x l]x theta - R [l]x b_g, in W.
@@ -232,7 +241,7 @@ NavEstimate ErrorStateFilter::estimate() const {
   V.block<3, 3>(0, Index::kTheta) = R_WE * R_EB * skew(w_EU_U_.cross(lever_U_B_));
   V.block<3, 3>(0, Index::kVelocity) = R_WE;
   V.block<3, 3>(0, Index::kGyroBias) = -R_WE * R_EB * skew(lever_U_B_);
-  out.velocity_covariance_W = V * P * V.transpose();
+  out.velocity_covariance_W = V.lazyProduct(P).eval().lazyProduct(V.transpose());
   out.velocity_covariance_W = 0.5 * (out.velocity_covariance_W + out.velocity_covariance_W.transpose()).eval();
   return out;
 }
