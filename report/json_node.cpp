@@ -65,14 +65,15 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return close(); }
   bool end_array() override { return close(); }
   bool key(string_t& name) override {
-    auto& members = std::get<JsonNode::Object>(open_.back()->value);
-    for (const auto& member : members) {
-      if (member.first == name) {
+    auto& members = std::get<JsonNode::Object>(open_.back()->value).members;
+    for (const JsonNode& member : members) {
+      if (member.key == name) {
         error_ = Error{file_, place_.line, name, "key given twice", "each key once"};
         return false;
       }
     }
-    members.emplace_back(std::move(name), JsonNode{});
+    members.emplace_back();
+    members.back().key = std::move(name);
     return true;
   }
   bool parse_error(std::size_t position, const std::string& token, const nlohmann::json::exception&) override {
@@ -104,7 +105,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
       list->push_back(std::move(node));
       return &list->back();
     }
-    JsonNode& member = std::get<JsonNode::Object>(parent.value).back().second;
+    JsonNode& member = std::get<JsonNode::Object>(parent.value).members.back();
+    node.key = std::move(member.key);
     member = std::move(node);
     return &member;
   }
@@ -141,10 +143,10 @@ std::string joined(const std::string& path, std::string_view key) {
 
 }  // namespace
 
-const JsonNode* JsonNode::find(std::string_view key) const {
-  if (const Object* members = object()) {
-    for (const auto& [name, node] : *members) {
-      if (name == key) return &node;
+const JsonNode* JsonNode::find(std::string_view name) const {
+  if (const Object* object_value = object()) {
+    for (const JsonNode& member : object_value->members) {
+      if (member.key == name) return &member;
     }
   }
   return nullptr;

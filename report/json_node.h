@@ -16,11 +16,14 @@ namespace canyon::report {
 /// line. Numbers are doubles, as JSON's are; integers beyond 2^53 keep their digits in `text`.
 struct JsonNode {
   using Array = std::vector<JsonNode>;
-  using Object = std::vector<std::pair<std::string, JsonNode>>;  ///< in the file's order
+  struct Object {
+    std::vector<JsonNode> members;  ///< each with its key, in the file's order
+  };
 
   std::variant<std::monostate, bool, double, std::string, Array, Object> value;  ///< monostate: null
   int line = 0;
-  std::string text;  ///< an integer as written; else empty
+  std::string text;      ///< an integer as written; else empty
+  std::string key = {};  ///< its name, if it is a member of an object
 
   bool is_null() const { return value.index() == 0; }
   const double* number() const { return std::get_if<double>(&value); }
@@ -28,7 +31,7 @@ struct JsonNode {
   const Array* array() const { return std::get_if<Array>(&value); }
   const Object* object() const { return std::get_if<Object>(&value); }
   /// Member of an object; nullptr if this is no object or has no such member.
-  const JsonNode* find(std::string_view key) const;
+  const JsonNode* find(std::string_view name) const;
   /// "number 3.5", "string \"x\"", "null", "list of 4": for messages.
   std::string describe() const;
 };

@@ -53,18 +53,20 @@ void check_run_name(const JsonFields& fields, const std::string& name) {
 
 /// The figures of the table, and any further number of the run; what later versions add beside them is passed over.
 void read_figures(const JsonFields& fields, Run& run) {
-  const JsonNode::Object* members = fields.node() ? fields.node()->object() : nullptr;
-  if (!members) return;
-  for (const auto& [key, node] : *members) {
-    if (!is_known_figure(key) && !node.number()) continue;
-    run.figures[key] = key.ends_with("_share") ? fields.share(key) : fields.number(key);
+  const JsonNode::Object* object = fields.node() ? fields.node()->object() : nullptr;
+  if (!object) return;
+  for (const JsonNode& node : object->members) {
+    if (!is_known_figure(node.key) && !node.number()) continue;
+    run.figures[node.key] = node.key.ends_with("_share") ? fields.share(node.key) : fields.number(node.key);
   }
 }
 
 std::vector<std::pair<std::string, double>> read_counters(const JsonFields& fields) {
   std::vector<std::pair<std::string, double>> out;
   if (fields.node() && fields.node()->object()) {
-    for (const auto& member : *fields.node()->object()) out.emplace_back(member.first, fields.number(member.first));
+    for (const JsonNode& member : fields.node()->object()->members) {
+      out.emplace_back(member.key, fields.number(member.key));
+    }
   }
   return out;
 }
@@ -132,11 +134,12 @@ TwoByTwo read_two_by_two(const JsonFields& fields) {
     }
     table.outcome.push_back(std::move(row));
   }
-  const JsonNode::Object* members = fields.node()->object();
-  if (!members) return table;
-  for (const auto& member : *members) {
-    const std::string& key = member.first;
+  const JsonNode::Object* object = fields.node()->object();
+  if (!object) return table;
+  for (const JsonNode& member : object->members) {
+    const std::string& key = member.key;
     if (key == "gnss" || key == "imu" || key == "outcome") continue;
+    if (!is_known_figure(key) && !member.array()) continue;  // something a later version added
     for (const auto& [node, path] : rows_of(key)) {
       table.figures[key].push_back(json_numbers(*node, table.imu.size(), fields.file(), path, fields.error()));
     }
