@@ -12,7 +12,8 @@ namespace {
 
 /// The label of a tick: exact decimals of its step, with a real minus.
 std::string tick_label(double value, double step) {
-  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + 1e-9)));
+  // One decimal more than the step's own, for ticks such as 1.5; fixed() drops it where it is zero.
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   std::string text = fixed(value, decimals);
   if (text[0] == '-') text.replace(0, 1, "\xE2\x88\x92");
   return text;
@@ -76,24 +77,26 @@ Axis Axis::seconds(double min, double max, int target_ticks) {
 
 Axis Axis::logarithmic(double min, double max) {
   CANYON_CHECK(min > 0 && max >= min && std::isfinite(max), "min = ", min, ", max = ", max);
-  // Integer decades and the factors in them; all ticks are built from these, never by repeated multiplication.
-  constexpr std::array<double, 3> kFactors{1, 2, 5};
+  // All ticks are a factor times a whole power of ten, never built by repeated multiplication.
+  static const std::vector<double> kFew{1, 2, 5}, kMany{1, 1.5, 2, 3, 4, 5, 7};
+  const std::vector<double>& factors = max < 10 * min ? kMany : kFew;
+  const int per_decade = static_cast<int>(factors.size());
   const auto tick = [&](int i) {
-    const int decade = static_cast<int>(std::floor(i / 3.0));
-    return kFactors[static_cast<std::size_t>(i - 3 * decade)] * std::pow(10.0, decade);
+    const int decade = static_cast<int>(std::floor(static_cast<double>(i) / per_decade));
+    return factors[static_cast<std::size_t>(i - per_decade * decade)] * std::pow(10.0, decade);
   };
-  int first = 3 * static_cast<int>(std::floor(std::log10(min))) + 3;
+  int first = per_decade * (static_cast<int>(std::floor(std::log10(min))) + 1);
   while (tick(first) > min * (1 + 1e-9)) --first;
-  int last = 3 * static_cast<int>(std::floor(std::log10(max))) - 1;
+  int last = per_decade * static_cast<int>(std::floor(std::log10(max))) - 1;
   while (tick(last) < max * (1 - 1e-9)) ++last;
   if (last == first) ++last;
   Axis axis;
   axis.logarithmic_ = true;
   axis.min_ = tick(first);
   axis.max_ = tick(last);
-  const bool many = last - first > 9;
+  const bool decades_only = last - first > 3 * per_decade;
   for (int i = first; i <= last; ++i) {
-    const bool labelled = !many || ((i % 3) + 3) % 3 == 0;
+    const bool labelled = !decades_only || i % per_decade == 0;
     axis.ticks_.push_back({tick(i), labelled ? tick_label(tick(i), tick(i)) : std::string()});
   }
   return axis;

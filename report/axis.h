@@ -20,8 +20,8 @@ class Axis {
   static Axis linear_rounded(double min, double max, int target_ticks = 5);
   /// Seconds: ticks at 1, 2, 5, 10, 15, 30 s, 1, 2, 5, 10, 15, 30 min, 1, 2, ... h; labels in seconds.
   static Axis seconds(double min, double max, int target_ticks = 9);
-  /// 0 < min < max; widened to ticks at 1, 2 and 5 times the powers of ten, or to powers of ten if there are more than
-  /// three.
+  /// 0 < min <= max; widened to ticks at 1, 2 and 5 times the powers of ten (1, 1.5, 2, 3, 4, 5 and 7 times
+  /// within one decade); labels at the powers of ten alone if there are more than three.
   static Axis logarithmic(double min, double max);
 
   double min() const { return min_; }

@@ -20,9 +20,6 @@ constexpr std::array<AxisColumns, 3> kAxes{{{"East error", "error_e_m", "sigma_e
                                             {"North error", "error_n_m", "sigma_n_m"},
                                             {"Up error", "error_u_m", "sigma_u_m"}}};
 
-/// A long error is drawn no finer than this on the logarithmic panel: below, it is nobody's concern.
-constexpr double kSmallestShown_m = 1e-3;
-
 Line norm_line(const Results& results, std::size_t i) {
   const EpochTable& nav = *results.runs[i].nav;
   Line line{.run = i, .name = results.runs[i].fidelity, .x = nav["t_s"], .y = {}};
@@ -32,9 +29,7 @@ Line norm_line(const Results& results, std::size_t i) {
 
 Panel norm_panel(const std::vector<Line>& lines) {
   Panel panel{.title = "Position error, 3-D (logarithmic)", .unit = "m"};
-  const Extremes e = positive_extremes_of(lines);
-  panel.y = Axis::logarithmic(std::max(e.drawn ? e.min : 0.01, kSmallestShown_m),
-                              std::max(e.drawn ? e.max : 1.0, 2 * kSmallestShown_m));
+  panel.y = error_axis(lines);
   panel.lines = lines;
   panel.height_px = 150;
   return panel;

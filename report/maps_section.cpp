@@ -124,8 +124,9 @@ std::string maps_section(const Results& results) {
     body += note("All map points lie outside the scene, so there is no picture.");
   } else {
     const MapWindow window = window_of(results.grid, box);
+    const bool tall = window.size_m().y() > 1.25 * window.size_m().x();
     const std::vector<std::string> images = pictures(results, map, box, clouds);
-    body += map_error_legend() + "<div class=\"columns maps\">\n";
+    body += map_error_legend() + (tall ? "<div class=\"columns maps tall\">\n" : "<div class=\"columns maps\">\n");
     for (std::size_t k = 0; k < clouds.size(); ++k) {
       const NamedCloud& c = clouds[k];
       const std::string name = results.runs[c.run].fidelity + ", " + placing(c);

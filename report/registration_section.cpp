@@ -71,10 +71,7 @@ std::string registration_section(const Results& results) {
     caption += (caption.empty() ? "" : "<br>") + improvement(results, i);
   }
   if (drawn.empty()) return section("registration", title, {}, missing);
-  const Extremes e = positive_extremes_of(all);
-  // One scale for all runs, so that the panels can be compared; below a millimetre nothing is to be seen.
-  const double low_m = std::max(e.drawn ? e.min : 0.01, 1e-3);
-  const Axis y = Axis::logarithmic(low_m, std::max(e.drawn ? e.max : 1.0, 2 * low_m));
+  const Axis y = error_axis(all);  // one scale for all runs, so that the panels can be compared
   for (const std::size_t i : drawn) {
     chart.panels.push_back(run_panel(results, i, y));
     chart.description += results.runs[i].fidelity + ": prior RMS " +

@@ -68,11 +68,16 @@ std::string draw_error_ties(const MapDrawing& map, const Run& run, std::size_t r
   const EpochTable& nav = *run.nav;
   std::string ties;
   double next_s = nav["t_s"].front();
+  // While the vehicle stands, the ties of a still estimate would only blacken one place.
+  const double least_move_m = 0.01 * window.size_m().x();
+  Eigen::Vector2d last_truth(INFINITY, INFINITY), last_estimate(INFINITY, INFINITY);
   for (std::size_t i = 0; i < nav.rows; ++i) {
     if (nav["t_s"][i] < next_s) continue;
     next_s = nav["t_s"][i] + every_s - 1e-6;
     const Eigen::Vector2d truth(nav["true_x_m"][i], nav["true_y_m"][i]), estimate(nav["est_x_m"][i], nav["est_y_m"][i]);
     if (!truth.allFinite() || !estimate.allFinite()) continue;
+    if ((truth - last_truth).norm() < least_move_m && (estimate - last_estimate).norm() < least_move_m) continue;
+    last_truth = truth, last_estimate = estimate;
     const bool inside = ((truth - window.min_W).array() > 0).all() && ((window.max_W - truth).array() > 0).all();
     if (inside) ties += "M" + map.point(truth, 2) + " " + map.point(estimate, 2);
   }

@@ -91,7 +91,7 @@ std::string satellites_section(const Results& results) {
     }
     const EpochTable& gnss = *run.gnss_epochs;
     caption += (caption.empty() ? "" : "<br>") + summary_of(results, i);
-    gdop.lanes.push_back(without_fix(results, i));
+    if (Lane lane = without_fix(results, i); !lane.intervals.empty()) gdop.lanes.push_back(std::move(lane));
     drawn.push_back(i);
     if (!has_satellites(gnss)) {
       missing +=
@@ -119,11 +119,18 @@ std::string satellites_section(const Results& results) {
       chart.description += line.name + ": GDOP from " + show_number(g.min) + " to " + show_number(g.max) + ". ";
   }
   const bool lines = !gdop.lines.empty();
-  gdop.notes.push_back("Bars at the foot: epochs without a fix, a lane for each of " + [&] {
-    std::vector<std::string> names;
-    for (const std::size_t i : drawn) names.push_back(results.runs[i].fidelity);
-    return listed(names);
-  }() + ".");
+  std::vector<std::size_t> shown;  // in the legend
+  for (const std::size_t i : drawn) {
+    const auto of_run = [i](const auto& item) { return item.run == i; };
+    if (std::any_of(gdop.lines.begin(), gdop.lines.end(), of_run) ||
+        std::any_of(gdop.lanes.begin(), gdop.lanes.end(), of_run)) {
+      shown.push_back(i);
+    }
+  }
+  std::vector<std::string> lanes;
+  for (const Lane& lane : gdop.lanes) lanes.push_back(results.runs[lane.run].fidelity);
+  gdop.notes.push_back(lanes.empty() ? "No epoch is without a fix."
+                                     : "Bars at the foot: epochs without a fix, a lane for " + listed(lanes) + ".");
   chart.panels.push_back(std::move(gdop));
   if (lines) {
     chart.panels.push_back(std::move(satellites));
@@ -132,7 +139,7 @@ std::string satellites_section(const Results& results) {
   return section("satellites", title,
                  "The dilution of precision (GDOP) multiplies the error of a range into the error of a fix; it jumps "
                  "where buildings take satellites away.",
-                 run_legend(results.runs, drawn) + figure(draw(chart), caption) + missing);
+                 run_legend(results.runs, shown) + figure(draw(chart), caption) + missing);
 }
 
 }  // namespace canyon::report

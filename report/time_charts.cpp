@@ -1,6 +1,8 @@
 #include "report/time_charts.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "report/format.h"
 #include "report/html.h"
@@ -27,6 +29,18 @@ Chart time_chart(const Results& results, std::string id, std::string title) {
 Line column_line(const Results& results, std::size_t i, const EpochTable& table, std::string_view column,
                  Line::Style style) {
   return {.run = i, .name = results.runs[i].fidelity, .x = table["t_s"], .y = table[column], .style = style};
+}
+
+Axis error_axis(const std::vector<Line>& lines) {
+  std::vector<double> errors_m;
+  for (const Line& line : lines) {
+    std::copy_if(line.y.begin(), line.y.end(), std::back_inserter(errors_m), [](double y) { return y > 0; });
+  }
+  constexpr double kSmallest_m = 1e-3;
+  if (errors_m.empty()) return Axis::logarithmic(0.01, 1);
+  std::sort(errors_m.begin(), errors_m.end());
+  const double low_m = std::max(errors_m[errors_m.size() / 200], kSmallest_m);
+  return Axis::logarithmic(low_m, std::max(errors_m.back(), 2 * low_m));
 }
 
 std::string missing_file(const Run& run, std::string_view what, std::string_view suffix) {

@@ -86,10 +86,8 @@ std::string error_chart(const Results& results, const TwoByTwo& table) {
       drawn.push_back(*i);
     }
   }
-  const Extremes e = positive_extremes_of(panel.lines);
-  if (!e.drawn) return note("The results hold no navigation epochs of these runs.");
-  const double low_m = std::max(e.min, 1e-3);
-  panel.y = Axis::logarithmic(low_m, std::max(e.max, 2 * low_m));
+  if (!positive_extremes_of(panel.lines).drawn) return note("The results hold no navigation epochs of these runs.");
+  panel.y = error_axis(panel.lines);
   chart.panels.push_back(std::move(panel));
   return run_legend(results.runs, drawn) + figure(draw(chart), {});
 }

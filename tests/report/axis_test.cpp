@@ -59,6 +59,8 @@ TEST(Axis, TimeTicksAreRoundInMinutes) {
 
 TEST(Axis, LogarithmicTicks) {
   EXPECT_EQ(labels(Axis::logarithmic(1.3, 27)), (Labels{"1", "2", "5", "10", "20", "50"}));
+  EXPECT_EQ(labels(Axis::logarithmic(2.1, 4.9)), (Labels{"2", "3", "4", "5"}));  // finer within one decade
+  EXPECT_EQ(labels(Axis::logarithmic(0.011, 0.02)), (Labels{"0.01", "0.015", "0.02"}));
   // Over more than three decades only the powers of ten are named.
   EXPECT_EQ(labels(Axis::logarithmic(0.012, 31)), (Labels{"0.01", "", "", "0.1", "", "", "1", "", "", "10", "", ""}));
   const Axis axis = Axis::logarithmic(0.012, 31);
