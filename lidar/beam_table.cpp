@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/config.h"
+#include "core/config_text.h"
 #include "core/embedded.h"
 #include "core/files.h"
 #include "core/units.h"
@@ -49,8 +50,7 @@ Result<double> number(std::string_view text, const Field& field, const std::stri
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool parsed = code == std::errc() && end == text.data() + text.size();
   if (!parsed || !(value >= field.min && value <= field.max)) {
-    return Error{file, line, field.name, '"' + std::string(text) + '"',
-                 join_values("a number from ", field.min, " to ", field.max)};
+    return Error{file, line, field.name, '"' + std::string(text) + '"', range_text({field.min, field.max}, false)};
   }
   return value;
 }
@@ -92,6 +92,7 @@ Result<BeamTable> parse_beam_table(std::string_view csv, const std::string& file
   table.cycle_s = cycle_us * 1e-6;
   if (lines.size() < 2 || lines[1].text != kHeader) return wrong(1, std::string(kHeader));
   if (lines.size() < 3) return wrong(2, "one line per laser");
+  double last_firing_us = 0;
   for (std::size_t i = 2; i < lines.size(); ++i) {
     const auto parts = split(lines[i].text);
     if (parts.size() != kFields.size()) return wrong(i, "5 values: " + std::string(kHeader));
@@ -100,14 +101,15 @@ Result<BeamTable> parse_beam_table(std::string_view csv, const std::string& file
       CANYON_TRY(values[k], number(parts[k], kFields[k], file_name, lines[i].number));
     }
     if (values[0] != static_cast<double>(i - 2)) return wrong(i, join_values("laser ", i - 2));
+    last_firing_us = std::max(last_firing_us, values[4]);
     table.beams.push_back({.elevation_rad = values[1] * kDegree,
                            .azimuth_offset_rad = values[2] * kDegree,
                            .origin_up_m = values[3] * 1e-3,
                            .firing_s = values[4] * 1e-6});
   }
-  if (table.cycle_s > 0 && table.last_firing_s() >= table.cycle_s) {
-    return Error{file_name, lines[0].number, "cycle_us", join_values(cycle_us),
-                 join_values("more than the last firing_us, ", table.last_firing_s() * 1e6)};
+  if (cycle_us > 0 && last_firing_us >= cycle_us) {
+    return Error{file_name, lines[0].number, "cycle_us", number_text(cycle_us),
+                 "more than the last firing_us, " + number_text(last_firing_us)};
   }
   return table;
 }

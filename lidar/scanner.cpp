@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config_text.h"
 #include "core/units.h"
 #include "lidar/scanner_models.h"
 
@@ -26,17 +27,16 @@ Error config_error(const char* key, std::string what, std::string expected) {
 
 Status validate(const LidarConfig& c, const BeamTable& table) {
   if (!(c.min_range_m < c.max_range_m)) {
-    return config_error("min_range_m", join_values(c.min_range_m),
-                        join_values("less than max_range_m, ", c.max_range_m));
+    return config_error("min_range_m", number_text(c.min_range_m),
+                        "less than max_range_m, " + number_text(c.max_range_m));
   }
   const double firing_s = 1.0 / (c.rate_hz * static_cast<double>(c.azimuth_steps));
   const double needed_s = std::max(table.cycle_s, table.last_firing_s());
   if (firing_s < needed_s) {
-    std::ostringstream expected;
-    expected.precision(6);
-    expected << "at most " << static_cast<std::int64_t>(std::floor(1.0 / (c.rate_hz * needed_s))) << " at " << c.rate_hz
-             << " Hz (" << table.name << " needs " << needed_s * 1e6 << " us per firing)";
-    return config_error("azimuth_steps", std::to_string(c.azimuth_steps), expected.str());
+    const auto most = static_cast<std::int64_t>(std::floor(1.0 / (c.rate_hz * needed_s)));
+    return config_error("azimuth_steps", std::to_string(c.azimuth_steps),
+                        "at most " + std::to_string(most) + " at " + number_text(c.rate_hz) + " Hz (" + table.name +
+                            " needs " + number_text(std::round(needed_s * 1e9) / 1e3) + " us per firing)");
   }
   return Ok{};
 }

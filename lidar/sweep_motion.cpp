@@ -9,7 +9,7 @@ namespace canyon::lidar {
 namespace {
 
 constexpr double kNodeSpacing_s = 0.25e-3;
-constexpr double kNanosecond_s = 1e-9;  // resolution of stamps
+constexpr double kTimeTolerance_s = 1e-8;  // a point's time_s in single precision: 4 ns at 0.1 s
 
 }  // namespace
 
@@ -24,7 +24,7 @@ SweepMotion::SweepMotion(const Trajectory& motion, GpsTime stamp, double first_s
   const double begin_s = std::max(first_s, poses.front().t - stamp);
   const double end_s = std::min(last_s, poses.back().t - stamp);
   if (poses.size() == 1 || begin_s >= end_s) {
-    if (begin_s <= end_s + kNanosecond_s)
+    if (begin_s <= end_s + kTimeTolerance_s)
       add(begin_s, motion.at(std::clamp(stamp + begin_s, poses.front().t, poses.back().t)).value());
     return;
   }
@@ -50,8 +50,8 @@ SweepMotion::SweepMotion(const Trajectory& motion, GpsTime stamp, double first_s
 }
 
 bool SweepMotion::covers(double time_s) const {
-  return !nodes_.empty() && time_s >= nodes_.front().time_s - kNanosecond_s &&
-         time_s <= nodes_.back().time_s + kNanosecond_s;
+  return !nodes_.empty() && time_s >= nodes_.front().time_s - kTimeTolerance_s &&
+         time_s <= nodes_.back().time_s + kTimeTolerance_s;
 }
 
 SweepMotion::Placement SweepMotion::at(double time_s, std::size_t& hint) const {

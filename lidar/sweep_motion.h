@@ -27,7 +27,7 @@ class SweepMotion {
   SweepMotion(const Trajectory& motion, GpsTime stamp, double first_s, double last_s, const Pose& X_RW,
               const Pose& X_BL);
 
-  /// True if time_s, in seconds after the stamp, lies in the covered span (to 1 ns).
+  /// True if time_s, in seconds after the stamp, lies in the covered span (to 10 ns).
   bool covers(double time_s) const;
 
   /// Placement at time_s, which must be covered. `hint` is where the search starts and is moved along; start with 0.
