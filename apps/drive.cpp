@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,14 @@ void print_json(const mission::Results& results, const std::string& directory, c
   std::printf("%s\n", out.dump().c_str());
 }
 
+/// Each warning once, however many runs met it.
+void print_warnings(const mission::Results& results) {
+  std::set<std::string> told;
+  for (const auto& record : results.records)
+    for (const auto& warning : record.warnings)
+      if (told.insert(warning).second) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
 }  // namespace
 
 Result<int> drive_and_report(const MissionOptions& options, const mission::MissionFile& file,
@@ -42,6 +51,7 @@ Result<int> drive_and_report(const MissionOptions& options, const mission::Missi
   throw_if_cancelled();
   CANYON_TRY_STATUS(staged.commit());
 
+  print_warnings(results);
   if (options.common.json) {
     print_json(results, staged.final_path(), hash);
     return 0;

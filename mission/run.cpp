@@ -214,6 +214,7 @@ RunRecord MissionRun::finish() {
     record_.prior_quality = lidar::evaluate_map(record_.prior_map, scene_);
     record_.registered_quality = lidar::evaluate_map(record_.registered_map, scene_);
   });
+  record_.warnings = gnss_->warnings();
   const gnss::GnssCounters counters = gnss_->counters();
   record_.counters["imu_samples"] = k_;
   record_.counters["gnss_epochs"] = counters.epochs;

@@ -70,6 +70,7 @@ struct RunRecord {
   std::vector<lidar::MapPoint> prior_map, registered_map;
   lidar::MapQuality prior_quality, registered_quality;
 
+  std::vector<std::string> warnings;  ///< about inputs, for example damaged records that were skipped
   std::map<std::string, std::int64_t> counters;
   PartClock clock;
   double wall_s = 0.0;

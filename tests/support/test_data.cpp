@@ -8,7 +8,8 @@ namespace canyon::testing {
 std::string data_file(const std::string& relative) {
   namespace fs = std::filesystem;
   const char* configured = std::getenv("CANYON_TEST_DATA");
-  const fs::path folder = configured ? fs::path(configured) : fs::path(CANYON_SOURCE_DIR).parent_path() / "shared" / "data";
+  const fs::path folder =
+      configured ? fs::path(configured) : fs::path(CANYON_SOURCE_DIR).parent_path() / "shared" / "data";
   if (!fs::is_directory(folder)) return {};
   const fs::path file = folder / relative;
   if (!fs::exists(file)) {
