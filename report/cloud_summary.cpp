@@ -179,7 +179,9 @@ Result<CloudSummary> summarize_cloud(const std::string& path, const MapGrid& gri
       ++cloud.points;
       const double square_m2 = double{error_m} * double{error_m};
       cloud.sum_squares_m2 += square_m2;
+      if (error_m > cloud.max_m) cloud.at_max = 0;
       cloud.max_m = std::max(cloud.max_m, double{error_m});
+      if (error_m == cloud.max_m) ++cloud.at_max;
       ++cloud.histogram[bin_of(error_m)];
       const double column = std::floor((x - grid.min_W.x()) / grid.cell_m);
       const double row = static_cast<double>(grid.rows) - 1 - std::floor((y - grid.min_W.y()) / grid.cell_m);

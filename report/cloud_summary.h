@@ -37,6 +37,7 @@ struct CloudSummary {
   std::uint64_t outside = 0;    ///< of `points`, those outside the grid
   double sum_squares_m2 = 0.0;
   double max_m = 0.0;
+  std::uint64_t at_max = 0;              ///< points whose error is exactly max_m: many where the scorer caps distances
   std::vector<std::uint64_t> histogram;  ///< kCount + 2 bins: below kMin_m, the bins, kMax_m and above
   std::vector<float> cell_rms_m;         ///< RMS error of the points over each cell; negative where there is none
 

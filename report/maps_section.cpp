@@ -16,6 +16,10 @@ namespace {
 /// All pictures of the page together stay below this, so that the page stays below 5 MB whatever the clouds hold.
 constexpr std::size_t kPicturesBudget_bytes = 2'800'000;
 
+/// More points than this with one and the same greatest error are no chance: the scorer counts anything farther as that
+/// much.
+constexpr double kCapped = 0.001;
+
 struct NamedCloud {
   std::size_t run = 0;
   bool registered = false;
@@ -52,12 +56,24 @@ std::vector<std::string> pictures(const Results& results, const MapDrawing& map,
   }
 }
 
+/// A figure of summary.json, which is exact; what the histogram says where that is undefined.
+double figure_or(const Results& results, const NamedCloud& c, const char* prior_key, const char* registered_key,
+                 double otherwise) {
+  const double value = results.runs[c.run].figure(c.registered ? registered_key : prior_key);
+  return std::isfinite(value) ? value : otherwise;
+}
+
 std::string caption(const Results& results, const NamedCloud& c) {
-  std::string text = run_tag(results.runs, c.run) + " " + placing(c) + ": RMS " + show_quantity(c.cloud->rms_m(), "m") +
-                     ", 95 % below " + show_quantity(c.cloud->quantile_m(0.95), "m") + ", " +
+  const double rms_m = figure_or(results, c, "map_error_prior_rms_m", "map_error_rms_m", c.cloud->rms_m());
+  const double p95_m = figure_or(results, c, "map_error_p95_prior_m", "map_error_p95_m", c.cloud->quantile_m(0.95));
+  std::string text = run_tag(results.runs, c.run) + " " + placing(c) + ": RMS " + show_quantity(rms_m, "m") +
+                     ", 95 % below " + show_quantity(p95_m, "m") + ", " +
                      count_of(static_cast<double>(c.cloud->points), "point", "points");
-  if (c.cloud->undefined > 0)
+  const double capped = static_cast<double>(c.cloud->at_max) / static_cast<double>(c.cloud->points);
+  if (capped > kCapped) text += ", " + show_share(capped) + " of them at " + show_quantity(c.cloud->max_m, "m");
+  if (c.cloud->undefined > 0) {
     text += ", " + show_count(static_cast<double>(c.cloud->undefined)) + " more without a defined error";
+  }
   return text + ".";
 }
 
@@ -142,7 +158,7 @@ std::string maps_section(const Results& results) {
                             show_quantity(results.grid.cell_m, "m", 2) +
                             "). \xE2\x80\x9CPrior\xE2\x80\x9D: scans placed by the filter alone; "
                             "\xE2\x80\x9Cregistered\xE2\x80\x9D: then aligned with the map "
-                            "so far.";
+                            "so far. A point beyond the scorer\xE2\x80\x99s reach counts with that reach.";
   return section("maps", title, intro, body + missing);
 }
 

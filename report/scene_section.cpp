@@ -41,7 +41,7 @@ std::string failure_marker(const Run& run, std::size_t run_number, const MapWind
   if (!p_W) return {};
   const std::string words = run.fidelity + ": " + outcome_label(run.failure->kind) +
                             (std::isfinite(run.failure->t_s) ? " at " + show_quantity(run.failure->t_s, "s") : "");
-  const bool right = (p_W->x() - window.min_W.x()) > 0.5 * window.size_m().x();
+  const bool right = (p_W->x() - window.min_W.x()) > 0.51 * window.size_m().x();
   return "<span class=\"failure " + run_class(run_number) + (right ? " left" : "") + (run.is_pure() ? "" : " mixed") +
          "\" style=\"" + MapDrawing::place(window, *p_W) +
          "\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><path class=\"halo\" d=\"M3 3L13 13M13 3L3 13\"/><path "
@@ -184,8 +184,8 @@ std::string scene_section(const Results& results) {
   for (const std::size_t i : pure_runs(results)) close_ups += close_up(results, map, i);
   if (!close_ups.empty()) {
     body +=
-        "<h3>Where it went wrong</h3>\n<p class=\"intro\">A tie joins the true and the estimated position at every "
-        "second.</p>\n<div class=\"columns\">\n" +
+        "<h3>Where it went wrong</h3>\n<p class=\"intro\">While the vehicle moves, a tie joins its true and its "
+        "estimated position every second.</p>\n<div class=\"columns\">\n" +
         close_ups + "</div>\n";
   }
   return section("scene-section", "From above",

@@ -54,6 +54,7 @@ TEST_F(Cloud, GathersErrorsAndCells) {
   EXPECT_EQ(cloud->undefined, 1u);
   EXPECT_EQ(cloud->outside, 1u);
   EXPECT_EQ(cloud->max_m, 4);
+  EXPECT_EQ(cloud->at_max, 1u);
   const double small = double{0.05f};
   EXPECT_DOUBLE_EQ(cloud->rms_m(), std::sqrt((9 + 16 + small * small + 1) / 4));
   EXPECT_EQ(cloud->cell_rms_m[4 * 10 + 0], std::sqrt(12.5f));  // south-west: the last row's first cell
@@ -74,6 +75,12 @@ TEST_F(Cloud, QuantilesLieWithinABinOfTheExactOnes) {
   EXPECT_DOUBLE_EQ(cloud->share_below_edge(ErrorBins::kCount), 1.0);
   EXPECT_NEAR(cloud->share_below_edge(2 * ErrorBins::kPerDecade), 0.1,
               1e-4);  // below 10 cm; one point on the edge may fall either way
+}
+
+TEST_F(Cloud, CountsThePointsAtTheGreatestError) {
+  const auto cloud = read(pcd({{1, 1, 0, 0, 3}, {1, 1, 0, 0, 5}, {1, 1, 0, 0, 2}, {1, 1, 0, 0, 5}}));
+  ASSERT_TRUE(cloud.ok());
+  EXPECT_EQ(cloud->at_max, 2u);
 }
 
 TEST_F(Cloud, AnEmptyCloudHasNoFigures) {

@@ -67,14 +67,8 @@ void SyntheticRun::drive() {
   std::size_t next = 0;
   for (int k = 0; along_m < end_m || stopped_s > 0; ++k) {
     const bool stopped = stopped_s > 0;
-    epochs_.push_back({k / kNavRate_hz,
-                       along_m,
-                       stopped ? 0.0 : options_.speed_m_s,
-                       city_.at(along_m),
-                       {},
-                       {},
-                       static_cast<int>(next) + 1,
-                       stopped});
+    epochs_.push_back({k / kNavRate_hz, along_m, stopped ? 0.0 : options_.speed_m_s, city_.at(along_m),
+                       Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), static_cast<int>(next) + 1, stopped});
     if (stopped) {
       stopped_s -= 1 / kNavRate_hz;
       continue;
