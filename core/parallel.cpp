@@ -72,4 +72,8 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
   });
 }
 
+void run_on_one_thread(const std::function<void()>& work) {
+  tbb::task_arena(1).execute([&] { tbb::this_task_arena::isolate([&] { work(); }); });
+}
+
 }  // namespace canyon

@@ -13,4 +13,8 @@ int threads();
 /// so a caller that keeps one result slot per chunk and combines them in order gets bit-identical results.
 void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body);
 
+/// Runs `work` so that whatever it starts on oneTBB stays on the calling thread: for library calls whose result would
+/// depend on the number of threads.
+void run_on_one_thread(const std::function<void()>& work);
+
 }  // namespace canyon

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/parallel.h"
 #include "scene/tracer.h"
 #include "scene/triangle.h"
 
@@ -16,11 +17,11 @@ namespace {
 
 constexpr std::size_t kPacket = 16;
 
-/// One device for the whole process. It builds with one thread: the order in which a parallel build places triangles in
-/// the tree may vary, and with it which of two triangles a ray through their common edge meets.
+/// One device for the whole process. Trees are built on one thread (see below): the order in which a parallel build
+/// places triangles in the tree may vary, and with it which of two triangles a ray through their common edge meets.
 RTCDevice device() {
   static const RTCDevice instance = [] {
-    RTCDevice made = rtcNewDevice("threads=1");
+    RTCDevice made = rtcNewDevice(nullptr);
     CANYON_CHECK(made != nullptr, "Embree error ", static_cast<int>(rtcGetDeviceError(nullptr)));
     CANYON_CHECK(rtcGetDeviceProperty(made, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0,
                  "this Embree was built without ray masks");
@@ -103,7 +104,8 @@ Tracer::Tracer(const SceneParts& parts) : embree_(std::make_unique<Embree>(parts
   if (bytes > 0) std::memcpy(rtcGetBufferData(vertices), mesh.vertices.data(), bytes);
   for (unsigned id = 0; id < 3; ++id) embree_->add_geometry(id, vertices);
   rtcReleaseBuffer(vertices);
-  rtcCommitScene(embree_->scene);
+  // Embree's own "threads=1" would limit oneTBB in the whole process.
+  run_on_one_thread([&] { rtcCommitScene(embree_->scene); });
   check_no_error("the building of the acceleration structure");
 }
 
