@@ -8,12 +8,13 @@
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "core/units.h"
 
 namespace canyon::lidar {
 namespace {
 
 constexpr std::size_t kChunk = 1024;
-const double kLevel = std::cos(30.0 * 3.14159265358979323846 / 180.0);
+const double kLevel = std::cos(30.0 * kDegree);
 
 struct Sums {
   double squared = 0, up = 0, up_squared = 0;

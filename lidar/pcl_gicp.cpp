@@ -20,8 +20,8 @@ using Cloud = pcl::PointCloud<Point>;
 using PclGicp = pcl::GeneralizedIterativeClosestPoint<Point, Point, double>;
 using Matrices = PclGicp::MatricesVector;
 
-constexpr double kPlaneThickness =
-    1e-3;  // epsilon of Segal et al. 2009: variance across a plane over variance along it
+// epsilon of Segal et al. 2009: variance across a plane over variance along it.
+constexpr double kPlaneThickness = 1e-3;
 constexpr double kTranslationEpsilon_m = 2e-4;
 constexpr double kRotationEpsilon_rad = 2e-5;
 // Normals come from neighbours up to some eight leaves away, so residuals correlate over twice that.

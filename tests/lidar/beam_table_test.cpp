@@ -1,7 +1,6 @@
 #include "lidar/beam_table.h"
 
 #include <cmath>
-#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -55,21 +54,21 @@ TEST(BeamTable, GridHasTheSameElevationsWithoutOffsets) {
   EXPECT_EQ(grid->last_firing_s(), 0.0);
 }
 
-/// All numbers that follow `name` and a separator, in order.
-std::vector<double> numbers_after(const std::string& text, const std::string& pattern) {
+/// The numbers that follow each `name` as a word of its own, in order.
+std::vector<double> numbers_after(const std::string& text, const std::string& name) {
   std::vector<double> out;
-  const std::regex regex(pattern + R"((-?[0-9.eE+-]+))");
-  for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it)
-    out.push_back(std::stod((*it)[1]));
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    out.push_back(std::stod(text.substr(at + name.size(), 40)));
+  }
   return out;
 }
 
 TEST(BeamTable, Vlp16EqualsTheCalibrationFileOfTheRosDriver) {
   CANYON_REAL_DATA(path, "lidar/calib/VLP16db.yaml");
   const std::string text = *read_text_file(path);
-  const auto ids = numbers_after(text, "laser_id: ");
-  const auto elevations = numbers_after(text, "vert_correction: ");
-  const auto azimuths = numbers_after(text, "rot_correction: ");
+  const auto ids = numbers_after(text, " laser_id: ");
+  const auto elevations = numbers_after(text, " vert_correction: ");
+  const auto azimuths = numbers_after(text, " rot_correction: ");
   const BeamTable table = *load_beam_table("vlp16");
   ASSERT_EQ(elevations.size(), table.beams.size());
   for (std::size_t j = 0; j < elevations.size(); ++j) {
