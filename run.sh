@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# ./run.sh [verb and options]: installs what is missing, builds, and runs canyon; without arguments `canyon compare`, which
+# ./run.sh [verb and options]: installs what is missing, builds, and runs canyon; without a verb `canyon compare`, which
 # drives the built-in mission low against high and says where the report is. Safe to repeat: a second call starts at once.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,5 +11,8 @@ build_as_owner "$root/run.sh" "$@"
 configure OFF
 build canyon
 
-if (($# == 0)); then set -- compare; fi
+case ${1:-} in
+  -h | --help | --version) ;;
+  '' | -*) set -- compare "$@" ;;
+esac
 exec "$root/build/release/bin/canyon" "$@"

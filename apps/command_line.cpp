@@ -14,9 +14,40 @@ namespace canyon::apps {
 
 namespace {
 
+std::string group_summary(const std::string& group) {
+  if (group == "gnss") return "satellites, measurements and positions by themselves";
+  if (group == "imu") return "inertial data by itself";
+  if (group == "lidar") return "scans, registration and maps by themselves";
+  if (group == "scene") return "build, import and inspect a scene";
+  return "";
+}
+
 int complain(const Error& error) {
   std::fprintf(stderr, "%s\n", error.str().c_str());
   return error.exit_code;
+}
+
+/// The subcommand of a verb, inside its group's if it has one.
+CLI::App* declare_verb(CLI::App& app, const Verb& verb) {
+  const std::string name = verb.name;
+  const std::size_t blank = name.find(' ');
+  if (blank == std::string::npos) return app.add_subcommand(name, verb.summary);
+  const std::string group_name = name.substr(0, blank);
+  CLI::App* group = nullptr;
+  for (CLI::App* known : app.get_subcommands([](CLI::App*) { return true; }))
+    if (known->get_name() == group_name) group = known;
+  if (group == nullptr) {
+    group = app.add_subcommand(group_name, group_summary(group_name));
+    group->require_subcommand(1);
+  }
+  return group->add_subcommand(name.substr(blank + 1), verb.summary);
+}
+
+/// The subcommand that was asked for, inside its group.
+const CLI::App* chosen(const CLI::App& app) {
+  const CLI::App* sub = app.get_subcommands().front();
+  while (!sub->get_subcommands().empty()) sub = sub->get_subcommands().front();
+  return sub;
 }
 
 }  // namespace
@@ -33,7 +64,7 @@ int run_command_line(int argc, char** argv) {
   app.require_subcommand(1);
   std::map<const CLI::App*, VerbAction> actions;
   for (const Verb& verb : {compare_verb(), run_verb(), report_verb()}) {
-    CLI::App* sub = app.add_subcommand(verb.name, verb.summary);
+    CLI::App* sub = declare_verb(app, verb);
     sub->footer(std::string("\nExample:\n  ") + verb.example);
     actions[sub] = verb.declare(*sub);
   }
@@ -46,7 +77,7 @@ int run_command_line(int argc, char** argv) {
 
   install_cancel_handler();
   try {
-    const auto result = actions.at(app.get_subcommands().front())();
+    const auto result = actions.at(chosen(app))();
     return result ? *result : complain(result.error());
   } catch (const Cancelled&) {
     std::fprintf(stderr, "interrupted: nothing was written\n");

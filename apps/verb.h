@@ -17,7 +17,7 @@ using VerbAction = std::function<Result<int>()>;
 
 /// One verb of the command line. A new verb is one file and one row in command_line.cpp.
 struct Verb {
-  const char* name;
+  const char* name;  ///< "run"; "gnss solve" is verb solve of group gnss
   const char* summary;
   const char* example;  ///< shown by --help
   /// Declares the arguments on `app` and returns what to do once they are parsed.

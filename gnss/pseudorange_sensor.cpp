@@ -17,6 +17,7 @@
 #include "gnss/rinex/navigation_file.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/sensor_models.h"
+#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -153,7 +154,8 @@ class PseudorangeSensor final : public GnssSensor {
     GnssObservation o;
     o.sv = sight.sv;
     o.cn0_dbhz = reception.cn0_dbhz;
-    o.pseudorange_m = sight.signal.range_m + out.truth.receiver_clock_m - kSpeedOfLight * sight.signal.state.clock_s +
+    o.pseudorange_m = sight.signal.range_m + out.truth.receiver_clock_m -
+                      kSpeedOfLight * sight.signal.state.clock_of_band_s(first_band(o.sv.system)) +
                       acting.ionosphere_m + acting.troposphere_m + acting.ephemeris_m + reception.error_m + noise_m;
     CANYON_CHECK(std::isfinite(o.pseudorange_m) && std::isfinite(o.cn0_dbhz), "pseudorange sensor, ", o.sv.str(),
                  ": pseudorange_m = ", o.pseudorange_m, ", cn0_dbhz = ", o.cn0_dbhz);

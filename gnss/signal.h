@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/messages.h"
 #include "core/units.h"
 
 /// Constants of the GPS signal and of its user algorithms (IS-GPS-200). They differ from core/earth.h in the last
@@ -12,5 +13,11 @@ inline constexpr double kGpsRelativity = -4.442807633e-10;  ///< F of IS-GPS-200
 inline constexpr double kL1Hz = 1575.42e6;
 inline constexpr double kL1WavelengthM = kSpeedOfLight / kL1Hz;
 inline constexpr double kCaChipM = kSpeedOfLight / 1.023e6;  ///< length of a C/A code chip, 293.05 m
+
+/// Carrier frequency, Hz, of a RINEX band digit (RINEX 4.01, tables 10 to 16); NaN for a band the system does not have.
+/// `channel`: GLONASS frequency number, -7..6.
+double carrier_hz(GnssSystem system, int band, int channel = 0);
+/// Band of the system's first open single-frequency signal: 1 (L1, E1, G1), but 2 (B1I) for BeiDou.
+int first_band(GnssSystem system);
 
 }  // namespace canyon::gnss

@@ -73,10 +73,11 @@ std::string gnss_csv(const RunRecord& record) {
       "sigma_n_m,sigma_u_m,true_x_m,true_y_m,true_z_m,error_e_m,error_n_m,error_u_m,multipath_max_m,accepted,nis,"
       "reason");
   const Eigen::Matrix3d R_WE = record.frame.R_EW().transpose();
+  const bool has_satellites = record.forms_pseudoranges();
   for (const GnssRow& row : record.gnss_rows) {
     time_columns(csv, row.fix.t, record.start);
     int tracked = 0, nlos = 0, reflected = 0;
-    double multipath = row.truth.satellites.empty() ? kNaN : 0.0;
+    double multipath = has_satellites ? 0.0 : kNaN;
     for (const auto& satellite : row.truth.satellites) {
       if (!satellite.tracked) continue;
       ++tracked;
@@ -84,10 +85,10 @@ std::string gnss_csv(const RunRecord& record) {
       reflected += satellite.line_of_sight && satellite.reflections > 0 ? 1 : 0;
       if (std::abs(satellite.multipath_m) > std::abs(multipath)) multipath = satellite.multipath_m;
     }
-    csv.word(word(row.fix.status))
-        .integer(row.fix.satellites)
-        .integer(static_cast<std::int64_t>(row.truth.satellites.size()));
-    csv.integer(tracked).integer(nlos).integer(reflected);
+    csv.word(word(row.fix.status));
+    for (const int count :
+         {row.fix.satellites, static_cast<int>(row.truth.satellites.size()), tracked, nlos, reflected})
+      csv.number(has_satellites ? count : kNaN, 0);
     csv.numbers(3, row.fix.dop.gdop, row.fix.dop.pdop, row.fix.dop.hdop, row.fix.dop.vdop);
     const bool fixed = row.fix.status != FixStatus::kNone;
     const Eigen::Vector3d p = fixed ? record.frame.to_W(row.fix.p_A_E) : Eigen::Vector3d::Constant(kNaN);

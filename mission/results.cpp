@@ -137,7 +137,7 @@ Json run_json(const RunSummary& s) {
   out["gdop_median"] = number(s.gdop_median);
   out["gdop_max"] = number(s.gdop_max);
   out["pdop_median"] = number(s.pdop_median);
-  out["dop_jumps"] = s.dop_jumps;
+  out["dop_jumps"] = s.dop_jumps ? Json(*s.dop_jumps) : Json(nullptr);
   out["satellites_mean"] = number(s.satellites_mean);
   out["nlos_share"] = number(s.nlos_share);
   out["multipath_share"] = number(s.multipath_share);
@@ -155,6 +155,8 @@ Json run_json(const RunSummary& s) {
   out["map_error_p95_m"] = number(s.registered_map.map_error_p95_m);
   out["map_error_p95_prior_m"] = number(s.prior_map.map_error_p95_m);
   out["map_points"] = s.registered_map.points;
+  out["map_points_capped"] = s.registered_map.capped_points;
+  out["map_points_capped_prior"] = s.prior_map.capped_points;
   out["mission_waypoints"] = Json::array();
   for (const WaypointScore& waypoint : s.waypoints) {
     if (!waypoint.mission) continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -74,6 +75,12 @@ struct RunRecord {
   std::map<std::string, std::int64_t> counters;
   PartClock clock;
   double wall_s = 0.0;
+
+  /// False for a GNSS model that makes fixes without satellites: counts of satellites and DOP jumps are then undefined.
+  bool forms_pseudoranges() const {
+    return std::any_of(gnss_rows.begin(), gnss_rows.end(),
+                       [](const GnssRow& row) { return !row.truth.satellites.empty(); });
+  }
 };
 
 }  // namespace canyon::mission

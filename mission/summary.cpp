@@ -61,7 +61,8 @@ void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary
   std::vector<double> gdop, pdop, fix_error;
   double satellites = 0.0;
   std::int64_t tracked = 0, nlos = 0, multipath = 0;
-  bool forms_pseudoranges = false, has_dop = false, had_fix = false, first = true;
+  int dop_jumps = 0;
+  bool has_dop = false, had_fix = false, first = true;
   double last_gdop = kNaN;
   for (const GnssRow& row : record.gnss_rows) {
     const bool fixed = row.fix.status != FixStatus::kNone;
@@ -78,12 +79,11 @@ void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary
       has_dop = true;
     }
     const bool dop_step = fixed && had_fix && std::abs(row.fix.dop.gdop - last_gdop) > kDopJump;
-    if (!first && (fixed != had_fix || dop_step)) ++out.dop_jumps;
+    if (!first && (fixed != had_fix || dop_step)) ++dop_jumps;
     first = false;
     had_fix = fixed;
     last_gdop = row.fix.dop.gdop;
     for (const GnssObservationTruth& satellite : row.truth.satellites) {
-      forms_pseudoranges = true;
       if (!satellite.tracked) continue;
       ++tracked;
       nlos += satellite.line_of_sight ? 0 : 1;
@@ -93,8 +93,10 @@ void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary
   out.gdop_median = median(gdop);
   out.pdop_median = median(std::move(pdop));
   if (has_dop) out.gdop_max = *std::max_element(gdop.begin(), gdop.end());
-  if (forms_pseudoranges && !fix_error.empty())
-    out.satellites_mean = satellites / static_cast<double>(fix_error.size());
+  if (record.forms_pseudoranges()) {
+    out.dop_jumps = dop_jumps;
+    if (!fix_error.empty()) out.satellites_mean = satellites / static_cast<double>(fix_error.size());
+  }
   if (tracked > 0) {
     out.nlos_share = static_cast<double>(nlos) / static_cast<double>(tracked);
     out.multipath_share = static_cast<double>(multipath) / static_cast<double>(tracked);

@@ -29,7 +29,7 @@ struct RunSummary {
   double roll_rms_deg = kNaN, pitch_rms_deg = kNaN, yaw_rms_deg = kNaN;
 
   double gdop_median = kNaN, gdop_max = kNaN, pdop_median = kNaN;
-  int dop_jumps = 0;
+  std::optional<int> dop_jumps;  ///< none where the GNSS model knows no satellites
   double satellites_mean = kNaN, nlos_share = kNaN, multipath_share = kNaN, fix_error_rms_m = kNaN;
   int fixes_due = 0, fixes_lost = 0;
 

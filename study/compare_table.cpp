@@ -150,7 +150,7 @@ std::string comparison_table(const mission::Results& results) {
   table.numbers("GDOP, median", 2, [](const RunSummary& r) { return r.gdop_median; });
   table.numbers("GDOP, max", 2, [](const RunSummary& r) { return r.gdop_max; });
   table.words("DOP jumps (|dGDOP| > 2 or fix lost/regained)",
-              [](const RunSummary& r) { return std::to_string(r.dop_jumps); });
+              [](const RunSummary& r) { return r.dop_jumps ? std::to_string(*r.dop_jumps) : "-"; });
   table.numbers("satellites in the fix, mean", 1, [](const RunSummary& r) { return r.satellites_mean; });
   table.numbers("NLOS share of tracked, %", 1, [](const RunSummary& r) { return 100 * r.nlos_share; });
   table.numbers("multipath share of tracked, %", 1, [](const RunSummary& r) { return 100 * r.multipath_share; });
@@ -172,6 +172,12 @@ std::string comparison_table(const mission::Results& results) {
                 [](const RunSummary& r) { return r.prior_map.map_error_p95_m; });
   table.numbers("map to true surface 95 %, registered", 3,
                 [](const RunSummary& r) { return r.registered_map.map_error_p95_m; });
+  const auto capped = [](const lidar::MapQuality& map) {
+    return map.points > 0 ? 100.0 * static_cast<double>(map.capped_points) / static_cast<double>(map.points) : kNaN;
+  };
+  const std::string beyond = "share counted as " + fixed(lidar::kMapErrorCap_m, 0) + " m (no surface nearer), %, ";
+  table.numbers(beyond + "prior", 1, [capped](const RunSummary& r) { return capped(r.prior_map); });
+  table.numbers(beyond + "registered", 1, [capped](const RunSummary& r) { return capped(r.registered_map); });
   table.numbers("map up RMS, prior alone", 3, [](const RunSummary& r) { return r.prior_map.map_error_up_rms_m; });
   table.numbers("map up RMS, registered", 3, [](const RunSummary& r) { return r.registered_map.map_error_up_rms_m; });
 

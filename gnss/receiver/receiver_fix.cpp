@@ -6,6 +6,7 @@
 #include "core/check.h"
 #include "core/units.h"
 #include "gnss/satellites/transmission.h"
+#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -19,7 +20,7 @@ std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, con
   for (auto& o : epoch.observations) {
     const auto view = transmission_from_pseudorange(constellation, o.sv, epoch.t, o.pseudorange_m);
     CANYON_CHECK(view.has_value(), "no ephemeris for ", o.sv.str(), " that was just simulated at ", epoch.t.iso());
-    o.clock_m = kSpeedOfLight * view->state.clock_s;
+    o.clock_m = kSpeedOfLight * view->state.clock_of_band_s(first_band(o.sv.system));
     o.v_E = view->state.v_E;
     ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0});
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,8 +16,15 @@ namespace canyon::gnss {
 struct SatelliteState {
   Eigen::Vector3d p_E;      ///< antenna phase centre, in E of that same instant
   Eigen::Vector3d v_E;      ///< derivative of p_E in the rotating frame E, m/s
-  double clock_s = 0.0;     ///< satellite clock minus GPS time for single-frequency L1: polynomial + relativity - TGD
+  double clock_s = 0.0;     ///< satellite clock minus GPS time with relativity, for the signals it was determined with
   double clock_rate = 0.0;  ///< derivative of clock_s, s/s
+  /// By RINEX band digit (1 = L1 / E1 / G1 / B1C, 2 = L2 / G2 / B1I, 5 = L5 / E5a / B2a, ...): what a user of that band
+  /// alone subtracts from clock_s: TGD, BGD, ISC. 0 where the message does not tell.
+  std::array<double, 10> group_delay_s{};
+  int frequency_channel = 0;  ///< GLONASS FDMA: -7..6; 0 otherwise
+
+  /// Clock for a user of one band alone.
+  double clock_of_band_s(int band) const { return clock_s - group_delay_s.at(static_cast<std::size_t>(band)); }
 };
 
 /// Where the satellites are: broadcast ephemerides or a nominal constellation. Immutable and thread-safe.

@@ -43,7 +43,9 @@ SatelliteState LnavEphemeris::at(GpsTime t) const {
            x_dot * sin_n + y_dot * cos_i * cos_n - y * sin_i * cos_n * i_dot + s.p_E.x() * node_dot,
            y_dot * sin_i + y * cos_i * i_dot};
   const double tc_s = t - toc;
-  s.clock_s = af0_s + af1 * tc_s + af2_per_s * tc_s * tc_s + kGpsRelativity * e * sqrt_a * sin_E - tgd_s;
+  s.clock_s = af0_s + af1 * tc_s + af2_per_s * tc_s * tc_s + kGpsRelativity * e * sqrt_a * sin_E;
+  s.group_delay_s[1] = tgd_s;
+  s.group_delay_s[2] = tgd_s * std::pow(kL1Hz / carrier_hz(GnssSystem::kGps, 2), 2);  // IS-GPS-200 20.3.3.3.3.2
   s.clock_rate = af1 + 2.0 * af2_per_s * tc_s + kGpsRelativity * e * sqrt_a * cos_E * E_dot;
   return s;
 }

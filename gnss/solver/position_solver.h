@@ -14,8 +14,9 @@ namespace canyon::gnss {
 struct RangeMeasurement {
   Eigen::Vector3d
       p_E;  ///< satellite at transmission, in E of transmission; the solver turns it by the Earth's rotation
-  double range_m = 0.0;  ///< pseudorange with the satellite clock and the corrections applied
-  double sigma_m = 1.0;  ///< > 0, its weight is 1 / sigma^2
+  double range_m = 0.0;                  ///< pseudorange with the satellite clock and the corrections applied
+  double sigma_m = 1.0;                  ///< > 0, its weight is 1 / sigma^2
+  GnssSystem system = GnssSystem::kGps;  ///< each system has a receiver clock of its own
 };
 
 struct PositionSolution {

@@ -85,6 +85,8 @@ TEST_F(CompareTest, JsonHasTheContractsKeysAndNoNaN) {
   }
   // The low model forms no pseudoranges: its DOP is undefined, not zero.
   EXPECT_TRUE(json["runs"][0]["gdop_median"].is_null());
+  EXPECT_TRUE(json["runs"][0]["dop_jumps"].is_null());
+  EXPECT_TRUE(json["runs"][1]["dop_jumps"].is_number());
   EXPECT_TRUE(json["runs"][1]["gdop_median"].is_number());
   EXPECT_EQ(json.dump().find("NaN"), std::string::npos);
   EXPECT_FALSE(json["two_by_two"].is_null());
