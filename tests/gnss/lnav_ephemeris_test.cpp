@@ -82,7 +82,9 @@ TEST(LnavEphemeris, ClockHasRelativityAndGroupDelay) {
   // -2 r.v / c^2 is the same relativistic correction (IS-GPS-200 20.3.3.3.3.1), up to the harmonic terms: 1e-3 of its
   // 20 ns.
   const SatelliteState s = r.at(t);
-  EXPECT_NEAR(s.clock_s, r.af0_s + r.af1 * 1000.0 + r.af2_per_s * 1e6 + relativity_s(s) - r.tgd_s, 1e-10);
+  EXPECT_NEAR(s.clock_s, r.af0_s + r.af1 * 1000.0 + r.af2_per_s * 1e6 + relativity_s(s), 1e-10);
+  EXPECT_NEAR(s.clock_of_band_s(1), s.clock_s - r.tgd_s, 1e-15);
+  EXPECT_NEAR(s.clock_of_band_s(2), s.clock_s - r.tgd_s * 77.0 * 77.0 / (60.0 * 60.0), 1e-15);
   EXPECT_GT(std::abs(relativity_s(s)), 1e-9);  // so that the line above tests something
 }
 
