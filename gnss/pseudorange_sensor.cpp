@@ -124,8 +124,10 @@ class PseudorangeSensor final : public GnssSensor {
     truth.azimuth_rad = sight.view.azimuth_rad;
     truth.line_of_sight = paths.line_of_sight;
     const double cutoff_m = cutoff();
-    truth.reflections = static_cast<int>(std::count_if(paths.reflections.begin(), paths.reflections.end(),
-                                                       [=](const Reflection& r) { return r.excess_m < cutoff_m; }));
+    truth.reflections =
+        static_cast<int>(std::count_if(paths.echoes.begin(), paths.echoes.end(), [=](const SignalPath& p) {
+          return p.reflections > 0 && p.excess_m < cutoff_m;
+        }));
     truth.range_m = sight.signal.range_m;
     return truth;
   }
@@ -135,9 +137,10 @@ class PseudorangeSensor final : public GnssSensor {
   Reception receive_signals(const Sight& sight, const SignalPaths& paths, const Horizon& horizon) const {
     const Eigen::Vector3d up_W = frame_.R_EW().transpose() * horizon.R_E_enu().col(2);
     std::vector<ReceivedReflection> reflections;
-    for (const auto& r : paths.reflections) reflections.push_back(receive(r, parts_.link, up_W));
+    for (const auto& p : paths.echoes) reflections.push_back(receive(p, parts_.link, up_W));
     std::optional<double> direct_cn0_dbhz;
-    if (paths.line_of_sight) direct_cn0_dbhz = parts_.link.direct_cn0_dbhz(sight.view.elevation_rad, paths.foliage_m);
+    if (paths.line_of_sight)
+      direct_cn0_dbhz = parts_.link.direct_cn0_dbhz(sight.view.elevation_rad, paths.foliage_m, std::abs(paths.direct));
     return parts_.multipath->receive(direct_cn0_dbhz, reflections);
   }
 

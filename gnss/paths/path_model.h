@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <complex>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,21 +15,33 @@
 
 namespace canyon::gnss {
 
-/// One reflected way from a satellite to the antenna.
-struct Reflection {
-  double excess_m = 0.0;       ///< longer than the direct way by this
-  double incidence_rad = 0.0;  ///< from the reflector's normal
-  Eigen::Vector3d arrival_W;   ///< unit, from the antenna to the reflection point
-  double foliage_m = 0.0;      ///< way through tree crowns
-  std::uint32_t facet = 0;     ///< index into Scene::facets()
-  Fresnel coefficients;        ///< of its material at L1
+/// One way from a satellite to the antenna beside the straight one: reflected, diffracted over an edge, or both.
+struct SignalPath {
+  static constexpr std::size_t kMaxReflections = 3;
+  static constexpr std::uint32_t kNoFacet = 0xffffffffu;
+  static constexpr std::uint32_t kTerrain = 0xfffffffeu;  ///< reflected by the ground
+
+  double excess_m = 0.0;  ///< longer than the straight way by this; >= 0
+  /// Field at the antenna relative to the free direct signal of that satellite: right-hand circular that stays
+  /// right-hand, and that arrives left-hand. Reflections, roughness and diffraction are in it; foliage, the antenna's
+  /// pattern and the phase of the longer way (-2 pi excess / wavelength) are not.
+  std::complex<double> copolar, crosspolar;
+  Eigen::Vector3d arrival_W = Eigen::Vector3d::UnitZ();  ///< unit, from the antenna to where the signal comes from
+  double foliage_m = 0.0;                                ///< way through tree crowns, all legs
+  int reflections = 0;
+  int diffractions = 0;
+  /// Reflectors in order from the antenna, the first `reflections` of them: index into Scene::facets(), or kTerrain.
+  std::array<std::uint32_t, kMaxReflections> facets{kNoFacet, kNoFacet, kNoFacet};
 };
 
 /// How the signal of one satellite reaches the antenna.
 struct SignalPaths {
   bool line_of_sight = true;
-  double foliage_m = 0.0;               ///< of the direct way
-  std::vector<Reflection> reflections;  ///< by growing excess
+  double foliage_m = 0.0;  ///< of the straight way
+  /// Field of the straight way relative to a free one: 1 in the clear, 0 if blocked; with a diffraction model also what
+  /// an edge beside the way makes of it. The signal that bends around the edge into the shadow is an echo.
+  std::complex<double> direct = 1.0;
+  std::vector<SignalPath> echoes;  ///< by growing excess
 };
 
 /// Finds the ways through the scene.

@@ -32,20 +32,24 @@ class Specular1 final : public PathModel {
       counters.facets_tested += static_cast<std::int64_t>(out.size());
       for (std::size_t i = 0; i < out.size(); ++i) {
         if (auto r = reflect(p_A_W, directions_W[i], facet, distance_m, scene, counters)) {
-          r->facet = index;
-          r->coefficients = fresnel(material.permittivity(kL1Hz), r->incidence_rad);
-          out[i].reflections.push_back(*r);
+          const double cos_incidence = directions_W[i].dot(facet.normal_W);
+          const Fresnel f = fresnel(material.permittivity(kL1Hz), std::acos(std::min(cos_incidence, 1.0)));
+          r->copolar = f.co;
+          r->crosspolar = f.cross;
+          r->reflections = 1;
+          r->facets[0] = index;
+          out[i].echoes.push_back(*r);
           ++counters.reflected_paths;
         }
       }
     }
     for (auto& paths : out)
-      std::stable_sort(paths.reflections.begin(), paths.reflections.end(),
-                       [](const Reflection& a, const Reflection& b) { return a.excess_m < b.excess_m; });
+      std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
+                       [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
   }
 
  private:
-  std::optional<Reflection> reflect(const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& to_satellite_W,
+  std::optional<SignalPath> reflect(const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& to_satellite_W,
                                     const scene::Facet& facet, double distance_m, const scene::SceneAt& scene,
                                     GnssCounters& counters) const {
     const double cos_incidence = to_satellite_W.dot(facet.normal_W);
@@ -67,9 +71,8 @@ class Specular1 final : public PathModel {
     counters.occlusion_rays += 1;
     if (scene.blocked_towards(start_W, to_satellite_W)) return std::nullopt;
 
-    Reflection r;
+    SignalPath r;
     r.excess_m = 2.0 * distance_m * cos_incidence;
-    r.incidence_rad = std::acos(std::min(cos_incidence, 1.0));
     r.arrival_W = arrival_W;
     r.foliage_m = scene.foliage_m(p_A_W, leg_direction_W, clear_m) + scene.foliage_m(start_W, to_satellite_W);
     return r;

@@ -10,7 +10,10 @@ class Visibility final : public PathModel {
     for (std::size_t i = 0; i < out.size(); ++i) {
       out[i] = SignalPaths{};
       out[i].line_of_sight = !scene.blocked_towards(p_A_W, directions_W[i]);
-      if (out[i].line_of_sight) out[i].foliage_m = scene.foliage_m(p_A_W, directions_W[i]);
+      if (out[i].line_of_sight)
+        out[i].foliage_m = scene.foliage_m(p_A_W, directions_W[i]);
+      else
+        out[i].direct = 0.0;
     }
     counters.occlusion_rays += static_cast<std::int64_t>(out.size());
   }

@@ -18,19 +18,20 @@ struct LinkBudget {
   double antenna_gain_db(double elevation_rad) const;
   /// ITU-R P.833: A_m (1 - exp(-d gamma / A_m)).
   double foliage_db(double length_m) const;
-  double direct_cn0_dbhz(double elevation_rad, double foliage_m) const;
+  /// `field`: amplitude relative to a free direct signal; none gives about -150 dB-Hz, so that figures stay finite.
+  double direct_cn0_dbhz(double elevation_rad, double foliage_m, double field = 1.0) const;
 };
 
-/// A reflection as the receiver gets it.
+/// A reflected or diffracted signal as the receiver gets it.
 struct ReceivedReflection {
   double excess_m = 0.0;
   double cn0_dbhz = 0.0;  ///< what it would have alone
   double phase_rad =
-      0.0;  ///< carrier, relative to the direct signal: phase of the reflection - 2 pi excess / wavelength
+      0.0;  ///< carrier, relative to the free direct signal: phase of the field - 2 pi excess / wavelength
 };
 
 /// `up_W`: unit vertical at the antenna. Co- and cross-polar parts add in power (the antenna's relative phase of the
 /// two is not known); the carrier phase is that of the stronger one.
-ReceivedReflection receive(const Reflection& reflection, const LinkBudget& link, const Eigen::Vector3d& up_W);
+ReceivedReflection receive(const SignalPath& path, const LinkBudget& link, const Eigen::Vector3d& up_W);
 
 }  // namespace canyon::gnss

@@ -37,7 +37,7 @@ TEST(PathModel, NoneSeesEverything) {
   for (const auto& p :
        trace(*find_model(path_models(), "none")->make({}), *scene, {direction(270, 20), direction(90, 20)})) {
     EXPECT_TRUE(p.line_of_sight);
-    EXPECT_TRUE(p.reflections.empty());
+    EXPECT_TRUE(p.echoes.empty());
   }
 }
 
@@ -80,12 +80,13 @@ TEST(Specular1, SingleWallAgainstTheClosedForm) {
                    z_m = 2.0 + leg_m * std::sin(el * kDegree);
       const bool meets = std::abs(y_m) <= 400.0 && z_m <= 750.0;
       const bool expected = cos_incidence > 0.0 && leg_m <= 1000.0 && meets;
-      ASSERT_EQ(paths[0].reflections.size(), expected ? 1u : 0u) << az << " " << el;
+      ASSERT_EQ(paths[0].echoes.size(), expected ? 1u : 0u) << az << " " << el;
       EXPECT_EQ(paths[0].line_of_sight, cos_incidence > 0.0 || !meets) << az << " " << el;
       if (!expected) continue;
-      const Reflection& r = paths[0].reflections[0];
+      const SignalPath& r = paths[0].echoes[0];
       EXPECT_NEAR(r.excess_m, 2.0 * distance_m * cos_incidence, 1e-12 * leg_m);
-      EXPECT_NEAR(std::cos(r.incidence_rad), cos_incidence, 1e-12);
+      EXPECT_EQ(r.reflections, 1);
+      EXPECT_EQ(r.diffractions, 0);
       EXPECT_NEAR(r.arrival_W.norm(), 1.0, 1e-14);
       // Plane wave: the excess is also leg - leg . direction, whatever formula gave it.
       EXPECT_NEAR(r.excess_m, leg_m * (1.0 - r.arrival_W.dot(direction(az, el))), 1e-11 * leg_m);
@@ -98,49 +99,49 @@ TEST(Specular1, SingleWallAgainstTheClosedForm) {
 TEST(Specular1, ReachIsTheDistanceOfTheReflectionPoint) {
   const auto scene = west_wall(40.0).build();
   const Eigen::Vector3d s = direction(90, 60);  // cos(i) = 0.5: the reflection point is 80 m away, excess 40 m
-  EXPECT_EQ(trace(*make_specular1({79.9}), *scene, {s})[0].reflections.size(), 0u);
-  EXPECT_EQ(trace(*make_specular1({80.1}), *scene, {s})[0].reflections.size(), 1u);
+  EXPECT_EQ(trace(*make_specular1({79.9}), *scene, {s})[0].echoes.size(), 0u);
+  EXPECT_EQ(trace(*make_specular1({80.1}), *scene, {s})[0].echoes.size(), 1u);
 }
 
 TEST(Specular1, BlockedLegsGiveNothing) {
   const Eigen::Vector3d s = direction(90, 30);
   const auto model = make_specular1({150.0});
   // Reflection point at (-20, 0, 2 + 20 tan 30 = 13.5).
-  EXPECT_EQ(trace(*model, *west_wall(20.0).build(), {s})[0].reflections.size(), 1u);
+  EXPECT_EQ(trace(*model, *west_wall(20.0).build(), {s})[0].echoes.size(), 1u);
   // A screen between antenna and reflection point, which leaves the direct way free.
   auto inner = west_wall(20.0);
   inner.box({-10.5, -1, 6}, {-10, 1, 9}, "absorber");
   const auto inside = trace(*model, *inner.build(), {s})[0];
   EXPECT_TRUE(inside.line_of_sight);
-  EXPECT_EQ(inside.reflections.size(), 0u);
+  EXPECT_EQ(inside.echoes.size(), 0u);
   // A screen between reflection point and satellite: the incoming way is 11.55 m above the direct one at the antenna's
   // x = 0.
   auto outer = west_wall(20.0);
   outer.box({5, -1, 26}, {5.5, 1, 30}, "absorber");
   const auto outside = trace(*model, *outer.build(), {s})[0];
   EXPECT_TRUE(outside.line_of_sight);
-  EXPECT_EQ(outside.reflections.size(), 0u);
+  EXPECT_EQ(outside.echoes.size(), 0u);
   // A screen that blocks only the direct way.
   auto direct = west_wall(20.0);
   direct.box({5, -1, 3.5}, {5.5, 1, 6.5}, "absorber");
   const auto nlos = trace(*model, *direct.build(), {s})[0];
   EXPECT_FALSE(nlos.line_of_sight);
-  ASSERT_EQ(nlos.reflections.size(), 1u);
-  EXPECT_NEAR(nlos.reflections[0].excess_m, 40.0 * std::cos(30 * kDegree), 1e-9);
+  ASSERT_EQ(nlos.echoes.size(), 1u);
+  EXPECT_NEAR(nlos.echoes[0].excess_m, 40.0 * std::cos(30 * kDegree), 1e-9);
 }
 
 TEST(Specular1, AbsorbersReflectNothingAndBlockStill) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "absorber").build();
   const auto paths = trace(*make_specular1({150.0}), *scene, {direction(90, 30), direction(270, 30)});
-  EXPECT_TRUE(paths[0].reflections.empty());
+  EXPECT_TRUE(paths[0].echoes.empty());
   EXPECT_FALSE(paths[1].line_of_sight);
 }
 
 TEST(Specular1, MaterialGivesTheCoefficients) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "glass").build();
   const auto paths = trace(*make_specular1({150.0}), *scene, {direction(90, 45)});
-  ASSERT_EQ(paths[0].reflections.size(), 1u);
-  EXPECT_NEAR(std::abs(paths[0].reflections[0].coefficients.cross), 0.422, 1e-3);  // glass at 45 deg
+  ASSERT_EQ(paths[0].echoes.size(), 1u);
+  EXPECT_NEAR(std::abs(paths[0].echoes[0].crosspolar), 0.422, 1e-3);  // glass at 45 deg
 }
 
 // Reflections come sorted by excess, and each satisfies the law of reflection with a clear way; the street canyon has
@@ -157,11 +158,11 @@ TEST(Specular1, StreetCanyon) {
   std::size_t reflections = 0, blocked = 0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     blocked += paths[i].line_of_sight ? 0u : 1u;
-    for (std::size_t k = 0; k < paths[i].reflections.size(); ++k) {
-      const Reflection& r = paths[i].reflections[k];
+    for (std::size_t k = 0; k < paths[i].echoes.size(); ++k) {
+      const SignalPath& r = paths[i].echoes[k];
       ++reflections;
-      EXPECT_GE(r.excess_m, k > 0 ? paths[i].reflections[k - 1].excess_m : 0.0);
-      const scene::Facet& f = scene->facets().facets()[r.facet];
+      EXPECT_GE(r.excess_m, k > 0 ? paths[i].echoes[k - 1].excess_m : 0.0);
+      const scene::Facet& f = scene->facets().facets()[r.facets[0]];
       const double to_plane_m = f.normal_W.dot(kAntenna) - f.offset_m;
       EXPECT_NEAR(r.excess_m, 2.0 * to_plane_m * f.normal_W.dot(directions[i]), 1e-9);
       EXPECT_NEAR((r.arrival_W - directions[i]).cross(f.normal_W).norm(), 0.0, 1e-12);
@@ -176,11 +177,11 @@ TEST(Specular1, FoliageOnEitherLegCounts) {
   auto walls = west_wall(20.0);
   walls.crown({-10, 0, 2 + 10 * std::tan(30 * kDegree)}, {2, 2, 2});
   const auto paths = trace(*make_specular1({150.0}), *walls.build(), {s});
-  ASSERT_EQ(paths[0].reflections.size(), 1u);
+  ASSERT_EQ(paths[0].echoes.size(), 1u);
   EXPECT_EQ(paths[0].foliage_m, 0.0);
   // The traced leg ends 2 cm in front of the wall, so it passes the crown's centre within 2 cm: the chord is short of 4
   // m by 1e-4.
-  EXPECT_NEAR(paths[0].reflections[0].foliage_m, 4.0, 2e-4);
+  EXPECT_NEAR(paths[0].echoes[0].foliage_m, 4.0, 2e-4);
 }
 
 }  // namespace

@@ -21,14 +21,19 @@ TEST(LinkBudget, ElevationAndFoliage) {
   EXPECT_NEAR(link.foliage_db(0.01), 0.0025, 1e-6);
   EXPECT_NEAR(link.foliage_db(1e4), 28.0, 1e-9);
   EXPECT_EQ(link.foliage_db(0.0), 0.0);
+  // Half the field at a shadow boundary costs 20 log10 2.
+  EXPECT_NEAR(link.direct_cn0_dbhz(kPi / 2, 0.0, 0.5), 45.0 - 20.0 * std::log10(2.0), 1e-12);
+  EXPECT_TRUE(std::isfinite(link.direct_cn0_dbhz(kPi / 2, 0.0, 0.0)));
 }
 
-Reflection reflection(double excess_m, double incidence_deg, std::complex<double> eta) {
-  Reflection r;
+SignalPath reflection(double excess_m, double incidence_deg, std::complex<double> eta) {
+  const Fresnel f = fresnel(eta, incidence_deg * kDegree);
+  SignalPath r;
   r.excess_m = excess_m;
-  r.incidence_rad = incidence_deg * kDegree;
   r.arrival_W = {1.0, 0.0, 0.0};
-  r.coefficients = fresnel(eta, r.incidence_rad);
+  r.copolar = f.co;
+  r.crosspolar = f.cross;
+  r.reflections = 1;
   return r;
 }
 
