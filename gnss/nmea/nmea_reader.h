@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/earth.h"
+#include "core/messages.h"
+#include "core/result.h"
+
+namespace canyon::gnss {
+
+/// One epoch of a receiver's NMEA 0183 log: what its GGA and RMC say.
+struct NmeaRecord {
+  GpsTime t;
+  int quality = 0;  ///< GGA: 0 no fix, 1 single, 2 differential, 4 RTK fixed, 5 RTK float, 6 dead reckoning
+  Geodetic place;   ///< ellipsoidal height: altitude + geoid separation
+  int satellites = 0;
+  double hdop = kNaN;
+  double speed_m_s = kNaN;
+  double course_rad = kNaN;  ///< from true north, clockwise
+};
+
+struct NmeaFile {
+  std::vector<NmeaRecord> records;    ///< in file order; epochs before the first date (RMC, ZDA) are left out
+  std::int64_t damaged_lines = 0;     ///< wrong checksum or fields that do not parse
+  std::vector<std::string> warnings;  ///< `file:line: what`, the first few damaged lines
+};
+
+/// Reads a log, plain or gzip. Sentences other than GGA, RMC and ZDA are passed over. An Error if there is not one GGA
+/// or RMC in it.
+///
+/// `day`: midnight of the first epoch's UTC day, for logs of GGA alone, which carry no date.
+Result<NmeaFile> read_nmea_file(const std::string& path, std::optional<GpsTime> day = std::nullopt);
+Result<NmeaFile> parse_nmea(std::string_view text, const std::string& file_name,
+                            std::optional<GpsTime> day = std::nullopt);
+
+}  // namespace canyon::gnss
