@@ -77,7 +77,8 @@ class ReferenceAutonomy final : public Autonomy {
       if (!config_.waypoints[i].is_mission() && !last) {
         if (ahead > kPassTolerance) return false;
       } else {
-        if (ahead > kStopTolerance) return false;
+        // Once it stands and looks it stays, also when a fix moves the estimate back before the stop.
+        if (ahead > kStopTolerance && !holding_) return false;
         const double hold = config_.waypoints[i].is_mission() ? config_.hold_s : 0.0;
         state_ = AutonomyState::kObserving;
         if (speed > 0.1 && !holding_) return true;
