@@ -1,19 +1,15 @@
 #include <Eigen/SVD>
 
+#include "core/check.h"
 #include "gnss/solver/position_solver.h"
+#include "gnss/solver/receiver_clocks.h"
 
 namespace canyon::gnss {
+namespace {
 
-Dop dilution_of_precision(std::span<const Eigen::Vector3d> lines, const Eigen::Matrix3d& R_E_enu, bool clock) {
-  const Eigen::Index unknowns = clock ? 4 : 3;
-  const auto n = static_cast<Eigen::Index>(lines.size());
+Dop from_design(const Eigen::MatrixXd& H, bool clock) {
   Dop dop;
-  if (n < unknowns) return dop;
-  Eigen::MatrixXd H(n, unknowns);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    H.block<1, 3>(i, 0) = -(R_E_enu.transpose() * lines[static_cast<std::size_t>(i)]).transpose();
-    if (clock) H(i, 3) = 1.0;
-  }
+  if (H.rows() < H.cols()) return dop;
   // Singular values instead of the normal equations: these would lose half the digits, and coplanar geometries their
   // GDOP.
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(H, Eigen::ComputeThinV);
@@ -22,9 +18,37 @@ Dop dilution_of_precision(std::span<const Eigen::Vector3d> lines, const Eigen::M
   dop.hdop = std::sqrt(variance(0) + variance(1));
   dop.vdop = std::sqrt(variance(2));
   dop.pdop = std::sqrt(variance.head<3>().sum());
-  dop.gdop = std::sqrt(variance.sum());
+  dop.gdop = std::sqrt(variance.head(clock ? 4 : 3).sum());
   if (clock) dop.tdop = std::sqrt(variance(3));
   return dop;
+}
+
+}  // namespace
+
+Dop dilution_of_precision(std::span<const Eigen::Vector3d> lines, const Eigen::Matrix3d& R_E_enu, bool clock) {
+  if (clock) {
+    const std::vector<GnssSystem> one(lines.size(), GnssSystem::kGps);
+    return dilution_of_precision(lines, one, R_E_enu);
+  }
+  Eigen::MatrixXd H(static_cast<Eigen::Index>(lines.size()), 3);
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    H.row(static_cast<Eigen::Index>(i)) = -(R_E_enu.transpose() * lines[i]).transpose();
+  return from_design(H, false);
+}
+
+Dop dilution_of_precision(std::span<const Eigen::Vector3d> lines, std::span<const GnssSystem> systems,
+                          const Eigen::Matrix3d& R_E_enu) {
+  CANYON_CHECK(lines.size() == systems.size(), lines.size(), " lines of sight, ", systems.size(), " systems");
+  if (lines.size() < 4) return {};
+  const ReceiverClocks clocks(systems);
+  Eigen::MatrixXd H =
+      Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(lines.size()), 3 + static_cast<Eigen::Index>(clocks.size()));
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    H.block<1, 3>(row, 0) = -(R_E_enu.transpose() * lines[i]).transpose();
+    H(row, 3 + static_cast<Eigen::Index>(clocks.index(systems[i]))) = 1.0;
+  }
+  return from_design(H, true);
 }
 
 }  // namespace canyon::gnss

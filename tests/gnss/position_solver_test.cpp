@@ -8,33 +8,14 @@
 #include "core/earth.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "gnss/satellites/transmission.h"
+#include "tests/gnss/solver_sky.h"
 
 namespace canyon::gnss {
 namespace {
 
 using ::testing::HasSubstr;
 
-struct Sky {
-  double azimuth_deg, elevation_deg;
-};
 const std::vector<Sky> kSky{{10, 70}, {80, 35}, {150, 20}, {200, 50}, {260, 12}, {330, 40}};
-
-/// Ranges from p_E to satellites in those directions, light time and the Earth's turn included.
-std::vector<RangeMeasurement> ranges_from(const Eigen::Vector3d& p_E, const std::vector<Sky>& sky, double clock_m) {
-  const Eigen::Matrix3d R = rotation_E_from_enu(geodetic_from_ecef(p_E));
-  std::vector<RangeMeasurement> out;
-  for (const Sky& s : sky) {
-    const double a = s.azimuth_deg * kDegree, e = s.elevation_deg * kDegree;
-    const Eigen::Vector3d line = R * Eigen::Vector3d(std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e));
-    const double range_m = 22e6 + 3e6 * std::cos(e);
-    const Eigen::Vector3d at_reception = p_E + range_m * line;
-    out.push_back({turned_by_earth(at_reception, -range_m / kSpeedOfLight), range_m + clock_m, 1.0});
-  }
-  return out;
-}
-
-const Eigen::Vector3d kVicksburg = ecef_from_geodetic({32.35 * kDegree, -90.88 * kDegree, 60.0});
 
 // Rounding: eps of 2.5e7 m, times a GDOP of 3 and a few operations, is below 1e-7 m.
 constexpr double kRoundingM = 1e-6;
@@ -115,6 +96,87 @@ TEST(LeastSquares, WeightsFollowSigma) {
   const double weighted_m = (make_least_squares({})->solve(ranges, kVicksburg).p_E - kVicksburg).norm();
   EXPECT_GT(even_m, 10.0);
   EXPECT_LT(weighted_m, 1e-6 * even_m);  // its weight is 1e-12 of the others'
+}
+
+// A wrong common clock would put the difference of the systems' clocks into the position.
+TEST(SystemClocks, EachSystemHasItsOwn) {
+  auto ranges =
+      ranges_from(kVicksburg, {{10, 70}, {80, 35}, {150, 20}, {200, 50}, {260, 12}, {330, 40}, {40, 25}}, 1000.0);
+  ranges[1].system = ranges[4].system = GnssSystem::kGlonass;
+  ranges[2].system = GnssSystem::kBeidou;
+  ranges[5].system = GnssSystem::kQzss;  // shares the clock of GPS
+  for (auto& r : ranges) {
+    if (r.system == GnssSystem::kGlonass) r.range_m -= 250.0;
+    if (r.system == GnssSystem::kBeidou) r.range_m += 33.0;
+  }
+  const auto s = make_least_squares({})->solve(ranges, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(s.ok) << s.reason;
+  const auto clock = [&](GnssSystem system) { return s.system_clock_m[static_cast<std::size_t>(system)]; };
+  EXPECT_LT((s.p_E - kVicksburg).norm(), kRoundingM * s.dop.gdop);
+  EXPECT_NEAR(clock(GnssSystem::kGps), 1000.0, kRoundingM * s.dop.gdop);
+  EXPECT_NEAR(clock(GnssSystem::kQzss), 1000.0, kRoundingM * s.dop.gdop);
+  EXPECT_NEAR(clock(GnssSystem::kGlonass), 750.0, kRoundingM * s.dop.gdop);
+  EXPECT_NEAR(clock(GnssSystem::kBeidou), 1033.0, kRoundingM * s.dop.gdop);
+  EXPECT_TRUE(std::isnan(clock(GnssSystem::kGalileo)));
+  EXPECT_EQ(s.clock_m, clock(GnssSystem::kGps));
+  EXPECT_EQ(s.satellites_used(), 7);
+  EXPECT_EQ(s.integrity.status, IntegrityTest::Status::kNotTested);
+}
+
+TEST(SystemClocks, TooFewSatellitesForTheClocksWordForWord) {
+  auto ranges = ranges_from(kVicksburg, {{10, 70}, {80, 35}, {150, 20}, {200, 50}}, 0.0);
+  ranges[3].system = GnssSystem::kGalileo;
+  EXPECT_EQ(make_least_squares({})->solve(ranges, kVicksburg).reason, "4 satellites of 2 systems, a fix needs 5");
+}
+
+// The only satellite of its system tells nothing of the position: with or without it, the same fix.
+TEST(SystemClocks, ALoneSatelliteOfASystemChangesNothing) {
+  auto ranges = ranges_from(kVicksburg, kSky, 0.0);
+  ranges[0].range_m += 3.0;  // no exact fit
+  const auto without = make_least_squares({})->solve(ranges, kVicksburg);
+  auto extra = ranges_from(kVicksburg, {{111, 33}}, 4000.0).front();
+  extra.system = GnssSystem::kGlonass;
+  ranges.push_back(extra);
+  const auto with = make_least_squares({})->solve(ranges, kVicksburg);
+  EXPECT_LT((with.p_E - without.p_E).norm(), kRoundingM);
+  EXPECT_NEAR(with.dop.pdop, without.dop.pdop, 1e-9);
+  EXPECT_NEAR(with.dop.gdop, without.dop.gdop, 1e-9);
+}
+
+// An error that all ranges share with a known signature: where it is as large as its prior allows, the unknown takes up
+// most of it; with an infinitely tight prior (signature 0) it goes into the position. Its covariance is that of the
+// closed form with correlated ranges.
+TEST(SharedError, CovarianceEqualsThatOfCorrelatedRanges) {
+  auto ranges = ranges_from(kVicksburg, kSky, 0.0);
+  const auto n = static_cast<Eigen::Index>(ranges.size());
+  Eigen::VectorXd signature(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    ranges[static_cast<std::size_t>(i)].sigma_m = 0.5 + 0.1 * static_cast<double>(i);
+    signature[i] = 2.0 / std::sin(kSky[static_cast<std::size_t>(i)].elevation_deg * kDegree + 0.1);
+  }
+  const auto plain = make_least_squares({})->solve(ranges, kVicksburg);
+  Eigen::MatrixXd H(n, 4), W(n, n);
+  W = signature * signature.transpose();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto& r = ranges[static_cast<std::size_t>(i)];
+    const double range_m = r.range_m;
+    H.block<1, 3>(i, 0) = -(turned_by_earth(r.p_E, range_m / kSpeedOfLight) - kVicksburg).normalized().transpose();
+    H(i, 3) = 1.0;
+    W(i, i) += r.sigma_m * r.sigma_m;
+  }
+  const Eigen::Matrix4d want = (H.transpose() * W.inverse() * H).inverse();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    ranges[static_cast<std::size_t>(i)].shared_m = signature[i];
+    ranges[static_cast<std::size_t>(i)].range_m += signature[i];  // one sigma of it
+  }
+  const auto s = make_least_squares({})->solve(ranges, kVicksburg);
+  ASSERT_TRUE(s.ok);
+  // The lines of sight are those of the solution, some 10 m away: they turn by 10 / 2.2e7.
+  EXPECT_LT((s.covariance_E - want.topLeftCorner<3, 3>()).norm(), 5e-6 * want.norm());
+  // The weighted fit with the full covariance gives the same position.
+  const Eigen::Vector4d dx = want * H.transpose() * W.inverse() * signature;
+  EXPECT_LT((s.p_E - kVicksburg - dx.head<3>()).norm(), 1e-5);  // linearisation: 2nd order in 10 m / 2e7 m
+  EXPECT_GT(s.covariance_E.trace(), plain.covariance_E.trace());
 }
 
 // Predicted against sampled covariance; 2000 trials, relative sigma of a variance sqrt(2/N) = 3.2 %, 5 sigma.

@@ -1,0 +1,97 @@
+#include "gnss/solver/fault_exclusion.h"
+
+#include "core/check.h"
+#include "gnss/solver/chi_square.h"
+
+namespace canyon::gnss {
+namespace {
+
+// Below this part of its variance a residual is rounding: the fit follows that range, and nothing can be said of it.
+constexpr double kLeastRedundancy = 1e-6;
+
+std::vector<std::size_t> without(const std::vector<std::size_t>& members, std::size_t position) {
+  auto out = members;
+  out.erase(out.begin() + static_cast<std::ptrdiff_t>(position));
+  return out;
+}
+
+RangeSubset exclude_none(const RangeSubset&, const SubsetFitter&) {
+  return {};
+}
+
+RangeSubset exclude_largest(const RangeSubset& failed, const SubsetFitter& fitter) {
+  std::size_t worst = failed.members.size();
+  double largest = 0.0;
+  for (std::size_t i = 0; i < failed.members.size(); ++i) {
+    if (failed.fit.redundancy[i] < kLeastRedundancy) continue;
+    const double w2 = failed.fit.weighted[i] * failed.fit.weighted[i] / failed.fit.redundancy[i];
+    if (w2 > largest) {
+      largest = w2;
+      worst = i;
+    }
+  }
+  if (worst == failed.members.size()) return {};
+  RangeSubset out{without(failed.members, worst), {}};
+  out.fit = fitter.fit(out.members);
+  return out;
+}
+
+RangeSubset exclude_best_of_all(const RangeSubset& failed, const SubsetFitter& fitter) {
+  RangeSubset best;
+  for (std::size_t i = 0; i < failed.members.size(); ++i) {
+    if (failed.fit.redundancy[i] < kLeastRedundancy) continue;
+    RangeSubset candidate{without(failed.members, i), {}};
+    candidate.fit = fitter.fit(candidate.members);
+    if (!candidate.fit.ok) continue;
+    if (best.members.empty() || candidate.fit.statistic < best.fit.statistic) best = std::move(candidate);
+  }
+  return best;
+}
+
+constexpr ModelRow<ExcludeNext> kModels[] = {
+    {"none", exclude_none, "no test of the residuals"},
+    {"detect", exclude_none, "chi-square test; an epoch that fails has no fix"},
+    {"greedy", exclude_largest, "chi-square test; the largest standardised residual is excluded until it passes"},
+    {"leave_one_out", exclude_best_of_all,
+     "chi-square test; of all fits without one satellite the best is kept, until it passes"},
+};
+
+}  // namespace
+
+std::span<const ModelRow<ExcludeNext>> fault_exclusions() {
+  return kModels;
+}
+
+IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, const PositionSolverParameters& p) {
+  const auto* model = find_model(fault_exclusions(), p.fault_exclusion);
+  CANYON_CHECK(model != nullptr, "no fault exclusion named ", p.fault_exclusion);
+  IntegrityTest test;
+  const auto passes = [&](const RangeFit& fit) {
+    test.statistic = fit.statistic;
+    test.degrees_of_freedom = fit.degrees_of_freedom;
+    test.threshold = chi_square_threshold(p.false_alarm, fit.degrees_of_freedom);
+    return test.statistic <= test.threshold;
+  };
+
+  if (p.fault_exclusion == "none" || tested.fit.degrees_of_freedom < 1) return test;
+  if (passes(tested.fit)) {
+    test.status = IntegrityTest::Status::kPassed;
+    return test;
+  }
+  const IntegrityTest of_all = test;
+  RangeSubset now = tested;
+  for (int k = 0; k < p.max_exclusions; ++k) {
+    now = model->make(now, fitter);
+    if (now.members.empty() || !now.fit.ok || now.fit.degrees_of_freedom < 1) break;
+    if (passes(now.fit)) {
+      test.status = IntegrityTest::Status::kRepaired;
+      tested = std::move(now);
+      return test;
+    }
+  }
+  test = of_all;
+  test.status = IntegrityTest::Status::kFailed;
+  return test;
+}
+
+}  // namespace canyon::gnss
