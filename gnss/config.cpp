@@ -65,7 +65,7 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.number("solver_sigma_m", c.solver_sigma_m, {1e-3, 1000.0},
            "1-sigma the solver assumes for a corrected pseudorange at the zenith");
   f.number("max_gdop", c.max_gdop, {1.0, 1e6}, "fixes with a larger GDOP are refused");
-  f.text("nav_file", c.nav_file, "RINEX 2 or 3 navigation file, plain or gzip; empty = built-in 24-slot constellation");
+  f.text("nav_file", c.nav_file, "RINEX 2, 3 or 4 navigation file, plain or gzip; empty = built-in 24-slot constellation");
 }
 
 }  // namespace canyon::gnss

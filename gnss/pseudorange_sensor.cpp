@@ -204,11 +204,11 @@ Result<KlobucharCoefficients> make_satellites(const GnssConfig& config, GpsTime 
     parts.constellation = make_nominal_gps();
     return kBuiltInKlobuchar;
   }
-  CANYON_TRY(const NavigationFile file, read_navigation_file(config.nav_file));
-  CANYON_TRY_STATUS(check_coverage(file, start, end, "gnss.nav_file"));
-  parts.warnings = file.warnings;
-  parts.constellation = make_broadcast_gps(file.gps);
-  return file.klobuchar.value_or(kBuiltInKlobuchar);
+  CANYON_TRY(const NavigationData data, read_navigation_file(config.nav_file));
+  CANYON_TRY_STATUS(check_coverage(data, "G", start, end, "gnss.nav_file"));
+  parts.warnings = data.warnings;
+  parts.constellation = make_broadcast(data, {.systems = "G"});
+  return data.klobuchar_at(GnssSystem::kGps, start).value_or(kBuiltInKlobuchar);
 }
 
 }  // namespace

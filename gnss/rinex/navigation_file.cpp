@@ -1,138 +1,165 @@
 #include "gnss/rinex/navigation_file.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 #include "core/files.h"
-#include "gnss/rinex/lnav_record.h"
+#include "gnss/rinex/correction_record.h"
+#include "gnss/rinex/glonass_record.h"
+#include "gnss/rinex/kepler_record.h"
+#include "gnss/rinex/navigation_header.h"
 #include "gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 namespace {
 
-constexpr std::size_t kLabelColumn = 60;
 constexpr std::size_t kMaxWarnings = 20;  // listed one by one; the rest are counted
-
-std::string_view label(std::string_view line) {
-  return columns(line, kLabelColumn, 20);
-}
-
-std::string fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
-}
-
-Status parse_first_line(TextLines& lines, NavigationFile& out) {
-  if (!lines.next()) return Error{out.name, 1, "", "the file is empty", "a RINEX 2 or 3 navigation file"};
-  const std::string_view line = lines.line();
-  const auto version = fortran_number(columns(line, 0, 9));
-  if (label(line) != "RINEX VERSION / TYPE" || !version)
-    return Error{out.name, 1, "", "not a RINEX file: the first line has no version and \"RINEX VERSION / TYPE\"",
-                 "a RINEX 2 or 3 navigation file"};
-  out.version = *version;
-  if (!(out.version >= 2.0 && out.version < 4.0))
-    return Error{out.name, 1, "", "RINEX version " + fixed(out.version, 2) + " is not supported", "2.x or 3.x"};
-
-  const char type = line.size() > 20 ? line[20] : ' ';
-  const char system = line.size() > 40 ? line[40] : ' ';
-  if (type != 'N')
-    return Error{out.name, 1, "", "RINEX file type \"" + printable({&type, 1}) + "\"", "\"N\", GPS navigation data"};
-  if (out.version >= 3.0 && system != 'G' && system != 'M' && system != ' ')
-    return Error{out.name, 1, "", "navigation data of system \"" + printable({&system, 1}) + "\"",
-                 "\"G\" (GPS) or \"M\" (mixed)"};
-  return Ok{};
-}
-
-/// Four numbers of `width` columns from `first`; nullopt if one does not parse.
-std::optional<std::array<double, 4>> four_numbers(std::string_view line, std::size_t first) {
-  std::array<double, 4> values{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto value = fortran_number(columns(line, first + 12 * i, 12));
-    if (!value) return std::nullopt;
-    values[i] = *value;
-  }
-  return values;
-}
-
-Status parse_header(TextLines& lines, NavigationFile& out) {
-  CANYON_TRY_STATUS(parse_first_line(lines, out));
-  std::optional<std::array<double, 4>> alpha, beta;
-  bool ended = false;
-  while (!ended && lines.next()) {
-    const std::string_view line = lines.line(), name = label(line);
-    if (name == "ION ALPHA" || (name == "IONOSPHERIC CORR" && line.starts_with("GPSA"))) {
-      alpha = four_numbers(line, name == "ION ALPHA" ? 2 : 5);
-      if (!alpha) return Error{out.name, lines.number(), "ION ALPHA", "cannot be read", "four numbers"};
-    } else if (name == "ION BETA" || (name == "IONOSPHERIC CORR" && line.starts_with("GPSB"))) {
-      beta = four_numbers(line, name == "ION BETA" ? 2 : 5);
-      if (!beta) return Error{out.name, lines.number(), "ION BETA", "cannot be read", "four numbers"};
-    } else if (name == "LEAP SECONDS") {
-      out.leap_seconds = whole_number(columns(line, 0, 6));
-      if (!out.leap_seconds) return Error{out.name, lines.number(), "LEAP SECONDS", "cannot be read", "a whole number"};
-    }
-    ended = name == "END OF HEADER";
-  }
-  if (!ended) return Error{out.name, lines.number(), "", "the file ends inside its header", "a line \"END OF HEADER\""};
-  if (alpha && beta) out.klobuchar = KlobucharCoefficients{*alpha, *beta};
-  return Ok{};
-}
+constexpr const char* kExpectedStart = "a satellite number first";
 
 bool is_blank(std::string_view line) {
   return line.find_first_not_of(" \t") == std::string_view::npos;
 }
 
-/// A record's first line begins with a satellite; the lines that continue it begin with blanks.
-bool starts_record(std::string_view line, bool version3) {
-  if (line.empty()) return false;
-  return version3 ? line[0] != ' ' : (line[0] != ' ' || (line.size() > 1 && line[1] != ' '));
+std::optional<GnssSystem> system_of(char letter) {
+  for (const GnssSystem system : {GnssSystem::kGps, GnssSystem::kGlonass, GnssSystem::kGalileo, GnssSystem::kBeidou,
+                                  GnssSystem::kQzss, GnssSystem::kSbas})
+    if (letter == system_letter(system)) return system;
+  return std::nullopt;
 }
 
 class RecordReader {
  public:
-  RecordReader(TextLines& lines, NavigationFile& out) : lines_(lines), out_(out), version3_(out.version >= 3.0) {}
+  RecordReader(TextLines& lines, const NavigationHeader& header, const std::string& file, NavigationData& out)
+      : lines_(lines), header_(header), file_(file), out_(out) {}
 
   void read_all() {
     while (lines_.next()) {
       if (is_blank(lines_.line())) continue;
-      if (!starts_record(lines_.line(), version3_)) {
-        warn(Error{out_.name, lines_.number(), "", "a line that belongs to no record", "a satellite number first"});
-        skip_continuation();
+      RecordLines record{{}, lines_.number(), file_, header_.version2()};
+      const std::string_view first = lines_.line();
+      if (!starts_record(first)) {
+        warn(Error{file_, lines_.number(), "", "a line that belongs to no record", expected_start()});
+        collect(record);
         continue;
       }
-      read_record();
+      if (header_.version < 4.0) {
+        record.lines.push_back(first);
+        collect(record);
+        read_old(record);
+      } else {
+        ++record.first_line;
+        collect(record);
+        read_named(first, record);
+      }
     }
     if (damaged_ > kMaxWarnings)
-      out_.warnings.push_back(out_.name + ": " + std::to_string(damaged_ - kMaxWarnings) +
+      out_.warnings.push_back(file_ + ": " + std::to_string(damaged_ - kMaxWarnings) +
                               " more damaged records were skipped");
   }
   std::size_t damaged() const { return damaged_; }
 
  private:
-  void read_record() {
-    const int first_line = lines_.number();
-    const char system = version3_ ? lines_.line()[0] : 'G';
-    std::vector<std::string_view> record{lines_.line()};
-    while (!lines_.at_end() && !starts_record(lines_.peek(), version3_)) {
-      lines_.next();
-      if (!is_blank(lines_.line())) record.push_back(lines_.line());
-    }
-    if (system != 'G' && std::string_view("RECJSI").find(system) != std::string_view::npos) {
-      ++out_.other_system_records;
-      return;
-    }
-    auto parsed = system == 'G' ? parse_lnav_record(record, first_line, out_.name, LnavLayout{version3_})
-                                : Error{out_.name, first_line, "", "a line that belongs to no record",
-                                        "a satellite number first"};
-    if (parsed.ok())
-      out_.gps.push_back(*parsed);
-    else
-      warn(parsed.error());
+  /// RINEX 2 and 3: a record's first line begins with a satellite, those that continue it with blanks. RINEX 4: `>`.
+  bool starts_record(std::string_view line) const {
+    if (line.empty()) return false;
+    if (header_.version2()) return line[0] != ' ' || (line.size() > 1 && line[1] != ' ');
+    return header_.version < 4.0 ? line[0] != ' ' : line[0] == '>';
+  }
+  std::string expected_start() const {
+    return header_.version < 4.0 ? kExpectedStart : "a line that starts with \">\"";
   }
 
-  void skip_continuation() {
-    while (!lines_.at_end() && !starts_record(lines_.peek(), version3_)) lines_.next();
+  /// Adds the lines up to the next record.
+  void collect(RecordLines& record) {
+    while (!lines_.at_end() && !starts_record(lines_.peek())) {
+      lines_.next();
+      if (!is_blank(lines_.line())) record.lines.push_back(lines_.line());
+    }
+  }
+
+  void read_old(const RecordLines& record) {
+    const char letter = header_.version2() ? header_.system : record.lines.front()[0];
+    const auto system = system_of(letter);
+    if (!system && letter != 'I') {
+      warn(Error{file_, record.first_line, "", "a line that belongs to no record", kExpectedStart});
+      return;
+    }
+    if (!system || *system == GnssSystem::kSbas) {
+      ++out_.skipped_records[std::string("EPH ") + letter];
+      return;
+    }
+    const auto sv = satellite(record, *system);
+    if (!sv) return;
+    if (*system == GnssSystem::kGlonass)
+      keep(parse_glonass_record(record, *sv), out_.glonass);
+    else
+      keep(parse_kepler_record(record, *sv, kepler_message_of_old_record(record, *sv)), out_.kepler);
+  }
+
+  /// `> EPH G01 LNAV` and the lines after it.
+  void read_named(std::string_view name_line, const RecordLines& record) {
+    const std::string kind(columns(name_line, 2, 3)), message(columns(name_line, 10, 4));
+    const std::string_view who = columns(name_line, 6, 3);
+    const std::optional<GnssSystem> known = who.empty() ? std::nullopt : system_of(who[0]);
+    const GnssSystem system = known.value_or(GnssSystem::kSbas);  // of NavIC and others nothing is read either
+    // Only ephemerides need a satellite; other records may name the system alone.
+    const auto prn = who.size() > 1 ? whole_number(who.substr(1)) : std::optional<int>(kind == "EPH" ? 0 : 1);
+    if (kind.size() != 3 || who.empty() || !prn || *prn < 1 || *prn > 63 || record.lines.empty()) {
+      warn(Error{file_, record.first_line - 1, "", "record \"" + printable(name_line.substr(0, 14)) + "\"",
+                 "kind, satellite and message, for example \"> EPH G01 LNAV\", and lines of data"});
+      return;
+    }
+    const SatelliteId sv{system, static_cast<std::uint8_t>(*prn)};
+    const auto kepler = kepler_message(system, message);
+    if (kind == "EPH" && (kepler || (system == GnssSystem::kGlonass && message == "FDMA"))) {
+      if (satellite(record, system) != sv) {
+        warn(Error{file_, record.first_line, "", "satellite \"" + printable(columns(record.lines.front(), 0, 3)) + "\"",
+                   sv.str()});
+      } else if (kepler) {
+        keep(parse_kepler_record(record, sv, *kepler), out_.kepler);
+      } else {
+        keep(parse_glonass_record(record, sv), out_.glonass);
+      }
+    } else if (kind == "ION" && is_klobuchar(system, message)) {
+      keep(parse_klobuchar_record(record, sv), out_.klobuchar);
+    } else if (kind == "ION" && system == GnssSystem::kGalileo && message == "IFNV") {
+      keep(parse_nequick_record(record, sv), out_.nequick);
+    } else if (kind == "STO" && known && system != GnssSystem::kSbas) {
+      keep(parse_time_offset_record(record, sv), out_.time_corrections);
+    } else {
+      // Bounded, whatever bytes stand there.
+      const bool plain = printable(kind + message).find('?') == std::string::npos && out_.skipped_records.size() < 64;
+      ++out_.skipped_records[plain ? kind + " " + who[0] + " " + message : "other"];
+    }
+  }
+
+  static bool is_klobuchar(GnssSystem system, const std::string& message) {
+    switch (system) {
+      case GnssSystem::kGps:
+      case GnssSystem::kQzss:
+        return message == "LNAV" || message == "CNVX";
+      case GnssSystem::kBeidou:
+        return message == "D1D2";  // CNVX is BDGIM, a model of its own
+      default:
+        return false;
+    }
+  }
+
+  std::optional<SatelliteId> satellite(const RecordLines& record, GnssSystem system) {
+    const auto prn = satellite_number(record);
+    if (prn) return SatelliteId{system, static_cast<std::uint8_t>(*prn)};
+    const char letter = system_letter(system);
+    warn(Error{file_, record.first_line, "",
+               "satellite number \"" + printable(columns(record.lines.front(), 0, 3)) + "\"",
+               std::string(1, letter) + "01 to " + letter + "63"});
+    return std::nullopt;
+  }
+
+  template <class T>
+  void keep(const Result<T>& parsed, std::vector<T>& to) {
+    if (parsed.ok())
+      to.push_back(*parsed);
+    else
+      warn(parsed.error());
   }
 
   void warn(const Error& error) {
@@ -140,66 +167,64 @@ class RecordReader {
   }
 
   TextLines& lines_;
-  NavigationFile& out_;
-  bool version3_;
+  const NavigationHeader& header_;
+  const std::string& file_;
+  NavigationData& out_;
   std::size_t damaged_ = 0;
 };
 
+std::optional<GpsTime> first_epoch(const NavigationData& data) {
+  std::optional<GpsTime> first;
+  for (const auto& r : data.kepler) first = first ? std::min(*first, r.toe) : r.toe;
+  for (const auto& r : data.glonass) first = first ? std::min(*first, r.toe) : r.toe;
+  return first;
+}
+
 }  // namespace
 
-Result<NavigationFile> parse_navigation_file(std::string_view text, const std::string& file_name) {
-  NavigationFile out;
-  out.name = file_name;
+Result<NavigationData> parse_navigation_file(std::string_view text, const std::string& file_name) {
   TextLines lines(text);
-  CANYON_TRY_STATUS(parse_header(lines, out));
-  RecordReader reader(lines, out);
+  CANYON_TRY(const NavigationHeader header, parse_navigation_header(lines, file_name));
+  NavigationData out;
+  out.files.push_back({file_name, header.version});
+  out.time_corrections = header.time_corrections;
+  out.leap_seconds = header.leap_seconds;
+  RecordReader reader(lines, header, file_name, out);
   reader.read_all();
-  if (out.gps.empty()) {
-    std::string what = "no usable GPS record";
+  const auto first = first_epoch(out);
+  if (!first) {
+    std::string what = "no usable ephemeris";
     if (!out.warnings.empty())
       what += " (" + std::to_string(reader.damaged()) + " damaged, the first: " + out.warnings.front() + ")";
-    if (out.other_system_records > 0) what += " (" + std::to_string(out.other_system_records) + " of other systems)";
-    return Error{file_name, std::max(lines.number(), 1), "", what, "GPS broadcast ephemerides"};
+    int skipped = 0;
+    for (const auto& [kind, count] : out.skipped_records) skipped += count;
+    if (skipped > 0) what += " (" + std::to_string(skipped) + " records of other kinds)";
+    return Error{file_name, std::max(lines.number(), 1), "", what,
+                 "broadcast ephemerides of GPS, GLONASS, Galileo, BeiDou or QZSS"};
+  }
+  for (BroadcastKlobuchar k : header.klobuchar) {
+    k.t = *first;
+    out.klobuchar.push_back(k);
+  }
+  for (BroadcastNequick n : header.nequick) {
+    n.t = *first;
+    out.nequick.push_back(n);
   }
   return out;
 }
 
-Result<NavigationFile> read_navigation_file(const std::string& path) {
+Result<NavigationData> read_navigation_file(const std::string& path) {
   CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
   return parse_navigation_file(text, path);
 }
 
-Status check_coverage(const NavigationFile& file, GpsTime start, GpsTime end, const std::string& key) {
-  std::optional<GpsTime> first, last;
-  for (const auto& r : file.gps) {
-    if (!r.healthy()) continue;
-    const GpsTime begin = r.toe - 0.5 * r.fit_interval_s, finish = r.toe + 0.5 * r.fit_interval_s;
-    first = first ? std::min(*first, begin) : begin;
-    last = last ? std::max(*last, finish) : finish;
+Result<NavigationData> read_navigation_files(const std::vector<std::string>& paths) {
+  NavigationData all;
+  for (const std::string& path : paths) {
+    CANYON_TRY(NavigationData one, read_navigation_file(path));
+    all.append(std::move(one));
   }
-  if (!first)
-    return Error{file.name, 0, key, "no GPS satellite in it is healthy", "a navigation file of the mission's day"};
-  const std::string span = first->iso(0) + " to " + last->iso(0);
-  if (start < *first || end > *last)
-    return Error{file.name, 0, key,
-                 "covers " + span + " GPS time, not the mission's " + start.iso(0) + " to " + end.iso(0),
-                 "a navigation file of the mission's day"};
-
-  const auto constellation = make_broadcast_gps(file.gps);
-  constexpr double kStepS = 300.0;
-  const double length_s = end - start;
-  const int steps = static_cast<int>(std::ceil(length_s / kStepS));
-  for (int k = 0; k <= steps; ++k) {
-    const GpsTime t = start + std::min(k * kStepS, length_s);
-    const auto valid = std::count_if(constellation->satellites().begin(), constellation->satellites().end(),
-                                     [&](SatelliteId sv) { return constellation->state(sv, t).has_value(); });
-    if (valid < 4)
-      return Error{file.name, 0, key,
-                   "only " + std::to_string(valid) + " GPS satellites have a valid ephemeris at " + t.iso(0) +
-                       " (the file covers " + span + ")",
-                   "at least 4"};
-  }
-  return Ok{};
+  return all;
 }
 
 }  // namespace canyon::gnss

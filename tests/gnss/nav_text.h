@@ -6,14 +6,14 @@
 
 #include "core/time.h"
 #include "core/units.h"
-#include "gnss/satellites/lnav_ephemeris.h"
+#include "gnss/satellites/navigation_data.h"
 
 /// Synthetic navigation files: the twins of the real ones.
 namespace canyon::gnss::testing {
 
 /// A plausible GPS satellite of 2010 with every term of the user algorithm switched on.
-inline LnavEphemeris sample_ephemeris(int prn, GpsTime toe) {
-  LnavEphemeris r;
+inline KeplerEphemeris sample_ephemeris(int prn, GpsTime toe) {
+  KeplerEphemeris r;
   r.sv = {GnssSystem::kGps, static_cast<std::uint8_t>(prn)};
   r.toc = r.toe = toe;
   r.af0_s = 1e-4 * (prn % 7 - 3);
@@ -38,6 +38,13 @@ inline LnavEphemeris sample_ephemeris(int prn, GpsTime toe) {
   r.iode = 63;
   r.accuracy_m = 2.0;
   return r;
+}
+
+/// The constellation of these records alone.
+inline std::unique_ptr<Constellation> broadcast_of(std::vector<KeplerEphemeris> records) {
+  NavigationData data;
+  data.kepler = std::move(records);
+  return make_broadcast(data);
 }
 
 /// A number as Fortran's D19.12 writes it, or D12.4.
@@ -71,7 +78,7 @@ inline std::string header(bool version3, bool with_ionosphere = true) {
   return out + header_line("", "END OF HEADER");
 }
 
-inline std::string record(const LnavEphemeris& r, bool version3) {
+inline std::string record(const KeplerEphemeris& r, bool version3) {
   const CalendarTime c = calendar(r.toc);
   char head[64];
   if (version3)
@@ -89,7 +96,7 @@ inline std::string record(const LnavEphemeris& r, bool version3) {
          line(r.toe.sow_s(), r.cic_rad, r.omega0_rad, r.cis_rad) +
          line(r.i0_rad, r.crc_m, r.argument_of_perigee_rad, r.omega_dot_rad_s) +
          line(r.idot_rad_s, 1.0, r.toe.week(), 0.0) + line(r.accuracy_m, r.health, r.tgd_s, r.iode) +
-         line(r.toe.sow_s() - 3600.0, r.fit_interval_s / 3600.0, 0.0, 0.0);
+         line(r.toe.sow_s() - 3600.0, (r.valid_before_s + r.valid_after_s) / 3600.0, 0.0, 0.0);
 }
 
 /// Satellites 1..count with records every two hours from `start`.

@@ -1,4 +1,4 @@
-#include "gnss/satellites/lnav_ephemeris.h"
+#include "gnss/satellites/kepler_ephemeris.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +21,7 @@
 namespace canyon::gnss {
 namespace {
 
+using testing::broadcast_of;
 using testing::sample_ephemeris;
 
 const GpsTime kToe = GpsTime::from_week_sow(1590, 345600.0);
@@ -36,9 +37,9 @@ double relativity_s(const SatelliteState& s) {
 
 // Central differences over 1 s miss 1/24 of the third derivative: at most 4 GM v / r^3 on a Kepler orbit, plus the
 // turning of the frame; for the eccentric anomaly 3 (n / (1 - e))^3. Beside it 1 ns of time resolution, and rounding.
-TEST(LnavEphemeris, VelocityAndClockRateAreDerivatives) {
+TEST(KeplerEphemeris, VelocityAndClockRateAreDerivatives) {
   for (int prn : {1, 5, 30}) {
-    LnavEphemeris r = sample_ephemeris(prn, kToe);
+    KeplerEphemeris r = sample_ephemeris(prn, kToe);
     const double a_m = r.sqrt_a * r.sqrt_a, n = std::sqrt(kGpsMu / (a_m * a_m * a_m));
     for (const double e : {r.e, 0.3, 0.99}) {
       r.e = e;
@@ -57,8 +58,8 @@ TEST(LnavEphemeris, VelocityAndClockRateAreDerivatives) {
 }
 
 // Without perturbations the orbit is an ellipse: radius from the conic equation, energy conserved in inertial space.
-TEST(LnavEphemeris, UnperturbedOrbitIsKeplerian) {
-  LnavEphemeris r = sample_ephemeris(3, kToe);
+TEST(KeplerEphemeris, UnperturbedOrbitIsKeplerian) {
+  KeplerEphemeris r = sample_ephemeris(3, kToe);
   r.cuc_rad = r.cus_rad = r.crc_m = r.crs_m = r.cic_rad = r.cis_rad = r.idot_rad_s = r.omega_dot_rad_s =
       r.delta_n_rad_s = 0.0;
   for (const double e : {0.0, 0.02, 0.7, 0.99}) {
@@ -76,8 +77,8 @@ TEST(LnavEphemeris, UnperturbedOrbitIsKeplerian) {
   }
 }
 
-TEST(LnavEphemeris, ClockHasRelativityAndGroupDelay) {
-  LnavEphemeris r = sample_ephemeris(2, kToe);
+TEST(KeplerEphemeris, ClockHasRelativityAndGroupDelay) {
+  KeplerEphemeris r = sample_ephemeris(2, kToe);
   const GpsTime t = kToe + 1000.0;
   // -2 r.v / c^2 is the same relativistic correction (IS-GPS-200 20.3.3.3.3.1), up to the harmonic terms: 1e-3 of its
   // 20 ns.
@@ -88,13 +89,13 @@ TEST(LnavEphemeris, ClockHasRelativityAndGroupDelay) {
   EXPECT_GT(std::abs(relativity_s(s)), 1e-9);  // so that the line above tests something
 }
 
-TEST(BroadcastGps, NearestHealthyRecordWithinItsFitInterval) {
-  LnavEphemeris early = sample_ephemeris(1, kToe), late = sample_ephemeris(1, kToe + 7200.0),
-                other = sample_ephemeris(2, kToe);
+TEST(Broadcast, NearestHealthyRecordWithinItsFitInterval) {
+  KeplerEphemeris early = sample_ephemeris(1, kToe), late = sample_ephemeris(1, kToe + 7200.0),
+                  other = sample_ephemeris(2, kToe);
   early.af0_s = 1e-3;
   late.af0_s = 2e-3;
   other.health = 1;
-  const auto constellation = make_broadcast_gps({late, other, early});
+  const auto constellation = broadcast_of({late, other, early});
   const SatelliteId g01{GnssSystem::kGps, 1}, g02{GnssSystem::kGps, 2};
   EXPECT_EQ(constellation->satellites(), (std::vector<SatelliteId>{g01, g02}));
   const auto clock_at = [&](double dt_s) { return constellation->state(g01, kToe + dt_s)->clock_s; };
@@ -108,18 +109,18 @@ TEST(BroadcastGps, NearestHealthyRecordWithinItsFitInterval) {
   EXPECT_FALSE(constellation->state({GnssSystem::kGps, 3}, kToe).has_value());
 }
 
-TEST(BroadcastGps, OfTheSameToeTheLastGivenCounts) {
-  LnavEphemeris first = sample_ephemeris(1, kToe), second = first;
+TEST(Broadcast, OfTheSameToeTheLastGivenCounts) {
+  KeplerEphemeris first = sample_ephemeris(1, kToe), second = first;
   second.af0_s = 5e-4;
-  const auto constellation = make_broadcast_gps({first, second});
+  const auto constellation = broadcast_of({first, second});
   for (const double dt_s : {-100.0, 0.0, 100.0})
     EXPECT_NEAR(constellation->state(first.sv, kToe + dt_s)->clock_s, 5e-4, 1e-6) << dt_s;
 }
 
-TEST(BroadcastGps, WeekAndDayBoundaries) {
+TEST(Broadcast, WeekAndDayBoundaries) {
   const GpsTime toe = GpsTime::from_week_sow(1591, 0.0);
-  const LnavEphemeris r = sample_ephemeris(4, toe);
-  const auto constellation = make_broadcast_gps({r});
+  const KeplerEphemeris r = sample_ephemeris(4, toe);
+  const auto constellation = broadcast_of({r});
   const auto before = constellation->state(r.sv, toe + -0.001), after = constellation->state(r.sv, toe + 0.001);
   ASSERT_TRUE(before && after);
   // Smooth across the roll-over: acceleration below 1 m/s^2 leaves less than h^2 = 1e-6 m, and 1 ns of time resolution
@@ -206,15 +207,15 @@ OrbitErrors summary(const std::vector<std::vector<OrbitSample>>& epochs) {
 // An independent program gave, for the same files, along / cross RMS 1.48 / 0.52 m, 3-D RMS 1.90 m, radial mean -0.7 to
 // -0.8 m (the antenna offset, left in) and SISRE 0.74 m with each satellite's mean removed. Two programs differ in
 // which of overlapping ephemerides they take at the seams: 5 %.
-TEST(BroadcastGps, AgainstPreciseOrbits) {
+TEST(Broadcast, AgainstPreciseOrbits) {
   CANYON_REAL_DATA(nav, "gnss/orbit_2010_182/brdc1820.10n");
   CANYON_REAL_DATA(sp3_path, "gnss/orbit_2010_182/igs15904.sp3");
   auto file = read_navigation_file(nav);
   ASSERT_TRUE(file.ok()) << file.error().str();
   // The precise clocks are those of the two-frequency combination, without group delay.
-  for (auto& r : file->gps) r.tgd_s = 0.0;
+  for (auto& r : file->kepler) r.tgd_s = 0.0;
   std::ifstream sp3(sp3_path);
-  const OrbitErrors e = summary(compare_with_sp3(*make_broadcast_gps(file->gps), sp3));
+  const OrbitErrors e = summary(compare_with_sp3(*make_broadcast(*file), sp3));
   EXPECT_GT(e.samples, 2800);
   EXPECT_NEAR(e.along_rms_m, 1.48, 0.05 * 1.48);
   EXPECT_NEAR(e.cross_rms_m, 0.52, 0.05 * 0.52);
@@ -225,10 +226,10 @@ TEST(BroadcastGps, AgainstPreciseOrbits) {
 
 // Twin of the above: an SP3 text made from the ephemerides themselves, in its millimetre and picosecond resolution,
 // comes out as zero.
-TEST(BroadcastGps, AgainstSyntheticPreciseOrbits) {
-  std::vector<LnavEphemeris> records;
+TEST(Broadcast, AgainstSyntheticPreciseOrbits) {
+  std::vector<KeplerEphemeris> records;
   for (int prn = 1; prn <= 8; ++prn) records.push_back(sample_ephemeris(prn, kToe));
-  const auto constellation = make_broadcast_gps(records);
+  const auto constellation = broadcast_of(records);
   std::string text;
   for (int k = 0; k < 4; ++k) {
     const GpsTime t = kToe + 900.0 * k;
@@ -252,8 +253,8 @@ TEST(BroadcastGps, AgainstSyntheticPreciseOrbits) {
 }
 
 TEST(Transmission, LightTimeAndSagnacRoundTrip) {
-  const LnavEphemeris r = sample_ephemeris(1, kToe);
-  const auto constellation = make_broadcast_gps({r});
+  const KeplerEphemeris r = sample_ephemeris(1, kToe);
+  const auto constellation = broadcast_of({r});
   const Eigen::Vector3d p_E = ecef_from_geodetic({32.35 * kDegree, -90.88 * kDegree, 60.0});
   const GpsTime t = kToe + 1800.25;
   const auto signal = transmission_to(*constellation, r.sv, t, p_E);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "gnss/rinex/text_lines.h"
+#include "gnss/satellites/navigation_data.h"
+
+namespace canyon::gnss {
+
+/// The header of a RINEX navigation file, up to and with END OF HEADER.
+struct NavigationHeader {
+  double version = 0.0;
+  char system = 'G';  ///< of all records of a RINEX 2 file, G or R; of RINEX 3 and 4 as written, M = mixed
+  std::vector<BroadcastKlobuchar> klobuchar;  ///< without their times, which the header does not tell
+  std::vector<BroadcastNequick> nequick;      ///< the same
+  std::vector<TimeSystemCorrection> time_corrections;
+  std::optional<int> leap_seconds;
+
+  bool version2() const { return version < 3.0; }
+};
+
+Result<NavigationHeader> parse_navigation_header(TextLines& lines, const std::string& file_name);
+
+}  // namespace canyon::gnss
