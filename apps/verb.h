@@ -27,6 +27,8 @@ struct Verb {
 Verb compare_verb();
 Verb run_verb();
 Verb report_verb();
+Verb gnss_sky_verb();
+Verb gnss_map_verb();
 
 /// Options that every verb has.
 struct CommonOptions {

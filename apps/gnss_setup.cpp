@@ -1,0 +1,77 @@
+#include "apps/gnss_setup.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <CLI/CLI.hpp>
+
+#include "core/units.h"
+#include "mission/mission_file.h"
+
+namespace canyon::apps {
+
+void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* default_scene) {
+  declare_common(app, options.common);
+  options.scene = default_scene;
+  app.add_option("--scene", options.scene, "a mission file's scene, \"vicksburg\" (built in) or \"none\" (open sky)")
+      ->capture_default_str();
+  app.add_option("--fidelity", options.fidelity, "whose receiver: high, paper, or one of the mission file's own")
+      ->capture_default_str();
+  app.add_option("--nav", options.nav, "RINEX navigation file; without it the built-in constellation");
+  app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+  app.add_option("--seed", options.seed, "seed of every random stream")->capture_default_str();
+  app.add_option("--out", options.out, "directory for the files; without it only the summary is printed");
+  app.add_flag("--force", options.force, "replace the directory if it exists");
+}
+
+Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optional<Geodetic>& place) {
+  const bool open_sky = options.scene == "none", built_in = options.scene == mission::kDefaultMission;
+  CANYON_TRY(auto file, mission::MissionFile::load(open_sky || built_in ? "" : options.scene));
+  if (!options.nav.empty()) file.set_option("gnss.nav_file", ConfigNode::of(options.nav), "--nav");
+  if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
+  CANYON_TRY(const mission::MissionConfig config, file.resolve(options.fidelity));
+
+  GnssSetup out;
+  out.config = config.gnss;
+  out.seed = static_cast<std::uint64_t>(options.seed);
+  const auto start = GpsTime::parse(config.time.start, "time.start");
+  if (!start) return file.locate(start.error());
+  out.start = *start;
+  out.scene_name = open_sky ? "open sky" : built_in ? mission::kDefaultMission : options.scene;
+  if (open_sky) {
+    scene::SceneParts parts;
+    parts.name = "none";
+    parts.frame = LocalFrame(place.value_or(Geodetic{}));
+    parts.materials = scene::builtin_materials();
+    out.scene = std::make_shared<const scene::Scene>(std::move(parts));
+  } else {
+    mission::SceneCache scenes;
+    out.scene = scenes.get(config.scene);
+  }
+  return out;
+}
+
+Result<std::vector<double>> parse_numbers(const std::string& text, std::size_t count, const std::string& option,
+                                          const std::string& expected) {
+  std::vector<double> values(count);
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [stop, error] = std::from_chars(at, end, values[i]);
+    const bool separated = i + 1 < count ? stop != end && *stop == ',' : stop == end;
+    if (error != std::errc() || !separated || !std::isfinite(values[i]))
+      return Error{option, 0, "", "\"" + text + "\" cannot be read", expected};
+    at = stop + 1;
+  }
+  return values;
+}
+
+Result<Geodetic> parse_place(const std::string& text, const std::string& option) {
+  CANYON_TRY(const auto values, parse_numbers(text, 3, option, "LAT,LON,H: degrees, degrees, metres"));
+  if (std::abs(values[0]) > 90.0 || std::abs(values[1]) > 360.0)
+    return Error{option, 0, "", "\"" + text + "\" is not on the Earth",
+                 "latitude -90..90, longitude -180..360 degrees"};
+  return Geodetic{values[0] * kDegree, values[1] * kDegree, values[2]};
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,68 @@
+// canyon gnss ...: as a user calls it.
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/command_line_fixture.h"
+
+namespace canyon::apps {
+namespace {
+
+using ::testing::HasSubstr;
+
+class GnssVerbsTest : public testing::CommandLineTest {
+ protected:
+  /// Whether Python's XML parser takes it.
+  bool is_well_formed(const std::string& name) const {
+    const std::string command = "/usr/bin/python3 -c 'import sys, xml.dom.minidom as m; m.parse(sys.argv[1])' '";
+    return std::system((command + path(name) + "'").c_str()) == 0;
+  }
+};
+
+TEST_F(GnssVerbsTest, SkyOfAnOpenFieldAndOfAStreet) {
+  ASSERT_EQ(canyon("gnss sky --at 32.35,-90.88,60 --json"), 0) << read("stderr");
+  const auto open = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(open["open_sky_share_above_10_deg"], 1.0);
+  for (const auto& s : open["epochs"][0]["satellites"]) {
+    EXPECT_TRUE(s["line_of_sight"].get<bool>());
+    EXPECT_GE(s["elevation_deg"].get<double>(), 10.0);
+  }
+  ASSERT_EQ(canyon("gnss sky --scene vicksburg --xy 120,-40 --duration 600 --step 300 --out sky"), 0) << read("stderr");
+  EXPECT_THAT(read("stdout"), HasSubstr("over 3 epochs"));
+  EXPECT_TRUE(is_well_formed("sky/sky.svg"));
+  EXPECT_THAT(
+      read("sky/satellites.csv"),
+      HasSubstr("t_s,satellite,elevation_deg,azimuth_deg,cn0_dbhz,line_of_sight,tracked,reflections,multipath_m\n"));
+  EXPECT_THAT(read("sky/dop.csv"), HasSubstr("t_s,satellites,gdop,pdop,hdop,vdop,tdop\n"));
+  EXPECT_THAT(read("sky/satellites.csv"), HasSubstr(",0,"));  // somebody is hidden
+}
+
+TEST_F(GnssVerbsTest, MapWritesPicturesAndGrids) {
+  ASSERT_EQ(canyon("gnss map --cell 50 --out map"), 0) << read("stderr");
+  EXPECT_THAT(read("stdout"), HasSubstr("20 x 20 cells of 50 m"));
+  for (const char* layer : {"visible", "gdop", "error_horizontal", "error_up", "fix_share"}) {
+    EXPECT_THAT(read(std::string("map/") + layer + ".asc"), HasSubstr("ncols 20\nnrows 20\n"));
+    EXPECT_EQ(read(std::string("map/") + layer + ".png").substr(1, 3), "PNG");
+    EXPECT_TRUE(is_well_formed(std::string("map/") + layer + ".svg"));
+    EXPECT_THAT(read(std::string("map/") + layer + ".prj"), HasSubstr("Orthographic"));
+  }
+}
+
+TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
+  expect_mistake("gnss sky", "command line: no place given, expected --at LAT,LON,H, or --scene and --xy X,Y");
+  expect_mistake("gnss sky --at 32.35,x,60",
+                 "--at: \"32.35,x,60\" cannot be read, expected LAT,LON,H: degrees, degrees, metres");
+  expect_mistake("gnss sky --at 95,0,60", "--at: \"95,0,60\" is not on the Earth");
+  expect_mistake("gnss sky --scene vicksburg --xy 5000,0", "--xy: \"5000,0\" lies outside the scene");
+  expect_mistake("gnss sky --scene nowhere.toml --xy 0,0", "nowhere.toml");
+  expect_mistake("gnss map --scene none", "--scene: \"none\" has no ground to map, expected a scene");
+  expect_mistake("gnss map --fidelity best", "best");
+  expect_mistake("gnss", "command line: ");
+}
+
+}  // namespace
+}  // namespace canyon::apps

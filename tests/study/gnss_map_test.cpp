@@ -1,0 +1,72 @@
+#include "study/gnss_map.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+#include "mission/mission_file.h"
+#include "scene/city.h"
+
+namespace canyon::study {
+namespace {
+
+class GnssMapTest : public ::testing::Test {
+ protected:
+  static GnssMapConfig config() {
+    GnssMapConfig c;
+    c.gnss = mission::MissionFile::load("")->resolve("high")->gnss;
+    c.start = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+    c.cell_m = 40.0;
+    c.epochs = 2;
+    return c;
+  }
+};
+
+TEST_F(GnssMapTest, StreetsAreWorseThanOpenFieldsAndBuildingsHaveNoValue) {
+  const scene::Scene city(scene::make_city({}));
+  const auto map = map_gnss(config(), city, nullptr);
+  ASSERT_TRUE(map.ok());
+  int without_value = 0;
+  double least = 1e9, most = 0.0;
+  for (int row = 0; row < map->visible.rows; ++row)
+    for (int column = 0; column < map->visible.columns; ++column) {
+      const Eigen::Vector2d xy(map->visible.west_m + 40.0 * (column + 0.5), map->visible.south_m + 40.0 * (row + 0.5));
+      const double visible = map->visible.at(column, row);
+      EXPECT_EQ(std::isnan(visible), city.building_at(xy) != nullptr || !city.ground(xy.x(), xy.y()));
+      without_value += std::isnan(visible) ? 1 : 0;
+      if (std::isfinite(visible)) {
+        least = std::min(least, visible);
+        most = std::max(most, visible);
+      }
+    }
+  EXPECT_GT(without_value, 10);
+  EXPECT_LE(least, 2.0);  // the tall quarter
+  EXPECT_GE(most, 7.0);   // the open edges
+}
+
+TEST_F(GnssMapTest, SameBitsForAnyNumberOfThreads) {
+  const scene::Scene city(scene::make_city({}));
+  set_threads(1);
+  const auto one = map_gnss(config(), city, nullptr);
+  set_threads(8);
+  const auto eight = map_gnss(config(), city, nullptr);
+  set_threads(0);
+  ASSERT_TRUE(one.ok() && eight.ok());
+  for (std::size_t i = 0; i < one->gdop.values.size(); ++i) {
+    const double a = one->error_horizontal_m.values[i], b = eight->error_horizontal_m.values[i];
+    EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << i;
+  }
+}
+
+TEST_F(GnssMapTest, UnreadableNavigationFileIsTold) {
+  scene::CityConfig empty;
+  empty.empty = true;
+  const scene::Scene field(scene::make_city(empty));
+  GnssMapConfig c = config();
+  c.gnss.nav_file = "/nowhere/x.nav";
+  EXPECT_FALSE(map_gnss(c, field, nullptr).ok());
+}
+
+}  // namespace
+}  // namespace canyon::study
