@@ -6,97 +6,11 @@
 #include <string_view>
 
 #include "core/files.h"
+#include "core/line_reader.h"
 #include "core/trajectory.h"
 
 namespace canyon {
 namespace {
-
-/// A text file line by line, with what its errors need.
-class LineReader {
- public:
-  LineReader(const std::string& path, std::string text) : path_(path), text_(std::move(text)) {}
-
-  /// The next line that is neither empty nor a comment (#), without its end.
-  bool next(std::string_view& line) {
-    while (position_ < text_.size()) {
-      const std::size_t end = std::min(text_.find('\n', position_), text_.size());
-      line = std::string_view(text_).substr(position_, end - position_);
-      position_ = end + 1;
-      ++number_;
-      while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
-      if (!line.empty() && line.front() != '#') return true;
-    }
-    return false;
-  }
-
-  Error error(std::string what, std::string expected) const {
-    Error e;
-    e.file = path_;
-    e.line = number_;
-    e.what = std::move(what);
-    e.expected = std::move(expected);
-    return e;
-  }
-  Error empty_file() const {
-    Error e;
-    e.file = path_;
-    e.what = "holds no poses";
-    e.expected = "at least one line of numbers";
-    return e;
-  }
-
- private:
-  std::string path_;
-  std::string text_;
-  std::size_t position_ = 0;
-  int number_ = 0;
-};
-
-std::vector<std::string_view> split(std::string_view line, std::string_view separators, bool join_separators) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t end = line.find_first_of(separators);
-    const std::string_view field = line.substr(0, end);
-    if (!join_separators || !field.empty()) fields.push_back(field);
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
-}
-
-std::string_view trimmed(std::string_view field) {
-  while (!field.empty() && (field.front() == ' ' || field.front() == '\t')) field.remove_prefix(1);
-  while (!field.empty() && (field.back() == ' ' || field.back() == '\t')) field.remove_suffix(1);
-  return field;
-}
-
-Result<double> parse_number(const LineReader& in, std::string_view field) {
-  const std::string_view text = trimmed(field);
-  double value = 0.0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || status != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-    return in.error("\"" + std::string(field) + "\" is not a finite number", "a number");
-  }
-  return value;
-}
-
-/// Seconds as nanoseconds. Plain decimals are read digit by digit: as a double, GPS seconds of today would lose 0.1 us.
-Result<std::int64_t> parse_seconds(const LineReader& in, std::string_view field) {
-  CANYON_TRY(const double seconds, parse_number(in, field));
-  if (std::abs(seconds) >= 9.2e9)
-    return in.error("\"" + std::string(field) + "\" is not a time", "seconds since the GPS epoch");
-  const std::string_view text = trimmed(field);
-  const std::size_t point = text.find('.');
-  std::int64_t whole = 0;
-  const std::string_view before = text.substr(0, point);
-  const auto [end, status] = std::from_chars(before.data(), before.data() + before.size(), whole);
-  const bool plain = status == std::errc{} && end == before.data() + before.size() && text.front() != '-';
-  const std::string_view after = point == std::string_view::npos ? std::string_view{} : text.substr(point + 1);
-  if (!plain || after.find_first_not_of("0123456789") != std::string_view::npos) return (GpsTime{} + seconds).ns;
-  std::int64_t fraction = 0;
-  for (std::size_t i = 0; i < 9; ++i) fraction = 10 * fraction + (i < after.size() ? after[i] - '0' : 0);
-  if (after.size() > 9 && after[9] >= '5') ++fraction;
-  return whole * kNsPerSecond + fraction;
-}
 
 /// Unit quaternion from four numbers of a file, written with at least three digits.
 Result<Eigen::Quaterniond> parse_quaternion(const LineReader& in, double w, double x, double y, double z) {
@@ -159,7 +73,7 @@ Result<Trajectory> read_tum(const std::string& path) {
     CANYON_TRY(const Eigen::Quaterniond q, parse_quaternion(in, v[6], v[3], v[4], v[5]));
     CANYON_TRY_STATUS(append_in_order(in, trajectory, GpsTime{ns}, {q, {v[0], v[1], v[2]}}));
   }
-  if (trajectory.empty()) return in.empty_file();
+  if (trajectory.empty()) return in.empty_file("poses");
   return trajectory;
 }
 
@@ -194,7 +108,7 @@ Result<Trajectory> read_kitti(const std::string& path, GpsTime start, double rat
     const auto k = static_cast<std::int64_t>(trajectory.poses().size());
     CANYON_TRY_STATUS(append_in_order(in, trajectory, tick(start, k, rate_hz), Pose::from_matrix(T)));
   }
-  if (trajectory.empty()) return in.empty_file();
+  if (trajectory.empty()) return in.empty_file("poses");
   return trajectory;
 }
 
@@ -225,7 +139,7 @@ Result<Trajectory> read_csv_trajectory(const std::string& path) {
   CANYON_TRY(std::string text, read_text_file(path));
   LineReader in(path, std::move(text));
   std::string_view line;
-  if (!in.next(line)) return in.empty_file();
+  if (!in.next(line)) return in.empty_file("poses");
   const auto names = split(line, ",", false);
   std::array<std::size_t, kCsvColumns.size()> place{};
   for (std::size_t c = 0; c < kCsvColumns.size(); ++c) {
@@ -253,7 +167,7 @@ Result<Trajectory> read_csv_trajectory(const std::string& path) {
     const GpsTime t{GpsTime::from_week_sow(static_cast<int>(week), 0.0).ns + sow_ns};
     CANYON_TRY_STATUS(append_in_order(in, trajectory, t, {q, {v[0], v[1], v[2]}}));
   }
-  if (trajectory.empty()) return in.empty_file();
+  if (trajectory.empty()) return in.empty_file("poses");
   return trajectory;
 }
 
