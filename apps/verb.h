@@ -29,6 +29,7 @@ Verb run_verb();
 Verb report_verb();
 Verb gnss_sky_verb();
 Verb gnss_map_verb();
+Verb gnss_simulate_verb();
 
 /// Options that every verb has.
 struct CommonOptions {

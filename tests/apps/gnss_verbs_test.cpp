@@ -52,7 +52,38 @@ TEST_F(GnssVerbsTest, MapWritesPicturesAndGrids) {
   }
 }
 
+TEST_F(GnssVerbsTest, SimulationWithoutErrorsFindsTheTruth) {
+  ASSERT_EQ(canyon("gnss simulate --at 32.35,-90.88,60 --duration 60 --errors none --json"), 0) << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(json["epochs"], 61);
+  EXPECT_EQ(json["fixes"], 61);
+  EXPECT_EQ(json["nlos_share"], 0.0);
+  EXPECT_GT(json["gdop_median"].get<double>(), 1.0);
+  EXPECT_LT(json["rms_3d_m"].get<double>(), 1e-5);  // clock times and light times to below 1e-5 m
+}
+
+TEST_F(GnssVerbsTest, SimulationAlongAWay) {
+  std::string way = "gps_week,sow,lat_deg,lon_deg,h_m\n";
+  for (int k = 0; k <= 10; ++k)
+    way += "1610," + std::to_string(306000 + k) + ",32.35," + std::to_string(-90.88 + 1e-5 * k) + ",60\n";
+  write("given.csv", way);
+  ASSERT_EQ(canyon("gnss simulate --trajectory given.csv --rate 2 --out out --nmea out.nmea"), 0) << read("stderr");
+  const std::string fixes = read("out/fixes.csv");
+  EXPECT_EQ(std::count(fixes.begin(), fixes.end(), '\n'), 22);
+  EXPECT_THAT(fixes, HasSubstr("\n1610,306009.500000000,differential,"));
+  EXPECT_THAT(read("out.nmea"), HasSubstr("$GPGGA,125945.00,32"));
+  EXPECT_THAT(read("out/satellites.csv"), HasSubstr("1610,306000.000000000,G03,"));
+}
+
 TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
+  expect_mistake("gnss simulate --at 1,2,3 --errors noise,magic",
+                 "--errors: \"magic\" is not an error, expected none, all, or of ionosphere troposphere ephemeris "
+                 "receiver_clock multipath noise base_station");
+  expect_mistake("gnss simulate", "command line: no place given, expected --at LAT,LON,H or --trajectory FILE");
+  write("given_way.csv", "1610,306000,32.35,-90.88,60\n1610,306010,32.35,-90.88,60\n");
+  expect_mistake("gnss simulate --trajectory given_way.csv --duration 20",
+                 "given_way.csv: covers 2010-11-17T13:00:00.000 to 2010-11-17T13:00:10.000, expected all of "
+                 "2010-11-17T13:00:00.000 and the 20 s that follow");
   expect_mistake("gnss sky", "command line: no place given, expected --at LAT,LON,H, or --scene and --xy X,Y");
   expect_mistake("gnss sky --at 32.35,x,60",
                  "--at: \"32.35,x,60\" cannot be read, expected LAT,LON,H: degrees, degrees, metres");
