@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
+#include "apps/json.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -63,10 +64,6 @@ double quantile(const Grid& grid, double q) {
   return x[k];
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 Result<int> run(const Options& options) {
   set_threads(options.setup.common.threads);
   CANYON_TRY(const GnssSetup setup, gnss_setup(options.setup, std::nullopt));
@@ -99,14 +96,14 @@ Result<int> run(const Options& options) {
   CANYON_TRY_STATUS(staged.commit());
 
   if (options.setup.common.json) {
-    nlohmann::ordered_json json{{"columns", map.visible.columns},
-                                {"rows", map.visible.rows},
-                                {"cell_m", map.visible.cell_m},
-                                {"epochs", config.epochs},
-                                {"directory", staged.final_path()}};
+    Json json{{"columns", map.visible.columns},
+              {"rows", map.visible.rows},
+              {"cell_m", map.visible.cell_m},
+              {"epochs", config.epochs},
+              {"directory", staged.final_path()}};
     for (const Layer& layer : layers())
-      json[layer.file] = {{"median", number(quantile(map.*layer.grid, 0.5))},
-                          {"p95", number(quantile(map.*layer.grid, 0.95))}};
+      json[layer.file] = {{"median", or_null(quantile(map.*layer.grid, 0.5))},
+                          {"p95", or_null(quantile(map.*layer.grid, 0.95))}};
     std::printf("%s\n", json.dump().c_str());
     return 0;
   }

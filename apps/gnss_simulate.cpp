@@ -9,12 +9,14 @@
 
 #include "apps/gnss_errors.h"
 #include "apps/gnss_setup.h"
+#include "apps/json.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/place_files.h"
 #include "core/progress.h"
 #include "core/units.h"
 #include "gnss/nmea/nmea_writer.h"
+#include "mission/summary.h"
 
 namespace canyon::apps {
 
@@ -71,12 +73,7 @@ struct Totals {
   }
   double nlos_share() const { return tracked > 0 ? static_cast<double>(nlos) / static_cast<double>(tracked) : kNaN; }
   double rms_m() const { return fixes > 0 ? std::sqrt(square_m2 / static_cast<double>(fixes)) : kNaN; }
-  double gdop_median() const {
-    if (gdop.empty()) return kNaN;
-    std::vector<double> x = gdop;
-    std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
-    return x[x.size() / 2];
-  }
+  double gdop_median() const { return mission::median(gdop); }
 };
 
 /// The files of a simulation, filled epoch by epoch.
@@ -149,18 +146,14 @@ class Recorder {
       "carrier_phase_cycles,cn0_dbhz,range_m,multipath_m,ionosphere_m,troposphere_m,ephemeris_m,noise_m\n";
 };
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 void tell(const Options& options, const Totals& totals, const GnssSetup& setup) {
   if (options.setup.common.json) {
-    const nlohmann::ordered_json json{{"epochs", totals.epochs},
-                                      {"fixes", totals.fixes},
-                                      {"satellites_mean", number(totals.satellites_mean())},
-                                      {"nlos_share", number(totals.nlos_share())},
-                                      {"gdop_median", number(totals.gdop_median())},
-                                      {"rms_3d_m", number(totals.rms_m())}};
+    const Json json{{"epochs", totals.epochs},
+                    {"fixes", totals.fixes},
+                    {"satellites_mean", or_null(totals.satellites_mean())},
+                    {"nlos_share", or_null(totals.nlos_share())},
+                    {"gdop_median", or_null(totals.gdop_median())},
+                    {"rms_3d_m", or_null(totals.rms_m())}};
     std::printf("%s\n", json.dump().c_str());
     return;
   }

@@ -8,18 +8,18 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
+#include "apps/json.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/units.h"
 #include "gnss/paths/obstruction.h"
+#include "mission/summary.h"
 #include "report/sky_plot.h"
 
 namespace canyon::apps {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   GnssSetupOptions setup;
@@ -31,10 +31,6 @@ struct Epoch {
   double t_s = 0.0;
   gnss::GnssOutput output;
 };
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 std::string text(const char* format, auto... values) {
   char buffer[200];
@@ -131,12 +127,6 @@ report::SkyPlot plot_of(const std::vector<Epoch>& epochs, const gnss::Obstructio
   return plot;
 }
 
-double median(std::vector<double> x) {
-  if (x.empty()) return kNaN;
-  std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
-  return x[x.size() / 2];
-}
-
 Json json_of(const std::vector<Epoch>& epochs, const gnss::ObstructionMask& mask, const GnssSetup& setup) {
   Json out;
   out["start"] = setup.start.iso();
@@ -148,17 +138,17 @@ Json json_of(const std::vector<Epoch>& epochs, const gnss::ObstructionMask& mask
       satellites.push_back({{"satellite", s.sv.str()},
                             {"elevation_deg", s.elevation_rad / kDegree},
                             {"azimuth_deg", s.azimuth_rad / kDegree},
-                            {"cn0_dbhz", number(cn0_of(e.output, s.sv))},
+                            {"cn0_dbhz", or_null(cn0_of(e.output, s.sv))},
                             {"line_of_sight", s.line_of_sight},
                             {"tracked", s.tracked},
                             {"reflections", s.reflections}});
     const Dop& d = e.output.fix.dop;
     out["epochs"].push_back({{"t_s", e.t_s},
                              {"fix", e.output.fix.status != FixStatus::kNone},
-                             {"gdop", number(d.gdop)},
-                             {"pdop", number(d.pdop)},
-                             {"hdop", number(d.hdop)},
-                             {"vdop", number(d.vdop)},
+                             {"gdop", or_null(d.gdop)},
+                             {"pdop", or_null(d.pdop)},
+                             {"hdop", or_null(d.hdop)},
+                             {"vdop", or_null(d.vdop)},
                              {"satellites", satellites}});
   }
   return out;
@@ -189,8 +179,8 @@ void print(const std::vector<Epoch>& epochs, const gnss::ObstructionMask& mask, 
     if (e.output.fix.status != FixStatus::kNone) gdop.push_back(e.output.fix.dop.gdop);
   }
   std::printf("over %zu epochs: fix in %zu; GDOP median %.2f, max %.2f; satellites median %.0f, fewest %.0f\n",
-              epochs.size(), gdop.size(), median(gdop),
-              gdop.empty() ? kNaN : *std::max_element(gdop.begin(), gdop.end()), median(satellites),
+              epochs.size(), gdop.size(), mission::median(gdop),
+              gdop.empty() ? kNaN : *std::max_element(gdop.begin(), gdop.end()), mission::median(satellites),
               *std::min_element(satellites.begin(), satellites.end()));
 }
 
