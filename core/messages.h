@@ -37,13 +37,27 @@ struct SatelliteId {
   std::uint32_t entity() const { return static_cast<std::uint32_t>(system) * 256u + prn; }
 };
 
+/// A further signal of a satellite, of a dual-frequency receiver.
+struct GnssSecondSignal {
+  int band = 0;  ///< RINEX band digit; 0 = none, and the rest is NaN
+  double pseudorange_m = kNaN;
+  double doppler_hz = kNaN;
+  double carrier_phase_cycles = kNaN;
+  double cn0_dbhz = kNaN;
+  bool slipped = false;
+};
+
 /// One satellite's measurements and all that a tightly coupled filter needs beside them.
 struct GnssObservation {
   SatelliteId sv;
-  double pseudorange_m = kNaN;  ///< as measured: true range + clocks + delays + noise
-  double doppler_hz = kNaN;     ///< positive when the range shrinks
-  double carrier_phase_cycles = kNaN;
+  int band = 1;                        ///< RINEX band digit of the signal measured
+  double pseudorange_m = kNaN;         ///< as measured: true range + clocks + delays + noise
+  double doppler_hz = kNaN;            ///< positive when the range shrinks
+  double carrier_phase_cycles = kNaN;  ///< grows with the range; an unknown number of whole cycles is in it
   double cn0_dbhz = kNaN;
+  bool slipped =
+      false;  ///< the carrier phase does not continue the previous epoch's: lock was lost, or was just gained
+  GnssSecondSignal second;
   double sigma_m = kNaN;  ///< 1-sigma the receiver assumes for the corrected pseudorange
   Eigen::Vector3d p_E =
       Eigen::Vector3d::Constant(kNaN);  ///< satellite at transmission, in E of the time of reception (Sagnac applied)

@@ -2,6 +2,8 @@
 #include "gnss/atmosphere/troposphere.h"
 #include "gnss/errors/ephemeris_error.h"
 #include "gnss/paths/path_model.h"
+#include "gnss/receiver/antenna.h"
+#include "gnss/receiver/code_correlation.h"
 #include "gnss/receiver/multipath_rule.h"
 #include "gnss/receiver/receiver_clock.h"
 #include "gnss/receiver/receiver_mode.h"
@@ -51,21 +53,41 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.choice("multipath_rule", c.multipath_rule, model_names(multipath_rules()),
            "range error from direct and reflected signals");
   f.number("cutoff_ns", c.cutoff_ns, {0.0, 10000.0}, "reflections later than this do not disturb a direct signal");
-  f.number("correlator_spacing_chips", c.correlator_spacing_chips, {0.01, 1.0}, "early minus late");
   f.number("cn0_zenith_dbhz", c.cn0_zenith_dbhz, {20.0, 60.0}, "C/N0 of a clear satellite at the zenith");
+  f.choice("antenna", c.antenna, model_names(antenna_models()), "gain pattern and phase centre of the antenna");
   f.number("antenna_horizon_loss_db", c.antenna_horizon_loss_db, {0.0, 40.0},
-           "antenna gain at the horizon below that at the zenith");
+           "antenna sine: gain at the horizon below that at the zenith");
   f.number("lhcp_rejection_db", c.lhcp_rejection_db, {0.0, 60.0},
-           "antenna gain for left-hand below right-hand polarization");
+           "antenna sine: gain for left-hand below right-hand polarization");
+  f.flag("antenna_phase_centre", c.antenna_phase_centre, "the antenna's phase centre is off its nominal point");
+  std::vector<std::string> modulations = modulation_names();
+  modulations.insert(modulations.begin(), "auto");
+  f.choice("modulation", c.modulation, modulations, "of the tracked signals; auto = each system's open signal");
+  f.choice("second_frequency", c.second_frequency, {"L2", "L5"}, "mode dual: L2 and its like, or L5, E5a, B2a");
+  f.choice("correlator", c.correlator, {"early_late", "double_delta"}, "one or two pairs of early and late");
+  f.choice("discriminator", c.discriminator, {"power", "coherent"}, "early minus late of powers, or in phase");
+  f.number("correlator_spacing_chips", c.correlator_spacing_chips, {0.01, 1.0}, "early to late, in the signal's chips");
+  f.number("front_end_mhz", c.front_end_mhz, {0.0, 100.0},
+           "two-sided bandwidth of the receiver, at least the signal's main lobes; 0 = infinite");
+  f.number("code_loop_hz", c.code_loop_hz, {0.001, 20.0}, "noise bandwidth of the code loop");
+  f.number("carrier_loop_hz", c.carrier_loop_hz, {0.5, 50.0}, "noise bandwidth of the carrier loop");
+  f.number("integration_ms", c.integration_ms, {1.0, 40.0}, "predetection integration");
+  f.number("thermal_noise_scale", c.thermal_noise_scale, {0.0, 100.0},
+           "thermal noise of code, carrier and Doppler, 1 = physical");
   f.number("tracking_threshold_dbhz", c.tracking_threshold_dbhz, {0.0, 60.0},
            "signals weaker than this are not tracked");
-  f.number("code_noise_m", c.code_noise_m, {0.0, 100.0}, "1-sigma code noise at 45 dB-Hz");
+  f.number("reacquisition_margin_db", c.reacquisition_margin_db, {0.0, 40.0},
+           "a lost signal is found again only above the threshold by this");
+  f.number("reacquisition_s", c.reacquisition_s, {0.0, 600.0}, "and after it has been there for so long");
 
   f.choice("solver", c.solver, model_names(position_solvers()), "how ranges become a position");
   f.number("solver_sigma_m", c.solver_sigma_m, {1e-3, 1000.0},
            "1-sigma the solver assumes for a corrected pseudorange at the zenith");
   f.number("max_gdop", c.max_gdop, {1.0, 1e6}, "fixes with a larger GDOP are refused");
-  f.text("nav_file", c.nav_file, "RINEX 2, 3 or 4 navigation file, plain or gzip; empty = built-in 24-slot constellation");
+  f.text("systems", c.systems, "satellite systems received, of G R E C J");
+  f.text("nav_file", c.nav_file,
+         "RINEX 2, 3 or 4 navigation file, plain or gzip; without any, the built-in constellation");
+  f.texts("nav_files", c.nav_files, "further navigation files, read as one with nav_file");
 }
 
 }  // namespace canyon::gnss

@@ -5,16 +5,11 @@
 #include "core/check.h"
 #include "core/random.h"
 #include "core/units.h"
-#include "gnss/atmosphere/ionosphere.h"
-#include "gnss/atmosphere/troposphere.h"
-#include "gnss/errors/ephemeris_error.h"
-#include "gnss/paths/path_model.h"
-#include "gnss/receiver/code_noise.h"
-#include "gnss/receiver/link_budget.h"
-#include "gnss/receiver/multipath_rule.h"
-#include "gnss/receiver/receiver_clock.h"
+#include "gnss/pseudorange_parts.h"
+#include "gnss/receiver/carrier_noise.h"
+#include "gnss/receiver/loop_noise.h"
+#include "gnss/receiver/range_rate.h"
 #include "gnss/receiver/receiver_fix.h"
-#include "gnss/rinex/navigation_file.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/sensor_models.h"
 #include "gnss/signal.h"
@@ -22,55 +17,73 @@
 namespace canyon::gnss {
 namespace {
 
-/// All that a pseudorange is made of; one model per effect.
-struct Parts {
-  std::unique_ptr<Constellation> constellation;
-  std::unique_ptr<IonosphereModel> ionosphere;
-  std::unique_ptr<TroposphereModel> troposphere;
-  std::unique_ptr<EphemerisError> ephemeris_error;
-  std::unique_ptr<PathModel> paths;
-  std::unique_ptr<MultipathRule> multipath;
-  std::unique_ptr<ReceiverClock> clock;
-  std::unique_ptr<ReceiverMode> mode;
-  std::unique_ptr<PositionSolver> solver;
-  LinkBudget link;
-  std::vector<std::string> warnings;
+/// Which signal's peak is tracked, as a number that stays the same from epoch to epoch.
+std::uint64_t identity(const SignalPaths& paths, int source) {
+  if (source < 0) return 1;
+  const SignalPath& p = paths.echoes[static_cast<std::size_t>(source)];
+  std::uint64_t hash = 14695981039346656037u;
+  const auto mix = [&hash](std::uint64_t value) { hash = (hash ^ value) * 1099511628211u; };
+  mix(static_cast<std::uint64_t>(p.reflections));
+  mix(static_cast<std::uint64_t>(p.diffractions));
+  for (const std::uint32_t facet : p.facets) mix(facet);
+  return hash;
+}
+
+/// Streams of one of the receiver's signals, and what it is locked to.
+struct SignalStreams {
+  SignalStreams(const std::string& prefix, const GnssConfig& config, const SignalLockParameters& lock_parameters)
+      : code(lock_parameters.seed, prefix + "code_noise", config.code_loop_hz, lock_parameters.interval_s),
+        carrier(lock_parameters.seed, prefix + "carrier_noise"),
+        doppler(lock_parameters.seed, prefix + "doppler_noise"),
+        locks(lock_parameters) {}
+
+  LoopNoise code;
+  RandomStream carrier, doppler;
+  SignalLocks locks;
 };
 
-/// Forms pseudoranges from first principles and solves them. An epoch at GPS time t:
+/// Forms pseudoranges, carrier phases and Dopplers from first principles and solves them. An epoch at GPS time t:
 ///
 ///   pseudorange = |satellite(t - light time), turned by the Earth - antenna(t)| + receiver clock - satellite clock
-///                 + ionosphere + troposphere + broadcast error + multipath + code noise.
+///                 + ionosphere + troposphere + broadcast error + antenna phase centre + multipath + code noise,
+///   carrier     = the same with - ionosphere, the carrier's own multipath and noise, and whole cycles,
+///   Doppler     = -(range rate + clock rates + multipath + noise) / wavelength.
 ///
-/// The receiver labels the epoch with its own clock (GnssEpoch::t = t + receiver clock), computes the satellites from
-/// the pseudoranges alone, corrects according to its mode, and solves. The light time is the vacuum's: the 1e-7 s that
+/// Left out: phase wind-up (below a cycle over hours), the atmosphere's and the broadcast error's rates (mm/s). The
+/// receiver labels the epoch with its own clock (GnssEpoch::t = t + receiver clock), computes the satellites from the
+/// pseudoranges alone, corrects according to its mode, and solves. The light time is the vacuum's: the 1e-7 s that
 /// delays add move a satellite by 0.1 mm along the line of sight.
 class PseudorangeSensor final : public GnssSensor {
  public:
-  PseudorangeSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame, Parts parts)
-      : config_(config), frame_(frame), parts_(std::move(parts)), code_noise_(seed, "gnss.code_noise") {}
+  PseudorangeSensor(const GnssConfig& config, const LocalFrame& frame, PseudorangeParts parts)
+      : config_(config),
+        frame_(frame),
+        parts_(std::move(parts)),
+        first_("gnss.", config, parts_.locks),
+        second_("gnss.second.", config, parts_.locks) {}
 
-  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d&,
+  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                      const scene::SceneAt& scene) override {
     CANYON_CHECK(index >= 0, "index = ", index);
-    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
-    ++counters_.epochs;
-    GnssOutput out;
+    CANYON_CHECK(p_A_W.allFinite() && v_A_W.allFinite(), "antenna at ", p_A_W.transpose(), ", velocity ",
+                 v_A_W.transpose());
+    begin_epoch(index);
+    Epoch epoch{index, t, p_A_W, v_A_W, Horizon(frame_.to_E(p_A_W)), {}};
+    GnssOutput& out = epoch.out;
     out.truth.t = t;
     out.truth.p_A_E = frame_.to_E(p_A_W);
+    out.truth.v_A_E = frame_.R_EW() * v_A_W;
     out.truth.receiver_clock_m = parts_.clock->offset_m(index);
+    out.truth.receiver_clock_rate_m_s = parts_.clock->rate_m_s(index);
     out.epoch.t = t + out.truth.receiver_clock_m / kSpeedOfLight;
 
-    const Horizon horizon(out.truth.p_A_E);
-    const std::vector<Sight> sights = satellites_above_mask(t, out.truth.p_A_E, horizon);
+    const std::vector<Sight> sights = satellites_above_mask(epoch);
     const std::vector<SignalPaths> paths = trace(p_A_W, sights, scene);
-
     std::vector<CorrectionInput> inputs;
     std::vector<std::size_t> truth_of;  // index of the truth record of each observation
     for (std::size_t i = 0; i < sights.size(); ++i) {
-      GnssObservationTruth truth = describe(sights[i], paths[i]);
-      const Reception reception = receive_signals(sights[i], paths[i], horizon);
-      truth.tracked = reception.tracked && measure_range(index, t, sights[i], reception, out, truth, inputs);
+      GnssObservationTruth truth = describe(epoch, sights[i], paths[i]);
+      truth.tracked = observe(epoch, sights[i], paths[i], truth, inputs);
       if (truth.tracked) truth_of.push_back(i);
       out.truth.satellites.push_back(truth);
     }
@@ -81,7 +94,7 @@ class PseudorangeSensor final : public GnssSensor {
     out.fix = compute_fix(receiver, t, out.epoch, inputs, corrections);
     for (std::size_t k = 0; k < corrections.size(); ++k)
       keep_residual(corrections[k], out.truth.satellites[truth_of[k]]);
-    return out;
+    return std::move(out);
   }
 
   GnssCounters counters() const override { return counters_; }
@@ -95,13 +108,51 @@ class PseudorangeSensor final : public GnssSensor {
     Eigen::Vector3d direction_W;
   };
 
-  std::vector<Sight> satellites_above_mask(GpsTime t, const Eigen::Vector3d& p_A_E, const Horizon& horizon) const {
+  /// What all satellites of an epoch share.
+  struct Epoch {
+    std::int64_t index;
+    GpsTime t;
+    Eigen::Vector3d p_A_W, v_A_W;
+    Horizon horizon;
+    GnssOutput out;
+  };
+
+  /// Delays of one satellite and the two carriers.
+  struct Link {
+    RangeDelays acting;
+    double clock_s = 0.0;  ///< of the satellite, for this band
+    double wavelength_m = 0.0;
+    double ionosphere_m = 0.0;  ///< at this carrier
+  };
+
+  struct Measured {
+    bool tracked = false;
+    double pseudorange_m = kNaN, doppler_hz = kNaN, carrier_phase_cycles = kNaN, cn0_dbhz = kNaN;
+    bool slipped = false;
+    double noise_m = 0.0, multipath_m = 0.0;
+    Reception reception;
+    double ambiguity_cycles = 0.0;
+  };
+
+  void begin_epoch(std::int64_t index) {
+    ++counters_.epochs;
+    if (index != last_index_ + 1) {
+      first_.locks.restart();
+      second_.locks.restart();
+    }
+    last_index_ = index;
+    first_.locks.begin_epoch(index);
+    second_.locks.begin_epoch(index);
+  }
+
+  std::vector<Sight> satellites_above_mask(const Epoch& epoch) const {
+    const Eigen::Vector3d& p_A_E = epoch.out.truth.p_A_E;
     std::vector<Sight> sights;
     for (const SatelliteId sv : parts_.constellation->satellites()) {
-      const auto signal = transmission_to(*parts_.constellation, sv, t, p_A_E);
+      const auto signal = transmission_to(*parts_.constellation, sv, epoch.t, p_A_E);
       if (!signal) continue;
       const Eigen::Vector3d satellite_E = signal->p_E();
-      const SkyView view = horizon.view(t, satellite_E);
+      const SkyView view = epoch.horizon.view(epoch.t, satellite_E);
       if (view.elevation_rad < config_.mask_deg * kDegree) continue;
       sights.push_back({sv, *signal, view, frame_.R_EW().transpose() * (satellite_E - p_A_E).normalized()});
     }
@@ -117,132 +168,173 @@ class PseudorangeSensor final : public GnssSensor {
     return paths;
   }
 
-  GnssObservationTruth describe(const Sight& sight, const SignalPaths& paths) const {
+  GnssObservationTruth describe(const Epoch& epoch, const Sight& sight, const SignalPaths& paths) const {
     GnssObservationTruth truth;
     truth.sv = sight.sv;
     truth.elevation_rad = sight.view.elevation_rad;
     truth.azimuth_rad = sight.view.azimuth_rad;
     truth.line_of_sight = paths.line_of_sight;
-    const double cutoff_m = cutoff();
-    truth.reflections =
-        static_cast<int>(std::count_if(paths.echoes.begin(), paths.echoes.end(), [=](const SignalPath& p) {
-          return p.reflections > 0 && p.excess_m < cutoff_m;
-        }));
+    const double cutoff_m = config_.cutoff_ns * 1e-9 * kSpeedOfLight;
+    for (const SignalPath& p : paths.echoes) {
+      truth.reflections += p.reflections > 0 && p.excess_m < cutoff_m ? 1 : 0;
+      truth.diffractions += p.diffractions > 0 ? 1 : 0;
+    }
     truth.range_m = sight.signal.range_m;
+    truth.range_rate_m_s = range_rate_m_s(sight.signal, epoch.out.truth.p_A_E, epoch.out.truth.v_A_E);
     return truth;
   }
 
-  double cutoff() const { return config_.cutoff_ns * 1e-9 * kSpeedOfLight; }
-
-  Reception receive_signals(const Sight& sight, const SignalPaths& paths, const Horizon& horizon) const {
-    const Eigen::Vector3d up_W = frame_.R_EW().transpose() * horizon.R_E_enu().col(2);
-    std::vector<ReceivedReflection> reflections;
-    for (const auto& p : paths.echoes) reflections.push_back(receive(p, parts_.link, up_W));
-    std::optional<double> direct_cn0_dbhz;
-    if (paths.line_of_sight)
-      direct_cn0_dbhz = parts_.link.direct_cn0_dbhz(sight.view.elevation_rad, paths.foliage_m, std::abs(paths.direct));
-    return parts_.multipath->receive(direct_cn0_dbhz, reflections);
+  const Channel& channel(GnssSystem system, int band) const {
+    const Modulation modulation =
+        config_.modulation == "auto" ? modulation_of(system, band) : modulation_of(config_.modulation);
+    return parts_.channels[static_cast<std::size_t>(modulation)];
   }
 
-  /// Appends the observation. False, and nothing appended, in the millisecond in which a satellite's last ephemeris
-  /// expires between the true time of transmission and the satellite clock's reading.
-  bool measure_range(std::int64_t index, GpsTime t, const Sight& sight, const Reception& reception, GnssOutput& out,
-                     GnssObservationTruth& truth, std::vector<CorrectionInput>& inputs) const {
-    const RangeDelays raw{parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
-                          parts_.ephemeris_error->range_m(sight.sv, sight.signal.state.p_E, t)};
-    const RangeDelays acting = parts_.mode->acting(raw);
-    const double noise_m = config_.code_noise_m *
-                           relative_code_noise(reception.cn0_dbhz, config_.correlator_spacing_chips) *
-                           code_noise_.normal(sight.sv.entity(), static_cast<std::uint64_t>(index));
-    GnssObservation o;
-    o.sv = sight.sv;
-    o.cn0_dbhz = reception.cn0_dbhz;
-    o.pseudorange_m = sight.signal.range_m + out.truth.receiver_clock_m -
-                      kSpeedOfLight * sight.signal.state.clock_of_band_s(first_band(o.sv.system)) +
-                      acting.ionosphere_m + acting.troposphere_m + acting.ephemeris_m + reception.error_m + noise_m;
-    CANYON_CHECK(std::isfinite(o.pseudorange_m) && std::isfinite(o.cn0_dbhz), "pseudorange sensor, ", o.sv.str(),
-                 ": pseudorange_m = ", o.pseudorange_m, ", cn0_dbhz = ", o.cn0_dbhz);
-    if (!transmission_from_pseudorange(*parts_.constellation, o.sv, out.epoch.t, o.pseudorange_m)) return false;
+  Reception receive_signals(const Epoch& epoch, const Sight& sight, const SignalPaths& paths, const Channel& channel,
+                            double wavelength_m) const {
+    const Eigen::Vector3d up_W = frame_.R_EW().transpose() * epoch.horizon.R_E_enu().col(2);
+    std::vector<ReceivedSignal> echoes;
+    for (const auto& p : paths.echoes)
+      echoes.push_back(receive(p, parts_.link, up_W, sight.direction_W, epoch.v_A_W, wavelength_m));
+    std::optional<ReceivedSignal> direct;
+    if (paths.line_of_sight) {
+      direct.emplace();
+      direct->cn0_dbhz = parts_.link.direct_cn0_dbhz(sight.view.elevation_rad, paths.foliage_m, std::abs(paths.direct));
+      direct->phase_rad = std::arg(paths.direct);
+    }
+    return channel.multipath->receive(direct, echoes, wavelength_m);
+  }
 
-    truth.ionosphere_m = acting.ionosphere_m;
-    truth.troposphere_m = acting.troposphere_m;
+  /// One signal of one satellite. `ionosphere_m` acts on this band's code.
+  Measured measure_signal(const Epoch& epoch, const Sight& sight, const SignalPaths& paths, int band,
+                          SignalStreams& streams, const GnssObservationTruth& truth, const RangeDelays& acting) const {
+    const SatelliteState& state = sight.signal.state;
+    const double carrier = carrier_hz(sight.sv.system, band, state.frequency_channel);
+    const double wavelength_m = kSpeedOfLight / carrier;
+    const Channel& own = channel(sight.sv.system, band);
+    Measured m;
+    m.reception = receive_signals(epoch, sight, paths, own, wavelength_m);
+    const Reception& r = m.reception;
+    const auto lock = streams.locks.update(sight.sv, r.tracked ? r.cn0_dbhz : kNaN, identity(paths, r.source));
+    if (!lock.tracked) return m;
+
+    m.tracked = true;
+    m.cn0_dbhz = r.cn0_dbhz;
+    m.slipped = lock.slipped;
+    m.ambiguity_cycles = lock.ambiguity_cycles;
+    m.multipath_m = r.error_m;
+    const std::uint32_t entity = sight.sv.entity();
+    const auto sample = static_cast<std::uint64_t>(epoch.index);
+    const double scale = config_.thermal_noise_scale, T = 1e-3 * config_.integration_ms;
+    m.noise_m = scale * own.tracking->noise_m(r.cn0_dbhz) * streams.code.at(entity, epoch.index);
+
+    const double ratio = carrier_hz(sight.sv.system, first_band(sight.sv.system), state.frequency_channel) / carrier;
+    const double ionosphere_m = acting.ionosphere_m * ratio * ratio;
+    const double common_m = sight.signal.range_m + epoch.out.truth.receiver_clock_m -
+                            kSpeedOfLight * state.clock_of_band_s(band) + acting.troposphere_m + acting.ephemeris_m +
+                            truth.phase_centre_m;
+    m.pseudorange_m = common_m + ionosphere_m + r.error_m + m.noise_m;
+    const double phase_noise = scale * carrier_phase_noise_rad(r.cn0_dbhz, config_.carrier_loop_hz, T) / (2.0 * kPi) *
+                               streams.carrier.normal(entity, sample);
+    m.carrier_phase_cycles =
+        (common_m - ionosphere_m + r.carrier_error_m) / wavelength_m + phase_noise + lock.ambiguity_cycles;
+    const double rate_m_s = truth.range_rate_m_s + epoch.out.truth.receiver_clock_rate_m_s -
+                            kSpeedOfLight * state.clock_rate * (1.0 - truth.range_rate_m_s / kSpeedOfLight) +
+                            r.range_rate_error_m_s;
+    m.doppler_hz = -rate_m_s / wavelength_m + scale * doppler_noise_hz(r.cn0_dbhz, config_.carrier_loop_hz, T) *
+                                                  streams.doppler.normal(entity, sample);
+    CANYON_CHECK(std::isfinite(m.pseudorange_m) && std::isfinite(m.cn0_dbhz) && std::isfinite(m.carrier_phase_cycles) &&
+                     std::isfinite(m.doppler_hz),
+                 "pseudorange sensor, ", sight.sv.str(), ": pseudorange_m = ", m.pseudorange_m,
+                 ", carrier_phase_cycles = ", m.carrier_phase_cycles, ", doppler_hz = ", m.doppler_hz,
+                 ", cn0_dbhz = ", m.cn0_dbhz);
+    return m;
+  }
+
+  /// Measures one satellite, completes its truth record and appends the observation. False, and nothing appended, if it
+  /// is not tracked; also in the millisecond in which a satellite's last ephemeris expires between the true time of
+  /// transmission and the satellite clock's reading.
+  bool observe(Epoch& epoch, const Sight& sight, const SignalPaths& paths, GnssObservationTruth& truth,
+               std::vector<CorrectionInput>& inputs) {
+    const RangeDelays raw{
+        parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
+        parts_.ephemeris_error->range_m(sight.sv, sight.signal.state, epoch.out.truth.p_A_E, epoch.t)};
+    const RangeDelays acting = parts_.mode->acting(raw);
+    truth.phase_centre_m = config_.antenna_phase_centre
+                               ? parts_.link.antenna->phase_centre_m(epoch.horizon.R_E_enu().transpose() *
+                                                                     (frame_.R_EW() * sight.direction_W))
+                               : 0.0;
+
+    const int band = first_band(sight.sv.system);
+    const Measured first = measure_signal(epoch, sight, paths, band, first_, truth, acting);
+    Measured second;
+    GnssObservation o;
+    if (parts_.mode->dual_frequency()) {
+      o.second.band = second_band(sight.sv.system, config_.second_frequency);
+      second = measure_signal(epoch, sight, paths, o.second.band, second_, truth, acting);
+    }
+    if (!first.tracked || (parts_.mode->dual_frequency() && !second.tracked)) return false;
+    if (!transmission_from_pseudorange(*parts_.constellation, sight.sv, epoch.out.epoch.t, first.pseudorange_m))
+      return false;
+
+    o.sv = sight.sv;
+    o.band = band;
+    o.pseudorange_m = first.pseudorange_m;
+    o.doppler_hz = first.doppler_hz;
+    o.carrier_phase_cycles = first.carrier_phase_cycles;
+    o.cn0_dbhz = first.cn0_dbhz;
+    o.slipped = first.slipped;
+    truth.ionosphere_m = truth.ionosphere_delay_m = acting.ionosphere_m;
+    truth.troposphere_m = truth.troposphere_delay_m = acting.troposphere_m;
     truth.ephemeris_m = acting.ephemeris_m;
-    truth.multipath_m = reception.error_m;
-    truth.noise_m = noise_m;
-    out.epoch.observations.push_back(o);
-    inputs.push_back({sight.sv, t, sight.view, {}, sight.signal.range_m, acting});
+    truth.multipath_m = first.multipath_m;
+    truth.noise_m = first.noise_m;
+    truth.carrier_multipath_m = first.reception.carrier_error_m;
+    truth.range_rate_multipath_m_s = first.reception.range_rate_error_m_s;
+    truth.ambiguity_cycles = first.ambiguity_cycles;
+    CorrectionInput input{sight.sv, epoch.t, sight.view, {}, sight.signal.range_m, acting, {}};
+    if (second.tracked) {
+      o.second.pseudorange_m = second.pseudorange_m;
+      o.second.doppler_hz = second.doppler_hz;
+      o.second.carrier_phase_cycles = second.carrier_phase_cycles;
+      o.second.cn0_dbhz = second.cn0_dbhz;
+      o.second.slipped = second.slipped;
+      const int channel_number = sight.signal.state.frequency_channel;
+      const double ratio = carrier_hz(sight.sv.system, band, channel_number) /
+                           carrier_hz(sight.sv.system, o.second.band, channel_number);
+      input.two.gain = 1.0 / (ratio * ratio - 1.0);
+      input.two.noise_m = second.noise_m - first.noise_m;
+      input.two.multipath_m = second.multipath_m - first.multipath_m;
+    }
+    epoch.out.epoch.observations.push_back(o);
+    inputs.push_back(input);
     return true;
   }
 
-  /// The truth record keeps what the receiver's corrections leave; the base station's error counts as noise.
+  /// The truth record keeps what the receiver's corrections leave.
   static void keep_residual(const Correction& c, GnssObservationTruth& truth) {
     truth.ionosphere_m -= c.modelled.ionosphere_m;
     truth.troposphere_m -= c.modelled.troposphere_m;
     truth.ephemeris_m -= c.modelled.ephemeris_m;
-    truth.noise_m -= c.base_m;
+    truth.noise_m -= c.noise_m;
+    truth.multipath_m -= c.multipath_m;
+    truth.base_m -= c.base_m;
   }
 
   GnssConfig config_;
   LocalFrame frame_;
-  Parts parts_;
-  RandomStream code_noise_;
+  PseudorangeParts parts_;
+  SignalStreams first_, second_;
+  std::int64_t last_index_ = -2;
   GnssCounters counters_;
 };
-
-/// The row of a ladder that the configuration names.
-template <class Make>
-Result<const ModelRow<Make>*> choose(std::span<const ModelRow<Make>> rows, const char* key, const std::string& name) {
-  if (const auto* row = find_model(rows, name)) return row;
-  std::string all;
-  for (const auto& n : model_names(rows)) all += (all.empty() ? "" : ", ") + n;
-  return Error{"", 0, std::string("gnss.") + key, "\"" + name + "\" is not a model", all};
-}
-
-/// The satellites, and what their navigation message says about the ionosphere.
-Result<KlobucharCoefficients> make_satellites(const GnssConfig& config, GpsTime start, GpsTime end, Parts& parts) {
-  if (config.nav_file.empty()) {
-    parts.constellation = make_nominal_gps();
-    return kBuiltInKlobuchar;
-  }
-  CANYON_TRY(const NavigationData data, read_navigation_file(config.nav_file));
-  CANYON_TRY_STATUS(check_coverage(data, "G", start, end, "gnss.nav_file"));
-  parts.warnings = data.warnings;
-  parts.constellation = make_broadcast(data, {.systems = "G"});
-  return data.klobuchar_at(GnssSystem::kGps, start).value_or(kBuiltInKlobuchar);
-}
 
 }  // namespace
 
 Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const GnssConfig& c, std::uint64_t seed, GpsTime start,
                                                             GpsTime end, const scene::Scene& scene) {
-  CANYON_TRY(const auto* ionosphere, choose(ionosphere_models(), "ionosphere", c.ionosphere));
-  CANYON_TRY(const auto* troposphere, choose(troposphere_models(), "troposphere", c.troposphere));
-  CANYON_TRY(const auto* ephemeris_error, choose(ephemeris_error_models(), "ephemeris_error", c.ephemeris_error));
-  CANYON_TRY(const auto* paths, choose(path_models(), "paths", c.paths));
-  CANYON_TRY(const auto* multipath, choose(multipath_rules(), "multipath_rule", c.multipath_rule));
-  CANYON_TRY(const auto* clock, choose(receiver_clock_models(), "receiver_clock", c.receiver_clock));
-  CANYON_TRY(const auto* mode, choose(receiver_modes(), "mode", c.mode));
-  CANYON_TRY(const auto* solver, choose(position_solvers(), "solver", c.solver));
-
-  Parts parts;
-  CANYON_TRY(const KlobucharCoefficients klobuchar, make_satellites(c, start, end, parts));
-  parts.ionosphere = ionosphere->make({c.vtec_tecu, klobuchar});
-  parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
-  parts.ephemeris_error = ephemeris_error->make({seed, c.ephemeris_sigma_m, c.ephemeris_tau_s});
-  parts.paths = paths->make({c.reflection_reach_m});
-  parts.multipath =
-      multipath->make({c.cutoff_ns * 1e-9 * kSpeedOfLight, c.tracking_threshold_dbhz, c.correlator_spacing_chips});
-  parts.clock = clock->make({seed, 1.0 / c.rate_hz});
-  parts.mode = mode->make({seed, c.ionosphere != "none", c.troposphere != "none", c.ionosphere_correction, klobuchar,
-                           c.baseline_km, c.ionosphere_gradient_mm_per_km, c.troposphere_gradient_mm_per_km,
-                           c.base_error_scale});
-  parts.solver = solver->make({c.max_gdop});
-  parts.link = {c.cn0_zenith_dbhz, c.antenna_horizon_loss_db, c.lhcp_rejection_db, c.foliage_db_per_m,
-                c.foliage_max_db};
-  if (!parts.solver->solves_clock() && c.receiver_clock != "none")
-    return Error{"", 0, "gnss.receiver_clock",
-                 "is \"" + c.receiver_clock + "\", but solver \"" + c.solver + "\" has no unknown for it", "\"none\""};
-  return std::unique_ptr<GnssSensor>(std::make_unique<PseudorangeSensor>(c, seed, scene.frame(), std::move(parts)));
+  CANYON_TRY(PseudorangeParts parts, make_pseudorange_parts(c, seed, start, end));
+  return std::unique_ptr<GnssSensor>(std::make_unique<PseudorangeSensor>(c, scene.frame(), std::move(parts)));
 }
 
 }  // namespace canyon::gnss

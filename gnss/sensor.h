@@ -29,7 +29,13 @@ struct GnssCounters {
 };
 
 /// A GNSS receiver in the scene. `index` is the number of the epoch since the start (the random streams' sample index).
-/// What measure() returns depends on its arguments alone, not on which epochs were asked for before.
+///
+/// A receiver has a memory: locks held, cycles counted. Epochs are measured in order, one index after the other, and
+/// what measure() returns depends on its arguments and on the epochs since the receiver was last switched on, nothing
+/// else. An index that does not follow the last one switches it on anew, as one that has been running for long: all
+/// that can be tracked is in lock. So an epoch measured alone, or first, depends on its arguments alone, and a sequence
+/// measured again gives the same bits. All errors that do not need memory (noise, clocks, delays) are functions of
+/// seed, satellite and index or time, whatever was asked before. A sensor serves one vehicle; it is not thread-safe.
 class GnssSensor {
  public:
   virtual ~GnssSensor() = default;
@@ -53,7 +59,7 @@ struct GnssConfig {
   double isotropic_sigma_m = 0.23;  ///< what the fix claims per axis: sqrt(mean square / 3)
 
   // pseudorange: what acts on the range, and what the receiver corrects
-  std::string mode = "dgps";                    ///< single | single_uncorrected | dgps | dgps_paper
+  std::string mode = "dgps";                    ///< a row of receiver_modes()
   double baseline_km = 5.0;                     ///< distance of the base station, dgps
   double ionosphere_gradient_mm_per_km = 2.0;   ///< 1-sigma of the vertical delay's difference to the base, dgps
   double troposphere_gradient_mm_per_km = 1.0;  ///< the same for the zenith wet delay
@@ -77,18 +83,34 @@ struct GnssConfig {
   double foliage_max_db = 28.0;
   std::string multipath_rule = "paper_first_return";
   double cutoff_ns = 150.0;
-  double correlator_spacing_chips = 0.5;
+
+  // pseudorange: antenna and receiver
   double cn0_zenith_dbhz = 45.0;
+  std::string antenna = "sine";
   double antenna_horizon_loss_db = 7.0;
   double lhcp_rejection_db = 10.0;
+  bool antenna_phase_centre = false;
+  std::string modulation = "auto";        ///< auto | a name of modulation_names()
+  std::string second_frequency = "L2";    ///< mode dual: L2 | L5
+  std::string correlator = "early_late";  ///< early_late | double_delta
+  std::string discriminator = "power";    ///< power | coherent
+  double correlator_spacing_chips = 0.5;
+  double front_end_mhz = 0.0;
+  double code_loop_hz = 0.13;  ///< carrier-aided: 0.3 m of noise at 45 dB-Hz and half a chip
+  double carrier_loop_hz = 15.0;
+  double integration_ms = 20.0;
+  double thermal_noise_scale = 1.0;
   double tracking_threshold_dbhz = 25.0;
-  double code_noise_m = 0.3;  ///< 1-sigma at zenith-like C/N0 of 45 dB-Hz
+  double reacquisition_margin_db = 3.0;
+  double reacquisition_s = 1.0;
 
   // pseudorange: position
   std::string solver = "least_squares";
   double solver_sigma_m = 0.5;  ///< assumed 1-sigma of a corrected pseudorange at zenith
   double max_gdop = 100.0;
-  std::string nav_file;  ///< RINEX navigation file; empty = built-in 24-slot constellation
+  std::string systems = "G";           ///< RINEX letters of the systems received
+  std::string nav_file;                ///< RINEX navigation file; none at all = built-in constellation
+  std::vector<std::string> nav_files;  ///< further ones
 };
 void visit(FieldVisitor& f, GnssConfig& c);
 

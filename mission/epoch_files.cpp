@@ -107,14 +107,15 @@ std::string satellites_csv(const RunRecord& record) {
   CsvWriter csv(
       "t_s,satellite,elevation_deg,azimuth_deg,line_of_sight,tracked,reflections,cn0_dbhz,multipath_m,ionosphere_m,"
       "troposphere_m,"
-      "ephemeris_m,noise_m");
+      "ephemeris_m,noise_m,base_m,carrier_multipath_m,range_rate_multipath_m_s");
   for (const GnssRow& row : record.gnss_rows) {
     for (std::size_t i = 0; i < row.truth.satellites.size(); ++i) {
       const GnssObservationTruth& s = row.truth.satellites[i];
       csv.number(row.fix.t - record.start, 3).word(s.sv.str());
       csv.numbers(2, s.elevation_rad / kDegree, s.azimuth_rad / kDegree);
       csv.integer(s.line_of_sight ? 1 : 0).integer(s.tracked ? 1 : 0).integer(s.reflections).number(row.cn0_dbhz[i], 2);
-      csv.numbers(4, s.multipath_m, s.ionosphere_m, s.troposphere_m, s.ephemeris_m, s.noise_m);
+      csv.numbers(4, s.multipath_m, s.ionosphere_m, s.troposphere_m, s.ephemeris_m, s.noise_m, s.base_m,
+                  s.carrier_multipath_m, s.range_rate_multipath_m_s);
       csv.end_row();
     }
   }

@@ -5,7 +5,7 @@ namespace {
 
 class NoEphemerisError final : public EphemerisError {
  public:
-  double range_m(SatelliteId, const Eigen::Vector3d&, GpsTime) const override { return 0.0; }
+  double range_m(SatelliteId, const SatelliteState&, const Eigen::Vector3d&, GpsTime) const override { return 0.0; }
 };
 
 std::unique_ptr<EphemerisError> make_none(const EphemerisErrorParameters&) {

@@ -9,12 +9,15 @@
 
 namespace canyon::gnss {
 
-/// Error of the broadcast orbit and satellite clock, as it acts on the range: broadcast minus true satellite, along the
-/// line of sight.
+/// Error of the broadcast orbit and satellite clock, as it acts on the corrected range of a receiver: with dr =
+/// broadcast minus true position, dT the same of the clock and u the line of sight from receiver to satellite, c dT - u
+/// . dr.
 class EphemerisError {
  public:
   virtual ~EphemerisError() = default;
-  virtual double range_m(SatelliteId sv, const Eigen::Vector3d& satellite_E, GpsTime t) const = 0;
+  /// `satellite`: true, at transmission; receiver_E in E.
+  virtual double range_m(SatelliteId sv, const SatelliteState& satellite, const Eigen::Vector3d& receiver_E,
+                         GpsTime t) const = 0;
 };
 
 struct EphemerisErrorParameters {

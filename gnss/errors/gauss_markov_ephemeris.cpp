@@ -11,7 +11,7 @@ class GaussMarkovEphemeris final : public EphemerisError {
  public:
   explicit GaussMarkovEphemeris(const EphemerisErrorParameters& p)
       : process_(p.seed, "gnss.ephemeris", p.tau_s), sigma_m_(p.sigma_m) {}
-  double range_m(SatelliteId sv, const Eigen::Vector3d&, GpsTime t) const override {
+  double range_m(SatelliteId sv, const SatelliteState&, const Eigen::Vector3d&, GpsTime t) const override {
     return sigma_m_ * process_.at(sv.entity(), t);
   }
 

@@ -14,7 +14,8 @@ class PaperEphemeris final : public EphemerisError {
   PaperEphemeris(double exponent_offset, double constant_m2)
       : exponent_offset_(exponent_offset), constant_m2_(constant_m2) {}
 
-  double range_m(SatelliteId, const Eigen::Vector3d& satellite_E, GpsTime) const override {
+  double range_m(SatelliteId, const SatelliteState& satellite, const Eigen::Vector3d&, GpsTime) const override {
+    const Eigen::Vector3d& satellite_E = satellite.p_E;
     constexpr double kReferenceRadiusM = 26550e3;
     const double radius_m = satellite_E.norm();
     const double sin_lat = satellite_E.z() / radius_m;

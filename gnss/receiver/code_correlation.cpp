@@ -10,7 +10,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr std::array<const char*, 3> kNames{"bpsk1", "boc11", "bpsk10"};
+constexpr std::array<const char*, kModulations> kNames{"bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11"};
 constexpr double kTableEndChips = 4.0;
 
 std::vector<CodeCorrelation::Kink> kinks_of(Modulation modulation) {
@@ -31,7 +31,35 @@ Modulation modulation_of(std::string_view name) {
 }
 
 double chip_rate_hz(Modulation modulation) {
-  return modulation == Modulation::kBpsk10 ? 10.23e6 : 1.023e6;
+  switch (modulation) {
+    case Modulation::kBpsk05:
+      return 0.511e6;
+    case Modulation::kBpsk2:
+      return 2.046e6;
+    case Modulation::kBpsk10:
+      return 10.23e6;
+    case Modulation::kBpsk1:
+    case Modulation::kBoc11:
+      break;
+  }
+  return 1.023e6;
+}
+
+Modulation modulation_of(GnssSystem system, int band) {
+  if (band >= 5) return Modulation::kBpsk10;
+  switch (system) {
+    case GnssSystem::kGlonass:
+      return Modulation::kBpsk05;
+    case GnssSystem::kGalileo:
+      return Modulation::kBoc11;
+    case GnssSystem::kBeidou:
+      return band == 1 ? Modulation::kBoc11 : Modulation::kBpsk2;
+    case GnssSystem::kGps:
+    case GnssSystem::kQzss:
+    case GnssSystem::kSbas:
+      break;
+  }
+  return Modulation::kBpsk1;
 }
 
 double sine_integral(double x) {

@@ -6,26 +6,32 @@
 #include <string_view>
 #include <vector>
 
+#include "core/messages.h"
+
 namespace canyon::gnss {
 
-/// Spreading of a ranging signal. BPSK(n): rectangular chips at n x 1.023 MHz (GPS C/A n = 1; GPS L5, Galileo E5a
-/// n = 10). BOC(1,1): chips at 1.023 MHz, each two half-chips of opposite sign (sine phase; Galileo E1, GPS L1C, BeiDou
-/// B1C but for the small high-frequency part).
-enum class Modulation { kBpsk1, kBoc11, kBpsk10 };
+/// Spreading of a ranging signal. BPSK(n): rectangular chips at n x 1.023 MHz (GPS and QZSS C/A and L2C n = 1, BeiDou
+/// B1I n = 2, GPS L5 and Galileo E5a n = 10; GLONASS FDMA 0.511 MHz). BOC(1,1): chips at 1.023 MHz, each two half-chips
+/// of opposite sign (sine phase; Galileo E1, GPS L1C, BeiDou B1C but for their small high-frequency part).
+enum class Modulation { kBpsk05, kBpsk1, kBpsk2, kBpsk10, kBoc11 };
+inline constexpr std::size_t kModulations = 5;
 
-/// "bpsk1", "boc11", "bpsk10", in the order of the enumeration.
+/// "bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11", in the order of the enumeration.
 std::vector<std::string> modulation_names();
 /// Throws for a name that modulation_names() does not hold.
 Modulation modulation_of(std::string_view name);
 double chip_rate_hz(Modulation modulation);
+/// Of the open signal of a RINEX band digit; what is not listed above is taken as BPSK(10) at band 5 and above, BPSK(1)
+/// below.
+Modulation modulation_of(GnssSystem system, int band);
 
 /// Correlation of a received code with the receiver's clean replica, real and even in the delay, as seen behind an
 /// ideal (brick-wall, linear-phase) front end.
 ///
-/// With infinite bandwidth R is piecewise linear: R(x) = sum_k w_k |x - x_k| / 2 with its kinks x_k and changes of slope
-/// w_k; the triangle for BPSK, for BOC(1,1) 1 - 3|x| up to half a chip and |x| - 1 up to one. A front end of two-sided
-/// bandwidth B replaces |u| / 2 by (u Si(pi B u) + cos(pi B u) / (pi B)) / pi, the response of B sinc(B u) integrated
-/// twice. at(0) is then below 1: that is the power which the filter takes.
+/// With infinite bandwidth R is piecewise linear: R(x) = sum_k w_k |x - x_k| / 2 with its kinks x_k and changes of
+/// slope w_k; the triangle for BPSK, for BOC(1,1) 1 - 3|x| up to half a chip and |x| - 1 up to one. A front end of
+/// two-sided bandwidth B replaces |u| / 2 by (u Si(pi B u) + cos(pi B u) / (pi B)) / pi, the response of B sinc(B u)
+/// integrated twice. at(0) is then below 1: that is the power which the filter takes.
 class CodeCorrelation {
  public:
   struct Kink {

@@ -1,36 +1,50 @@
 #include <cmath>
 #include <vector>
 
-#include "gnss/receiver/code_discriminator.h"
+#include "core/units.h"
 #include "gnss/receiver/multipath_rule.h"
 
 namespace canyon::gnss {
 namespace {
 
-/// Coherent early-minus-late tracking of the composite signal, at rest at every epoch (no loop smoothing; the carrier
-/// phases of the reflections turn as the antenna moves, so the error changes sign within decimetres). C/N0 is the
-/// composite's.
+/// Tracking of the composite of direct signal and echoes by CodeTracking. C/N0 is the composite's, and below the
+/// threshold nothing is tracked. Without a direct signal the composite of the echoes is: NLOS-only reception.
 class Correlator final : public MultipathRule {
  public:
-  explicit Correlator(const MultipathParameters& p) : p_(p) {}
+  explicit Correlator(const MultipathParameters& p) : threshold_dbhz_(p.threshold_dbhz), tracking_(p.design) {}
 
-  Reception receive(std::optional<double> direct_cn0_dbhz,
-                    std::span<const ReceivedReflection> reflections) const override {
-    if (!direct_cn0_dbhz || *direct_cn0_dbhz < p_.threshold_dbhz)
-      return strongest_reflection(reflections, p_.threshold_dbhz);
-    std::vector<EchoSignal> echoes;
-    for (const auto& r : reflections)
-      echoes.push_back({r.excess_m, std::pow(10.0, (r.cn0_dbhz - *direct_cn0_dbhz) / 20.0), r.phase_rad});
-    const auto error_m = coherent_early_late_error_m(echoes, p_.spacing_chips);
-    const double amplitude = composite_amplitude(echoes);
-    if (!error_m || amplitude <= 0.0) return {};
-    const double cn0_dbhz = *direct_cn0_dbhz + 20.0 * std::log10(amplitude);
-    if (cn0_dbhz < p_.threshold_dbhz) return {};
-    return {true, *error_m, cn0_dbhz};
+  Reception receive(const std::optional<ReceivedSignal>& direct, std::span<const ReceivedSignal> echoes,
+                    double wavelength_m) const override {
+    // Amplitude 1 is a C/N0 of 0 dB-Hz.
+    std::vector<EchoSignal> signals;
+    signals.reserve(echoes.size() + 1);
+    const auto add = [&signals](const ReceivedSignal& s) {
+      signals.push_back({s.excess_m, std::pow(10.0, s.cn0_dbhz / 20.0), s.phase_rad, s.doppler_hz});
+    };
+    if (direct) add(*direct);
+    for (const auto& e : echoes) add(e);
+    const auto lock = tracking_.track(signals);
+    if (!lock) return {};
+
+    Reception r;
+    r.cn0_dbhz = 20.0 * std::log10(lock->amplitude);
+    if (r.cn0_dbhz < threshold_dbhz_) return {};
+    r.tracked = true;
+    r.error_m = lock->delay_m;
+    r.source = static_cast<int>(lock->reference) - (direct ? 1 : 0);
+    // The reference's own way is counted in full; only the turn beyond it is ambiguous, and lies within half a cycle.
+    const EchoSignal& reference = signals[lock->reference];
+    const double own_rad = std::remainder(
+        reference.phase_rad + 2.0 * kPi * std::remainder(reference.delay_m / wavelength_m, 1.0), 2.0 * kPi);
+    r.carrier_error_m =
+        reference.delay_m - wavelength_m / (2.0 * kPi) * (own_rad + lock->phase_rad - reference.phase_rad);
+    r.range_rate_error_m_s = -wavelength_m * lock->doppler_hz;
+    return r;
   }
 
  private:
-  MultipathParameters p_;
+  double threshold_dbhz_;
+  CodeTracking tracking_;
 };
 
 }  // namespace

@@ -52,6 +52,7 @@ class Dgps final : public ReceiverMode {
     return c;
   }
   FixStatus status() const override { return FixStatus::kDifferential; }
+  bool corrects_atmosphere() const override { return true; }
 
  private:
   ReceiverModeParameters p_;

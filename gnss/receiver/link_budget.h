@@ -1,37 +1,43 @@
 #pragma once
 
+#include <memory>
+
 #include "gnss/paths/path_model.h"
+#include "gnss/receiver/antenna.h"
+#include "gnss/signal.h"
 
 namespace canyon::gnss {
 
 /// Carrier-to-noise density of direct and reflected signals.
 struct LinkBudget {
-  double cn0_zenith_dbhz = 45.0;  ///< of a clear satellite overhead
-  double antenna_horizon_loss_db = 7.0;
-  double lhcp_rejection_db = 10.0;  ///< gain for left-hand below right-hand polarization, at every elevation
-  double foliage_db_per_m = 0.25;   ///< specific attenuation gamma
-  double foliage_max_db = 28.0;     ///< A_m
+  double cn0_zenith_dbhz = 45.0;   ///< of a clear satellite overhead
+  double foliage_db_per_m = 0.25;  ///< specific attenuation gamma
+  double foliage_max_db = 28.0;    ///< A_m
+  std::shared_ptr<const Antenna> antenna = make_sine_antenna({});
 
-  /// Gain of the antenna relative to the zenith, dB: -loss (1 - sin e). A patch antenna's usual fall of 6 to 8 dB to
-  /// the horizon; arrivals from below lose up to twice that. The satellites' shaped beams make up for free-space
-  /// spreading.
-  double antenna_gain_db(double elevation_rad) const;
   /// ITU-R P.833: A_m (1 - exp(-d gamma / A_m)).
   double foliage_db(double length_m) const;
-  /// `field`: amplitude relative to a free direct signal; none gives about -150 dB-Hz, so that figures stay finite.
+  /// The satellites' shaped beams make up for free-space spreading, so only the antenna's pattern tells elevations
+  /// apart. `field`: amplitude relative to a free direct signal; none gives about -150 dB-Hz, so that figures stay
+  /// finite.
   double direct_cn0_dbhz(double elevation_rad, double foliage_m, double field = 1.0) const;
 };
 
-/// A reflected or diffracted signal as the receiver gets it.
-struct ReceivedReflection {
-  double excess_m = 0.0;
+/// A signal, direct, reflected or diffracted, as the receiver gets it.
+struct ReceivedSignal {
+  double excess_m = 0.0;  ///< longer than the straight way by this
   double cn0_dbhz = 0.0;  ///< what it would have alone
   double phase_rad =
       0.0;  ///< carrier, relative to the free direct signal: phase of the field - 2 pi excess / wavelength
+  double doppler_hz = 0.0;  ///< frequency above that of the direct signal
 };
 
-/// `up_W`: unit vertical at the antenna. Co- and cross-polar parts add in power (the antenna's relative phase of the
-/// two is not known); the carrier phase is that of the stronger one.
-ReceivedReflection receive(const SignalPath& path, const LinkBudget& link, const Eigen::Vector3d& up_W);
+/// Echo at an antenna that moves with v_A_W; `to_satellite_W` and `up_W` are unit vectors at the antenna. Co- and
+/// cross-polar parts add in power (the antenna's relative phase of the two is not known); the carrier phase is that of
+/// the stronger one. Reflectors are at rest, so an echo's way shortens by the antenna's motion towards where it comes
+/// from.
+ReceivedSignal receive(const SignalPath& path, const LinkBudget& link, const Eigen::Vector3d& up_W,
+                       const Eigen::Vector3d& to_satellite_W = Eigen::Vector3d::UnitZ(),
+                       const Eigen::Vector3d& v_A_W = Eigen::Vector3d::Zero(), double wavelength_m = kL1WavelengthM);
 
 }  // namespace canyon::gnss

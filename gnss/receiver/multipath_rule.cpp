@@ -7,9 +7,13 @@ namespace {
 class NoMultipath final : public MultipathRule {
  public:
   explicit NoMultipath(const MultipathParameters& p) : threshold_dbhz_(p.threshold_dbhz) {}
-  Reception receive(std::optional<double> direct_cn0_dbhz, std::span<const ReceivedReflection>) const override {
-    if (!direct_cn0_dbhz || *direct_cn0_dbhz < threshold_dbhz_) return {};
-    return {true, 0.0, *direct_cn0_dbhz};
+  Reception receive(const std::optional<ReceivedSignal>& direct, std::span<const ReceivedSignal>,
+                    double) const override {
+    if (!direct || direct->cn0_dbhz < threshold_dbhz_) return {};
+    Reception r;
+    r.tracked = true;
+    r.cn0_dbhz = direct->cn0_dbhz;
+    return r;
   }
 
  private:
@@ -33,11 +37,13 @@ std::span<const ModelRow<MakeMultipathRule>> multipath_rules() {
   return kRules;
 }
 
-Reception strongest_reflection(std::span<const ReceivedReflection> reflections, double threshold_dbhz) {
+Reception strongest_reflection(std::span<const ReceivedSignal> echoes, double threshold_dbhz, double wavelength_m) {
   Reception best;
-  for (const auto& r : reflections)
-    if (r.cn0_dbhz >= threshold_dbhz && (!best.tracked || r.cn0_dbhz > best.cn0_dbhz))
-      best = {true, r.excess_m, r.cn0_dbhz};
+  for (std::size_t i = 0; i < echoes.size(); ++i) {
+    const ReceivedSignal& e = echoes[i];
+    if (e.cn0_dbhz >= threshold_dbhz && (!best.tracked || e.cn0_dbhz > best.cn0_dbhz))
+      best = {true, e.excess_m, e.cn0_dbhz, e.excess_m, -wavelength_m * e.doppler_hz, static_cast<int>(i)};
+  }
   return best;
 }
 

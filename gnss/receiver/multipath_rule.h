@@ -5,30 +5,34 @@
 #include <span>
 
 #include "gnss/model_table.h"
+#include "gnss/receiver/code_tracking.h"
 #include "gnss/receiver/link_budget.h"
 
 namespace canyon::gnss {
 
-/// What the receiver makes of one satellite's signals.
+/// What the receiver makes of one satellite's signals. Errors are those of an undisturbed direct signal's measurements.
 struct Reception {
   bool tracked = false;
   double error_m = 0.0;  ///< code delay beyond the direct way's
   double cn0_dbhz = 0.0;
+  double carrier_error_m = 0.0;       ///< of the carrier range; runs on smoothly while `source` stays
+  double range_rate_error_m_s = 0.0;  ///< of the range rate that the carrier's frequency tells
+  int source = -1;                    ///< signal whose peak is tracked: -1 = direct, else index of the echo
 };
 
 /// How direct and reflected signals together become a range.
 class MultipathRule {
  public:
   virtual ~MultipathRule() = default;
-  /// `direct_cn0_dbhz`: of the direct signal; nullopt if it is blocked. Reflections by growing excess.
-  virtual Reception receive(std::optional<double> direct_cn0_dbhz,
-                            std::span<const ReceivedReflection> reflections) const = 0;
+  /// `direct`: nullopt if it is blocked. Echoes by growing excess.
+  virtual Reception receive(const std::optional<ReceivedSignal>& direct, std::span<const ReceivedSignal> echoes,
+                            double wavelength_m) const = 0;
 };
 
 struct MultipathParameters {
   double cutoff_m = 45.0;  ///< paper_first_return
   double threshold_dbhz = 25.0;
-  double spacing_chips = 0.5;  ///< correlator
+  CorrelatorDesign design;  ///< correlator
 };
 
 using MakeMultipathRule = std::unique_ptr<MultipathRule>(const MultipathParameters&);
@@ -37,8 +41,8 @@ std::span<const ModelRow<MakeMultipathRule>> multipath_rules();
 std::unique_ptr<MultipathRule> make_paper_first_return(const MultipathParameters& p);
 std::unique_ptr<MultipathRule> make_correlator(const MultipathParameters& p);
 
-/// NLOS-only reception, shared by the rules: the strongest reflection is tracked if it reaches the threshold, its range
+/// NLOS-only reception of the simple rules: the strongest reflection is tracked if it reaches the threshold, its range
 /// too long by its excess; otherwise nothing is.
-Reception strongest_reflection(std::span<const ReceivedReflection> reflections, double threshold_dbhz);
+Reception strongest_reflection(std::span<const ReceivedSignal> echoes, double threshold_dbhz, double wavelength_m);
 
 }  // namespace canyon::gnss

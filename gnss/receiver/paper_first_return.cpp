@@ -16,16 +16,17 @@ class PaperFirstReturn final : public MultipathRule {
  public:
   explicit PaperFirstReturn(const MultipathParameters& p) : p_(p) {}
 
-  Reception receive(std::optional<double> direct_cn0_dbhz,
-                    std::span<const ReceivedReflection> reflections) const override {
-    if (!direct_cn0_dbhz || *direct_cn0_dbhz < p_.threshold_dbhz)
-      return strongest_reflection(reflections, p_.threshold_dbhz);
-    for (const auto& r : reflections) {
-      if (r.cn0_dbhz < p_.threshold_dbhz) continue;
-      if (r.excess_m >= p_.cutoff_m) break;
-      return {true, r.excess_m, *direct_cn0_dbhz};
+  Reception receive(const std::optional<ReceivedSignal>& direct, std::span<const ReceivedSignal> echoes,
+                    double wavelength_m) const override {
+    if (!direct || direct->cn0_dbhz < p_.threshold_dbhz)
+      return strongest_reflection(echoes, p_.threshold_dbhz, wavelength_m);
+    for (std::size_t i = 0; i < echoes.size(); ++i) {
+      const ReceivedSignal& e = echoes[i];
+      if (e.cn0_dbhz < p_.threshold_dbhz) continue;
+      if (e.excess_m >= p_.cutoff_m) break;
+      return {true, e.excess_m, direct->cn0_dbhz, e.excess_m, -wavelength_m * e.doppler_hz, static_cast<int>(i)};
     }
-    return {true, 0.0, *direct_cn0_dbhz};
+    return {true, 0.0, direct->cn0_dbhz, 0.0, 0.0, -1};
   }
 
  private:

@@ -6,6 +6,7 @@ namespace {
 class PerfectClock final : public ReceiverClock {
  public:
   double offset_m(std::int64_t) override { return 0.0; }
+  double rate_m_s(std::int64_t) override { return 0.0; }
 };
 
 std::unique_ptr<ReceiverClock> make_none(const ReceiverClockParameters&) {

@@ -14,6 +14,8 @@ class ReceiverClock {
   virtual ~ReceiverClock() = default;
   /// At epoch `index` >= 0 of the receiver. A function of (seed, index): not of the calls before. Not thread-safe.
   virtual double offset_m(std::int64_t index) = 0;
+  /// Its rate there, m/s.
+  virtual double rate_m_s(std::int64_t index) = 0;
 };
 
 struct ReceiverClockParameters {

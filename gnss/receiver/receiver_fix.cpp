@@ -15,14 +15,19 @@ constexpr double kLowestElevationRad =
     5.0 * kDegree;  // models and weights are held there, wherever a poor guess puts the horizon
 
 /// Satellites as told by the pseudoranges; what has no valid ephemeris there stays NaN.
-std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, const Constellation& constellation) {
+std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, const Constellation& constellation,
+                                                           std::span<CorrectionInput> inputs) {
   std::vector<RangeMeasurement> ranges;
-  for (auto& o : epoch.observations) {
+  for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
+    auto& o = epoch.observations[i];
     const auto view = transmission_from_pseudorange(constellation, o.sv, epoch.t, o.pseudorange_m);
     CANYON_CHECK(view.has_value(), "no ephemeris for ", o.sv.str(), " that was just simulated at ", epoch.t.iso());
-    o.clock_m = kSpeedOfLight * view->state.clock_of_band_s(first_band(o.sv.system));
+    o.clock_m = kSpeedOfLight * view->state.clock_of_band_s(o.band);
     o.v_E = view->state.v_E;
-    ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0});
+    if (o.second.band > 0)
+      inputs[i].two.measured_m = o.second.pseudorange_m + kSpeedOfLight * view->state.clock_of_band_s(o.second.band) -
+                                 o.pseudorange_m - o.clock_m;
+    ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0, o.sv.system});
   }
   return ranges;
 }
@@ -53,7 +58,7 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   auto& observations = epoch.observations;
   CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
                " observations");
-  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation);
+  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation, inputs);
   corrections.assign(observations.size(), {});
 
   // Uncorrected ranges tell the position to some tens of metres; corrected for elevations and heights there, to metres;

@@ -18,11 +18,23 @@ struct RangeDelays {
   double ephemeris_m = 0.0;
 };
 
-/// What the receiver subtracts. `base_m` is the base station's own error, which comes with a differential correction.
+/// What the receiver subtracts. `base_m` is the base station's own error, which comes with a differential correction;
+/// `noise_m` and `multipath_m` are what two frequencies' own errors bring into their difference.
 struct Correction {
   RangeDelays modelled;
   double base_m = 0.0;
-  double total_m() const { return modelled.ionosphere_m + modelled.troposphere_m + modelled.ephemeris_m + base_m; }
+  double noise_m = 0.0, multipath_m = 0.0;
+  double total_m() const {
+    return modelled.ionosphere_m + modelled.troposphere_m + modelled.ephemeris_m + base_m + noise_m + multipath_m;
+  }
+};
+
+/// Second frequency minus first.
+struct FrequencyDifference {
+  double gain = 0.0;         ///< 1 / ((f1 / f2)^2 - 1): first frequency's ionospheric delay per metre of difference
+  double measured_m = 0.0;   ///< of the pseudoranges, satellite clocks applied: this is all that a receiver knows
+  double noise_m = 0.0;      ///< of that, what is thermal noise,
+  double multipath_m = 0.0;  ///< and what is multipath
 };
 
 /// One satellite at one epoch, for the mode.
@@ -33,6 +45,7 @@ struct CorrectionInput {
   SkyView receivers_view;  ///< where the receiver believes it to stand
   double range_m = 0.0;
   RangeDelays acting;  ///< what acts on the rover's range
+  FrequencyDifference two;
 };
 
 /// Mode of operation: which errors act on the range, and which of them the receiver removes.
@@ -43,6 +56,9 @@ class ReceiverMode {
   virtual RangeDelays acting(const RangeDelays& raw) const { return raw; }
   virtual Correction correction(const CorrectionInput& in) const = 0;
   virtual FixStatus status() const = 0;
+  virtual bool dual_frequency() const { return false; }
+  /// Does it correct for the atmosphere, so that a residual is left, or do the raw delays act?
+  virtual bool corrects_atmosphere() const = 0;
 };
 
 struct ReceiverModeParameters {
@@ -64,6 +80,7 @@ std::span<const ModelRow<MakeReceiverMode>> receiver_modes();
 std::vector<std::string> ionosphere_corrections();
 
 std::unique_ptr<ReceiverMode> make_single(const ReceiverModeParameters& p);
+std::unique_ptr<ReceiverMode> make_dual(const ReceiverModeParameters& p);
 std::unique_ptr<ReceiverMode> make_dgps(const ReceiverModeParameters& p);
 
 }  // namespace canyon::gnss

@@ -34,6 +34,7 @@ class Single final : public ReceiverMode {
     return c;
   }
   FixStatus status() const override { return FixStatus::kSingle; }
+  bool corrects_atmosphere() const override { return true; }
 
  private:
   ReceiverModeParameters p_;

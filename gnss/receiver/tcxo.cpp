@@ -26,13 +26,20 @@ class Tcxo final : public ReceiverClock {
   }
 
   double offset_m(std::int64_t index) override {
-    CANYON_CHECK(index >= 0, "index = ", index);
-    if (index < index_) restart();
-    while (index_ < index) step();
+    go_to(index);
     return kSpeedOfLight * bias_s_;
+  }
+  double rate_m_s(std::int64_t index) override {
+    go_to(index);
+    return kSpeedOfLight * rate_;
   }
 
  private:
+  void go_to(std::int64_t index) {
+    CANYON_CHECK(index >= 0, "index = ", index);
+    if (index < index_) restart();
+    while (index_ < index) step();
+  }
   void restart() {
     index_ = 0;
     bias_s_ = kStartBiasS * draws_.normal(0, 0);

@@ -46,8 +46,8 @@ double bpsk_envelope(double a, double d, double x) {
   return 0.0;
 }
 
-/// The same for BOC(1,1), from its correlation's pieces (slopes -3 and 1), for d < 1/2: the direct discriminator is 6 t;
-/// the echo's runs through -3 d, back over 4 (x - t - 1/2) to d, and down to 0 at 1 + d/2.
+/// The same for BOC(1,1), from its correlation's pieces (slopes -3 and 1), for d < 1/2: the direct discriminator is 6
+/// t; the echo's runs through -3 d, back over 4 (x - t - 1/2) to d, and down to 0 at 1 + d/2.
 double boc_envelope(double a, double d, double x) {
   if (x <= 0.5 * d * (1.0 + a)) return a * x / (1.0 + a);
   if (x <= 0.5 - 0.5 * d + 0.5 * a * d) return 0.5 * a * d;
@@ -66,8 +66,10 @@ TEST(CodeTracking, EnvelopeAgainstTheClosedForm) {
     double (*closed_form)(double, double, double);
     double peak_m;
   };
-  for (const Case& c : {Case{Modulation::kBpsk1, 1.0, bpsk_envelope, 73.263}, {Modulation::kBpsk1, 0.5, bpsk_envelope, 36.631},
-                        {Modulation::kBpsk1, 0.1, bpsk_envelope, 7.326}, {Modulation::kBoc11, 0.1, boc_envelope, 7.326},
+  for (const Case& c : {Case{Modulation::kBpsk1, 1.0, bpsk_envelope, 73.263},
+                        {Modulation::kBpsk1, 0.5, bpsk_envelope, 36.631},
+                        {Modulation::kBpsk1, 0.1, bpsk_envelope, 7.326},
+                        {Modulation::kBoc11, 0.1, boc_envelope, 7.326},
                         {Modulation::kBpsk10, 0.5, bpsk_envelope, 3.6631}}) {
     for (const bool coherent : {true, false}) {  // with real signals |E|^2 - |L|^2 = (E - L) (E + L) has the same zero
       const CodeTracking tracking(design(c.modulation, c.spacing, coherent));
@@ -112,8 +114,8 @@ TEST(CodeTracking, DoubleDeltaShedsMediumDelays) {
   EXPECT_NEAR(peak, 0.025, 1e-3);  // within a spacing of the peak it does as badly as the narrow one
 }
 
-// A front end of finite width rounds the peak: a narrow spacing gains less than in the infinite band, a wide one nothing
-// but rounded corners; as the band grows the error tends to the closed form as 1 / B.
+// A front end of finite width rounds the peak: a narrow spacing gains less than in the infinite band, a wide one
+// nothing but rounded corners; as the band grows the error tends to the closed form as 1 / B.
 TEST(CodeTracking, FiniteBandTendsToTheClosedForm) {
   const auto worst = [&](double front_end_hz, double spacing) {
     CorrelatorDesign d = design(Modulation::kBpsk1, spacing);
@@ -128,7 +130,7 @@ TEST(CodeTracking, FiniteBandTendsToTheClosedForm) {
   const double at_8 = worst(8e6, 1.0), at_16 = worst(16e6, 1.0), at_64 = worst(64e6, 1.0);
   EXPECT_LT(at_16, at_8);
   EXPECT_LT(at_64, 0.35 * at_16);
-  EXPECT_LT(at_64, 0.01 * 0.25);  // 1 % of the peak
+  EXPECT_LT(at_64, 0.01 * 0.25);              // 1 % of the peak
   EXPECT_GT(worst(2.2e6, 0.1), 1.0 * 0.025);  // 2 MHz cannot use a narrow spacing: it errs by more than the whole peak
 }
 
@@ -139,8 +141,8 @@ TEST(CodeTracking, NoEchoesQuadratureAndFarEchoes) {
   EXPECT_NEAR(*error_m(tracking, {{3.0 * kCaChipM, 0.9, 0.0, 0.0}}), 0.0, 1e-12);
 }
 
-// Zero of the composite's discriminator, evaluated anew here by brute force on a fine grid, with the carrier phase of the
-// composite at the direct signal's peak.
+// Zero of the composite's discriminator, evaluated anew here by brute force on a fine grid, with the carrier phase of
+// the composite at the direct signal's peak.
 TEST(CodeTracking, SeveralEchoes) {
   const std::vector<EchoSignal> echoes = {{10.0, 0.3, 0.4, 0.0}, {60.0, 0.4, 2.9, 0.0}, {200.0, 0.2, -1.0, 0.0}};
   const double d = 0.5;
@@ -217,8 +219,8 @@ double simulated_mean_chips(const CorrelatorDesign& d, double a, double delay_ch
   return sum / n;
 }
 
-// As the vehicle moves the echo's phase turns and its pull averages down with the loop; at rest it stands. The mean of a
-// simulated loop over whole turns is the mean of track() over the phase, to the second order of the echo's amplitude.
+// As the vehicle moves the echo's phase turns and its pull averages down with the loop; at rest it stands. The mean of
+// a simulated loop over whole turns is the mean of track() over the phase, to the second order of the echo's amplitude.
 TEST(CodeTracking, FadingAveragesDown) {
   for (const bool coherent : {true, false}) {
     CorrelatorDesign d = design(Modulation::kBpsk1, 0.5, coherent);
@@ -228,8 +230,7 @@ TEST(CodeTracking, FadingAveragesDown) {
       double low = 1.0, high = -1.0, sum = 0.0;
       constexpr int kPhases = 72;
       for (int i = 0; i < kPhases; ++i) {
-        const double e =
-            *error_m(tracking, {{0.3 * kCaChipM, 0.1, 2.0 * kPi * i / kPhases, f_hz}}) / kCaChipM;
+        const double e = *error_m(tracking, {{0.3 * kCaChipM, 0.1, 2.0 * kPi * i / kPhases, f_hz}}) / kCaChipM;
         low = std::min(low, e);
         high = std::max(high, e);
         sum += e / kPhases;
@@ -292,7 +293,8 @@ TEST(CodeTracking, FiniteBandAgainstTheSpectrum) {
       c.code_loop_hz = 1.0;
       const CodeTracking tracking(c);
       for (const double x : {0.0, 0.05, 0.31, 0.5, 0.99, 1.7, 3.9, 5.2})
-        EXPECT_NEAR(tracking.correlation().at(x), integral(b, [&](double f) { return psd(m, f) * std::cos(2 * kPi * f * x); }), 2e-6)
+        EXPECT_NEAR(tracking.correlation().at(x),
+                    integral(b, [&](double f) { return psd(m, f) * std::cos(2 * kPi * f * x); }), 2e-6)
             << b << " " << x;
       // Betz & Kolodziejski: B (1 - B T / 2) int S sin^2(pi f d) / (C/N0 (2 pi int f S sin(pi f d))^2).
       const double top = integral(b, [&](double f) { return psd(m, f) * std::pow(std::sin(kPi * f * 0.2), 2); });
@@ -325,7 +327,13 @@ TEST(CodeCorrelation, SineIntegral) {
 }
 
 TEST(CodeCorrelation, NamesAndChips) {
-  EXPECT_EQ(modulation_names(), (std::vector<std::string>{"bpsk1", "boc11", "bpsk10"}));
+  EXPECT_EQ(modulation_names(), (std::vector<std::string>{"bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11"}));
+  for (std::size_t i = 0; i < kModulations; ++i)
+    EXPECT_EQ(modulation_of(modulation_names()[i]), static_cast<Modulation>(i));
+  EXPECT_EQ(modulation_of(GnssSystem::kGps, 1), Modulation::kBpsk1);
+  EXPECT_EQ(modulation_of(GnssSystem::kGps, 5), Modulation::kBpsk10);
+  EXPECT_EQ(modulation_of(GnssSystem::kGalileo, 1), Modulation::kBoc11);
+  EXPECT_EQ(modulation_of(GnssSystem::kBeidou, 2), Modulation::kBpsk2);
   EXPECT_EQ(modulation_of("boc11"), Modulation::kBoc11);
   EXPECT_NEAR(CodeCorrelation(Modulation::kBpsk10, 0.0).chip_m(), 29.305, 1e-3);
   const CodeCorrelation boc(Modulation::kBoc11, 0.0);

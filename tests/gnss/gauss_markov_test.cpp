@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "gnss/errors/ephemeris_error.h"
-
 namespace canyon::gnss {
 namespace {
 
@@ -61,31 +59,6 @@ TEST(GaussMarkov, DoesNotDependOnWhatWasAskedBefore) {
   const double value = a.at(1, kStart + 77.0);
   for (int k = 0; k < 10; ++k) b.at(static_cast<std::uint32_t>(k), kStart + 1000.0 * k);
   EXPECT_EQ(b.at(1, kStart + 77.0), value);
-}
-
-TEST(EphemerisError, PaperAsPrintedAndCorrected) {
-  const EphemerisErrorParameters p;
-  const auto printed = make_paper_printed_ephemeris(p), corrected = make_paper_corrected_ephemeris(p);
-  const SatelliteId sv{GnssSystem::kGps, 1};
-  const double r = 26550e3;
-  const Eigen::Vector3d equator(r, 0, 0);
-  const double top = std::sin(55.0 * 3.14159265358979 / 180.0);
-  const Eigen::Vector3d north(r * std::sqrt(1 - top * top), 0, r * top), south(north.x(), 0, -north.z());
-  // Figures of the paper's formula, to their digits: 10.05 m (7.7 to 11.9 over +-55 deg) and 1.09 m (0.88 to 1.26).
-  EXPECT_NEAR(printed->range_m(sv, equator, kStart), 10.05, 0.005);
-  EXPECT_NEAR(printed->range_m(sv, south, kStart), 7.7, 0.05);
-  EXPECT_NEAR(printed->range_m(sv, north, kStart), 11.9, 0.05);
-  EXPECT_NEAR(corrected->range_m(sv, equator, kStart), 1.09, 0.005);
-  EXPECT_NEAR(corrected->range_m(sv, south, kStart), 0.88, 0.005);
-  EXPECT_NEAR(corrected->range_m(sv, north, kStart), 1.26, 0.005);
-}
-
-TEST(EphemerisError, GaussMarkovScalesWithSigma) {
-  const auto one = make_gauss_markov_ephemeris({3, 1.0, 3600.0}), two = make_gauss_markov_ephemeris({3, 2.0, 3600.0});
-  const SatelliteId sv{GnssSystem::kGps, 7};
-  EXPECT_DOUBLE_EQ(two->range_m(sv, Eigen::Vector3d::Ones(), kStart),
-                   2.0 * one->range_m(sv, Eigen::Vector3d::Ones(), kStart));
-  EXPECT_EQ(find_model(ephemeris_error_models(), "none")->make({})->range_m(sv, Eigen::Vector3d::Ones(), kStart), 0.0);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ GnssConfig errors_off() {
   c.mode = "single_uncorrected";
   c.ionosphere = c.troposphere = c.ephemeris_error = "none";
   c.paths = c.multipath_rule = "none";
-  c.code_noise_m = 0.0;
+  c.thermal_noise_scale = 0.0;
   c.mask_deg = 5.0;
   return c;
 }
@@ -91,10 +91,12 @@ TEST_F(PseudorangeSensorTest, TrilaterationWithoutErrorsIsTheTruth) {
 
 // The truth record accounts for every metre of every pseudorange, in every mode.
 TEST_F(PseudorangeSensorTest, ErrorsOfTheTruthRecordAddUp) {
-  for (const char* mode : {"single", "single_uncorrected", "dgps", "dgps_paper"}) {
+  for (const char* mode : {"single", "single_uncorrected", "dual", "dual_paper", "dgps", "dgps_paper"}) {
     GnssConfig c;
     c.mode = mode;
     c.multipath_rule = "correlator";
+    c.antenna = "survey";
+    c.antenna_phase_centre = true;
     const auto sensor = make(c);
     int checked = 0;
     for (std::int64_t k = 0; k < 20; ++k) {
@@ -104,8 +106,8 @@ TEST_F(PseudorangeSensorTest, ErrorsOfTheTruthRecordAddUp) {
         if (!truth.tracked) continue;
         const GnssObservation& o = out.epoch.observations[i++];
         ASSERT_EQ(o.sv, truth.sv);
-        const double error_m =
-            truth.multipath_m + truth.ionosphere_m + truth.troposphere_m + truth.ephemeris_m + truth.noise_m;
+        const double error_m = truth.multipath_m + truth.ionosphere_m + truth.troposphere_m + truth.ephemeris_m +
+                               truth.noise_m + truth.base_m + truth.phase_centre_m;
         // eps of 2.5e7 m, and satellites told from the pseudorange: delays of up to 100 m shift them by 0.3 mm along
         // the line.
         EXPECT_NEAR(o.corrected_m() - truth.range_m - out.truth.receiver_clock_m, error_m, 1e-3) << mode << o.sv.str();
@@ -119,24 +121,118 @@ TEST_F(PseudorangeSensorTest, ErrorsOfTheTruthRecordAddUp) {
   }
 }
 
-TEST_F(PseudorangeSensorTest, SameSeedSameBitsInAnyOrder) {
+bool same_bits(const GnssOutput& a, const GnssOutput& b) {
+  if (a.epoch.observations.size() != b.epoch.observations.size() || a.fix.status != b.fix.status) return false;
+  for (std::size_t i = 0; i < a.epoch.observations.size(); ++i) {
+    const GnssObservation &p = a.epoch.observations[i], &q = b.epoch.observations[i];
+    if (p.pseudorange_m != q.pseudorange_m || p.carrier_phase_cycles != q.carrier_phase_cycles ||
+        p.doppler_hz != q.doppler_hz)
+      return false;
+  }
+  return a.fix.status == FixStatus::kNone || a.fix.p_A_E == b.fix.p_A_E;
+}
+
+// The contract of GnssSensor::measure: a sequence repeats to the bit; an epoch measured alone depends on its arguments
+// alone, whatever was measured before.
+TEST_F(PseudorangeSensorTest, SameSeedSameBits) {
   GnssConfig c;
+  c.multipath_rule = "correlator";
   const auto a = make(c), b = make(c);
   std::vector<GnssOutput> forward;
   for (std::int64_t k = 0; k < 8; ++k) forward.push_back(measure(*a, k));
-  for (std::int64_t k = 7; k >= 0; --k) {
-    const GnssOutput out = measure(*b, k);
-    const GnssOutput& want = forward[static_cast<std::size_t>(k)];
-    ASSERT_EQ(out.epoch.observations.size(), want.epoch.observations.size());
-    for (std::size_t i = 0; i < out.epoch.observations.size(); ++i)
-      EXPECT_EQ(out.epoch.observations[i].pseudorange_m, want.epoch.observations[i].pseudorange_m);
-    EXPECT_EQ(out.fix.status, want.fix.status);
-    if (want.fix.status != FixStatus::kNone) {
-      EXPECT_EQ(out.fix.p_A_E, want.fix.p_A_E);
-    }
-  }
+  for (std::int64_t k = 0; k < 8; ++k)
+    EXPECT_TRUE(same_bits(measure(*b, k), forward[static_cast<std::size_t>(k)])) << k;
+  for (std::int64_t k = 7; k >= 0; --k) EXPECT_TRUE(same_bits(measure(*b, k), measure(*make(c), k))) << k;
+  // Beginning again is beginning anew.
+  for (std::int64_t k = 0; k < 8; ++k)
+    EXPECT_TRUE(same_bits(measure(*a, k), forward[static_cast<std::size_t>(k)])) << k;
   const GnssOutput other = measure(*make(c, 2), 3);
   EXPECT_NE(other.epoch.observations[0].pseudorange_m, forward[3].epoch.observations[0].pseudorange_m);
+}
+
+// Doppler and carrier against differences of what they stand for: the true range's derivative, and the pseudorange.
+TEST_F(PseudorangeSensorTest, DopplerIsTheRateOfTheRange) {
+  GnssConfig c = errors_off();
+  c.thermal_noise_scale = 0.0;
+  const auto sensor = make(c);
+  const Eigen::Vector3d v_W{11.0, -7.0, 0.5};
+  const double dt_s = 0.5;
+  const auto at = [&](std::int64_t k) {
+    return make(c)->measure(5, kStart + dt_s * static_cast<double>(k),
+                            antenna_W + v_W * (dt_s * static_cast<double>(k)), v_W, scene::SceneAt(*scene));
+  };
+  const GnssOutput before = at(-1), now = at(0), after = at(1);
+  ASSERT_EQ(before.truth.satellites.size(), after.truth.satellites.size());
+  for (std::size_t i = 0; i < now.truth.satellites.size(); ++i) {
+    const auto& s = now.truth.satellites[i];
+    // Central difference over 1 s: the third derivative of the range, below 2e-4 m/s^3, leaves 2e-4 / 24.
+    EXPECT_NEAR(s.range_rate_m_s, after.truth.satellites[i].range_m - before.truth.satellites[i].range_m, 1e-5);
+    const double rate_m_s = s.range_rate_m_s + now.truth.receiver_clock_rate_m_s;
+    EXPECT_NEAR(now.epoch.observations[i].doppler_hz, -rate_m_s / kL1WavelengthM, 1e-9);
+  }
+}
+
+TEST_F(PseudorangeSensorTest, CarrierFollowsTheRangeWithTheIonosphereReversed) {
+  GnssConfig c = open_sky("single");
+  const auto sensor = make(c);
+  std::vector<double> ambiguity;
+  for (std::int64_t k = 0; k < 20; ++k) {
+    const GnssOutput out = measure(*sensor, k);
+    for (std::size_t i = 0; i < out.epoch.observations.size(); ++i) {
+      const auto& o = out.epoch.observations[i];
+      const auto& s = out.truth.satellites[i];
+      const double carrier_m = kL1WavelengthM * (o.carrier_phase_cycles - s.ambiguity_cycles);
+      // 2 mm of noise at 38 dB-Hz, 5 sigma; open sky has no slips.
+      EXPECT_NEAR(o.pseudorange_m - s.noise_m - carrier_m, 2.0 * s.ionosphere_delay_m, 0.01);
+      EXPECT_EQ(o.slipped, k == 0);
+      EXPECT_EQ(s.ambiguity_cycles, std::floor(s.ambiguity_cycles));
+      if (k == 0)
+        ambiguity.push_back(s.ambiguity_cycles);
+      else
+        EXPECT_EQ(s.ambiguity_cycles, ambiguity[i]);
+    }
+  }
+}
+
+// The ionosphere-free combination: no ionosphere whatever its size, and the noise of both frequencies amplified,
+// sqrt(2.546^2 + 1.546^2) = 2.978 for L1 and L2 of equal noise, sqrt(2.261^2 + 1.261^2) = 2.588 for L5 of equal noise.
+TEST_F(PseudorangeSensorTest, DualFrequencyRemovesTheIonosphereAndAmplifiesNoise) {
+  GnssConfig c = open_sky("dual");
+  c.troposphere = c.ephemeris_error = "none";
+  c.vtec_tecu = 100.0;
+  c.thermal_noise_scale = 0.0;
+  EXPECT_LT((measure(*make(c), 4).fix.p_A_E - truth_E()).norm(), 1e-4);
+  c.thermal_noise_scale = 1.0;
+  const auto dual = make(c);
+  c.mode = "single";
+  const auto single = make(c);
+  double both = 0.0, one = 0.0;
+  int n = 0;
+  for (std::int64_t k = 0; k < 40000; k += 100) {
+    const GnssOutput d = measure(*dual, k), s = measure(*single, k);
+    for (std::size_t i = 0; i < d.truth.satellites.size(); ++i) {
+      const auto& truth = d.truth.satellites[i];
+      const auto& o = d.epoch.observations[i];
+      EXPECT_EQ(o.second.band, 2);
+      EXPECT_NEAR(truth.ionosphere_m, 0.0, 1e-6);
+      EXPECT_GT(truth.ionosphere_delay_m, 16.0);
+      EXPECT_EQ(o.pseudorange_m, s.epoch.observations[i].pseudorange_m);  // the first frequency is untouched
+      both += truth.noise_m * truth.noise_m;
+      one += std::pow(s.truth.satellites[i].noise_m, 2);
+      ++n;
+    }
+  }
+  EXPECT_NEAR(std::sqrt(both / one), 2.978, 5.0 * 2.978 / std::sqrt(n));
+}
+
+TEST_F(PseudorangeSensorTest, SecondFrequencies) {
+  EXPECT_EQ(error_of([] {
+              GnssConfig c;
+              c.mode = "dual";
+              c.second_frequency = "L5";
+              return c;
+            }()),
+            "no error");
 }
 
 // Switching any effect off, or on, leaves the others' draws untouched to the bit.
@@ -169,7 +265,7 @@ TEST_F(PseudorangeSensorTest, EffectsDrawFromTheirOwnStreams) {
     }
   };
   GnssConfig c = base;
-  c.code_noise_m = 0.0;
+  c.thermal_noise_scale = 0.0;
   compare(c, "noise");
   c = base;
   c.ephemeris_error = "none";
@@ -210,7 +306,8 @@ TEST_F(PseudorangeSensorTest, ModesLeaveWhatTheySay) {
     EXPECT_LT(std::abs(d.troposphere_m), 4 * 0.005 * 6.0);
     EXPECT_NEAR(d.ephemeris_m, r.ephemeris_m * 5e3 / r.range_m, 1e-9);
     EXPECT_NE(d.ionosphere_m, 0.0);
-    EXPECT_NE(d.noise_m, r.noise_m);  // the base's own error comes with its correction
+    EXPECT_EQ(d.noise_m, r.noise_m);
+    EXPECT_NE(d.base_m, 0.0);  // the base's own error comes with its correction
     EXPECT_EQ(p.ionosphere_m, 0.0);
     EXPECT_EQ(p.ephemeris_m, 0.0);
     EXPECT_EQ(p.troposphere_m, r.troposphere_m);
@@ -223,7 +320,7 @@ TEST_F(PseudorangeSensorTest, ModesLeaveWhatTheySay) {
 TEST_F(PseudorangeSensorTest, DgpsResidualsGrowWithTheBaseline) {
   GnssConfig c = open_sky("dgps");
   c.base_error_scale = 0.0;
-  c.code_noise_m = 0.0;
+  c.thermal_noise_scale = 0.0;
   const auto error_at = [&](double baseline_km) {
     c.baseline_km = baseline_km;
     const auto sensor = make(c);
@@ -235,22 +332,26 @@ TEST_F(PseudorangeSensorTest, DgpsResidualsGrowWithTheBaseline) {
   EXPECT_NEAR(error_at(50.0), 10.0 * near_m, 1e-2 * 10.0 * near_m);  // linear, but for the curvature of the ranges
 }
 
-// Sum of squared errors over the satellites, 200 epochs 100 s apart, in the noise of the code alone: against the loop
-// formula.
+// Mean square of the code noise at 45 dB-Hz everywhere against the loop formula, epochs 20 s apart so that they are
+// independent: B = 0.13 Hz forgets within 2 s.
 TEST_F(PseudorangeSensorTest, CodeNoiseHasItsSigma) {
   GnssConfig c = errors_off();
-  c.code_noise_m = 0.3;
-  c.antenna_horizon_loss_db = 0.0;  // 45 dB-Hz everywhere
+  c.thermal_noise_scale = 1.0;
+  c.antenna = "isotropic";
   const auto sensor = make(c);
   double sum = 0.0;
   int n = 0;
-  for (std::int64_t k = 0; k < 400; ++k) {
+  for (std::int64_t k = 0; k < 16000; k += 40) {
     for (const auto& s : measure(*sensor, k).truth.satellites) {
       sum += s.noise_m * s.noise_m;
       ++n;
     }
   }
-  EXPECT_NEAR(sum / n, 0.09, 5.0 * std::sqrt(2.0 / n) * 0.09);
+  const double cn0_hz = std::pow(10.0, 4.5), T = 0.02, B = 0.13, d = 0.5;
+  const double variance =
+      kCaChipM * kCaChipM * B * (1 - 0.5 * B * T) * d / (2 * cn0_hz) * (1 + 2 / (T * cn0_hz * (2 - d)));
+  EXPECT_NEAR(std::sqrt(variance), 0.3, 0.005);
+  EXPECT_NEAR(sum / n, variance, 5.0 * std::sqrt(2.0 / n) * variance);
 }
 
 TEST_F(PseudorangeSensorTest, StreetCanyonBlocksAndReflects) {
@@ -298,7 +399,7 @@ TEST_F(PseudorangeSensorTest, AbsorbingWallsLeaveNoMultipath) {
       for (const auto& s : measure(*sensor, k).truth.satellites) {
         EXPECT_EQ(s.reflections, 0);
         EXPECT_EQ(s.multipath_m, 0.0);
-        EXPECT_EQ(s.tracked, s.line_of_sight);
+        EXPECT_EQ(s.tracked, s.line_of_sight);  // epochs measured one by one: nothing is being reacquired
         blocked += s.line_of_sight ? 0 : 1;
       }
     }

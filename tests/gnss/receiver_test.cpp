@@ -4,7 +4,7 @@
 
 #include "core/check.h"
 #include "core/units.h"
-#include "gnss/receiver/code_noise.h"
+#include "gnss/receiver/antenna.h"
 #include "gnss/receiver/link_budget.h"
 #include "gnss/receiver/multipath_rule.h"
 #include "gnss/receiver/receiver_clock.h"
@@ -43,7 +43,7 @@ TEST(LinkBudget, ReflectionLosesByFresnelAndAntenna) {
   // A mirror at normal incidence reverses the sense of rotation whole, so that only the antenna's rejection is lost.
   const auto r = receive(reflection(20.0, 0.0, metal), link, Eigen::Vector3d::UnitZ());
   EXPECT_NEAR(r.cn0_dbhz, 38.0 - 10.0, 1e-2);
-  link.lhcp_rejection_db = 0.0;
+  link.antenna = make_sine_antenna({7.0, 0.0});
   EXPECT_NEAR(receive(reflection(20.0, 0.0, metal), link, Eigen::Vector3d::UnitZ()).cn0_dbhz, 38.0, 1e-2);
   // Concrete at 45 deg: cross-polar 0.388, co-polar 0.125.
   const auto c = receive(reflection(20.0, 45.0, {5.24, -0.752}), LinkBudget{}, Eigen::Vector3d::UnitZ());
@@ -63,64 +63,101 @@ TEST(LinkBudget, CarrierPhaseTurnsWithTheExcess) {
   EXPECT_NEAR(std::abs(std::remainder(phase(10.0) - phase(10.0 + 0.5 * kL1WavelengthM), 2 * kPi)), kPi, 1e-9);
 }
 
-TEST(CodeNoise, FollowsTheLoopFormula) {
-  EXPECT_EQ(relative_code_noise(45.0, 0.5), 1.0);
-  // sigma^2 ~ 1/(C/N0) (1 + 2/(T C/N0 (2 - d))), written out at 30 dB-Hz: 1000 Hz, T = 20 ms.
-  const double strong = std::pow(10.0, 4.5);
-  const double expected =
-      std::sqrt((1.0 + 2.0 / (0.02 * 1000.0 * 1.5)) / 1000.0 / ((1.0 + 2.0 / (0.02 * strong * 1.5)) / strong));
-  EXPECT_NEAR(relative_code_noise(30.0, 0.5), expected, 1e-12);
-  EXPECT_GT(relative_code_noise(25.0, 0.5), 10.0);
-}
+const MultipathParameters kRule{45.0, 25.0, {}};
 
-const MultipathParameters kRule{45.0, 25.0, 0.5};
+ReceivedSignal direct(double cn0_dbhz) {
+  return {0.0, cn0_dbhz, 0.0, 0.0};
+}
 
 TEST(MultipathRule, NoneTracksOnlyWhatIsClear) {
   const auto rule = find_model(multipath_rules(), "none")->make(kRule);
-  const ReceivedReflection strong{20.0, 40.0, 0.0};
-  EXPECT_FALSE(rule->receive(std::nullopt, {&strong, 1}).tracked);
-  EXPECT_FALSE(rule->receive(24.9, {&strong, 1}).tracked);
-  const Reception r = rule->receive(44.0, {&strong, 1});
+  const ReceivedSignal strong{20.0, 40.0, 0.0, 0.0};
+  EXPECT_FALSE(rule->receive(std::nullopt, {&strong, 1}, kL1WavelengthM).tracked);
+  EXPECT_FALSE(rule->receive(direct(24.9), {&strong, 1}, kL1WavelengthM).tracked);
+  const Reception r = rule->receive(direct(44.0), {&strong, 1}, kL1WavelengthM);
   EXPECT_TRUE(r.tracked);
   EXPECT_EQ(r.error_m, 0.0);
   EXPECT_EQ(r.cn0_dbhz, 44.0);
+  EXPECT_EQ(r.source, -1);
 }
 
 TEST(MultipathRule, PaperFirstReturn) {
   const auto rule = make_paper_first_return(kRule);
-  const ReceivedReflection weak{5.0, 20.0, 0.0}, near{20.0, 30.0, 0.0}, late{60.0, 35.0, 0.0};
-  const ReceivedReflection all[] = {weak, near, late};
+  const ReceivedSignal weak{5.0, 20.0, 0.0, 0.0}, near{20.0, 30.0, 0.0, 0.0}, late{60.0, 35.0, 0.0, 0.0};
+  const ReceivedSignal all[] = {weak, near, late};
+  const auto error_m = [&](std::span<const ReceivedSignal> echoes) {
+    return rule->receive(direct(44.0), echoes, kL1WavelengthM).error_m;
+  };
   // The first return that can be tracked lies within 45 m: its whole excess becomes the error.
-  EXPECT_EQ(rule->receive(44.0, all).error_m, 20.0);
+  EXPECT_EQ(error_m(all), 20.0);
+  EXPECT_EQ(rule->receive(direct(44.0), all, kL1WavelengthM).source, 1);
   // Later than the cut-off: separable, the direct range stands. So does a reflection too weak to track.
-  EXPECT_EQ(rule->receive(44.0, {&late, 1}).error_m, 0.0);
-  EXPECT_EQ(rule->receive(44.0, {&weak, 1}).error_m, 0.0);
-  EXPECT_EQ(rule->receive(44.0, {}).error_m, 0.0);
+  EXPECT_EQ(error_m({&late, 1}), 0.0);
+  EXPECT_EQ(error_m({&weak, 1}), 0.0);
+  EXPECT_EQ(error_m({}), 0.0);
 }
 
 TEST(MultipathRule, NlosOnlyTracksTheStrongest) {
-  const ReceivedReflection reflections[] = {{5.0, 20.0, 0.0}, {20.0, 30.0, 0.0}, {130.0, 35.0, 0.0}};
+  // The two weaker ones come more than a chip before or after, so that they leave the strongest alone.
+  const ReceivedSignal echoes[] = {{5.0, 20.0, 0.0, 0.0}, {20.0, 30.0, 0.0, 0.0}, {900.0, 35.0, 0.0, 2.0}};
   for (const char* name : {"paper_first_return", "correlator"}) {
     const auto rule = find_model(multipath_rules(), name)->make(kRule);
-    const Reception r = rule->receive(std::nullopt, reflections);
+    const Reception r = rule->receive(std::nullopt, echoes, kL1WavelengthM);
     EXPECT_TRUE(r.tracked) << name;
-    EXPECT_EQ(r.error_m, 130.0) << name;  // whole, beyond the cut-off too: nothing else is there to lock on to
-    EXPECT_EQ(r.cn0_dbhz, 35.0) << name;
-    EXPECT_FALSE(rule->receive(std::nullopt, {reflections, 1}).tracked) << name;
-    EXPECT_FALSE(rule->receive(std::nullopt, {}).tracked) << name;
+    EXPECT_EQ(r.error_m, 900.0) << name;  // whole, beyond the cut-off too: nothing else is there to lock on to
+    EXPECT_NEAR(r.cn0_dbhz, 35.0, 1e-12) << name;
+    EXPECT_EQ(r.source, 2) << name;
+    EXPECT_NEAR(r.range_rate_error_m_s, -2.0 * kL1WavelengthM, 1e-12) << name;
+    EXPECT_NEAR(r.carrier_error_m, 900.0, 0.5 * kL1WavelengthM) << name;
+    EXPECT_FALSE(rule->receive(std::nullopt, {echoes, 1}, kL1WavelengthM).tracked) << name;
+    EXPECT_FALSE(rule->receive(std::nullopt, {}, kL1WavelengthM).tracked) << name;
   }
 }
 
 TEST(MultipathRule, CorrelatorWeighsByAmplitude) {
   const auto rule = make_correlator(kRule);
   // 20 dB below, in phase, beyond the first corner: a d / 2 of a chip.
-  const ReceivedReflection weak{100.0, 24.0, 0.0};
-  EXPECT_NEAR(rule->receive(44.0, {&weak, 1}).error_m, 0.1 * 0.25 * kCaChipM, 1e-9);
-  EXPECT_NEAR(rule->receive(44.0, {&weak, 1}).cn0_dbhz, 44.0 + 20 * std::log10(1.0 + 0.1 * (1.0 - 100.0 / kCaChipM)),
-              1e-9);
+  const ReceivedSignal weak{100.0, 24.0, 0.0, 0.0};
+  const Reception r = rule->receive(direct(44.0), {&weak, 1}, kL1WavelengthM);
+  EXPECT_NEAR(r.error_m, 0.1 * 0.25 * kCaChipM, 1e-6);
+  // The code stands 0.025 chips late: the direct correlates by 0.975, the echo by that much more.
+  EXPECT_NEAR(r.cn0_dbhz, 44.0 + 20 * std::log10(0.975 + 0.1 * (1.025 - 100.0 / kCaChipM)), 1e-6);
+  EXPECT_NEAR(r.carrier_error_m, 0.0, 1e-12);
+  EXPECT_EQ(r.source, -1);
   // An equal echo in opposite phase cancels the signal: lost.
-  const ReceivedReflection opposite{0.0, 44.0, kPi};
-  EXPECT_FALSE(rule->receive(44.0, {&opposite, 1}).tracked);
+  const ReceivedSignal opposite{0.0, 44.0, kPi, 0.0};
+  EXPECT_FALSE(rule->receive(direct(44.0), {&opposite, 1}, kL1WavelengthM).tracked);
+}
+
+// An echo in quadrature delays the carrier by atan(a) / 2 pi of a wavelength if it lags, and its turning shows in the
+// frequency.
+TEST(MultipathRule, CorrelatorsCarrier) {
+  const auto rule = make_correlator(kRule);
+  const ReceivedSignal lagging{1e-6, 38.0, -kPi / 2, 0.0};
+  const double a = std::pow(10.0, -6.0 / 20.0);
+  EXPECT_NEAR(rule->receive(direct(44.0), {&lagging, 1}, kL1WavelengthM).carrier_error_m,
+              std::atan(a) / (2 * kPi) * kL1WavelengthM, 1e-6);
+  // As a reflector recedes by a wavelength, the NLOS carrier range grows by just that, without jumps.
+  double before_m = kNaN;
+  for (double excess_m = 60.0; excess_m < 60.0 + 2 * kL1WavelengthM; excess_m += 0.1 * kL1WavelengthM) {
+    const double turns = excess_m / kL1WavelengthM;
+    const ReceivedSignal echo{excess_m, 35.0, 3.0 - 2 * kPi * (turns - std::floor(turns)), 0.0};
+    const double now_m = rule->receive(std::nullopt, {&echo, 1}, kL1WavelengthM).carrier_error_m;
+    if (std::isfinite(before_m)) {
+      EXPECT_NEAR(now_m - before_m, 0.1 * kL1WavelengthM, 1e-9);
+    }
+    before_m = now_m;
+  }
+}
+
+TEST(LinkBudget, EchoesTurnAsTheAntennaMoves) {
+  // Towards a mirror in the west at 10 m/s, satellite in the east at the horizon: the echo's way shortens, the direct
+  // one's grows.
+  SignalPath path;
+  path.arrival_W = -Eigen::Vector3d::UnitX();
+  path.crosspolar = 1.0;
+  const auto r = receive(path, LinkBudget{}, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), {-10.0, 0.0, 0.0});
+  EXPECT_NEAR(r.doppler_hz, 20.0 / kL1WavelengthM, 1e-9);
 }
 
 TEST(ReceiverClock, IsAFunctionOfTheEpoch) {

@@ -1,0 +1,119 @@
+#include "gnss/pseudorange_parts.h"
+
+#include <algorithm>
+
+#include "core/units.h"
+#include "gnss/rinex/navigation_file.h"
+
+namespace canyon::gnss {
+namespace {
+
+/// The row of a ladder that the configuration names.
+template <class Make>
+Result<const ModelRow<Make>*> choose(std::span<const ModelRow<Make>> rows, const char* key, const std::string& name) {
+  if (const auto* row = find_model(rows, name)) return row;
+  std::string all;
+  for (const auto& n : model_names(rows)) all += (all.empty() ? "" : ", ") + n;
+  return Error{"", 0, std::string("gnss.") + key, "\"" + name + "\" is not a model", all};
+}
+
+/// The satellites, and what their navigation message says about the ionosphere.
+Result<KlobucharCoefficients> make_satellites(const GnssConfig& config, GpsTime start, GpsTime end,
+                                              PseudorangeParts& parts) {
+  CANYON_TRY_STATUS(check_systems(config.systems, "gnss.systems"));
+  std::vector<std::string> files = config.nav_files;
+  if (!config.nav_file.empty()) files.insert(files.begin(), config.nav_file);
+  if (files.empty()) {
+    parts.constellation = make_nominal_gps();
+    return kBuiltInKlobuchar;
+  }
+  CANYON_TRY(const NavigationData data, read_navigation_files(files));
+  CANYON_TRY_STATUS(check_coverage(data, config.systems, start, end, "gnss.nav_file"));
+  parts.warnings = data.warnings;
+  parts.constellation = make_broadcast(data, {.systems = config.systems});
+  return data.klobuchar_at(GnssSystem::kGps, start).value_or(kBuiltInKlobuchar);
+}
+
+CorrelatorDesign correlator_design(const GnssConfig& c, Modulation modulation) {
+  CorrelatorDesign d;
+  d.modulation = modulation;
+  d.spacing_chips = c.correlator_spacing_chips;
+  d.double_delta = c.correlator == "double_delta";
+  d.coherent = c.discriminator == "coherent";
+  // A channel is given at least the main lobes of its signal.
+  const double lobes_hz = (modulation == Modulation::kBoc11 ? 4.0 : 2.0) * chip_rate_hz(modulation);
+  if (c.front_end_mhz > 0.0) d.front_end_hz = std::max(1e6 * c.front_end_mhz, lobes_hz);
+  d.code_loop_hz = c.code_loop_hz;
+  d.carrier_loop_hz = c.carrier_loop_hz;
+  d.integration_s = 1e-3 * c.integration_ms;
+  return d;
+}
+
+}  // namespace
+
+int second_band(GnssSystem system, const std::string& second_frequency) {
+  const bool l5 = second_frequency == "L5";
+  switch (system) {
+    case GnssSystem::kGlonass:
+      return 2;
+    case GnssSystem::kGalileo:
+      return l5 ? 5 : 7;
+    case GnssSystem::kBeidou:
+      return l5 ? 5 : 7;
+    case GnssSystem::kGps:
+    case GnssSystem::kQzss:
+    case GnssSystem::kSbas:
+      break;
+  }
+  return l5 || system == GnssSystem::kSbas ? 5 : 2;
+}
+
+Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64_t seed, GpsTime start, GpsTime end) {
+  CANYON_TRY(const auto* ionosphere, choose(ionosphere_models(), "ionosphere", c.ionosphere));
+  CANYON_TRY(const auto* troposphere, choose(troposphere_models(), "troposphere", c.troposphere));
+  CANYON_TRY(const auto* ephemeris_error, choose(ephemeris_error_models(), "ephemeris_error", c.ephemeris_error));
+  CANYON_TRY(const auto* paths, choose(path_models(), "paths", c.paths));
+  CANYON_TRY(const auto* multipath, choose(multipath_rules(), "multipath_rule", c.multipath_rule));
+  CANYON_TRY(const auto* antenna, choose(antenna_models(), "antenna", c.antenna));
+  CANYON_TRY(const auto* clock, choose(receiver_clock_models(), "receiver_clock", c.receiver_clock));
+  CANYON_TRY(const auto* mode, choose(receiver_modes(), "mode", c.mode));
+  CANYON_TRY(const auto* solver, choose(position_solvers(), "solver", c.solver));
+
+  PseudorangeParts parts;
+  CANYON_TRY(const KlobucharCoefficients klobuchar, make_satellites(c, start, end, parts));
+  parts.ionosphere = ionosphere->make({c.vtec_tecu, klobuchar});
+  parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
+  parts.ephemeris_error = ephemeris_error->make({seed, c.ephemeris_sigma_m, c.ephemeris_tau_s});
+  parts.paths = paths->make({c.reflection_reach_m});
+  for (std::size_t i = 0; i < kModulations; ++i) {
+    const CorrelatorDesign design = correlator_design(c, static_cast<Modulation>(i));
+    parts.channels[i].multipath =
+        multipath->make({c.cutoff_ns * 1e-9 * kSpeedOfLight, c.tracking_threshold_dbhz, design});
+    parts.channels[i].tracking = std::make_unique<CodeTracking>(design);
+  }
+  parts.clock = clock->make({seed, 1.0 / c.rate_hz});
+  parts.mode = mode->make({seed, c.ionosphere != "none", c.troposphere != "none", c.ionosphere_correction, klobuchar,
+                           c.baseline_km, c.ionosphere_gradient_mm_per_km, c.troposphere_gradient_mm_per_km,
+                           c.base_error_scale});
+  PositionSolverParameters solver_parameters;
+  solver_parameters.max_gdop = c.max_gdop;
+  parts.solver = solver->make(solver_parameters);
+  parts.link.cn0_zenith_dbhz = c.cn0_zenith_dbhz;
+  parts.link.foliage_db_per_m = c.foliage_db_per_m;
+  parts.link.foliage_max_db = c.foliage_max_db;
+  parts.link.antenna = antenna->make({c.antenna_horizon_loss_db, c.lhcp_rejection_db});
+  parts.locks.seed = seed;
+  parts.locks.interval_s = 1.0 / c.rate_hz;
+  parts.locks.threshold_dbhz = c.tracking_threshold_dbhz;
+  parts.locks.reacquisition_margin_db = c.reacquisition_margin_db;
+  parts.locks.reacquisition_s = c.reacquisition_s;
+  parts.locks.carrier_loop_hz = c.carrier_loop_hz;
+  parts.locks.integration_s = 1e-3 * c.integration_ms;
+  parts.locks.slips = c.thermal_noise_scale > 0.0;
+  if (!parts.solver->solves_clock() && c.receiver_clock != "none")
+    return Error{"", 0, "gnss.receiver_clock",
+                 "is \"" + c.receiver_clock + "\", but solver \"" + c.solver + "\" has no unknown for it", "\"none\""};
+  return parts;
+}
+
+}  // namespace canyon::gnss
