@@ -22,7 +22,7 @@ constexpr Switch kSwitches[] = {
      [](gnss::GnssConfig& c) {
        if (c.paths != "none") c.paths = "visibility";
      }},
-    {"noise", [](gnss::GnssConfig& c) { c.code_noise_m = 0.0; }},
+    {"noise", [](gnss::GnssConfig& c) { c.thermal_noise_scale = 0.0; }},
     {"base_station", [](gnss::GnssConfig& c) { c.base_error_scale = 0.0; }},
 };
 
