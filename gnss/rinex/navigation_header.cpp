@@ -116,7 +116,7 @@ class HeaderReader {
     const std::string_view line = lines_.line();
     const std::string_view code = code_at == std::string_view::npos ? "GPUT" : columns(line, code_at, 4);
     const auto a0 = fortran_number(columns(line, a0_at, a0_width)), a1 = fortran_number(columns(line, a1_at, a1_width));
-    if (!a0 || !a1) return unreadable("TIME SYSTEM CORR", "a code and two numbers");
+    if (!a0 || !a1) return Ok{};  // some writers shift its columns; no position depends on it
     // The reference time is often left out (GLUT) or 0; the correction hardly depends on it.
     const auto sow = fortran_number(columns(line, sow_at, sow_width));
     const auto week = whole_number(columns(line, week_at, week_width));

@@ -21,6 +21,7 @@ struct SatelliteState {
   /// By RINEX band digit (1 = L1 / E1 / G1 / B1C, 2 = L2 / G2 / B1I, 5 = L5 / E5a / B2a, ...): what a user of that band
   /// alone subtracts from clock_s: TGD, BGD, ISC. 0 where the message does not tell.
   std::array<double, 10> group_delay_s{};
+  double accuracy_m = kNaN;   ///< 1-sigma of the range that the message announces (URA, SISA); NaN where it does not
   int frequency_channel = 0;  ///< GLONASS FDMA: -7..6; 0 otherwise
 
   /// Clock for a user of one band alone.

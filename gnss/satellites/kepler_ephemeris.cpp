@@ -139,6 +139,7 @@ SatelliteState KeplerEphemeris::at(GpsTime t) const {
   s.clock_s = af0_s + af1 * tc_s + af2_per_s * tc_s * tc_s + relativity * sin_E;
   s.clock_rate = af1 + 2.0 * af2_per_s * tc_s + relativity * cos_E * E_dot;
   s.group_delay_s = group_delay_s();
+  s.accuracy_m = accuracy_m;
   return s;
 }
 

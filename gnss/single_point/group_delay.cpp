@@ -1,0 +1,58 @@
+#include "gnss/single_point/group_delay.h"
+
+#include <utility>
+
+#include "gnss/signal.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr double kGlonassGamma = (1602.0 / 1246.0) * (1602.0 / 1246.0);
+
+std::array<double, 10> rtklib_bands_s(const KeplerEphemeris& r) {
+  auto out = r.group_delay_s();
+  if (r.sv.system == GnssSystem::kGalileo) out[1] = r.tgd2_s;  // BGD(E1, E5b), whatever the message
+  return out;
+}
+
+}  // namespace
+
+GroupDelays::GroupDelays(std::string model, const NavigationData& navigation) : model_(std::move(model)) {
+  if (model_ != "rtklib") return;
+  std::map<SatelliteId, const KeplerEphemeris*> first;
+  const auto order = [](const KeplerEphemeris& r) { return std::pair(r.transmitted.value_or(r.toe), r.toe); };
+  for (const auto& r : navigation.kepler) {
+    const auto [known, added] = first.emplace(r.sv, &r);
+    if (!added && order(r) < order(*known->second)) known->second = &r;
+  }
+  for (const auto& [sv, r] : first) rtklib_s_[sv] = rtklib_bands_s(*r);
+}
+
+std::array<double, 10> GroupDelays::by_band_s(const SatelliteState& state, SatelliteId sv) const {
+  if (model_ == "none") return {};
+  auto out = state.group_delay_s;
+  if (model_ != "rtklib") return out;
+  if (const auto known = rtklib_s_.find(sv); known != rtklib_s_.end()) out = known->second;
+  if (sv.system == GnssSystem::kGlonass) {
+    // delta tau = G2 - G1; with the combination's clock, G1 is early by delta tau / (gamma - 1).
+    out[1] = -out[2] / (kGlonassGamma - 1.0);
+    out[2] = kGlonassGamma * out[1];
+  }
+  return out;
+}
+
+double GroupDelays::delay_s(const SatelliteState& state, SatelliteId sv, int band,
+                            std::optional<int> second_band) const {
+  const auto delay_s = by_band_s(state, sv);
+  const double first_s = delay_s.at(static_cast<std::size_t>(band));
+  if (!second_band) return first_s;
+  const double a = first_weight(carrier_hz(sv.system, band, state.frequency_channel),
+                                carrier_hz(sv.system, *second_band, state.frequency_channel));
+  return a * first_s - (a - 1.0) * delay_s.at(static_cast<std::size_t>(*second_band));
+}
+
+double first_weight(double first_hz, double second_hz) {
+  return first_hz * first_hz / (first_hz * first_hz - second_hz * second_hz);
+}
+
+}  // namespace canyon::gnss

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "gnss/satellites/navigation_data.h"
+
+namespace canyon::gnss {
+
+/// What a user of one band, or of the ionosphere-free combination of two, subtracts from the satellite clock.
+///
+///   none       nothing
+///   broadcast  TGD, BGD and ISC of the record in use
+///   rtklib     as RTKLIB 2.4.3 does, to compare with it: the values of the satellite's first record in the order of
+///              transmission, also where that is a Galileo F/NAV record, which has no BGD(E1, E5b) and so counts as 0;
+///              and GLONASS clocks are read as those of an ionosphere-free combination, while its ICD refers them to G1
+class GroupDelays {
+ public:
+  GroupDelays(std::string model, const NavigationData& navigation);
+
+  /// s. `second_band`: of the combination with `band`.
+  double delay_s(const SatelliteState& state, SatelliteId sv, int band, std::optional<int> second_band) const;
+
+ private:
+  std::array<double, 10> by_band_s(const SatelliteState& state, SatelliteId sv) const;
+
+  std::string model_;
+  std::map<SatelliteId, std::array<double, 10>> rtklib_s_;
+};
+
+/// Weight of the first signal in the ionosphere-free combination a P1 - (a - 1) P2: f1^2 / (f1^2 - f2^2).
+double first_weight(double first_hz, double second_hz);
+
+}  // namespace canyon::gnss

@@ -1,0 +1,268 @@
+#include "gnss/single_point/single_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/progress.h"
+#include "core/units.h"
+#include "gnss/satellites/transmission.h"
+#include "gnss/signal.h"
+#include "gnss/single_point/code_choice.h"
+#include "gnss/single_point/group_delay.h"
+#include "gnss/single_point/range_corrections.h"
+#include "gnss/sky_view.h"
+#include "gnss/solver/weighting.h"
+
+namespace canyon::gnss {
+namespace {
+
+/// One satellite of an epoch on its way to a range.
+struct Candidate {
+  SatelliteId sv;
+  CodeMeasurement code;
+  SignalObservation signal;
+  SatelliteState state;  // at transmission, in E of transmission
+  double group_delay_s = 0.0;
+  KlobucharCoefficients klobuchar;
+};
+
+/// Satellites observed without an ephemeris: told once each.
+class MissingEphemerides {
+ public:
+  explicit MissingEphemerides(const std::string& file) : file_(file) {}
+  void add(SatelliteId sv, int line, GpsTime t) {
+    auto& m = by_satellite_[sv];
+    if (m.count++ == 0) m = {1, line, t};
+  }
+  std::vector<std::string> list() const {
+    std::vector<std::string> out;
+    for (const auto& [sv, m] : by_satellite_)
+      out.push_back(Error{file_, m.line, "", sv.str() + " has no valid healthy ephemeris at " + m.t.iso(0)}.str() +
+                    (m.count > 1 ? " and " + std::to_string(m.count - 1) + " other epochs" : "") + "; not used");
+    return out;
+  }
+
+ private:
+  struct Missing {
+    int count = 0, line = 0;
+    GpsTime t;
+  };
+  std::string file_;
+  std::map<SatelliteId, Missing> by_satellite_;
+};
+
+/// The figures in a reason differ from epoch to epoch; what is counted is the kind.
+std::string kind_of(const std::string& reason) {
+  return reason.substr(0, reason.find(':'));
+}
+
+class SinglePoint {
+ public:
+  SinglePoint(const ObservationFile& file, const SinglePointInputs& inputs, const SinglePointConfig& config)
+      : file_(file),
+        inputs_(inputs),
+        config_(config),
+        group_delays_(config.group_delay, inputs.navigation),
+        missing_(file.name) {
+    const auto* weighting = find_model(range_weightings(), config.weighting);
+    CANYON_CHECK(weighting != nullptr, "weighting ", config.weighting);
+    weighting_ = weighting->make({config.sigma_m});
+    PositionSolverParameters p;
+    p.max_gdop = config.max_gdop;
+    rough_ = make_least_squares(p);
+    p.fault_exclusion = config.fault_exclusion;
+    p.false_alarm = config.false_alarm;
+    p.max_exclusions = static_cast<int>(config.max_exclusions);
+    solver_ = make_least_squares(p);
+    p.false_alarm = 1e-6;
+    rough_robust_ = make_least_squares(p);
+    if (file.header.approx_position_E) guess_E_ = *file.header.approx_position_E;
+  }
+
+  Result<SinglePointResult> run() {
+    SinglePointResult out;
+    for (const auto& epoch : file_.epochs) {
+      throw_if_cancelled();
+      out.epochs.push_back(solve(epoch));
+      const auto& fix = out.epochs.back().fix;
+      if (fix.status == FixStatus::kNone) ++out.reasons[kind_of(fix.reason)];
+    }
+    out.warnings = missing_.list();
+    if (observed_ == 0)
+      return Error{file_.name, 0, "systems", "no pseudorange of the systems " + config_.systems + " in it",
+                   "systems that were observed"};
+    if (with_ephemeris_ == 0)
+      return Error{file_.name, file_.epochs.front().line, "",
+                   "no satellite observed from " + file_.epochs.front().t.iso(0) + " to " +
+                       file_.epochs.back().t.iso(0) + " has a valid ephemeris in " + inputs_.navigation.names(),
+                   "navigation files of the same day and systems"};
+    return out;
+  }
+
+ private:
+  SinglePointEpoch solve(const ObservationEpoch& epoch) {
+    SinglePointEpoch out;
+    out.fix.t = epoch.t;
+    out.epoch.t = epoch.t;
+    std::vector<Candidate> candidates = usable(epoch);
+    Eigen::Vector3d at_E = guess_E_;
+    const PositionSolution rough = rough_position(candidates, at_E);
+    if (!rough.ok) {
+      out.fix.dop = rough.dop;
+      out.fix.reason = rough.reason;
+      return out;
+    }
+    at_E = rough.p_E;
+
+    // Corrected for elevations at the position before, until it stays: a metre moves a delay by less than 1e-6 m.
+    constexpr int kPasses = 6;
+    PositionSolution solution;
+    std::vector<RangeMeasurement> ranges;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      correct(candidates, epoch.t, at_E, out.epoch, ranges);
+      solution = (pass == 0 ? *rough_ : *solver_).solve(ranges, at_E);
+      if (!solution.ok) break;
+      const double moved_m = (solution.p_E - at_E).norm();
+      at_E = solution.p_E;
+      if (pass > 0 && moved_m < 0.1) break;
+    }
+    out.fix.dop = solution.dop;
+    out.fix.reason = solution.reason;
+    out.integrity = solution.integrity;
+    if (!solution.ok) return out;
+    fill(solution, out);
+    guess_E_ = solution.p_E;
+    return out;
+  }
+
+  std::vector<Candidate> usable(const ObservationEpoch& epoch) {
+    std::vector<Candidate> out;
+    for (const auto& s : epoch.satellites) {
+      if (config_.systems.find(system_letter(s.sv.system)) == std::string::npos) continue;
+      const auto& codes = file_.codes(epoch, s.sv.system);
+      std::optional<SignalPair> pair;
+      std::optional<SignalObservation> signal;
+      if (config_.frequencies == "dual") {
+        pair = dual_frequency_signals(codes, s);
+        if (pair) signal = pair->first;
+      } else {
+        signal = single_frequency_signal(codes, s);
+      }
+      if (!signal) continue;
+      ++observed_;
+      const auto view = transmission_from_pseudorange(inputs_.constellation, s.sv, epoch.t, signal->pseudorange_m);
+      if (!view) {
+        missing_.add(s.sv, epoch.line, epoch.t);
+        continue;
+      }
+      ++with_ephemeris_;
+      Candidate c;
+      c.sv = s.sv;
+      c.signal = *signal;
+      c.state = view->state;
+      const int channel = c.state.frequency_channel;
+      c.code = pair ? ionosphere_free_measurement(*pair, s.sv, channel) : single_measurement(*signal, s.sv, channel);
+      c.group_delay_s = group_delays_.delay_s(c.state, s.sv, signal->code.band - '0',
+                                              pair ? std::optional(pair->second.code.band - '0') : std::nullopt);
+      if (uses_klobuchar()) c.klobuchar = coefficients(s.sv.system, epoch.t);
+      if (std::isfinite(c.code.pseudorange_m)) out.push_back(c);
+    }
+    return out;
+  }
+
+  bool uses_klobuchar() const { return config_.frequencies == "single" && config_.ionosphere != "none"; }
+
+  KlobucharCoefficients coefficients(GnssSystem system, GpsTime t) const {
+    if (config_.ionosphere == "klobuchar_own")
+      if (const auto own = inputs_.navigation.klobuchar_at(system, t)) return *own;
+    return inputs_.navigation.klobuchar_at(GnssSystem::kGps, t).value_or(KlobucharCoefficients{});
+  }
+
+  static RangeMeasurement uncorrected(const Candidate& c, double sigma_m) {
+    return {c.state.p_E, c.code.pseudorange_m + kSpeedOfLight * (c.state.clock_s - c.group_delay_s), sigma_m,
+            c.sv.system};
+  }
+
+  /// Without corrections, which need elevations: the atmosphere counts as noise. A satellite with a gross error would
+  /// spoil the elevations, so it is left out here already.
+  PositionSolution rough_position(const std::vector<Candidate>& candidates, const Eigen::Vector3d& guess_E) const {
+    constexpr double kAtmosphereM = 30.0;
+    std::vector<RangeMeasurement> ranges;
+    for (const auto& c : candidates) ranges.push_back(uncorrected(c, kAtmosphereM));
+    const auto solution = rough_robust_->solve(ranges, guess_E);
+    return solution.ok ? solution : rough_->solve(ranges, guess_E);
+  }
+
+  void correct(const std::vector<Candidate>& candidates, GpsTime t, const Eigen::Vector3d& at_E, GnssEpoch& epoch,
+               std::vector<RangeMeasurement>& ranges) const {
+    const Horizon horizon(at_E);
+    epoch.observations.clear();
+    ranges.clear();
+    for (const auto& c : candidates) {
+      const double travel_s = (c.state.p_E - at_E).norm() / kSpeedOfLight;
+      GnssObservation o;
+      o.sv = c.sv;
+      o.p_E = turned_by_earth(c.state.p_E, travel_s);
+      const SkyView view = horizon.view(t, o.p_E);
+      if (view.elevation_rad < config_.mask_deg * kDegree) continue;
+      const double scale = kL1Hz / c.code.hz;
+      const double ionosphere_m =
+          uses_klobuchar() ? scale * scale * ionosphere_correction_m(config_.ionosphere, c.klobuchar, view) : 0.0;
+      o.v_E = turned_by_earth(c.state.v_E, travel_s);
+      o.pseudorange_m = c.code.pseudorange_m;
+      o.carrier_phase_cycles = c.signal.phase_cycles;
+      o.doppler_hz = c.signal.doppler_hz;
+      o.cn0_dbhz = c.signal.cn0_dbhz;
+      o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
+      o.correction_m = ionosphere_m + troposphere_correction_m(config_.troposphere, view);
+      o.sigma_m = c.code.noise_factor *
+                  weighting_->sigma_m({c.sv.system, view.elevation_rad, o.cn0_dbhz, ionosphere_m, c.state.accuracy_m});
+      epoch.observations.push_back(o);
+      ranges.push_back(
+          {c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, config_.shared_ionosphere * ionosphere_m});
+    }
+  }
+
+  static void fill(const PositionSolution& solution, SinglePointEpoch& out) {
+    GnssFix& fix = out.fix;
+    fix.status = FixStatus::kSingle;
+    fix.p_A_E = solution.p_E;
+    fix.covariance_E = solution.covariance_E;
+    fix.clock_m = solution.clock_m;
+    fix.satellites = solution.satellites_used();
+    out.residuals_m = solution.residuals_m;
+    for (std::size_t i = 0; i < out.epoch.observations.size(); ++i) out.epoch.observations[i].used = solution.used[i];
+    out.excluded = static_cast<int>(out.epoch.observations.size()) - fix.satellites;
+  }
+
+  const ObservationFile& file_;
+  const SinglePointInputs& inputs_;
+  const SinglePointConfig& config_;
+  std::unique_ptr<RangeWeighting> weighting_;
+  std::unique_ptr<PositionSolver> rough_, rough_robust_, solver_;
+  Eigen::Vector3d guess_E_ = Eigen::Vector3d::Zero();
+  GroupDelays group_delays_;
+  MissingEphemerides missing_;
+  std::int64_t observed_ = 0, with_ephemeris_ = 0;
+};
+
+}  // namespace
+
+int SinglePointResult::solved() const {
+  return static_cast<int>(
+      std::count_if(epochs.begin(), epochs.end(), [](const auto& e) { return e.fix.status != FixStatus::kNone; }));
+}
+
+Result<SinglePointResult> solve_observations(const ObservationFile& observations, const SinglePointInputs& inputs,
+                                             const SinglePointConfig& config) {
+  CANYON_TRY_STATUS(check_systems(config.systems, "systems"));
+  const bool klobuchar = config.frequencies == "single" && config.ionosphere != "none";
+  if (klobuchar && inputs.navigation.klobuchar.empty())
+    return Error{inputs.navigation.names(), 0, "ionosphere",
+                 "\"" + config.ionosphere + "\" needs Klobuchar coefficients, and there are none in it",
+                 "a navigation file with them, or ionosphere = \"none\""};
+  return SinglePoint(observations, inputs, config).run();
+}
+
+}  // namespace canyon::gnss

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/messages.h"
+#include "gnss/rinex/observation_file.h"
+#include "gnss/satellites/constellation.h"
+#include "gnss/satellites/navigation_data.h"
+#include "gnss/single_point/config.h"
+#include "gnss/solver/position_solver.h"
+
+namespace canyon::gnss {
+
+/// One epoch solved.
+struct SinglePointEpoch {
+  GnssFix fix;      ///< of the antenna; velocity where there is Doppler of four satellites
+  GnssEpoch epoch;  ///< the observations that could be used: satellite, corrections, sigma; `used` = in the fix
+  std::vector<double> residuals_m;  ///< of the epoch's observations; empty without a fix
+  IntegrityTest integrity;
+  int excluded = 0;  ///< by the fault exclusion
+};
+
+struct SinglePointResult {
+  std::vector<SinglePointEpoch> epochs;  ///< one for each of the file, in its order
+  std::map<std::string, int> reasons;    ///< why epochs have no fix, with figures left out, and how often
+  std::vector<std::string> warnings;     ///< satellites that were observed but could not be used, `file:line: what`
+  int solved() const;
+};
+
+/// What the observations are solved with.
+struct SinglePointInputs {
+  const Constellation& constellation;
+  const NavigationData& navigation;  ///< for its ionosphere coefficients and its names in messages
+};
+
+/// Positions of a recorded observation file, epoch by epoch, each by itself.
+///
+/// Satellites are placed by their pseudorange; those without a valid healthy ephemeris are not used, and told in the
+/// warnings. Errors: no system of config.systems observed; no satellite of any epoch with an ephemeris (navigation data
+/// of another day); a Klobuchar correction without coefficients.
+Result<SinglePointResult> solve_observations(const ObservationFile& observations, const SinglePointInputs& inputs,
+                                             const SinglePointConfig& config);
+
+}  // namespace canyon::gnss

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/messages.h"
+#include "gnss/model_table.h"
+
+namespace canyon::gnss {
+
+/// What is known of one range's quality.
+struct RangeQuality {
+  GnssSystem system = GnssSystem::kGps;
+  double elevation_rad = 0.0;  ///< held at 5 deg from below
+  double cn0_dbhz = kNaN;      ///< NaN: not known, taken as what a clear satellite of that elevation has
+  double ionosphere_m = 0.0;   ///< what a model of the ionosphere subtracts; 0 = no model
+  double accuracy_m = kNaN;    ///< of the satellite's orbit and clock (URA, SISA), NaN: not known
+};
+
+/// 1-sigma that a solver assumes for a corrected pseudorange.
+class RangeWeighting {
+ public:
+  virtual ~RangeWeighting() = default;
+  virtual double sigma_m(const RangeQuality& q) const = 0;
+};
+
+struct RangeWeightingParameters {
+  double sigma_m = 0.5;  ///< of a clear satellite at the zenith, 45 dB-Hz
+};
+
+using MakeRangeWeighting = std::unique_ptr<RangeWeighting>(const RangeWeightingParameters&);
+std::span<const ModelRow<MakeRangeWeighting>> range_weightings();
+
+}  // namespace canyon::gnss
