@@ -30,6 +30,7 @@ Verb report_verb();
 Verb gnss_sky_verb();
 Verb gnss_map_verb();
 Verb gnss_simulate_verb();
+Verb gnss_solve_verb();
 
 /// Options that every verb has.
 struct CommonOptions {

@@ -1,0 +1,170 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/verb.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "core/place_files.h"
+#include "gnss/rinex/navigation_file.h"
+#include "gnss/rinex/observation_file.h"
+#include "gnss/single_point/position_statistics.h"
+#include "gnss/single_point/single_point.h"
+#include "gnss/single_point/solution_file.h"
+
+namespace canyon::apps {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string observations, config, systems, truth_ecef, truth, out;
+  std::vector<std::string> navigation;
+  std::optional<double> mask_deg;
+  bool force = false;
+};
+
+Result<gnss::SinglePointConfig> configuration(const Options& options) {
+  gnss::SinglePointConfig config;
+  if (!options.config.empty()) {
+    CANYON_TRY(config, gnss::read_single_point_config(options.config));
+  }
+  if (!options.systems.empty()) config.systems = options.systems;
+  if (options.mask_deg) config.mask_deg = *options.mask_deg;
+  CANYON_TRY_STATUS(gnss::check_systems(config.systems, options.systems.empty() ? "systems" : "--systems"));
+  return config;
+}
+
+Result<Eigen::Vector3d> parse_ecef(const std::string& text) {
+  Eigen::Vector3d p_E;
+  int used = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &p_E.x(), &p_E.y(), &p_E.z(), &used) != 3 ||
+      used != static_cast<int>(text.size()) || !p_E.allFinite() || p_E.norm() < 6.2e6)
+    return Error{"--truth-ecef", 0, "", "\"" + text + "\"", "X,Y,Z of a place on the Earth, metres"};
+  return p_E;
+}
+
+Result<gnss::Truth> truth_of(const Options& options) {
+  if (!options.truth_ecef.empty()) {
+    CANYON_TRY(const Eigen::Vector3d p_E, parse_ecef(options.truth_ecef));
+    return gnss::Truth([p_E](GpsTime) { return std::optional(gnss::TruePlace{p_E, Eigen::Vector3d::Zero().eval()}); });
+  }
+  if (options.truth.empty()) return gnss::Truth([](GpsTime) { return std::optional<gnss::TruePlace>(); });
+  CANYON_TRY(auto places, read_places(options.truth));
+  const auto path = std::make_shared<PlacePath>(std::move(places));
+  return gnss::Truth([path](GpsTime t) -> std::optional<gnss::TruePlace> {
+    const auto state = path->at(t);
+    if (!state) return std::nullopt;
+    return gnss::TruePlace{state->p_E, state->v_E};
+  });
+}
+
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json summary_json(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s,
+                                    const gnss::ObservationFile& file) {
+  nlohmann::ordered_json json{{"epochs", s.epochs},
+                              {"solved", s.solved},
+                              {"compared", s.compared},
+                              {"mean_e_m", number(s.mean_enu_m.x())},
+                              {"mean_n_m", number(s.mean_enu_m.y())},
+                              {"mean_u_m", number(s.mean_enu_m.z())},
+                              {"std_e_m", number(s.std_enu_m.x())},
+                              {"std_n_m", number(s.std_enu_m.y())},
+                              {"std_u_m", number(s.std_enu_m.z())},
+                              {"h50_m", number(s.h50_m)},
+                              {"h95_m", number(s.h95_m)},
+                              {"v95_m", number(s.v95_m)},
+                              {"rms_3d_m", number(s.rms_3d_m)},
+                              {"velocity_rms_e_m_s", number(s.velocity_rms_enu_m_s.x())},
+                              {"velocity_rms_n_m_s", number(s.velocity_rms_enu_m_s.y())},
+                              {"velocity_rms_u_m_s", number(s.velocity_rms_enu_m_s.z())},
+                              {"damaged_records", file.damaged},
+                              {"warnings", result.warnings.size() + file.warnings.size()}};
+  json["unsolved"] = nlohmann::ordered_json::object();
+  for (const auto& [reason, count] : result.reasons) json["unsolved"][reason] = count;
+  return json;
+}
+
+void tell(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s, const gnss::ObservationFile& file) {
+  std::printf("%s: %d epochs from %s GPS time, %d solved\n", file.name.c_str(), s.epochs,
+              file.epochs.front().t.iso(0).c_str(), s.solved);
+  for (const auto& [reason, count] : result.reasons) std::printf("  %6d without: %s\n", count, reason.c_str());
+  if (s.compared == 0) return;
+  std::printf("  error, m     mean     std\n");
+  const char* axes[] = {"east", "north", "up"};
+  for (int i = 0; i < 3; ++i) std::printf("  %-7s  %8.3f %7.3f\n", axes[i], s.mean_enu_m[i], s.std_enu_m[i]);
+  std::printf("  horizontal 50 %% %.3f, 95 %% %.3f; vertical 95 %% %.3f; 3-D RMS %.3f m\n", s.h50_m, s.h95_m, s.v95_m,
+              s.rms_3d_m);
+}
+
+Status write_output(const Options& options, const gnss::SinglePointResult& result, const nlohmann::ordered_json& json) {
+  if (options.out.empty()) return Ok{};
+  if (options.out.ends_with(".csv")) return write_text_file(options.out, gnss::solution_csv(result));
+  CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
+  CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/positions.csv", gnss::solution_csv(result)));
+  CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/summary.json", json.dump(2) + "\n"));
+  return staged.commit();
+}
+
+Result<int> run(const Options& options) {
+  set_threads(options.common.threads);
+  CANYON_TRY(const auto config, configuration(options));
+  CANYON_TRY(const auto truth, truth_of(options));
+  CANYON_TRY(const auto navigation, gnss::read_navigation_files(options.navigation));
+  CANYON_TRY(const auto file, gnss::read_observation_file(options.observations));
+  gnss::BroadcastOptions broadcast;
+  broadcast.systems = config.systems;
+  if (config.ephemeris == "transmitted") broadcast.choice = gnss::EphemerisChoice::kTransmitted;
+  const auto constellation = gnss::make_broadcast(navigation, broadcast);
+  CANYON_TRY(const auto result, gnss::solve_observations(file, {*constellation, navigation}, config));
+
+  std::vector<GnssFix> fixes;
+  for (const auto& e : result.epochs) fixes.push_back(e.fix);
+  const auto statistics = gnss::position_statistics(fixes, truth);
+  const auto json = summary_json(result, statistics, file);
+  CANYON_TRY_STATUS(write_output(options, result, json));
+  for (const auto* warnings : {&navigation.warnings, &file.warnings, &result.warnings})
+    for (const auto& warning : *warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (options.common.json)
+    std::printf("%s\n", json.dump().c_str());
+  else
+    tell(result, statistics, file);
+  return 0;
+}
+
+VerbAction declare(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  declare_common(app, options->common);
+  app.add_option("--obs", options->observations, "RINEX 2, 3 or 4 observations; also gzipped or Hatanaka-compressed")
+      ->required();
+  app.add_option("--nav", options->navigation, "RINEX navigation files of the same day")->required();
+  app.add_option("--systems", options->systems, "satellite systems by their letters, of GRECJ; default GREC");
+  app.add_option("--mask", options->mask_deg, "elevation mask, degrees")->check(CLI::Range(-10.0, 89.0));
+  app.add_option("--config", options->config,
+                 "options of the solution (TOML), such as examples/rtklib_equivalent.toml");
+  auto* ecef = app.add_option("--truth-ecef", options->truth_ecef, "X,Y,Z of the antenna, in the frame of the orbits");
+  app.add_option("--truth", options->truth,
+                 "true antenna over time: CSV of gps_week,sow and lat_deg,lon_deg,h_m or x_m,y_m,z_m")
+      ->excludes(ecef);
+  app.add_option("--out", options->out, "positions per epoch: a file NAME.csv, or a directory");
+  app.add_flag("--force", options->force, "replace the directory if it exists");
+  return [options]() -> Result<int> { return run(*options); };
+}
+
+}  // namespace
+
+Verb gnss_solve_verb() {
+  return {"gnss solve", "positions from recorded observations",
+          "canyon gnss solve --obs usno0200.05o --nav brdc0200.05n --systems G --truth-ecef "
+          "1112189.770,-4842955.030,3985352.263 --out positions.csv",
+          declare};
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "gnss/single_point/single_point.h"
+
+namespace canyon::gnss {
+
+/// One row per epoch, solved or not: gps_week,sow,x_m,y_m,z_m,status,satellites,gdop,pdop,hdop,vdop,tdop,excluded,
+/// sigma_e_m,sigma_n_m,sigma_u_m,clock_m,vx_m_s,vy_m_s,vz_m_s,reason. status: single or none; what is not known is
+/// empty.
+std::string solution_csv(const SinglePointResult& result);
+
+}  // namespace canyon::gnss
