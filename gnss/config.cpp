@@ -46,8 +46,8 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.choice("receiver_clock", c.receiver_clock, model_names(receiver_clock_models()), "receiver clock error");
 
   f.choice("paths", c.paths, model_names(path_models()), "propagation in the scene");
-  f.number("reflection_reach_m", c.reflection_reach_m, {1.0, 5000.0},
-           "specular1: farthest reflection point from the antenna");
+  f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
+           "standard deviation of the reflecting surfaces' height");
   f.number("foliage_db_per_m", c.foliage_db_per_m, {0.0, 10.0}, "specific attenuation of tree crowns");
   f.number("foliage_max_db", c.foliage_max_db, {0.1, 100.0}, "largest attenuation by foliage");
   f.choice("multipath_rule", c.multipath_rule, model_names(multipath_rules()),

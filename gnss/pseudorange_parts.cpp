@@ -49,6 +49,18 @@ CorrelatorDesign correlator_design(const GnssConfig& c, Modulation modulation) {
   return d;
 }
 
+/// What the receiver can notice of the ways that a signal takes.
+PathParameters path_parameters(const GnssConfig& c) {
+  PathParameters p;
+  // A correlator sees reflections until their peak leaves its late arm; BPSK(1) has the longest chip.
+  p.cutoff_m = c.multipath_rule == "paper_first_return" ? c.cutoff_ns * 1e-9 * kSpeedOfLight
+                                                        : (1.0 + 0.5 * c.correlator_spacing_chips) * kCaChipM;
+  p.weakest_nlos_db = c.tracking_threshold_dbhz - c.cn0_zenith_dbhz;
+  p.weakest_db = std::min(p.weakest_db, p.weakest_nlos_db);
+  p.roughness_m = c.surface_roughness_m;
+  return p;
+}
+
 }  // namespace
 
 int second_band(GnssSystem system, const std::string& second_frequency) {
@@ -84,7 +96,7 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
   parts.ionosphere = ionosphere->make({c.vtec_tecu, klobuchar});
   parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
   parts.ephemeris_error = ephemeris_error->make({seed, c.ephemeris_sigma_m, c.ephemeris_tau_s});
-  parts.paths = paths->make({c.reflection_reach_m});
+  parts.paths = paths->make(path_parameters(c));
   for (std::size_t i = 0; i < kModulations; ++i) {
     const CorrelatorDesign design = correlator_design(c, static_cast<Modulation>(i));
     parts.channels[i].multipath =

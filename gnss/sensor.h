@@ -77,8 +77,8 @@ struct GnssConfig {
   std::string receiver_clock = "tcxo";
 
   // pseudorange: propagation in the scene and reception
-  std::string paths = "specular1";  ///< none | visibility | specular1
-  double reflection_reach_m = 150.0;
+  std::string paths = "specular1";   ///< none | visibility | specular1 | specular2 | specular3
+  double surface_roughness_m = 0.0;  ///< standard deviation of the reflecting surfaces' height
   double foliage_db_per_m = 0.25;
   double foliage_max_db = 28.0;
   std::string multipath_rule = "paper_first_return";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "core/units.h"
@@ -125,8 +126,47 @@ class Patch {
         facet.radius_m = std::max(facet.radius_m, (mesh_.vertices[v].cast<double>() - facet.center_W).norm());
       }
     }
+    facet.bottom_m = low.z();
+    facet.top_m = high.z();
+    bound(triangles, facet);
     facet.triangles = std::move(triangles);
     return facet;
+  }
+
+  /// Flatness and bounding rectangle.
+  void bound(const std::vector<std::uint32_t>& triangles, Facet& facet) const {
+    for (const std::uint32_t i : triangles) {
+      const Triangle t = Triangle::of(mesh_, i);
+      for (const Eigen::Vector3d& p : {t.a, t.b, t.c})
+        facet.flatness_m = std::max(facet.flatness_m, std::abs(facet.normal_W.dot(p) - facet.offset_m));
+    }
+    // Tried along every edge of the first triangles; a rectangle has two that fit.
+    double smallest_m2 = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < std::min<std::size_t>(triangles.size(), 4); ++k) {
+      const Triangle t = Triangle::of(mesh_, triangles[k]);
+      for (const Eigen::Vector3d& edge :
+           {Eigen::Vector3d(t.b - t.a), Eigen::Vector3d(t.c - t.b), Eigen::Vector3d(t.a - t.c)}) {
+        const Eigen::Vector3d u = (edge - facet.normal_W.dot(edge) * facet.normal_W).normalized();
+        const Eigen::Vector3d v = facet.normal_W.cross(u);
+        Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+        for (const std::uint32_t i : triangles) {
+          for (const std::uint32_t vertex : mesh_.triangles[i]) {
+            const Eigen::Vector3d q = mesh_.vertices[vertex].cast<double>() - facet.center_W;
+            const Eigen::Vector2d at(q.dot(u), q.dot(v));
+            low = low.cwiseMin(at);
+            high = high.cwiseMax(at);
+          }
+        }
+        const double area_m2 = (high - low).prod();
+        if (!(area_m2 < smallest_m2)) continue;
+        smallest_m2 = area_m2;
+        const Eigen::Vector3d on_plane =
+            facet.center_W - (facet.normal_W.dot(facet.center_W) - facet.offset_m) * facet.normal_W;
+        facet.rectangle_W = {on_plane + low.x() * u + low.y() * v, on_plane + high.x() * u + low.y() * v,
+                             on_plane + high.x() * u + high.y() * v, on_plane + low.x() * u + high.y() * v};
+      }
+    }
+    facet.fills_rectangle = facet.area_m2 >= (1.0 - 1e-6) * smallest_m2;
   }
 
   const Mesh& mesh_;

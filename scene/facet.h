@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -17,6 +18,12 @@ struct Facet {
   std::uint32_t object = 0;
   Eigen::Vector3d center_W;  ///< of the bounding sphere
   double radius_m = 0.0;
+  double bottom_m = 0.0, top_m = 0.0;  ///< lowest and highest z
+  double flatness_m = 0.0;             ///< no corner is farther from the plane than this
+  /// Bounding rectangle in the plane, counter-clockwise seen from outside; one side lies along an edge of one of
+  /// its first triangles. `fills_rectangle`: the facet covers it whole (but for 1e-6 of its area).
+  std::array<Eigen::Vector3d, 4> rectangle_W;
+  bool fills_rectangle = false;
   std::vector<std::uint32_t> triangles;  ///< indices into the mesh
 };
 
@@ -30,6 +37,14 @@ class FacetIndex {
   /// Facets whose bounding sphere comes within `radius_m` of `p_W`, in ascending index order. Cost grows with what is
   /// near.
   void near(const Eigen::Vector3d& p_W, double radius_m, std::vector<std::uint32_t>& out) const;
+  /// Facets that could mirror a plane wave from some direction at least `elevation_rad` (0 to pi/2, above W's
+  /// horizontal) high towards p, in a fixed order. If the facet's normal points up by t, the mirrored wave arrives from
+  /// an elevation between elevation - 2 t and 180 deg - elevation - 2 t; if it points down, from no lower than
+  /// `elevation`. So a wall must stand up above `elevation` seen from p, a roof must lie below. Those which meet this
+  /// are listed, whichever way they face and whatever hides them, but none farther away than `reach_per_area_1_m` (may
+  /// be infinite) times its area. Cost grows with what stands out.
+  void mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m,
+               std::vector<std::uint32_t>& out) const;
 
  private:
   struct Cells {
@@ -40,7 +55,28 @@ class FacetIndex {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
   }
 
+  /// What the search for mirrors looks at of a facet, in a row.
+  struct Brief {
+    float x_m, y_m, radius_m, bottom_m, top_m, area_m2;
+    std::uint32_t facet;
+  };
+  /// A square of the ground and the facets whose centers lie in it, sorted into classes of lean.
+  struct Block {
+    double x_m, y_m;       ///< center
+    double reach_m = 0.0;  ///< no facet of it comes farther from the center, horizontally
+    double area_m2 = 0.0;  ///< largest
+    struct Class {
+      std::size_t lean = 0;
+      double bottom_m = 1e300, top_m = -1e300;
+      double area_m2 = 0.0;  ///< largest
+      std::vector<Brief> facets;
+    };
+    std::vector<Class> classes;
+  };
+  void build_blocks();
+
   std::vector<Facet> facets_;
+  std::vector<Block> blocks_;
   // Uniform 2-D grid over x, y; each cell lists the facets whose bounding square overlaps it, in ascending order.
   double cell_m_ = 0.0;
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/check.h"
+#include "core/units.h"
 #include "scene/facet.h"
 
 namespace canyon::scene {
@@ -9,6 +11,47 @@ namespace {
 
 constexpr double kCell_m = 25.0;
 constexpr int kMaxCells = 400;  // per side; larger scenes get larger cells
+constexpr double kBlock_m = 50.0;
+
+// Classes of lean: upright; leaning over (its upper edge hangs forward); so far over that it faces nearly straight
+// down; and leaning back, by the degree.
+constexpr double kUpright = 1e-3;  // |n_z|
+constexpr double kFacesDown_rad = 85.0 * kDegree;
+constexpr std::size_t kLeanClasses = 3 + 90;
+
+std::size_t lean_class(double n_z) {
+  if (std::abs(n_z) <= kUpright) return 0;
+  const double lean_rad = std::asin(std::min(std::abs(n_z), 1.0));
+  if (n_z < 0.0) return lean_rad < kFacesDown_rad ? 1 : 2;
+  return 3 + std::min(static_cast<std::size_t>(lean_rad / kDegree), std::size_t{89});
+}
+
+/// Elevations from which a wave may arrive that a facet of one class of lean has mirrored.
+class Arrivals {
+ public:
+  Arrivals(double elevation_rad, std::size_t lean) {
+    double lowest_rad = elevation_rad, highest_rad = kPi - elevation_rad;
+    if (lean == 0) lowest_rad -= 2.0 * std::asin(kUpright);
+    if (lean == 2) never_ = elevation_rad > 0.5 * kPi - kFacesDown_rad;  // nothing shines on it
+    if (lean >= 3) {
+      lowest_rad -= 2.0 * static_cast<double>(lean - 2) * kDegree;
+      highest_rad -= 2.0 * static_cast<double>(lean - 3) * kDegree;
+    }
+    if (lowest_rad > 0.0) rise_ = std::tan(std::min(lowest_rad, 0.4999 * kPi));
+    if (highest_rad < 0.0) fall_ = std::tan(std::min(-highest_rad, 0.4999 * kPi));
+  }
+  /// Can anything between two heights above p, no nearer than `distance_m` horizontally, lie there? Where only farther
+  /// points could, the answer is yes.
+  bool meet(double bottom_m, double top_m, double distance_m) const {
+    constexpr double kSlack_m = 1e-3;  // rounding
+    return !never_ && top_m + kSlack_m >= distance_m * rise_ && bottom_m - kSlack_m <= -distance_m * fall_;
+  }
+
+ private:
+  // Least tangents upward and downward; far below any real one where nothing is asked.
+  double rise_ = -1e9, fall_ = -1e9;
+  bool never_ = false;
+};
 
 }  // namespace
 
@@ -30,6 +73,44 @@ FacetIndex::FacetIndex(std::vector<Facet> facets) : facets_(std::move(facets)) {
     for (int row = range.row0; row <= range.row1; ++row) {
       for (int column = range.column0; column <= range.column1; ++column) cells_[cell(column, row)].push_back(i);
     }
+  }
+  build_blocks();
+}
+
+void FacetIndex::build_blocks() {
+  const double block_m = std::max(kBlock_m, cell_m_);
+  const int columns = static_cast<int>(columns_ * cell_m_ / block_m) + 1;
+  std::map<int, std::size_t> block_of;  // by row and column; ordered, so that the blocks are
+  std::vector<int> keys(facets_.size());
+  for (std::size_t i = 0; i < facets_.size(); ++i) {
+    const int column = static_cast<int>((facets_[i].center_W.x() - origin_.x()) / block_m);
+    const int row = static_cast<int>((facets_[i].center_W.y() - origin_.y()) / block_m);
+    keys[i] = row * columns + column;
+    block_of.emplace(keys[i], 0);
+  }
+  for (auto& [key, index] : block_of) {
+    index = blocks_.size();
+    blocks_.push_back({.x_m = origin_.x() + (key % columns + 0.5) * block_m,
+                       .y_m = origin_.y() + (key / columns + 0.5) * block_m,
+                       .reach_m = 0.0,
+                       .area_m2 = 0.0,
+                       .classes = {}});
+  }
+  for (std::uint32_t i = 0; i < facets_.size(); ++i) {
+    const Facet& f = facets_[i];
+    Block& block = blocks_[block_of[keys[i]]];
+    block.reach_m =
+        std::max(block.reach_m, std::hypot(f.center_W.x() - block.x_m, f.center_W.y() - block.y_m) + f.radius_m);
+    block.area_m2 = std::max(block.area_m2, f.area_m2);
+    const std::size_t lean = lean_class(f.normal_W.z());
+    auto c = std::find_if(block.classes.begin(), block.classes.end(), [&](const auto& x) { return x.lean == lean; });
+    if (c == block.classes.end()) c = block.classes.insert(c, Block::Class{.lean = lean, .facets = {}});
+    c->bottom_m = std::min(c->bottom_m, f.bottom_m);
+    c->top_m = std::max(c->top_m, f.top_m);
+    c->area_m2 = std::max(c->area_m2, f.area_m2);
+    c->facets.push_back({static_cast<float>(f.center_W.x()), static_cast<float>(f.center_W.y()),
+                         static_cast<float>(f.radius_m), static_cast<float>(f.bottom_m), static_cast<float>(f.top_m),
+                         static_cast<float>(f.area_m2), i});
   }
 }
 
@@ -59,6 +140,30 @@ void FacetIndex::near(const Eigen::Vector3d& p_W, double radius_m, std::vector<s
     }
   }
   std::sort(out.begin(), out.end());
+}
+
+void FacetIndex::mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m,
+                         std::vector<std::uint32_t>& out) const {
+  CANYON_CHECK(p_W.allFinite() && elevation_rad >= 0.0 && elevation_rad <= 0.5 * kPi, "p = ", p_W.transpose(),
+               ", elevation_rad = ", elevation_rad);
+  out.clear();
+  std::vector<Arrivals> arrivals;
+  for (std::size_t k = 0; k < kLeanClasses; ++k) arrivals.emplace_back(elevation_rad, k);
+  for (const Block& block : blocks_) {
+    const double distance_m = std::max(std::hypot(block.x_m - p_W.x(), block.y_m - p_W.y()) - block.reach_m, 0.0);
+    if (distance_m > reach_per_area_1_m * block.area_m2) continue;
+    for (const Block::Class& c : block.classes) {
+      const Arrivals& a = arrivals[c.lean];
+      if (distance_m > reach_per_area_1_m * c.area_m2) continue;
+      if (!a.meet(c.bottom_m - p_W.z(), c.top_m - p_W.z(), distance_m)) continue;
+      for (const Brief& f : c.facets) {
+        const double dx = f.x_m - p_W.x(), dy = f.y_m - p_W.y();
+        const double own_m = std::max(std::sqrt(dx * dx + dy * dy) - f.radius_m, 0.0);
+        if (own_m <= reach_per_area_1_m * f.area_m2 && a.meet(f.bottom_m - p_W.z(), f.top_m - p_W.z(), own_m))
+          out.push_back(f.facet);
+      }
+    }
+  }
 }
 
 }  // namespace canyon::scene

@@ -79,6 +79,7 @@ Scene::Scene(SceneParts parts) : parts_(std::move(parts)) {
   dropped_triangles_ = drop_unusable_triangles(parts_.mesh);
   extent_ = extent_of(parts_.mesh);
   tracer_ = std::make_unique<Tracer>(parts_);
+  crowns_ = FoliageIndex(parts_.foliage);
 }
 
 Scene::~Scene() = default;

@@ -14,6 +14,7 @@
 
 #include "core/local_frame.h"
 #include "scene/facet.h"
+#include "scene/foliage_index.h"
 #include "scene/material.h"
 #include "scene/street_graph.h"
 
@@ -41,12 +42,6 @@ struct Building {
   std::vector<Eigen::Vector2d> footprint_W;  ///< counter-clockwise
   double base_m = 0.0;                       ///< lowest ground at the footprint, W height
   double height_m = 0.0;                     ///< roof above base
-};
-
-/// A tree crown: an ellipsoid of leaves. Attenuates GNSS, and has its own porous triangles in the mesh for LIDAR.
-struct Foliage {
-  Eigen::Vector3d center_W = Eigen::Vector3d::Zero();
-  Eigen::Vector3d radii_m = Eigen::Vector3d::Ones();
 };
 
 /// Everything a scene is made of, before it becomes immutable.
@@ -116,6 +111,7 @@ class Scene {
   Extent extent_;
   std::size_t dropped_triangles_ = 0;
   std::unique_ptr<Tracer> tracer_;
+  FoliageIndex crowns_;
   mutable std::once_flag facets_once_;
   mutable std::atomic<bool> facets_built_{false};
   mutable FacetIndex facets_;

@@ -1,8 +1,5 @@
 #include "scene/scene_at.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "scene/tracer.h"
 
 namespace canyon::scene {
@@ -40,25 +37,7 @@ bool SceneAt::blocked_towards(const Eigen::Vector3d& p_W, const Eigen::Vector3d&
 }
 
 double SceneAt::foliage_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {
-  double sum_m = 0.0;
-  for (const Foliage& crown : scene_->foliage()) {
-    // The bounding sphere turns most crowns away cheaply.
-    const Eigen::Vector3d to_center = crown.center_W - p_W;
-    const double along_m = to_center.dot(direction_W);
-    const double radius_m = crown.radii_m.maxCoeff();
-    if (to_center.squaredNorm() - along_m * along_m > radius_m * radius_m || along_m < -radius_m) continue;
-    // In the frame where the crown is a unit sphere: |o + s d|^2 = 1.
-    const Eigen::Vector3d o = -to_center.cwiseQuotient(crown.radii_m);
-    const Eigen::Vector3d d = direction_W.cwiseQuotient(crown.radii_m);
-    const double dd = d.squaredNorm(), od = o.dot(d);
-    const double discriminant = od * od - dd * (o.squaredNorm() - 1.0);
-    if (discriminant <= 0.0) continue;
-    const double root = std::sqrt(discriminant);
-    const double enter_m = std::max((-od - root) / dd, 0.0);
-    const double leave_m = std::min((-od + root) / dd, max_m);
-    sum_m += std::max(leave_m - enter_m, 0.0);
-  }
-  return sum_m;
+  return scene_->crowns_.chords_m(p_W, direction_W, max_m);
 }
 
 NearestSurface SceneAt::nearest(const Eigen::Vector3d& p_W, double max_m) const {

@@ -21,6 +21,8 @@ constexpr ModelRow<MakePathModel> kModels[] = {
     {"none", make_none, "every satellite above the mask is clear, nothing reflects"},
     {"visibility", make_visibility, "occlusion rays against the scene, nothing reflects"},
     {"specular1", make_specular1, "occlusion and single specular reflections off the scene's facets"},
+    {"specular2", make_specular2, "occlusion and up to two specular reflections"},
+    {"specular3", make_specular3, "occlusion and up to three specular reflections"},
 };
 
 }  // namespace

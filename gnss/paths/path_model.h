@@ -54,8 +54,20 @@ class PathModel {
                      const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) const = 0;
 };
 
+/// What is worth finding. The defaults suit a receiver that tracks 45 dB-Hz at the zenith down to 25 dB-Hz.
 struct PathParameters {
-  double reach_m = 150.0;  ///< farthest reflection point from the antenna
+  double cutoff_m = 45.0;          ///< visible satellites: later reflections do not matter. Blocked ones have no limit
+  double weakest_db = -20.0;       ///< visible satellites: weaker fields (relative to free direct) do not matter
+  double weakest_nlos_db = -20.0;  ///< blocked satellites: weaker fields are not tracked
+  double roughness_m = 0.0;        ///< standard deviation of the surfaces' height, for the Rayleigh factor
+  /// A facet smaller than its first Fresnel zone reflects area x cos(incidence) / (wavelength x distance) of what an
+  /// infinite one does (physical optics). Off: every facet reflects like an infinite one.
+  bool finite_facets = true;
+  /// Ways with several reflections: within this distance of the antenna all facets are combined; beyond it, only those
+  /// that FacetIndex::mirrors gives, which leaves out walls too low to be met by any way over vertical mirrors alone.
+  double combine_all_m = 30.0;
+  /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
+  bool exhaustive = false;
 };
 
 using MakePathModel = std::unique_ptr<PathModel>(const PathParameters&);
@@ -65,12 +77,14 @@ std::span<const ModelRow<MakePathModel>> path_models();
 /// from the antenna; tree crowns do not block.
 std::unique_ptr<PathModel> make_visibility(const PathParameters& p);
 
-/// Direct ways and all single specular reflections off the scene's facets whose reflection point lies within reach of
-/// the antenna. Exact (image method, plane wave): a wall at perpendicular distance d adds 2 d cos(incidence), and the
-/// reflection point lies d / cos(incidence) away; so a high satellite, which meets walls at large incidence, sees them
-/// from much farther than half the excess delay. What lies beyond reach is not found: with 150 m, of the reflections
-/// with excess < 45 m, those with incidence above acos(sqrt(45 / 300)) = 67 deg that need a wall more than 150 m away.
-/// Terrain does not reflect here.
+/// Direct ways and specular reflections off the scene's planar facets, up to the given number of them. Exact (image
+/// method, plane wave over the scene): antenna mirrored at facet after facet, every leg tested for obstacles. A wall at
+/// perpendicular distance d adds 2 d cos(incidence), and the reflection point lies d / cos(incidence) away: a high
+/// satellite, which meets walls at large incidence, sees them from much farther than half the excess. So the search
+/// has no fixed radius: a wall is within reach if it stands out above the lowest satellite's elevation (facets that
+/// lean: FacetIndex::mirrors). Terrain and trees do not reflect here.
 std::unique_ptr<PathModel> make_specular1(const PathParameters& p);
+std::unique_ptr<PathModel> make_specular2(const PathParameters& p);
+std::unique_ptr<PathModel> make_specular3(const PathParameters& p);
 
 }  // namespace canyon::gnss

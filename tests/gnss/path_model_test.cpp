@@ -96,16 +96,38 @@ TEST(Specular1, SingleWallAgainstTheClosedForm) {
   EXPECT_GT(found, 150);
 }
 
-TEST(Specular1, ReachIsTheDistanceOfTheReflectionPoint) {
-  const auto scene = west_wall(40.0).build();
-  const Eigen::Vector3d s = direction(90, 60);  // cos(i) = 0.5: the reflection point is 80 m away, excess 40 m
-  EXPECT_EQ(trace(*make_specular1({79.9}), *scene, {s})[0].echoes.size(), 0u);
-  EXPECT_EQ(trace(*make_specular1({80.1}), *scene, {s})[0].echoes.size(), 1u);
+// The antenna sees a wall 300 m away by the light of a satellite that is high, and that far only because the excess is
+// what is limited.
+TEST(Specular1, ReachFollowsFromTheCutoffAndTheElevation) {
+  const auto scene = west_wall(300.0).build();
+  const Eigen::Vector3d high = direction(90, 86), low = direction(90, 60);  // excess 600 m x cos(86 deg) = 41.9 m
+  EXPECT_EQ(trace(*make_specular1({}), *scene, {high, low})[0].echoes.size(), 0u) << "800 m is not high enough";
+  const auto tower = west_wall(300.0, 400.0, 5000.0).build();
+  const auto paths = trace(*make_specular1({}), *tower, {high, low});
+  ASSERT_EQ(paths[0].echoes.size(), 1u);
+  EXPECT_NEAR(paths[0].echoes[0].excess_m, 600.0 * std::cos(86 * kDegree), 1e-9);
+  EXPECT_EQ(paths[1].echoes.size(), 0u);
+  PathParameters just_less;
+  just_less.cutoff_m = paths[0].echoes[0].excess_m - 1e-6;
+  EXPECT_EQ(trace(*make_specular1(just_less), *tower, {high})[0].echoes.size(), 0u);
+}
+
+// Whether a blocked satellite is tracked depends on the strength alone.
+TEST(Specular1, ABlockedSatelliteHasNoCutoff) {
+  auto walls = west_wall(300.0);
+  walls.box({5, -5, 0}, {6, 5, 20}, "absorber");
+  const auto paths = trace(*make_specular1({}), *walls.build(), {direction(90, 30)});
+  EXPECT_FALSE(paths[0].line_of_sight);
+  ASSERT_EQ(paths[0].echoes.size(), 1u);
+  EXPECT_NEAR(paths[0].echoes[0].excess_m, 600.0 * std::cos(30 * kDegree), 1e-9);
+  PathParameters deaf;
+  deaf.weakest_nlos_db = -5.0;
+  EXPECT_TRUE(trace(*make_specular1(deaf), *walls.build(), {direction(90, 30)})[0].echoes.empty());
 }
 
 TEST(Specular1, BlockedLegsGiveNothing) {
   const Eigen::Vector3d s = direction(90, 30);
-  const auto model = make_specular1({150.0});
+  const auto model = make_specular1({});
   // Reflection point at (-20, 0, 2 + 20 tan 30 = 13.5).
   EXPECT_EQ(trace(*model, *west_wall(20.0).build(), {s})[0].echoes.size(), 1u);
   // A screen between antenna and reflection point, which leaves the direct way free.
@@ -132,14 +154,14 @@ TEST(Specular1, BlockedLegsGiveNothing) {
 
 TEST(Specular1, AbsorbersReflectNothingAndBlockStill) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "absorber").build();
-  const auto paths = trace(*make_specular1({150.0}), *scene, {direction(90, 30), direction(270, 30)});
+  const auto paths = trace(*make_specular1({}), *scene, {direction(90, 30), direction(270, 30)});
   EXPECT_TRUE(paths[0].echoes.empty());
   EXPECT_FALSE(paths[1].line_of_sight);
 }
 
 TEST(Specular1, MaterialGivesTheCoefficients) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "glass").build();
-  const auto paths = trace(*make_specular1({150.0}), *scene, {direction(90, 45)});
+  const auto paths = trace(*make_specular1({}), *scene, {direction(90, 45)});
   ASSERT_EQ(paths[0].echoes.size(), 1u);
   EXPECT_NEAR(std::abs(paths[0].echoes[0].crosspolar), 0.422, 1e-3);  // glass at 45 deg
 }
@@ -154,7 +176,7 @@ TEST(Specular1, StreetCanyon) {
   std::vector<Eigen::Vector3d> directions;
   for (std::uint64_t i = 0; i < 400; ++i)
     directions.push_back(direction(random.uniform(0, 360, 0, i), random.uniform(5, 89, 1, i)));
-  const auto paths = trace(*make_specular1({150.0}), *scene, directions);
+  const auto paths = trace(*make_specular1({}), *scene, directions);
   std::size_t reflections = 0, blocked = 0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     blocked += paths[i].line_of_sight ? 0u : 1u;
@@ -176,7 +198,7 @@ TEST(Specular1, FoliageOnEitherLegCounts) {
   const Eigen::Vector3d s = direction(90, 30);
   auto walls = west_wall(20.0);
   walls.crown({-10, 0, 2 + 10 * std::tan(30 * kDegree)}, {2, 2, 2});
-  const auto paths = trace(*make_specular1({150.0}), *walls.build(), {s});
+  const auto paths = trace(*make_specular1({}), *walls.build(), {s});
   ASSERT_EQ(paths[0].echoes.size(), 1u);
   EXPECT_EQ(paths[0].foliage_m, 0.0);
   // The traced leg ends 2 cm in front of the wall, so it passes the crown's centre within 2 cm: the chord is short of 4

@@ -194,6 +194,51 @@ TEST(Blocked, BothEndsAreKeptClear) {
   EXPECT_FALSE(at.blocked({0, 0, 2}, {0, 0, 2}));
 }
 
+// As satellites are seen from the street, with more rays than chance would give past the roofs' edges.
+TEST(Blocked, AgreesWithTheDoublePrecisionOracle) {
+  const Scene scene(make_city(coarse_city()));
+  const SceneAt at(scene);
+  const RandomStream random(5, "test.sky");
+  int blocked = 0, at_edges = 0;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const Building& building = scene.buildings()[i % scene.buildings().size()];
+    const double x = building.footprint_W[0].x() + random.uniform(-60, 60, 0, i);
+    const double y = building.footprint_W[0].y() + random.uniform(-60, 60, 1, i);
+    const auto ground = scene.ground(x, y);
+    if (!ground) continue;
+    const Eigen::Vector3d p(x, y, ground->height_m + 1.5);
+    Eigen::Vector3d towards(building.footprint_W[0].x(), building.footprint_W[0].y(), 0.0);
+    towards.z() = building.base_m + building.height_m + (i % 2 == 0 ? 0.0 : random.uniform(-8, 8, 2, i));
+    const Eigen::Vector3d direction = (towards - p).normalized();
+    if (direction.z() < 0.05) continue;
+    // Everything but trees, from 1 mm on.
+    bool expected = false;
+    double nearest_edge_m = 1e9;
+    for (std::uint32_t k = 0; k < scene.mesh().triangles.size(); ++k) {
+      if (scene.objects()[scene.mesh().object[k]].kind == ObjectKind::kTree) continue;
+      const Triangle t = Triangle::of(scene.mesh(), k);
+      const auto range = intersect(t, p, direction);
+      if (range && *range > 1e-3) {
+        expected = true;
+        nearest_edge_m = std::min(nearest_edge_m, edge_distance(t, p + *range * direction));
+      } else {
+        // How near does the ray's crossing of the plane come to the triangle?
+        const Eigen::Vector3d n = t.area_normal();
+        const double range_m = n.dot(t.a - p) / n.dot(direction);
+        if (range_m > 0.0 && range_m < 1e5)
+          nearest_edge_m = std::min(nearest_edge_m, edge_distance(t, p + range_m * direction));
+      }
+    }
+    const bool found = at.blocked_towards(p, direction);
+    blocked += expected ? 1 : 0;
+    if (found == expected) continue;
+    EXPECT_LE(nearest_edge_m, 1e-3) << "ray " << i;
+    ++at_edges;
+  }
+  EXPECT_GT(blocked, 100);
+  EXPECT_LE(at_edges, 100) << "half of the rays go exactly past a corner";
+}
+
 TEST(Blocked, TreesAreLeftOutOnRequest) {
   SceneParts parts = empty_parts();
   add_plane(parts, 100.0, 0.0);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <complex>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "gnss/paths/fresnel.h"
+
+namespace canyon::gnss {
+
+/// One specular reflection, as polarization sees it.
+struct Bounce {
+  Eigen::Vector3d incoming_W;  ///< unit, direction of propagation before it
+  Eigen::Vector3d normal_W;    ///< unit, towards the side of the wave
+  Fresnel coefficients;
+  double factor = 1.0;  ///< further loss of field, both polarizations: roughness, size
+};
+
+/// Field of a right-hand circular wave of amplitude 1 after reflections, in the order of propagation.
+struct CircularField {
+  std::complex<double> copolar = 1.0, crosspolar = 0.0;
+};
+
+/// Between two reflections the plane of incidence turns about the way by psi, which shifts the phases of right- and
+/// left-hand parts by -psi and +psi; within one, [co cross; cross co] acts on both. Phases are those relative to the
+/// first and the last plane of incidence, so that one reflection gives its coefficients.
+CircularField reflected_field(std::span<const Bounce> bounces);
+
+/// Rayleigh roughness: what is left of the specular field of a surface whose height varies with standard deviation
+/// `sigma_m`: exp(-2 (2 pi sigma cos(incidence) / wavelength)^2) (Ament 1953; ITU-R P.1546 and P.1411 use the same).
+double roughness_factor(double sigma_m, double cos_incidence, double wavelength_m);
+
+}  // namespace canyon::gnss

@@ -1,0 +1,362 @@
+#include "gnss/paths/image_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "gnss/paths/beam.h"
+#include "gnss/paths/bounce.h"
+#include "gnss/paths/skyline.h"
+#include "gnss/signal.h"
+
+namespace canyon::gnss {
+namespace {
+
+// A leg starts and ends this far in front of a mirror, beyond what its corners deviate from its plane, so that the
+// mirror does not block its own reflection in single precision.
+constexpr double kClearance_m = 2e-3;
+
+/// The facets that take part, as arrays of single precision in spatial order, 16 in a row with a ball around them: most
+/// beams miss most rows.
+class Arena {
+ public:
+  static constexpr std::size_t kRow = 16;
+
+  void fill(const std::vector<scene::Facet>& facets) {
+    const std::size_t rows = (ids.size() + kRow - 1) / kRow;
+    for (auto* a : {&x_, &y_, &z_, &radius_, &nx_, &ny_, &nz_, &offset_}) a->assign(rows * kRow, 0.0F);
+    row_center_W_.clear();
+    row_radius_m_.clear();
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t begin = row * kRow, end = std::min(begin + kRow, ids.size());
+      Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
+      for (std::size_t i = begin; i < end; ++i) {
+        const scene::Facet& f = facets[ids[i]];
+        x_[i] = static_cast<float>(f.center_W.x());
+        y_[i] = static_cast<float>(f.center_W.y());
+        z_[i] = static_cast<float>(f.center_W.z());
+        radius_[i] = static_cast<float>(f.radius_m);
+        nx_[i] = static_cast<float>(f.normal_W.x());
+        ny_[i] = static_cast<float>(f.normal_W.y());
+        nz_[i] = static_cast<float>(f.normal_W.z());
+        offset_[i] = static_cast<float>(f.offset_m);
+        low = low.cwiseMin((f.center_W.array() - f.radius_m).matrix());
+        high = high.cwiseMax((f.center_W.array() + f.radius_m).matrix());
+      }
+      row_center_W_.emplace_back(0.5 * (low + high));
+      row_radius_m_.push_back(0.5 * (high - low).norm());
+    }
+  }
+
+  /// Appends the places in `ids` of facets that may be met through `window` from the image of the antenna behind it,
+  /// and that face the image. A centimetre of slack for single precision; what is given in vain fails later.
+  void meet(const scene::Facet& window, const Beam& beam, std::vector<std::uint32_t>& out) const {
+    struct Side {
+      float x, y, z, offset;
+    };
+    std::array<Side, 5> sides;
+    const auto side = [](const Eigen::Vector3d& n, double offset_m) {
+      return Side{static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z()),
+                  static_cast<float>(offset_m - kSlack_m)};
+    };
+    sides[0] = side(window.normal_W, window.offset_m);
+    for (std::size_t k = 0; k < 4; ++k) sides[k + 1] = side(beam.inward_W[k], beam.inward_W[k].dot(beam.apex_W));
+    const Eigen::Vector3f image = beam.apex_W.cast<float>();
+    for (std::size_t row = 0; row < row_center_W_.size(); ++row) {
+      if (window.normal_W.dot(row_center_W_[row]) - window.offset_m < -row_radius_m_[row]) continue;
+      if (!beam.may_meet(row_center_W_[row], row_radius_m_[row])) continue;
+      const std::size_t begin = row * kRow;
+      std::array<float, kRow> room;
+      for (std::size_t j = 0; j < kRow; ++j) {
+        const std::size_t i = begin + j;
+        room[j] = nx_[i] * image.x() + ny_[i] * image.y() + nz_[i] * image.z() - offset_[i] + kSlack_m;
+      }
+      for (const Side& s : sides) {
+        for (std::size_t j = 0; j < kRow; ++j) {
+          const std::size_t i = begin + j;
+          const float inside = s.x * x_[i] + s.y * y_[i] + s.z * z_[i] - s.offset + radius_[i];
+          room[j] = inside < room[j] ? inside : room[j];
+        }
+      }
+      const std::size_t count = std::min(kRow, ids.size() - begin);
+      for (std::size_t j = 0; j < count; ++j)
+        if (room[j] > 0.0F) out.push_back(static_cast<std::uint32_t>(begin + j));
+    }
+  }
+
+  std::vector<std::uint32_t> ids;  ///< indices into Scene::facets()
+
+ private:
+  static constexpr float kSlack_m = 0.01F;
+  std::vector<float> x_, y_, z_, radius_, nx_, ny_, nz_, offset_;
+  std::vector<Eigen::Vector3d> row_center_W_;
+  std::vector<double> row_radius_m_;
+};
+
+/// Satellites as arrays of single precision, for the test that nearly all fail.
+struct Sky {
+  std::vector<float> x, y, z, cosine;
+
+  void fill(std::span<const Eigen::Vector3d> directions_W) {
+    for (auto* a : {&x, &y, &z, &cosine}) a->resize(directions_W.size());
+    for (std::size_t i = 0; i < directions_W.size(); ++i) {
+      x[i] = static_cast<float>(directions_W[i].x());
+      y[i] = static_cast<float>(directions_W[i].y());
+      z[i] = static_cast<float>(directions_W[i].z());
+    }
+  }
+  void project(const Eigen::Vector3d& axis_W) {
+    const Eigen::Vector3f a = axis_W.cast<float>();
+    for (std::size_t i = 0; i < x.size(); ++i) cosine[i] = x[i] * a.x() + y[i] * a.y() + z[i] * a.z();
+  }
+};
+
+/// Memory that a search uses, kept from epoch to epoch.
+struct Workspace {
+  Sky sky;
+  Arena arena;
+  std::vector<std::uint32_t> first, near;
+  std::array<std::vector<std::uint32_t>, SignalPath::kMaxReflections> met;
+};
+
+/// One epoch's search, depth first over sequences of facets f1, f2, ... in order from the antenna. Image k is the
+/// antenna mirrored at f1 ... fk; the way over them to satellite s is the straight line from image k towards s, folded.
+class Search {
+ public:
+  Search(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W,
+         std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene, std::span<SignalPaths> out,
+         GnssCounters& counters, Workspace& work)
+      : order_(order),
+        p_(p),
+        antenna_W_(p_A_W),
+        directions_W_(directions_W),
+        scene_(scene),
+        facets_(scene.scene().facets().facets()),
+        work_(work),
+        out_(out),
+        counters_(counters),
+        weakest_(std::pow(10.0, p.weakest_db / 20.0)),
+        weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)),
+        reach_per_area_(p.finite_facets ? 1.0 / (kL1WavelengthM * std::min(weakest_, weakest_nlos_))
+                                        : std::numeric_limits<double>::infinity()) {}
+
+  void run() {
+    work_.sky.fill(directions_W_);
+    choose_facets();
+    for (const std::uint32_t id : work_.first) {
+      sequence_[0] = id;
+      extend(1, antenna_W_);
+    }
+  }
+
+ private:
+  void choose_facets() {
+    const scene::FacetIndex& index = scene_.scene().facets();
+    std::vector<std::uint32_t>& ids = work_.arena.ids;
+    if (p_.exhaustive) {
+      ids.resize(facets_.size());
+      for (std::uint32_t i = 0; i < facets_.size(); ++i) ids[i] = i;
+    } else {
+      double lowest = 1.0;
+      for (const Eigen::Vector3d& s : directions_W_) lowest = std::min(lowest, s.z());
+      index.mirrors(antenna_W_, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_per_area_, ids);
+      if (order_ > 1) add_near(index, ids);
+    }
+    std::erase_if(ids, [&](std::uint32_t i) { return scene_.scene().materials()[facets_[i].material].rf_absorbing; });
+    if (order_ > 1) work_.arena.fill(facets_);
+
+    std::vector<std::uint32_t>& first = work_.first;
+    first.clear();
+    for (const std::uint32_t i : ids)
+      if (in_reach(facets_[i], antenna_W_)) first.push_back(i);
+    if (p_.exhaustive) return;
+    const Skyline skyline(antenna_W_, facets_, ids);
+    std::erase_if(first, [&](std::uint32_t i) { return skyline.hides(facets_[i]); });
+  }
+
+  void add_near(const scene::FacetIndex& index, std::vector<std::uint32_t>& ids) {
+    std::vector<std::uint32_t>& near = work_.near;
+    index.near(antenna_W_, p_.combine_all_m, near);
+    std::vector<bool> known(near.size(), false);
+    for (const std::uint32_t id : ids) {
+      const auto at = std::lower_bound(near.begin(), near.end(), id);
+      if (at != near.end() && *at == id) known[static_cast<std::size_t>(at - near.begin())] = true;
+    }
+    for (std::size_t k = 0; k < near.size(); ++k)
+      if (!known[k]) ids.push_back(near[k]);
+  }
+
+  /// Does the facet face the image, and is it, if small, near enough to reflect enough?
+  bool in_reach(const scene::Facet& f, const Eigen::Vector3d& image_W) const {
+    const double to_plane_m = f.normal_W.dot(image_W) - f.offset_m;
+    if (to_plane_m <= 0.0) return false;
+    if (!p_.finite_facets) return true;
+    const double distance_m = std::max((f.center_W - image_W).norm() - f.radius_m, 0.0);
+    return distance_m * distance_m <= reach_per_area_ * f.area_m2 * to_plane_m;
+  }
+
+  /// The sequence has `count` facets; `before_W` is the image before the last.
+  void extend(int count, const Eigen::Vector3d& before_W) {
+    const auto k = static_cast<std::size_t>(count);
+    const scene::Facet& last = facets_[sequence_[k - 1]];
+    const Eigen::Vector3d image_W = before_W - 2.0 * (last.normal_W.dot(before_W) - last.offset_m) * last.normal_W;
+    images_W_[k - 1] = image_W;
+    satellites(count, last, image_W);
+    if (count == order_) return;
+
+    std::vector<std::uint32_t>& met = work_.met[k];
+    met.clear();
+    work_.arena.meet(last, Beam(image_W, last), met);
+    for (const std::uint32_t place : met) {
+      const std::uint32_t id = work_.arena.ids[place];
+      if (id == sequence_[k - 1] || !in_reach(facets_[id], image_W)) continue;
+      sequence_[k] = id;
+      extend(count + 1, image_W);
+    }
+  }
+
+  /// Looks from the image through the last facet: which satellites may stand there?
+  void satellites(int count, const scene::Facet& last, const Eigen::Vector3d& image_W) {
+    const Eigen::Vector3d to_center_W = last.center_W - image_W;
+    const double distance_m = to_center_W.norm();
+    ++counters_.facets_tested;
+    Sky& sky = work_.sky;
+    float least = 0.0F;
+    if (distance_m > last.radius_m) {
+      const double sine = last.radius_m / distance_m;
+      least = static_cast<float>(std::sqrt(1.0 - sine * sine)) - 1e-5F;
+      sky.project(to_center_W / distance_m);
+    } else {
+      std::fill(sky.cosine.begin(), sky.cosine.end(), 1.0F);
+    }
+    for (std::size_t i = 0; i < out_.size(); ++i)
+      if (sky.cosine[i] >= least) try_satellite(count, i);
+  }
+
+  void try_satellite(int count, std::size_t satellite) {
+    const Eigen::Vector3d& s = directions_W_[satellite];
+    const auto k = static_cast<std::size_t>(count);
+    const double excess_m = (antenna_W_ - images_W_[k - 1]).dot(s);
+    const bool visible = out_[satellite].line_of_sight;
+    if (visible && excess_m > p_.cutoff_m) return;
+    std::array<Eigen::Vector3d, SignalPath::kMaxReflections> points_W;
+    if (!fold(k, s, points_W)) return;
+    SignalPath path = field(k, s, points_W);
+    const double amplitude2 = std::norm(path.copolar) + std::norm(path.crosspolar);
+    const double least = visible ? weakest_ : weakest_nlos_;
+    if (!(amplitude2 > 0.0) || amplitude2 < least * least) return;
+    path.excess_m = excess_m;
+    if (!clear_way(k, s, points_W, path)) return;
+    path.arrival_W = (points_W[0] - antenna_W_).normalized();
+    path.reflections = count;
+    for (std::size_t j = 0; j < k; ++j) path.facets[j] = sequence_[j];
+    out_[satellite].echoes.push_back(path);
+    ++counters_.reflected_paths;
+  }
+
+  /// The reflection points, from the satellite's end back to the antenna. False if one lies outside of its facet, or a
+  /// facet would be met from behind.
+  bool fold(std::size_t k, const Eigen::Vector3d& s,
+            std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W) const {
+    Eigen::Vector3d towards_W = s;  // direction of travel away from the antenna, after the reflection at hand
+    for (std::size_t j = k; j-- > 0;) {
+      const scene::Facet& f = facets_[sequence_[j]];
+      const double cos_incidence = f.normal_W.dot(towards_W);
+      if (cos_incidence <= 0.0) return false;
+      const Eigen::Vector3d& from_W = images_W_[j];
+      const double way_m = (f.offset_m - f.normal_W.dot(from_W)) / cos_incidence;
+      if (way_m <= 0.0) return false;
+      points_W[j] = from_W + way_m * towards_W;
+      if ((points_W[j] - f.center_W).squaredNorm() > f.radius_m * f.radius_m * (1.0 + 1e-12)) return false;
+      if (j + 1 < k && f.normal_W.dot(points_W[j + 1]) <= f.offset_m) return false;
+      if (j + 1 < k) {
+        const scene::Facet& after = facets_[sequence_[j + 1]];
+        if (after.normal_W.dot(points_W[j]) <= after.offset_m) return false;
+      }
+      towards_W -= 2.0 * cos_incidence * f.normal_W;
+    }
+    for (std::size_t j = 0; j < k; ++j)
+      if (!scene::facet_contains(facets_[sequence_[j]], scene_.scene(), points_W[j])) return false;
+    return true;
+  }
+
+  SignalPath field(std::size_t k, const Eigen::Vector3d& s,
+                   const std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W) const {
+    std::array<Bounce, SignalPath::kMaxReflections> bounces;  // in the order of propagation
+    Eigen::Vector3d incoming_W = -s;
+    for (std::size_t j = k; j-- > 0;) {
+      const scene::Facet& f = facets_[sequence_[j]];
+      const scene::Material& material = scene_.scene().materials()[f.material];
+      const double cos_incidence = std::clamp(-incoming_W.dot(f.normal_W), 0.0, 1.0);
+      Bounce& b = bounces[k - 1 - j];
+      b.incoming_W = incoming_W;
+      b.normal_W = f.normal_W;
+      b.coefficients =
+          material.rf_absorbing ? Fresnel{} : fresnel(material.permittivity(kL1Hz), std::acos(cos_incidence));
+      if (p_.roughness_m > 0.0) b.factor *= roughness_factor(p_.roughness_m, cos_incidence, kL1WavelengthM);
+      if (p_.finite_facets) {
+        const double distance_m = (points_W[j] - images_W_[j]).norm();
+        b.factor *= std::min(1.0, f.area_m2 * cos_incidence / (kL1WavelengthM * distance_m));
+      }
+      incoming_W -= 2.0 * incoming_W.dot(f.normal_W) * f.normal_W;
+    }
+    const CircularField field = reflected_field({bounces.data(), k});
+    SignalPath path;
+    path.copolar = field.copolar;
+    path.crosspolar = field.crosspolar;
+    return path;
+  }
+
+  /// Tests every leg, and sums up what of it leads through foliage.
+  bool clear_way(std::size_t k, const Eigen::Vector3d& s,
+                 std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) {
+    std::array<Eigen::Vector3d, SignalPath::kMaxReflections + 1> nodes_W;
+    nodes_W[0] = antenna_W_;
+    for (std::size_t j = 0; j < k; ++j) {
+      const scene::Facet& f = facets_[sequence_[j]];
+      nodes_W[j + 1] = points_W[j] + (kClearance_m + f.flatness_m) * f.normal_W;
+    }
+    // From the satellite's end, which is blocked most often.
+    ++counters_.occlusion_rays;
+    if (scene_.blocked_towards(nodes_W[k], s)) return false;
+    for (std::size_t j = k; j-- > 0;) {
+      const Eigen::Vector3d leg_W = nodes_W[j + 1] - nodes_W[j];
+      const double leg_m = leg_W.norm();
+      ++counters_.occlusion_rays;
+      if (scene_.blocked_towards(nodes_W[j], leg_W / leg_m, leg_m)) return false;
+    }
+    path.foliage_m = scene_.foliage_m(nodes_W[k], s);
+    for (std::size_t j = 0; j < k; ++j) {
+      const Eigen::Vector3d leg_W = nodes_W[j + 1] - nodes_W[j];
+      const double leg_m = leg_W.norm();
+      path.foliage_m += scene_.foliage_m(nodes_W[j], leg_W / leg_m, leg_m);
+    }
+    return true;
+  }
+
+  int order_;
+  const PathParameters& p_;
+  Eigen::Vector3d antenna_W_;
+  std::span<const Eigen::Vector3d> directions_W_;
+  const scene::SceneAt& scene_;
+  const std::vector<scene::Facet>& facets_;
+  Workspace& work_;
+  std::span<SignalPaths> out_;
+  GnssCounters& counters_;
+  double weakest_, weakest_nlos_, reach_per_area_;
+
+  std::array<std::uint32_t, SignalPath::kMaxReflections> sequence_;
+  std::array<Eigen::Vector3d, SignalPath::kMaxReflections> images_W_;
+};
+
+}  // namespace
+
+void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W,
+                 std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene, std::span<SignalPaths> out,
+                 GnssCounters& counters) {
+  if (directions_W.empty()) return;
+  thread_local Workspace work;
+  Search(order, p, p_A_W, directions_W, scene, out, counters, work).run();
+}
+
+}  // namespace canyon::gnss

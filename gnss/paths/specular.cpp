@@ -1,0 +1,42 @@
+#include <algorithm>
+
+#include "gnss/paths/image_search.h"
+#include "gnss/paths/path_model.h"
+
+namespace canyon::gnss {
+namespace {
+
+class Specular final : public PathModel {
+ public:
+  Specular(int order, const PathParameters& p) : order_(order), p_(p), visibility_(make_visibility(p)) {}
+
+  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+             std::span<SignalPaths> out, GnssCounters& counters) const override {
+    visibility_->trace(p_A_W, directions_W, scene, out, counters);
+    find_images(order_, p_, p_A_W, directions_W, scene, out, counters);
+    for (auto& paths : out)
+      std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
+                       [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
+  }
+
+ private:
+  int order_;
+  PathParameters p_;
+  std::unique_ptr<PathModel> visibility_;
+};
+
+}  // namespace
+
+std::unique_ptr<PathModel> make_specular1(const PathParameters& p) {
+  return std::make_unique<Specular>(1, p);
+}
+
+std::unique_ptr<PathModel> make_specular2(const PathParameters& p) {
+  return std::make_unique<Specular>(2, p);
+}
+
+std::unique_ptr<PathModel> make_specular3(const PathParameters& p) {
+  return std::make_unique<Specular>(3, p);
+}
+
+}  // namespace canyon::gnss

@@ -1,0 +1,128 @@
+#include "scene/foliage_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace canyon::scene {
+namespace {
+
+constexpr double kCell_m = 10.0;
+constexpr int kMaxCells = 1000;  // per side; larger scenes get larger cells
+
+double chord_m(const Foliage& crown, const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) {
+  // In the frame where the crown is a unit sphere: |o + s d|^2 = 1.
+  const Eigen::Vector3d o = (p_W - crown.center_W).cwiseQuotient(crown.radii_m);
+  const Eigen::Vector3d d = direction_W.cwiseQuotient(crown.radii_m);
+  const double dd = d.squaredNorm(), od = o.dot(d);
+  const double discriminant = od * od - dd * (o.squaredNorm() - 1.0);
+  if (discriminant <= 0.0) return 0.0;
+  const double root = std::sqrt(discriminant);
+  const double enter_m = std::max((-od - root) / dd, 0.0);
+  const double leave_m = std::min((-od + root) / dd, max_m);
+  return std::max(leave_m - enter_m, 0.0);
+}
+
+}  // namespace
+
+FoliageIndex::FoliageIndex(const std::vector<Foliage>& crowns) : crowns_(crowns) {
+  if (crowns_.empty()) return;
+  low_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  high_ = -low_;
+  for (const Foliage& c : crowns_) {
+    low_ = low_.cwiseMin(c.center_W - c.radii_m);
+    high_ = high_.cwiseMax(c.center_W + c.radii_m);
+  }
+  const Eigen::Vector3d size = high_ - low_;
+  cell_m_ = std::max(kCell_m, std::max(size.x(), size.y()) / kMaxCells);
+  columns_ = static_cast<int>(size.x() / cell_m_) + 1;
+  rows_ = static_cast<int>(size.y() / cell_m_) + 1;
+  cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  for (std::uint32_t i = 0; i < crowns_.size(); ++i) {
+    const Foliage& c = crowns_[i];
+    const auto cell_of = [&](double x, double origin, int count) {
+      return std::clamp(static_cast<int>((x - origin) / cell_m_), 0, count - 1);
+    };
+    for (int row = cell_of(c.center_W.y() - c.radii_m.y(), low_.y(), rows_);
+         row <= cell_of(c.center_W.y() + c.radii_m.y(), low_.y(), rows_); ++row) {
+      for (int column = cell_of(c.center_W.x() - c.radii_m.x(), low_.x(), columns_);
+           column <= cell_of(c.center_W.x() + c.radii_m.x(), low_.x(), columns_); ++column) {
+        Cell& cell = cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                            static_cast<std::size_t>(column)];
+        cell.bottom_m = std::min(cell.bottom_m, c.center_W.z() - c.radii_m.z());
+        cell.top_m = std::max(cell.top_m, c.center_W.z() + c.radii_m.z());
+        cell.crowns.push_back(i);
+      }
+    }
+  }
+}
+
+void FoliageIndex::add_cell(const Cell& cell, const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W,
+                            double enter_m, double leave_m, std::vector<std::uint32_t>& met) const {
+  if (cell.crowns.empty()) return;
+  const double z0 = p_W.z() + enter_m * direction_W.z(), z1 = p_W.z() + leave_m * direction_W.z();
+  if (std::min(z0, z1) > cell.top_m || std::max(z0, z1) < cell.bottom_m) return;
+  for (const std::uint32_t i : cell.crowns) {
+    const Foliage& c = crowns_[i];
+    // The bounding sphere turns most crowns away cheaply.
+    const Eigen::Vector3d to_center = c.center_W - p_W;
+    const double along_m = to_center.dot(direction_W), radius_m = c.radii_m.maxCoeff();
+    if (to_center.squaredNorm() - along_m * along_m <= radius_m * radius_m) met.push_back(i);
+  }
+}
+
+double FoliageIndex::chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {
+  if (cells_.empty()) return 0.0;
+  // The part of the ray inside the box around all crowns.
+  double begin_m = 0.0, end_m = max_m;
+  for (int axis = 2; axis >= 0; --axis) {
+    const double d = direction_W[axis];
+    double in = (low_[axis] - p_W[axis]) / d, out = (high_[axis] - p_W[axis]) / d;
+    if (d == 0.0) {
+      if (p_W[axis] < low_[axis] || p_W[axis] > high_[axis]) return 0.0;
+      continue;
+    }
+    if (in > out) std::swap(in, out);
+    begin_m = std::max(begin_m, in);
+    end_m = std::min(end_m, out);
+  }
+  if (!(begin_m <= end_m)) return 0.0;
+
+  // From cell to cell of the grid (Amanatides & Woo 1987).
+  std::vector<std::uint32_t> met;
+  const Eigen::Vector2d origin = low_.head<2>(), d = direction_W.head<2>();
+  const Eigen::Vector2d start = p_W.head<2>() + begin_m * d - origin;
+  int column = std::clamp(static_cast<int>(start.x() / cell_m_), 0, columns_ - 1);
+  int row = std::clamp(static_cast<int>(start.y() / cell_m_), 0, rows_ - 1);
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  const int step_x = d.x() > 0.0 ? 1 : -1, step_y = d.y() > 0.0 ? 1 : -1;
+  const auto border = [&](int cell, int step, double from, double speed) {
+    return speed == 0.0 ? kNever : begin_m + ((cell + (step > 0 ? 1 : 0)) * cell_m_ - from) / speed;
+  };
+  double next_x = border(column, step_x, start.x(), d.x()), next_y = border(row, step_y, start.y(), d.y());
+  const double width_x = d.x() == 0.0 ? kNever : cell_m_ / std::abs(d.x());
+  const double width_y = d.y() == 0.0 ? kNever : cell_m_ / std::abs(d.y());
+  double at_m = begin_m;
+  while (column >= 0 && column < columns_ && row >= 0 && row < rows_ && at_m <= end_m) {
+    const double leave_m = std::min({next_x, next_y, end_m});
+    add_cell(
+        cells_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column)],
+        p_W, direction_W, at_m, leave_m, met);
+    at_m = std::min(next_x, next_y);
+    if (next_x < next_y) {
+      column += step_x;
+      next_x += width_x;
+    } else {
+      row += step_y;
+      next_y += width_y;
+    }
+  }
+  if (met.empty()) return 0.0;
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  double sum_m = 0.0;
+  for (const std::uint32_t i : met) sum_m += chord_m(crowns_[i], p_W, direction_W, max_m);
+  return sum_m;
+}
+
+}  // namespace canyon::scene

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace canyon::scene {
+
+/// A tree crown: an ellipsoid of leaves. Attenuates GNSS, and has its own porous triangles in the mesh for LIDAR.
+struct Foliage {
+  Eigen::Vector3d center_W = Eigen::Vector3d::Zero();
+  Eigen::Vector3d radii_m = Eigen::Vector3d::Ones();
+};
+
+/// Tree crowns in a grid over x, y, so that a ray meets only those beside it.
+class FoliageIndex {
+ public:
+  FoliageIndex() = default;
+  explicit FoliageIndex(const std::vector<Foliage>& crowns);
+
+  /// Length of the way from p along the unit direction, up to max_m, inside of crowns, m: the chords, summed in the
+  /// crowns' order (where crowns overlap, both count).
+  double chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const;
+
+ private:
+  struct Cell {
+    double bottom_m = 1e300, top_m = -1e300;
+    std::vector<std::uint32_t> crowns;  ///< ascending; whose bounding square overlaps the cell
+  };
+  void add_cell(const Cell& cell, const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double enter_m,
+                double leave_m, std::vector<std::uint32_t>& met) const;
+
+  std::vector<Foliage> crowns_;
+  double cell_m_ = 0.0;
+  Eigen::Vector3d low_ = Eigen::Vector3d::Zero(), high_ = Eigen::Vector3d::Zero();  ///< of all crowns
+  int columns_ = 0, rows_ = 0;
+  std::vector<Cell> cells_;
+};
+
+}  // namespace canyon::scene

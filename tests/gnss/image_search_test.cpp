@@ -1,0 +1,234 @@
+// The image method against a search that shares nothing with it: every sequence of rectangles is tried, the wave's
+// direction mirrored back along it, and the ray walked forward from the antenna in double precision.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "core/units.h"
+#include "gnss/paths/path_model.h"
+#include "scene/city.h"
+#include "tests/gnss/wall_scene.h"
+
+namespace canyon::gnss {
+namespace {
+
+using testing::WallScene;
+
+struct Rectangle {
+  Eigen::Vector3d corner, u, v, n;
+};
+
+/// Boxes whose corners are exact in single precision, turned by rotations with rational entries.
+class RandomBoxes {
+ public:
+  RandomBoxes(std::uint64_t seed, int boxes, bool upright) {
+    const RandomStream random(seed, "test.boxes");
+    WallScene scene;
+    for (int b = 0; b < boxes; ++b) {
+      std::uint64_t draw = 0;
+      const auto entity = static_cast<std::uint64_t>(b);
+      const auto whole = [&](int low, int high) {
+        return low + static_cast<int>(random.uniform(0.0, high - low + 1.0, entity, draw++));
+      };
+      const int qw = whole(1, 3), qx = upright ? 0 : whole(-1, 1), qy = upright ? 0 : whole(-1, 1), qz = whole(-3, 3);
+      const double n = qw * qw + qx * qx + qy * qy + qz * qz;
+      Eigen::Matrix3d r;  // n times a rotation: whole numbers
+      r << qw * qw + qx * qx - qy * qy - qz * qz, 2 * (qx * qy - qw * qz), 2 * (qx * qz + qw * qy),
+          2 * (qx * qy + qw * qz), qw * qw - qx * qx + qy * qy - qz * qz, 2 * (qy * qz - qw * qx),
+          2 * (qx * qz - qw * qy), 2 * (qy * qz + qw * qx), qw * qw - qx * qx - qy * qy + qz * qz;
+      // Around the antenna, seldom over it.
+      const double bearing = random.uniform(0.0, 2.0 * kPi, entity, 100), away_m = random.uniform(15, 60, entity, 101);
+      const Eigen::Vector3d origin(std::round(away_m * std::cos(bearing)), std::round(away_m * std::sin(bearing)),
+                                   upright ? -2 : whole(-15, 10));
+      const double unit = 0.25;
+      const auto edge = [&](int column, double length_m) -> Eigen::Vector3d {
+        return r.col(column) * (unit * std::max(1.0, std::round(length_m / (n * unit))));
+      };
+      add_box(origin, edge(0, whole(20, 90)), edge(1, whole(5, 30)), edge(2, whole(20, 90)), scene);
+    }
+    scene_ = scene.build();
+  }
+
+  const scene::Scene& scene() const { return *scene_; }
+  const std::vector<Rectangle>& rectangles() const { return rectangles_; }
+
+  /// Index of the rectangle that a facet is.
+  std::size_t rectangle_of(const scene::Facet& facet) const {
+    for (std::size_t i = 0; i < rectangles_.size(); ++i) {
+      const Rectangle& r = rectangles_[i];
+      if ((r.corner + 0.5 * (r.u + r.v) - facet.center_W).norm() < 1e-9 && r.n.dot(facet.normal_W) > 0.999) return i;
+    }
+    ADD_FAILURE() << "a facet that is no rectangle of the test";
+    return 0;
+  }
+
+ private:
+  void add_box(const Eigen::Vector3d& o, const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+               WallScene& scene) {
+    const auto add = [&](const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+      scene.wall(corner, u, v, "metal");
+      rectangles_.push_back({corner, u, v, u.cross(v).normalized()});
+    };
+    add(o, b, a), add(o + c, a, b), add(o, a, c), add(o + b, c, a), add(o, c, b), add(o + a, b, c);
+  }
+
+  std::vector<Rectangle> rectangles_;
+  std::unique_ptr<scene::Scene> scene_;
+};
+
+constexpr double kEdge_m = 0.006;  // nearer than this to an edge, either answer is right
+
+/// Where the ray meets the plane of the rectangle, grown on all sides; the range, or nullopt.
+std::optional<double> meet(const Rectangle& r, const Eigen::Vector3d& from, const Eigen::Vector3d& towards,
+                           double grown_m) {
+  const double approach = r.n.dot(towards);
+  if (std::abs(approach) < 1e-12) return std::nullopt;
+  const double range = r.n.dot(r.corner - from) / approach;
+  if (range <= 0.0) return std::nullopt;
+  const Eigen::Vector3d q = from + range * towards - r.corner;
+  const double u = q.dot(r.u) / r.u.norm(), v = q.dot(r.v) / r.v.norm();
+  const bool inside = u >= -grown_m && v >= -grown_m && u <= r.u.norm() + grown_m && v <= r.v.norm() + grown_m;
+  return inside ? std::optional(range) : std::nullopt;
+}
+
+bool blocked(const std::vector<Rectangle>& all, const Eigen::Vector3d& from, const Eigen::Vector3d& towards,
+             double length_m, double grown_m, std::size_t skip0, std::size_t skip1) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (i == skip0 || i == skip1) continue;
+    const auto range = meet(all[i], from, towards, grown_m);
+    if (range && *range < length_m) return true;
+  }
+  return false;
+}
+
+using Key = std::vector<std::size_t>;
+constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+/// The way over the sequence; its excess, or nullopt. `grown_m` > 0: reflectors grown, obstacles shrunk, so that all
+/// doubtful ways are there; < 0: none of them.
+std::optional<double> walk(const std::vector<Rectangle>& all, const Key& sequence, const Eigen::Vector3d& antenna,
+                           const Eigen::Vector3d& s, double grown_m) {
+  Eigen::Vector3d towards = s;
+  for (std::size_t j = sequence.size(); j-- > 0;) {
+    const Eigen::Vector3d& n = all[sequence[j]].n;
+    towards -= 2.0 * n.dot(towards) * n;
+  }
+  Eigen::Vector3d at = antenna;
+  double length_m = 0.0;
+  std::size_t left = kNone;
+  for (const std::size_t i : sequence) {
+    if (all[i].n.dot(towards) >= 0.0) return std::nullopt;
+    const auto range = meet(all[i], at, towards, grown_m);
+    if (!range || blocked(all, at, towards, *range, -grown_m, left, i)) return std::nullopt;
+    at += *range * towards;
+    length_m += *range;
+    towards -= 2.0 * all[i].n.dot(towards) * all[i].n;
+    left = i;
+  }
+  if (blocked(all, at, towards, 1e9, -grown_m, left, kNone)) return std::nullopt;
+  return length_m - (at - antenna).dot(s);
+}
+
+void all_sequences(std::size_t rectangles, int order, Key& prefix, std::vector<Key>& out) {
+  if (!prefix.empty()) out.push_back(prefix);
+  if (static_cast<int>(prefix.size()) == order) return;
+  for (std::size_t i = 0; i < rectangles; ++i) {
+    if (!prefix.empty() && prefix.back() == i) continue;
+    prefix.push_back(i);
+    all_sequences(rectangles, order, prefix, out);
+    prefix.pop_back();
+  }
+}
+
+PathParameters everything() {
+  PathParameters p;
+  p.cutoff_m = 1e9;
+  p.weakest_db = p.weakest_nlos_db = -300.0;
+  p.finite_facets = false;
+  p.combine_all_m = 1e6;
+  return p;
+}
+
+struct Outcome {
+  int certain = 0, doubtful = 0, per_order[4] = {};
+};
+
+void compare(const RandomBoxes& boxes, int order, const PathParameters& parameters, std::uint64_t seed,
+             Outcome& outcome) {
+  const RandomStream random(seed, "test.satellites");
+  std::vector<Eigen::Vector3d> directions;
+  for (std::uint64_t i = 0; i < 40; ++i)
+    directions.push_back(testing::direction(random.uniform(0, 360, 0, i), random.uniform(3, 85, 1, i)));
+  const Eigen::Vector3d antenna(random.uniform(-10, 10, 2, 0), random.uniform(-10, 10, 3, 0), 1.5);
+  const char* const kNames[] = {"specular1", "specular2", "specular3"};
+  const auto model = find_model(path_models(), kNames[order - 1])->make(parameters);
+  std::vector<SignalPaths> found(directions.size());
+  GnssCounters counters;
+  model->trace(antenna, directions, scene::SceneAt(boxes.scene()), found, counters);
+
+  std::vector<Key> sequences;
+  Key prefix;
+  all_sequences(boxes.rectangles().size(), order, prefix, sequences);
+  for (std::size_t s = 0; s < directions.size(); ++s) {
+    std::map<Key, double> ours;
+    for (const SignalPath& path : found[s].echoes) {
+      Key key;
+      for (int j = 0; j < path.reflections; ++j)
+        key.push_back(boxes.rectangle_of(boxes.scene().facets().facets()[path.facets[static_cast<std::size_t>(j)]]));
+      EXPECT_TRUE(ours.emplace(key, path.excess_m).second) << "a way found twice";
+    }
+    std::size_t possible = 0;
+    for (const Key& key : sequences) {
+      const auto loose = walk(boxes.rectangles(), key, antenna, directions[s], kEdge_m);
+      const auto ours_at = ours.find(key);
+      if (!loose) {
+        EXPECT_EQ(ours_at, ours.end()) << "seed " << seed << " satellite " << s << ": a way that does not exist";
+        continue;
+      }
+      const bool certain = walk(boxes.rectangles(), key, antenna, directions[s], -kEdge_m).has_value();
+      if (certain) {
+        EXPECT_NE(ours_at, ours.end()) << "seed " << seed << " satellite " << s << ": a way missed, order "
+                                       << key.size();
+        ++outcome.certain;
+        ++outcome.per_order[key.size()];
+      } else {
+        ++outcome.doubtful;
+      }
+      if (ours_at != ours.end()) {
+        ++possible;
+        EXPECT_NEAR(ours_at->second, *loose, 1e-6);
+      }
+    }
+    EXPECT_EQ(possible, ours.size());
+  }
+}
+
+TEST(ImageSearch, FindsWhatBruteForceFindsAmongTiltedBoxes) {
+  Outcome outcome;
+  for (std::uint64_t seed = 1; seed <= 16; ++seed) compare(RandomBoxes(seed, 6, false), 3, everything(), seed, outcome);
+  EXPECT_GT(outcome.per_order[1], 80);
+  EXPECT_GT(outcome.per_order[2], 20);
+  EXPECT_GT(outcome.per_order[3], 10);
+  EXPECT_LT(outcome.doubtful, outcome.certain / 20);
+}
+
+// With every shortcut at work: walls hide walls, low walls are left out.
+TEST(ImageSearch, FindsWhatBruteForceFindsAmongUprightBoxes) {
+  PathParameters p = everything();
+  p.combine_all_m = 0.0;
+  Outcome outcome;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) compare(RandomBoxes(seed, 7, true), 3, p, seed, outcome);
+  for (std::uint64_t seed = 101; seed <= 160; ++seed) compare(RandomBoxes(seed, 20, true), 2, p, seed, outcome);
+  EXPECT_GT(outcome.per_order[1], 150);
+  EXPECT_GT(outcome.per_order[2], 90);
+  EXPECT_GT(outcome.per_order[3], 10);
+  EXPECT_LT(outcome.doubtful, outcome.certain / 20);
+}
+
+}  // namespace
+}  // namespace canyon::gnss
