@@ -1,7 +1,7 @@
 #include "gnss/solver/fault_exclusion.h"
 
 #include "core/check.h"
-#include "gnss/solver/chi_square.h"
+#include "core/chi_square.h"
 
 namespace canyon::gnss {
 namespace {

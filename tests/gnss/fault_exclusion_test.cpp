@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "gnss/solver/chi_square.h"
+#include "core/chi_square.h"
 #include "tests/gnss/solver_sky.h"
 
 namespace canyon::gnss {

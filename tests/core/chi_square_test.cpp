@@ -1,10 +1,10 @@
-#include "gnss/solver/chi_square.h"
+#include "core/chi_square.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace canyon::gnss {
+namespace canyon {
 namespace {
 
 // Two degrees of freedom: exp(-x / 2). Four: exp(-x / 2) (1 + x / 2). One: erfc(sqrt(x / 2)).
@@ -14,6 +14,8 @@ TEST(ChiSquare, ClosedForms) {
     EXPECT_NEAR(chi_square_tail(x, 2) / std::exp(-0.5 * x), 1.0, 1e-12) << x;
     EXPECT_NEAR(chi_square_tail(x, 4) / (std::exp(-0.5 * x) * (1.0 + 0.5 * x)), 1.0, 1e-12) << x;
   }
+  // Many degrees of freedom: normal, mean dof, variance 2 dof; the skewness adds up to 0.5 / sqrt(dof).
+  EXPECT_NEAR(chi_square_tail(1e6 + std::sqrt(2e6), 1e6), 0.5 * std::erfc(std::sqrt(0.5)), 5e-4);
   EXPECT_EQ(chi_square_tail(0.0, 3), 1.0);
   EXPECT_EQ(chi_square_tail(-1.0, 3), 1.0);
 }
@@ -33,4 +35,4 @@ TEST(ChiSquare, ThresholdIsTheInverseOfTheTail) {
 }
 
 }  // namespace
-}  // namespace canyon::gnss
+}  // namespace canyon

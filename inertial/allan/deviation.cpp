@@ -1,0 +1,232 @@
+#include "inertial/allan/deviation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/check.h"
+#include "core/chi_square.h"
+#include "core/parallel.h"
+
+namespace canyon::inertial {
+namespace {
+
+// 68.3 %: what one sigma is for a normal variable.
+constexpr double kOutsideEachSide = 0.158655;
+constexpr double kIndependentAverages = 9.0;
+
+/// Sum of squares and count of the differences of one segment's phase x (rate integrated, in samples) at factor m.
+struct SquareSum {
+  double sum = 0.0;
+  std::int64_t count = 0;
+};
+using Kernel = SquareSum(std::span<const double> x, std::int64_t m);
+
+/// Sums in fixed blocks, so that rounding stays small and vector units have something to do.
+template <class Difference>
+SquareSum sum_squares(std::int64_t count, Difference difference) {
+  if (count <= 0) return {};
+  constexpr std::int64_t kBlock = 4096;
+  double total = 0.0;
+  for (std::int64_t begin = 0; begin < count; begin += kBlock) {
+    const std::int64_t end = std::min(count, begin + kBlock);
+    double lanes[4] = {};
+    std::int64_t k = begin;
+    for (; k + 4 <= end; k += 4)
+      for (int lane = 0; lane < 4; ++lane) {
+        const double d = difference(k + lane);
+        lanes[lane] += d * d;
+      }
+    for (; k < end; ++k) lanes[0] += difference(k) * difference(k);
+    total += (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+  }
+  return {total, count};
+}
+
+SquareSum overlapping(std::span<const double> x, std::int64_t m) {
+  const double* p = x.data();
+  return sum_squares(static_cast<std::int64_t>(x.size()) - 2 * m,
+                     [=](std::int64_t k) { return p[k + 2 * m] - 2.0 * p[k + m] + p[k]; });
+}
+
+SquareSum hadamard(std::span<const double> x, std::int64_t m) {
+  const double* p = x.data();
+  auto s = sum_squares(static_cast<std::int64_t>(x.size()) - 3 * m,
+                       [=](std::int64_t k) { return p[k + 3 * m] - 3.0 * (p[k + 2 * m] - p[k + m]) - p[k]; });
+  s.sum /= 3.0;  // the variance is 1/6 of the mean square, the shared scaling below 1/2
+  return s;
+}
+
+SquareSum modified(std::span<const double> x, std::int64_t m) {
+  const auto n = static_cast<std::int64_t>(x.size());
+  const std::int64_t count = n - 3 * m + 1;
+  if (count <= 0) return {};
+  // Sum over m neighbouring second differences, moved along by one at a time. Prefix sums of the phase keep it free of
+  // the drift that a running sum would gather.
+  std::vector<double> prefix(static_cast<std::size_t>(n + 1), 0.0);
+  for (std::int64_t k = 0; k < n; ++k)
+    prefix[static_cast<std::size_t>(k + 1)] = prefix[static_cast<std::size_t>(k)] + x[static_cast<std::size_t>(k)];
+  const double* p = prefix.data();
+  const auto window = [=](std::int64_t k) { return p[k + m] - p[k]; };
+  const double scale = 1.0 / static_cast<double>(m);
+  return sum_squares(count,
+                     [=](std::int64_t k) { return scale * (window(k + 2 * m) - 2.0 * window(k + m) + window(k)); });
+}
+
+SquareSum total(std::span<const double> x, std::int64_t m) {
+  const auto n = static_cast<std::int64_t>(x.size());
+  if (n < 2 * m + 1 || n < 3) return {};
+  // x*(-j) = 2 x(0) - x(j), x*(n-1+j) = 2 x(n-1) - x(n-1-j).
+  const double* p = x.data();
+  const auto extended = [=](std::int64_t k) {
+    if (k < 0) return 2.0 * p[0] - p[-k];
+    if (k >= n) return 2.0 * p[n - 1] - p[2 * (n - 1) - k];
+    return p[k];
+  };
+  return sum_squares(n - 2, [=](std::int64_t k) { return extended(k + 1 - m) - 2.0 * p[k + 1] + extended(k + 1 + m); });
+}
+
+struct Row {
+  const char* name;
+  Kernel* kernel;
+  std::int64_t reach;  ///< averages that a difference spans
+};
+constexpr Row kRows[] = {
+    {"overlapping", overlapping, 2}, {"modified", modified, 3}, {"hadamard", hadamard, 3}, {"total", total, 2}};
+
+const Row& row_of(const std::string& kind) {
+  for (const Row& row : kRows)
+    if (kind == row.name) return row;
+  CANYON_CHECK(false, "no deviation of that name: ", kind);
+  return kRows[0];
+}
+
+/// Rate integrated within each segment, in units of rate x sample; the mean is taken off, which no deviation sees, so
+/// that the sums stay small.
+std::vector<std::vector<double>> phases(std::span<const double> rate, const std::vector<Segment>& segments) {
+  std::vector<std::vector<double>> out;
+  for (const Segment& s : segments) {
+    const std::span<const double> part = rate.subspan(s.begin, s.end - s.begin);
+    const double mean =
+        std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(std::max<std::size_t>(1, part.size()));
+    std::vector<double> x(part.size() + 1, 0.0);
+    for (std::size_t k = 0; k < part.size(); ++k) x[k + 1] = x[k] + (part[k] - mean);
+    out.push_back(std::move(x));
+  }
+  return out;
+}
+
+/// Equivalent degrees of freedom of overlapping estimates (Howe, Allan & Barnes 1981), by the local slope of the
+/// deviation on a log-log plot: -1 white phase (quantization), -1/2 white rate, 0 flicker, +1/2 random walk.
+double equivalent_degrees(double slope, double samples, double m) {
+  const double n = samples;
+  if (slope < -0.75) return std::max(1.0, (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m)));
+  if (slope < -0.25)
+    return std::max(1.0, (3.0 * (n - 1.0) / (2.0 * m) - 2.0 * (n - 2.0) / n) * 4.0 * m * m / (4.0 * m * m + 5.0));
+  if (slope < 0.25)
+    return std::max(1.0,
+                    m == 1.0 ? 2.0 * (n - 2.0) * (n - 2.0) / (2.3 * n - 4.9) : 5.0 * n * n / (4.0 * m * (n + 3.0 * m)));
+  const double q = (n - 1.0) * (n - 1.0) - 3.0 * m * (n - 1.0) + 4.0 * m * m;
+  return std::max(1.0, (n - 2.0) / m * q / ((n - 3.0) * (n - 3.0)));
+}
+
+void add_intervals(std::vector<DeviationPoint>& points, double samples) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    DeviationPoint& p = points[i];
+    // Slope over about a factor of two to each side, where the curve has that much.
+    std::size_t a = i, b = i;
+    while (a > 0 && points[a].tau_s * 2.0 > p.tau_s) --a;
+    while (b + 1 < points.size() && points[b].tau_s < 2.0 * p.tau_s) ++b;
+    double slope = -0.5;
+    if (a != b && points[a].deviation > 0.0 && points[b].deviation > 0.0)
+      slope = std::log(points[b].deviation / points[a].deviation) / std::log(points[b].tau_s / points[a].tau_s);
+    p.edf = equivalent_degrees(slope, samples, static_cast<double>(p.m));
+    p.low = p.deviation * std::sqrt(p.edf / chi_square_threshold(kOutsideEachSide, p.edf));
+    p.high = p.deviation * std::sqrt(p.edf / chi_square_threshold(1.0 - kOutsideEachSide, p.edf));
+  }
+}
+
+}  // namespace
+
+Sampling sampling_of(std::span<const double> t_s, double gap_factor) {
+  CANYON_CHECK(t_s.size() >= 2 && gap_factor > 1.0, t_s.size(), " times, gap factor ", gap_factor);
+  std::vector<double> intervals(t_s.size() - 1);
+  for (std::size_t k = 0; k + 1 < t_s.size(); ++k) {
+    intervals[k] = t_s[k + 1] - t_s[k];
+    CANYON_CHECK(intervals[k] > 0.0, "time does not increase at sample ", k + 1);
+  }
+  std::vector<double> sorted = intervals;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  const double longest = gap_factor * sorted[sorted.size() / 2];
+  Sampling out;
+  std::size_t begin = 0;
+  double sum = 0.0, square = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < intervals.size(); ++k) {
+    if (intervals[k] > longest) {
+      out.segments.push_back({begin, k + 1});
+      begin = k + 1;
+      continue;
+    }
+    sum += intervals[k];
+    square += intervals[k] * intervals[k];
+    count += 1.0;
+  }
+  out.segments.push_back({begin, t_s.size()});
+  out.interval_s = sum / count;
+  out.jitter_s = std::sqrt(std::max(0.0, square / count - out.interval_s * out.interval_s));
+  return out;
+}
+
+std::vector<std::int64_t> averaging_factors(std::int64_t samples, int per_octave) {
+  CANYON_CHECK(per_octave >= 1, "per_octave = ", per_octave);
+  std::vector<std::int64_t> factors;
+  const double most = static_cast<double>(samples) / kIndependentAverages;
+  for (int step = 0;; ++step) {
+    const double m = std::exp2(static_cast<double>(step) / per_octave);
+    if (m > std::max(1.0, most)) break;
+    const std::int64_t whole = std::llround(m);
+    if (factors.empty() || whole > factors.back()) factors.push_back(whole);
+  }
+  return factors;
+}
+
+std::vector<std::string> deviation_kinds() {
+  std::vector<std::string> names;
+  for (const Row& row : kRows) names.emplace_back(row.name);
+  return names;
+}
+
+std::vector<DeviationPoint> deviation(const std::string& kind, std::span<const double> rate, const Sampling& sampling,
+                                      std::span<const std::int64_t> factors) {
+  const Row& row = row_of(kind);
+  for (const Segment& s : sampling.segments)
+    CANYON_CHECK(s.begin < s.end && s.end <= rate.size(), "segment ", s.begin, " to ", s.end, " of ", rate.size());
+  const auto x = phases(rate, sampling.segments);
+  std::vector<DeviationPoint> all(factors.size());
+  parallel_for(factors.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      CANYON_CHECK(factors[i] >= 1, "averaging factor ", factors[i]);
+      SquareSum sum;
+      for (const auto& segment : x) {
+        const SquareSum part = row.kernel(segment, factors[i]);
+        sum.sum += part.sum;
+        sum.count += part.count;
+      }
+      all[i].m = factors[i];
+      all[i].tau_s = static_cast<double>(factors[i]) * sampling.interval_s;
+      if (sum.count > 0)
+        all[i].deviation =
+            std::sqrt(sum.sum / (2.0 * static_cast<double>(sum.count))) / static_cast<double>(factors[i]);
+      all[i].edf = static_cast<double>(sum.count);
+    }
+  });
+  std::vector<DeviationPoint> points;
+  for (const DeviationPoint& p : all)
+    if (p.edf > 0.0) points.push_back(p);
+  std::size_t samples = 0;
+  for (const Segment& s : sampling.segments) samples += s.end - s.begin;
+  add_intervals(points, static_cast<double>(samples));
+  return points;
+}
+
+}  // namespace canyon::inertial
