@@ -3,14 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace canyon::gnss {
+#include "gnss/rinex/calendar_fields.h"
 
-GpsTime gps_time_of_utc(GpsTime utc_as_gps) {
-  // GpsTime::leap_seconds() counts at instants of GPS time, which is ahead of UTC by what it says; one second more, so
-  // that midnight itself already has the new number.
-  const double about_s = utc_as_gps.leap_seconds() + 1.0;
-  return utc_as_gps + (utc_as_gps + about_s).leap_seconds();
-}
+namespace canyon::gnss {
 
 Result<GlonassEphemeris> parse_glonass_record(const RecordLines& record, SatelliteId sv) {
   GlonassEphemeris r;

@@ -9,8 +9,4 @@ namespace canyon::gnss {
 /// Its epoch is UTC. The Error's line is the faulty one's, its `what` starts with the satellite.
 Result<GlonassEphemeris> parse_glonass_record(const RecordLines& record, SatelliteId sv);
 
-/// GPS time of an instant of UTC that was counted as if it were GPS time, by the table of leap seconds. Inside a leap
-/// second, 23:59:60, the result is that of the second after it.
-GpsTime gps_time_of_utc(GpsTime utc_as_gps);
-
 }  // namespace canyon::gnss

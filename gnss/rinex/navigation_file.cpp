@@ -1,13 +1,16 @@
 #include "gnss/rinex/navigation_file.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "core/files.h"
 #include "gnss/rinex/correction_record.h"
 #include "gnss/rinex/glonass_record.h"
 #include "gnss/rinex/kepler_record.h"
 #include "gnss/rinex/navigation_header.h"
+#include "gnss/rinex/satellite_name.h"
 #include "gnss/rinex/text_lines.h"
+#include "gnss/satellites/contradictions.h"
 
 namespace canyon::gnss {
 namespace {
@@ -17,13 +20,6 @@ constexpr const char* kExpectedStart = "a satellite number first";
 
 bool is_blank(std::string_view line) {
   return line.find_first_not_of(" \t") == std::string_view::npos;
-}
-
-std::optional<GnssSystem> system_of(char letter) {
-  for (const GnssSystem system : {GnssSystem::kGps, GnssSystem::kGlonass, GnssSystem::kGalileo, GnssSystem::kBeidou,
-                                  GnssSystem::kQzss, GnssSystem::kSbas})
-    if (letter == system_letter(system)) return system;
-  return std::nullopt;
 }
 
 class RecordReader {
@@ -36,6 +32,7 @@ class RecordReader {
       if (is_blank(lines_.line())) continue;
       RecordLines record{{}, lines_.number(), file_, header_.version2()};
       const std::string_view first = lines_.line();
+      record_line_ = lines_.number();
       if (!starts_record(first)) {
         warn(Error{file_, lines_.number(), "", "a line that belongs to no record", expected_start()});
         collect(record);
@@ -51,6 +48,8 @@ class RecordReader {
         read_named(first, record);
       }
     }
+    drop_contradictions(out_.kepler, kepler_lines_);
+    drop_contradictions(out_.glonass, glonass_lines_);
     if (damaged_ > kMaxWarnings)
       out_.warnings.push_back(file_ + ": " + std::to_string(damaged_ - kMaxWarnings) +
                               " more damaged records were skipped");
@@ -78,7 +77,7 @@ class RecordReader {
 
   void read_old(const RecordLines& record) {
     const char letter = header_.version2() ? header_.system : record.lines.front()[0];
-    const auto system = system_of(letter);
+    const auto system = system_of_letter(letter);
     if (!system && letter != 'I') {
       warn(Error{file_, record.first_line, "", "a line that belongs to no record", kExpectedStart});
       return;
@@ -90,16 +89,16 @@ class RecordReader {
     const auto sv = satellite(record, *system);
     if (!sv) return;
     if (*system == GnssSystem::kGlonass)
-      keep(parse_glonass_record(record, *sv), out_.glonass);
+      keep(parse_glonass_record(record, *sv), out_.glonass, &glonass_lines_);
     else
-      keep(parse_kepler_record(record, *sv, kepler_message_of_old_record(record, *sv)), out_.kepler);
+      keep(parse_kepler_record(record, *sv, kepler_message_of_old_record(record, *sv)), out_.kepler, &kepler_lines_);
   }
 
   /// `> EPH G01 LNAV` and the lines after it.
   void read_named(std::string_view name_line, const RecordLines& record) {
     const std::string kind(columns(name_line, 2, 3)), message(columns(name_line, 10, 4));
     const std::string_view who = columns(name_line, 6, 3);
-    const std::optional<GnssSystem> known = who.empty() ? std::nullopt : system_of(who[0]);
+    const std::optional<GnssSystem> known = who.empty() ? std::nullopt : system_of_letter(who[0]);
     const GnssSystem system = known.value_or(GnssSystem::kSbas);  // of NavIC and others nothing is read either
     // Only ephemerides need a satellite; other records may name the system alone.
     const auto prn = who.size() > 1 ? whole_number(who.substr(1)) : std::optional<int>(kind == "EPH" ? 0 : 1);
@@ -115,9 +114,9 @@ class RecordReader {
         warn(Error{file_, record.first_line, "", "satellite \"" + printable(columns(record.lines.front(), 0, 3)) + "\"",
                    sv.str()});
       } else if (kepler) {
-        keep(parse_kepler_record(record, sv, *kepler), out_.kepler);
+        keep(parse_kepler_record(record, sv, *kepler), out_.kepler, &kepler_lines_);
       } else {
-        keep(parse_glonass_record(record, sv), out_.glonass);
+        keep(parse_glonass_record(record, sv), out_.glonass, &glonass_lines_);
       }
     } else if (kind == "ION" && is_klobuchar(system, message)) {
       keep(parse_klobuchar_record(record, sv), out_.klobuchar);
@@ -154,12 +153,30 @@ class RecordReader {
     return std::nullopt;
   }
 
+  /// `lines`: where to note the line that the record begins with.
   template <class T>
-  void keep(const Result<T>& parsed, std::vector<T>& to) {
-    if (parsed.ok())
-      to.push_back(*parsed);
-    else
+  void keep(const Result<T>& parsed, std::vector<T>& to, std::vector<int>* lines = nullptr) {
+    if (!parsed.ok()) {
       warn(parsed.error());
+      return;
+    }
+    to.push_back(*parsed);
+    if (lines != nullptr) lines->push_back(record_line_);
+  }
+
+  template <class T>
+  void drop_contradictions(std::vector<T>& records, const std::vector<int>& lines) {
+    const auto found = contradictions(records);
+    for (const Contradiction& c : found) {
+      char distance[32];
+      std::snprintf(distance, sizeof distance, "%.0f km", 1e-3 * c.distance_m);
+      warn(Error{file_, lines[c.index], "",
+                 records[c.index].sv.str() + ": the orbit of " + records[c.index].toe.iso(0) + " is " + distance +
+                     " away from what the records before and after it say",
+                 ""});
+    }
+    for (auto c = found.rbegin(); c != found.rend(); ++c)
+      records.erase(records.begin() + static_cast<std::ptrdiff_t>(c->index));
   }
 
   void warn(const Error& error) {
@@ -171,6 +188,8 @@ class RecordReader {
   const std::string& file_;
   NavigationData& out_;
   std::size_t damaged_ = 0;
+  int record_line_ = 0;  // where the record at hand begins
+  std::vector<int> kepler_lines_, glonass_lines_;
 };
 
 std::optional<GpsTime> first_epoch(const NavigationData& data) {
@@ -189,6 +208,7 @@ Result<NavigationData> parse_navigation_file(std::string_view text, const std::s
   out.files.push_back({file_name, header.version});
   out.time_corrections = header.time_corrections;
   out.leap_seconds = header.leap_seconds;
+  out.warnings = header.warnings;
   RecordReader reader(lines, header, file_name, out);
   reader.read_all();
   const auto first = first_epoch(out);

@@ -70,9 +70,9 @@ class HeaderReader {
         out_.leap_seconds = whole_number(columns(lines_.line(), 0, 6));
         if (!out_.leap_seconds) return unreadable("LEAP SECONDS", "a whole number");
       } else if (name == "TIME SYSTEM CORR") {
-        CANYON_TRY_STATUS(time_correction(0, 5, 17, 22, 16, 38, 7, 45, 5));
+        time_correction(0, 5, 17, 22, 16, 38, 7, 45, 5);
       } else if (name == "DELTA-UTC: A0,A1,T,W") {
-        CANYON_TRY_STATUS(time_correction(std::string_view::npos, 3, 19, 22, 19, 41, 9, 50, 9));
+        time_correction(std::string_view::npos, 3, 19, 22, 19, 41, 9, 50, 9);
       }
     }
     return Error{file_, lines_.number(), "", "the file ends inside its header", "a line \"END OF HEADER\""};
@@ -110,13 +110,17 @@ class HeaderReader {
     return Ok{};
   }
 
-  Status time_correction(std::size_t code_at, std::size_t a0_at, std::size_t a0_width, std::size_t a1_at,
-                         std::size_t a1_width, std::size_t sow_at, std::size_t sow_width, std::size_t week_at,
-                         std::size_t week_width) {
+  /// No position depends on it, so one that cannot be read is only warned of.
+  void time_correction(std::size_t code_at, std::size_t a0_at, std::size_t a0_width, std::size_t a1_at,
+                       std::size_t a1_width, std::size_t sow_at, std::size_t sow_width, std::size_t week_at,
+                       std::size_t week_width) {
     const std::string_view line = lines_.line();
     const std::string_view code = code_at == std::string_view::npos ? "GPUT" : columns(line, code_at, 4);
     const auto a0 = fortran_number(columns(line, a0_at, a0_width)), a1 = fortran_number(columns(line, a1_at, a1_width));
-    if (!a0 || !a1) return Ok{};  // some writers shift its columns; no position depends on it
+    if (!a0 || !a1) {
+      out_.warnings.push_back(unreadable("time system correction", "two numbers").str() + "; skipped");
+      return;
+    }
     // The reference time is often left out (GLUT) or 0; the correction hardly depends on it.
     const auto sow = fortran_number(columns(line, sow_at, sow_width));
     const auto week = whole_number(columns(line, week_at, week_width));
@@ -124,7 +128,6 @@ class HeaderReader {
     if (sow && week && *week >= 0 && *week < 10000 && *sow >= 0.0 && *sow <= kSecondsPerWeek)
       out.t_reference = GpsTime::from_week_sow(*week, *sow);
     out_.time_corrections.push_back(out);
-    return Ok{};
   }
 
   TextLines& lines_;

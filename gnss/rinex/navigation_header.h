@@ -17,6 +17,7 @@ struct NavigationHeader {
   std::vector<BroadcastNequick> nequick;      ///< the same
   std::vector<TimeSystemCorrection> time_corrections;
   std::optional<int> leap_seconds;
+  std::vector<std::string> warnings;  ///< corrections between time systems that cannot be read
 
   bool version2() const { return version < 3.0; }
 };

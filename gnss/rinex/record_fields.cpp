@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "gnss/rinex/calendar_fields.h"
 #include "gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
@@ -60,10 +61,7 @@ std::optional<GpsTime> epoch_of_line(std::string_view line, bool version2) {
   const auto second = fortran_number(version2 ? columns(line, 17, 5) : columns(line, 20, 3));
   if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
   const int full_year = version2 ? *year + (*year < 80 ? 2000 : 1900) : *year;
-  if (full_year < 1980 || full_year > 2200 || *month < 1 || *month > 12 || *day < 1 || *day > 31 || *hour < 0 ||
-      *hour > 24 || *minute < 0 || *minute > 59 || *second < 0.0 || *second >= 61.0)
-    return std::nullopt;
-  return GpsTime::from_calendar(full_year, *month, *day, *hour, *minute, *second);
+  return time_of_fields(full_year, *month, *day, *hour, *minute, *second);
 }
 
 GpsTime nearest_with_sow(double sow_s, GpsTime near) {

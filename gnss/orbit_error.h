@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "gnss/products/precise_orbits.h"
+
+namespace canyon::gnss {
+
+/// Broadcast minus precise, one satellite at one epoch.
+struct OrbitErrorSample {
+  SatelliteId sv;
+  GpsTime t;
+  /// Along the axes of the precise orbit: outwards; in the orbital plane, forwards; along the angular momentum.
+  double radial_m = 0.0, along_m = 0.0, cross_m = 0.0;
+  double clock_m = 0.0;  ///< c times (broadcast - precise), minus its median over the system's satellites of that epoch
+};
+
+/// Root mean squares, and the signal-in-space range error.
+struct OrbitErrorFigures {
+  int samples = 0, satellites = 0;
+  double radial_mean_m = kNaN;
+  double radial_rms_m = kNaN, along_rms_m = kNaN, cross_rms_m = kNaN, rms_3d_m = kNaN, clock_rms_m = kNaN;
+  /// SISRE^2 = mean[(w_R R - c dT)^2 + w_AC (A^2 + C^2)], weights of Montenbruck et al. 2015, table 4 (GPS: 0.98,
+  /// 1/49).
+  double sisre_m = kNaN;
+  double sisre_unbiased_m = kNaN;  ///< the same with each satellite's mean of (w_R R - c dT) removed
+};
+
+struct OrbitErrors {
+  std::vector<OrbitErrorSample> samples;  ///< by epoch, then by satellite
+  int without_clock = 0;                  ///< precise positions left out because their clock is not known
+
+  /// Figures of the samples of which `wanted` holds.
+  template <class Wanted>
+  OrbitErrorFigures figures(Wanted wanted) const {
+    std::vector<OrbitErrorSample> chosen;
+    for (const auto& s : samples)
+      if (wanted(s.sv)) chosen.push_back(s);
+    return figures_of(chosen);
+  }
+  OrbitErrorFigures figures() const { return figures_of(samples); }
+
+ private:
+  static OrbitErrorFigures figures_of(const std::vector<OrbitErrorSample>& samples);
+};
+
+/// Compares a broadcast constellation with the precise orbits at the epochs of the SP3 files (nothing is interpolated
+/// but the clocks of a clock file). Both clocks refer to the two-frequency combination (precise_clock_bands()) and
+/// carry the periodic relativity. Without options.antennas the precise position is the centre of mass and the broadcast
+/// one the antenna: the radial mean then shows the antenna's offset. Unhealthy and expired satellites have no broadcast
+/// state and do not count.
+OrbitErrors orbit_errors(const Constellation& broadcast, const PreciseOrbits& precise,
+                         const PreciseOptions& options = {});
+
+}  // namespace canyon::gnss

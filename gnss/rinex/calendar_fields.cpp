@@ -1,0 +1,38 @@
+#include "gnss/rinex/calendar_fields.h"
+
+#include <array>
+
+#include "gnss/rinex/text_lines.h"
+
+namespace canyon::gnss {
+
+std::optional<GpsTime> time_of_fields(int year, int month, int day, int hour, int minute, double second) {
+  if (year < 1980 || year > 2200 || month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 24 ||
+      minute < 0 || minute > 59 || !(second >= 0.0 && second < 61.0))
+    return std::nullopt;
+  return GpsTime::from_calendar(year, month, day, hour, minute, second);
+}
+
+std::optional<GpsTime> time_of_words(std::string_view text) {
+  std::array<int, 5> whole{};
+  for (int& value : whole) {
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const auto number = whole_number(text.substr(0, end));
+    if (!number) return std::nullopt;
+    value = *number;
+    text.remove_prefix(end);
+  }
+  const auto second = fortran_number(columns(text, 0, text.size()));
+  if (!second) return std::nullopt;
+  return time_of_fields(whole[0], whole[1], whole[2], whole[3], whole[4], *second);
+}
+
+GpsTime gps_time_of_utc(GpsTime utc_as_gps) {
+  // GpsTime::leap_seconds() counts at instants of GPS time, which is ahead of UTC by what it says; one second more, so
+  // that midnight itself already has the new number.
+  const double about_s = utc_as_gps.leap_seconds() + 1.0;
+  return utc_as_gps + (utc_as_gps + about_s).leap_seconds();
+}
+
+}  // namespace canyon::gnss
