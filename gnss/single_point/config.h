@@ -20,7 +20,7 @@ struct SinglePointConfig {
   std::string ionosphere = "klobuchar";   ///< none | klobuchar | klobuchar_own
   std::string troposphere = "saastamoinen_niell";
   double shared_ionosphere = 0.5;  ///< 1-sigma of the modelled ionosphere's scale, an unknown; 0 = not solved
-  double smoothing_s = 0.0;        ///< time constant of carrier smoothing; 0 = off
+  double smoothing_s = 300.0;      ///< time constant of carrier smoothing; 0 = off
 
   std::string weighting = "budget";
   double sigma_m = 0.5;

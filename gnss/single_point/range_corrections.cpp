@@ -55,14 +55,17 @@ double troposphere_correction_m(const std::string& model, const SkyView& view) {
 }
 
 CodeMeasurement single_measurement(const SignalObservation& signal, SatelliteId sv, int frequency_channel) {
-  return {signal.pseudorange_m, carrier_hz(sv.system, digit(signal.code.band), frequency_channel), 1.0};
+  const double hz = carrier_hz(sv.system, digit(signal.code.band), frequency_channel);
+  return {signal.pseudorange_m, signal.phase_cycles * kSpeedOfLight / hz, hz, 1.0};
 }
 
 CodeMeasurement ionosphere_free_measurement(const SignalPair& pair, SatelliteId sv, int frequency_channel) {
   const double hz1 = carrier_hz(sv.system, digit(pair.first.code.band), frequency_channel);
   const double hz2 = carrier_hz(sv.system, digit(pair.second.code.band), frequency_channel);
   const double a = first_weight(hz1, hz2), b = a - 1.0;
-  return {a * pair.first.pseudorange_m - b * pair.second.pseudorange_m, hz1, std::hypot(a, b)};
+  return {a * pair.first.pseudorange_m - b * pair.second.pseudorange_m,
+          kSpeedOfLight * (a * pair.first.phase_cycles / hz1 - b * pair.second.phase_cycles / hz2), hz1,
+          std::hypot(a, b)};
 }
 
 }  // namespace canyon::gnss

@@ -23,6 +23,7 @@ double troposphere_correction_m(const std::string& model, const SkyView& view);
 /// Pseudorange and satellite clock of what is used: one signal, or the ionosphere-free combination of two.
 struct CodeMeasurement {
   double pseudorange_m = kNaN;
+  double phase_m = kNaN;      ///< carrier phase of the same, with an unknown constant
   double hz = kNaN;           ///< of the signal; of the first one of two
   double noise_factor = 1.0;  ///< 1-sigma of the combination over that of one signal
 };

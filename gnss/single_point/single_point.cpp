@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/signal.h"
+#include "gnss/single_point/carrier_smoothing.h"
 #include "gnss/single_point/code_choice.h"
 #include "gnss/single_point/group_delay.h"
 #include "gnss/single_point/range_corrections.h"
@@ -24,6 +25,7 @@ struct Candidate {
   SignalObservation signal;
   SatelliteState state;  // at transmission, in E of transmission
   double group_delay_s = 0.0;
+  bool loss_of_lock = false;
   KlobucharCoefficients klobuchar;
 };
 
@@ -64,6 +66,7 @@ class SinglePoint {
         inputs_(inputs),
         config_(config),
         group_delays_(config.group_delay, inputs.navigation),
+        smoothing_(config.smoothing_s),
         missing_(file.name) {
     const auto* weighting = find_model(range_weightings(), config.weighting);
     CANYON_CHECK(weighting != nullptr, "weighting ", config.weighting);
@@ -114,6 +117,7 @@ class SinglePoint {
       return out;
     }
     at_E = rough.p_E;
+    smooth(candidates, epoch, at_E);
 
     // Corrected for elevations at the position before, until it stays: a metre moves a delay by less than 1e-6 m.
     constexpr int kPasses = 6;
@@ -160,6 +164,7 @@ class SinglePoint {
       Candidate c;
       c.sv = s.sv;
       c.signal = *signal;
+      c.loss_of_lock = signal->loss_of_lock || (pair && pair->second.loss_of_lock);
       c.state = view->state;
       const int channel = c.state.frequency_channel;
       c.code = pair ? ionosphere_free_measurement(*pair, s.sv, channel) : single_measurement(*signal, s.sv, channel);
@@ -194,6 +199,23 @@ class SinglePoint {
     return solution.ok ? solution : rough_->solve(ranges, guess_E);
   }
 
+  double ionosphere_m(const Candidate& c, const SkyView& view) const {
+    if (!uses_klobuchar()) return 0.0;
+    const double scale = kL1Hz / c.code.hz;
+    return scale * scale * ionosphere_correction_m(config_.ionosphere, c.klobuchar, view);
+  }
+
+  void smooth(std::vector<Candidate>& candidates, const ObservationEpoch& epoch, const Eigen::Vector3d& at_E) {
+    if (config_.smoothing_s <= 0.0) return;
+    const Horizon horizon(at_E);
+    for (auto& c : candidates) {
+      CarrierSmoothing::Input in{c.code.pseudorange_m, c.code.phase_m, 0.0,
+                                 c.loss_of_lock || epoch.after_power_failure};
+      in.ionosphere_m = ionosphere_m(c, horizon.view(epoch.t, c.state.p_E));
+      c.code.pseudorange_m = smoothing_.smooth(c.sv, epoch.t, in).code_m;
+    }
+  }
+
   void correct(const std::vector<Candidate>& candidates, GpsTime t, const Eigen::Vector3d& at_E, GnssEpoch& epoch,
                std::vector<RangeMeasurement>& ranges) const {
     const Horizon horizon(at_E);
@@ -206,21 +228,18 @@ class SinglePoint {
       o.p_E = turned_by_earth(c.state.p_E, travel_s);
       const SkyView view = horizon.view(t, o.p_E);
       if (view.elevation_rad < config_.mask_deg * kDegree) continue;
-      const double scale = kL1Hz / c.code.hz;
-      const double ionosphere_m =
-          uses_klobuchar() ? scale * scale * ionosphere_correction_m(config_.ionosphere, c.klobuchar, view) : 0.0;
+      const double delay_m = ionosphere_m(c, view);
       o.v_E = turned_by_earth(c.state.v_E, travel_s);
       o.pseudorange_m = c.code.pseudorange_m;
       o.carrier_phase_cycles = c.signal.phase_cycles;
       o.doppler_hz = c.signal.doppler_hz;
       o.cn0_dbhz = c.signal.cn0_dbhz;
       o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
-      o.correction_m = ionosphere_m + troposphere_correction_m(config_.troposphere, view);
+      o.correction_m = delay_m + troposphere_correction_m(config_.troposphere, view);
       o.sigma_m = c.code.noise_factor *
-                  weighting_->sigma_m({c.sv.system, view.elevation_rad, o.cn0_dbhz, ionosphere_m, c.state.accuracy_m});
+                  weighting_->sigma_m({c.sv.system, view.elevation_rad, o.cn0_dbhz, delay_m, c.state.accuracy_m});
       epoch.observations.push_back(o);
-      ranges.push_back(
-          {c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, config_.shared_ionosphere * ionosphere_m});
+      ranges.push_back({c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, config_.shared_ionosphere * delay_m});
     }
   }
 
@@ -243,6 +262,7 @@ class SinglePoint {
   std::unique_ptr<PositionSolver> rough_, rough_robust_, solver_;
   Eigen::Vector3d guess_E_ = Eigen::Vector3d::Zero();
   GroupDelays group_delays_;
+  CarrierSmoothing smoothing_;
   MissingEphemerides missing_;
   std::int64_t observed_ = 0, with_ephemeris_ = 0;
 };
