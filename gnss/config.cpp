@@ -2,7 +2,7 @@
 #include "gnss/atmosphere/troposphere.h"
 #include "gnss/errors/ephemeris_error.h"
 #include "gnss/paths/path_model.h"
-#include "gnss/receiver/antenna.h"
+#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/receiver/code_correlation.h"
 #include "gnss/receiver/multipath_rule.h"
 #include "gnss/receiver/receiver_clock.h"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "gnss/paths/path_model.h"
-#include "gnss/receiver/antenna.h"
+#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/signal.h"
 
 namespace canyon::gnss {
@@ -13,7 +13,7 @@ struct LinkBudget {
   double cn0_zenith_dbhz = 45.0;   ///< of a clear satellite overhead
   double foliage_db_per_m = 0.25;  ///< specific attenuation gamma
   double foliage_max_db = 28.0;    ///< A_m
-  std::shared_ptr<const Antenna> antenna = make_sine_antenna({});
+  std::shared_ptr<const ReceiverAntenna> antenna = make_sine_antenna({});
 
   /// ITU-R P.833: A_m (1 - exp(-d gamma / A_m)).
   double foliage_db(double length_m) const;

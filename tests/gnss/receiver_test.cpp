@@ -4,7 +4,7 @@
 
 #include "core/check.h"
 #include "core/units.h"
-#include "gnss/receiver/antenna.h"
+#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/receiver/link_budget.h"
 #include "gnss/receiver/multipath_rule.h"
 #include "gnss/receiver/receiver_clock.h"

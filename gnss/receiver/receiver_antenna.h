@@ -10,9 +10,9 @@
 namespace canyon::gnss {
 
 /// Receiving antenna, mounted level, with the same pattern at every azimuth.
-class Antenna {
+class ReceiverAntenna {
  public:
-  virtual ~Antenna() = default;
+  virtual ~ReceiverAntenna() = default;
   /// Gain for right- and for left-hand circular polarization, dB relative to right-hand at the zenith. Elevations in
   /// [-pi/2, pi/2].
   virtual double rhcp_db(double elevation_rad) const = 0;
@@ -28,11 +28,11 @@ struct AntennaParameters {
   double lhcp_rejection_db = 10.0;  ///< model sine
 };
 
-using MakeAntenna = std::shared_ptr<const Antenna>(const AntennaParameters&);
+using MakeAntenna = std::shared_ptr<const ReceiverAntenna>(const AntennaParameters&);
 std::span<const ModelRow<MakeAntenna>> antenna_models();
 
 /// Right-hand: -loss (1 - sin e), so arrivals from below lose up to twice the loss; left-hand the rejection below that
 /// at every elevation; one phase centre.
-std::shared_ptr<const Antenna> make_sine_antenna(const AntennaParameters& p);
+std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const AntennaParameters& p);
 
 }  // namespace canyon::gnss

@@ -1,4 +1,4 @@
-#include "gnss/receiver/antenna.h"
+#include "gnss/receiver/receiver_antenna.h"
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace canyon::gnss {
 namespace {
 
-std::shared_ptr<const Antenna> antenna(const char* name) {
+std::shared_ptr<const ReceiverAntenna> antenna(const char* name) {
   return find_model(antenna_models(), name)->make({7.0, 10.0});
 }
 

@@ -1,4 +1,4 @@
-#include "gnss/receiver/antenna.h"
+#include "gnss/receiver/receiver_antenna.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 namespace canyon::gnss {
 namespace {
 
-class SineAntenna final : public Antenna {
+class SineAntenna final : public ReceiverAntenna {
  public:
   explicit SineAntenna(const AntennaParameters& p) : p_(p) {}
   double rhcp_db(double elevation_rad) const override { return -p_.horizon_loss_db * (1.0 - std::sin(elevation_rad)); }
@@ -27,7 +27,7 @@ struct PatternTable {
   std::array<double, 19> variation_mm;  ///< by growing elevation
 };
 
-class TabulatedAntenna final : public Antenna {
+class TabulatedAntenna final : public ReceiverAntenna {
  public:
   explicit TabulatedAntenna(const PatternTable& table) : table_(table) {}
   double rhcp_db(double elevation_rad) const override { return gain(table_.rhcp_db, elevation_rad); }
@@ -89,16 +89,16 @@ constexpr PatternTable kChokeRing{{-35, -34, -33, -31, -27, -20, -11.5, -7.2, -4
                                   {14.88, 9.56, 4.79, 0.87, -2.20, -4.54, -6.27, -7.46, -8.14, -8.30, -7.97, -7.19,
                                    -6.05, -4.69, -3.28, -1.97, -0.92, -0.24, 0.00}};
 
-std::shared_ptr<const Antenna> make_isotropic(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_isotropic(const AntennaParameters&) {
   return std::make_shared<TabulatedAntenna>(kIsotropic);
 }
-std::shared_ptr<const Antenna> make_patch(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_patch(const AntennaParameters&) {
   return std::make_shared<TabulatedAntenna>(kPatch);
 }
-std::shared_ptr<const Antenna> make_survey(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_survey(const AntennaParameters&) {
   return std::make_shared<TabulatedAntenna>(kSurvey);
 }
-std::shared_ptr<const Antenna> make_choke_ring(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_choke_ring(const AntennaParameters&) {
   return std::make_shared<TabulatedAntenna>(kChokeRing);
 }
 
@@ -116,7 +116,7 @@ std::span<const ModelRow<MakeAntenna>> antenna_models() {
   return kModels;
 }
 
-std::shared_ptr<const Antenna> make_sine_antenna(const AntennaParameters& p) {
+std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const AntennaParameters& p) {
   return std::make_shared<SineAntenna>(p);
 }
 
