@@ -2,13 +2,15 @@
 #include "gnss/atmosphere/troposphere.h"
 #include "gnss/errors/ephemeris_error.h"
 #include "gnss/paths/path_model.h"
-#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/receiver/code_correlation.h"
 #include "gnss/receiver/multipath_rule.h"
+#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/receiver/receiver_clock.h"
 #include "gnss/receiver/receiver_mode.h"
 #include "gnss/sensor_models.h"
+#include "gnss/solver/fault_exclusion.h"
 #include "gnss/solver/position_solver.h"
+#include "gnss/solver/weighting.h"
 
 namespace canyon::gnss {
 
@@ -22,6 +24,12 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.number("isotropic_max_m", c.isotropic_max_m, {0.0, 1e4}, "truth_plus_isotropic: longest error");
   f.number("isotropic_sigma_m", c.isotropic_sigma_m, {1e-6, 1e4},
            "truth_plus_isotropic: 1-sigma per axis that the fix claims");
+
+  f.number("white_sigma_m", c.white_sigma_m, {0.0, 1e4}, "truth_plus_white: 1-sigma per horizontal axis");
+  f.number("white_sigma_up_m", c.white_sigma_up_m, {0.0, 1e4}, "truth_plus_white: 1-sigma of the height");
+  f.number("count_noise_max_m", c.count_noise_max_m, {0.0, 1e4},
+           "satellite_count: three sigmas per axis with four satellites");
+  f.number("count_noise_min_m", c.count_noise_min_m, {0.0, 1e4}, "satellite_count: the same with twelve or more");
 
   f.choice("mode", c.mode, model_names(receiver_modes()), "what the receiver corrects");
   f.number("baseline_km", c.baseline_km, {0.0, 500.0}, "dgps: distance of the base station");
@@ -41,8 +49,9 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.number("relative_humidity", c.relative_humidity, {0.0, 1.0}, "relative humidity at the receiver");
   f.choice("ephemeris_error", c.ephemeris_error, model_names(ephemeris_error_models()),
            "error of the broadcast orbit and satellite clock");
-  f.number("ephemeris_sigma_m", c.ephemeris_sigma_m, {0.0, 1000.0}, "gauss_markov: 1-sigma of the range error");
-  f.number("ephemeris_tau_s", c.ephemeris_tau_s, {60.0, 1e6}, "gauss_markov: correlation time");
+  f.number("ephemeris_sigma_m", c.ephemeris_sigma_m, {0.0, 1000.0},
+           "ephemeris_error gauss_markov: 1-sigma of the range error");
+  f.number("ephemeris_tau_s", c.ephemeris_tau_s, {60.0, 1e6}, "ephemeris_error gauss_markov: correlation time");
   f.choice("receiver_clock", c.receiver_clock, model_names(receiver_clock_models()), "receiver clock error");
 
   f.choice("paths", c.paths, model_names(path_models()), "propagation in the scene");
@@ -81,6 +90,9 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.number("reacquisition_s", c.reacquisition_s, {0.0, 600.0}, "and after it has been there for so long");
 
   f.choice("solver", c.solver, model_names(position_solvers()), "how ranges become a position");
+  f.choice("weighting", c.weighting, model_names(range_weightings()), "1-sigma assumed for each pseudorange");
+  f.choice("raim", c.raim, model_names(fault_exclusions()), "test of the ranges against one another, and repair");
+  f.number("raim_false_alarm", c.raim_false_alarm, {1e-9, 0.5}, "probability that a faultless epoch fails that test");
   f.number("solver_sigma_m", c.solver_sigma_m, {1e-3, 1000.0},
            "1-sigma the solver assumes for a corrected pseudorange at the zenith");
   f.number("max_gdop", c.max_gdop, {1.0, 1e6}, "fixes with a larger GDOP are refused");

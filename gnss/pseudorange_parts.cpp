@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "core/units.h"
-#include "gnss/rinex/navigation_file.h"
+#include "gnss/satellite_source.h"
+#include "gnss/solver/fault_exclusion.h"
 
 namespace canyon::gnss {
 namespace {
@@ -15,23 +16,6 @@ Result<const ModelRow<Make>*> choose(std::span<const ModelRow<Make>> rows, const
   std::string all;
   for (const auto& n : model_names(rows)) all += (all.empty() ? "" : ", ") + n;
   return Error{"", 0, std::string("gnss.") + key, "\"" + name + "\" is not a model", all};
-}
-
-/// The satellites, and what their navigation message says about the ionosphere.
-Result<KlobucharCoefficients> make_satellites(const GnssConfig& config, GpsTime start, GpsTime end,
-                                              PseudorangeParts& parts) {
-  CANYON_TRY_STATUS(check_systems(config.systems, "gnss.systems"));
-  std::vector<std::string> files = config.nav_files;
-  if (!config.nav_file.empty()) files.insert(files.begin(), config.nav_file);
-  if (files.empty()) {
-    parts.constellation = make_nominal_gps();
-    return kBuiltInKlobuchar;
-  }
-  CANYON_TRY(const NavigationData data, read_navigation_files(files));
-  CANYON_TRY_STATUS(check_coverage(data, config.systems, start, end, "gnss.nav_file"));
-  parts.warnings = data.warnings;
-  parts.constellation = make_broadcast(data, {.systems = config.systems});
-  return data.klobuchar_at(GnssSystem::kGps, start).value_or(kBuiltInKlobuchar);
 }
 
 CorrelatorDesign correlator_design(const GnssConfig& c, Modulation modulation) {
@@ -91,8 +75,14 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
   CANYON_TRY(const auto* mode, choose(receiver_modes(), "mode", c.mode));
   CANYON_TRY(const auto* solver, choose(position_solvers(), "solver", c.solver));
 
+  CANYON_TRY(const auto* weighting, choose(range_weightings(), "weighting", c.weighting));
+  CANYON_TRY(const auto* raim, choose(fault_exclusions(), "raim", c.raim));
+
   PseudorangeParts parts;
-  CANYON_TRY(const KlobucharCoefficients klobuchar, make_satellites(c, start, end, parts));
+  CANYON_TRY(SatelliteSource source, make_satellite_source(c, start, end));
+  const KlobucharCoefficients klobuchar = source.klobuchar;
+  parts.warnings = source.warnings;
+  parts.constellation = std::move(source.constellation);
   parts.ionosphere = ionosphere->make({c.vtec_tecu, klobuchar});
   parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
   parts.ephemeris_error = ephemeris_error->make({seed, c.ephemeris_sigma_m, c.ephemeris_tau_s});
@@ -109,7 +99,10 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
                            c.base_error_scale});
   PositionSolverParameters solver_parameters;
   solver_parameters.max_gdop = c.max_gdop;
+  solver_parameters.fault_exclusion = raim->name;
+  solver_parameters.false_alarm = c.raim_false_alarm;
   parts.solver = solver->make(solver_parameters);
+  parts.weighting = weighting->make({c.solver_sigma_m});
   parts.link.cn0_zenith_dbhz = c.cn0_zenith_dbhz;
   parts.link.foliage_db_per_m = c.foliage_db_per_m;
   parts.link.foliage_max_db = c.foliage_max_db;

@@ -15,6 +15,7 @@
 #include "gnss/receiver/receiver_mode.h"
 #include "gnss/receiver/signal_lock.h"
 #include "gnss/solver/position_solver.h"
+#include "gnss/solver/weighting.h"
 
 namespace canyon::gnss {
 
@@ -35,6 +36,7 @@ struct PseudorangeParts {
   std::unique_ptr<ReceiverClock> clock;
   std::unique_ptr<ReceiverMode> mode;
   std::unique_ptr<PositionSolver> solver;
+  std::unique_ptr<RangeWeighting> weighting;
   LinkBudget link;
   SignalLockParameters locks;
   std::vector<std::string> warnings;

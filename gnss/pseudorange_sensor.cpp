@@ -88,7 +88,7 @@ class PseudorangeSensor final : public GnssSensor {
       out.truth.satellites.push_back(truth);
     }
 
-    const ReceiverParts receiver{*parts_.constellation, *parts_.mode, *parts_.solver, config_.solver_sigma_m,
+    const ReceiverParts receiver{*parts_.constellation, *parts_.mode, *parts_.solver, *parts_.weighting,
                                  frame_.origin_E()};
     std::vector<Correction> corrections;
     out.fix = compute_fix(receiver, t, out.epoch, inputs, corrections);

@@ -9,6 +9,9 @@ constexpr ModelRow<MakeSensor> kSensors[] = {
     {"pseudorange", make_pseudorange_sensor, "satellites, delays, paths in the scene, receiver and solver"},
     {"truth_plus_isotropic", make_isotropic_sensor,
      "truth plus a random direction times U(min, max), independent per fix"},
+    {"truth_plus_white", make_white_noise_sensor, "truth plus white Gaussian noise per axis"},
+    {"satellite_count", make_satellite_count_sensor,
+     "Balaguer & Carpin (2008): truth plus noise that falls with the number of satellites in sight"},
 };
 
 }  // namespace
@@ -21,7 +24,8 @@ Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, s
                                                      GpsTime end, const scene::Scene& scene) {
   const auto* row = find_model(sensor_models(), config.model);
   if (row == nullptr)
-    return Error{"", 0, "gnss.model", "\"" + config.model + "\" is not a model", "pseudorange or truth_plus_isotropic"};
+    return Error{"", 0, "gnss.model", "\"" + config.model + "\" is not a model",
+                 "pseudorange, truth_plus_isotropic, truth_plus_white or satellite_count"};
   return row->make(config, seed, start, end, scene);
 }
 

@@ -48,7 +48,7 @@ class GnssSensor {
 
 /// [gnss] of a mission file. Each `choice` names a row of that effect's table.
 struct GnssConfig {
-  std::string model = "pseudorange";  ///< pseudorange | truth_plus_isotropic (the paper's low fidelity)
+  std::string model = "pseudorange";  ///< a row of sensor_models(); truth_plus_isotropic is the paper's low fidelity
   double rate_hz = 2.0;
   double mask_deg = 10.0;
   Eigen::Vector3d lever_arm_m{-0.3, 0.0, 1.2};  ///< antenna in B
@@ -57,6 +57,14 @@ struct GnssConfig {
   double isotropic_min_m = 0.3;
   double isotropic_max_m = 0.5;
   double isotropic_sigma_m = 0.23;  ///< what the fix claims per axis: sqrt(mean square / 3)
+
+  // truth_plus_white
+  double white_sigma_m = 1.0;     ///< per horizontal axis
+  double white_sigma_up_m = 2.0;  ///< vertical
+
+  // satellite_count: three sigmas per axis
+  double count_noise_max_m = 10.0;  ///< with four satellites
+  double count_noise_min_m = 2.0;   ///< with twelve or more
 
   // pseudorange: what acts on the range, and what the receiver corrects
   std::string mode = "dgps";                    ///< a row of receiver_modes()
@@ -106,6 +114,9 @@ struct GnssConfig {
 
   // pseudorange: position
   std::string solver = "least_squares";
+  std::string weighting = "elevation";  ///< a row of range_weightings()
+  std::string raim = "none";            ///< a row of fault_exclusions()
+  double raim_false_alarm = 1e-3;
   double solver_sigma_m = 0.5;  ///< assumed 1-sigma of a corrected pseudorange at zenith
   double max_gdop = 100.0;
   std::string systems = "G";           ///< RINEX letters of the systems received

@@ -30,6 +30,8 @@ using MakeEphemerisError = std::unique_ptr<EphemerisError>(const EphemerisErrorP
 std::span<const ModelRow<MakeEphemerisError>> ephemeris_error_models();
 
 std::unique_ptr<EphemerisError> make_gauss_markov_ephemeris(const EphemerisErrorParameters& p);
+std::unique_ptr<EphemerisError> make_orbit_clock_2010(const EphemerisErrorParameters& p);
+std::unique_ptr<EphemerisError> make_orbit_clock_2021(const EphemerisErrorParameters& p);
 std::unique_ptr<EphemerisError> make_paper_printed_ephemeris(const EphemerisErrorParameters& p);
 std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris(const EphemerisErrorParameters& p);
 

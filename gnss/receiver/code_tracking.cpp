@@ -12,8 +12,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kFaintest = 1e-3;        // relative to the strongest: -60 dB pull the code by centimetres at most
-constexpr double kPowerLoopHz = 0.25;     // first-order average over 1 s
+constexpr double kFaintest = 1e-3;         // relative to the strongest: -60 dB pull the code by centimetres at most
+constexpr double kPowerLoopHz = 0.25;      // first-order average over 1 s
 constexpr double kReachOfBandChips = 3.0;  // beyond, a band-limited correlation is below 1e-3
 
 /// Steady-state response of predetection integration and a first-order loop to a phasor that turns at `f_hz`.
@@ -40,9 +40,9 @@ struct CodeTracking::Composite {
 CodeTracking::CodeTracking(const CorrelatorDesign& design)
     : design_(design), correlation_(design.modulation, design.front_end_hz) {
   CANYON_CHECK(design.spacing_chips > 0.0 && design.spacing_chips <= 1.0, "spacing_chips = ", design.spacing_chips);
-  CANYON_CHECK(design.code_loop_hz > 0.0 && design.carrier_loop_hz > 0.0 && design.integration_s > 0.0,
-               "loops of ", design.code_loop_hz, " and ", design.carrier_loop_hz, " Hz, integration of ",
-               design.integration_s, " s");
+  CANYON_CHECK(design.code_loop_hz > 0.0 && design.carrier_loop_hz > 0.0 && design.integration_s > 0.0, "loops of ",
+               design.code_loop_hz, " and ", design.carrier_loop_hz, " Hz, integration of ", design.integration_s,
+               " s");
   CANYON_CHECK(design.code_loop_hz * design.integration_s < 1.0, "loop of ", design.code_loop_hz,
                " Hz, integration of ", design.integration_s, " s");
   const double d = design.spacing_chips;
@@ -63,8 +63,7 @@ CodeTracking::Composite CodeTracking::composite(std::span<const EchoSignal> sign
     c.delay_chips.push_back(delay_chips);
     c.doppler_hz.push_back(s.doppler_hz - main.doppler_hz);
     phasors.push_back(s.amplitude * std::polar(1.0, s.phase_rad - main.phase_rad));
-    c.prompt.push_back(phasors.back() *
-                       averaged(c.doppler_hz.back(), design_.carrier_loop_hz, design_.integration_s));
+    c.prompt.push_back(phasors.back() * averaged(c.doppler_hz.back(), design_.carrier_loop_hz, design_.integration_s));
   }
   const std::size_t n = c.size();
   if (n == 1) return c;
@@ -125,8 +124,7 @@ void CodeTracking::scan_points(const Composite& c, std::vector<double>& points) 
   }
   for (const double delay : c.delay_chips)
     for (const Tap& tap : taps_)
-      for (const auto& kink : correlation_.kinks())
-        points.push_back(delay + tap.offset_chips + kink.at_chips);
+      for (const auto& kink : correlation_.kinks()) points.push_back(delay + tap.offset_chips + kink.at_chips);
   std::sort(points.begin(), points.end());
   if (design_.coherent) return;
   const std::size_t corners = points.size();
@@ -180,8 +178,7 @@ std::optional<double> CodeTracking::stable_zero(const Composite& c) const {
       zeros = true;
       zero_to = t;
     } else if (armed && value > 0.0) {
-      const double root =
-          zeros ? 0.5 * (zero_from + zero_to) : refine(c, negative_at, negative_value, t, value);
+      const double root = zeros ? 0.5 * (zero_from + zero_to) : refine(c, negative_at, negative_value, t, value);
       if (!best || std::abs(root) < std::abs(*best)) best = root;
       armed = zeros = false;
     }

@@ -54,8 +54,8 @@ struct CodeLock {
 /// moves; with powers what remains is the pull of the echoes' own power. The carrier loop sees the same phasors through
 /// its own, wider, bandwidth; the prompt power is averaged over 1 s.
 ///
-/// At rest, infinitely wide band, coherent, the zeros are exact to rounding: all is piecewise linear. Otherwise they are
-/// refined to 1e-9 chips.
+/// At rest, infinitely wide band, coherent, the zeros are exact to rounding: all is piecewise linear. Otherwise they
+/// are refined to 1e-9 chips.
 class CodeTracking {
  public:
   /// Throws for values out of range.

@@ -45,7 +45,8 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
     view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
     corrections[i] = receiver.mode.correction(inputs[i]);
     o.correction_m = corrections[i].total_m();
-    o.sigma_m = receiver.zenith_sigma_m / std::sin(view.elevation_rad);
+    o.sigma_m = receiver.weighting.sigma_m(
+        {o.sv.system, view.elevation_rad, o.cn0_dbhz, corrections[i].modelled.ionosphere_m, kNaN});
     ranges[i].range_m = o.corrected_m();
     ranges[i].sigma_m = o.sigma_m;
   }
@@ -85,8 +86,8 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   fix.p_A_E = solution.p_E;
   fix.covariance_E = solution.covariance_E;
   fix.clock_m = solution.clock_m;
-  fix.satellites = static_cast<int>(observations.size());
-  for (auto& o : observations) o.used = true;
+  fix.satellites = solution.satellites_used();
+  for (std::size_t i = 0; i < observations.size(); ++i) observations[i].used = solution.used[i];
   return fix;
 }
 

@@ -7,6 +7,7 @@
 #include "gnss/receiver/receiver_mode.h"
 #include "gnss/satellites/constellation.h"
 #include "gnss/solver/position_solver.h"
+#include "gnss/solver/weighting.h"
 
 namespace canyon::gnss {
 
@@ -15,8 +16,8 @@ struct ReceiverParts {
   const Constellation& constellation;
   const ReceiverMode& mode;
   const PositionSolver& solver;
-  double zenith_sigma_m = 0.5;  ///< assumed for a corrected pseudorange, grows with 1 / sin(elevation)
-  Eigen::Vector3d guess_E;      ///< rough position, used while there is no fix; some kilometres are good enough
+  const RangeWeighting& weighting;
+  Eigen::Vector3d guess_E;  ///< rough position, used while there is no fix; some kilometres are good enough
 };
 
 /// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
 #include "core/chi_square.h"
+#include "core/random.h"
 #include "tests/gnss/solver_sky.h"
 
 namespace canyon::gnss {

@@ -522,7 +522,9 @@ TEST_F(PseudorangeSensorTest, RealNavigationFile) {
 TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
   GnssConfig c;
   c.model = "gps";
-  EXPECT_EQ(error_of(c), "gnss.model: \"gps\" is not a model, expected pseudorange or truth_plus_isotropic");
+  EXPECT_EQ(error_of(c),
+            "gnss.model: \"gps\" is not a model, expected pseudorange, truth_plus_isotropic, "
+            "truth_plus_white or satellite_count");
   c = GnssConfig{};
   c.ionosphere = "iri";
   EXPECT_EQ(error_of(c),

@@ -4,9 +4,9 @@
 
 #include "core/check.h"
 #include "core/units.h"
-#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/receiver/link_budget.h"
 #include "gnss/receiver/multipath_rule.h"
+#include "gnss/receiver/receiver_antenna.h"
 #include "gnss/receiver/receiver_clock.h"
 #include "gnss/signal.h"
 

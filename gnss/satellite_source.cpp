@@ -1,0 +1,24 @@
+#include "gnss/satellite_source.h"
+
+#include "gnss/rinex/navigation_file.h"
+
+namespace canyon::gnss {
+
+Result<SatelliteSource> make_satellite_source(const GnssConfig& config, GpsTime start, GpsTime end) {
+  CANYON_TRY_STATUS(check_systems(config.systems, "gnss.systems"));
+  SatelliteSource source;
+  std::vector<std::string> files = config.nav_files;
+  if (!config.nav_file.empty()) files.insert(files.begin(), config.nav_file);
+  if (files.empty()) {
+    source.constellation = make_nominal_gps();
+    return source;
+  }
+  CANYON_TRY(source.navigation, read_navigation_files(files));
+  CANYON_TRY_STATUS(check_coverage(source.navigation, config.systems, start, end, "gnss.nav_file"));
+  source.warnings = source.navigation.warnings;
+  source.constellation = make_broadcast(source.navigation, {.systems = config.systems});
+  source.klobuchar = source.navigation.klobuchar_at(GnssSystem::kGps, start).value_or(kBuiltInKlobuchar);
+  return source;
+}
+
+}  // namespace canyon::gnss
