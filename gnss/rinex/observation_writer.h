@@ -13,11 +13,11 @@ namespace canyon::gnss {
 /// What the header of an observation file says.
 struct ObservationWriterOptions {
   std::string marker = "CANYON";
-  GpsTime first;  ///< first epoch, as the receiver tags it
-  std::optional<double> interval_s;
-  std::optional<Eigen::Vector3d> approx_position_E;  ///< zeros are written where it is not known or the antenna moves
-  std::vector<std::pair<GnssSystem, std::vector<int>>> bands;  ///< of each system, the RINEX digits of its bands
-  std::map<int, int> glonass_channels;                         ///< by slot
+  GpsTime first{};  ///< first epoch, as the receiver tags it
+  std::optional<double> interval_s{};
+  std::optional<Eigen::Vector3d> approx_position_E{};  ///< zeros are written where it is not known or the antenna moves
+  std::vector<std::pair<GnssSystem, std::vector<int>>> bands{};  ///< of each system, the RINEX digits of its bands
+  std::map<int, int> glonass_channels{};                         ///< by slot
 };
 
 /// Writes RINEX 3.04 observations as text, epoch by epoch: C, L, D and S of each band. Time system GPS.

@@ -236,8 +236,12 @@ class SinglePoint {
       o.cn0_dbhz = c.signal.cn0_dbhz;
       o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
       o.correction_m = delay_m + troposphere_correction_m(config_.troposphere, view);
-      o.sigma_m = c.code.noise_factor *
-                  weighting_->sigma_m({c.sv.system, view.elevation_rad, o.cn0_dbhz, delay_m, c.state.accuracy_m});
+      o.sigma_m = weighting_->sigma_m({.system = c.sv.system,
+                                       .elevation_rad = view.elevation_rad,
+                                       .cn0_dbhz = o.cn0_dbhz,
+                                       .ionosphere_m = delay_m,
+                                       .code_factor = c.code.noise_factor,
+                                       .accuracy_m = c.state.accuracy_m});
       epoch.observations.push_back(o);
       ranges.push_back({c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, config_.shared_ionosphere * delay_m});
     }

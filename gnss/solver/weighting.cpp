@@ -32,20 +32,22 @@ class Weighting : public RangeWeighting {
 class Uniform final : public Weighting {
  public:
   using Weighting::Weighting;
-  double sigma_m(const RangeQuality&) const override { return zenith_m_; }
+  double sigma_m(const RangeQuality& q) const override { return q.code_factor * zenith_m_; }
 };
 
 class Elevation final : public Weighting {
  public:
   using Weighting::Weighting;
-  double sigma_m(const RangeQuality& q) const override { return zenith_m_ / sin_elevation(q); }
+  double sigma_m(const RangeQuality& q) const override { return q.code_factor * zenith_m_ / sin_elevation(q); }
 };
 
 /// SIGMA-epsilon of Hartinger & Brunner (1999): variance proportional to 10^(-C/N0 / 10).
 class Cn0 final : public Weighting {
  public:
   using Weighting::Weighting;
-  double sigma_m(const RangeQuality& q) const override { return zenith_m_ * std::sqrt(relative_noise(q)); }
+  double sigma_m(const RangeQuality& q) const override {
+    return q.code_factor * zenith_m_ * std::sqrt(relative_noise(q));
+  }
 };
 
 /// Multipath and atmosphere grow towards the horizon, tracking noise with falling C/N0; half the zenith's variance
@@ -55,7 +57,7 @@ class ElevationCn0 final : public Weighting {
   using Weighting::Weighting;
   double sigma_m(const RangeQuality& q) const override {
     const double s = sin_elevation(q);
-    return zenith_m_ * std::sqrt(0.5 / (s * s) + 0.5 * relative_noise(q));
+    return q.code_factor * zenith_m_ * std::sqrt(0.5 / (s * s) + 0.5 * relative_noise(q));
   }
 };
 
@@ -69,7 +71,8 @@ class Budget final : public Weighting {
   using Weighting::Weighting;
   double sigma_m(const RangeQuality& q) const override {
     const double s = sin_elevation(q);
-    const double tracking2 = zenith_m_ * zenith_m_ * (0.5 / (s * s) + 0.5 * relative_noise(q));
+    const double code_m = q.code_factor * zenith_m_;
+    const double tracking2 = code_m * code_m * (0.5 / (s * s) + 0.5 * relative_noise(q));
     const double orbit_m = q.system == GnssSystem::kGlonass ? 2.0 : 0.8;
     const double ionosphere_m = 0.2 * q.ionosphere_m, troposphere_m = 0.05 / (s + 0.01);
     return std::sqrt(tracking2 + orbit_m * orbit_m + ionosphere_m * ionosphere_m + troposphere_m * troposphere_m);
@@ -85,7 +88,7 @@ class Rtklib final : public Weighting {
   double sigma_m(const RangeQuality& q) const override {
     const double s = sin_elevation(q);
     const double factor = q.system == GnssSystem::kGlonass ? 1.5 : q.system == GnssSystem::kSbas ? 3.0 : 1.0;
-    const double code2 = factor * factor * 0.09 * (1.0 + 1.0 / s);
+    const double code2 = q.code_factor * q.code_factor * factor * factor * 0.09 * (1.0 + 1.0 / s);
     const double troposphere_m = 0.3 / (std::sin(q.elevation_rad) + 0.1);
     const double ionosphere_m = 0.5 * q.ionosphere_m, satellite_m = accuracy_m(q);
     return std::sqrt(code2 + 0.09 + ionosphere_m * ionosphere_m + troposphere_m * troposphere_m +

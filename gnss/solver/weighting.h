@@ -14,6 +14,7 @@ struct RangeQuality {
   double elevation_rad = 0.0;  ///< held at 5 deg from below
   double cn0_dbhz = kNaN;      ///< NaN: not known, taken as what a clear satellite of that elevation has
   double ionosphere_m = 0.0;   ///< what a model of the ionosphere subtracts; 0 = no model
+  double code_factor = 1.0;    ///< of the code's own noise: 2 to 3 for an ionosphere-free combination
   double accuracy_m = kNaN;    ///< of the satellite's orbit and clock (URA, SISA), NaN: not known
 };
 

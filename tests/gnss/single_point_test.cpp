@@ -1,0 +1,360 @@
+#include "gnss/single_point/single_point.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/random.h"
+#include "gnss/rinex/hatanaka.h"
+#include "gnss/rinex/navigation_file.h"
+#include "gnss/rinex/observation_writer.h"
+#include "gnss/single_point/position_statistics.h"
+#include "gnss/single_point/solution_file.h"
+#include "tests/gnss/rtklib_runner.h"
+#include "tests/gnss/synthetic_sky.h"
+#include "tests/support/outside_program.h"
+#include "tests/support/test_data.h"
+
+namespace canyon::gnss {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A recorded station with its true antenna. Frames and epochs:
+///   USNO  ITRF at the epoch of the observations, 2005-01-20 (the position in the header is 13 cm off in X)
+///   ESBC  marker of the header + 0.2160 m up. That marker is in ETRS89, as the Danish network keeps it: carried over
+///   to
+///         ITRF2000 at 2020.48 with the EUREF transformation it lies 0.52 m east and 0.54 m north of there, and that is
+///         where dual-frequency solutions lie. The figures of RTKLIB that bound ours are against the header, so ours
+///         are too; antenna_of_esbc_itrf() is the other
+///   ARL   WGS 84 (G1762), NGA's monitor station 85408, of the header; 2015-07-19
+struct Station {
+  std::string observations, navigation;
+  Eigen::Vector3d truth_E;
+};
+
+struct Solved {
+  PositionStatistics statistics;
+  SinglePointResult result;
+};
+
+Solved solve(const Station& station, const SinglePointConfig& config) {
+  const auto file = read_observation_file(station.observations);
+  const auto navigation = read_navigation_file(station.navigation);
+  EXPECT_TRUE(file.ok() && navigation.ok());
+  BroadcastOptions options;
+  options.systems = config.systems;
+  const auto constellation = make_broadcast(*navigation, options);
+  auto result = solve_observations(*file, {*constellation, *navigation}, config);
+  EXPECT_TRUE(result.ok()) << result.error().str();
+  std::vector<GnssFix> fixes;
+  for (const auto& e : result->epochs) fixes.push_back(e.fix);
+  const Eigen::Vector3d truth_E = station.truth_E;
+  const auto statistics = position_statistics(fixes, [&](GpsTime) {
+    return std::optional(TruePlace{truth_E, Eigen::Vector3d::Zero().eval()});
+  });
+  return {statistics, std::move(*result)};
+}
+
+SinglePointConfig rtklib_equivalent(const char* systems) {
+  const auto c = read_single_point_config(CANYON_SOURCE_DIR "/examples/rtklib_equivalent.toml");
+  EXPECT_TRUE(c.ok()) << c.error().str();
+  SinglePointConfig out = *c;
+  out.systems = systems;
+  return out;
+}
+
+/// What Canyon recommends for one frequency, the same for every station: the defaults.
+SinglePointConfig recommended(const char* systems) {
+  SinglePointConfig c;
+  c.systems = systems;
+  return c;
+}
+
+#define CANYON_USNO(station)                                        \
+  CANYON_REAL_DATA(usno_obs, "gnss/usno_2005_020/usno0200.05o.gz"); \
+  CANYON_REAL_DATA(usno_nav, "gnss/usno_2005_020/brdc0200.05n");    \
+  const Station station {                                           \
+    usno_obs, usno_nav, {                                           \
+      1112189.770, -4842955.030, 3985352.263                        \
+    }                                                               \
+  }
+#define CANYON_ESBC(station)                                                                  \
+  CANYON_REAL_DATA(esbc_obs, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz"); \
+  CANYON_REAL_DATA(esbc_nav, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");     \
+  const Station station {                                                                     \
+    esbc_obs, esbc_nav, antenna_of_esbc()                                                     \
+  }
+
+Eigen::Vector3d antenna_of_esbc() {
+  const Eigen::Vector3d marker_E(3582105.2910, 532589.7313, 5232754.8054);
+  return marker_E + 0.2160 * rotation_E_from_enu(geodetic_from_ecef(marker_E)).col(2);
+}
+
+/// The same in ITRF2000 at 2020.48: x_ETRS = x_ITRF + T + (t - 1989) R x (Boucher & Altamimi, EUREF memo on the
+/// transformation, T = (5.4, 5.1, -4.8) cm, R = (0.081, 0.490, -0.792) mas a year).
+Eigen::Vector3d antenna_of_esbc_itrf() {
+  const Eigen::Vector3d etrs_E = antenna_of_esbc();
+  const Eigen::Vector3d rates_rad(0.081e-3 / 3600.0 * kDegree, 0.490e-3 / 3600.0 * kDegree,
+                                  -0.792e-3 / 3600.0 * kDegree);
+  return etrs_E - Eigen::Vector3d(0.054, 0.051, -0.048) - (2020.48 - 1989.0) * rates_rad.cross(etrs_E);
+}
+
+// Bounds: the 3-D RMS of RTKLIB 2.4.3 b34 on the same data with the same options.
+TEST(SinglePoint, UsnoLikeForLikeAndRecommended) {
+  CANYON_USNO(usno);
+  const auto like = solve(usno, rtklib_equivalent("G")).statistics;
+  EXPECT_EQ(like.solved, 2880);
+  EXPECT_LE(like.rms_3d_m, 4.36);
+  const auto best = solve(usno, recommended("G")).statistics;
+  EXPECT_EQ(best.solved, 2880);
+  EXPECT_LE(best.rms_3d_m, 3.9);
+}
+
+TEST(SinglePoint, UsnoDualFrequencyHasNoBiasInHeight) {
+  CANYON_USNO(usno);
+  auto config = recommended("G");
+  config.frequencies = "dual";
+  const auto s = solve(usno, config).statistics;
+  EXPECT_EQ(s.solved, 2880);
+  EXPECT_LE(std::abs(s.mean_enu_m.z()), 1.5);
+}
+
+TEST(SinglePoint, EsbcLikeForLikeAndRecommended) {
+  CANYON_ESBC(esbc);
+  for (const auto& [systems, bound_m] : {std::pair("G", 1.93), {"GREC", 1.49}}) {
+    const auto like = solve(esbc, rtklib_equivalent(systems)).statistics;
+    EXPECT_EQ(like.solved, 2880);
+    EXPECT_LE(like.rms_3d_m, bound_m) << systems;
+    const auto best = solve(esbc, recommended(systems)).statistics;
+    EXPECT_EQ(best.solved, 2880);
+    EXPECT_LE(best.rms_3d_m, like.rms_3d_m) << systems;
+  }
+}
+
+// In the frame of the orbits the bias in position goes: horizontally below 0.3 m with two frequencies and all systems,
+// where the header's frame leaves 0.6 m.
+TEST(SinglePoint, EsbcIsInEtrs89) {
+  CANYON_ESBC(esbc);
+  auto config = recommended("GREC");
+  config.frequencies = "dual";
+  const auto etrs = solve(esbc, config).statistics;
+  const auto itrf = solve({esbc.observations, esbc.navigation, antenna_of_esbc_itrf()}, config).statistics;
+  EXPECT_GT(etrs.mean_enu_m.head<2>().norm(), 0.5);
+  EXPECT_LT(itrf.mean_enu_m.head<2>().norm(), 0.3);
+  EXPECT_LT(itrf.rms_3d_m, etrs.rms_3d_m);
+}
+
+TEST(SinglePoint, ArlLikeForLikeAndRecommended) {
+  CANYON_REAL_DATA(navigation, "gnss/arl_2015_200/arlm2000.15n");
+  for (const auto& [hour, bound_m] : {std::pair("a", 3.595), {"b", 3.795}, {"z", 2.405}}) {
+    CANYON_REAL_DATA(observations, std::string("gnss/arl_2015_200/arlm200") + hour + ".15o");
+    const Station arl{observations, navigation, {-740289.918, -5457071.734, 3207245.542}};
+    const auto like = solve(arl, rtklib_equivalent("G")).statistics;
+    EXPECT_GE(like.solved, 119);
+    EXPECT_LE(like.rms_3d_m, bound_m) << hour;
+    EXPECT_LE(solve(arl, recommended("G")).statistics.rms_3d_m, like.rms_3d_m) << hour;
+  }
+}
+
+/// Root mean square distance between the two solvers' positions, at the epochs that both have.
+double rms_to_rtklib_m(const Solved& ours, const std::map<std::int64_t, Eigen::Vector3d>& theirs) {
+  double square = 0.0;
+  int n = 0;
+  for (const auto& e : ours.result.epochs) {
+    const auto found = theirs.find(e.fix.t.ns);
+    if (found == theirs.end() || e.fix.status == FixStatus::kNone) continue;
+    square += (found->second - e.fix.p_A_E).squaredNorm();
+    ++n;
+  }
+  EXPECT_GE(n, static_cast<int>(ours.result.epochs.size()) - 1);
+  return std::sqrt(square / n);
+}
+
+/// rnx2rtkp takes neither gzip nor Hatanaka by itself: our own unpacked text is what it gets.
+void expect_agreement(const Station& station, const char* systems, int rtklib_systems) {
+  const testing::ScratchDirectory scratch;
+  const auto packed = read_text_or_gzip_file(station.observations);
+  ASSERT_TRUE(packed.ok());
+  const auto plain = is_hatanaka(*packed) ? undo_hatanaka(*packed, "f")->text : *packed;
+  ASSERT_TRUE(write_text_file(scratch.file("f.obs"), plain).ok());
+  ASSERT_TRUE(write_text_file(scratch.file("f.nav"), *read_text_or_gzip_file(station.navigation)).ok());
+  const auto theirs =
+      rtklib_positions(scratch.file("f.obs"), scratch.file("f.nav"), rtklib_systems, true, scratch.file("s"));
+  EXPECT_LT(rms_to_rtklib_m(solve(station, rtklib_equivalent(systems)), theirs), 0.3) << systems;
+}
+
+TEST(SinglePoint, AgreesWithRtklibEpochByEpochUsno) {
+  CANYON_OUTSIDE_PROGRAM("rnx2rtkp");
+  CANYON_USNO(usno);
+  expect_agreement(usno, "G", 1);
+}
+
+TEST(SinglePoint, AgreesWithRtklibEpochByEpochEsbc) {
+  CANYON_OUTSIDE_PROGRAM("rnx2rtkp");
+  CANYON_ESBC(esbc);
+  expect_agreement(esbc, "G", 1);
+  expect_agreement(esbc, "GREC", 45);
+}
+
+TEST(SinglePoint, AgreesWithRtklibEpochByEpochArl) {
+  CANYON_OUTSIDE_PROGRAM("rnx2rtkp");
+  CANYON_REAL_DATA(observations, "gnss/arl_2015_200/arlm200b.15o");
+  CANYON_REAL_DATA(navigation, "gnss/arl_2015_200/arlm2000.15n");
+  expect_agreement({observations, navigation, {-740289.918, -5457071.734, 3207245.542}}, "G", 1);
+}
+
+// The synthetic twin of the stations: atmosphere put on with the models that take it off again.
+class SyntheticDay : public ::testing::Test {
+ protected:
+  const NavigationData navigation_ = synthetic_navigation();
+  const Eigen::Vector3d place_ = ecef_from_geodetic({52.0 * kDegree, 13.0 * kDegree, 120.0});
+
+  /// Twenty minutes of all systems on one band, with a change made to each epoch.
+  ObservationFile file(const std::function<void(int, GnssEpoch&)>& change) const {
+    const auto constellation = make_broadcast(navigation_);
+    const GpsTime first = kSyntheticNoon + 30.0;
+    ObservationWriter writer({.first = first,
+                              .approx_position_E = place_,
+                              .bands = {{GnssSystem::kGps, {1}},
+                                        {GnssSystem::kGlonass, {1}},
+                                        {GnssSystem::kGalileo, {1}},
+                                        {GnssSystem::kBeidou, {2}}}});
+    std::string text = writer.header();
+    for (int k = 0; k < 40; ++k) {
+      auto epoch = SyntheticReceiver{*constellation}.at(first + 30.0 * k, place_, Eigen::Vector3d::Zero());
+      change(k, epoch);
+      text += writer.epoch(epoch);
+    }
+    return *parse_observation_file(text, "synthetic.rnx");
+  }
+  static SinglePointConfig plain() {
+    SinglePointConfig c;
+    c.ionosphere = c.troposphere = "none";
+    c.smoothing_s = c.shared_ionosphere = 0.0;
+    return c;
+  }
+  Result<SinglePointResult> solve_file(const ObservationFile& f, const SinglePointConfig& c) const {
+    return solve_observations(f, {*make_broadcast(navigation_), navigation_}, c);
+  }
+};
+
+TEST_F(SyntheticDay, AFaultySatelliteIsExcludedAndTheFixStays) {
+  const auto f = file([](int k, GnssEpoch& e) {
+    if (k >= 10) e.observations[3].pseudorange_m += 120.0;
+  });
+  const auto r = solve_file(f, plain());
+  ASSERT_TRUE(r.ok());
+  for (std::size_t k = 0; k < 40; ++k) {
+    const auto& e = r->epochs[k];
+    ASSERT_EQ(e.fix.status, FixStatus::kSingle) << e.fix.reason;
+    EXPECT_LT((e.fix.p_A_E - place_).norm(), 0.001 * e.fix.dop.pdop);
+    EXPECT_EQ(e.excluded, k >= 10 ? 1 : 0);
+    EXPECT_EQ(e.integrity.status, k >= 10 ? IntegrityTest::Status::kRepaired : IntegrityTest::Status::kPassed);
+  }
+}
+
+TEST_F(SyntheticDay, SmoothingTakesNoiseAwayAndSurvivesSlips) {
+  const RandomStream noise(5, "test.smoothing");
+  const auto f = file([&](int k, GnssEpoch& e) {
+    for (auto& o : e.observations) {
+      o.pseudorange_m += noise.normal(o.sv.entity(), static_cast<std::uint64_t>(k));
+      if (k >= 20 && o.sv.prn % 2 == 0) o.carrier_phase_cycles += 777.0;  // 150 m, not told
+      if (k >= 30 && o.sv.prn % 2 == 1) o.carrier_phase_cycles += 20.0;   // 4 m, told
+      o.slipped = k == 30 && o.sv.prn % 2 == 1;
+    }
+  });
+  const auto rms = [&](double smoothing_s, std::size_t from, std::size_t to) {
+    auto c = plain();
+    c.smoothing_s = smoothing_s;
+    const auto r = solve_file(f, c);
+    double square = 0.0;
+    for (std::size_t k = from; k < to; ++k) square += (r->epochs[k].fix.p_A_E - place_).squaredNorm();
+    return std::sqrt(square / static_cast<double>(to - from));
+  };
+  // A mean of 10 to 20 independent values: 1/sqrt(10) = 0.32 and less of the noise, with room for the few epochs.
+  EXPECT_LT(rms(600.0, 10, 20), 0.5 * rms(0.0, 10, 20));
+  EXPECT_LT(rms(600.0, 20, 40), rms(0.0, 20, 40));  // slips of 150 m and of 4 m do no harm
+}
+
+TEST_F(SyntheticDay, ReasonsAndWarningsWordForWord) {
+  // From the second epoch on there are three satellites.
+  const auto f = file([](int k, GnssEpoch& e) {
+    if (k > 0) e.observations.resize(3);
+  });
+  auto c = plain();
+  c.systems = "G";
+  const auto r = solve_file(f, c);
+  ASSERT_TRUE(r.ok());
+  EXPECT_EQ(r->solved(), 1);
+  EXPECT_THAT(r->reasons, ElementsAre(std::pair("3 satellites, a fix needs 4", 39)));
+  EXPECT_EQ(r->epochs[5].fix.reason, "3 satellites, a fix needs 4");
+  EXPECT_THAT(solution_csv(*r), HasSubstr(",none,0,,,,,,0,,,,,,,,\"3 satellites, a fix needs 4\"\n"));
+}
+
+TEST_F(SyntheticDay, NavigationOfAnotherDayIsAnError) {
+  auto other = navigation_;
+  for (auto& e : other.kepler) {
+    e.toe = e.toe + 86400.0;
+    e.toc = e.toe;
+  }
+  other.glonass.clear();
+  const auto f = file([](int, GnssEpoch&) {});
+  const auto r = solve_observations(f, {*make_broadcast(other), other}, plain());
+  ASSERT_FALSE(r.ok());
+  EXPECT_EQ(r.error().str(),
+            "synthetic.rnx:" + std::to_string(f.epochs.front().line) +
+                ": no satellite observed from 2020-06-25T12:00:30 to 2020-06-25T12:20:00 has a valid ephemeris in "
+                "synthetic, expected navigation files of the same day and systems");
+  // One satellite without ephemeris is a counted warning.
+  auto less = navigation_;
+  const SatelliteId lost = f.epochs.front().satellites.front().sv;
+  std::erase_if(less.kepler, [&](const auto& e) { return e.sv == lost; });
+  const auto partly = solve_observations(f, {*make_broadcast(less), less}, plain());
+  ASSERT_TRUE(partly.ok());
+  EXPECT_EQ(partly->solved(), 40);
+  ASSERT_EQ(partly->warnings.size(), 1u);
+  EXPECT_THAT(partly->warnings[0], HasSubstr(lost.str() + " has no valid healthy ephemeris at 2020-06-25T12:00:30"));
+}
+
+TEST_F(SyntheticDay, BadConfigurationsAreErrorsWordForWord) {
+  const auto f = file([](int, GnssEpoch&) {});
+  auto c = plain();
+  c.systems = "GX";
+  EXPECT_FALSE(solve_file(f, c).ok());
+  c.systems = "J";
+  EXPECT_EQ(solve_file(f, c).error().str(),
+            "synthetic.rnx: systems: no pseudorange of the systems J in it, expected systems that were observed");
+  auto without = navigation_;
+  without.klobuchar.clear();
+  auto klobuchar = plain();
+  klobuchar.ionosphere = "klobuchar";
+  EXPECT_EQ(solve_observations(f, {*make_broadcast(without), without}, klobuchar).error().str(),
+            "synthetic: ionosphere: \"klobuchar\" needs Klobuchar coefficients, and there are none in it, expected a "
+            "navigation file with them, or ionosphere = \"none\"");
+}
+
+TEST(PositionStatistics, ClosedForm) {
+  const Eigen::Vector3d truth_E = ecef_from_geodetic({0.5, 1.0, 10.0});
+  const Eigen::Matrix3d R = rotation_E_from_enu(geodetic_from_ecef(truth_E));
+  std::vector<GnssFix> fixes(5);
+  for (int i = 0; i < 4; ++i) {
+    fixes[static_cast<std::size_t>(i)].status = FixStatus::kSingle;
+    fixes[static_cast<std::size_t>(i)].p_A_E = truth_E + R * Eigen::Vector3d(i, 0.0, i % 2 == 0 ? 2.0 : -2.0);
+  }
+  const auto s = position_statistics(fixes, [&](GpsTime) { return std::optional(TruePlace{truth_E, std::nullopt}); });
+  EXPECT_EQ(s.epochs, 5);
+  EXPECT_EQ(s.solved, 4);
+  EXPECT_NEAR(s.mean_enu_m.x(), 1.5, 1e-8);
+  EXPECT_NEAR(s.std_enu_m.x(), std::sqrt(1.25), 1e-8);
+  EXPECT_NEAR(s.std_enu_m.z(), 2.0, 1e-8);
+  EXPECT_NEAR(s.h50_m, 1.5, 1e-8);
+  EXPECT_NEAR(s.h95_m, 2.85, 1e-8);
+  EXPECT_NEAR(s.v95_m, 2.0, 1e-8);
+  EXPECT_NEAR(s.rms_3d_m, std::sqrt(14.0 / 4.0 + 4.0), 1e-8);
+}
+
+}  // namespace
+}  // namespace canyon::gnss
