@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+
+namespace canyon::inertial {
+
+/// A recorded IMU: time and six rates, SI. A channel that the file lacks is empty.
+struct ImuLog {
+  std::vector<double> t_s;
+  std::array<std::vector<double>, 6> channels;  ///< gx gy gz in rad/s, ax ay az in m/s^2
+
+  std::size_t size() const { return t_s.size(); }
+};
+inline constexpr const char* kChannelNames[6] = {"gx", "gy", "gz", "ax", "ay", "az"};
+
+struct ImuLogFormat {
+  /// Column names for a file without header, or instead of its own, separated by commas. A name is a channel and a unit
+  /// (`gx_rad_s`, `gy_deg_s` or `gy_dps`, `az_m_s2`, `ax_g`, `ax_mg`; `t_s`, `t_ms`, `t_us`, `t_ns`), with a factor if
+  /// the file has counts: `gx_deg_s*0.05`. Other names are passed over.
+  std::string columns;
+  double rate_hz = 0.0;  ///< sample rate of a file without a time column
+};
+
+/// Reads CSV, or columns apart by blanks, plain or gzip. Errors name the line: missing columns, fields that are not
+/// numbers, time that does not increase, channels stuck at one value, and magnitudes that betray the unit: a resting
+/// accelerometer shows gravity, so a specific force of some 1 or 980 means g or cm/s^2 where m/s^2 is said, and one of
+/// gravity times the interval means increments.
+Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format);
+
+}  // namespace canyon::inertial
