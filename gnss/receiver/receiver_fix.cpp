@@ -45,8 +45,10 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
     view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
     corrections[i] = receiver.mode.correction(inputs[i]);
     o.correction_m = corrections[i].total_m();
-    o.sigma_m = receiver.weighting.sigma_m(
-        {o.sv.system, view.elevation_rad, o.cn0_dbhz, corrections[i].modelled.ionosphere_m, kNaN});
+    o.sigma_m = receiver.weighting.sigma_m({.system = o.sv.system,
+                                            .elevation_rad = view.elevation_rad,
+                                            .cn0_dbhz = o.cn0_dbhz,
+                                            .ionosphere_m = corrections[i].modelled.ionosphere_m});
     ranges[i].range_m = o.corrected_m();
     ranges[i].sigma_m = o.sigma_m;
   }
