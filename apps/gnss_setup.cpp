@@ -17,7 +17,8 @@ void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* de
       ->capture_default_str();
   app.add_option("--fidelity", options.fidelity, "whose receiver: high, paper, or one of the mission file's own")
       ->capture_default_str();
-  app.add_option("--nav", options.nav, "RINEX navigation file; without it the built-in constellation");
+  app.add_option("--nav", options.nav, "RINEX navigation files; without them the built-in constellation");
+  app.add_option("--systems", options.systems, "satellite systems received, letters of GRECJ; default: the fidelity's");
   app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
   app.add_option("--seed", options.seed, "seed of every random stream")->capture_default_str();
   app.add_option("--out", options.out, "directory for the files; without it only the summary is printed");
@@ -27,12 +28,16 @@ void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* de
 Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optional<Geodetic>& place) {
   const bool open_sky = options.scene == "none", built_in = options.scene == mission::kDefaultMission;
   CANYON_TRY(auto file, mission::MissionFile::load(open_sky || built_in ? "" : options.scene));
-  if (!options.nav.empty()) file.set_option("gnss.nav_file", ConfigNode::of(options.nav), "--nav");
+  if (!options.systems.empty()) file.set_option("gnss.systems", ConfigNode::of(options.systems), "--systems");
   if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
   CANYON_TRY(const mission::MissionConfig config, file.resolve(options.fidelity));
 
   GnssSetup out;
   out.config = config.gnss;
+  if (!options.nav.empty()) {
+    out.config.nav_file.clear();
+    out.config.nav_files = options.nav;
+  }
   out.seed = static_cast<std::uint64_t>(options.seed);
   const auto start = GpsTime::parse(config.time.start, "time.start");
   if (!start) return file.locate(start.error());

@@ -18,7 +18,8 @@ struct GnssSetupOptions {
   CommonOptions common;
   std::string scene;  ///< a mission file, "vicksburg", or "none"
   std::string fidelity = "high";
-  std::string nav, start, out;
+  std::vector<std::string> nav;
+  std::string systems, start, out;
   std::int64_t seed = 1;
   bool force = false;
 };

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <set>
 
 #include <CLI/CLI.hpp>
 
@@ -16,6 +18,10 @@
 #include "core/progress.h"
 #include "core/units.h"
 #include "gnss/nmea/nmea_writer.h"
+#include "gnss/rinex/navigation_writer.h"
+#include "gnss/rinex/observation_writer.h"
+#include "gnss/satellite_source.h"
+#include "gnss/satellites/ephemeris_fit.h"
 #include "mission/summary.h"
 
 namespace canyon::apps {
@@ -24,7 +30,7 @@ namespace {
 
 struct Options {
   GnssSetupOptions setup;
-  std::string at, trajectory, errors = "all", nmea;
+  std::string at, trajectory, errors = "all", nmea, rinex_obs, rinex_nav;
   double duration_s = 0.0, rate_hz = 1.0;
 };
 
@@ -82,10 +88,12 @@ class Recorder {
   explicit Recorder(double undulation_m) : undulation_m_(undulation_m) {}
 
   void add(const gnss::GnssOutput& output) {
+    epochs_.push_back(output.epoch);
     nmea_ += nmea_of(output);
     add_fix(output);
     add_satellites(output);
   }
+  const std::vector<GnssEpoch>& epochs() const { return epochs_; }
   const std::string& nmea() const { return nmea_; }
   const std::string& fixes() const { return fixes_; }
   const std::string& satellites() const { return satellites_; }
@@ -137,6 +145,7 @@ class Recorder {
   }
 
   double undulation_m_;
+  std::vector<GnssEpoch> epochs_;
   std::string nmea_;
   std::string fixes_ =
       "gps_week,sow,status,satellites,gdop,pdop,hdop,vdop,x_m,y_m,z_m,true_x_m,true_y_m,true_z_m,error_e_m,error_n_m,"
@@ -145,6 +154,37 @@ class Recorder {
       "gps_week,sow,satellite,elevation_deg,azimuth_deg,line_of_sight,tracked,reflections,pseudorange_m,doppler_hz,"
       "carrier_phase_cycles,cn0_dbhz,range_m,multipath_m,ionosphere_m,troposphere_m,ephemeris_m,noise_m\n";
 };
+
+/// RINEX observations of what was measured, with the bands that occur in each system.
+Result<std::string> observations(const std::vector<GnssEpoch>& epochs, const Options& options,
+                                 const gnss::SatelliteSource& source, const Eigen::Vector3d& start_E) {
+  gnss::ObservationWriterOptions header;
+  header.first = epochs.front().t;
+  header.interval_s = 1.0 / options.rate_hz;
+  if (!options.at.empty()) header.approx_position_E = start_E;
+  std::map<GnssSystem, std::set<int>> bands;
+  for (const GnssEpoch& epoch : epochs)
+    for (const GnssObservation& o : epoch.observations) {
+      bands[o.sv.system].insert(o.band);
+      if (o.second.band != 0) bands[o.sv.system].insert(o.second.band);
+      if (o.sv.system != GnssSystem::kGlonass) continue;
+      if (const auto state = source.constellation->state(o.sv, epoch.t))
+        header.glonass_channels[o.sv.prn] = state->frequency_channel;
+    }
+  if (bands.empty()) return Error{options.rinex_obs, 0, "", "nothing was received", "at least one satellite"};
+  for (const auto& [system, digits] : bands)
+    header.bands.emplace_back(system, std::vector<int>(digits.begin(), digits.end()));
+  const gnss::ObservationWriter writer(header);
+  std::string out = writer.header();
+  for (const GnssEpoch& epoch : epochs) out += writer.epoch(epoch);
+  return out;
+}
+
+/// RINEX navigation: the records used, or for a built-in constellation records fitted to it.
+std::string navigation(const gnss::SatelliteSource& source, GpsTime start, GpsTime end) {
+  if (source.navigation.has_ephemeris()) return gnss::navigation_file_text(source.navigation);
+  return gnss::navigation_file_text(gnss::fit_navigation_data(*source.constellation, start - 600.0, end + 600.0));
+}
 
 void tell(const Options& options, const Totals& totals, const GnssSetup& setup) {
   if (options.setup.common.json) {
@@ -197,6 +237,7 @@ Result<int> run(const Options& options) {
     CANYON_TRY(auto directory, StagedDirectory::create(options.setup.out, options.setup.force));
     staged = std::make_unique<StagedDirectory>(std::move(directory));
   }
+  CANYON_TRY(const auto source, make_satellite_source(setup.config, setup.start, setup.start + duration_s));
   const auto count = static_cast<std::int64_t>(std::floor(duration_s * options.rate_hz + 1e-9)) + 1;
   Progress progress("simulating", static_cast<double>(count), !options.setup.common.json);
   Recorder recorder(setup.scene->parts().undulation_m);
@@ -218,6 +259,12 @@ Result<int> run(const Options& options) {
     CANYON_TRY_STATUS(write_text_file(staged->staging_path() + "/satellites.csv", recorder.satellites()));
     CANYON_TRY_STATUS(staged->commit());
   }
+  if (!options.rinex_obs.empty()) {
+    CANYON_TRY(const std::string text, observations(recorder.epochs(), options, source, path.at(setup.start)->p_E));
+    CANYON_TRY_STATUS(write_text_file(options.rinex_obs, text));
+  }
+  if (!options.rinex_nav.empty())
+    CANYON_TRY_STATUS(write_text_file(options.rinex_nav, navigation(source, setup.start, setup.start + duration_s)));
   if (!options.nmea.empty()) CANYON_TRY_STATUS(write_text_file(options.nmea, recorder.nmea()));
   tell(options, totals, setup);
   return 0;
@@ -241,6 +288,8 @@ VerbAction declare(CLI::App& app) {
          "--errors", options->errors,
          "all, none, or a list of: ionosphere,troposphere,ephemeris,receiver_clock,multipath,noise,base_station")
       ->capture_default_str();
+  app.add_option("--rinex-obs", options->rinex_obs, "RINEX 3.04 observation file to write");
+  app.add_option("--rinex-nav", options->rinex_nav, "RINEX 3.04 navigation file to write, of the satellites simulated");
   app.add_option("--nmea", options->nmea, "NMEA 0183 log to write: GGA, RMC, GSA, GSV");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->trajectory.empty())
