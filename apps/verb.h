@@ -31,6 +31,7 @@ Verb gnss_sky_verb();
 Verb gnss_map_verb();
 Verb gnss_simulate_verb();
 Verb gnss_solve_verb();
+Verb gnss_orbit_error_verb();
 
 /// Options that every verb has.
 struct CommonOptions {

@@ -42,13 +42,15 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Subtracts the median over the satellites of each epoch and system: the two time scales may differ.
-void remove_common_clock(std::vector<OrbitErrorSample>& samples) {
-  std::map<std::pair<GpsTime, GnssSystem>, std::vector<double>> clocks;
-  for (const auto& s : samples) clocks[{s.t, s.sv.system}].push_back(s.clock_m);
-  std::map<std::pair<GpsTime, GnssSystem>, double> common;
-  for (const auto& [key, values] : clocks) common[key] = median(values);
-  for (auto& s : samples) s.clock_m -= common.at({s.t, s.sv.system});
+/// Subtracts from one value of each sample its median over the satellites of the epoch and system: the time scales of
+/// systems may differ.
+void remove_median(std::vector<OrbitErrorSample>& samples, double OrbitErrorSample::*value) {
+  using Key = std::pair<GpsTime, GnssSystem>;
+  std::map<Key, std::vector<double>> values;
+  for (const auto& s : samples) values[{s.t, s.sv.system}].push_back(s.*value);
+  std::map<Key, double> common;
+  for (const auto& [key, all] : values) common[key] = median(all);
+  for (auto& s : samples) s.*value -= common.at({s.t, s.sv.system});
 }
 
 }  // namespace
@@ -78,11 +80,14 @@ OrbitErrors orbit_errors(const Constellation& broadcast, const PreciseOrbits& pr
       const Eigen::Vector3d error = state->p_E - p_E;
       const double relativity_s = -2.0 * state->p_E.dot(state->v_E) / (kSpeedOfLight * kSpeedOfLight);
       const double broadcast_s = state->clock_s - delay_of_precise_clock_s(sv.system, state->group_delay_s);
-      out.samples.push_back({sv, sample.t, error.dot(radial), error.dot(along), error.dot(cross),
-                             kSpeedOfLight * (broadcast_s - clock_s - relativity_s)});
+      OrbitErrorSample e{sv, sample.t, error.dot(radial), error.dot(along), error.dot(cross), 0.0, 0.0};
+      e.clock_m = kSpeedOfLight * (broadcast_s - clock_s - relativity_s);
+      e.range_m = weights_of(sv).radial * e.radial_m - e.clock_m;
+      out.samples.push_back(e);
     }
   }
-  remove_common_clock(out.samples);
+  remove_median(out.samples, &OrbitErrorSample::clock_m);
+  remove_median(out.samples, &OrbitErrorSample::range_m);
   std::sort(out.samples.begin(), out.samples.end(),
             [](const auto& a, const auto& b) { return a.t != b.t ? a.t < b.t : a.sv < b.sv; });
   return out;
@@ -92,7 +97,8 @@ OrbitErrorFigures OrbitErrors::figures_of(const std::vector<OrbitErrorSample>& s
   OrbitErrorFigures out;
   out.samples = static_cast<int>(samples.size());
   if (samples.empty()) return out;
-  double radial = 0.0, radial2 = 0.0, along2 = 0.0, cross2 = 0.0, clock2 = 0.0, range2 = 0.0, across = 0.0;
+  double radial = 0.0, radial2 = 0.0, along2 = 0.0, cross2 = 0.0, clock2 = 0.0, range2 = 0.0, receiver2 = 0.0,
+         across = 0.0;
   std::map<SatelliteId, std::vector<double>> range_of;
   for (const auto& s : samples) {
     const Weights w = weights_of(s.sv);
@@ -103,6 +109,7 @@ OrbitErrorFigures OrbitErrors::figures_of(const std::vector<OrbitErrorSample>& s
     cross2 += s.cross_m * s.cross_m;
     clock2 += s.clock_m * s.clock_m;
     range2 += range_m * range_m;
+    receiver2 += s.range_m * s.range_m;
     across += w.across_squared * (s.along_m * s.along_m + s.cross_m * s.cross_m);
     range_of[s.sv].push_back(range_m);
   }
@@ -121,6 +128,7 @@ OrbitErrorFigures OrbitErrors::figures_of(const std::vector<OrbitErrorSample>& s
   out.rms_3d_m = std::sqrt((radial2 + along2 + cross2) / n);
   out.clock_rms_m = std::sqrt(clock2 / n);
   out.sisre_m = std::sqrt((range2 + across) / n);
+  out.sisre_receiver_m = std::sqrt((receiver2 + across) / n);
   out.sisre_unbiased_m = std::sqrt((unbiased2 + across) / n);
   return out;
 }

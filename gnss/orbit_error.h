@@ -13,6 +13,7 @@ struct OrbitErrorSample {
   /// Along the axes of the precise orbit: outwards; in the orbital plane, forwards; along the angular momentum.
   double radial_m = 0.0, along_m = 0.0, cross_m = 0.0;
   double clock_m = 0.0;  ///< c times (broadcast - precise), minus its median over the system's satellites of that epoch
+  double range_m = 0.0;  ///< w_R R - c dT, minus its median over the system's satellites of that epoch
 };
 
 /// Root mean squares, and the signal-in-space range error.
@@ -24,6 +25,9 @@ struct OrbitErrorFigures {
   /// 1/49).
   double sisre_m = kNaN;
   double sisre_unbiased_m = kNaN;  ///< the same with each satellite's mean of (w_R R - c dT) removed
+  /// The same with the epoch's median removed from (w_R R - c dT) as a whole instead of from dT alone: the part common
+  /// to all satellites, which a receiver's clock absorbs, also where it comes from the orbits or the antennas.
+  double sisre_receiver_m = kNaN;
 };
 
 struct OrbitErrors {

@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -43,5 +44,11 @@ class Constellation {
 /// revolutions per turn of the Earth under the node, so that the published ground tracks repeat and the constellation
 /// is good for any date.
 std::unique_ptr<Constellation> make_nominal_gps();
+
+/// Nominal constellations without any file, of the systems of these RINEX letters (G R E C J; others throw): GPS as
+/// above; Galileo and GLONASS Walker 24/3/1; BeiDou-3 with 24 MEO, 3 IGSO and 3 GEO; QZSS with 3 inclined satellites
+/// and one GEO (gnss/tables/nominal_orbits.csv, with sources). Ground tracks repeat, clocks are perfect, GLONASS has
+/// its channels.
+std::unique_ptr<Constellation> make_nominal(const std::string& systems);
 
 }  // namespace canyon::gnss

@@ -96,6 +96,7 @@ std::array<double, 10> KeplerEphemeris::group_delay_s() const {
       out[5] = tgd2_s;
       break;
     case Message::kFdma:
+    case Message::kAlmanac:
       break;
   }
   return out;

@@ -72,8 +72,8 @@ struct BroadcastOptions {
   /// satellite's orbit never mixes messages of one system. By default what single-frequency users of the first band
   /// take: GPS and QZSS LNAV, Galileo I/NAV, BeiDou D1 / D2.
   std::vector<NavigationMessage> messages = {
-      NavigationMessage::kLnav, NavigationMessage::kInav, NavigationMessage::kD1,    NavigationMessage::kD2,
-      NavigationMessage::kFdma, NavigationMessage::kFnav, NavigationMessage::kBcnav1};
+      NavigationMessage::kLnav, NavigationMessage::kInav, NavigationMessage::kD1,     NavigationMessage::kD2,
+      NavigationMessage::kFdma, NavigationMessage::kFnav, NavigationMessage::kBcnav1, NavigationMessage::kAlmanac};
 };
 
 /// Users' letters of systems: an Error for `key` unless each is one of G R E C J, none twice, and at least one.

@@ -24,6 +24,8 @@ const char* name_of(NavigationMessage message) {
       return "CNV2";
     case NavigationMessage::kFdma:
       return "FDMA";
+    case NavigationMessage::kAlmanac:
+      return "ALMANAC";
   }
   return "";
 }

@@ -1,12 +1,9 @@
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <string_view>
 
 #include "core/check.h"
-#include "core/embedded.h"
 #include "core/units.h"
 #include "gnss/satellites/constellation.h"
+#include "gnss/satellites/csv_table.h"
 #include "gnss/signal.h"
 
 namespace canyon::gnss {
@@ -24,27 +21,10 @@ struct Slot {
   double argument_lat_rad;  // at the epoch
 };
 
-double number(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  CANYON_CHECK(error == std::errc() && end == text.data() + text.size(), kTable, ": not a number: ", text);
-  return value;
-}
-
 std::vector<Slot> read_slots() {
-  const auto text = embedded_file(kTable);
-  CANYON_CHECK(text.has_value(), kTable, " is not embedded");
   std::vector<Slot> slots;
-  for (std::size_t begin = 0; begin < text->size();) {
-    const std::size_t end = std::min(text->find('\n', begin), text->size());
-    const std::string_view line = text->substr(begin, end - begin);
-    begin = end + 1;
-    if (line.empty() || line.front() == '#' || line.starts_with("slot,")) continue;
-    const std::size_t first = line.find(','), second = line.find(',', first + 1);
-    CANYON_CHECK(second != std::string_view::npos, kTable, ": ", line);
-    slots.push_back(
-        {number(line.substr(first + 1, second - first - 1)) * kDegree, number(line.substr(second + 1)) * kDegree});
-  }
+  for (const auto& row : table_rows(kTable))
+    slots.push_back({table_number(row[1]) * kDegree, table_number(row[2]) * kDegree});
   CANYON_CHECK(slots.size() == 24, kTable, " has ", slots.size(), " slots");
   return slots;
 }
