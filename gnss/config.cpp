@@ -100,6 +100,11 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.text("nav_file", c.nav_file,
          "RINEX 2, 3 or 4 navigation file, plain or gzip; without any, the built-in constellation");
   f.texts("nav_files", c.nav_files, "further navigation files, read as one with nav_file");
+  f.texts("sp3_files", c.sp3_files, "ephemeris_error broadcast_minus_sp3: precise orbits and clocks, SP3");
+  f.text(
+      "antex_file", c.antex_file,
+      "ephemeris_error broadcast_minus_sp3: ANTEX file with the satellites' antennas; without it their offsets count "
+      "as error");
 }
 
 }  // namespace canyon::gnss

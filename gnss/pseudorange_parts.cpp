@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/units.h"
+#include "gnss/products/precise_orbits.h"
 #include "gnss/satellite_source.h"
 #include "gnss/solver/fault_exclusion.h"
 
@@ -45,6 +46,28 @@ PathParameters path_parameters(const GnssConfig& c) {
   return p;
 }
 
+/// The orbits that broadcast_minus_sp3 compares with.
+Result<std::shared_ptr<const Constellation>> make_precise_source(const GnssConfig& c, const SatelliteSource& source,
+                                                                 std::vector<std::string>& warnings) {
+  if (!source.navigation.has_ephemeris())
+    return Error{"", 0, "gnss.ephemeris_error", "is \"broadcast_minus_sp3\", but there is no broadcast",
+                 "gnss.nav_file"};
+  if (c.sp3_files.empty())
+    return Error{"", 0, "gnss.ephemeris_error", "is \"broadcast_minus_sp3\", but there are no precise orbits",
+                 "gnss.sp3_files"};
+  CANYON_TRY(const PreciseOrbits orbits, read_sp3_files(c.sp3_files));
+  warnings.insert(warnings.end(), orbits.warnings.begin(), orbits.warnings.end());
+  AntexFile antennas;
+  PreciseOptions options;
+  options.systems = c.systems;
+  if (!c.antex_file.empty()) {
+    CANYON_TRY(antennas, read_antex_file(c.antex_file));
+    warnings.insert(warnings.end(), antennas.warnings.begin(), antennas.warnings.end());
+    options.antennas = &antennas;
+  }
+  return std::shared_ptr<const Constellation>(make_precise(orbits, options));
+}
+
 }  // namespace
 
 int second_band(GnssSystem system, const std::string& second_frequency) {
@@ -85,7 +108,11 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
   parts.constellation = std::move(source.constellation);
   parts.ionosphere = ionosphere->make({c.vtec_tecu, klobuchar});
   parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
-  parts.ephemeris_error = ephemeris_error->make({seed, c.ephemeris_sigma_m, c.ephemeris_tau_s});
+  EphemerisErrorParameters orbit{seed, c.ephemeris_sigma_m, c.ephemeris_tau_s, parts.constellation, {}};
+  if (c.ephemeris_error == "broadcast_minus_sp3") {
+    CANYON_TRY(orbit.precise, make_precise_source(c, source, parts.warnings));
+  }
+  parts.ephemeris_error = ephemeris_error->make(orbit);
   parts.paths = paths->make(path_parameters(c));
   for (std::size_t i = 0; i < kModulations; ++i) {
     const CorrelatorDesign design = correlator_design(c, static_cast<Modulation>(i));

@@ -27,7 +27,7 @@ struct Channel {
 
 /// All that a pseudorange is made of; one model per effect.
 struct PseudorangeParts {
-  std::unique_ptr<Constellation> constellation;
+  std::shared_ptr<const Constellation> constellation;
   std::unique_ptr<IonosphereModel> ionosphere;
   std::unique_ptr<TroposphereModel> troposphere;
   std::unique_ptr<EphemerisError> ephemeris_error;

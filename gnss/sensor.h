@@ -122,6 +122,8 @@ struct GnssConfig {
   std::string systems = "G";           ///< RINEX letters of the systems received
   std::string nav_file;                ///< RINEX navigation file; none at all = built-in constellation
   std::vector<std::string> nav_files;  ///< further ones
+  std::vector<std::string> sp3_files;  ///< precise orbits, for ephemeris_error broadcast_minus_sp3
+  std::string antex_file;              ///< satellite antennas, for the same
 };
 void visit(FieldVisitor& f, GnssConfig& c);
 

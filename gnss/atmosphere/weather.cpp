@@ -6,8 +6,11 @@
 namespace canyon::gnss {
 
 Weather standard_weather(double height_m) {
-  const double h = std::clamp(height_m, -500.0, 11000.0);
-  return {1013.25 * std::pow(1.0 - 2.25577e-5 * h, 5.25588), 15.0 - 6.5e-3 * h, 0.5};
+  constexpr double kTropopauseM = 11000.0;
+  const double h = std::clamp(height_m, -500.0, 20000.0), low = std::min(h, kTropopauseM);
+  const double pressure_hpa = 1013.25 * std::pow(1.0 - 2.25577e-5 * low, 5.25588);
+  // Scale height of air at -56.5 deg C: R T / g = 287.053 * 216.65 / 9.80665.
+  return {pressure_hpa * std::exp(-(h - low) / 6341.62), 15.0 - 6.5e-3 * low, 0.5};
 }
 
 double vapour_pressure_hpa(const Weather& w) {

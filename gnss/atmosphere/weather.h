@@ -9,8 +9,9 @@ struct Weather {
   double relative_humidity = 0.5;  ///< 0..1
 };
 
-/// Standard atmosphere at a height above mean sea level (ICAO troposphere, relative humidity 50 %): what a receiver
-/// without weather sensors assumes. Heights are held within [-500, 11000] m.
+/// Standard atmosphere at a height above mean sea level: ICAO, 6.5 K per km up to 11 km and isothermal above, relative
+/// humidity 50 % at every height: what a receiver without weather sensors assumes. Heights are held within [-500,
+/// 20000] m.
 Weather standard_weather(double height_m);
 
 /// Partial pressure of water vapour, hPa: Magnus formula with the WMO (2008) constants.

@@ -19,6 +19,8 @@ constexpr ModelRow<MakeEphemerisError> kModels[] = {
     {"orbit_clock_2010", make_orbit_clock_2010,
      "per satellite: radial, along, cross and clock as measured on 1 July 2010, SISRE 1.11 m"},
     {"orbit_clock_2021", make_orbit_clock_2021, "the same at the level of 2021, SISRE 0.89 m"},
+    {"broadcast_minus_sp3", make_measured_ephemeris,
+     "real: the navigation files against the precise orbits and clocks of sp3_files"},
     {"paper_printed", make_paper_printed_ephemeris, "Durst & Goodin (2012) as printed: 8 to 12 m"},
     {"paper_corrected", make_paper_corrected_ephemeris, "the form their table 1 suggests: about 1.1 m"},
 };

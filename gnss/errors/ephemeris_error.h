@@ -22,8 +22,10 @@ class EphemerisError {
 
 struct EphemerisErrorParameters {
   std::uint64_t seed = 0;
-  double sigma_m = 1.0;
-  double tau_s = 3600.0;
+  double sigma_m = 1.0;   ///< gauss_markov
+  double tau_s = 3600.0;  ///< gauss_markov
+  /// broadcast_minus_sp3: what is compared.
+  std::shared_ptr<const Constellation> broadcast{}, precise{};
 };
 
 using MakeEphemerisError = std::unique_ptr<EphemerisError>(const EphemerisErrorParameters&);
@@ -32,6 +34,7 @@ std::span<const ModelRow<MakeEphemerisError>> ephemeris_error_models();
 std::unique_ptr<EphemerisError> make_gauss_markov_ephemeris(const EphemerisErrorParameters& p);
 std::unique_ptr<EphemerisError> make_orbit_clock_2010(const EphemerisErrorParameters& p);
 std::unique_ptr<EphemerisError> make_orbit_clock_2021(const EphemerisErrorParameters& p);
+std::unique_ptr<EphemerisError> make_measured_ephemeris(const EphemerisErrorParameters& p);
 std::unique_ptr<EphemerisError> make_paper_printed_ephemeris(const EphemerisErrorParameters& p);
 std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris(const EphemerisErrorParameters& p);
 

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -97,7 +99,10 @@ TEST(Troposphere, PaperAsPrintedAndCorrected) {
 
 TEST(Troposphere, StandardAtmosphere) {
   EXPECT_DOUBLE_EQ(standard_weather(0.0).pressure_hpa, 1013.25);
-  EXPECT_NEAR(standard_weather(5000.0).pressure_hpa, 540.2, 0.1);  // ICAO: 540.2 hPa
+  EXPECT_NEAR(standard_weather(5000.0).pressure_hpa, 540.2, 0.1);   // ICAO: 540.2 hPa
+  EXPECT_NEAR(standard_weather(11000.0).pressure_hpa, 226.3, 0.1);  // and 226.3, 54.7
+  EXPECT_NEAR(standard_weather(20000.0).pressure_hpa, 54.75, 0.1);
+  EXPECT_EQ(standard_weather(15000.0).temperature_c, -56.5);
   EXPECT_TRUE(std::isfinite(standard_weather(1e9).pressure_hpa));
   EXPECT_TRUE(std::isfinite(standard_weather(-6.4e6).pressure_hpa));
 }
@@ -142,6 +147,49 @@ TEST(Ionosphere, KlobucharAtNightIsFiveNanosecondsTimesObliquity) {
   const double delay_m = klobuchar_delay_m(kBuiltInKlobuchar, view.t + -7.0 * 3600.0, view.receiver.lat_rad,
                                            view.receiver.lon_rad, view.azimuth_rad, view.elevation_rad);
   EXPECT_NEAR(delay_m, kSpeedOfLight * 5e-9 * klobuchar_obliquity(view.elevation_rad), 1e-12);
+}
+
+// Every model, at heights from the Dead Sea to 20 km, anywhere, any elevation from the horizon up: finite, not
+// negative, and never longer for a higher satellite.
+TEST(Atmosphere, ExtremesAreFiniteAndMonotone) {
+  for (const double height_m : {-400.0, 0.0, 357.1, 8848.0, 20000.0}) {
+    const Weather air = standard_weather(height_m);
+    for (const double lat_deg : {-90.0, -45.0, 0.0, 14.9, 90.0}) {
+      for (const double lon_deg : {-180.0, 0.0, 180.0}) {
+        SkyView view = view_at(0.0, 123.0);
+        view.receiver = {lat_deg * kDegree, lon_deg * kDegree, height_m};
+        const auto check = [&](const char* name, const auto& model) {
+          double before_m = std::numeric_limits<double>::infinity();
+          for (double e = 0.0; e <= 90.0; e += 0.25) {
+            view.elevation_rad = e * kDegree;
+            const double delay_m = model.delay_m(view);
+            ASSERT_TRUE(std::isfinite(delay_m)) << name << " " << height_m << " " << lat_deg << " " << e;
+            ASSERT_GE(delay_m, 0.0) << name << " " << height_m << " " << lat_deg << " " << e;
+            // Klobuchar's pierce point moves with the elevation, and with it the vertical delay.
+            if (std::string(name) != "klobuchar") {
+              ASSERT_LE(delay_m, before_m * (1 + 1e-12)) << name << " " << height_m << " " << lat_deg << " " << e;
+            }
+            before_m = delay_m;
+          }
+        };
+        for (const auto& row : ionosphere_models()) check(row.name, *row.make({12.0, kBuiltInKlobuchar}));
+        for (const auto& row : troposphere_models()) check(row.name, *row.make(air));
+      }
+    }
+  }
+}
+
+// The standard troposphere's zenith delay falls steadily with height, to the 5 % of the air that lies above 20 km.
+TEST(Atmosphere, ZenithDelayFallsWithHeight) {
+  double before_m = 10.0;
+  for (double height_m = -400.0; height_m <= 20000.0; height_m += 100.0) {
+    SkyView view = view_at(90.0);
+    view.receiver.h_m = height_m;
+    const double delay_m = standard_troposphere_m(view);
+    EXPECT_LT(delay_m, before_m) << height_m;
+    before_m = delay_m;
+  }
+  EXPECT_NEAR(before_m, 0.0022768 * 54.75, 0.01 * 0.125);
 }
 
 }  // namespace

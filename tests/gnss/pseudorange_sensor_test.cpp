@@ -6,6 +6,7 @@
 
 #include "core/files.h"
 #include "core/units.h"
+#include "gnss/receiver/receiver_mode.h"
 #include "gnss/sensor.h"
 #include "gnss/signal.h"
 #include "scene/scene_at.h"
@@ -519,6 +520,138 @@ TEST_F(PseudorangeSensorTest, RealNavigationFile) {
   EXPECT_LE(*counts.rbegin(), 14u);
 }
 
+// The poles, the antimeridian, below the sea, high in the air: without errors the fix is the truth everywhere.
+TEST_F(PseudorangeSensorTest, AnywhereOnEarth) {
+  const double places[][3] = {{90, 0, 0},         {-90, 0, 2800},       {89.9999, 180, 0},
+                              {0, 180, 0},        {0, -180, 0},         {-16, 179.99999, 20},
+                              {31.5, 35.5, -400}, {27.98, 86.92, 8848}, {32, -90, 20000}};
+  for (const auto& p : places) {
+    scene = WallScene(Geodetic{p[0] * kDegree, p[1] * kDegree, p[2]}).wall({0, 0, -5}, {1, 0, 0}, {0, 1, 0}).build();
+    const auto clean = make(errors_off());
+    const auto real = make(open_sky("single"));
+    for (const std::int64_t k : {0, 5000, 50000}) {
+      const GnssOutput out = measure(*clean, k);
+      ASSERT_EQ(out.fix.status, FixStatus::kSingle) << p[0] << " " << p[1] << " " << out.fix.reason;
+      EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4) << p[0] << " " << p[1];
+      const GnssOutput noisy = measure(*real, k);
+      ASSERT_EQ(noisy.fix.status, FixStatus::kSingle) << p[0] << " " << p[1] << " " << noisy.fix.reason;
+      EXPECT_LT((noisy.fix.p_A_E - truth_E()).norm(), 60.0) << p[0] << " " << p[1];
+    }
+  }
+}
+
+// A week's rollover, a leap second (end of 2008, 2016), a day's and a year's end: GPS time runs through them all, and
+// so do range, carrier and clock.
+TEST_F(PseudorangeSensorTest, EpochsAcrossBoundaries) {
+  for (const GpsTime boundary :
+       {GpsTime::from_week_sow(1612, 0.0), GpsTime::from_week_sow(1024, 0.0), GpsTime::from_week_sow(2048, 0.0),
+        GpsTime::from_calendar(2010, 11, 18, 0, 0, 0.0), GpsTime::from_calendar(2009, 1, 1, 0, 0, 15.0),
+        GpsTime::from_calendar(2017, 1, 1, 0, 0, 18.0), GpsTime::from_calendar(2012, 2, 29, 0, 0, 0.0)}) {
+    GnssConfig c = errors_off();
+    const auto sensor = make(c, 1, boundary - 10.0);
+    const GpsTime start = boundary - 2.0;
+    std::vector<GnssOutput> outs;
+    for (std::int64_t k = 0; k < 9; ++k) outs.push_back(measure(*sensor, k, start));
+    for (std::size_t k = 0; k < outs.size(); ++k) {
+      ASSERT_EQ(outs[k].fix.status, FixStatus::kSingle) << boundary.iso();
+      EXPECT_LT((outs[k].fix.p_A_E - truth_E()).norm(), 1e-4) << boundary.iso() << " " << k;
+      if (k == 0 || outs[k].truth.satellites.size() != outs[k - 1].truth.satellites.size()) continue;
+      for (std::size_t i = 0; i < outs[k].truth.satellites.size(); ++i) {
+        // Range rates over half a second; second derivatives are below 0.2 m/s^2.
+        const auto &now = outs[k].truth.satellites[i], &before = outs[k - 1].truth.satellites[i];
+        EXPECT_NEAR(now.range_m - before.range_m, 0.25 * (now.range_rate_m_s + before.range_rate_m_s), 1e-4);
+        EXPECT_EQ(now.ambiguity_cycles, before.ambiguity_cycles);
+      }
+    }
+  }
+}
+
+TEST_F(PseudorangeSensorTest, FaultExclusionMeetsNlos) {
+  GnssConfig c;
+  c.multipath_rule = "correlator";
+  c.raim = "greedy";
+  c.weighting = "elevation_cn0";
+  const auto with = make(c);
+  c.raim = "none";
+  const auto without = make(c);
+  int excluded = 0;
+  for (std::int64_t k = 0; k < 20000; k += 20) {
+    const GnssOutput a = measure(*with, k), b = measure(*without, k);
+    ASSERT_EQ(a.epoch.observations.size(), b.epoch.observations.size());
+    int used = 0;
+    for (std::size_t i = 0; i < a.epoch.observations.size(); ++i) {
+      EXPECT_EQ(a.epoch.observations[i].pseudorange_m, b.epoch.observations[i].pseudorange_m);
+      used += a.epoch.observations[i].used ? 1 : 0;
+      if (a.fix.status != FixStatus::kNone && !a.epoch.observations[i].used) ++excluded;
+    }
+    if (a.fix.status != FixStatus::kNone) {
+      EXPECT_EQ(used, a.fix.satellites);
+    }
+  }
+  EXPECT_GT(excluded, 0);
+}
+
+// Real broadcasts of five systems at once, each with its own receiver clock, frequencies and modulation.
+TEST_F(PseudorangeSensorTest, RealMultiGnss) {
+  CANYON_REAL_DATA(path, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");
+  scene = WallScene(Geodetic{55.5 * kDegree, 8.46 * kDegree, 60.0}).wall({0, 0, -5}, {1, 0, 0}, {0, 1, 0}).build();
+  const GpsTime start = GpsTime::from_calendar(2020, 6, 25, 12, 0, 0.0);
+  GnssConfig c = errors_off();
+  c.nav_file = path;
+  c.systems = "GREC";
+  const auto sensor = make(c, 1, start);
+  std::set<GnssSystem> systems;
+  for (const std::int64_t k : {0, 400, 900}) {
+    const GnssOutput out = measure(*sensor, k, start);
+    ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+    // GLONASS is integrated numerically by receiver and truth alike.
+    EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-3);
+    for (const auto& o : out.epoch.observations) {
+      systems.insert(o.sv.system);
+      EXPECT_TRUE(o.used);
+    }
+  }
+  EXPECT_EQ(systems.size(), 4u);
+  c.mode = "dual";
+  const GnssOutput dual = measure(*make(c, 1, start), 0, start);
+  EXPECT_LT((dual.fix.p_A_E - truth_E()).norm(), 1e-3);
+}
+
+// What the broadcast of 1 July 2010 really erred by, on ranges: like the model that was made from it.
+TEST_F(PseudorangeSensorTest, RealOrbitErrors) {
+  CANYON_REAL_DATA(nav, "gnss/orbit_2010_182/brdc1820.10n");
+  CANYON_REAL_DATA(sp3, "gnss/orbit_2010_182/igs15904.sp3");
+  CANYON_REAL_DATA(antex, "gnss/antex/igs05.atx.gz");
+  const GpsTime start = GpsTime::from_calendar(2010, 7, 1, 4, 0, 0.0);
+  GnssConfig c = errors_off();
+  c.nav_file = nav;
+  c.sp3_files = {sp3};
+  c.antex_file = antex;
+  c.ephemeris_error = "broadcast_minus_sp3";
+  auto sensor = make_gnss_sensor(c, 1, start, start + 14.0 * 3600.0, *scene);
+  ASSERT_TRUE(sensor.ok()) << sensor.error().str();
+  double square = 0.0;
+  int n = 0;
+  for (std::int64_t k = 0; k < 56; ++k) {
+    const GnssOutput out =
+        (*sensor)->measure(k, start + 900.0 * static_cast<double>(k), antenna_W, still, scene::SceneAt(*scene));
+    double mean_m = 0.0;
+    for (const auto& s : out.truth.satellites)
+      mean_m += s.ephemeris_m / static_cast<double>(out.truth.satellites.size());
+    for (const auto& s : out.truth.satellites) {
+      square += std::pow(s.ephemeris_m - mean_m, 2);  // what is common goes into the receiver's clock
+      ++n;
+    }
+    ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+    EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 8.0);
+  }
+  const double rms_m = std::sqrt(square / n);
+  RecordProperty("rms_m", std::to_string(rms_m));
+  std::printf("broadcast minus SP3 on ranges at Vicksburg, against the epoch's mean: %.2f m RMS of %d\n", rms_m, n);
+  EXPECT_GT(rms_m, 0.4);
+  EXPECT_LT(rms_m, 1.3);
+}
+
 TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
   GnssConfig c;
   c.model = "gps";
@@ -533,6 +666,23 @@ TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
   c.solver = "trilateration";
   EXPECT_EQ(error_of(c),
             "gnss.receiver_clock: is \"tcxo\", but solver \"trilateration\" has no unknown for it, expected \"none\"");
+}
+
+TEST_F(PseudorangeSensorTest, MeasuredOrbitErrorsNeedTheirFiles) {
+  GnssConfig c;
+  c.ephemeris_error = "broadcast_minus_sp3";
+  EXPECT_EQ(error_of(c),
+            "gnss.ephemeris_error: is \"broadcast_minus_sp3\", but there is no broadcast, expected gnss.nav_file");
+  c = GnssConfig{};
+  c.systems = "GX";
+  EXPECT_THAT(error_of(c), HasSubstr("gnss.systems: "));
+}
+
+TEST(GnssConfig, ModesSayWhetherTheyCorrectTheAtmosphere) {
+  for (const auto& row : receiver_modes()) {
+    const auto mode = row.make({});
+    EXPECT_THAT(row.doc, HasSubstr(mode->corrects_atmosphere() ? "residual atmosphere" : "raw atmosphere")) << row.name;
+  }
 }
 
 TEST(GnssConfig, ReadsAndRefuses) {

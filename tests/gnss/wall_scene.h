@@ -16,9 +16,9 @@ inline constexpr double kVicksburgLon = -90.88 * kDegree;
 
 class WallScene {
  public:
-  WallScene() {
+  explicit WallScene(const Geodetic& origin = {kVicksburgLat, kVicksburgLon, 60.0}) {
     parts_.name = "walls";
-    parts_.frame = LocalFrame(Geodetic{kVicksburgLat, kVicksburgLon, 60.0});
+    parts_.frame = LocalFrame(origin);
     parts_.materials = scene::builtin_materials();
   }
 

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "core/check.h"
+#include "core/units.h"
+#include "gnss/errors/ephemeris_error.h"
+#include "gnss/products/clock_datum.h"
+
+namespace canyon::gnss {
+namespace {
+
+/// What the broadcast of the day really erred by: broadcast minus precise orbit and clock. The clocks' difference is
+/// taken against its median over the system's satellites, for the two time scales may differ; both clocks refer to the
+/// two-frequency combination. Satellites and times that the precise product does not have err by nothing.
+class MeasuredEphemeris final : public EphemerisError {
+ public:
+  explicit MeasuredEphemeris(const EphemerisErrorParameters& p) : broadcast_(p.broadcast), precise_(p.precise) {
+    CANYON_CHECK(broadcast_ && precise_, "broadcast and precise constellation are needed");
+  }
+
+  double range_m(SatelliteId sv, const SatelliteState&, const Eigen::Vector3d& receiver_E, GpsTime t) const override {
+    const auto it = at(t).find(sv);
+    if (it == differences_.end()) return 0.0;
+    const Difference& d = it->second;
+    return d.clock_m - (d.p_E - receiver_E).normalized().dot(d.orbit_E);
+  }
+
+ private:
+  struct Difference {
+    Eigen::Vector3d p_E, orbit_E;
+    double clock_m;
+  };
+
+  /// Of all satellites at t; kept until another time is asked for.
+  const std::map<SatelliteId, Difference>& at(GpsTime t) const {
+    if (time_ == t) return differences_;
+    time_ = t;
+    differences_.clear();
+    std::map<GnssSystem, std::vector<double>> clocks;
+    for (const SatelliteId sv : broadcast_->satellites()) {
+      const auto b = broadcast_->state(sv, t), p = precise_->state(sv, t);
+      if (!b || !p) continue;
+      const double broadcast_s = b->clock_s - delay_of_precise_clock_s(sv.system, b->group_delay_s);
+      const double clock_m = kSpeedOfLight * (broadcast_s - p->clock_s);
+      differences_[sv] = {p->p_E, b->p_E - p->p_E, clock_m};
+      clocks[sv.system].push_back(clock_m);
+    }
+    for (auto& [system, values] : clocks) std::sort(values.begin(), values.end());
+    for (auto& [sv, d] : differences_) {
+      const auto& values = clocks.at(sv.system);
+      const std::size_t half = values.size() / 2;
+      d.clock_m -= values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+    }
+    return differences_;
+  }
+
+  std::shared_ptr<const Constellation> broadcast_, precise_;
+  mutable std::optional<GpsTime> time_;
+  mutable std::map<SatelliteId, Difference> differences_;
+};
+
+}  // namespace
+
+std::unique_ptr<EphemerisError> make_measured_ephemeris(const EphemerisErrorParameters& p) {
+  return std::make_unique<MeasuredEphemeris>(p);
+}
+
+}  // namespace canyon::gnss
