@@ -66,7 +66,9 @@ void add_row(const std::vector<std::string_view>& row, const std::map<int, int>&
     o.e = table_number(row[8]);
     o.perigee_rad = table_number(row[9]) * kDegree;
     o.inclination_rad = table_number(row[10]) * kDegree;
-    o.node_rate = node_rate_of(o.a_m, o.e, o.inclination_rad, c.mu_m3_s2) - c.earth_rate_rad_s;
+    const double drift = row[13].empty() ? node_rate_of(o.a_m, o.e, o.inclination_rad, c.mu_m3_s2)
+                                         : table_number(row[13]) * kDegree / 86400.0;
+    o.node_rate = drift - c.earth_rate_rad_s;
     o.latitude_rate = -o.node_rate * table_number(row[11]) / table_number(row[12]);
     const auto channel = channels.find(satellites[k].prn);
     if (satellites[k].system == GnssSystem::kGlonass && channel != channels.end()) o.channel = channel->second;
