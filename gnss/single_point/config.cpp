@@ -27,6 +27,8 @@ void visit(FieldVisitor& f, SinglePointConfig& c) {
            "time constant of the smoothing of code by carrier phase; 0 = off");
   f.choice("weighting", c.weighting, model_names(range_weightings()), "assumed 1-sigma of a corrected pseudorange");
   f.number("sigma_m", c.sigma_m, {1e-3, 1000.0}, "its size for a clear satellite at the zenith");
+  f.number("doppler_sigma_m_s", c.doppler_sigma_m_s, {1e-4, 100.0},
+           "assumed 1-sigma of a range rate from Doppler where that of the range is sigma_m");
   f.choice("fault_exclusion", c.fault_exclusion, model_names(fault_exclusions()), "test of the residuals");
   f.number("false_alarm", c.false_alarm, {1e-12, 0.5}, "probability that a good epoch fails that test");
   f.integer("max_exclusions", c.max_exclusions, {0, 100}, "satellites excluded at most");

@@ -24,6 +24,7 @@ struct SinglePointConfig {
 
   std::string weighting = "budget";
   double sigma_m = 0.5;
+  double doppler_sigma_m_s = 0.05;  ///< of a range rate where that of the range is sigma_m
   std::string fault_exclusion = "greedy";
   double false_alarm = 1e-3;
   std::int64_t max_exclusions = 8;

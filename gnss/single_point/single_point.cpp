@@ -13,6 +13,7 @@
 #include "gnss/single_point/group_delay.h"
 #include "gnss/single_point/range_corrections.h"
 #include "gnss/sky_view.h"
+#include "gnss/solver/velocity.h"
 #include "gnss/solver/weighting.h"
 
 namespace canyon::gnss {
@@ -136,6 +137,7 @@ class SinglePoint {
     out.integrity = solution.integrity;
     if (!solution.ok) return out;
     fill(solution, out);
+    fill_velocity(candidates, solution.p_E, out);
     guess_E_ = solution.p_E;
     return out;
   }
@@ -257,6 +259,26 @@ class SinglePoint {
     out.residuals_m = solution.residuals_m;
     for (std::size_t i = 0; i < out.epoch.observations.size(); ++i) out.epoch.observations[i].used = solution.used[i];
     out.excluded = static_cast<int>(out.epoch.observations.size()) - fix.satellites;
+  }
+
+  /// From the Dopplers of the satellites in the fix.
+  void fill_velocity(const std::vector<Candidate>& candidates, const Eigen::Vector3d& p_E,
+                     SinglePointEpoch& out) const {
+    constexpr double kOutlierSigmas = 5.0;
+    std::vector<RateMeasurement> rates;
+    for (const auto& o : out.epoch.observations) {
+      if (!o.used || !std::isfinite(o.doppler_hz)) continue;
+      for (const auto& c : candidates) {
+        if (c.sv != o.sv) continue;
+        // Tracking of a carrier worsens as that of the code does.
+        const double sigma_m_s = config_.doppler_sigma_m_s * o.sigma_m / config_.sigma_m;
+        rates.push_back({c.state.p_E, c.state.v_E,
+                         pseudorange_rate_m_s(o.doppler_hz, c.code.hz) + kSpeedOfLight * c.state.clock_rate,
+                         sigma_m_s});
+      }
+    }
+    const VelocitySolution velocity = solve_velocity(rates, p_E, {config_.max_gdop, kOutlierSigmas});
+    if (velocity.ok) out.fix.v_A_E = velocity.v_E;
   }
 
   const ObservationFile& file_;

@@ -122,6 +122,15 @@ TEST(SinglePoint, UsnoDualFrequencyHasNoBiasInHeight) {
   EXPECT_LE(std::abs(s.mean_enu_m.z()), 1.5);
 }
 
+// A static station: what its Dopplers say is their error. 30 s data of a survey receiver whose D1 are averaged over a
+// second or so: a few centimetres per second.
+TEST(SinglePoint, DopplerVelocityOfAStaticStation) {
+  CANYON_USNO(usno);
+  const auto s = solve(usno, recommended("G")).statistics;
+  ASSERT_TRUE(s.velocity_rms_enu_m_s.allFinite());
+  EXPECT_LT(s.velocity_rms_enu_m_s.norm(), 0.03);
+}
+
 TEST(SinglePoint, EsbcLikeForLikeAndRecommended) {
   CANYON_ESBC(esbc);
   for (const auto& [systems, bound_m] : {std::pair("G", 1.93), {"GREC", 1.49}}) {
