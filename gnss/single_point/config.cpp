@@ -25,6 +25,10 @@ void visit(FieldVisitor& f, SinglePointConfig& c) {
            "1-sigma of the ionosphere model's scale, relative, solved as an unknown with that prior; 0 = trusted");
   f.number("smoothing_s", c.smoothing_s, {0.0, 86400.0},
            "time constant of the smoothing of code by carrier phase; 0 = off");
+  f.choice("estimator", c.estimator, {"least_squares", "kalman"},
+           "least_squares = each epoch by itself; kalman = position, velocity and time filtered");
+  f.number("acceleration_m_s2", c.acceleration_m_s2, {1e-6, 1000.0},
+           "kalman: white acceleration of the antenna per axis, m/s^2/sqrt(Hz)");
   f.choice("weighting", c.weighting, model_names(range_weightings()), "assumed 1-sigma of a corrected pseudorange");
   f.number("sigma_m", c.sigma_m, {1e-3, 1000.0}, "its size for a clear satellite at the zenith");
   f.number("doppler_sigma_m_s", c.doppler_sigma_m_s, {1e-4, 100.0},

@@ -22,6 +22,9 @@ struct SinglePointConfig {
   double shared_ionosphere = 0.5;  ///< 1-sigma of the modelled ionosphere's scale, an unknown; 0 = not solved
   double smoothing_s = 300.0;      ///< time constant of carrier smoothing; 0 = off
 
+  std::string estimator = "least_squares";  ///< least_squares | kalman
+  double acceleration_m_s2 = 1.0;           ///< kalman: white acceleration, m/s^2/sqrt(Hz)
+
   std::string weighting = "budget";
   double sigma_m = 0.5;
   double doppler_sigma_m_s = 0.05;  ///< of a range rate where that of the range is sigma_m

@@ -13,11 +13,14 @@
 #include "gnss/single_point/group_delay.h"
 #include "gnss/single_point/range_corrections.h"
 #include "gnss/sky_view.h"
+#include "gnss/solver/pvt_filter.h"
 #include "gnss/solver/velocity.h"
 #include "gnss/solver/weighting.h"
 
 namespace canyon::gnss {
 namespace {
+
+constexpr double kOutlierSigmas = 5.0;  // of Dopplers
 
 /// One satellite of an epoch on its way to a range.
 struct Candidate {
@@ -81,6 +84,12 @@ class SinglePoint {
     solver_ = make_least_squares(p);
     p.false_alarm = 1e-6;
     rough_robust_ = make_least_squares(p);
+    if (config.estimator == "kalman") {
+      PvtFilterParameters f;
+      f.acceleration_m_s2 = config.acceleration_m_s2;
+      f.start.max_gdop = config.max_gdop;
+      filter_.emplace(f);
+    }
     if (file.header.approx_position_E) guess_E_ = *file.header.approx_position_E;
   }
 
@@ -137,7 +146,11 @@ class SinglePoint {
     out.integrity = solution.integrity;
     if (!solution.ok) return out;
     fill(solution, out);
-    fill_velocity(candidates, solution.p_E, out);
+    const std::vector<RateMeasurement> rates = rates_of(candidates, out.epoch);
+    if (filter_)
+      filter(ranges, rates, out);
+    else if (const auto velocity = solve_velocity(rates, solution.p_E, {config_.max_gdop, kOutlierSigmas}); velocity.ok)
+      out.fix.v_A_E = velocity.v_E;
     guess_E_ = solution.p_E;
     return out;
   }
@@ -262,11 +275,9 @@ class SinglePoint {
   }
 
   /// From the Dopplers of the satellites in the fix.
-  void fill_velocity(const std::vector<Candidate>& candidates, const Eigen::Vector3d& p_E,
-                     SinglePointEpoch& out) const {
-    constexpr double kOutlierSigmas = 5.0;
+  std::vector<RateMeasurement> rates_of(const std::vector<Candidate>& candidates, const GnssEpoch& epoch) const {
     std::vector<RateMeasurement> rates;
-    for (const auto& o : out.epoch.observations) {
+    for (const auto& o : epoch.observations) {
       if (!o.used || !std::isfinite(o.doppler_hz)) continue;
       for (const auto& c : candidates) {
         if (c.sv != o.sv) continue;
@@ -277,8 +288,21 @@ class SinglePoint {
                          sigma_m_s});
       }
     }
-    const VelocitySolution velocity = solve_velocity(rates, p_E, {config_.max_gdop, kOutlierSigmas});
-    if (velocity.ok) out.fix.v_A_E = velocity.v_E;
+    return rates;
+  }
+
+  /// Replaces the epoch's own solution by the filter's, which is given the ranges that it used.
+  void filter(const std::vector<RangeMeasurement>& ranges, const std::vector<RateMeasurement>& rates,
+              SinglePointEpoch& out) {
+    std::vector<RangeMeasurement> used;
+    for (std::size_t i = 0; i < ranges.size(); ++i)
+      if (out.epoch.observations[i].used) used.push_back(ranges[i]);
+    const PvtFilter::Estimate e = filter_->update(out.fix.t, used, rates, out.fix.p_A_E);
+    if (!e.ok) return;
+    out.fix.p_A_E = e.p_E;
+    out.fix.v_A_E = e.v_E;
+    out.fix.clock_m = e.clock_m;
+    out.fix.covariance_E = e.covariance.topLeftCorner<3, 3>();
   }
 
   const ObservationFile& file_;
@@ -286,6 +310,7 @@ class SinglePoint {
   const SinglePointConfig& config_;
   std::unique_ptr<RangeWeighting> weighting_;
   std::unique_ptr<PositionSolver> rough_, rough_robust_, solver_;
+  std::optional<PvtFilter> filter_;
   Eigen::Vector3d guess_E_ = Eigen::Vector3d::Zero();
   GroupDelays group_delays_;
   CarrierSmoothing smoothing_;

@@ -288,6 +288,25 @@ TEST_F(SyntheticDay, SmoothingTakesNoiseAwayAndSurvivesSlips) {
   EXPECT_LT(rms(600.0, 20, 40), rms(0.0, 20, 40));  // slips of 150 m and of 4 m do no harm
 }
 
+// Two metres of noise: the filter, which has Doppler too, is better than each epoch by itself.
+TEST_F(SyntheticDay, TheFilterIsBetterThanEpochsByThemselves) {
+  const RandomStream noise(6, "test.kalman");
+  const auto f = file([&](int k, GnssEpoch& e) {
+    for (auto& o : e.observations) o.pseudorange_m += 2.0 * noise.normal(o.sv.entity(), static_cast<std::uint64_t>(k));
+  });
+  auto c = plain();
+  c.sigma_m = 2.0;
+  c.acceleration_m_s2 = 0.01;
+  const auto rms = [&](const char* estimator) {
+    c.estimator = estimator;
+    const auto r = solve_file(f, c);
+    double square = 0.0;
+    for (std::size_t k = 10; k < 40; ++k) square += (r->epochs[k].fix.p_A_E - place_).squaredNorm();
+    return std::sqrt(square / 30.0);
+  };
+  EXPECT_LT(rms("kalman"), 0.6 * rms("least_squares"));
+}
+
 TEST_F(SyntheticDay, ReasonsAndWarningsWordForWord) {
   // From the second epoch on there are three satellites.
   const auto f = file([](int k, GnssEpoch& e) {
