@@ -6,10 +6,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/json.h"
 #include "apps/verb.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/place_files.h"
+#include "gnss/products/antex_file.h"
+#include "gnss/products/ionex_file.h"
+#include "gnss/products/precise_orbits.h"
 #include "gnss/rinex/navigation_file.h"
 #include "gnss/rinex/observation_file.h"
 #include "gnss/single_point/position_statistics.h"
@@ -23,7 +27,8 @@ namespace {
 struct Options {
   CommonOptions common;
   std::string observations, config, systems, truth_ecef, truth, out;
-  std::vector<std::string> navigation;
+  std::string antex, ionex;
+  std::vector<std::string> navigation, sp3;
   std::optional<double> mask_deg;
   bool force = false;
 };
@@ -63,31 +68,27 @@ Result<gnss::Truth> truth_of(const Options& options) {
   });
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json summary_json(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s,
-                                    const gnss::ObservationFile& file) {
-  nlohmann::ordered_json json{{"epochs", s.epochs},
-                              {"solved", s.solved},
-                              {"compared", s.compared},
-                              {"mean_e_m", number(s.mean_enu_m.x())},
-                              {"mean_n_m", number(s.mean_enu_m.y())},
-                              {"mean_u_m", number(s.mean_enu_m.z())},
-                              {"std_e_m", number(s.std_enu_m.x())},
-                              {"std_n_m", number(s.std_enu_m.y())},
-                              {"std_u_m", number(s.std_enu_m.z())},
-                              {"h50_m", number(s.h50_m)},
-                              {"h95_m", number(s.h95_m)},
-                              {"v95_m", number(s.v95_m)},
-                              {"rms_3d_m", number(s.rms_3d_m)},
-                              {"velocity_rms_e_m_s", number(s.velocity_rms_enu_m_s.x())},
-                              {"velocity_rms_n_m_s", number(s.velocity_rms_enu_m_s.y())},
-                              {"velocity_rms_u_m_s", number(s.velocity_rms_enu_m_s.z())},
-                              {"damaged_records", file.damaged},
-                              {"warnings", result.warnings.size() + file.warnings.size()}};
-  json["unsolved"] = nlohmann::ordered_json::object();
+Json summary_json(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s,
+                  const gnss::ObservationFile& file) {
+  Json json{{"epochs", s.epochs},
+            {"solved", s.solved},
+            {"compared", s.compared},
+            {"mean_e_m", or_null(s.mean_enu_m.x())},
+            {"mean_n_m", or_null(s.mean_enu_m.y())},
+            {"mean_u_m", or_null(s.mean_enu_m.z())},
+            {"std_e_m", or_null(s.std_enu_m.x())},
+            {"std_n_m", or_null(s.std_enu_m.y())},
+            {"std_u_m", or_null(s.std_enu_m.z())},
+            {"h50_m", or_null(s.h50_m)},
+            {"h95_m", or_null(s.h95_m)},
+            {"v95_m", or_null(s.v95_m)},
+            {"rms_3d_m", or_null(s.rms_3d_m)},
+            {"velocity_rms_e_m_s", or_null(s.velocity_rms_enu_m_s.x())},
+            {"velocity_rms_n_m_s", or_null(s.velocity_rms_enu_m_s.y())},
+            {"velocity_rms_u_m_s", or_null(s.velocity_rms_enu_m_s.z())},
+            {"damaged_records", file.damaged},
+            {"warnings", result.warnings.size() + file.warnings.size()}};
+  json["unsolved"] = Json::object();
   for (const auto& [reason, count] : result.reasons) json["unsolved"][reason] = count;
   return json;
 }
@@ -104,7 +105,7 @@ void tell(const gnss::SinglePointResult& result, const gnss::PositionStatistics&
               s.rms_3d_m);
 }
 
-Status write_output(const Options& options, const gnss::SinglePointResult& result, const nlohmann::ordered_json& json) {
+Status write_output(const Options& options, const gnss::SinglePointResult& result, const Json& json) {
   if (options.out.empty()) return Ok{};
   if (options.out.ends_with(".csv")) return write_text_file(options.out, gnss::solution_csv(result));
   CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
@@ -113,25 +114,52 @@ Status write_output(const Options& options, const gnss::SinglePointResult& resul
   return staged.commit();
 }
 
+/// Broadcast orbits and clocks, or precise ones with the broadcast group delays.
+Result<std::unique_ptr<gnss::Constellation>> satellites(const Options& options, const gnss::SinglePointConfig& config,
+                                                        const gnss::NavigationData& navigation,
+                                                        std::vector<std::string>& warnings) {
+  if (options.sp3.empty()) {
+    gnss::BroadcastOptions broadcast;
+    broadcast.systems = config.systems;
+    if (config.ephemeris == "transmitted") broadcast.choice = gnss::EphemerisChoice::kTransmitted;
+    return gnss::make_broadcast(navigation, broadcast);
+  }
+  CANYON_TRY(const auto orbits, gnss::read_sp3_files(options.sp3));
+  warnings.insert(warnings.end(), orbits.warnings.begin(), orbits.warnings.end());
+  gnss::PreciseOptions precise;
+  precise.systems = config.systems;
+  precise.group_delays = &navigation;
+  std::optional<gnss::AntexFile> antennas;
+  if (!options.antex.empty()) {
+    CANYON_TRY(antennas, gnss::read_antex_file(options.antex));
+    precise.antennas = &*antennas;
+  }
+  return gnss::make_precise(orbits, precise);
+}
+
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
   CANYON_TRY(const auto config, configuration(options));
   CANYON_TRY(const auto truth, truth_of(options));
   CANYON_TRY(const auto navigation, gnss::read_navigation_files(options.navigation));
   CANYON_TRY(const auto file, gnss::read_observation_file(options.observations));
-  gnss::BroadcastOptions broadcast;
-  broadcast.systems = config.systems;
-  if (config.ephemeris == "transmitted") broadcast.choice = gnss::EphemerisChoice::kTransmitted;
-  const auto constellation = gnss::make_broadcast(navigation, broadcast);
-  CANYON_TRY(const auto result, gnss::solve_observations(file, {*constellation, navigation}, config));
+  std::vector<std::string> warnings = navigation.warnings;
+  CANYON_TRY(const auto constellation, satellites(options, config, navigation, warnings));
+  std::optional<gnss::IonexMaps> maps;
+  if (!options.ionex.empty()) {
+    CANYON_TRY(maps, gnss::read_ionex_file(options.ionex));
+    warnings.insert(warnings.end(), maps->warnings.begin(), maps->warnings.end());
+  }
+  CANYON_TRY(const auto result,
+             gnss::solve_observations(file, {*constellation, navigation, maps ? &*maps : nullptr}, config));
 
   std::vector<GnssFix> fixes;
   for (const auto& e : result.epochs) fixes.push_back(e.fix);
   const auto statistics = gnss::position_statistics(fixes, truth);
   const auto json = summary_json(result, statistics, file);
   CANYON_TRY_STATUS(write_output(options, result, json));
-  for (const auto* warnings : {&navigation.warnings, &file.warnings, &result.warnings})
-    for (const auto& warning : *warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const auto* list : {&warnings, &file.warnings, &result.warnings})
+    for (const auto& warning : *list) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.common.json)
     std::printf("%s\n", json.dump().c_str());
   else
@@ -145,6 +173,10 @@ VerbAction declare(CLI::App& app) {
   app.add_option("--obs", options->observations, "RINEX 2, 3 or 4 observations; also gzipped or Hatanaka-compressed")
       ->required();
   app.add_option("--nav", options->navigation, "RINEX navigation files of the same day")->required();
+  app.add_option("--sp3", options->sp3, "precise orbits and clocks (SP3) instead of the broadcast ones");
+  app.add_option("--antex", options->antex,
+                 "satellite antennas (ANTEX), for SP3 files whose positions are those of the centre of mass");
+  app.add_option("--ionex", options->ionex, "ionosphere maps (IONEX), for ionosphere = \"ionex\" in --config");
   app.add_option("--systems", options->systems, "satellite systems by their letters, of GRECJ; default GREC");
   app.add_option("--mask", options->mask_deg, "elevation mask, degrees")->check(CLI::Range(-10.0, 89.0));
   app.add_option("--config", options->config,

@@ -17,7 +17,7 @@ struct SinglePointConfig {
   std::string frequencies = "single";     ///< single | dual (ionosphere-free combination)
   std::string ephemeris = "nearest_toe";  ///< nearest_toe | transmitted
   std::string group_delay = "broadcast";  ///< none | broadcast | rtklib
-  std::string ionosphere = "klobuchar";   ///< none | klobuchar | klobuchar_own
+  std::string ionosphere = "klobuchar";   ///< none | klobuchar | klobuchar_own | ionex
   std::string troposphere = "saastamoinen_niell";
   double shared_ionosphere = 0.5;  ///< 1-sigma of the modelled ionosphere's scale, an unknown; 0 = not solved
   double smoothing_s = 300.0;      ///< time constant of carrier smoothing; 0 = off

@@ -34,7 +34,7 @@ int digit(char band) {
 }  // namespace
 
 std::vector<std::string> ionosphere_corrections_of_observations() {
-  return {"none", "klobuchar", "klobuchar_own"};
+  return {"none", "klobuchar", "klobuchar_own", "ionex"};
 }
 
 double ionosphere_correction_m(const std::string& model, const KlobucharCoefficients& klobuchar, const SkyView& view) {

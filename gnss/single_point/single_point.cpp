@@ -11,6 +11,7 @@
 #include "gnss/single_point/carrier_smoothing.h"
 #include "gnss/single_point/code_choice.h"
 #include "gnss/single_point/group_delay.h"
+#include "gnss/single_point/ionosphere_map.h"
 #include "gnss/single_point/range_corrections.h"
 #include "gnss/sky_view.h"
 #include "gnss/solver/pvt_filter.h"
@@ -191,7 +192,7 @@ class SinglePoint {
     return out;
   }
 
-  bool uses_klobuchar() const { return config_.frequencies == "single" && config_.ionosphere != "none"; }
+  bool uses_klobuchar() const { return config_.frequencies == "single" && config_.ionosphere.starts_with("klobuchar"); }
 
   KlobucharCoefficients coefficients(GnssSystem system, GpsTime t) const {
     if (config_.ionosphere == "klobuchar_own")
@@ -215,8 +216,14 @@ class SinglePoint {
   }
 
   double ionosphere_m(const Candidate& c, const SkyView& view) const {
-    if (!uses_klobuchar()) return 0.0;
+    if (config_.frequencies != "single" || config_.ionosphere == "none") return 0.0;
     const double scale = kL1Hz / c.code.hz;
+    if (config_.ionosphere == "ionex") {
+      SkyView held = view;
+      held.elevation_rad = std::max(held.elevation_rad, 5.0 * kDegree);
+      const double delay_m = ionosphere_map_delay_m(*inputs_.ionosphere_maps, held);
+      return std::isfinite(delay_m) ? scale * scale * delay_m : 0.0;  // holes of a map; its time was checked
+    }
     return scale * scale * ionosphere_correction_m(config_.ionosphere, c.klobuchar, view);
   }
 
@@ -328,8 +335,19 @@ int SinglePointResult::solved() const {
 Result<SinglePointResult> solve_observations(const ObservationFile& observations, const SinglePointInputs& inputs,
                                              const SinglePointConfig& config) {
   CANYON_TRY_STATUS(check_systems(config.systems, "systems"));
-  const bool klobuchar = config.frequencies == "single" && config.ionosphere != "none";
-  if (klobuchar && inputs.navigation.klobuchar.empty())
+  const bool single = config.frequencies == "single";
+  if (single && config.ionosphere == "ionex") {
+    const IonexMaps* maps = inputs.ionosphere_maps;
+    if (maps == nullptr || maps->maps.empty())
+      return Error{"", 0, "ionosphere", "\"ionex\" needs ionosphere maps", "an IONEX file (--ionex)"};
+    if (observations.epochs.front().t < maps->maps.front().t || observations.epochs.back().t > maps->maps.back().t)
+      return Error{maps->name, 0, "ionosphere",
+                   "covers " + maps->maps.front().t.iso(0) + " to " + maps->maps.back().t.iso(0) +
+                       ", not the observations' " + observations.epochs.front().t.iso(0) + " to " +
+                       observations.epochs.back().t.iso(0),
+                   "maps of the same day"};
+  }
+  if (single && config.ionosphere.starts_with("klobuchar") && inputs.navigation.klobuchar.empty())
     return Error{inputs.navigation.names(), 0, "ionosphere",
                  "\"" + config.ionosphere + "\" needs Klobuchar coefficients, and there are none in it",
                  "a navigation file with them, or ionosphere = \"none\""};

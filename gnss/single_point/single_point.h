@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/messages.h"
+#include "gnss/products/ionex_file.h"
 #include "gnss/rinex/observation_file.h"
 #include "gnss/satellites/constellation.h"
 #include "gnss/satellites/navigation_data.h"
@@ -32,14 +33,15 @@ struct SinglePointResult {
 /// What the observations are solved with.
 struct SinglePointInputs {
   const Constellation& constellation;
-  const NavigationData& navigation;  ///< for its ionosphere coefficients and its names in messages
+  const NavigationData& navigation;            ///< for its ionosphere coefficients and its names in messages
+  const IonexMaps* ionosphere_maps = nullptr;  ///< needed where config.ionosphere is "ionex"
 };
 
-/// Positions of a recorded observation file, epoch by epoch, each by itself.
+/// Positions of a recorded observation file, epoch by epoch.
 ///
 /// Satellites are placed by their pseudorange; those without a valid healthy ephemeris are not used, and told in the
 /// warnings. Errors: no system of config.systems observed; no satellite of any epoch with an ephemeris (navigation data
-/// of another day); a Klobuchar correction without coefficients.
+/// of another day); a Klobuchar correction without coefficients, or maps that do not cover the observations.
 Result<SinglePointResult> solve_observations(const ObservationFile& observations, const SinglePointInputs& inputs,
                                              const SinglePointConfig& config);
 

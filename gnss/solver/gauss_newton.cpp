@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include <Eigen/SVD>
+#include <Eigen/QR>
 
 #include "core/check.h"
 #include "core/earth.h"
@@ -105,6 +105,15 @@ class Problem {
   std::vector<Eigen::Vector3d> lines_;
 };
 
+/// (A'A)^-1 from A = Q R P', without forming A'A; infinite where A is singular.
+Eigen::MatrixXd inverse_normal(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr) {
+  const Eigen::Index n = qr.cols();
+  const Eigen::MatrixXd R_inverse =
+      qr.matrixQR().topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
+  const Eigen::MatrixXd scaled = qr.colsPermutation() * R_inverse;
+  return scaled * scaled.transpose();
+}
+
 /// Everything about the converged point that comes out of its linear problem.
 void describe(Problem& problem, const Eigen::MatrixXd& covariance, RangeFit& out) {
   problem.linearise();
@@ -150,12 +159,11 @@ RangeFit fit_ranges(std::span<const RangeMeasurement> ranges, const Eigen::Vecto
   while (!converged && out.iterations < kMaxIterations && x.allFinite()) {
     ++out.iterations;
     problem.linearise();
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(problem.A(), Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Eigen::VectorXd dx = svd.solve(problem.b());
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(problem.A());
+    const Eigen::VectorXd dx = qr.solve(problem.b());
     x += dx;
     converged = dx.norm() < kConvergedM;
-    const Eigen::MatrixXd scaled = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
-    covariance = scaled * scaled.transpose();
+    if (converged) covariance = inverse_normal(qr);
   }
 
   if (x.allFinite()) {
