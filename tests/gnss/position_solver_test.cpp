@@ -123,6 +123,23 @@ TEST(SystemClocks, EachSystemHasItsOwn) {
   EXPECT_EQ(s.integrity.status, IntegrityTest::Status::kNotTested);
 }
 
+// Several clocks wherever on Earth, from the Earth's centre: poles, antimeridian, below the sea and high in the air.
+TEST(SystemClocks, EverywhereFromTheEarthsCentre) {
+  for (const double lat_deg : {-90.0, 0.0, 89.9999})
+    for (const double lon_deg : {-180.0, 179.99999})
+      for (const double h_m : {-400.0, 20000.0}) {
+        const Eigen::Vector3d truth = ecef_from_geodetic({lat_deg * kDegree, lon_deg * kDegree, h_m});
+        auto ranges = ranges_from(truth, kSky, 77.0);
+        for (std::size_t i = 3; i < ranges.size(); ++i) {
+          ranges[i].system = GnssSystem::kGalileo;
+          ranges[i].range_m += 9.0;
+        }
+        const auto s = make_least_squares({})->solve(ranges, Eigen::Vector3d::Zero());
+        ASSERT_TRUE(s.ok) << s.reason;
+        EXPECT_LT((s.p_E - truth).norm(), kRoundingM * s.dop.gdop) << lat_deg << " " << lon_deg << " " << h_m;
+      }
+}
+
 TEST(SystemClocks, TooFewSatellitesForTheClocksWordForWord) {
   auto ranges = ranges_from(kVicksburg, {{10, 70}, {80, 35}, {150, 20}, {200, 50}}, 0.0);
   ranges[3].system = GnssSystem::kGalileo;
