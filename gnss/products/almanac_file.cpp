@@ -5,7 +5,7 @@
 
 #include "core/files.h"
 #include "core/units.h"
-#include "gnss/products/line_warnings.h"
+#include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
@@ -37,7 +37,7 @@ std::optional<SatelliteId> satellite(double number) {
 class AlmanacReader {
  public:
   AlmanacReader(std::string_view text, const std::string& file, GpsTime near)
-      : lines_(text), file_(file), near_(near), warnings_(file) {}
+      : lines_(text), file_(file), near_(near), warnings_(file, "damaged lines") {}
 
   Result<NavigationData> read() {
     while (lines_.next() && columns(lines_.line(), 0, lines_.line().size()).empty()) {
@@ -53,7 +53,7 @@ class AlmanacReader {
                    "\"******** Week ... almanac for PRN-...\" (YUMA) or a number of records (SEM)"};
     if (out_.kepler.empty())
       return Error{file_, std::max(lines_.number(), 1), "", "no usable almanac record", "a YUMA or SEM almanac of GPS"};
-    out_.warnings = warnings_.take();
+    out_.warnings = warnings_.list();
     return out_;
   }
 
@@ -83,7 +83,7 @@ class AlmanacReader {
     else if (!(std::abs(r.af0_s) < 1.0))
       what = "af0 = " + join_values(r.af0_s);
     if (!what.empty()) {
-      warnings_.add(line, what + " cannot be; the record is skipped");
+      warnings_.note(line, what + " cannot be; the record is skipped");
       return;
     }
     r.sv = *sv;
@@ -131,9 +131,9 @@ class AlmanacReader {
           if (line.starts_with(f.name)) field = &f;
         if (field == nullptr || !value || field->seen) {
           if (!damaged)
-            warnings_.add(lines_.number(), "\"" + printable(line.substr(0, 40)) +
-                                               "\" is no line of a YUMA almanac; the "
-                                               "record is skipped");
+            warnings_.note(lines_.number(), "\"" + printable(line.substr(0, 40)) +
+                                                "\" is no line of a YUMA almanac; the "
+                                                "record is skipped");
           damaged = true;
           continue;
         }
@@ -143,7 +143,7 @@ class AlmanacReader {
       if (damaged) continue;
       const auto missing = std::find_if(std::begin(fields), std::end(fields), [](const Field& f) { return !f.seen; });
       if (missing != std::end(fields))
-        warnings_.add(first_line, std::string("the record has no \"") + missing->name + "\" and is skipped");
+        warnings_.note(first_line, std::string("the record has no \"") + missing->name + "\" and is skipped");
       else
         keep(r, number, week, toa_s, health, first_line);
     }
@@ -167,7 +167,7 @@ class AlmanacReader {
   void sem() {
     const auto time = numbers(2);
     if (time.empty()) {
-      warnings_.add(lines_.number(), "week and time of applicability cannot be read");
+      warnings_.note(lines_.number(), "week and time of applicability cannot be read");
       return;
     }
     constexpr std::size_t kShape[] = {1, 1, 1, 3, 3, 3, 1, 1};
@@ -182,7 +182,7 @@ class AlmanacReader {
       if (rows.back().empty()) {
         // Without its place a record cannot be told from the next: the rest is lost.
         if (!lines_.at_end() || rows.size() > 1)
-          warnings_.add(lines_.number(), "a line of a SEM almanac cannot be read; it and what follows are skipped");
+          warnings_.note(lines_.number(), "a line of a SEM almanac cannot be read; it and what follows are skipped");
         return;
       }
       KeplerEphemeris r;
@@ -202,7 +202,7 @@ class AlmanacReader {
   TextLines lines_;
   const std::string& file_;
   GpsTime near_;
-  LineWarnings warnings_;
+  ReaderWarnings warnings_;
   NavigationData out_;
 };
 

@@ -5,8 +5,8 @@
 
 #include "core/files.h"
 #include "core/units.h"
-#include "gnss/products/line_warnings.h"
 #include "gnss/rinex/calendar_fields.h"
+#include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/satellite_name.h"
 #include "gnss/rinex/text_lines.h"
 
@@ -19,7 +19,8 @@ std::string_view label(std::string_view line) {
 
 class AntexReader {
  public:
-  AntexReader(std::string_view text, const std::string& file) : lines_(text), file_(file), warnings_(file) {}
+  AntexReader(std::string_view text, const std::string& file)
+      : lines_(text), file_(file), warnings_(file, "damaged lines") {}
 
   Result<AntexFile> read() {
     out_.name = file_;
@@ -34,7 +35,7 @@ class AntexReader {
       if (label(lines_.line()) == "START OF ANTENNA") antenna();
     if (out_.antennas.empty())
       return Error{file_, lines_.number(), "", "no usable antenna", "\"START OF ANTENNA\" and what belongs to it"};
-    out_.warnings = warnings_.take();
+    out_.warnings = warnings_.list();
     return out_;
   }
 
@@ -45,7 +46,7 @@ class AntexReader {
     double zenith_last_deg = 0.0;
     std::string problem;
     const auto complain = [&](const std::string& what) {
-      if (problem.empty()) warnings_.add(lines_.number(), what + "; the antenna is skipped");
+      if (problem.empty()) warnings_.note(lines_.number(), what + "; the antenna is skipped");
       if (problem.empty()) problem = what;
     };
     while (lines_.next()) {
@@ -78,7 +79,7 @@ class AntexReader {
         frequency(std::string(columns(line, 3, 3)), common, width, a, complain);
       }
     }
-    warnings_.add(lines_.number(), "the file ends inside an antenna, which is skipped");
+    warnings_.note(lines_.number(), "the file ends inside an antenna, which is skipped");
   }
 
   template <class Complain>
@@ -124,7 +125,7 @@ class AntexReader {
 
   TextLines lines_;
   const std::string& file_;
-  LineWarnings warnings_;
+  ReaderWarnings warnings_;
   AntexFile out_;
 };
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/files.h"
-#include "gnss/products/line_warnings.h"
 #include "gnss/rinex/calendar_fields.h"
+#include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/satellite_name.h"
 #include "gnss/rinex/text_lines.h"
 
@@ -62,7 +62,7 @@ Result<ClockFile> parse_clock_file(std::string_view text, const std::string& fil
   CANYON_TRY(const bool utc, read_header(lines, file_name));
   ClockFile out;
   out.name = file_name;
-  LineWarnings warnings(file_name);
+  ReaderWarnings warnings(file_name, "damaged lines");
   while (lines.next()) {
     const std::string_view line = lines.line();
     if (!line.starts_with("AS ")) continue;  // receivers, calibrations, continuation lines
@@ -71,7 +71,7 @@ Result<ClockFile> parse_clock_file(std::string_view text, const std::string& fil
     const auto t = time_of_words(columns(line, 8, 26));
     const auto clock = fortran_number(columns(line, 40, 19));
     if (!sv || !t || !clock || std::abs(*clock) > 1.0) {
-      warnings.add(lines.number(), "the clock of " + printable(columns(line, 3, 4)) + " cannot be read; skipped");
+      warnings.note(lines.number(), "the clock of " + printable(columns(line, 3, 4)) + " cannot be read; skipped");
       continue;
     }
     out.satellites[*sv].push_back({utc ? gps_time_of_utc(*t) : *t, *clock});
@@ -84,7 +84,7 @@ Result<ClockFile> parse_clock_file(std::string_view text, const std::string& fil
                   samples.end());
   }
   out.interval_s = most_frequent_step_s(out.satellites);
-  out.warnings = warnings.take();
+  out.warnings = warnings.list();
   return out;
 }
 

@@ -8,8 +8,8 @@
 #include "core/files.h"
 #include "core/messages.h"
 #include "core/units.h"
-#include "gnss/products/line_warnings.h"
 #include "gnss/rinex/calendar_fields.h"
+#include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
@@ -35,7 +35,8 @@ std::optional<std::array<double, 3>> range_of(std::string_view line) {
 
 class IonexReader {
  public:
-  IonexReader(std::string_view text, const std::string& file) : lines_(text), file_(file), warnings_(file) {}
+  IonexReader(std::string_view text, const std::string& file)
+      : lines_(text), file_(file), warnings_(file, "damaged lines") {}
 
   Result<IonexMaps> read() {
     out_.name = file_;
@@ -52,7 +53,7 @@ class IonexReader {
     out_.maps.erase(
         std::unique(out_.maps.begin(), out_.maps.end(), [](const auto& a, const auto& b) { return a.t == b.t; }),
         out_.maps.end());
-    out_.warnings = warnings_.take();
+    out_.warnings = warnings_.list();
     return out_;
   }
 
@@ -148,14 +149,14 @@ class IonexReader {
       }
     }
     if (!ended)
-      warnings_.add(lines_.number(), "the file ends inside a TEC map, which is skipped");
+      warnings_.note(lines_.number(), "the file ends inside a TEC map, which is skipped");
     else if (!t)
-      warnings_.add(first_line, "the epoch of the map cannot be read; the map is skipped");
+      warnings_.note(first_line, "the epoch of the map cannot be read; the map is skipped");
     else if (!problem.empty())
-      warnings_.add(first_line, "the map is damaged at line " + problem + " and is skipped");
+      warnings_.note(first_line, "the map is damaged at line " + problem + " and is skipped");
     else if (rows != out_.latitudes)
-      warnings_.add(first_line, "the map has " + std::to_string(rows) + " latitudes, not " +
-                                    std::to_string(out_.latitudes) + "; the map is skipped");
+      warnings_.note(first_line, "the map has " + std::to_string(rows) + " latitudes, not " +
+                                     std::to_string(out_.latitudes) + "; the map is skipped");
     else {
       map.t = *t;
       out_.maps.push_back(std::move(map));
@@ -181,7 +182,7 @@ class IonexReader {
 
   TextLines lines_;
   const std::string& file_;
-  LineWarnings warnings_;
+  ReaderWarnings warnings_;
   IonexMaps out_;
   int exponent_ = -1;
 };

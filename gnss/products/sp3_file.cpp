@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "core/files.h"
-#include "gnss/products/line_warnings.h"
 #include "gnss/products/precise_orbits.h"
 #include "gnss/rinex/calendar_fields.h"
+#include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/satellite_name.h"
 #include "gnss/rinex/text_lines.h"
 
@@ -40,7 +40,8 @@ GpsTime to_gps(GpsTime t, TimeScale scale) {
 
 class Sp3Reader {
  public:
-  Sp3Reader(std::string_view text, const std::string& file) : lines_(text), file_(file), warnings_(file) {}
+  Sp3Reader(std::string_view text, const std::string& file)
+      : lines_(text), file_(file), warnings_(file, "damaged lines") {}
 
   Result<PreciseOrbits> read() {
     CANYON_TRY_STATUS(header());
@@ -58,13 +59,13 @@ class Sp3Reader {
       else if (!line.starts_with("E") && columns(line, 0, line.size()) != "")  // EP, EV: correlations
         header_line(line);
     }
-    if (!ended) warnings_.add(std::max(lines_.number(), 1), "the file ends without \"EOF\": it may be truncated");
+    if (!ended) warnings_.note(std::max(lines_.number(), 1), "the file ends without \"EOF\": it may be truncated");
     if (out_.satellites.empty())
       return Error{file_, std::max(lines_.number(), 1), "", "no satellite position", kExpected};
     for (auto& [sv, samples] : out_.satellites)
       std::stable_sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
     out_.files.push_back(file_);
-    out_.warnings = warnings_.take();
+    out_.warnings = warnings_.list();
     return out_;
   }
 
@@ -92,17 +93,17 @@ class Sp3Reader {
       if (scale)
         scale_ = *scale;
       else
-        warnings_.add(lines_.number(),
-                      "time system \"" + printable(columns(line, 9, 3)) + "\" is not known, GPS assumed");
+        warnings_.note(lines_.number(),
+                       "time system \"" + printable(columns(line, 9, 3)) + "\" is not known, GPS assumed");
     } else if (!line.starts_with("%") && !line.starts_with("+") && !line.starts_with("/*")) {
-      warnings_.add(lines_.number(), "a line of unknown kind \"" + printable(line.substr(0, 8)) + "\"; skipped");
+      warnings_.note(lines_.number(), "a line of unknown kind \"" + printable(line.substr(0, 8)) + "\"; skipped");
     }
   }
 
   void epoch(std::string_view line) {
     const auto t = time_of_words(line.substr(1));
     t_ = t ? std::optional(to_gps(*t, scale_)) : std::nullopt;
-    if (!t) warnings_.add(lines_.number(), "the epoch cannot be read; its satellites are skipped");
+    if (!t) warnings_.note(lines_.number(), "the epoch cannot be read; its satellites are skipped");
   }
 
   /// Satellite and four numbers; nullopt, with a warning, where they cannot be read.
@@ -118,14 +119,14 @@ class Sp3Reader {
     // A letter that is none of our systems is no mistake (NavIC, low satellites).
     out.sv = satellite_of_name(who);
     if (!out.sv && (who.empty() || who[0] < 'A' || who[0] > 'Z' || !whole_number(columns(who, 1, 2)))) {
-      warnings_.add(lines_.number(), "satellite \"" + printable(who) + "\" cannot be read; skipped");
+      warnings_.note(lines_.number(), "satellite \"" + printable(who) + "\" cannot be read; skipped");
       return out;
     }
     const auto x = fortran_number(columns(line, 4, 14)), y = fortran_number(columns(line, 18, 14)),
                z = fortran_number(columns(line, 32, 14)), fourth = fortran_number(columns(line, 46, 14));
     const bool blank_clock = columns(line, 46, 14).empty();
     if (!x || !y || !z || (!fourth && !blank_clock)) {
-      warnings_.add(lines_.number(), "the numbers of " + printable(who) + " cannot be read; skipped");
+      warnings_.note(lines_.number(), "the numbers of " + printable(who) + " cannot be read; skipped");
       return out;
     }
     out.xyz = {*x, *y, *z};
@@ -141,8 +142,8 @@ class Sp3Reader {
     if (r.xyz.isZero() || (r.xyz.cwiseAbs().array() > 999999.0).any()) return;  // not known
     const double radius_km = r.xyz.norm();
     if (!(radius_km > 6400.0 && radius_km < 1e5)) {
-      warnings_.add(lines_.number(),
-                    r.sv->str() + " is " + join_values(std::round(radius_km)) + " km from the Earth's centre; skipped");
+      warnings_.note(lines_.number(), r.sv->str() + " is " + join_values(std::round(radius_km)) +
+                                          " km from the Earth's centre; skipped");
       return;
     }
     PreciseSample sample;
@@ -153,7 +154,7 @@ class Sp3Reader {
     sample.manoeuvre = line.size() > 78 && line[78] == 'M';
     auto& samples = out_.satellites[*r.sv];
     if (!samples.empty() && samples.back().t == sample.t) {
-      warnings_.add(lines_.number(), r.sv->str() + " stands twice in this epoch; the second is skipped");
+      warnings_.note(lines_.number(), r.sv->str() + " stands twice in this epoch; the second is skipped");
       return;
     }
     samples.push_back(sample);
@@ -169,7 +170,7 @@ class Sp3Reader {
 
   TextLines lines_;
   const std::string& file_;
-  LineWarnings warnings_;
+  ReaderWarnings warnings_;
   PreciseOrbits out_;
   TimeScale scale_ = TimeScale::kGps;
   bool scale_known_ = false;

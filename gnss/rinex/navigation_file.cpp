@@ -8,6 +8,7 @@
 #include "gnss/rinex/glonass_record.h"
 #include "gnss/rinex/kepler_record.h"
 #include "gnss/rinex/navigation_header.h"
+#include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/satellite_name.h"
 #include "gnss/rinex/text_lines.h"
 #include "gnss/satellites/contradictions.h"
@@ -15,7 +16,6 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr std::size_t kMaxWarnings = 20;  // listed one by one; the rest are counted
 constexpr const char* kExpectedStart = "a satellite number first";
 
 bool is_blank(std::string_view line) {
@@ -50,11 +50,10 @@ class RecordReader {
     }
     drop_contradictions(out_.kepler, kepler_lines_);
     drop_contradictions(out_.glonass, glonass_lines_);
-    if (damaged_ > kMaxWarnings)
-      out_.warnings.push_back(file_ + ": " + std::to_string(damaged_ - kMaxWarnings) +
-                              " more damaged records were skipped");
+    const auto listed = warnings_.list();
+    out_.warnings.insert(out_.warnings.end(), listed.begin(), listed.end());
   }
-  std::size_t damaged() const { return damaged_; }
+  int damaged() const { return warnings_.count(); }
 
  private:
   /// RINEX 2 and 3: a record's first line begins with a satellite, those that continue it with blanks. RINEX 4: `>`.
@@ -179,15 +178,13 @@ class RecordReader {
       records.erase(records.begin() + static_cast<std::ptrdiff_t>(c->index));
   }
 
-  void warn(const Error& error) {
-    if (++damaged_ <= kMaxWarnings) out_.warnings.push_back(error.str() + "; skipped");
-  }
+  void warn(const Error& error) { warnings_.add(error.line, error.what, error.expected); }
 
   TextLines& lines_;
   const NavigationHeader& header_;
   const std::string& file_;
   NavigationData& out_;
-  std::size_t damaged_ = 0;
+  ReaderWarnings warnings_{file_, "damaged records"};
   int record_line_ = 0;  // where the record at hand begins
   std::vector<int> kepler_lines_, glonass_lines_;
 };

@@ -13,6 +13,11 @@ void ReaderWarnings::add(int line, std::string what, std::string expected) {
     first_.push_back(Error{file_, line, "", std::move(what), std::move(expected)}.str() + "; skipped");
 }
 
+void ReaderWarnings::note(int line, std::string what) {
+  ++count_;
+  if (first_.size() < kListed) first_.push_back(Error{file_, line, "", std::move(what)}.str());
+}
+
 std::vector<std::string> ReaderWarnings::list() const {
   auto out = first_;
   if (static_cast<std::size_t>(count_) > kListed)

@@ -14,8 +14,10 @@ class ReaderWarnings {
   ReaderWarnings(std::string file, std::string noun) : file_(std::move(file)), noun_(std::move(noun)) {}
 
   void add(int line, std::string what, std::string expected = "");
+  /// The same without "; skipped": `what` itself says what was done.
+  void note(int line, std::string what);
   int count() const { return count_; }
-  /// `file:line: what, expected ...; skipped`, at most 20 of them, then one line that counts the rest.
+  /// `file:line: what, expected ...; skipped`, or as noted; at most 20 of them, then one line that counts the rest.
   std::vector<std::string> list() const;
 
  private:

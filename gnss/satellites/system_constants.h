@@ -14,7 +14,7 @@ struct SystemConstants {
   double relativity_s_per_sqrt_m;
 };
 
-/// GPS: IS-GPS-200N table 20-IV; QZSS the same (IS-QZSS-PNT-005); Galileo: OS SIS ICD 2.1, table 67 (GST = GPS time but
+/// GPS: IS-GPS-200N table 20-IV; QZSS the same (IS-QZSS-PNT-005); Galileo: OS SIS ICD 2.1, 5.1.1 (GST = GPS time but
 /// for nanoseconds); BeiDou: BDS-SIS-ICD-B1I 3.0, 5.2.4.12 (BDT = GPS time - 14 s); GLONASS: ICD L1, L2 edition 5.1,
 /// table 3.2 (PZ-90).
 const SystemConstants& constants_of(GnssSystem system);
