@@ -1,6 +1,7 @@
 #include "gnss/atmosphere/ionosphere.h"
 #include "gnss/atmosphere/troposphere.h"
 #include "gnss/errors/ephemeris_error.h"
+#include "gnss/paths/diffraction.h"
 #include "gnss/paths/path_model.h"
 #include "gnss/receiver/code_correlation.h"
 #include "gnss/receiver/multipath_rule.h"
@@ -55,6 +56,8 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.choice("receiver_clock", c.receiver_clock, model_names(receiver_clock_models()), "receiver clock error");
 
   f.choice("paths", c.paths, model_names(path_models()), "propagation in the scene");
+  f.choice("diffraction", c.diffraction, model_names(diffraction_models()), "what roofs and corners bend");
+  f.flag("ground_reflection", c.ground_reflection, "the terrain around the antenna reflects");
   f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
            "standard deviation of the reflecting surfaces' height");
   f.number("foliage_db_per_m", c.foliage_db_per_m, {0.0, 10.0}, "specific attenuation of tree crowns");

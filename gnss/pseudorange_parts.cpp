@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/units.h"
+#include "gnss/paths/propagation.h"
 #include "gnss/products/precise_orbits.h"
 #include "gnss/satellite_source.h"
 #include "gnss/solver/fault_exclusion.h"
@@ -92,6 +93,7 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
   CANYON_TRY(const auto* troposphere, choose(troposphere_models(), "troposphere", c.troposphere));
   CANYON_TRY(const auto* ephemeris_error, choose(ephemeris_error_models(), "ephemeris_error", c.ephemeris_error));
   CANYON_TRY(const auto* paths, choose(path_models(), "paths", c.paths));
+  CANYON_TRY(const auto* diffraction, choose(diffraction_models(), "diffraction", c.diffraction));
   CANYON_TRY(const auto* multipath, choose(multipath_rules(), "multipath_rule", c.multipath_rule));
   CANYON_TRY(const auto* antenna, choose(antenna_models(), "antenna", c.antenna));
   CANYON_TRY(const auto* clock, choose(receiver_clock_models(), "receiver_clock", c.receiver_clock));
@@ -113,7 +115,11 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
     CANYON_TRY(orbit.precise, make_precise_source(c, source, parts.warnings));
   }
   parts.ephemeris_error = ephemeris_error->make(orbit);
-  parts.paths = paths->make(path_parameters(c));
+  const PathParameters path_limits = path_parameters(c);
+  parts.paths = paths->make(path_limits);
+  if (c.diffraction != "none" || c.ground_reflection)
+    parts.paths =
+        make_propagation(std::move(parts.paths), diffraction->make(path_limits), c.ground_reflection, path_limits);
   for (std::size_t i = 0; i < kModulations; ++i) {
     const CorrelatorDesign design = correlator_design(c, static_cast<Modulation>(i));
     parts.channels[i].multipath =

@@ -26,6 +26,7 @@ struct GnssCounters {
   std::int64_t occlusion_rays = 0;
   std::int64_t facets_tested = 0;
   std::int64_t reflected_paths = 0;
+  std::int64_t diffracted_paths = 0;
 };
 
 /// A GNSS receiver in the scene. `index` is the number of the epoch since the start (the random streams' sample index).
@@ -86,6 +87,8 @@ struct GnssConfig {
 
   // pseudorange: propagation in the scene and reception
   std::string paths = "specular1";   ///< none | visibility | specular1 | specular2 | specular3
+  std::string diffraction = "none";  ///< none | knife_edge | double_knife_edge
+  bool ground_reflection = false;
   double surface_roughness_m = 0.0;  ///< standard deviation of the reflecting surfaces' height
   double foliage_db_per_m = 0.25;
   double foliage_max_db = 28.0;

@@ -92,6 +92,11 @@ const FacetIndex& Scene::facets() const {
   return facets_;
 }
 
+const EdgeIndex& Scene::edges() const {
+  std::call_once(edges_once_, [this] { edges_ = EdgeIndex(convex_edges(*this, kMinEdge_m)); });
+  return edges_;
+}
+
 bool Scene::facets_built() const {
   return facets_built_.load(std::memory_order_acquire);
 }
@@ -104,7 +109,7 @@ std::optional<Scene::Ground> Scene::ground(double x, double y) const {
   if (normal.z() < 0.0) normal = -normal;
   const double height_m =
       triangle.a.z() - (normal.x() * (x - triangle.a.x()) + normal.y() * (y - triangle.a.y())) / normal.z();
-  return Ground{height_m, normal};
+  return Ground{height_m, normal, parts_.mesh.material[index]};
 }
 
 const Building* Scene::building_at(const Eigen::Vector2d& xy) const {

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "core/local_frame.h"
+#include "scene/edge.h"
 #include "scene/facet.h"
 #include "scene/foliage_index.h"
 #include "scene/material.h"
@@ -91,11 +92,15 @@ class Scene {
   static constexpr double kMinFacetArea_m2 = 1.0;
   const FacetIndex& facets() const;
   bool facets_built() const;
+  /// Convex edges of at least kMinEdge_m with their spatial index; built on first use. Thread-safe.
+  static constexpr double kMinEdge_m = 0.5;
+  const EdgeIndex& edges() const;
 
   /// Height of the terrain (ObjectKind::kTerrain only) at x, y in W and its upward unit normal; nullopt outside.
   struct Ground {
     double height_m = 0.0;
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();
+    std::uint16_t material = 0;  ///< index into materials()
   };
   std::optional<Ground> ground(double x, double y) const;
 
@@ -115,6 +120,8 @@ class Scene {
   mutable std::once_flag facets_once_;
   mutable std::atomic<bool> facets_built_{false};
   mutable FacetIndex facets_;
+  mutable std::once_flag edges_once_;
+  mutable EdgeIndex edges_;
 };
 
 }  // namespace canyon::scene

@@ -31,27 +31,17 @@ class WallScene {
   /// A rectangle: corner, and two edges; it faces the side that edge_u x edge_v points to.
   WallScene& wall(const Eigen::Vector3d& corner, const Eigen::Vector3d& edge_u, const Eigen::Vector3d& edge_v,
                   const std::string& material_name = "concrete") {
-    const auto first = static_cast<std::uint32_t>(parts_.mesh.vertices.size());
-    for (const Eigen::Vector3d& p : {corner, Eigen::Vector3d(corner + edge_u),
-                                     Eigen::Vector3d(corner + edge_u + edge_v), Eigen::Vector3d(corner + edge_v)})
-      parts_.mesh.vertices.push_back(p.cast<float>());
-    const auto object = static_cast<std::uint32_t>(parts_.objects.size());
-    parts_.objects.push_back({"wall " + std::to_string(object), scene::ObjectKind::kWall});
-    for (const auto& t : {std::array<std::uint32_t, 3>{first, first + 1, first + 2}, {first, first + 2, first + 3}}) {
-      parts_.mesh.triangles.push_back(t);
-      parts_.mesh.material.push_back(material(material_name));
-      parts_.mesh.object.push_back(object);
-    }
-    return *this;
+    parts_.objects.push_back({"wall " + std::to_string(parts_.objects.size()), scene::ObjectKind::kWall});
+    return face(corner, edge_u, edge_v, material_name);
   }
 
-  /// A closed box, all faces outward.
+  /// A closed box, all faces outward, one object.
   WallScene& box(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                  const std::string& material_name = "concrete") {
     const Eigen::Vector3d x(high.x() - low.x(), 0, 0), y(0, high.y() - low.y(), 0), z(0, 0, high.z() - low.z());
-    wall(low, y, x, material_name).wall(low + z, x, y, material_name);
-    wall(low, x, z, material_name).wall(low + y, z, x, material_name);
-    return wall(low, z, y, material_name).wall(low + x, y, z, material_name);
+    wall(low, y, x, material_name).face(low + z, x, y, material_name);
+    face(low, x, z, material_name).face(low + y, z, x, material_name);
+    return face(low, z, y, material_name).face(low + x, y, z, material_name);
   }
 
   WallScene& crown(const Eigen::Vector3d& center, const Eigen::Vector3d& radii) {
@@ -62,6 +52,22 @@ class WallScene {
   std::unique_ptr<scene::Scene> build() { return std::make_unique<scene::Scene>(parts_); }
 
  private:
+  /// One more rectangle of the last object.
+  WallScene& face(const Eigen::Vector3d& corner, const Eigen::Vector3d& edge_u, const Eigen::Vector3d& edge_v,
+                  const std::string& material_name) {
+    const auto first = static_cast<std::uint32_t>(parts_.mesh.vertices.size());
+    for (const Eigen::Vector3d& p : {corner, Eigen::Vector3d(corner + edge_u),
+                                     Eigen::Vector3d(corner + edge_u + edge_v), Eigen::Vector3d(corner + edge_v)})
+      parts_.mesh.vertices.push_back(p.cast<float>());
+    const auto object = static_cast<std::uint32_t>(parts_.objects.size() - 1);
+    for (const auto& t : {std::array<std::uint32_t, 3>{first, first + 1, first + 2}, {first, first + 2, first + 3}}) {
+      parts_.mesh.triangles.push_back(t);
+      parts_.mesh.material.push_back(material(material_name));
+      parts_.mesh.object.push_back(object);
+    }
+    return *this;
+  }
+
   scene::SceneParts parts_;
 };
 

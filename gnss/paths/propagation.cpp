@@ -1,0 +1,42 @@
+#include "gnss/paths/propagation.h"
+
+#include <algorithm>
+
+#include "gnss/paths/ground_reflection.h"
+
+namespace canyon::gnss {
+namespace {
+
+class Propagation final : public PathModel {
+ public:
+  Propagation(std::unique_ptr<PathModel> paths, std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
+              const PathParameters& p)
+      : paths_(std::move(paths)), diffraction_(std::move(diffraction)), ground_reflection_(ground_reflection), p_(p) {}
+
+  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+             std::span<SignalPaths> out, GnssCounters& counters) const override {
+    paths_->trace(p_A_W, directions_W, scene, out, counters);
+    if (directions_W.empty()) return;
+    if (ground_reflection_) add_ground_reflections(p_, p_A_W, directions_W, scene, out, counters);
+    diffraction_->trace(p_A_W, directions_W, scene, out, counters);
+    for (auto& paths : out)
+      std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
+                       [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
+  }
+
+ private:
+  std::unique_ptr<PathModel> paths_;
+  std::unique_ptr<DiffractionModel> diffraction_;
+  bool ground_reflection_;
+  PathParameters p_;
+};
+
+}  // namespace
+
+std::unique_ptr<PathModel> make_propagation(std::unique_ptr<PathModel> paths,
+                                            std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
+                                            const PathParameters& p) {
+  return std::make_unique<Propagation>(std::move(paths), std::move(diffraction), ground_reflection, p);
+}
+
+}  // namespace canyon::gnss

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace canyon::scene {
+
+/// A straight edge at which a solid ends: roof edge, corner of a house, border of a sheet.
+struct Edge {
+  Eigen::Vector3d a_W, b_W;
+  /// Outward normals of the two faces that meet there; of a sheet's border: of its two sides.
+  Eigen::Vector3d normal_1_W, normal_2_W;
+  Eigen::Vector3d outward_W;  ///< unit, across the edge, away from the solid
+};
+
+/// Convex edges of a scene and a spatial index over them.
+class EdgeIndex {
+ public:
+  EdgeIndex() = default;
+  explicit EdgeIndex(std::vector<Edge> edges);
+
+  const std::vector<Edge>& edges() const { return edges_; }
+  /// Edges that from p come to within sqrt(2 detour_m x distance) of some direction at least `elevation_rad` above W's
+  /// horizontal, in a fixed order: those at which a wave from there may bend towards p with no larger detour. Whatever
+  /// hides them. Cost grows with what stands out.
+  void shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
+               std::vector<std::uint32_t>& out) const;
+
+ private:
+  /// A square of the ground and the edges whose middles lie in it.
+  struct Block {
+    double x_m, y_m;
+    double reach_m = 0.0;  ///< no edge of it comes farther from the center, horizontally
+    double top_m = -1e300;
+    std::vector<std::uint32_t> edges;
+  };
+  std::vector<Edge> edges_;
+  std::vector<Block> blocks_;
+};
+
+class Scene;
+/// Edges of at least `min_length_m` of everything but terrain and trees, where two triangles of one object meet at more
+/// than 15 degrees, or where one ends alone. In a fixed order: by object, then by triangle.
+std::vector<Edge> convex_edges(const Scene& scene, double min_length_m);
+
+}  // namespace canyon::scene
