@@ -158,8 +158,9 @@ Result<int> run(const Options& options) {
   const auto statistics = gnss::position_statistics(fixes, truth);
   const auto json = summary_json(result, statistics, file);
   CANYON_TRY_STATUS(write_output(options, result, json));
-  for (const auto* list : {&warnings, &file.warnings, &result.warnings})
-    for (const auto& warning : *list) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
+  warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+  for (const auto& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (options.common.json)
     std::printf("%s\n", json.dump().c_str());
   else
