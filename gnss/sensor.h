@@ -86,7 +86,7 @@ struct GnssConfig {
   std::string receiver_clock = "tcxo";
 
   // pseudorange: propagation in the scene and reception
-  std::string paths = "specular1";   ///< none | visibility | specular1 | specular2 | specular3
+  std::string paths = "specular1";   ///< none | visibility | specular1 | specular2 | specular3 | launching
   std::string diffraction = "none";  ///< none | knife_edge | double_knife_edge
   bool ground_reflection = false;
   double surface_roughness_m = 0.0;  ///< standard deviation of the reflecting surfaces' height

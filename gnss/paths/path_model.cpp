@@ -23,6 +23,7 @@ constexpr ModelRow<MakePathModel> kModels[] = {
     {"specular1", make_specular1, "occlusion and single specular reflections off the scene's facets"},
     {"specular2", make_specular2, "occlusion and up to two specular reflections"},
     {"specular3", make_specular3, "occlusion and up to three specular reflections"},
+    {"launching", make_launching, "rays launched from the antenna, up to two reflections; approximate"},
 };
 
 }  // namespace

@@ -66,6 +66,7 @@ struct PathParameters {
   /// Ways with several reflections: within this distance of the antenna all facets are combined; beyond it, only those
   /// that FacetIndex::mirrors gives, which leaves out walls too low to be met by any way over vertical mirrors alone.
   double combine_all_m = 30.0;
+  int launched_rays = 20000;  ///< launching: over the whole sphere
   /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
   bool exhaustive = false;
 };
@@ -86,5 +87,14 @@ std::unique_ptr<PathModel> make_visibility(const PathParameters& p);
 std::unique_ptr<PathModel> make_specular1(const PathParameters& p);
 std::unique_ptr<PathModel> make_specular2(const PathParameters& p);
 std::unique_ptr<PathModel> make_specular3(const PathParameters& p);
+
+/// The same up to two reflections, found as in the paper (section 2.1, bidirectional ray tracing): rays launched evenly
+/// over the sphere from the antenna, reflected at what they meet, and at each reflection joined with those satellites
+/// that stand in the reflected direction to within the rays' spacing (the capture sphere, seen from the scene as a
+/// cone; half-angle 3 / sqrt(rays)) by a ray back from the satellite. Of several rays over the same mirrors the one
+/// nearest to the satellite counts. Approximate: the excess is off by up to the way's length times the angle missed
+/// times the tilt of the mirrors; facets narrower than the rays' spacing are missed; cost grows with the rays, whatever
+/// they find.
+std::unique_ptr<PathModel> make_launching(const PathParameters& p);
 
 }  // namespace canyon::gnss

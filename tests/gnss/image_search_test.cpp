@@ -230,5 +230,55 @@ TEST(ImageSearch, FindsWhatBruteForceFindsAmongUprightBoxes) {
   EXPECT_LT(outcome.doubtful, outcome.certain / 20);
 }
 
+// The comparison model: with more rays it finds more of the same ways, and its lengths come nearer to the exact ones.
+TEST(Launching, ComesNearerToTheExactWaysWithMoreRays) {
+  // A street that turns: walls at 12 m and 9 m, a third across.
+  auto walls = WallScene().box({-60, -300, -5}, {-12, 300, 60}, "metal");
+  walls.box({9, -300, -5}, {60, 40, 60}, "metal").box({-12, 90, -5}, {60, 100, 60}, "metal");
+  const auto street = walls.build();
+  const scene::SceneAt at(*street);
+  const RandomStream random(9, "test.satellites");
+  std::vector<Eigen::Vector3d> directions;
+  for (std::uint64_t i = 0; i < 120; ++i)
+    directions.push_back(testing::direction(random.uniform(0, 360, 0, i), random.uniform(5, 85, 1, i)));
+  const Eigen::Vector3d antenna(0.0, 0.0, 1.5);
+  PathParameters p = everything();
+  GnssCounters counters;
+  std::vector<SignalPaths> exact(directions.size()), launched(directions.size());
+  find_model(path_models(), "specular2")->make(p)->trace(antenna, directions, at, exact, counters);
+  double last_error_m = 1e9;
+  std::size_t last_missed = 1000000, all = 0;
+  for (const auto& paths : exact) all += paths.echoes.size();
+  ASSERT_GT(all, 30u);
+  for (const int rays : {2000, 20000, 200000}) {
+    p.launched_rays = rays;
+    find_model(path_models(), "launching")->make(p)->trace(antenna, directions, at, launched, counters);
+    double error_m = 0.0;
+    std::size_t missed = 0, both = 0;
+    for (std::size_t k = 0; k < directions.size(); ++k) {
+      for (const SignalPath& e : exact[k].echoes) {
+        const auto match = std::find_if(launched[k].echoes.begin(), launched[k].echoes.end(),
+                                        [&](const SignalPath& l) { return l.facets == e.facets; });
+        if (match == launched[k].echoes.end()) {
+          ++missed;
+          continue;
+        }
+        ++both;
+        error_m += std::abs(match->excess_m - e.excess_m);
+      }
+    }
+    error_m /= static_cast<double>(std::max<std::size_t>(both, 1));
+    RecordProperty("mean_error_mm_" + std::to_string(rays), static_cast<int>(error_m * 1e3));
+    RecordProperty("missed_" + std::to_string(rays), static_cast<int>(missed));
+    EXPECT_LT(error_m, last_error_m) << rays;
+    EXPECT_LE(missed, last_missed) << rays;
+    last_error_m = error_m;
+    last_missed = missed;
+  }
+  // 3 / sqrt(200000) = 0.4 deg over ways of some tens of metres.
+  EXPECT_LT(last_error_m, 0.5);
+  EXPECT_LE(last_missed, all / 20);
+}
+
 }  // namespace
 }  // namespace canyon::gnss

@@ -1,0 +1,129 @@
+// Propagation paths of one epoch, one thread, 40 satellites spread over the sky above 5 degrees, at street level along
+// the streets: each model beside the bare occlusion rays that it traces (the same number, towards the satellites), and
+// against the number of buildings at the same density.
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "core/units.h"
+#include "gnss/paths/diffraction.h"
+#include "gnss/paths/path_model.h"
+#include "gnss/paths/propagation.h"
+#include "scene/city.h"
+#include "scene/scene_at.h"
+
+namespace {
+
+using canyon::gnss::GnssCounters;
+using canyon::gnss::PathModel;
+using canyon::gnss::SignalPaths;
+
+const canyon::scene::Scene& city(double extent_m) {
+  static std::map<double, std::unique_ptr<canyon::scene::Scene>> cities;
+  auto& scene = cities[extent_m];
+  if (!scene) {
+    canyon::scene::CityConfig config;
+    config.extent_m = extent_m;
+    if (extent_m > 1500.0) config.terrain_cell_m = 10.0;  // memory
+    scene = std::make_unique<canyon::scene::Scene>(canyon::scene::make_city(config));
+    (void)scene->facets();
+    (void)scene->edges();
+  }
+  return *scene;
+}
+
+/// Evenly over the sky (Fibonacci spiral).
+std::vector<Eigen::Vector3d> satellites() {
+  constexpr int kCount = 40;
+  const double lowest = std::sin(5.0 * canyon::kDegree), turn_rad = canyon::kPi * (3.0 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> out;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = lowest + (1.0 - lowest) * (i + 0.5) / kCount, r = std::sqrt(1.0 - z * z);
+    out.emplace_back(r * std::cos(turn_rad * i), r * std::sin(turn_rad * i), z);
+  }
+  return out;
+}
+
+/// Antenna 1.5 m above the middle of the way that the built-in mission drives: along the shortest way over the streets
+/// from corner to corner, within 400 m of the middle of the city.
+std::vector<Eigen::Vector3d> street_points(const canyon::scene::Scene& scene) {
+  const auto route = scene.streets().route({-350.0, -350.0}, {350.0, 350.0});
+  std::vector<Eigen::Vector3d> out;
+  for (std::size_t i = 0; i + 1 < route.size(); ++i) {
+    const double length_m = (route[i + 1] - route[i]).norm();
+    for (double at_m = 0.0; at_m < length_m; at_m += 20.0) {
+      const Eigen::Vector2d xy = route[i] + at_m / length_m * (route[i + 1] - route[i]);
+      if (const auto ground = scene.ground(xy.x(), xy.y()))
+        out.emplace_back(xy.x() + 2.0, xy.y() + 2.0, ground->height_m + 1.5);
+    }
+  }
+  return out;
+}
+
+double extent_of(const benchmark::State& state) {
+  return static_cast<double>(state.range(0));
+}
+
+void bare_rays(benchmark::State& state) {
+  const canyon::scene::Scene& scene = city(extent_of(state));
+  const canyon::scene::SceneAt at(scene);
+  const auto sky = satellites();
+  const auto points = street_points(scene);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Eigen::Vector3d& p = points[k++ % points.size()];
+    for (const auto& s : sky) benchmark::DoNotOptimize(at.blocked_towards(p, s));
+  }
+  state.counters["rays"] = static_cast<double>(sky.size());
+  state.counters["buildings"] = static_cast<double>(scene.buildings().size());
+}
+
+void model(benchmark::State& state, const char* paths, const char* diffraction, bool ground) {
+  const canyon::scene::Scene& scene = city(extent_of(state));
+  const canyon::scene::SceneAt at(scene);
+  const auto sky = satellites();
+  const auto points = street_points(scene);
+  const canyon::gnss::PathParameters p;
+  std::unique_ptr<PathModel> tracer = find_model(canyon::gnss::path_models(), paths)->make(p);
+  if (ground || std::string(diffraction) != "none")
+    tracer = make_propagation(std::move(tracer), find_model(canyon::gnss::diffraction_models(), diffraction)->make(p),
+                              ground, p);
+  std::vector<SignalPaths> out(sky.size());
+  GnssCounters counters;
+  std::size_t k = 0;
+  for (auto _ : state) {
+    tracer->trace(points[k++ % points.size()], sky, at, out, counters);
+    benchmark::DoNotOptimize(out.data());
+  }
+  const auto epochs = static_cast<double>(state.iterations());
+  state.counters["rays"] = static_cast<double>(counters.occlusion_rays) / epochs;
+  state.counters["echoes"] = static_cast<double>(counters.reflected_paths + counters.diffracted_paths) / epochs;
+  state.counters["buildings"] = static_cast<double>(scene.buildings().size());
+}
+
+// 100, 370 (the built-in city), 1000, 3000 and 10,000 buildings.
+void cities(benchmark::internal::Benchmark* b) {
+  for (const int extent_m : {800, 1000, 1600, 2800, 5200}) b->Arg(extent_m);
+  b->Unit(benchmark::kMicrosecond);
+}
+
+BENCHMARK(bare_rays)->Name("paths/bare_rays")->Apply(cities);
+BENCHMARK_CAPTURE(model, visibility, "visibility", "none", false)->Name("paths/visibility")->Apply(cities);
+BENCHMARK_CAPTURE(model, specular1, "specular1", "none", false)->Name("paths/specular1")->Apply(cities);
+BENCHMARK_CAPTURE(model, specular2, "specular2", "none", false)->Name("paths/specular2")->Apply(cities);
+BENCHMARK_CAPTURE(model, specular3, "specular3", "none", false)
+    ->Name("paths/specular3")
+    ->Arg(1000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(model, all, "specular1", "double_knife_edge", true)
+    ->Name("paths/specular1+double_knife_edge+ground")
+    ->Arg(1000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(model, launching, "launching", "none", false)
+    ->Name("paths/launching")
+    ->Arg(1000)
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "core/check.h"
+#include "core/units.h"
+#include "gnss/paths/bounce.h"
+#include "gnss/paths/path_model.h"
+#include "gnss/signal.h"
+#include "scene/triangle.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr int kOrder = 2;
+constexpr double kOff_m = 2e-3;
+
+/// What tells one sequence of mirrors from another before the facets are known: the planes, to 1e-3 and 1 cm.
+using PlaneKey = std::array<std::int64_t, 4>;
+using Sequence = std::array<PlaneKey, kOrder>;
+
+PlaneKey plane_key(const Eigen::Vector3d& normal_W, const Eigen::Vector3d& point_W) {
+  return {std::llround(normal_W.x() * 1e3), std::llround(normal_W.y() * 1e3), std::llround(normal_W.z() * 1e3),
+          std::llround(normal_W.dot(point_W) * 1e2)};
+}
+
+/// A ray launched from the antenna, up to its last reflection.
+struct Launched {
+  int bounces = 0;
+  std::array<Eigen::Vector3d, kOrder> points_W, normals_W;
+  std::array<std::uint32_t, kOrder> triangles;
+  double length_m = 0.0;
+};
+
+class Launching final : public PathModel {
+ public:
+  explicit Launching(const PathParameters& p) : p_(p), visibility_(make_visibility(p)) {
+    CANYON_CHECK(p.launched_rays > 0, "launched_rays = ", p.launched_rays);
+  }
+
+  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+             std::span<SignalPaths> out, GnssCounters& counters) const override {
+    visibility_->trace(p_A_W, directions_W, scene, out, counters);
+    if (directions_W.empty()) return;
+    std::vector<std::map<Sequence, std::pair<double, Launched>>> caught(out.size());
+    const double turn_rad = kPi * (3.0 - std::sqrt(5.0)), count = p_.launched_rays;
+    // Each ray stands for 4 pi / count of solid angle; the capture cone is half as wide again, so that no gap is left.
+    const double cone = std::cos(std::min(1.5 * std::sqrt(4.0 / count), 0.5 * kPi));
+    for (int i = 0; i < p_.launched_rays; ++i) {
+      const double z = 1.0 - 2.0 * (i + 0.5) / count, r = std::sqrt(1.0 - z * z);
+      launch(p_A_W, {r * std::cos(turn_rad * i), r * std::sin(turn_rad * i), z}, directions_W, cone, scene, caught,
+             counters);
+    }
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      for (const auto& [sequence, best] : caught[k])
+        connect(p_A_W, directions_W[k], best.second, scene, out[k], counters);
+      std::stable_sort(out[k].echoes.begin(), out[k].echoes.end(),
+                       [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
+    }
+  }
+
+ private:
+  /// Nearest surface that is not a tree.
+  static scene::Hit first_solid(const Eigen::Vector3d& from_W, const Eigen::Vector3d& towards_W,
+                                const scene::SceneAt& scene, double& range_m, GnssCounters& counters) {
+    range_m = 0.0;
+    for (int trees = 0; trees < 64; ++trees) {
+      const Eigen::Vector3d start_W = from_W + range_m * towards_W;
+      const scene::Hit hit = scene.trace({start_W.cast<float>(), towards_W.cast<float>()});
+      ++counters.occlusion_rays;
+      if (!hit.hit()) return hit;
+      range_m += hit.range_m;
+      const auto& mesh = scene.scene().mesh();
+      if (scene.scene().objects()[mesh.object[hit.triangle]].kind != scene::ObjectKind::kTree) return hit;
+      range_m += kOff_m;
+    }
+    return {};
+  }
+
+  void launch(const Eigen::Vector3d& p_A_W, Eigen::Vector3d towards_W, std::span<const Eigen::Vector3d> directions_W,
+              double cone, const scene::SceneAt& scene,
+              std::vector<std::map<Sequence, std::pair<double, Launched>>>& caught, GnssCounters& counters) const {
+    Launched ray;
+    Sequence sequence{};
+    Eigen::Vector3d at_W = p_A_W;
+    for (int bounce = 0; bounce < kOrder; ++bounce) {
+      double range_m = 0.0;
+      const scene::Hit hit = first_solid(at_W, towards_W, scene, range_m, counters);
+      if (!hit.hit()) return;
+      const auto& mesh = scene.scene().mesh();
+      if (scene.scene().objects()[mesh.object[hit.triangle]].kind == scene::ObjectKind::kTerrain) return;
+      if (scene.scene().materials()[mesh.material[hit.triangle]].rf_absorbing) return;
+      const Eigen::Vector3d outward_W = scene::Triangle::of(mesh, hit.triangle).area_normal().normalized();
+      if (outward_W.dot(towards_W) >= 0.0) return;  // from behind
+      const auto b = static_cast<std::size_t>(bounce);
+      ray.points_W[b] = at_W + range_m * towards_W;
+      ray.normals_W[b] = outward_W;
+      ray.triangles[b] = hit.triangle;
+      ray.length_m += range_m;
+      ray.bounces = bounce + 1;
+      sequence[b] = plane_key(outward_W, ray.points_W[b]);
+      towards_W -= 2.0 * outward_W.dot(towards_W) * outward_W;
+      at_W = ray.points_W[b] + kOff_m * outward_W;
+      for (std::size_t k = 0; k < directions_W.size(); ++k) {
+        const double closeness = towards_W.dot(directions_W[k]);
+        if (closeness < cone) continue;
+        const auto [entry, fresh] = caught[k].try_emplace(sequence, closeness, ray);
+        if (!fresh && closeness > entry->second.first) entry->second = {closeness, ray};
+      }
+    }
+  }
+
+  /// The satellite's end of the way: a ray from it to the last reflection point.
+  void connect(const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& s, const Launched& ray, const scene::SceneAt& scene,
+               SignalPaths& out, GnssCounters& counters) const {
+    const auto last = static_cast<std::size_t>(ray.bounces - 1);
+    SignalPath path;
+    path.excess_m = std::max(ray.length_m - (ray.points_W[last] - p_A_W).dot(s), 0.0);
+    if (out.line_of_sight && path.excess_m > p_.cutoff_m) return;
+    std::array<Bounce, kOrder> bounces;
+    std::vector<std::uint32_t> near;
+    Eigen::Vector3d incoming_W = -s;
+    for (std::size_t j = last + 1; j-- > 0;) {
+      const auto facet = facet_of(ray.points_W[j], ray.triangles[j], scene, near);
+      if (!facet) return;
+      path.facets[j] = *facet;
+      const scene::Facet& f = scene.scene().facets().facets()[*facet];
+      const Eigen::Vector3d from_W = j == 0 ? p_A_W : ray.points_W[j - 1];
+      const double cosine = std::clamp(-incoming_W.dot(ray.normals_W[j]), 0.0, 1.0);
+      Bounce& b = bounces[last - j];
+      b.incoming_W = incoming_W;
+      b.normal_W = ray.normals_W[j];
+      b.coefficients = fresnel(scene.scene().materials()[f.material].permittivity(kL1Hz), std::acos(cosine));
+      b.factor = roughness_factor(p_.roughness_m, cosine, kL1WavelengthM);
+      if (p_.finite_facets) {
+        const double before_m = j == 0 ? 0.0 : (ray.points_W[0] - p_A_W).norm();
+        const double distance_m = before_m + (ray.points_W[j] - from_W).norm();
+        b.factor *= std::min(1.0, f.area_m2 * cosine / (kL1WavelengthM * distance_m));
+      }
+      incoming_W -= 2.0 * incoming_W.dot(b.normal_W) * b.normal_W;
+    }
+    const CircularField field = reflected_field({bounces.data(), last + 1});
+    const double weakest_db = out.line_of_sight ? p_.weakest_db : p_.weakest_nlos_db;
+    if (std::norm(field.copolar) + std::norm(field.crosspolar) < std::pow(10.0, weakest_db / 10.0)) return;
+    const Eigen::Vector3d end_W = ray.points_W[last] + kOff_m * ray.normals_W[last];
+    ++counters.occlusion_rays;
+    if (scene.blocked_towards(end_W, s)) return;
+    path.copolar = field.copolar;
+    path.crosspolar = field.crosspolar;
+    path.arrival_W = (ray.points_W[0] - p_A_W).normalized();
+    path.reflections = ray.bounces;
+    path.foliage_m = scene.foliage_m(end_W, s);
+    Eigen::Vector3d at_W = p_A_W;
+    for (std::size_t j = 0; j <= last; ++j) {
+      const Eigen::Vector3d leg_W = ray.points_W[j] - at_W;
+      const double leg_m = leg_W.norm();
+      path.foliage_m += scene.foliage_m(at_W, leg_W / leg_m, leg_m);
+      at_W = ray.points_W[j];
+    }
+    out.echoes.push_back(path);
+    ++counters.reflected_paths;
+  }
+
+  static std::optional<std::uint32_t> facet_of(const Eigen::Vector3d& point_W, std::uint32_t triangle,
+                                               const scene::SceneAt& scene, std::vector<std::uint32_t>& near) {
+    const auto& index = scene.scene().facets();
+    index.near(point_W, 0.01, near);
+    for (const std::uint32_t i : near) {
+      const auto& triangles = index.facets()[i].triangles;
+      if (std::binary_search(triangles.begin(), triangles.end(), triangle)) return i;
+    }
+    return std::nullopt;
+  }
+
+  PathParameters p_;
+  std::unique_ptr<PathModel> visibility_;
+};
+
+}  // namespace
+
+std::unique_ptr<PathModel> make_launching(const PathParameters& p) {
+  return std::make_unique<Launching>(p);
+}
+
+}  // namespace canyon::gnss
