@@ -133,6 +133,10 @@ Result<std::unique_ptr<gnss::Constellation>> satellites(const Options& options, 
   if (!options.antex.empty()) {
     CANYON_TRY(antennas, gnss::read_antex_file(options.antex));
     precise.antennas = &*antennas;
+  } else {
+    warnings.push_back(orbits.names() +
+                       ": without --antex its positions are taken as those of the antennas; IGS products give the "
+                       "centre of mass, and ranges err by metres");
   }
   return gnss::make_precise(orbits, precise);
 }
