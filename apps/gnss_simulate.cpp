@@ -180,10 +180,23 @@ Result<std::string> observations(const std::vector<GnssEpoch>& epochs, const Opt
   return out;
 }
 
-/// RINEX navigation: the records used, or for a built-in constellation records fitted to it.
+/// RINEX navigation: the records that could be used in that time, or for a built-in constellation records fitted to it.
 std::string navigation(const gnss::SatelliteSource& source, GpsTime start, GpsTime end) {
-  if (source.navigation.has_ephemeris()) return gnss::navigation_file_text(source.navigation);
-  return gnss::navigation_file_text(gnss::fit_navigation_data(*source.constellation, start - 600.0, end + 600.0));
+  if (source.navigation.has_ephemeris()) {
+    gnss::NavigationData data = gnss::used_records(source.navigation);
+    // A margin for light times and receiver clocks.
+    const GpsTime first = start - 10.0, last = end + 10.0;
+    std::erase_if(data.kepler, [&](const gnss::KeplerEphemeris& r) {
+      return r.toe + r.valid_after_s < first || r.toe - r.valid_before_s > last;
+    });
+    std::erase_if(data.glonass, [&](const gnss::GlonassEphemeris& r) {
+      return r.toe + gnss::GlonassEphemeris::kValidS < first || r.toe - gnss::GlonassEphemeris::kValidS > last;
+    });
+    return gnss::navigation_file_text(data);
+  }
+  gnss::NavigationData data = gnss::fit_navigation_data(*source.constellation, start - 600.0, end + 600.0);
+  data.klobuchar.push_back({GnssSystem::kGps, start, source.klobuchar});
+  return gnss::navigation_file_text(data);
 }
 
 void tell(const Options& options, const Totals& totals, const GnssSetup& setup) {

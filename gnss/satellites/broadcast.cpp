@@ -48,6 +48,9 @@ class RecordBook {
     for (auto it = not_before(sv, t - longest_s_); it != records_.end() && it->sv == sv; ++it) {
       const std::int64_t away_ns = std::abs(it->toe.ns - t.ns);
       if (it->toe > t && (away_ns > longest_s_ * 1e9 || (best != nullptr && away_ns > best_ns))) break;
+      // Galileo's toe lies before the transmission (OS SIS ICD 5.1.2): a later one cannot have been received, and is
+      // taken only for want of an earlier one.
+      if (it->sv.system == GnssSystem::kGalileo && it->toe > t && best != nullptr) break;
       // At equal distance the earlier toe; at equal toe the last given.
       if (!it->valid_at(t) || (best != nullptr && (away_ns > best_ns || (away_ns == best_ns && it->toe > best->toe))))
         continue;
@@ -106,7 +109,7 @@ class Broadcast final : public Constellation {
 
 }  // namespace
 
-std::unique_ptr<Constellation> make_broadcast(const NavigationData& data, const BroadcastOptions& options) {
+NavigationData used_records(NavigationData data, const BroadcastOptions& options) {
   for (const char letter : options.systems)
     CANYON_CHECK(std::string_view("GRECJ").find(letter) != std::string_view::npos, "system ", letter);
   const auto wanted = [&](GnssSystem system) {
@@ -124,12 +127,16 @@ std::unique_ptr<Constellation> make_broadcast(const NavigationData& data, const 
     const auto known = best.emplace(r.sv, worst).first;
     known->second = std::min(known->second, rank(r.message));
   }
-  std::vector<KeplerEphemeris> kepler;
-  for (const auto& r : data.kepler)
-    if (wanted(r.sv.system) && rank(r.message) < worst && rank(r.message) == best.at(r.sv)) kepler.push_back(r);
-  std::vector<GlonassEphemeris> glonass;
-  if (wanted(GnssSystem::kGlonass) && rank(NavigationMessage::kFdma) < worst) glonass = data.glonass;
-  return std::make_unique<Broadcast>(std::move(kepler), std::move(glonass), options.choice);
+  std::erase_if(data.kepler, [&](const KeplerEphemeris& r) {
+    return !wanted(r.sv.system) || rank(r.message) == worst || rank(r.message) != best.at(r.sv);
+  });
+  if (!wanted(GnssSystem::kGlonass) || rank(NavigationMessage::kFdma) == worst) data.glonass.clear();
+  return data;
+}
+
+std::unique_ptr<Constellation> make_broadcast(const NavigationData& data, const BroadcastOptions& options) {
+  NavigationData used = used_records(data, options);
+  return std::make_unique<Broadcast>(std::move(used.kepler), std::move(used.glonass), options.choice);
 }
 
 }  // namespace canyon::gnss

@@ -60,7 +60,9 @@ struct NavigationData {
 
 /// Which of a satellite's records is used at a time.
 enum class EphemerisChoice {
-  kNearestToe,  ///< toe nearest to t: the best orbit that the file knows, also for times before it was transmitted
+  /// Toe nearest to t: the best orbit that the file knows, also for times before it was transmitted; but of Galileo's,
+  /// whose toe lies before the transmission, the last before t.
+  kNearestToe,
   kTransmitted  ///< the newest that had been transmitted by t: what a receiver had then
 };
 
@@ -78,6 +80,10 @@ struct BroadcastOptions {
 
 /// Users' letters of systems: an Error for `key` unless each is one of G R E C J, none twice, and at least one.
 Status check_systems(const std::string& letters, const std::string& key);
+
+/// The records that make_broadcast() takes: of the systems wanted, one message per satellite. Written to a file they
+/// show any reader the same satellites, whatever message it prefers.
+NavigationData used_records(NavigationData data, const BroadcastOptions& options = {});
 
 /// The constellation that the records describe. For each satellite and time one record is chosen (of several with the
 /// same toe, the last given); it must be healthy and t within its validity, else there is no state.

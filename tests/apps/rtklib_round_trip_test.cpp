@@ -1,0 +1,101 @@
+// What canyon simulates is solved by a stranger: rnx2rtkp of RTKLIB.
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include <Eigen/Core>
+
+#include <gtest/gtest.h>
+
+#include "core/earth.h"
+#include "core/line_reader.h"
+#include "core/units.h"
+#include "tests/apps/command_line_fixture.h"
+#include "tests/gnss/rtklib_runner.h"
+#include "tests/support/test_data.h"
+
+namespace canyon::apps {
+namespace {
+
+class RtklibRoundTripTest : public testing::CommandLineTest {
+ protected:
+  void SetUp() override {
+    CommandLineTest::SetUp();
+    if (std::system("command -v rnx2rtkp > /dev/null 2>&1") != 0) GTEST_SKIP() << "rnx2rtkp is not installed";
+  }
+
+  /// Positions by seconds of the week (the receiver's clock tags them within microseconds), as rnx2rtkp finds them in
+  /// obs.rnx and nav.rnx.
+  std::map<long long, Eigen::Vector3d> rnx2rtkp(bool corrections) const {
+    std::map<long long, Eigen::Vector3d> out;
+    for (const auto& [ns, p_E] :
+         gnss::rtklib_positions(path("obs.rnx"), path("nav.rnx"), 45, corrections, path("given")))
+      out[std::llround(GpsTime{ns}.sow_s())] = p_E;
+    return out;
+  }
+
+  /// The same from `canyon gnss solve`.
+  std::map<long long, Eigen::Vector3d> solved() const {
+    std::map<long long, Eigen::Vector3d> out;
+    LineReader in("solved.csv", read("solved.csv"));
+    std::string_view line;
+    in.next(line);  // header
+    while (in.next(line)) {
+      const auto f = split(line, ",", false);
+      if (f[5] == "none" || f[2].empty()) continue;
+      out[std::llround(*parse_number(in, f[1]))] = {*parse_number(in, f[2]), *parse_number(in, f[3]),
+                                                    *parse_number(in, f[4])};
+    }
+    return out;
+  }
+};
+
+const Eigen::Vector3d kVicksburg = ecef_from_geodetic({32.35 * kDegree, -90.88 * kDegree, 60.0});
+constexpr const char* kAtVicksburg =
+    "gnss simulate --at 32.35,-90.88,60 --rinex-obs obs.rnx --rinex-nav nav.rnx --seed 4 ";
+
+// All errors off; satellite clocks, relativity, group delays and the Earth's rotation under way stay. Measured 1.9 mm.
+TEST_F(RtklibRoundTripTest, WithoutErrorsTheTruthIsFoundAtEveryEpoch) {
+  ASSERT_EQ(canyon(std::string(kAtVicksburg) + "--duration 3600 --rate 0.0333333333333 --errors none"), 0)
+      << read("stderr");
+  const auto found = rnx2rtkp(false);
+  ASSERT_EQ(found.size(), 121U);
+  for (const auto& [sow, p] : found) EXPECT_LT((p - kVicksburg).norm(), 0.05) << sow;
+}
+
+// With ionosphere, troposphere, orbit and clock errors, receiver clock and noise: both solvers, told the same options,
+// agree on where the errors put the antenna.
+TEST_F(RtklibRoundTripTest, WithErrorsBothSolversAgree) {
+  ASSERT_EQ(canyon(std::string(kAtVicksburg) + "--duration 3600 --rate 0.0333333333333"), 0) << read("stderr");
+  const auto found = rnx2rtkp(true);
+  ASSERT_EQ(canyon("gnss solve --obs obs.rnx --nav nav.rnx --config '" CANYON_SOURCE_DIR
+                   "/examples/rtklib_equivalent.toml' --out solved.csv"),
+            0)
+      << read("stderr");
+  const auto ours = solved();
+  ASSERT_EQ(ours.size(), 121U);
+  double square = 0.0, error = 0.0;
+  for (const auto& [sow, p] : ours) {
+    ASSERT_TRUE(found.contains(sow)) << sow;
+    square += (p - found.at(sow)).squaredNorm() / static_cast<double>(ours.size());
+    error += (p - kVicksburg).squaredNorm() / static_cast<double>(ours.size());
+  }
+  EXPECT_LT(std::sqrt(square), 0.5);
+  EXPECT_GT(std::sqrt(error), 0.3);  // the errors were on
+}
+
+// The real satellites of a day, four systems, written again with what the receiver would measure.
+TEST_F(RtklibRoundTripTest, FourSystemsOfARealDay) {
+  CANYON_REAL_DATA(nav, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");
+  ASSERT_EQ(canyon("gnss simulate --at 55.49,8.46,60 --duration 7200 --rate 0.0333333333333 --errors none --nav '" +
+                   nav + "' --systems GREC --start 2020-06-25T10:00:00 --rinex-obs obs.rnx --rinex-nav nav.rnx"),
+            0)
+      << read("stderr");
+  const Eigen::Vector3d truth = ecef_from_geodetic({55.49 * kDegree, 8.46 * kDegree, 60.0});
+  const auto found = rnx2rtkp(false);
+  ASSERT_GE(found.size(), 239U);
+  for (const auto& [sow, p] : found) EXPECT_LT((p - truth).norm(), 0.05) << sow;
+}
+
+}  // namespace
+}  // namespace canyon::apps
