@@ -23,6 +23,21 @@ double chord_m(const Foliage& crown, const Eigen::Vector3d& p_W, const Eigen::Ve
   return std::max(leave_m - enter_m, 0.0);
 }
 
+/// (-a, -b, 1) of the plane z = a x + b y + c that fits the crowns' centers; level if they do not tell.
+Eigen::Vector3d slope_of(const std::vector<Foliage>& crowns) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Foliage& c : crowns) mean += c.center_W;
+  mean /= static_cast<double>(crowns.size());
+  double xx = 0.0, xy = 0.0, yy = 0.0, xz = 0.0, yz = 0.0;
+  for (const Foliage& c : crowns) {
+    const Eigen::Vector3d d = c.center_W - mean;
+    xx += d.x() * d.x(), xy += d.x() * d.y(), yy += d.y() * d.y(), xz += d.x() * d.z(), yz += d.y() * d.z();
+  }
+  const double det = xx * yy - xy * xy;
+  if (!(det > 1e-6 * (xx + yy) * (xx + yy))) return Eigen::Vector3d::UnitZ();
+  return {-(xz * yy - yz * xy) / det, -(yz * xx - xz * xy) / det, 1.0};
+}
+
 }  // namespace
 
 FoliageIndex::FoliageIndex(const std::vector<Foliage>& crowns) : crowns_(crowns) {
@@ -33,8 +48,17 @@ FoliageIndex::FoliageIndex(const std::vector<Foliage>& crowns) : crowns_(crowns)
     low_ = low_.cwiseMin(c.center_W - c.radii_m);
     high_ = high_.cwiseMax(c.center_W + c.radii_m);
   }
+  slope_ = slope_of(crowns_);
+  floor_m_ = std::numeric_limits<double>::infinity();
+  ceiling_m_ = -floor_m_;
+  for (const Foliage& c : crowns_) {
+    const double middle_m = slope_.dot(c.center_W), half_m = slope_.cwiseProduct(c.radii_m).norm();
+    floor_m_ = std::min(floor_m_, middle_m - half_m);
+    ceiling_m_ = std::max(ceiling_m_, middle_m + half_m);
+  }
   const Eigen::Vector3d size = high_ - low_;
   cell_m_ = std::max(kCell_m, std::max(size.x(), size.y()) / kMaxCells);
+  per_m_ = 1.0 / cell_m_;
   columns_ = static_cast<int>(size.x() / cell_m_) + 1;
   rows_ = static_cast<int>(size.y() / cell_m_) + 1;
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
@@ -73,35 +97,37 @@ void FoliageIndex::add_cell(const Cell& cell, const Eigen::Vector3d& p_W, const 
 
 double FoliageIndex::chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {
   if (cells_.empty()) return 0.0;
-  // The part of the ray inside the box around all crowns.
+  // The part of the ray inside the layer of crowns, and inside the rectangle around them.
   double begin_m = 0.0, end_m = max_m;
-  for (int axis = 2; axis >= 0; --axis) {
-    const double d = direction_W[axis];
-    double in = (low_[axis] - p_W[axis]) / d, out = (high_[axis] - p_W[axis]) / d;
-    if (d == 0.0) {
-      if (p_W[axis] < low_[axis] || p_W[axis] > high_[axis]) return 0.0;
-      continue;
+  const auto clip = [&](double at, double inverse_speed, double low, double high) {
+    if (!std::isfinite(inverse_speed)) {
+      if (at < low || at > high) end_m = -1.0;
+      return;
     }
-    if (in > out) std::swap(in, out);
-    begin_m = std::max(begin_m, in);
-    end_m = std::min(end_m, out);
-  }
+    const double in = (low - at) * inverse_speed, out = (high - at) * inverse_speed;
+    begin_m = std::max(begin_m, std::min(in, out));
+    end_m = std::min(end_m, std::max(in, out));
+  };
+  const double slow_x = 1.0 / direction_W.x(), slow_y = 1.0 / direction_W.y();
+  clip(slope_.dot(p_W), 1.0 / slope_.dot(direction_W), floor_m_, ceiling_m_);
+  clip(p_W.x(), slow_x, low_.x(), high_.x());
+  clip(p_W.y(), slow_y, low_.y(), high_.y());
   if (!(begin_m <= end_m)) return 0.0;
 
   // From cell to cell of the grid (Amanatides & Woo 1987).
   std::vector<std::uint32_t> met;
   const Eigen::Vector2d origin = low_.head<2>(), d = direction_W.head<2>();
   const Eigen::Vector2d start = p_W.head<2>() + begin_m * d - origin;
-  int column = std::clamp(static_cast<int>(start.x() / cell_m_), 0, columns_ - 1);
-  int row = std::clamp(static_cast<int>(start.y() / cell_m_), 0, rows_ - 1);
+  int column = std::clamp(static_cast<int>(start.x() * per_m_), 0, columns_ - 1);
+  int row = std::clamp(static_cast<int>(start.y() * per_m_), 0, rows_ - 1);
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const int step_x = d.x() > 0.0 ? 1 : -1, step_y = d.y() > 0.0 ? 1 : -1;
-  const auto border = [&](int cell, int step, double from, double speed) {
-    return speed == 0.0 ? kNever : begin_m + ((cell + (step > 0 ? 1 : 0)) * cell_m_ - from) / speed;
+  const auto border = [&](int cell, int step, double from, double inverse_speed) {
+    if (!std::isfinite(inverse_speed)) return kNever;
+    return begin_m + ((cell + (step > 0 ? 1 : 0)) * cell_m_ - from) * inverse_speed;
   };
-  double next_x = border(column, step_x, start.x(), d.x()), next_y = border(row, step_y, start.y(), d.y());
-  const double width_x = d.x() == 0.0 ? kNever : cell_m_ / std::abs(d.x());
-  const double width_y = d.y() == 0.0 ? kNever : cell_m_ / std::abs(d.y());
+  double next_x = border(column, step_x, start.x(), slow_x), next_y = border(row, step_y, start.y(), slow_y);
+  const double width_x = cell_m_ * std::abs(slow_x), width_y = cell_m_ * std::abs(slow_y);
   double at_m = begin_m;
   while (column >= 0 && column < columns_ && row >= 0 && row < rows_ && at_m <= end_m) {
     const double leave_m = std::min({next_x, next_y, end_m});

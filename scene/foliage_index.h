@@ -32,8 +32,11 @@ class FoliageIndex {
                 double leave_m, std::vector<std::uint32_t>& met) const;
 
   std::vector<Foliage> crowns_;
-  double cell_m_ = 0.0;
+  double cell_m_ = 0.0, per_m_ = 0.0;                                               ///< edge of a cell, and its inverse
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero(), high_ = Eigen::Vector3d::Zero();  ///< of all crowns
+  /// All crowns lie where slope_ . (x, y, z) is within these: a layer as steep as the ground, which rays soon leave.
+  Eigen::Vector3d slope_ = Eigen::Vector3d::UnitZ();
+  double floor_m_ = 0.0, ceiling_m_ = 0.0;
   int columns_ = 0, rows_ = 0;
   std::vector<Cell> cells_;
 };
