@@ -25,3 +25,7 @@ if(CANYON_WITH_PCL)
   set(CMAKE_DISABLE_FIND_PACKAGE_VTK ON)
   find_package(PCL 1.13 REQUIRED COMPONENTS common search kdtree filters registration)
 endif()
+
+if(CANYON_WITH_CERES)
+  find_package(Ceres 2.1 REQUIRED)
+endif()

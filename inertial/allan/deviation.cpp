@@ -150,30 +150,40 @@ void add_intervals(std::vector<DeviationPoint>& points, double samples) {
 
 Sampling sampling_of(std::span<const double> t_s, double gap_factor) {
   CANYON_CHECK(t_s.size() >= 2 && gap_factor > 1.0, t_s.size(), " times, gap factor ", gap_factor);
-  std::vector<double> intervals(t_s.size() - 1);
-  for (std::size_t k = 0; k + 1 < t_s.size(); ++k) {
-    intervals[k] = t_s[k + 1] - t_s[k];
-    CANYON_CHECK(intervals[k] > 0.0, "time does not increase at sample ", k + 1);
-  }
-  std::vector<double> sorted = intervals;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const double longest = gap_factor * sorted[sorted.size() / 2];
+  for (std::size_t k = 0; k + 1 < t_s.size(); ++k)
+    CANYON_CHECK(t_s[k + 1] > t_s[k], "time does not increase at sample ", k + 1);
+  const std::size_t n = t_s.size(), window = std::min<std::size_t>(100, n - 1);
+  std::vector<double> slopes;
+  for (std::size_t k = 0; k + window < n; ++k)
+    slopes.push_back((t_s[k + window] - t_s[k]) / static_cast<double>(window));
+  std::nth_element(slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2), slopes.end());
+  const double usual_s = slopes[slopes.size() / 2], longest_s = gap_factor * usual_s;
+  // Lateness of a sample against an even clock; its lowest values near a sample are the sensor's own time there.
+  const auto lateness = [&](std::size_t k) { return t_s[k] - t_s[0] - usual_s * static_cast<double>(k); };
+  const auto lowest = [&](std::size_t begin, std::size_t end) {
+    double least = lateness(begin);
+    for (std::size_t k = begin + 1; k < end; ++k) least = std::min(least, lateness(k));
+    return least;
+  };
   Sampling out;
   std::size_t begin = 0;
-  double sum = 0.0, square = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < intervals.size(); ++k) {
-    if (intervals[k] > longest) {
-      out.segments.push_back({begin, k + 1});
-      begin = k + 1;
-      continue;
-    }
-    sum += intervals[k];
-    square += intervals[k] * intervals[k];
-    count += 1.0;
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    if (t_s[k + 1] - t_s[k] <= longest_s) continue;
+    const double before = lowest(k + 1 > window ? k + 1 - window : 0, k + 1);
+    const double after = lowest(k + 1, std::min(n, k + 1 + window));
+    if (after - before <= longest_s) continue;  // a stall of the host that the following samples make up
+    out.segments.push_back({begin, k + 1});
+    begin = k + 1;
   }
-  out.segments.push_back({begin, t_s.size()});
-  out.interval_s = sum / count;
-  out.jitter_s = std::sqrt(std::max(0.0, square / count - out.interval_s * out.interval_s));
+  out.segments.push_back({begin, n});
+  double span_s = 0.0, intervals = 0.0, square = 0.0;
+  for (const Segment& s : out.segments) {
+    span_s += t_s[s.end - 1] - t_s[s.begin];
+    intervals += static_cast<double>(s.end - s.begin - 1);
+    for (std::size_t k = s.begin; k + 1 < s.end; ++k) square += (t_s[k + 1] - t_s[k]) * (t_s[k + 1] - t_s[k]);
+  }
+  out.interval_s = intervals > 0.0 ? span_s / intervals : usual_s;
+  out.jitter_s = intervals > 0.0 ? std::sqrt(std::max(0.0, square / intervals - out.interval_s * out.interval_s)) : 0.0;
   return out;
 }
 

@@ -27,7 +27,8 @@ struct Sampling {
   std::vector<Segment> segments;
   double jitter_s = 0.0;  ///< standard deviation of the intervals within the segments
 };
-/// A gap is an interval longer than `gap_factor` times the median one. Time stamps that jitter within a segment are
+/// A gap is an interval longer than `gap_factor` times the usual one that the samples after it do not make up: time
+/// stamps of a host come late and in bursts, and a burst after a stall has lost nothing. Jitter within a segment is
 /// taken for the host's and not the sensor's: samples count as equally spaced there. Times must increase.
 Sampling sampling_of(std::span<const double> t_s, double gap_factor = 5.0);
 

@@ -43,6 +43,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // long logs would tell it to a tenth of one. 1-sigma of a point's deviation beyond statistics.
 constexpr double kModelTolerance = 0.02;
 constexpr double kDeterminedSigmas = 2.0;
+// A process that forgets within a hundred samples is white noise as the sensor's bandwidth shapes it, not a bias.
+constexpr double kLeastCorrelationSamples = 100.0;
 
 /// One point: residual of the logarithm of the variance.
 class LogVariance {
@@ -125,8 +127,10 @@ Solution solve(const std::vector<int>& terms, std::span<const DeviationPoint> po
   }
   if (markov) {
     const int i = static_cast<int>(terms.size());
-    problem.SetParameterLowerBound(out.logs.data(), i, std::log(points.front().tau_s));
-    problem.SetParameterUpperBound(out.logs.data(), i, std::log(3.0 * points.back().tau_s));
+    problem.SetParameterLowerBound(out.logs.data(), i, std::log(kLeastCorrelationSamples * points.front().tau_s));
+    problem.SetParameterUpperBound(
+        out.logs.data(), i,
+        std::log(3.0 * std::max(points.back().tau_s, 2.0 * kLeastCorrelationSamples * points.front().tau_s)));
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -145,7 +149,8 @@ Solution solve(const std::vector<int>& terms, std::span<const DeviationPoint> po
   const std::size_t n = out.logs.size();
   out.sigmas.assign(n, kInfinity);
   std::vector<double> matrix(n * n);
-  if (covariance.Compute({{out.logs.data(), out.logs.data()}}, &problem) &&
+  const std::vector<std::pair<const double*, const double*> > blocks = {{out.logs.data(), out.logs.data()}};
+  if (covariance.Compute(blocks, &problem) &&
       covariance.GetCovarianceBlock(out.logs.data(), out.logs.data(), matrix.data()))
     for (std::size_t i = 0; i < n; ++i) out.sigmas[i] = std::sqrt(std::max(0.0, matrix[i * n + i]));
   return out;
@@ -170,8 +175,8 @@ Solution best_combination(std::span<const DeviationPoint> points, int per_octave
     const bool markov = terms.back() == kGaussMarkov;
     if (static_cast<double>(terms.size() + (markov ? 1 : 0)) > n) continue;
     // A correlation time has several local minima: begin in each decade.
-    for (double tc = markov ? 3.0 * points.front().tau_s : 1.0; tc <= (markov ? points.back().tau_s : 1.0);
-         tc *= 10.0) {
+    for (double tc = markov ? 1.5 * kLeastCorrelationSamples * points.front().tau_s : 1.0;
+         tc <= (markov ? points.back().tau_s : 1.0); tc *= 10.0) {
       Solution s = solve(terms, points, per_octave, tc);
       const double criterion = information_criterion(s, n);
       if (criterion < least) {

@@ -27,7 +27,8 @@ struct FittedTerm {
 ///   ramp R [r / s]                   R^2 tau^2 / 2
 ///   gauss_markov sigma [r], Tc [s]   2 sigma^2 Tc / tau (1 - Tc / (2 tau) (3 - 4 e^(-tau/Tc) + e^(-2 tau/Tc)))
 struct NoiseFit {
-  std::vector<FittedTerm> terms;    ///< one per process, in the order above; Gauss-Markov's value is its sigma
+  std::vector<FittedTerm> terms;    ///< one per process, in the order above; Gauss-Markov's value is its sigma,
+                                    ///< its correlation time at least 100 samples
   double correlation_time_s = 0.0;  ///< of the Gauss-Markov process, if determined
   double chi_square_per_dof = 0.0;  ///< of the chosen model; near 1 if the processes describe the curve
   /// Model's deviation at tau.
