@@ -103,6 +103,8 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.text("nav_file", c.nav_file,
          "RINEX 2, 3 or 4 navigation file, plain or gzip; without any, the built-in constellation");
   f.texts("nav_files", c.nav_files, "further navigation files, read as one with nav_file");
+  f.text("almanac_file", c.almanac_file, "YUMA or SEM almanac, alone or beside navigation files");
+  f.text("ionex_file", c.ionex_file, "ionosphere ionex: maps of the electron content, IONEX");
   f.texts("sp3_files", c.sp3_files, "ephemeris_error broadcast_minus_sp3: precise orbits and clocks, SP3");
   f.text(
       "antex_file", c.antex_file,

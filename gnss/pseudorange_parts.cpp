@@ -4,6 +4,7 @@
 
 #include "core/units.h"
 #include "gnss/paths/propagation.h"
+#include "gnss/products/ionex_file.h"
 #include "gnss/products/precise_orbits.h"
 #include "gnss/satellite_source.h"
 #include "gnss/solver/fault_exclusion.h"
@@ -69,6 +70,20 @@ Result<std::shared_ptr<const Constellation>> make_precise_source(const GnssConfi
   return std::shared_ptr<const Constellation>(make_precise(orbits, options));
 }
 
+Result<std::shared_ptr<const IonexMaps>> read_maps(const GnssConfig& c, GpsTime start, GpsTime end,
+                                                   std::vector<std::string>& warnings) {
+  if (c.ionex_file.empty())
+    return Error{"", 0, "gnss.ionosphere", "is \"ionex\", but there are no maps", "gnss.ionex_file"};
+  CANYON_TRY(IonexMaps maps, read_ionex_file(c.ionex_file));
+  if (start < maps.maps.front().t || end > maps.maps.back().t)
+    return Error{c.ionex_file, 0, "gnss.ionex_file",
+                 "covers " + maps.maps.front().t.iso(0) + " to " + maps.maps.back().t.iso(0) + " GPS time, not " +
+                     start.iso(0) + " to " + end.iso(0),
+                 "maps of that time"};
+  warnings.insert(warnings.end(), maps.warnings.begin(), maps.warnings.end());
+  return std::make_shared<const IonexMaps>(std::move(maps));
+}
+
 }  // namespace
 
 int second_band(GnssSystem system, const std::string& second_frequency) {
@@ -108,7 +123,11 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
   const KlobucharCoefficients klobuchar = source.klobuchar;
   parts.warnings = source.warnings;
   parts.constellation = std::move(source.constellation);
-  parts.ionosphere = ionosphere->make({c.vtec_tecu, klobuchar});
+  IonosphereParameters ionosphere_parameters{c.vtec_tecu, klobuchar, {}};
+  if (c.ionosphere == "ionex") {
+    CANYON_TRY(ionosphere_parameters.maps, read_maps(c, start, end, parts.warnings));
+  }
+  parts.ionosphere = ionosphere->make(ionosphere_parameters);
   parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
   EphemerisErrorParameters orbit{seed, c.ephemeris_sigma_m, c.ephemeris_tau_s, parts.constellation, {}};
   if (c.ephemeris_error == "broadcast_minus_sp3") {

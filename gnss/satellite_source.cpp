@@ -1,5 +1,6 @@
 #include "gnss/satellite_source.h"
 
+#include "gnss/products/almanac_file.h"
 #include "gnss/rinex/navigation_file.h"
 
 namespace canyon::gnss {
@@ -9,11 +10,17 @@ Result<SatelliteSource> make_satellite_source(const GnssConfig& config, GpsTime 
   SatelliteSource source;
   std::vector<std::string> files = config.nav_files;
   if (!config.nav_file.empty()) files.insert(files.begin(), config.nav_file);
-  if (files.empty()) {
-    source.constellation = make_nominal_gps();
+  if (files.empty() && config.almanac_file.empty()) {
+    source.constellation = make_nominal(config.systems);
     return source;
   }
-  CANYON_TRY(source.navigation, read_navigation_files(files));
+  if (!files.empty()) {
+    CANYON_TRY(source.navigation, read_navigation_files(files));
+  }
+  if (!config.almanac_file.empty()) {
+    CANYON_TRY(auto almanac, read_almanac_file(config.almanac_file, start));
+    source.navigation.append(std::move(almanac));
+  }
   CANYON_TRY_STATUS(check_coverage(source.navigation, config.systems, start, end, "gnss.nav_file"));
   source.warnings = source.navigation.warnings;
   source.constellation = make_broadcast(source.navigation, {.systems = config.systems});

@@ -125,6 +125,8 @@ struct GnssConfig {
   std::string systems = "G";           ///< RINEX letters of the systems received
   std::string nav_file;                ///< RINEX navigation file; none at all = built-in constellation
   std::vector<std::string> nav_files;  ///< further ones
+  std::string almanac_file;            ///< YUMA or SEM, for satellites that have no ephemeris
+  std::string ionex_file;              ///< maps, for ionosphere ionex
   std::vector<std::string> sp3_files;  ///< precise orbits, for ephemeris_error broadcast_minus_sp3
   std::string antex_file;              ///< satellite antennas, for the same
 };

@@ -18,6 +18,7 @@ constexpr ModelRow<MakeIonosphere> kModels[] = {
     {"none", make_none, "no delay"},
     {"single_layer", make_single_layer, "thin shell at 350 km times the zenith delay of vtec_tecu"},
     {"klobuchar", make_klobuchar, "the broadcast model, with the navigation file's coefficients"},
+    {"ionex", make_ionex, "global maps of the vertical electron content, of ionex_file"},
     {"paper", make_paper_ionosphere, "Lear's mapping (Durst & Goodin 2012) times the zenith delay of vtec_tecu"},
     {"paper_printed", make_paper_printed_ionosphere, "as printed: the bare mapping, taken as metres"},
 };

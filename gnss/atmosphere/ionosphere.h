@@ -9,6 +9,8 @@
 
 namespace canyon::gnss {
 
+struct IonexMaps;
+
 /// Group delay of the ionosphere at L1 along the line of sight.
 class IonosphereModel {
  public:
@@ -20,6 +22,7 @@ class IonosphereModel {
 struct IonosphereParameters {
   double vtec_tecu = 0.0;           ///< vertical total electron content, 1 TECU = 1e16 electrons/m^2
   KlobucharCoefficients klobuchar;  ///< of the navigation file
+  std::shared_ptr<const IonexMaps> maps{};  ///< model ionex
 };
 
 using MakeIonosphere = std::unique_ptr<IonosphereModel>(const IonosphereParameters&);
@@ -27,6 +30,7 @@ std::span<const ModelRow<MakeIonosphere>> ionosphere_models();
 
 std::unique_ptr<IonosphereModel> make_single_layer(const IonosphereParameters& p);
 std::unique_ptr<IonosphereModel> make_klobuchar(const IonosphereParameters& p);
+std::unique_ptr<IonosphereModel> make_ionex(const IonosphereParameters& p);
 std::unique_ptr<IonosphereModel> make_paper_ionosphere(const IonosphereParameters& p);
 std::unique_ptr<IonosphereModel> make_paper_printed_ionosphere(const IonosphereParameters& p);
 

@@ -45,10 +45,14 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
     view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
     corrections[i] = receiver.mode.correction(inputs[i]);
     o.correction_m = corrections[i].total_m();
+    // The difference of two frequencies tells the ionosphere, but not without their noise.
+    const bool two = receiver.mode.dual_frequency();
+    const double gain = inputs[i].two.gain;
     o.sigma_m = receiver.weighting.sigma_m({.system = o.sv.system,
                                             .elevation_rad = view.elevation_rad,
                                             .cn0_dbhz = o.cn0_dbhz,
-                                            .ionosphere_m = corrections[i].modelled.ionosphere_m});
+                                            .ionosphere_m = two ? 0.0 : corrections[i].modelled.ionosphere_m,
+                                            .code_factor = two ? std::hypot(1.0 + gain, gain) : 1.0});
     ranges[i].range_m = o.corrected_m();
     ranges[i].sigma_m = o.sigma_m;
   }

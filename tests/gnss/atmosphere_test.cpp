@@ -9,6 +9,8 @@
 #include "gnss/atmosphere/niell.h"
 #include "gnss/atmosphere/troposphere.h"
 #include "gnss/atmosphere/zenith_delay.h"
+#include "gnss/products/ionex_file.h"
+#include "tests/support/test_data.h"
 
 namespace canyon::gnss {
 namespace {
@@ -149,6 +151,60 @@ TEST(Ionosphere, KlobucharAtNightIsFiveNanosecondsTimesObliquity) {
   EXPECT_NEAR(delay_m, kSpeedOfLight * 5e-9 * klobuchar_obliquity(view.elevation_rad), 1e-12);
 }
 
+/// Maps of the same content everywhere.
+std::shared_ptr<const IonexMaps> even_maps(double tecu) {
+  auto maps = std::make_shared<IonexMaps>();
+  maps->lat_first_deg = 87.5;
+  maps->lat_step_deg = -2.5;
+  maps->lon_first_deg = -180.0;
+  maps->lon_step_deg = 5.0;
+  maps->latitudes = 71;
+  maps->longitudes = 73;
+  for (const double at_s : {-7200.0, 7200.0})
+    maps->maps.push_back({view_at(0.0).t + at_s, std::vector<double>(71 * 73, tecu)});
+  return maps;
+}
+
+// Even maps are a thin shell at 450 km over a sphere of 6371 km; outside their time vtec_tecu stands in.
+TEST(Ionosphere, IonexOfAnEvenSky) {
+  const auto model = find_model(ionosphere_models(), "ionex")->make({5.0, kBuiltInKlobuchar, even_maps(20.0)});
+  for (const double e : {0.0, 10.0, 45.0, 90.0}) {
+    const double sin_zenith = 6371.0 / 6821.0 * std::cos(e * kDegree);
+    EXPECT_NEAR(model->delay_m(view_at(e, 200.0)), vertical_ionosphere_m(20.0) / std::sqrt(1 - sin_zenith * sin_zenith),
+                1e-9);
+  }
+  SkyView later = view_at(90.0);
+  later.t = later.t + 86400.0;
+  EXPECT_NEAR(model->delay_m(later), vertical_ionosphere_m(5.0), 1e-12);
+}
+
+// A content that grows by 1 TECU per degree of latitude shows where the line pierces the shell: looking north at 30 deg
+// from Vicksburg, psi = 90 - 30 - asin(6371/6821 cos 30) = 6.012 deg further north.
+TEST(Ionosphere, IonexPiercePoint) {
+  auto maps = std::make_shared<IonexMaps>(*even_maps(0.0));
+  for (auto& map : maps->maps)
+    for (std::size_t row = 0; row < 71; ++row)
+      for (std::size_t k = 0; k < 73; ++k) map.vtec_tecu[row * 73 + k] = 100.0 + 87.5 - 2.5 * static_cast<double>(row);
+  const auto model = find_model(ionosphere_models(), "ionex")->make({0.0, kBuiltInKlobuchar, maps});
+  const double sin_zenith = 6371.0 / 6821.0 * std::cos(30 * kDegree);
+  const double psi_deg = 60.0 - std::asin(sin_zenith) / kDegree;
+  EXPECT_NEAR(psi_deg, 6.012, 0.01);
+  EXPECT_NEAR(model->delay_m(view_at(30.0, 0.0)),
+              vertical_ionosphere_m(100.0 + 32.35 + psi_deg) / std::sqrt(1 - sin_zenith * sin_zenith), 1e-9);
+}
+
+TEST(Ionosphere, RealMapsOverVicksburg) {
+  CANYON_REAL_DATA(path, "gnss/orbit_2010_182/igrg3380.10i");
+  auto maps = read_ionex_file(path);
+  ASSERT_TRUE(maps.ok()) << maps.error().str();
+  const auto model = find_model(ionosphere_models(), "ionex")
+                         ->make({0.0, kBuiltInKlobuchar, std::make_shared<const IonexMaps>(*std::move(maps))});
+  SkyView view = view_at(90.0);
+  view.t = GpsTime::from_calendar(2010, 12, 4, 13, 0, 15.0);
+  // 10.7 TECU at 13 UT, to the digit given.
+  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(10.7), vertical_ionosphere_m(0.06));
+}
+
 // Every model, at heights from the Dead Sea to 20 km, anywhere, any elevation from the horizon up: finite, not
 // negative, and never longer for a higher satellite.
 TEST(Atmosphere, ExtremesAreFiniteAndMonotone) {
@@ -172,7 +228,8 @@ TEST(Atmosphere, ExtremesAreFiniteAndMonotone) {
             before_m = delay_m;
           }
         };
-        for (const auto& row : ionosphere_models()) check(row.name, *row.make({12.0, kBuiltInKlobuchar}));
+        for (const auto& row : ionosphere_models())
+          check(row.name, *row.make({12.0, kBuiltInKlobuchar, even_maps(12.0)}));
         for (const auto& row : troposphere_models()) check(row.name, *row.make(air));
       }
     }

@@ -661,11 +661,34 @@ TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
   c = GnssConfig{};
   c.ionosphere = "iri";
   EXPECT_EQ(error_of(c),
-            "gnss.ionosphere: \"iri\" is not a model, expected none, single_layer, klobuchar, paper, paper_printed");
+            "gnss.ionosphere: \"iri\" is not a model, expected none, single_layer, klobuchar, ionex, paper, "
+            "paper_printed");
   c = GnssConfig{};
   c.solver = "trilateration";
   EXPECT_EQ(error_of(c),
             "gnss.receiver_clock: is \"tcxo\", but solver \"trilateration\" has no unknown for it, expected \"none\"");
+}
+
+TEST_F(PseudorangeSensorTest, SystemsOfTheBuiltInConstellation) {
+  GnssConfig c = errors_off();
+  c.systems = "GRECJ";
+  const GnssOutput out = measure(*make(c), 0);
+  std::set<GnssSystem> systems;
+  for (const auto& o : out.epoch.observations) systems.insert(o.sv.system);
+  EXPECT_GE(systems.size(), 4u);
+  EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4);
+}
+
+TEST_F(PseudorangeSensorTest, IonosphereMaps) {
+  GnssConfig c;
+  c.ionosphere = "ionex";
+  EXPECT_EQ(error_of(c), "gnss.ionosphere: is \"ionex\", but there are no maps, expected gnss.ionex_file");
+  CANYON_REAL_DATA(path, "gnss/orbit_2010_182/igrg3380.10i");
+  c.ionex_file = path;
+  EXPECT_THAT(error_of(c), HasSubstr("igrg3380.10i: gnss.ionex_file: covers 2010-12-04T00:00:1"));
+  const GpsTime start = GpsTime::from_calendar(2010, 12, 4, 13, 0, 0.0);
+  const GnssOutput out = measure(*make(c, 1, start), 0, start);
+  EXPECT_EQ(out.fix.status, FixStatus::kDifferential);
 }
 
 TEST_F(PseudorangeSensorTest, MeasuredOrbitErrorsNeedTheirFiles) {
