@@ -86,8 +86,9 @@ struct GnssFix {
   GpsTime t;
   FixStatus status = FixStatus::kNone;  ///< kNone: geometry or satellites do not allow a fix; `reason` says which
   Eigen::Vector3d p_A_E = Eigen::Vector3d::Constant(kNaN);
-  Eigen::Matrix3d covariance_E = Eigen::Matrix3d::Constant(kNaN);  ///< of p_A_E, as the receiver believes, m^2
-  Eigen::Vector3d v_A_E = Eigen::Vector3d::Constant(kNaN);         ///< NaN where the receiver gives none
+  Eigen::Matrix3d covariance_E = Eigen::Matrix3d::Constant(kNaN);           ///< of p_A_E, as the receiver believes, m^2
+  Eigen::Vector3d v_A_E = Eigen::Vector3d::Constant(kNaN);                  ///< NaN where the receiver gives none
+  Eigen::Matrix3d velocity_covariance_E = Eigen::Matrix3d::Constant(kNaN);  ///< of v_A_E, m^2/s^2
   double clock_m = kNaN;
   Dop dop;
   int satellites = 0;  ///< used in the fix

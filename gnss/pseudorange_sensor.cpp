@@ -88,8 +88,8 @@ class PseudorangeSensor final : public GnssSensor {
       out.truth.satellites.push_back(truth);
     }
 
-    const ReceiverParts receiver{*parts_.constellation, *parts_.mode, *parts_.solver, *parts_.weighting,
-                                 frame_.origin_E()};
+    const ReceiverParts receiver{*parts_.constellation, *parts_.mode,     *parts_.solver,
+                                 *parts_.weighting,     config_.max_gdop, frame_.origin_E()};
     std::vector<Correction> corrections;
     out.fix = compute_fix(receiver, t, out.epoch, inputs, corrections);
     for (std::size_t k = 0; k < corrections.size(); ++k)

@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/signal.h"
+#include "gnss/solver/velocity.h"
 
 namespace canyon::gnss {
 namespace {
@@ -16,7 +17,8 @@ constexpr double kLowestElevationRad =
 
 /// Satellites as told by the pseudoranges; what has no valid ephemeris there stays NaN.
 std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, const Constellation& constellation,
-                                                           std::span<CorrectionInput> inputs) {
+                                                           std::span<CorrectionInput> inputs,
+                                                           std::vector<RateMeasurement>& rates) {
   std::vector<RangeMeasurement> ranges;
   for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
     auto& o = epoch.observations[i];
@@ -28,6 +30,9 @@ std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, con
       inputs[i].two.measured_m = o.second.pseudorange_m + kSpeedOfLight * view->state.clock_of_band_s(o.second.band) -
                                  o.pseudorange_m - o.clock_m;
     ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0, o.sv.system});
+    const double carrier = carrier_hz(o.sv.system, o.band, view->state.frequency_channel);
+    rates.push_back({view->state.p_E, view->state.v_E,
+                     pseudorange_rate_m_s(o.doppler_hz, carrier) + kSpeedOfLight * view->state.clock_rate, 1.0});
   }
   return ranges;
 }
@@ -58,6 +63,23 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
   }
 }
 
+/// Velocity from the Dopplers of the satellites in the fix. Carriers are trusted in proportion to codes: what weakens
+/// or bends one does so to the other.
+void fill_velocity(const GnssEpoch& epoch, std::vector<RateMeasurement> rates, double max_gdop, GnssFix& fix) {
+  constexpr double kPerCodeSigma = 0.1;  // 5 cm/s where the code is trusted to 0.5 m
+  constexpr double kOutlierSigmas = 5.0;
+  std::vector<RateMeasurement> used;
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    if (!epoch.observations[i].used) continue;
+    rates[i].sigma_m_s = kPerCodeSigma * epoch.observations[i].sigma_m;
+    used.push_back(rates[i]);
+  }
+  const VelocitySolution velocity = solve_velocity(used, fix.p_A_E, {max_gdop, kOutlierSigmas});
+  if (!velocity.ok) return;
+  fix.v_A_E = velocity.v_E;
+  fix.velocity_covariance_E = velocity.covariance_E;
+}
+
 }  // namespace
 
 GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
@@ -65,7 +87,8 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   auto& observations = epoch.observations;
   CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
                " observations");
-  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation, inputs);
+  std::vector<RateMeasurement> rates;
+  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation, inputs, rates);
   corrections.assign(observations.size(), {});
 
   // Uncorrected ranges tell the position to some tens of metres; corrected for elevations and heights there, to metres;
@@ -94,6 +117,7 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   fix.clock_m = solution.clock_m;
   fix.satellites = solution.satellites_used();
   for (std::size_t i = 0; i < observations.size(); ++i) observations[i].used = solution.used[i];
+  fill_velocity(epoch, std::move(rates), receiver.max_gdop, fix);
   return fix;
 }
 

@@ -17,6 +17,7 @@ struct ReceiverParts {
   const ReceiverMode& mode;
   const PositionSolver& solver;
   const RangeWeighting& weighting;
+  double max_gdop = 100.0;  ///< of a velocity
   Eigen::Vector3d guess_E;  ///< rough position, used while there is no fix; some kilometres are good enough
 };
 

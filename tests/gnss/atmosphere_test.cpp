@@ -200,9 +200,11 @@ TEST(Ionosphere, RealMapsOverVicksburg) {
   const auto model = find_model(ionosphere_models(), "ionex")
                          ->make({0.0, kBuiltInKlobuchar, std::make_shared<const IonexMaps>(*std::move(maps))});
   SkyView view = view_at(90.0);
-  view.t = GpsTime::from_calendar(2010, 12, 4, 13, 0, 15.0);
-  // 10.7 TECU at 13 UT, to the digit given.
-  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(10.7), vertical_ionosphere_m(0.06));
+  // At the epochs of two maps 8.6 and 12.9 TECU, to the digits given; UTC is 15 s behind GPS time.
+  view.t = GpsTime::from_calendar(2010, 12, 4, 12, 0, 15.0);
+  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(8.6), vertical_ionosphere_m(0.05));
+  view.t = GpsTime::from_calendar(2010, 12, 4, 14, 0, 15.0);
+  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(12.9), vertical_ionosphere_m(0.05));
 }
 
 // Every model, at heights from the Dead Sea to 20 km, anywhere, any elevation from the horizon up: finite, not
