@@ -200,11 +200,16 @@ TEST(Ionosphere, RealMapsOverVicksburg) {
   const auto model = find_model(ionosphere_models(), "ionex")
                          ->make({0.0, kBuiltInKlobuchar, std::make_shared<const IonexMaps>(*std::move(maps))});
   SkyView view = view_at(90.0);
-  // At the epochs of two maps 8.6 and 12.9 TECU, to the digits given; UTC is 15 s behind GPS time.
+  // The four grid points around 32.35 N 90.88 W, read off the file in 0.1 TECU: 89, 87 at 30 N and 88, 86 at 32.5 N at
+  // 12 UTC, 131, 135 and 124, 129 at 14 UTC; 95 W and 90 W. UTC is 15 s behind GPS time.
+  const double north = 2.35 / 2.5, east = 4.12 / 5.0;
+  const auto tecu = [&](double sw, double se, double nw, double ne) {
+    return 0.1 * ((1 - north) * ((1 - east) * sw + east * se) + north * ((1 - east) * nw + east * ne));
+  };
   view.t = GpsTime::from_calendar(2010, 12, 4, 12, 0, 15.0);
-  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(8.6), vertical_ionosphere_m(0.05));
+  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(tecu(89, 87, 88, 86)), 1e-9);
   view.t = GpsTime::from_calendar(2010, 12, 4, 14, 0, 15.0);
-  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(12.9), vertical_ionosphere_m(0.05));
+  EXPECT_NEAR(model->delay_m(view), vertical_ionosphere_m(tecu(131, 135, 124, 129)), 1e-9);
 }
 
 // Every model, at heights from the Dead Sea to 20 km, anywhere, any elevation from the horizon up: finite, not
