@@ -42,8 +42,9 @@ class FacetIndex {
   /// an elevation between elevation - 2 t and 180 deg - elevation - 2 t; if it points down, from no lower than
   /// `elevation`. So a wall must stand up above `elevation` seen from p, a roof must lie below. Those which meet this
   /// are listed, whichever way they face and whatever hides them, but none farther away than `reach_per_area_1_m` (may
-  /// be infinite) times its area. Cost grows with what stands out.
-  void mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m,
+  /// be infinite) times its area, and none that leans back, as pitched roofs do, farther away than `leaning_reach_m`
+  /// (nothing else limits those: the wave may come down from them level). Cost grows with what stands out.
+  void mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m, double leaning_reach_m,
                std::vector<std::uint32_t>& out) const;
 
  private:
@@ -62,9 +63,10 @@ class FacetIndex {
   };
   /// A square of the ground and the facets whose centers lie in it, sorted into classes of lean.
   struct Block {
-    double x_m, y_m;       ///< center
-    double reach_m = 0.0;  ///< no facet of it comes farther from the center, horizontally
-    double area_m2 = 0.0;  ///< largest
+    double x_m, y_m;                ///< center
+    double reach_m = 0.0;           ///< no facet of it comes farther from the center, horizontally
+    double area_m2 = 0.0;           ///< largest
+    double upright_top_m = -1e300;  ///< of what does not lean back
     struct Class {
       std::size_t lean = 0;
       double bottom_m = 1e300, top_m = -1e300;

@@ -17,7 +17,8 @@ constexpr double kBlock_m = 50.0;
 // down; and leaning back, by the degree.
 constexpr double kUpright = 1e-3;  // |n_z|
 constexpr double kFacesDown_rad = 85.0 * kDegree;
-constexpr std::size_t kLeanClasses = 3 + 90;
+constexpr std::size_t kLeansBack = 3;  // the first of these
+constexpr std::size_t kLeanClasses = kLeansBack + 90;
 
 std::size_t lean_class(double n_z) {
   if (std::abs(n_z) <= kUpright) return 0;
@@ -94,6 +95,7 @@ void FacetIndex::build_blocks() {
                        .y_m = origin_.y() + (key / columns + 0.5) * block_m,
                        .reach_m = 0.0,
                        .area_m2 = 0.0,
+                       .upright_top_m = -1e300,
                        .classes = {}});
   }
   for (std::uint32_t i = 0; i < facets_.size(); ++i) {
@@ -103,6 +105,7 @@ void FacetIndex::build_blocks() {
         std::max(block.reach_m, std::hypot(f.center_W.x() - block.x_m, f.center_W.y() - block.y_m) + f.radius_m);
     block.area_m2 = std::max(block.area_m2, f.area_m2);
     const std::size_t lean = lean_class(f.normal_W.z());
+    if (lean < kLeansBack) block.upright_top_m = std::max(block.upright_top_m, f.top_m);
     auto c = std::find_if(block.classes.begin(), block.classes.end(), [&](const auto& x) { return x.lean == lean; });
     if (c == block.classes.end()) c = block.classes.insert(c, Block::Class{.lean = lean, .facets = {}});
     c->bottom_m = std::min(c->bottom_m, f.bottom_m);
@@ -143,18 +146,21 @@ void FacetIndex::near(const Eigen::Vector3d& p_W, double radius_m, std::vector<s
 }
 
 void FacetIndex::mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m,
-                         std::vector<std::uint32_t>& out) const {
+                         double leaning_reach_m, std::vector<std::uint32_t>& out) const {
   CANYON_CHECK(p_W.allFinite() && elevation_rad >= 0.0 && elevation_rad <= 0.5 * kPi, "p = ", p_W.transpose(),
                ", elevation_rad = ", elevation_rad);
   out.clear();
   std::vector<Arrivals> arrivals;
   for (std::size_t k = 0; k < kLeanClasses; ++k) arrivals.emplace_back(elevation_rad, k);
   for (const Block& block : blocks_) {
-    const double distance_m = std::max(std::hypot(block.x_m - p_W.x(), block.y_m - p_W.y()) - block.reach_m, 0.0);
+    const double distance_m =
+        std::max(Eigen::Vector2d(block.x_m - p_W.x(), block.y_m - p_W.y()).norm() - block.reach_m, 0.0);
     if (distance_m > reach_per_area_1_m * block.area_m2) continue;
+    const bool leaning = distance_m <= leaning_reach_m;
+    if (!leaning && !arrivals[0].meet(-1e9, block.upright_top_m - p_W.z(), distance_m)) continue;
     for (const Block::Class& c : block.classes) {
       const Arrivals& a = arrivals[c.lean];
-      if (distance_m > reach_per_area_1_m * c.area_m2) continue;
+      if ((c.lean >= kLeansBack && !leaning) || distance_m > reach_per_area_1_m * c.area_m2) continue;
       if (!a.meet(c.bottom_m - p_W.z(), c.top_m - p_W.z(), distance_m)) continue;
       for (const Brief& f : c.facets) {
         const double dx = f.x_m - p_W.x(), dy = f.y_m - p_W.y();

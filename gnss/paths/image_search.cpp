@@ -159,7 +159,7 @@ class Search {
     } else {
       double lowest = 1.0;
       for (const Eigen::Vector3d& s : directions_W_) lowest = std::min(lowest, s.z());
-      index.mirrors(antenna_W_, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_per_area_, ids);
+      index.mirrors(antenna_W_, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_per_area_, p_.leaning_reach_m, ids);
       if (order_ > 1) add_near(index, ids);
     }
     std::erase_if(ids, [&](std::uint32_t i) { return scene_.scene().materials()[facets_[i].material].rf_absorbing; });

@@ -66,7 +66,8 @@ struct PathParameters {
   /// Ways with several reflections: within this distance of the antenna all facets are combined; beyond it, only those
   /// that FacetIndex::mirrors gives, which leaves out walls too low to be met by any way over vertical mirrors alone.
   double combine_all_m = 30.0;
-  int launched_rays = 20000;  ///< launching: over the whole sphere
+  double leaning_reach_m = 1000.0;  ///< facets that lean back (pitched roofs) are not searched farther away
+  int launched_rays = 20000;        ///< launching: over the whole sphere
   /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
   bool exhaustive = false;
 };

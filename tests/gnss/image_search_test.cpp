@@ -230,6 +230,51 @@ TEST(ImageSearch, FindsWhatBruteForceFindsAmongUprightBoxes) {
   EXPECT_LT(outcome.doubtful, outcome.certain / 20);
 }
 
+// Reach: the search with its limits finds what the search over every facet of the city finds, but for ways over two
+// mirrors one of which leans and both of which are low.
+TEST(ImageSearch, ReachLeavesNothingOutInTheCity) {
+  scene::CityConfig config;
+  config.terrain_cell_m = 10.0;
+  const scene::Scene city(make_city(config));
+  const scene::SceneAt at(city);
+  std::vector<Eigen::Vector3d> directions;
+  const RandomStream random(12, "test.satellites");
+  for (std::uint64_t i = 0; i < 40; ++i)
+    directions.push_back(testing::direction(random.uniform(0, 360, 0, i), random.uniform(5, 85, 1, i)));
+  PathParameters limited, unlimited;
+  unlimited.exhaustive = true;
+  int found = 0, twice = 0, missed_twice = 0;
+  for (std::size_t k = 0; k < 40; ++k) {
+    const auto& edge = city.streets().edges[(k * 41) % city.streets().edges.size()];
+    const Eigen::Vector2d xy = 0.6 * city.streets().nodes_W[edge.a] + 0.4 * city.streets().nodes_W[edge.b];
+    const Eigen::Vector3d antenna(xy.x(), xy.y(), city.ground(xy.x(), xy.y())->height_m + 1.5);
+    std::vector<SignalPaths> a(directions.size()), b(directions.size());
+    GnssCounters counters;
+    make_specular2(limited)->trace(antenna, directions, at, a, counters);
+    make_specular2(unlimited)->trace(antenna, directions, at, b, counters);
+    for (std::size_t s = 0; s < directions.size(); ++s) {
+      EXPECT_LE(a[s].echoes.size(), b[s].echoes.size());
+      for (const SignalPath& path : b[s].echoes) {
+        const bool also = std::any_of(a[s].echoes.begin(), a[s].echoes.end(), [&](const SignalPath& p) {
+          return p.facets == path.facets && p.excess_m == path.excess_m;
+        });
+        ++found;
+        twice += path.reflections == 2 ? 1 : 0;
+        if (path.reflections == 1) {
+          EXPECT_TRUE(also) << "position " << k << " satellite " << s << " excess " << path.excess_m;
+        } else {
+          missed_twice += also ? 0 : 1;
+        }
+      }
+    }
+  }
+  RecordProperty("ways", found);
+  RecordProperty("missed_twice", missed_twice);
+  EXPECT_GT(found, 30);
+  EXPECT_GT(twice, 5);
+  EXPECT_LE(missed_twice, twice / 10);
+}
+
 // The comparison model: with more rays it finds more of the same ways, and its lengths come nearer to the exact ones.
 TEST(Launching, ComesNearerToTheExactWaysWithMoreRays) {
   // A street that turns: walls at 12 m and 9 m, a third across.
