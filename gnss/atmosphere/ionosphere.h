@@ -20,8 +20,8 @@ class IonosphereModel {
 };
 
 struct IonosphereParameters {
-  double vtec_tecu = 0.0;           ///< vertical total electron content, 1 TECU = 1e16 electrons/m^2
-  KlobucharCoefficients klobuchar;  ///< of the navigation file
+  double vtec_tecu = 0.0;                   ///< vertical total electron content, 1 TECU = 1e16 electrons/m^2
+  KlobucharCoefficients klobuchar;          ///< of the navigation file
   std::shared_ptr<const IonexMaps> maps{};  ///< model ionex
 };
 
