@@ -20,7 +20,9 @@ std::string sha256_hex(std::string_view bytes);
 /// a temporary name beside it; the destructor removes what was not committed.
 class StagedDirectory {
  public:
-  /// Fails (exit 2) if `path` exists and `force` is false, or if it cannot be written.
+  /// Fails (exit 2) if `path` exists and `force` is false, or if it cannot be written. With `force` an existing one is
+  /// replaced if it is empty or was put in place by commit(), which leaves the file `.canyon` in it; no other directory
+  /// is ever touched.
   static Result<StagedDirectory> create(const std::string& path, bool force);
   StagedDirectory(StagedDirectory&& other) noexcept;
   StagedDirectory& operator=(StagedDirectory&&) = delete;

@@ -29,6 +29,18 @@ fs::path sibling(const fs::path& path, const char* role) {
   return path.parent_path() / ("." + path.filename().string() + "." + role + "-" + std::to_string(getpid()));
 }
 
+/// Stands in every directory that commit() has put in place; only such a one is ever replaced.
+constexpr const char* kMarker = ".canyon";
+
+bool may_be_replaced(const fs::path& directory) {
+  std::error_code code;
+  return fs::is_empty(directory, code) || fs::is_regular_file(directory / kMarker, code);
+}
+
+Error not_ours(const std::string& path) {
+  return directory_error(path, "not a results directory", "one that canyon wrote, an empty one or a new name");
+}
+
 /// Removes empty directories from the innermost on; one that has got other content meanwhile stays.
 void remove_empty(const std::vector<std::string>& outermost_first) {
   std::error_code ignored;
@@ -76,6 +88,7 @@ Result<StagedDirectory> StagedDirectory::create(const std::string& path, bool fo
     if (code || here.compare(0, target.size(), target) == 0) {
       return directory_error(path, "holds the current directory", "a directory of results to replace");
     }
+    if (!may_be_replaced(final_path)) return not_ours(path);
   }
 
   std::vector<std::string> missing;  // innermost first
@@ -106,6 +119,9 @@ Status StagedDirectory::commit() {
   const bool replace = fs::exists(fs::symlink_status(final_, code));
   if (replace && !force_)
     return directory_error(final_, "output directory has appeared meanwhile", "a new one or --force");
+  if (replace && !may_be_replaced(final_)) return not_ours(final_);
+  CANYON_TRY_STATUS(
+      write_text_file(staging_ + "/" + kMarker, "written by canyon; --force may replace this directory\n"));
   const fs::path old = sibling(final_, "replaced");
   if (replace) {
     fs::rename(final_, old, code);

@@ -57,6 +57,15 @@ TEST_F(CommandLineTest, ExistingOutputIsRefusedWithoutForce) {
   EXPECT_TRUE(fs::exists(folder_ / "given_out" / "summary.json"));
 }
 
+TEST_F(CommandLineTest, ForceNeverReplacesAForeignDirectory) {
+  fs::create_directories(folder_ / "given_home");
+  write("given_home/thesis.txt", "years");
+  expect_mistake("run mission.toml --fidelity low --out given_home --force",
+                 "given_home: not a results directory, expected one that canyon wrote, an empty one or a new name\n");
+  EXPECT_EQ(canyon("gnss sky --at 32,-90,10 --out given_home --force"), 2);
+  EXPECT_EQ(read("given_home/thesis.txt"), "years");
+}
+
 TEST_F(CommandLineTest, Mistakes) {
   expect_mistake("run nothing.toml --out out", "nothing.toml");
   write("key.toml", std::string(kMission) + "[gnss]\nrate_hzz = 2.0\n");

@@ -82,6 +82,7 @@ TEST(StagedDirectory, AnExistingDirectoryNeedsForce) {
   const std::string path = folder.file("x");
   fs::create_directory(path);
   write(fs::path(path) / "old.txt", "old");
+  write(fs::path(path) / ".canyon", "");
   const auto refused = StagedDirectory::create(path, false);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().str(), path + ": output directory exists, expected a new one or --force");
@@ -103,9 +104,47 @@ TEST(StagedDirectory, ForceWithoutCommitKeepsTheOldOne) {
   const std::string path = folder.file("x");
   fs::create_directory(path);
   write(fs::path(path) / "old.txt", "old");
+  write(fs::path(path) / ".canyon", "");
   { ASSERT_TRUE(StagedDirectory::create(path, true).ok()); }
   EXPECT_EQ(read(path + "/old.txt"), "old");
   EXPECT_EQ(folder.entries(), 1);
+}
+
+// 2026-11-21: --out ~/Documents --force deleted whatever stood there.
+TEST(StagedDirectory, ForceReplacesOnlyWhatWasCommittedOrIsEmpty) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("x");
+  fs::create_directory(path);
+  write(fs::path(path) / "thesis.txt", "years");
+  const auto refused = StagedDirectory::create(path, true);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().str(),
+            path + ": not a results directory, expected one that canyon wrote, an empty one or a new name");
+  EXPECT_EQ(refused.error().exit_code, 2);
+  EXPECT_EQ(read(path + "/thesis.txt"), "years");
+  EXPECT_EQ(folder.entries(), 1);
+
+  const std::string own = folder.file("own");
+  fs::create_directory(own);
+  for (const char* text : {"first", "second"}) {  // into an empty one, and over the one just written
+    auto staged = StagedDirectory::create(own, true);
+    ASSERT_TRUE(staged.ok()) << staged.error().str();
+    write(fs::path(staged->staging_path()) / "summary.json", text);
+    ASSERT_TRUE(staged->commit().ok());
+    EXPECT_EQ(read(own + "/summary.json"), text);
+  }
+}
+
+TEST(StagedDirectory, AForeignOneThatAppearsMeanwhileIsNotReplacedByForce) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("x");
+  auto staged = StagedDirectory::create(path, true);
+  ASSERT_TRUE(staged.ok());
+  fs::create_directory(path);
+  write(fs::path(path) / "thesis.txt", "years");
+  EXPECT_EQ(staged->commit().error().str(),
+            path + ": not a results directory, expected one that canyon wrote, an empty one or a new name");
+  EXPECT_EQ(read(path + "/thesis.txt"), "years");
 }
 
 TEST(StagedDirectory, ForceReplacesNoFileAndNotTheCurrentDirectory) {
