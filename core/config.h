@@ -68,7 +68,8 @@ inline constexpr Range kAnyNumber{-1e300, 1e300};
 ///     }
 ///
 /// serves the reader, the manifest, and the documentation. Units are in the key name; human units are allowed here and
-/// converted once, where the model is built.
+/// converted once, where the model is built. A number, or list of numbers, whose default is NaN has no default: the
+/// table must hold it.
 class FieldVisitor {
  public:
   virtual ~FieldVisitor() = default;
@@ -76,6 +77,10 @@ class FieldVisitor {
   virtual void integer(const char* key, std::int64_t& value, Range range, const char* doc) = 0;
   virtual void flag(const char* key, bool& value, const char* doc) = 0;
   virtual void text(const char* key, std::string& value, const char* doc) = 0;
+  /// A file's path, or, where `suffix` is not empty and the value does not end with it, a name. A relative path starts
+  /// at the folder of the file that it is written in; on the command line, at the current directory.
+  virtual void file(const char* key, std::string& value, std::string_view suffix, const char* doc) = 0;
+  virtual void files(const char* key, std::vector<std::string>& value, const char* doc) = 0;
   /// A name out of a model table or other fixed list.
   virtual void choice(const char* key, std::string& value, const std::vector<std::string>& allowed,
                       const char* doc) = 0;
@@ -119,10 +124,25 @@ Status read_config(const ConfigNode* node, const std::string& prefix, T& config)
 /// The fields as a JSON object, for manifest.json; also what makes two configurations comparable.
 std::string fields_as_json(const VisitFunction& visit_fields);
 
-/// The fields as documentation: one Markdown table row each (key, default, range, meaning).
-std::string fields_as_markdown(const std::string& prefix, const VisitFunction& visit_fields);
+/// What a newcomer needs to know of one field, in words.
+struct FieldDoc {
+  std::string key;            ///< dotted; the keys of a list's items as "waypoint[].name"
+  std::string unit;           ///< out of the key's name; empty where there is none
+  std::string default_value;  ///< as TOML; "required" where there is none
+  std::string range;          ///< what may be given
+  std::string meaning;
+};
+std::vector<FieldDoc> documented_fields(const std::string& prefix, const VisitFunction& visit_fields);
 
-/// The word of `known` nearest to `word` by edit distance; empty when none is near.
+/// The fields that name files, with what they name: those that are empty or a built-in's name left out.
+struct NamedFile {
+  std::string key;
+  std::string path;
+};
+std::vector<NamedFile> named_files(const VisitFunction& visit_fields);
+
+/// The word of `known` nearest to `word`: by edit distance, else one that begins like it or holds it, or the other way
+/// round; empty when none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace canyon

@@ -16,6 +16,8 @@ class JsonWriter final : public FieldVisitor {
   void integer(const char* key, std::int64_t& value, Range, const char*) override { object_[key] = value; }
   void flag(const char* key, bool& value, const char*) override { object_[key] = value; }
   void text(const char* key, std::string& value, const char*) override { object_[key] = value; }
+  void file(const char* key, std::string& value, std::string_view, const char*) override { object_[key] = value; }
+  void files(const char* key, std::vector<std::string>& value, const char*) override { object_[key] = value; }
   void choice(const char* key, std::string& value, const std::vector<std::string>&, const char*) override {
     object_[key] = value;
   }

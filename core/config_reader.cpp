@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "core/config.h"
@@ -8,17 +9,33 @@
 namespace canyon {
 namespace {
 
+constexpr std::size_t kListedKeys = 8;  // more of them tell nobody anything
+
+/// A relative path starts where the file that names it lies; an option of the command line has no line.
+std::string resolved(const ConfigNode& node, const std::string& path) {
+  const std::filesystem::path given(path);
+  if (path.empty() || given.is_absolute() || node.line_ <= 0) return path;
+  return (std::filesystem::path(node.file_).parent_path() / given).lexically_normal().string();
+}
+
+/// Mistakes found so far. What is missing is told last: it may be missing because it is misspelt.
+struct Mistakes {
+  std::vector<Error> wrong, missing;
+};
+
 /// Sets fields from one table. Collects errors instead of stopping, so that the first of the file can be told.
 class Reader final : public FieldVisitor {
  public:
-  Reader(const ConfigNode& node, std::string prefix, std::vector<Error>& errors)
-      : table_(node.table()), prefix_(std::move(prefix)), errors_(errors) {
-    if (!table_) errors_.push_back(node.error(prefix_, "found " + node.describe(), "a table"));
+  Reader(const ConfigNode& node, std::string prefix, Mistakes& mistakes)
+      : node_(node), table_(node.table()), prefix_(std::move(prefix)), mistakes_(mistakes) {
+    if (!table_) mistakes_.wrong.push_back(node.error(prefix_, "found " + node.describe(), "a table"));
   }
 
   void number(const char* key, double& value, Range range, const char*) override {
     if (const ConfigNode* node = take(key)) {
       if (const auto v = checked_number(*node, path(key), range)) value = *v;
+    } else if (std::isnan(value)) {
+      missing(key, range_text(range, false));
     }
   }
 
@@ -64,11 +81,14 @@ class Reader final : public FieldVisitor {
 
   void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char*) override {
     const ConfigNode* node = take(key);
-    if (!node) return;
+    const std::string expected = size > 0 ? "a list of " + std::to_string(size) + " numbers" : "a list of numbers";
+    if (!node) {
+      if (std::any_of(value.begin(), value.end(), [](double v) { return std::isnan(v); })) missing(key, expected);
+      return;
+    }
     const ConfigNode::Array* array = node->array();
     if (!array || (size > 0 && array->size() != size)) {
-      fail(*node, path(key), "found " + node->describe(),
-           size > 0 ? "a list of " + std::to_string(size) + " numbers" : "a list of numbers");
+      fail(*node, path(key), "found " + node->describe(), expected);
       return;
     }
     std::vector<double> read;
@@ -78,19 +98,19 @@ class Reader final : public FieldVisitor {
     if (read.size() == array->size()) value = std::move(read);
   }
 
-  void texts(const char* key, std::vector<std::string>& value, const char*) override {
+  void file(const char* key, std::string& value, std::string_view suffix, const char*) override {
     const ConfigNode* node = take(key);
     if (!node) return;
-    const ConfigNode::Array* array = node->array();
-    if (!array) {
-      fail(*node, path(key), "found " + node->describe(), "a list of strings");
-      return;
-    }
-    std::vector<std::string> read;
-    for (std::size_t i = 0; i < array->size(); ++i) {
-      if (const auto v = typed<std::string>((*array)[i], item_path(key, i), "a string")) read.push_back(*v);
-    }
-    if (read.size() == array->size()) value = std::move(read);
+    if (const auto v = typed<std::string>(*node, path(key), "a string"))
+      value = v->ends_with(suffix) ? resolved(*node, *v) : *v;
+  }
+
+  void texts(const char* key, std::vector<std::string>& value, const char*) override {
+    read_texts(key, value, [](const ConfigNode&, const std::string& text) { return text; });
+  }
+
+  void files(const char* key, std::vector<std::string>& value, const char*) override {
+    read_texts(key, value, resolved);
   }
 
   /// Every key of the table that no field asked for is a mistake.
@@ -102,8 +122,10 @@ class Reader final : public FieldVisitor {
       std::string expected = "one of the documented keys";
       if (!nearest.empty()) {
         expected += "; nearest is \"" + nearest + "\"";
-      } else if (!known_.empty()) {
+      } else if (known_.size() <= kListedKeys) {
         expected += ": " + quoted_list(known_);
+      } else {
+        expected = "one of the " + std::to_string(known_.size()) + " documented keys";
       }
       fail(node, path(key), "unknown key", expected);
     }
@@ -111,7 +133,16 @@ class Reader final : public FieldVisitor {
 
  protected:
   void group_impl(const char* key, const char*, const std::function<void(FieldVisitor&)>& body) override {
-    if (const ConfigNode* node = take(key)) read_table(*node, path(key), body);
+    if (const ConfigNode* node = take(key)) {
+      read_table(*node, path(key), body);
+    } else if (table_) {
+      // As if an empty table stood there: its fields may be required.
+      ConfigNode empty;
+      empty.value_ = ConfigNode::Table{};
+      empty.file_ = node_.file_;
+      empty.line_ = node_.line_;
+      read_table(empty, path(key), body);
+    }
   }
 
   void list_impl(const char* key, const char*, std::size_t, const std::function<void(std::size_t)>& resize,
@@ -132,7 +163,7 @@ class Reader final : public FieldVisitor {
 
  private:
   void read_table(const ConfigNode& node, const std::string& where, const std::function<void(FieldVisitor&)>& body) {
-    Reader reader(node, where, errors_);
+    Reader reader(node, where, mistakes_);
     body(reader);
     reader.refuse_unknown_keys();
   }
@@ -142,6 +173,23 @@ class Reader final : public FieldVisitor {
     if (!table_) return nullptr;
     const auto it = table_->find(key);
     return it == table_->end() ? nullptr : &it->second;
+  }
+
+  template <class Convert>
+  void read_texts(const char* key, std::vector<std::string>& value, Convert convert) {
+    const ConfigNode* node = take(key);
+    if (!node) return;
+    const ConfigNode::Array* array = node->array();
+    if (!array) {
+      fail(*node, path(key), "found " + node->describe(), "a list of strings");
+      return;
+    }
+    std::vector<std::string> read;
+    for (std::size_t i = 0; i < array->size(); ++i) {
+      const ConfigNode& item = (*array)[i];
+      if (const auto v = typed<std::string>(item, item_path(key, i), "a string")) read.push_back(convert(item, *v));
+    }
+    if (read.size() == array->size()) value = std::move(read);
   }
 
   std::optional<double> checked_number(const ConfigNode& node, const std::string& where, Range range) {
@@ -173,17 +221,23 @@ class Reader final : public FieldVisitor {
   }
 
   void fail(const ConfigNode& node, const std::string& where, std::string what, std::string expected) {
-    errors_.push_back(node.error(where, std::move(what), std::move(expected)));
+    mistakes_.wrong.push_back(node.error(where, std::move(what), std::move(expected)));
+  }
+
+  void missing(const char* key, std::string expected) {
+    if (table_) mistakes_.missing.push_back(node_.error(path(key), "is missing", std::move(expected)));
   }
 
   std::string path(const std::string& key) const { return prefix_.empty() ? key : prefix_ + "." + key; }
+  /// Items are counted from 1, as people do.
   std::string item_path(const std::string& key, std::size_t i) const {
-    return path(key) + "[" + std::to_string(i) + "]";
+    return path(key) + "[" + std::to_string(i + 1) + "]";
   }
 
+  const ConfigNode& node_;
   const ConfigNode::Table* table_;
   std::string prefix_;
-  std::vector<Error>& errors_;
+  Mistakes& mistakes_;
   std::vector<std::string> known_;
 };
 
@@ -203,12 +257,13 @@ void FieldVisitor::vector2(const char* key, Eigen::Vector2d& value, Range range,
 
 Status read_fields(const ConfigNode* node, const std::string& prefix, const VisitFunction& visit_fields) {
   if (!node) return Ok{};
-  std::vector<Error> errors;
-  Reader reader(*node, prefix, errors);
-  if (errors.empty()) {
+  Mistakes mistakes;
+  Reader reader(*node, prefix, mistakes);
+  if (mistakes.wrong.empty()) {
     visit_fields(reader);
     reader.refuse_unknown_keys();
   }
+  const std::vector<Error>& errors = mistakes.wrong.empty() ? mistakes.missing : mistakes.wrong;
   if (errors.empty()) return Ok{};
   // Of several mistakes in the file of the first one, the topmost is told.
   const auto topmost = std::min_element(errors.begin(), errors.end(), [&](const Error& a, const Error& b) {

@@ -62,6 +62,18 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
       best = candidate;
     }
   }
+  if (!best.empty()) return best;
+  // Else a word that is part of the other: the longest common part, then the shortest word.
+  constexpr std::size_t kLeastPart = 3;
+  std::size_t best_part = kLeastPart - 1;
+  for (const std::string& candidate : known) {
+    const bool holds = candidate.find(word) != std::string::npos || word.find(candidate) != std::string_view::npos;
+    const std::size_t part = std::min(word.size(), candidate.size());
+    if (!holds || part < best_part || (part == best_part && (best.empty() || candidate.size() >= best.size())))
+      continue;
+    best_part = part;
+    best = candidate;
+  }
   return best;
 }
 

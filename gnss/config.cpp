@@ -100,14 +100,14 @@ void visit(FieldVisitor& f, GnssConfig& c) {
            "1-sigma the solver assumes for a corrected pseudorange at the zenith");
   f.number("max_gdop", c.max_gdop, {1.0, 1e6}, "fixes with a larger GDOP are refused");
   f.text("systems", c.systems, "satellite systems received, of G R E C J");
-  f.text("nav_file", c.nav_file,
+  f.file("nav_file", c.nav_file, "",
          "RINEX 2, 3 or 4 navigation file, plain or gzip; without any, the built-in constellation");
-  f.texts("nav_files", c.nav_files, "further navigation files, read as one with nav_file");
-  f.text("almanac_file", c.almanac_file, "YUMA or SEM almanac, alone or beside navigation files");
-  f.text("ionex_file", c.ionex_file, "ionosphere ionex: maps of the electron content, IONEX");
-  f.texts("sp3_files", c.sp3_files, "ephemeris_error broadcast_minus_sp3: precise orbits and clocks, SP3");
-  f.text(
-      "antex_file", c.antex_file,
+  f.files("nav_files", c.nav_files, "further navigation files, read as one with nav_file");
+  f.file("almanac_file", c.almanac_file, "", "YUMA or SEM almanac, alone or beside navigation files");
+  f.file("ionex_file", c.ionex_file, "", "ionosphere ionex: maps of the electron content, IONEX");
+  f.files("sp3_files", c.sp3_files, "ephemeris_error broadcast_minus_sp3: precise orbits and clocks, SP3");
+  f.file(
+      "antex_file", c.antex_file, "",
       "ephemeris_error broadcast_minus_sp3: ANTEX file with the satellites' antennas; without it their offsets count "
       "as error");
 }

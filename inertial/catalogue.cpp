@@ -1,6 +1,7 @@
 #include "inertial/catalogue.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/embedded.h"
 #include "core/files.h"
@@ -138,6 +139,12 @@ Status check_sources(const CatalogueEntry& e, const ConfigNode& node) {
 
 Result<CatalogueEntry> entry_from(const ConfigNode& node) {
   CatalogueEntry entry;
+  // Noise that is not there must be said to be zero: a forgotten line would make a perfect sensor.
+  for (Figure* figure : {&entry.gyro.arw_deg_per_sqrt_hr, &entry.gyro.turn_on_bias_deg_per_hr,
+                         &entry.gyro.in_run_bias_deg_per_hr, &entry.gyro.scale_ppm, &entry.gyro.misalignment_mrad,
+                         &entry.accel.vrw_m_s_per_sqrt_hr, &entry.accel.turn_on_bias_mg, &entry.accel.in_run_bias_mg,
+                         &entry.accel.scale_ppm, &entry.accel.misalignment_mrad})
+    figure->value = std::numeric_limits<double>::quiet_NaN();
   CANYON_TRY_STATUS(read_config(&node, "", entry));
   CANYON_TRY_STATUS(check_sources(entry, node));
   return entry;

@@ -30,7 +30,7 @@ class StrapdownImu final : public ImuModel {
 }  // namespace
 
 void visit(FieldVisitor& f, ImuConfig& c) {
-  f.text("sensor", c.sensor, "entry of the sensor catalogue, or a TOML file of your own sensor");
+  f.file("sensor", c.sensor, ".toml", "entry of the sensor catalogue, or a TOML file of your own sensor");
   f.choice("errors", c.errors, error_chain_names(), "error chain");
   f.number("rate_hz", c.rate_hz, {10, 5000}, "samples per second");
   f.vector3("lever_arm_m", c.lever_arm_m, {-100, 100}, "IMU in the body frame; axes parallel to the body's");

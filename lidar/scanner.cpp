@@ -44,7 +44,7 @@ Status validate(const LidarConfig& c, const BeamTable& table) {
 }  // namespace
 
 void visit(FieldVisitor& f, LidarConfig& c) {
-  f.text("beams", c.beams, "beam table: the name of a built-in one (vlp16, grid16) or the path of a .csv file");
+  f.file("beams", c.beams, ".csv", "beam table: the name of a built-in one (vlp16, grid16) or the path of a .csv file");
   std::vector<std::string> models;
   for (const Row& row : kModels) models.emplace_back(row.name);
   f.choice("model", c.model, models, "how a beam meets the scene");

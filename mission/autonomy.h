@@ -17,8 +17,8 @@ namespace canyon::mission {
 /// A place of the mission, known beforehand. A mission waypoint is one with a building to look at.
 struct Waypoint {
   std::string name;
-  Eigen::Vector2d p_m{0, 0};  ///< x, y in W
-  std::string observe;        ///< name of the building of interest; empty = pass through
+  Eigen::Vector2d p_m{kNaN, kNaN};  ///< x, y in W; must be given
+  std::string observe;              ///< name of the building of interest; empty = pass through
   bool is_mission() const { return !observe.empty(); }
 };
 void visit(FieldVisitor& f, Waypoint& w);

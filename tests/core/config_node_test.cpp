@@ -178,5 +178,14 @@ TEST(NearestWord, ByEditDistance) {
   EXPECT_EQ(nearest_word("", known), "");
 }
 
+TEST(NearestWord, ElseOneThatHoldsTheOther) {
+  const std::vector<std::string> known = {"ionosphere_gradient", "ionosphere", "mask_deg", "rate_hz", "id"};
+  EXPECT_EQ(nearest_word("iono", known), "ionosphere");  // the shorter of two that begin so
+  EXPECT_EQ(nearest_word("ionosphere_model", known), "ionosphere");
+  EXPECT_EQ(nearest_word("elevation_mask_deg", known), "mask_deg");
+  EXPECT_EQ(nearest_word("rate", known), "rate_hz");
+  EXPECT_EQ(nearest_word("identity_of_it", known), "");  // two letters in common are no hint
+}
+
 }  // namespace
 }  // namespace canyon

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@
 namespace canyon::config_example {
 
 struct Waypoint {
-  Eigen::Vector2d at_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d at_m{std::nan(""), std::nan("")};  // required
   double stop_s = 5.0;
 };
 
@@ -39,6 +40,8 @@ struct Mission {
   bool loop = false;
   Eigen::Vector3d lever_m{0.1, 0.2, 0.3};
   std::vector<double> levels{0.5};
+  std::string map = "city";
+  std::vector<std::string> logs;
   Gnss gnss;
   std::vector<Waypoint> waypoint;
 };
@@ -48,6 +51,8 @@ inline void visit(FieldVisitor& f, Mission& c) {
   f.flag("loop", c.loop, "drive it again");
   f.vector3("lever_m", c.lever_m, {-10, 10}, "antenna in B");
   f.numbers("levels", c.levels, 0, {0, 1}, "any | several");
+  f.file("map", c.map, ".osm", "where to drive");
+  f.files("logs", c.logs, "what to replay");
   f.group("gnss", c.gnss, "receiver");
   f.list("waypoint", c.waypoint, "places to go");
 }

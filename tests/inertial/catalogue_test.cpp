@@ -1,5 +1,7 @@
 #include "inertial/catalogue.h"
 
+#include <regex>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,12 +62,33 @@ TEST(Catalogue, NamesTheNearestSensor) {
   EXPECT_EQ(entry.error().exit_code, 2);
 }
 
+constexpr const char* kQuiet =
+    "name = \"mine\"\n"
+    "[gyro]\n"
+    "arw_deg_per_sqrt_hr = 0\nturn_on_bias_deg_per_hr = 0\nin_run_bias_deg_per_hr = 0\nscale_ppm = 0\n"
+    "misalignment_mrad = 0\n"
+    "[accel]\n"
+    "vrw_m_s_per_sqrt_hr = 0\nturn_on_bias_mg = 0\nin_run_bias_mg = 0\nscale_ppm = 0\nmisalignment_mrad = 0\n";
+
+// 2026-11-21: a file without its angular random walk ran as a gyroscope without noise, and nobody was told.
+TEST(Catalogue, NoiseIsNeverZeroByOmission) {
+  const std::string all = kQuiet;
+  ASSERT_TRUE(parse_catalogue_entry(all, "mine.toml").ok()) << parse_catalogue_entry(all, "mine.toml").error().str();
+  for (std::size_t begin = all.find('\n') + 1, end; begin < all.size(); begin = end + 1) {
+    end = all.find('\n', begin);
+    const std::string key = all.substr(begin, all.find(' ', begin) - begin);
+    if (key[0] == '[') continue;
+    const auto entry = parse_catalogue_entry(all.substr(0, begin) + all.substr(end + 1), "mine.toml");
+    ASSERT_FALSE(entry.ok()) << key;
+    EXPECT_THAT(entry.error().str(), ::testing::HasSubstr("." + key + ": is missing, expected a number from 0 to "));
+  }
+  EXPECT_EQ(parse_catalogue_entry("name = \"mine\"\n", "mine.toml").error().str(),
+            "mine.toml: gyro.arw_deg_per_sqrt_hr: is missing, expected a number from 0 to 1000");
+}
+
 TEST(Catalogue, RefusesAFigureWithoutSource) {
   const auto entry = parse_catalogue_entry(
-      "name = \"mine\"\n"
-      "[gyro]\n"
-      "arw_deg_per_sqrt_hr = 0.3\n",
-      "mine.toml");
+      std::regex_replace(kQuiet, std::regex("arw_deg_per_sqrt_hr = 0"), "arw_deg_per_sqrt_hr = 0.3"), "mine.toml");
   ASSERT_FALSE(entry.ok());
   EXPECT_THAT(entry.error().str(), ::testing::HasSubstr("gyro.arw_source"));
   EXPECT_THAT(entry.error().str(), ::testing::StartsWith("mine.toml:"));
