@@ -1,0 +1,48 @@
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/json.h"
+#include "apps/verb.h"
+#include "core/config.h"
+#include "mission/key_reference.h"
+#include "mission/mission_config.h"
+
+namespace canyon::apps {
+
+namespace {
+
+Json keys_json() {
+  mission::MissionConfig config;
+  Json out{{"keys", Json::array()}};
+  for (const FieldDoc& row : documented_fields("", [&config](FieldVisitor& f) { visit(f, config); }))
+    out["keys"].push_back({{"key", row.key},
+                           {"unit", row.unit},
+                           {"default", row.default_value},
+                           {"range", row.range},
+                           {"meaning", row.meaning}});
+  return out;
+}
+
+VerbAction declare(CLI::App& app) {
+  const auto options = std::make_shared<CommonOptions>();
+  declare_common(app, *options);
+  return [options]() -> Result<int> {
+    if (options->json)
+      std::printf("%s\n", keys_json().dump().c_str());
+    else
+      std::fputs(mission::key_reference().c_str(), stdout);
+    return 0;
+  };
+}
+
+}  // namespace
+
+Verb keys_verb() {
+  return {"keys", "all keys of a mission file, with units, defaults and ranges", "canyon keys > mission.md", declare};
+}
+
+}  // namespace canyon::apps
