@@ -20,7 +20,7 @@ constexpr Row kAutonomies[] = {
 
 void visit(FieldVisitor& f, Waypoint& w) {
   f.text("name", w.name, "shown in reports");
-  f.vector2("p_m", w.p_m, {-1e5, 1e5}, "x and y in W");
+  f.vector2("p_m", w.p_m, {-1e5, 1e5}, "x and y in W, metres east and north of the scene's centre");
   f.text("observe", w.observe, "building to stop and look at; makes it a mission waypoint");
 }
 
@@ -65,7 +65,7 @@ Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::Str
     const auto leg = streets.route(from, waypoint.p_m);
     if (leg.empty())
       return Error{.key = "autonomy.waypoint[" + std::to_string(i + 1) + "]",
-                   .what = "no street leads to " + waypoint.name,
+                   .what = "no street leads to waypoint \"" + waypoint.name + "\"",
                    .expected = "a waypoint that the streets connect with the one before"};
     polyline.insert(polyline.end(), leg.begin(), leg.end());
     from = waypoint.p_m;

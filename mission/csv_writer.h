@@ -32,10 +32,10 @@ class CsvWriter {
     text_ += std::to_string(value);
     return *this;
   }
-  /// A word without commas, quotes or line breaks; such characters become blanks.
+  /// Words that need no quoting: commas become semicolons, quotes apostrophes, line breaks blanks.
   CsvWriter& word(std::string_view value) {
     separate();
-    for (const char c : value) text_ += c == ',' || c == '"' || c == '\n' ? ' ' : c;
+    for (const char c : value) text_ += c == ',' ? ';' : c == '"' ? '\'' : c == '\n' ? ' ' : c;
     return *this;
   }
   void end_row() {

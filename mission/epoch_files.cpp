@@ -21,8 +21,9 @@ const char* word(FixStatus status) {
   return "";
 }
 
-const char* word(lidar::RegistrationStatus status) {
-  switch (status) {
+const char* word(std::optional<lidar::RegistrationStatus> status) {
+  if (!status) return "not_registered";
+  switch (*status) {
     case lidar::RegistrationStatus::kConverged:
       return "converged";
     case lidar::RegistrationStatus::kNotConverged:
@@ -131,7 +132,8 @@ std::string keyframes_csv(const RunRecord& record) {
     const Eigen::Vector3d& p = row.X_WL_true.p;
     const Eigen::Vector3d prior = row.X_WL_prior.p - p, registered = row.X_WL_registered.p - p;
     csv.number(row.t - record.start, 3).integer(static_cast<std::int64_t>(row.points));
-    csv.numbers(4, p.x(), p.y(), p.z(), prior.norm(), prior.z(), registered.norm(), registered.z());
+    const double known = record.registers() ? 1.0 : kNaN;
+    csv.numbers(4, p.x(), p.y(), p.z(), prior.norm(), prior.z(), known * registered.norm(), known * registered.z());
     csv.word(word(row.status)).integer(row.iterations).number(row.rms_m, 4).end_row();
   }
   return csv.text();

@@ -53,9 +53,8 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
   Matrix6d covariance = prior_covariance;
   const auto cloud = registration_->prepare(points);
 
-  if (!has_last_) {
-    keyframe.status = lidar::RegistrationStatus::kConverged;  // the first one defines the map
-  } else if (config_.method != "none") {
+  // The first one defines the map.
+  if (has_last_ && config_.method != "none") {
     // In the frame of the last keyframe, where numbers stay small.
     const Pose X_LW = last_.X_WL_registered.inverse();
     std::vector<lidar::Registration::Placed> targets;

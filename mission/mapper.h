@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,9 +16,9 @@ namespace canyon::mission {
 /// A keyframe of the map: its cloud and where it was placed.
 struct Keyframe {
   GpsTime t;
-  Pose X_WL_prior;       ///< from the filter alone
-  Pose X_WL_registered;  ///< prior and registration together
-  lidar::RegistrationStatus status = lidar::RegistrationStatus::kNotConverged;
+  Pose X_WL_prior;                                  ///< from the filter alone
+  Pose X_WL_registered;                             ///< prior and registration together
+  std::optional<lidar::RegistrationStatus> status;  ///< none: not registered, as the first one and with method "none"
   int iterations = 0;
   double rms_m = kNaN;
   std::size_t points = 0;

@@ -46,6 +46,26 @@ std::vector<std::string> table_keys(const ConfigNode* node) {
   return keys;
 }
 
+constexpr const char* kPlainName = "a name of letters, digits, \"-\" and \"_\"";
+
+/// Names of runs and missions become names of files.
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  });
+}
+
+/// What one results directory has once, so that its runs must share it.
+constexpr const char* kShared[] = {
+    "scene", "time", "run.name", "run.seed", "vehicle.start_m", "vehicle.start_heading_deg", "autonomy.waypoint"};
+
+Status check_name(const ConfigNode& tree) {
+  const ConfigNode* node = tree.find("run.name");
+  const auto* name = node == nullptr ? nullptr : std::get_if<std::string>(&node->value_);
+  if (name == nullptr || is_plain_name(*name)) return Ok{};  // another type is the reader's to refuse
+  return node->error("run.name", "found \"" + *name + "\"", kPlainName);
+}
+
 }  // namespace
 
 Result<MissionFile> MissionFile::load(const std::string& path) {
@@ -74,7 +94,25 @@ Result<MissionFile> MissionFile::from_tree(ConfigNode tree, const std::string& f
     CANYON_TRY(mission.base_, load_builtin(mission_key(*name)));
     mission.user_.erase("base");
   }
+  CANYON_TRY_STATUS(check_name(mission.user_));
+  CANYON_TRY_STATUS(mission.check_user_fidelities());
   return mission;
+}
+
+Status MissionFile::check_user_fidelities() const {
+  const ConfigNode* all = user_.find("fidelity");
+  if (all == nullptr) return Ok{};
+  if (all->table() == nullptr) return all->error("fidelity", "found " + all->describe(), "a table");
+  for (const auto& [name, node] : *all->table()) {
+    const std::string key = "fidelity." + name;
+    if (!is_plain_name(name)) return node.error("fidelity", "found the name \"" + name + "\"", kPlainName);
+    if (node.table() == nullptr) return node.error(key, "found " + node.describe(), "a table");
+    for (const char* shared : kShared)
+      if (const ConfigNode* own = node.find(shared))
+        return own->error(key + "." + shared, "is shared by all runs", "it outside of [fidelity], for all of them");
+    CANYON_TRY_STATUS(resolve(name));
+  }
+  return Ok{};
 }
 
 void MissionFile::set_option(const std::string& key, ConfigNode value, const std::string& option) {
@@ -87,6 +125,22 @@ std::vector<std::string> MissionFile::fidelities() const {
     for (const auto& key : table_keys(tree->find("fidelity")))
       if (std::find(names.begin(), names.end(), key) == names.end()) names.push_back(key);
   return names;
+}
+
+Status MissionFile::check_fidelities(const std::vector<std::string>& names, const std::string& option) const {
+  const auto known = fidelities();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(known.begin(), known.end(), names[i]) == known.end()) {
+      const std::string nearest = nearest_word(names[i], known);
+      return Error{.file = option,
+                   .what = "\"" + names[i] + "\" is unknown",
+                   .expected = "one of " + joined(known) + (nearest.empty() ? "" : "; nearest is \"" + nearest + "\"")};
+    }
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(i))
+      return Error{.file = option, .what = "\"" + names[i] + "\" given twice", .expected = "each fidelity once"};
+  }
+  return Ok{};
 }
 
 Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const {
@@ -147,7 +201,16 @@ Error MissionFile::locate(Error error) const {
     }
     return false;
   };
-  if (find_in(options_) || find_in(user_) || find_in(base_)) return error;
+  if (find_in(options_) || find_in(user_)) return error;
+  if (find_in(base_)) {
+    // What is right in the city that the base mission was made for is not in another one.
+    if (const ConfigNode* scene = user_.find("scene")) {
+      error.what += " (inherited from " + error.file + "; this [scene] is another city)";
+      error.file = scene->file_;
+      error.line = scene->line_;
+    }
+    return error;
+  }
   error.file = file_;
   return error;
 }

@@ -20,7 +20,8 @@ inline constexpr const char* kDefaultMission = "vicksburg";
 ///
 /// Layers, later ones win: the base mission (`base = "vicksburg"`, a built-in), the built-in fidelity, the user's
 /// sections, the user's [fidelity.NAME], options of the command line. So a user's `[gnss] rate_hz = 5` holds for every
-/// fidelity.
+/// fidelity. What the runs of a comparison share (scene, time, seed, name, start, waypoints) cannot differ between
+/// fidelities. All fidelities of the user's file are read and checked at once, whichever will be used.
 class MissionFile {
  public:
   /// Reads a mission file; an empty path gives the built-in mission.
@@ -32,6 +33,8 @@ class MissionFile {
 
   /// Built-in fidelities and the user's own.
   std::vector<std::string> fidelities() const;
+  /// That each name is one of fidelities() and none is given twice; `option` is named in the error.
+  Status check_fidelities(const std::vector<std::string>& names, const std::string& option) const;
   Result<MissionConfig> resolve(const std::string& fidelity) const;
   /// Sensors of two fidelities mixed: GNSS (and all else) of `gnss`, IMU and initial alignment of `imu`.
   Result<MissionConfig> resolve_mixed(const std::string& gnss, const std::string& imu) const;
@@ -41,10 +44,17 @@ class MissionFile {
 
  private:
   static Result<MissionFile> from_tree(ConfigNode tree, const std::string& file_name);
+  Status check_user_fidelities() const;
   Result<ConfigNode> resolved_tree(const std::string& fidelity) const;
 
   std::string file_;
   ConfigNode base_, builtin_fidelities_, user_, options_;
+};
+
+/// A file that a mission names, as it was read.
+struct InputFile {
+  std::string path;
+  std::string sha256;
 };
 
 /// A mission that has been checked and can be driven: its scene, route and limits.
@@ -53,7 +63,8 @@ struct PreparedMission {
   GpsTime start;
   PriorKnowledge prior;
   double nominal_s = 0.0;
-  double time_limit_s = 0.0;
+  double time_limit_s = 0.0;  ///< of [time] limit_factor and limit_s the shorter: when a run ends at the latest
+  std::vector<InputFile> files;
 };
 
 /// Scenes by configuration, so that the runs of a comparison share one.
@@ -65,8 +76,9 @@ class SceneCache {
   std::map<std::string, std::shared_ptr<const scene::Scene>> scenes_;
 };
 
-/// Builds the scene and checks what needs it: start and waypoints inside the scene and outside buildings, observed
-/// buildings known, rates that divide the IMU's. Errors name the key; MissionFile::locate adds file and line.
+/// Reads every file that is named, builds the scene and checks what needs it: start and waypoints inside the scene and
+/// outside buildings, observed buildings known, rates that divide the IMU's. Errors name the key; MissionFile::locate
+/// adds file and line.
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes);
 
 /// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry

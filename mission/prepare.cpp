@@ -3,6 +3,8 @@
 #include <cstdio>
 
 #include "core/check.h"
+#include "core/config_text.h"
+#include "core/files.h"
 #include "mission/mission_file.h"
 
 namespace canyon::mission {
@@ -15,17 +17,18 @@ std::string place(const Eigen::Vector2d& p) {
   return text;
 }
 
-/// A point where a vehicle can stand: on the terrain, outside buildings.
-Status check_standing_place(const scene::Scene& scene, const Eigen::Vector2d& p, const std::string& key) {
+/// A point where a vehicle can stand: on the terrain, outside buildings. `who` is to stand there.
+Status check_standing_place(const scene::Scene& scene, const Eigen::Vector2d& p, const std::string& key,
+                            const std::string& who) {
   const auto& extent = scene.extent();
   if (!scene.ground(p.x(), p.y()))
     return Error{.key = key,
-                 .what = place(p) + " lies outside the scene",
-                 .expected = join_values("x from ", extent.min.x(), " to ", extent.max.x(), ", y from ", extent.min.y(),
-                                         " to ", extent.max.y())};
+                 .what = who + place(p) + " lies outside the scene",
+                 .expected = "x from " + number_text(extent.min.x()) + " to " + number_text(extent.max.x()) +
+                             ", y from " + number_text(extent.min.y()) + " to " + number_text(extent.max.y())};
   if (const scene::Building* building = scene.building_at(p))
     return Error{
-        .key = key, .what = place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
+        .key = key, .what = who + place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
   return Ok{};
 }
 
@@ -33,9 +36,23 @@ Status check_rate(double imu_hz, double rate_hz, const std::string& key) {
   const double ratio = imu_hz / rate_hz;
   if (std::abs(ratio - std::round(ratio)) > 1e-9)
     return Error{.key = key,
-                 .what = join_values(rate_hz, " Hz does not divide the IMU's ", imu_hz, " Hz"),
+                 .what = number_text(rate_hz) + " Hz does not divide the IMU's " + number_text(imu_hz) + " Hz",
                  .expected = "imu.rate_hz divided by a whole number"};
   return Ok{};
+}
+
+/// What the configuration names, read to the end: a file that is not there is told before anything is built.
+Result<std::vector<InputFile>> read_inputs(const MissionConfig& config) {
+  std::vector<InputFile> files;
+  MissionConfig copy = config;
+  for (const NamedFile& named : named_files([&copy](FieldVisitor& f) { visit(f, copy); })) {
+    const auto bytes = read_text_file(named.path);
+    if (!bytes)
+      return Error{
+          .key = named.key, .what = "\"" + named.path + "\" " + bytes.error().what, .expected = bytes.error().expected};
+    files.push_back({named.path, sha256_hex(*bytes)});
+  }
+  return files;
 }
 
 }  // namespace
@@ -62,19 +79,21 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
   if (config.autonomy.waypoints.empty())
     return Error{.key = "autonomy.waypoint", .what = "no waypoints", .expected = "at least one [[autonomy.waypoint]]"};
 
+  CANYON_TRY(mission.files, read_inputs(config));
+
   mission.scene = scenes.get(config.scene);
   const scene::Scene& scene = *mission.scene;
-  CANYON_TRY_STATUS(check_standing_place(scene, config.vehicle.start_m, "vehicle.start_m"));
+  CANYON_TRY_STATUS(check_standing_place(scene, config.vehicle.start_m, "vehicle.start_m", ""));
   for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
     const Waypoint& waypoint = config.autonomy.waypoints[i];
     const std::string key = "autonomy.waypoint[" + std::to_string(i + 1) + "]";
-    CANYON_TRY_STATUS(check_standing_place(scene, waypoint.p_m, key));
+    CANYON_TRY_STATUS(check_standing_place(scene, waypoint.p_m, key, "waypoint \"" + waypoint.name + "\" at "));
     if (!waypoint.is_mission() || config.scene.empty) continue;
     std::vector<std::string> names;
     for (const auto& building : scene.buildings()) names.push_back(building.name);
     if (std::find(names.begin(), names.end(), waypoint.observe) == names.end())
       return Error{.key = key,
-                   .what = "no building named \"" + waypoint.observe + "\"",
+                   .what = "waypoint \"" + waypoint.name + "\": no building named \"" + waypoint.observe + "\"",
                    .expected = "a building of the scene; nearest is \"" + nearest_word(waypoint.observe, names) + "\""};
   }
 
@@ -92,6 +111,7 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
                                       config.vehicle.max_acceleration_m_s2, config.autonomy.braking_m_s2},
                                      stops);
   mission.time_limit_s = config.time.limit_factor * mission.nominal_s;
+  if (config.time.limit_s > 0.0) mission.time_limit_s = std::min(mission.time_limit_s, config.time.limit_s);
   return mission;
 }
 

@@ -65,12 +65,6 @@ Json two_by_two(const std::vector<RunSummary>& summaries) {
   return out;
 }
 
-double peak_memory_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
 void remove_timing(Json& node) {
   if (node.is_object()) node.erase("timing");
   if (node.is_structured())
@@ -95,7 +89,9 @@ Result<std::string> results_hash(const std::string& directory, Json summary) {
 
 Json manifest_json(const Results& results) {
   Json runs = Json::object();
+  Json files = Json::object();
   for (const RunRecord& record : results.records) {
+    for (const InputFile& file : record.files) files[file.path] = file.sha256;
     MissionConfig config = record.config;
     runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
   }
@@ -105,10 +101,17 @@ Json manifest_json(const Results& results) {
           {"start", results.mission->start.iso()},
           {"instruction_set", instruction_set()},
           {"scene_hash", results.mission->scene->hash()},
+          {"files", files},
           {"configuration", runs}};
 }
 
 }  // namespace
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
 
 Json run_json(const RunSummary& s) {
   Json out;
@@ -147,15 +150,18 @@ Json run_json(const RunSummary& s) {
   out["registration_error_rms_m"] = number(s.registration_rms_m);
   out["registration_error_prior_rms_m"] = number(s.registration_prior_rms_m);
   out["keyframes"] = s.keyframes;
-  out["keyframes_converged"] = s.keyframes_converged;
+  out["keyframes_registered"] = s.keyframes_registered ? Json(*s.keyframes_registered) : Json(nullptr);
+  out["keyframes_converged"] = s.keyframes_converged ? Json(*s.keyframes_converged) : Json(nullptr);
   out["map_error_rms_m"] = number(s.registered_map.map_error_rms_m);
   out["map_error_prior_rms_m"] = number(s.prior_map.map_error_rms_m);
   out["map_error_up_rms_m"] = number(s.registered_map.map_error_up_rms_m);
   out["map_error_up_prior_rms_m"] = number(s.prior_map.map_error_up_rms_m);
   out["map_error_p95_m"] = number(s.registered_map.map_error_p95_m);
   out["map_error_p95_prior_m"] = number(s.prior_map.map_error_p95_m);
-  out["map_points"] = s.registered_map.points;
-  out["map_points_capped"] = s.registered_map.capped_points;
+  // Without registration there is no registered map, not an empty one.
+  const bool registered = s.keyframes_registered.has_value();
+  out["map_points"] = registered ? s.registered_map.points : s.prior_map.points;
+  out["map_points_capped"] = registered ? Json(s.registered_map.capped_points) : Json(nullptr);
   out["map_points_capped_prior"] = s.prior_map.capped_points;
   out["mission_waypoints"] = Json::array();
   for (const WaypointScore& waypoint : s.waypoints) {
@@ -209,8 +215,10 @@ Json summary_json(const Results& results) {
     cpu_s += summary.cpu_s;
   }
   out["two_by_two"] = two_by_two(results.summaries);
-  out["timing"] = {
-      {"wall_s", results.wall_s}, {"cpu_s", cpu_s}, {"peak_memory_mb", peak_memory_mb()}, {"threads", results.threads}};
+  out["timing"] = {{"wall_s", results.wall_s},
+                   {"cpu_s", cpu_s},
+                   {"peak_memory_mb", results.peak_memory_mb},
+                   {"threads", results.threads}};
   return out;
 }
 
@@ -259,7 +267,7 @@ Result<std::string> write_results(const std::string& directory, const Results& r
     CANYON_TRY_STATUS(write_epochs(directory, record));
     const std::string stem = directory + "/clouds/" + record.name;
     CANYON_TRY_STATUS(lidar::write_pcd(stem + "_prior.pcd", record.prior_map));
-    CANYON_TRY_STATUS(lidar::write_pcd(stem + "_registered.pcd", record.registered_map));
+    if (record.registers()) CANYON_TRY_STATUS(lidar::write_pcd(stem + "_registered.pcd", record.registered_map));
   }
   Json summary = summary_json(results);
   CANYON_TRY(const std::string hash, results_hash(directory, summary));

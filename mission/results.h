@@ -19,6 +19,7 @@ struct Results {
   std::vector<RunRecord> records;
   std::vector<RunSummary> summaries;  ///< same index
   double wall_s = 0.0;
+  double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
   int threads = 0;
 };
 
@@ -26,6 +27,9 @@ struct Results {
 nlohmann::ordered_json run_json(const RunSummary& summary);
 /// The whole of summary.json but its hash.
 nlohmann::ordered_json summary_json(const Results& results);
+
+/// The largest resident memory of the process so far.
+double peak_memory_mb();
 
 /// Writes summary.json, manifest.json, scene.json, epochs/ and clouds/ into an existing directory; returns the hash.
 Result<std::string> write_results(const std::string& directory, const Results& results);

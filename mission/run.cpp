@@ -1,5 +1,6 @@
 #include "mission/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -72,6 +73,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       prior_map_(config.run.map_leaf_m),
       registered_map_(config.run.map_leaf_m) {
   record_.config = config;
+  record_.files = mission.files;
   record_.frame = mission.scene->frame();
   record_.start = mission.start;
 
@@ -222,7 +224,9 @@ RunRecord MissionRun::finish() {
   record_.counters["gnss_facets_tested"] = counters.facets_tested;
   record_.counters["gnss_reflected_paths"] = counters.reflected_paths;
   record_.counters["lidar_rays"] = scanner_->rays();
-  record_.counters["keyframes_registered"] = static_cast<std::int64_t>(record_.keyframes.size());
+  record_.counters["keyframes_registered"] =
+      std::count_if(record_.keyframes.begin(), record_.keyframes.end(),
+                    [](const KeyframeRow& row) { return row.status.has_value(); });
   return std::move(record_);
 }
 

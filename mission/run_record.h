@@ -15,6 +15,7 @@
 #include "lidar/map_quality.h"
 #include "mission/autonomy.h"
 #include "mission/mission_config.h"
+#include "mission/mission_file.h"
 #include "mission/part_clock.h"
 #include "mission/scorer.h"
 
@@ -46,7 +47,7 @@ struct KeyframeRow {
   GpsTime t;
   std::size_t points = 0;
   Pose X_WL_true, X_WL_prior, X_WL_registered;
-  lidar::RegistrationStatus status = lidar::RegistrationStatus::kNotConverged;
+  std::optional<lidar::RegistrationStatus> status;  ///< none: not registered
   int iterations = 0;
   double rms_m = kNaN;
 };
@@ -56,6 +57,7 @@ struct RunRecord {
   std::string name;       ///< file name of the run: "low", "high_gnss_low_imu"
   std::string gnss, imu;  ///< whose fidelity each comes from
   MissionConfig config;
+  std::vector<InputFile> files;  ///< that it read
 
   LocalFrame frame;
   GpsTime start;
@@ -75,6 +77,9 @@ struct RunRecord {
   std::map<std::string, std::int64_t> counters;
   PartClock clock;
   double wall_s = 0.0;
+
+  /// False with [registration] method "none": nothing is then known of registered keyframes and of their map.
+  bool registers() const { return config.registration.method != "none"; }
 
   /// False for a GNSS model that makes fixes without satellites: counts of satellites and DOP jumps are then undefined.
   bool forms_pseudoranges() const {

@@ -54,7 +54,7 @@ class Scorer {
   std::vector<Waypoint> places_;
   const scene::SceneAt& scene_;
   GpsTime start_;
-  double time_limit_s_, hard_limit_s_;
+  double time_limit_s_;
   std::vector<WaypointScore> waypoints_;
   std::vector<std::vector<Eigen::Vector3d>> facades_;
   std::vector<double> halt_s_;

@@ -106,15 +106,20 @@ void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary
 
 void summarize_registration(const RunRecord& record, RunSummary& out) {
   std::vector<double> prior, registered;
+  int tried = 0, converged = 0;
   for (const KeyframeRow& row : record.keyframes) {
     prior.push_back((row.X_WL_prior.p - row.X_WL_true.p).norm());
     registered.push_back((row.X_WL_registered.p - row.X_WL_true.p).norm());
-    out.keyframes_converged += row.status == lidar::RegistrationStatus::kConverged ? 1 : 0;
+    tried += row.status ? 1 : 0;
+    converged += row.status == lidar::RegistrationStatus::kConverged ? 1 : 0;
   }
   out.keyframes = static_cast<int>(record.keyframes.size());
   out.registration_prior_rms_m = error_statistics(std::move(prior)).rms;
-  out.registration_rms_m = error_statistics(std::move(registered)).rms;
   out.prior_map = record.prior_quality;
+  if (!record.registers()) return;
+  out.keyframes_registered = tried;
+  out.keyframes_converged = converged;
+  out.registration_rms_m = error_statistics(std::move(registered)).rms;
   out.registered_map = record.registered_quality;
 }
 

@@ -34,12 +34,14 @@ struct RunSummary {
   int fixes_due = 0, fixes_lost = 0;
 
   double registration_rms_m = kNaN, registration_prior_rms_m = kNaN;
-  int keyframes = 0, keyframes_converged = 0;
+  int keyframes = 0;
+  std::optional<int> keyframes_registered, keyframes_converged;  ///< none where nothing is registered
   lidar::MapQuality prior_map, registered_map;
 
   std::map<std::string, std::int64_t> counters;
   double wall_s = 0, cpu_s = 0;
   std::vector<std::pair<std::string, double>> cpu_parts_s;
+  double cpu_per_simulated_s() const { return duration_s > 0 ? cpu_s / duration_s : kNaN; }
   double real_time_factor() const { return wall_s > 0 ? duration_s / wall_s : kNaN; }
 };
 

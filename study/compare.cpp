@@ -25,6 +25,11 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
   Comparison comparison;
   comparison.plan = plan;
   mission::SceneCache scenes;
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      if (plan[k].name == plan[i].name)
+        return Error{.what = "two runs would be named \"" + plan[i].name + "\"",
+                     .expected = "another name for the fidelity"};
   for (const RunPlan& run : plan) {
     auto config = run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu);
     if (!config) return file.locate(config.error());
@@ -41,7 +46,7 @@ Result<mission::Results> compare(const Comparison& comparison, bool show_progres
   const auto wall_start = std::chrono::steady_clock::now();
   const std::size_t count = comparison.plan.size();
   double total_s = 0.0;
-  for (const auto& mission : comparison.missions) total_s += mission.nominal_s;
+  for (const auto& mission : comparison.missions) total_s += std::min(mission.nominal_s, mission.time_limit_s);
   Progress progress("driving " + std::to_string(count) + (count == 1 ? " run" : " runs"), total_s, show_progress);
 
   std::vector<std::optional<mission::RunRecord>> records(count);
@@ -67,6 +72,7 @@ Result<mission::Results> compare(const Comparison& comparison, bool show_progres
   }
   results.mission = &comparison.missions.front();
   results.threads = threads();
+  results.peak_memory_mb = mission::peak_memory_mb();
   results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   return results;
 }

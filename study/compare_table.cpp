@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 
 #include "study/compare.h"
 
@@ -40,10 +41,17 @@ class Table {
     lines_.push_back(std::move(line));
   }
   void numbers(const std::string& label, int decimals, const std::function<double(const RunSummary&)>& value) {
+    capped_numbers(label, decimals, std::numeric_limits<double>::infinity(), value);
+  }
+  /// Values that reach `cap` are not known beyond it: no ratio of them means anything.
+  void capped_numbers(const std::string& label, int decimals, double cap,
+                      const std::function<double(const RunSummary&)>& value) {
     Line line{label, {}, ""};
-    for (const RunSummary& run : runs_) line.cells.push_back(fixed(value(run), decimals));
+    for (const RunSummary& run : runs_)
+      line.cells.push_back(value(run) >= cap ? ">= " + fixed(cap, 0) : fixed(value(run), decimals));
     if (runs_.size() > 1) {
-      const double ratio = value(runs_[1]) / value(runs_[0]);
+      const bool known = value(runs_[0]) < cap && value(runs_[1]) < cap;
+      const double ratio = known ? value(runs_[1]) / value(runs_[0]) : kNaN;
       line.ratio = fixed(ratio, ratio < 10 ? 2 : 1);
     }
     lines_.push_back(std::move(line));
@@ -161,17 +169,18 @@ std::string comparison_table(const mission::Results& results) {
   table.section("registration and map, m");
   table.numbers("keyframe pose RMS, prior alone", 3, [](const RunSummary& r) { return r.registration_prior_rms_m; });
   table.numbers("keyframe pose RMS, registered", 3, [](const RunSummary& r) { return r.registration_rms_m; });
-  table.words("keyframes registered", [](const RunSummary& r) {
-    return std::to_string(r.keyframes_converged) + " of " + std::to_string(r.keyframes);
+  table.words("keyframes converged, of those registered", [](const RunSummary& r) {
+    if (!r.keyframes_registered) return std::string("-");
+    return std::to_string(*r.keyframes_converged) + " of " + std::to_string(*r.keyframes_registered);
   });
   table.numbers("map to true surface RMS, prior alone", 3,
                 [](const RunSummary& r) { return r.prior_map.map_error_rms_m; });
   table.numbers("map to true surface RMS, registered", 3,
                 [](const RunSummary& r) { return r.registered_map.map_error_rms_m; });
-  table.numbers("map to true surface 95 %, prior alone", 3,
-                [](const RunSummary& r) { return r.prior_map.map_error_p95_m; });
-  table.numbers("map to true surface 95 %, registered", 3,
-                [](const RunSummary& r) { return r.registered_map.map_error_p95_m; });
+  table.capped_numbers("map to true surface 95 %, prior alone", 3, lidar::kMapErrorCap_m,
+                       [](const RunSummary& r) { return r.prior_map.map_error_p95_m; });
+  table.capped_numbers("map to true surface 95 %, registered", 3, lidar::kMapErrorCap_m,
+                       [](const RunSummary& r) { return r.registered_map.map_error_p95_m; });
   const auto capped = [](const lidar::MapQuality& map) {
     return map.points > 0 ? 100.0 * static_cast<double>(map.capped_points) / static_cast<double>(map.points) : kNaN;
   };
@@ -184,6 +193,7 @@ std::string comparison_table(const mission::Results& results) {
   table.section("cost");
   table.numbers("real-time factor", 1, [](const RunSummary& r) { return r.real_time_factor(); });
   table.numbers("CPU time, s", 1, [](const RunSummary& r) { return r.cpu_s; });
+  table.numbers("CPU time per simulated second, s", 3, [](const RunSummary& r) { return r.cpu_per_simulated_s(); });
   if (!runs.empty())
     for (std::size_t part = 0; part < runs.front().cpu_parts_s.size(); ++part)
       table.numbers("  " + runs.front().cpu_parts_s[part].first + ", s", 2,

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/files.h"
+
 namespace canyon::mission {
 namespace {
 
@@ -88,25 +90,34 @@ TEST(MissionFileMessages, NoWaypoints) {
 
 TEST(MissionFileMessages, WaypointOutsideTheScene) {
   EXPECT_THAT(message(std::string(kEmptyScene) + "[[autonomy.waypoint]]\nname = \"far\"\np_m = [5000.0, 0.0]\n"),
-              HasSubstr("my.toml:4: autonomy.waypoint[1]: (5000.0, 0.0) lies outside the scene, expected x from -500"));
+              HasSubstr("my.toml:4: autonomy.waypoint[1]: waypoint \"far\" at (5000.0, 0.0) lies outside the scene, "
+                        "expected x from -500"));
 }
 
 TEST(MissionFileMessages, WaypointInsideABuilding) {
   EXPECT_THAT(message("base = \"vicksburg\"\n[[autonomy.waypoint]]\nname = \"in\"\np_m = [278.0, 43.3]\n"),
-              HasSubstr("my.toml:2: autonomy.waypoint[1]: (278.0, 43.3) lies inside building 247, expected a place "
+              HasSubstr("my.toml:2: autonomy.waypoint[1]: waypoint \"in\" at (278.0, 43.3) lies inside building 247, "
+                        "expected a place "
                         "outside buildings"));
 }
 
 TEST(MissionFileMessages, UnknownBuilding) {
   EXPECT_THAT(message("base = \"vicksburg\"\n[[autonomy.waypoint]]\nname = \"x\"\np_m = [213.9, 100.0]\nobserve = "
                       "\"buildin 247\"\n"),
-              HasSubstr("my.toml:2: autonomy.waypoint[1]: no building named \"buildin 247\""));
+              HasSubstr("my.toml:2: autonomy.waypoint[1]: waypoint \"x\": no building named \"buildin 247\""));
 }
 
 TEST(MissionFileMessages, RatesMustDivide) {
   EXPECT_EQ(
       message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.0\n"),
       "my.toml:5: gnss.rate_hz: 3 Hz does not divide the IMU's 100 Hz, expected imu.rate_hz divided by a whole number");
+}
+
+// 2026-11-21: "3.2999999999999998 Hz".
+TEST(MissionFileMessages, NumbersAreShownAsTheyWereWritten) {
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.3\n"),
+            "my.toml:5: gnss.rate_hz: 3.3 Hz does not divide the IMU's 100 Hz, expected imu.rate_hz divided by a whole "
+            "number");
 }
 
 TEST(MissionFileMessages, BadStart) {
@@ -116,6 +127,106 @@ TEST(MissionFileMessages, BadStart) {
 
 TEST(MissionFileMessages, MissingNavigationFile) {
   EXPECT_THAT(message(std::string(kEmptyScene) + "[gnss]\nnav_file = \"no/such.10n\"\n"), HasSubstr("no/such.10n"));
+}
+
+// 2026-11-21: such a waypoint was driven to at (0, 0).
+TEST(MissionFileMessages, AWaypointWithoutAPlace) {
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[[autonomy.waypoint]]\nname = \"lost\"\n"),
+            "my.toml:4: autonomy.waypoint[1].p_m: is missing, expected a list of 2 numbers");
+}
+
+TEST(MissionFileMessages, WhatAllRunsShareCannotDifferBetweenFidelities) {
+  const std::string base = "base = \"vicksburg\"\n";
+  EXPECT_EQ(
+      message(base + "[fidelity.flat.scene]\nempty = true\n"),
+      "my.toml:2: fidelity.flat.scene: is shared by all runs, expected it outside of [fidelity], for all of them");
+  EXPECT_EQ(message(base + "[fidelity.late.time]\nlimit_s = 3\n"),
+            "my.toml:2: fidelity.late.time: is shared by all runs, expected it outside of [fidelity], for all of them");
+  EXPECT_EQ(message(base + "[fidelity.low.run]\n\nseed = 3\n"),
+            "my.toml:4: fidelity.low.run.seed: is shared by all runs, expected it outside of [fidelity], for all of "
+            "them");
+  EXPECT_EQ(message(base + "[fidelity.low]\nvehicle.start_m = [0, 0]\n"),
+            "my.toml:3: fidelity.low.vehicle.start_m: is shared by all runs, expected it outside of [fidelity], for "
+            "all of them");
+  EXPECT_EQ(message(base + "[fidelity.low.vehicle]\nmax_speed_m_s = 3\n[fidelity.low.run]\nmap_leaf_m = 0.5\n"),
+            "no mistake");
+}
+
+TEST(MissionFileMessages, NamesThatWouldMakeBrokenPaths) {
+  EXPECT_EQ(message("base = \"vicksburg\"\n[run]\nname = \"a/b c\"\n"),
+            "my.toml:3: run.name: found \"a/b c\", expected a name of letters, digits, \"-\" and \"_\"");
+  EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.\"../x\".gnss]\nrate_hz = 1\n"),
+            "my.toml:2: fidelity: found the name \"../x\", expected a name of letters, digits, \"-\" and \"_\"");
+  EXPECT_EQ(message("base = \"vicksburg\"\n[run]\nname = \"\"\n"),
+            "my.toml:3: run.name: found \"\", expected a name of letters, digits, \"-\" and \"_\"");
+}
+
+TEST(MissionFileMessages, AFidelityThatIsNoTable) {
+  EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity]\nmine = 3\n"),
+            "my.toml:3: fidelity.mine: found integer 3, expected a table");
+  EXPECT_EQ(message("base = \"vicksburg\"\nfidelity = 3\n"), "my.toml:2: fidelity: found integer 3, expected a table");
+}
+
+TEST(MissionFileMessages, AMistakeInAFidelityThatIsNotUsed) {
+  EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.later.gnss]\nmask_degg = 5.0\n"),
+            "my.toml:3: gnss.mask_degg: unknown key, expected one of the documented keys; nearest is \"mask_deg\"");
+}
+
+TEST(MissionFileMessages, FidelitiesThatAreAskedFor) {
+  const MissionFile file = parse("base = \"vicksburg\"\n[fidelity.mine.gnss]\nrate_hz = 1.0\n");
+  const auto told = [&](const std::vector<std::string>& names) {
+    const auto status = file.check_fidelities(names, "--fidelities");
+    return status ? "no mistake" : status.error().str();
+  };
+  EXPECT_EQ(told({"high", "low", "mine"}), "no mistake");
+  EXPECT_EQ(told({"low", "high", "low"}), "--fidelities: \"low\" given twice, expected each fidelity once");
+  EXPECT_EQ(told({"hihg"}),
+            "--fidelities: \"hihg\" is unknown, expected one of high, low, paper, mine; nearest is \"high\"");
+  EXPECT_EQ(told({""}), "--fidelities: \"\" is unknown, expected one of high, low, paper, mine");
+}
+
+TEST(MissionFileMessages, AnInheritedWaypointInAnotherCity) {
+  EXPECT_THAT(message("base = \"vicksburg\"\n\n[scene]\nseed = 5\n"),
+              ::testing::MatchesRegex("my.toml:3: autonomy.waypoint.[0-9]+.: waypoint \"[0-9]+\".* .inherited from "
+                                      "missions/vicksburg.toml; this .scene. is another city., expected .*"));
+}
+
+TEST(MissionFileMessages, FilesThatCannotBeReadAreToldWhereTheyAreNamed) {
+  const std::string base = "base = \"vicksburg\"\n[scene]\nempty = true\n";
+  EXPECT_EQ(message(base + "[imu]\nsensor = \"mine/imu.toml\"\n"),
+            "my.toml:5: imu.sensor: \"mine/imu.toml\" cannot be read (No such file or directory), expected a readable "
+            "file");
+  EXPECT_EQ(message(base + "[lidar]\nbeams = \"my.csv\"\n"),
+            "my.toml:5: lidar.beams: \"my.csv\" cannot be read (No such file or directory), expected a readable file");
+  EXPECT_EQ(message(base + "[gnss]\nnav_file = \"my.10n\"\n"),
+            "my.toml:5: gnss.nav_file: \"my.10n\" cannot be read (No such file or directory), expected a readable "
+            "file");
+}
+
+TEST(Prepare, TheShorterOfTheTwoLimitsHolds) {
+  SceneCache scenes;
+  const auto prepared = [&](const std::string& time) {
+    return *prepare(*parse("base = \"vicksburg\"\n[scene]\nempty = true\n[time]\n" + time).resolve("low"), scenes);
+  };
+  const double nominal_s = prepared("").nominal_s;
+  EXPECT_EQ(prepared("").time_limit_s, 1.5 * nominal_s);
+  EXPECT_EQ(prepared("limit_s = 20").time_limit_s, 20.0);
+  EXPECT_EQ(prepared("limit_s = 90000").time_limit_s, 1.5 * nominal_s);
+  EXPECT_EQ(prepared("limit_s = 90000\nlimit_factor = 2").time_limit_s, 2.0 * nominal_s);
+}
+
+TEST(Prepare, FilesAreReadToTheEndAndTheirHashesKept) {
+  const std::string path = ::testing::TempDir() + "/canyon_prepare_beams.csv";
+  ASSERT_TRUE(write_text_file(path, "abc").ok());
+  SceneCache scenes;
+  const auto mission =
+      prepare(*parse("base = \"vicksburg\"\n[scene]\nempty = true\n[lidar]\nbeams = \"" + path + "\"\n").resolve("low"),
+              scenes);
+  ASSERT_TRUE(mission.ok()) << mission.error().str();
+  ASSERT_EQ(mission->files.size(), 1U);
+  EXPECT_EQ(mission->files[0].path, path);
+  // FIPS 180-2, appendix B.1.
+  EXPECT_EQ(mission->files[0].sha256, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
 TEST(MissionFileMessages, MissingMissionFile) {

@@ -101,6 +101,36 @@ TEST_F(CompareTest, TableHasOneColumnPerRunAndARatio) {
   EXPECT_THAT(table, ::testing::Not(::testing::HasSubstr("nan")));
 }
 
+TEST_F(CompareTest, WithoutRegistrationNothingIsSaidOfIt) {
+  const std::string table = comparison_table(*results_);
+  EXPECT_THAT(table, ::testing::ContainsRegex("keyframes converged, of those registered +- +-\n"));
+  EXPECT_THAT(table, ::testing::ContainsRegex("keyframe pose RMS, registered +- +- +-\n"));
+  EXPECT_THAT(table, ::testing::ContainsRegex("CPU time per simulated second, s +[0-9.]+ +[0-9.]+ +[0-9.]+\n"));
+}
+
+// A distance beyond the cap is not known; neither is a ratio of two such.
+TEST_F(CompareTest, AMapErrorAtTheCapHasNoRatio) {
+  mission::Results results;
+  results.mission = results_->mission;
+  results.summaries = results_->summaries;
+  results.summaries[0].prior_map.map_error_p95_m = lidar::kMapErrorCap_m;
+  EXPECT_THAT(comparison_table(results),
+              ::testing::ContainsRegex("map to true surface 95 %, prior alone +>= 5 +[0-9.]+ +-\n"));
+  results.summaries[0].prior_map.map_error_p95_m = 2.0;
+  results.summaries[1].prior_map.map_error_p95_m = 4.0;
+  EXPECT_THAT(comparison_table(results),
+              ::testing::ContainsRegex("map to true surface 95 %, prior alone +2.000 +4.000 +2.00\n"));
+}
+
+TEST(PrepareComparison, ANameCannotStandForTwoRuns) {
+  auto file = mission::MissionFile::parse(std::string(kMission) + "[fidelity.high_gnss_low_imu.gnss]\nrate_hz = 1.0\n",
+                                          "my.toml");
+  const auto comparison = prepare_comparison(*file, plan_runs({"low", "high", "high_gnss_low_imu"}, true));
+  ASSERT_FALSE(comparison.ok());
+  EXPECT_EQ(comparison.error().str(),
+            "two runs would be named \"high_gnss_low_imu\", expected another name for the fidelity");
+}
+
 TEST(Cancel, StopsARunAtOnce) {
   auto file = mission::MissionFile::parse(kMission, "my.toml");
   const auto comparison = prepare_comparison(*file, plan_runs({"low"}, false));
