@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/usage_errors.h"
 #include "apps/verb.h"
 #include "core/progress.h"
 #include "core/version.h"
@@ -53,7 +54,9 @@ const CLI::App* chosen(const CLI::App& app) {
 }  // namespace
 
 void declare_common(CLI::App& app, CommonOptions& options) {
-  app.add_option("--threads", options.threads, "threads for everything; 0 = all cores")->check(CLI::Range(0, 1024));
+  app.add_option("--threads", options.threads, "threads for everything; 0 = all cores")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1024));
   app.add_flag("--json", options.json, "print one JSON object on stdout and nothing else");
 }
 
@@ -62,9 +65,10 @@ int run_command_line(int argc, char** argv) {
   app.name("canyon");
   app.set_version_flag("--version", std::string("canyon ") + kVersion);
   app.require_subcommand(1);
+  app.footer("\nExample, the same mission at three fidelities side by side:\n  canyon compare --out first");
   std::map<const CLI::App*, VerbAction> actions;
-  for (const Verb& verb : {compare_verb(), run_verb(), report_verb(), gnss_sky_verb(), gnss_simulate_verb(),
-                           gnss_solve_verb(), gnss_orbit_error_verb(), gnss_map_verb()}) {
+  for (const Verb& verb : {compare_verb(), run_verb(), report_verb(), keys_verb(), gnss_sky_verb(),
+                           gnss_simulate_verb(), gnss_solve_verb(), gnss_orbit_error_verb(), gnss_map_verb()}) {
     CLI::App* sub = declare_verb(app, verb);
     sub->footer(std::string("\nExample:\n  ") + verb.example);
     actions[sub] = verb.declare(*sub);
@@ -73,7 +77,7 @@ int run_command_line(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return complain({.key = "command line", .what = error.what(), .expected = "see canyon --help"});
+    return complain(usage_error(app, error, {argv + 1, argv + argc}));
   }
 
   install_cancel_handler();

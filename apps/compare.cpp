@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 
 #include "apps/drive.h"
+#include "apps/usage_errors.h"
 
 namespace canyon::apps {
 
@@ -11,21 +13,25 @@ namespace {
 VerbAction declare(CLI::App& app) {
   struct Options {
     MissionOptions mission;
-    std::vector<std::string> fidelities{"low", "high", "paper"};
+    std::string fidelities = "low,high,paper";
     bool no_two_by_two = false;
   };
   const auto options = std::make_shared<Options>();
   declare_mission_options(app, options->mission);
-  app.add_option("--fidelities", options->fidelities, "runs to compare; the ratio is second over first")
-      ->delimiter(',');
+  app.add_option("--fidelities", options->fidelities,
+                 "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
+                 "over first")
+      ->capture_default_str();
   app.add_flag("--no-2x2", options->no_two_by_two, "leave out the mixed runs low/high GNSS x low/high IMU");
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
+    const std::vector<std::string> fidelities = split_list(options->fidelities);
+    CANYON_TRY_STATUS(file.check_fidelities(fidelities, "--fidelities"));
     const auto has = [&](const char* name) {
-      return std::find(options->fidelities.begin(), options->fidelities.end(), name) != options->fidelities.end();
+      return std::find(fidelities.begin(), fidelities.end(), name) != fidelities.end();
     };
     const bool square = !options->no_two_by_two && has("low") && has("high");
-    return drive_and_report(options->mission, file, study::plan_runs(options->fidelities, square));
+    return drive_and_report(options->mission, file, study::plan_runs(fidelities, square));
   };
 }
 

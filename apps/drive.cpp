@@ -61,8 +61,9 @@ Result<int> drive_and_report(const MissionOptions& options, const mission::Missi
               comparison.configs.front().run.name.c_str(), static_cast<long long>(comparison.configs.front().run.seed),
               mission.start.iso(0).c_str(), mission.prior.route.length_m(), mission.nominal_s, mission.time_limit_s);
   std::printf("%s\n", study::comparison_table(results).c_str());
-  std::printf("Driven in %.1f s. Results: %s\nReport:  %s\n", results.wall_s, staged.final_path().c_str(),
-              std::filesystem::absolute(staged.final_path() + "/report.html").lexically_normal().c_str());
+  const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
+  std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),
+              (place / "report.html").c_str());
   return 0;
 }
 

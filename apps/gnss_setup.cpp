@@ -20,9 +20,12 @@ void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* de
   app.add_option("--nav", options.nav, "RINEX navigation files; without them the built-in constellation");
   app.add_option("--systems", options.systems, "satellite systems received, letters of GRECJ; default: the fidelity's");
   app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
-  app.add_option("--seed", options.seed, "seed of every random stream")->capture_default_str();
+  app.add_option("--seed", options.seed, "seed of every random stream")
+      ->capture_default_str()
+      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
   app.add_option("--out", options.out, "directory for the files; without it only the summary is printed");
-  app.add_flag("--force", options.force, "replace the directory if it exists");
+  app.add_flag("--force", options.force,
+               "replace the directory if it exists; only one that canyon wrote, or an empty one");
 }
 
 Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optional<Geodetic>& place) {
@@ -30,6 +33,7 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
   CANYON_TRY(auto file, mission::MissionFile::load(open_sky || built_in ? "" : options.scene));
   if (!options.systems.empty()) file.set_option("gnss.systems", ConfigNode::of(options.systems), "--systems");
   if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
+  CANYON_TRY_STATUS(file.check_fidelities({options.fidelity}, "--fidelity"));
   CANYON_TRY(const mission::MissionConfig config, file.resolve(options.fidelity));
 
   GnssSetup out;

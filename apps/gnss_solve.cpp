@@ -191,7 +191,8 @@ VerbAction declare(CLI::App& app) {
                  "true antenna over time: CSV of gps_week,sow and lat_deg,lon_deg,h_m or x_m,y_m,z_m")
       ->excludes(ecef);
   app.add_option("--out", options->out, "positions per epoch: a file NAME.csv, or a directory");
-  app.add_flag("--force", options->force, "replace the directory if it exists");
+  app.add_flag("--force", options->force,
+               "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> { return run(*options); };
 }
 

@@ -19,6 +19,7 @@ VerbAction declare(CLI::App& app) {
       ->capture_default_str();
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
+    CANYON_TRY_STATUS(file.check_fidelities({options->fidelity}, "--fidelity"));
     return drive_and_report(options->mission, file, study::plan_runs({options->fidelity}, false));
   };
 }

@@ -27,11 +27,15 @@ struct Verb {
 Verb compare_verb();
 Verb run_verb();
 Verb report_verb();
+Verb keys_verb();
 Verb gnss_sky_verb();
 Verb gnss_map_verb();
 Verb gnss_simulate_verb();
 Verb gnss_solve_verb();
 Verb gnss_orbit_error_verb();
+
+/// The largest --seed: what a TOML integer and a JSON number both carry without loss.
+inline constexpr double kLargestSeed = 9e15;
 
 /// Options that every verb has.
 struct CommonOptions {

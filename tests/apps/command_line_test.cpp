@@ -1,6 +1,7 @@
 // The binary as a user calls it: exit status, messages, files.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/files.h"
 #include "tests/apps/command_line_fixture.h"
 #include "tests/support/test_data.h"
 
@@ -35,11 +37,41 @@ TEST_F(CommandLineTest, CompareWritesACompleteDirectoryAndOneJsonObject) {
   EXPECT_EQ(json["hash"].get<std::string>().size(), 64U);
   EXPECT_TRUE(json["runs"][0].contains("cpu_s"));
   EXPECT_TRUE(json["runs"][0].contains("real_time_factor"));
-  for (const char* file :
-       {"summary.json", "manifest.json", "scene.json", "report.html", "epochs/low_nav.csv", "epochs/high_gnss.csv",
-        "epochs/high_satellites.csv", "epochs/low_keyframes.csv", "clouds/low_prior.pcd", "clouds/high_registered.pcd"})
+  for (const char* file : {"summary.json", "manifest.json", "scene.json", "report.html", "epochs/low_nav.csv",
+                           "epochs/high_gnss.csv", "epochs/high_satellites.csv", "epochs/low_keyframes.csv",
+                           "clouds/low_prior.pcd", "clouds/high_prior.pcd", ".canyon"})
     EXPECT_GT(fs::file_size(folder_ / "out" / file), 0U) << file;
   EXPECT_EQ(read("stderr"), "");  // silent when piped
+
+  // The hash, computed again as docs/results.md says.
+  std::vector<std::string> files;
+  for (const char* folder : {"clouds", "epochs"})
+    for (const auto& entry : fs::directory_iterator(folder_ / "out" / folder))
+      files.push_back(std::string(folder) + "/" + entry.path().filename().string());
+  std::sort(files.begin(), files.end());
+  std::string digest;
+  for (const std::string& file : files) digest += file + " " + sha256_hex(read("out/" + file)) + "\n";
+  auto plain = nlohmann::ordered_json::parse(read("out/summary.json"));
+  plain.erase("hash");
+  plain.erase("timing");
+  for (auto& run : plain["runs"]) run.erase("timing");
+  EXPECT_EQ(sha256_hex(digest + plain.dump()), json["hash"]);
+
+  // The object is summary.json, and more.
+  const auto summary = nlohmann::json::parse(read("out/summary.json"));
+  for (const auto& [key, value] : summary.items()) {
+    if (key != "runs") {
+      EXPECT_EQ(json[key], value) << key;
+    }
+  }
+  // Nothing is registered: nothing is said of registered maps, and the limit is the one that holds.
+  EXPECT_FALSE(fs::exists(folder_ / "out/clouds/high_registered.pcd"));
+  EXPECT_TRUE(json["runs"][1]["map_error_rms_m"].is_null());
+  EXPECT_TRUE(json["runs"][1]["keyframes_converged"].is_null());
+  EXPECT_TRUE(json["runs"][1]["map_error_prior_rms_m"].is_number());
+  EXPECT_EQ(json["runs"][1]["counters"]["keyframes_registered"], 0);
+  EXPECT_THAT(read("out/epochs/high_keyframes.csv"), HasSubstr(",not_registered,0,"));
+  EXPECT_EQ(json["mission"]["time_limit_s"], 4.0);
 
   // The same call gives the same hash; the report can be made again.
   ASSERT_EQ(canyon("compare mission.toml --fidelities low,high --out again --json --threads 1"), 0);
@@ -75,11 +107,78 @@ TEST_F(CommandLineTest, Mistakes) {
   write("torn.toml", "[gnss\n");
   expect_mistake("run torn.toml --out out", "torn.toml:1: ");
   expect_mistake("run mission.toml --fidelity highest --out out",
-                 "mission.toml: fidelity.highest: unknown fidelity, expected one of ");
+                 "--fidelity: \"highest\" is unknown, expected one of high, low, paper; nearest is \"high\"\n");
   expect_mistake("run mission.toml --start yesterday --out out", "--start: time.start: ");
   expect_mistake("run mission.toml --nav nothing.10n --out out", "nothing.10n");
-  expect_mistake("run mission.toml --frobnicate", "--frobnicate");
+  expect_mistake(
+      "run mission.toml --nav nothing.10n --out out",
+      "--nav: gnss.nav_file: \"nothing.10n\" cannot be read (No such file or directory), expected a readable "
+      "file\n");
+  expect_mistake("compare mission.toml --fidelities low,low --out out",
+                 "--fidelities: \"low\" given twice, expected each fidelity once\n");
   expect_mistake("report nowhere", "nowhere");
+}
+
+TEST_F(CommandLineTest, UsageMistakesNameTheArgumentAsItWasTyped) {
+  expect_mistake("", "canyon: no verb given, expected one of compare, run, ");
+  expect_mistake("frobnicate mission.toml", "canyon: \"frobnicate\" is not a verb, expected one of compare, run, ");
+  expect_mistake("comapre", "; nearest is \"compare\"\n");
+  expect_mistake("gnss", "canyon gnss: no verb given, expected one of sky, ");
+  expect_mistake("gnss skie", "canyon gnss: \"skie\" is not a verb, expected one of sky, ");
+  expect_mistake("run mission.toml --frobnicate",
+                 "canyon run: no option \"--frobnicate\", expected one that canyon run --help names\n");
+  expect_mistake("run mission.toml --output x", "canyon run: no option \"--output\", expected \"--out\"?\n");
+  expect_mistake("run mission.toml x", "canyon run: \"x\" is one argument too many\n");
+  // One value with commas: the mission is not swallowed as a fidelity.
+  expect_mistake("compare --fidelities low high mission.toml",
+                 "canyon compare: \"mission.toml\" is one argument too many\n");
+  expect_mistake("run mission.toml --threads two", "--threads: \"two\", expected a whole number from 0 to 1024\n");
+  expect_mistake("run mission.toml --threads=-3", "--threads: \"-3\", expected a whole number from 0 to 1024\n");
+  for (const char* seed : {"99999999999999999999999", "9000000000000001", "-1", "1.5", "x"})
+    expect_mistake(std::string("run mission.toml --seed ") + seed,
+                   std::string("--seed: \"") + seed + "\", expected a whole number from 0 to 9000000000000000\n");
+  expect_mistake("run mission.toml --out", "canyon run: --out has no value, expected one\n");
+  expect_mistake("report", "canyon report: directory is missing, expected it; canyon report --help shows an example\n");
+}
+
+TEST_F(CommandLineTest, PathsInAMissionFileStartAtItsFolder) {
+  fs::create_directories(folder_ / "given_place");
+  write("given_place/my.toml", std::string(kMission) + "[imu]\nsensor = \"my_imu.toml\"\n");
+  expect_mistake("run given_place/my.toml --out out",
+                 "given_place/my.toml:15: imu.sensor: \"given_place/my_imu.toml\" cannot be read (No such file or "
+                 "directory), expected a readable file\n");
+  std::string quiet = "name = \"mine\"\n[gyro]\n";
+  for (const char* key :
+       {"arw_deg_per_sqrt_hr", "turn_on_bias_deg_per_hr", "in_run_bias_deg_per_hr", "scale_ppm", "misalignment_mrad"})
+    quiet += std::string(key) + " = 0\n";
+  quiet += "[accel]\n";
+  for (const char* key : {"vrw_m_s_per_sqrt_hr", "turn_on_bias_mg", "in_run_bias_mg", "scale_ppm", "misalignment_mrad"})
+    quiet += std::string(key) + " = 0\n";
+  write("given_place/my_imu.toml", quiet);
+  ASSERT_EQ(canyon("run given_place/my.toml --fidelity low --out out"), 0) << read("stderr");
+  const auto manifest = nlohmann::json::parse(read("out/manifest.json"));
+  EXPECT_EQ(manifest["files"]["given_place/my_imu.toml"].get<std::string>().size(), 64U);
+  EXPECT_EQ(manifest["files"].size(), 1U);
+  // Both places are told in full.
+  EXPECT_THAT(read("stdout"), HasSubstr("\nResults: " + path("out") + "\nReport:  " + path("out/report.html") + "\n"));
+  EXPECT_THAT(read("stdout"), HasSubstr(", limit 4 s\n"));
+}
+
+TEST_F(CommandLineTest, KeysPrintsTheReference) {
+  ASSERT_EQ(canyon("keys"), 0);
+  EXPECT_THAT(read("stdout"), HasSubstr("\n## [gnss]: the GNSS receiver and its errors\n"));
+  ASSERT_EQ(canyon("keys --json"), 0);
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_GT(json["keys"].size(), 100U);
+  EXPECT_EQ(json["keys"][0]["key"].get<std::string>().rfind("scene.", 0), 0U);
+}
+
+TEST_F(CommandLineTest, HelpShowsDefaultsAndAnExample) {
+  ASSERT_EQ(canyon("--help"), 0);
+  EXPECT_THAT(read("stdout"), HasSubstr("canyon compare --out first"));
+  ASSERT_EQ(canyon("compare --help"), 0);
+  EXPECT_THAT(read("stdout"), HasSubstr("low,high,paper"));
+  EXPECT_THAT(read("stdout"), ::testing::ContainsRegex("--threads INT:INT in .0 - 1024.=0|--threads.*=0"));
 }
 
 TEST_F(CommandLineTest, DamagedNavigationFiles) {
@@ -119,7 +218,7 @@ TEST_F(CommandLineTest, InterruptedRunsStopWithinASecondAndLeaveNothing) {
 }
 
 TEST_F(CommandLineTest, HelpShowsAnExampleForEveryVerb) {
-  for (const char* verb : {"compare", "run", "report"}) {
+  for (const char* verb : {"compare", "run", "report", "keys"}) {
     EXPECT_EQ(canyon(std::string(verb) + " --help"), 0);
     EXPECT_THAT(read("stdout"), HasSubstr(std::string("canyon ") + verb));
     EXPECT_THAT(read("stdout"), HasSubstr("Example:"));

@@ -92,7 +92,7 @@ TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("gnss sky --scene nowhere.toml --xy 0,0", "nowhere.toml");
   expect_mistake("gnss map --scene none", "--scene: \"none\" has no ground to map, expected a scene");
   expect_mistake("gnss map --fidelity best", "best");
-  expect_mistake("gnss", "command line: ");
+  expect_mistake("gnss", "canyon gnss: no verb given, expected one of sky, ");
 }
 
 }  // namespace
