@@ -56,13 +56,14 @@ class ChartWriter {
             escape_html(index == 0 ? chart_.description : describe(panel)) + "</desc>\n";
     grid(panel, height_px);
     for (const Band& band : panel.bands) draw_band(panel, band);
-    for (const Mark& mark : chart_.marks) draw_mark(mark, height_px);
+    for (const Mark& mark : chart_.marks)
+      if (shows(panel, mark)) draw_mark(mark, height_px);
     // The first line lies uppermost.
     for (auto line = panel.lines.rbegin(); line != panel.lines.rend(); ++line) draw_line(panel, *line);
     lanes(panel);
     out_ += "</svg>\n";
     y_labels(panel, height_px);
-    if (index == 0) mark_labels();
+    if (index == 0 || panel.marks_of) mark_labels(panel);
     out_ += "</div>\n";
     for (const std::string& note : panel.notes) out_ += "<p class=\"note\">" + escape_html(note) + "</p>\n";
     out_ += "</div>\n";
@@ -128,19 +129,23 @@ class ChartWriter {
   }
 
   void draw_mark(const Mark& mark, int height_px) {
-    if (!std::isfinite(mark.x)) return;
     out_ += "<path class=\"mark " + run_class(mark.run) + "\" d=\"M" + fixed(x_px(mark.x), 1) + " 0V" +
             std::to_string(height_px) + "\"/>\n";
   }
 
-  void mark_labels() {
+  static bool shows(const Panel& panel, const Mark& mark) {
+    return std::isfinite(mark.x) && (!panel.marks_of || *panel.marks_of == mark.run);
+  }
+
+  void mark_labels(const Panel& panel) {
     for (std::size_t i = 0; i < chart_.marks.size(); ++i) {
       const Mark& mark = chart_.marks[i];
-      if (!std::isfinite(mark.x)) continue;
+      if (!shows(panel, mark)) continue;
       const double place = chart_.x.place(mark.x);
       // Words that would cover one another stand on lines of their own.
       int line = 0;
-      for (std::size_t k = 0; k < i; ++k) line += std::abs(chart_.x.place(chart_.marks[k].x) - place) < 0.25 ? 1 : 0;
+      for (std::size_t k = 0; k < i; ++k)
+        line += shows(panel, chart_.marks[k]) && std::abs(chart_.x.place(chart_.marks[k].x) - place) < 0.25 ? 1 : 0;
       out_ += "<span class=\"mark-label " + run_class(mark.run) + (place > 0.5 ? " left" : "") +
               "\" style=\"left:" + fixed(100 * place, 2) + "%;top:" + fixed(0.1 + line * 1.05, 2) + "rem\">" +
               escape_html(mark.text) + "</span>\n";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,7 +48,8 @@ struct Panel {
   std::vector<Band> bands = {};
   std::vector<Line> lines = {};
   std::vector<Lane> lanes = {};
-  std::vector<std::string> notes = {};  ///< beneath the panel: what is missing and why
+  std::optional<std::size_t> marks_of = {};  ///< the only run whose marks the panel shows; none = all runs
+  std::vector<std::string> notes = {};       ///< beneath the panel: what is missing and why
 };
 
 /// Panels over one another with one x axis.

@@ -112,7 +112,10 @@ std::string cost_section(const Results& results) {
         if (k == 0)
           body +=
               "<th scope=\"rowgroup\" rowspan=\"" + std::to_string(which.size()) + "\">" + escape_html(part) + "</th>";
-        body += "<td class=\"text\">" + run_tag(results.runs, which[k]) + "</td><td>" + show_quantity(cpu_s, "s") +
+        body += "<td class=\"text\">" + run_tag(results.runs, which[k]) + "</td><td>" +
+                (std::abs(cpu_s) < 5e-4 ? "&lt;\xC2\xA0"
+                                          "0.001\xC2\xA0s"
+                                        : show_quantity(cpu_s, "s")) +
                 "</td><td class=\"bar-cell\">" + bar(which[k], cpu_s, longest_s) + "</td></tr>\n";
       }
       body += "</tbody>\n";

@@ -101,8 +101,9 @@ std::string error_section(const Results& results) {
     }
   }
   const std::string intro =
-      "The filter\xE2\x80\x99s estimate minus truth. Bands: what the filter itself claims, \xC2\xB1"
-      "1\xCF\x83. An honest filter has 68.3 % of its errors "
+      "The filter\xE2\x80\x99s estimate minus truth. Bands with an edge: what the filter itself claims, \xC2\xB1"
+      "1\xCF\x83; beside an error of many metres they are but a line along zero. An honest filter has 68.3 % of its "
+      "errors "
       "within \xC2\xB1"
       "1\xCF\x83 and 99.7 % within \xC2\xB1"
       "3\xCF\x83.";

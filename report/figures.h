@@ -16,6 +16,7 @@ struct FigureRow {
   std::string_view unit;
   Kind kind = Kind::kQuantity;
   std::string_view meaning;  ///< what a newcomer might ask; may be empty
+  double cap = 0.0;          ///< if > 0: values that reach it are known to be that or more
 };
 
 /// All lines in the order of the table, groups together.

@@ -10,7 +10,13 @@
 namespace canyon::report {
 namespace {
 
-std::string shown(double value, FigureRow::Kind kind) {
+bool at_cap(double value, const FigureRow& row) {
+  return row.cap > 0 && value >= row.cap;
+}
+
+std::string shown(double value, const FigureRow& row) {
+  const FigureRow::Kind kind = row.kind;
+  if (at_cap(value, row)) return "\xE2\x89\xA5\xC2\xA0" + show_count(row.cap);
   if (kind == FigureRow::Kind::kCount) return show_count(value);
   if (kind == FigureRow::Kind::kShare) {
     const std::string share = show_share(value);  // the unit stands in its own column
@@ -101,7 +107,8 @@ class FiguresTable {
     if (!row.meaning.empty()) label += "<span class=\"def\">" + escape_html(row.meaning) + "</span>";
     std::string ratio;
     if (has_ratio()) {
-      const double value = figure_value(run(1), row) / figure_value(run(0), row);
+      const bool known = !at_cap(figure_value(run(0), row), row) && !at_cap(figure_value(run(1), row), row);
+      const double value = known ? figure_value(run(1), row) / figure_value(run(0), row) : kNaN;
       const bool strong = value >= 2 || value <= 0.5;
       ratio = std::isfinite(value)
                   ? std::string("<td class=\"ratio") + (strong ? " strong" : "") + "\">" + show_number(value) + "</td>"
@@ -112,7 +119,7 @@ class FiguresTable {
                [&](std::size_t k) {
                  const double value = figure_value(run(k), row);
                  const double total = total_of(row, results_.mission);
-                 return cell(shown(value, row.kind) + (std::isfinite(total) ? " of " + show_count(total) : ""),
+                 return cell(shown(value, row) + (std::isfinite(total) ? " of " + show_count(total) : ""),
                              !std::isfinite(value));
                },
                ratio) +

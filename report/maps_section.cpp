@@ -66,9 +66,11 @@ double figure_or(const Results& results, const NamedCloud& c, const char* prior_
 std::string caption(const Results& results, const NamedCloud& c) {
   const double rms_m = figure_or(results, c, "map_error_prior_rms_m", "map_error_rms_m", c.cloud->rms_m());
   const double p95_m = figure_or(results, c, "map_error_p95_prior_m", "map_error_p95_m", c.cloud->quantile_m(0.95));
-  std::string text = run_tag(results.runs, c.run) + " " + placing(c) + ": RMS " + show_quantity(rms_m, "m") +
-                     ", 95 % below " + show_quantity(p95_m, "m") + ", " +
-                     count_of(static_cast<double>(c.cloud->points), "point", "points");
+  std::string text =
+      run_tag(results.runs, c.run) + " " + placing(c) + ": RMS " + show_quantity(rms_m, "m") +
+      (c.cloud->at_max > 1 && p95_m >= c.cloud->max_m ? ", 95 % at " + show_quantity(p95_m, "m") + " or more, "
+                                                      : ", 95 % below " + show_quantity(p95_m, "m") + ", ") +
+      count_of(static_cast<double>(c.cloud->points), "point", "points");
   const double capped = static_cast<double>(c.cloud->at_max) / static_cast<double>(c.cloud->points);
   if (capped > kCapped) text += ", " + show_share(capped) + " of them at " + show_quantity(c.cloud->max_m, "m");
   if (c.cloud->undefined > 0) {
@@ -128,7 +130,7 @@ std::string maps_section(const Results& results) {
     const Run& run = results.runs[i];
     std::vector<std::string> absent;
     if (!run.prior_cloud || run.prior_cloud->points == 0) absent.push_back("prior");
-    if (!run.registered_cloud || run.registered_cloud->points == 0) absent.push_back("registered");
+    if (run.registers() && (!run.registered_cloud || run.registered_cloud->points == 0)) absent.push_back("registered");
     if (!absent.empty())
       missing += note("Run " + run.fidelity + ": the results hold no " + listed(absent) + " map cloud with points.");
   }

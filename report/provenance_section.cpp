@@ -17,8 +17,8 @@ std::string row(std::string_view name, const std::string& value) {
 /// The words a newcomer needs to read the page, as Canyon defines them.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords{{
     {"Frames",
-     "Positions are in the scene\xE2\x80\x99s local frame W: metres east, north and up of its origin (ellipsoidal "
-     "height). Times are seconds "
+     "Positions are in the scene\xE2\x80\x99s local frame W: metres east, north and up of its origin. Times are "
+     "seconds "
      "from the mission\xE2\x80\x99s start; instants are GPS time."},
     {"Error",
      "Estimate minus truth. RMS: root mean square over the run\xE2\x80\x99s epochs; 95 %: the value that 95 of 100 "
@@ -60,7 +60,8 @@ std::string provenance_section(const Results& results) {
   body +=
       "</dl>\n<p>The same mission, seed and version give the same hash on the same type of CPU, with any number of "
       "threads. All numbers of this page "
-      "are in <code>summary.json</code> and <code>epochs/</code> beside it, the full configuration in "
+      "are in, or follow from, <code>summary.json</code>, <code>epochs/</code> and <code>clouds/</code> beside it; the "
+      "full configuration in "
       "<code>manifest.json</code>; "
       "<code>canyon report DIR</code> makes the page again. The full notation is in the source tree, "
       "<code>docs/notation.md</code>.</p>\n"

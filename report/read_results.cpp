@@ -1,5 +1,6 @@
 #include "report/read_results.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -20,7 +21,7 @@ const EpochColumns kNavColumns{{"t_s", "true_x_m", "true_y_m", "est_x_m", "est_y
                                {"state"}};
 const EpochColumns kGnssColumns{{"t_s", "satellites", "tracked", "nlos", "gdop", "error_e_m", "error_n_m", "error_u_m",
                                  "multipath_max_m", "accepted"},
-                                {"status"}};
+                                {"status", "reason"}};
 const EpochColumns kSatelliteColumns{{"t_s", "elevation_deg", "line_of_sight", "tracked", "multipath_m"},
                                      {"satellite"}};
 const EpochColumns kKeyframeColumns{
@@ -45,6 +46,13 @@ Status read_cloud(const fs::path& path, const MapGrid& grid, std::optional<Cloud
 double Run::figure(std::string_view key) const {
   const auto found = figures.find(key);
   return found == figures.end() ? kNaN : found->second;
+}
+
+bool Run::registers() const {
+  if (!keyframes || keyframes->rows == 0) return true;  // nothing says otherwise
+  const std::vector<std::string>& status = keyframes->text("status");
+  return std::any_of(status.begin(), status.end(), [](const std::string& s) { return s != "not_registered"; }) ||
+         std::isfinite(figure("registration_error_rms_m"));
 }
 
 const Run* Results::run(std::string_view fidelity) const {

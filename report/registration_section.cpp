@@ -14,6 +14,7 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   const Run& run = results.runs[i];
   const EpochTable& keyframes = *run.keyframes;
   Panel panel{.title = "Keyframe position error, run " + run.fidelity + " (logarithmic)", .unit = "m"};
+  panel.marks_of = i;
   panel.y = y;
   Line prior = column_line(results, i, keyframes, "prior_error_m", Line::Style::kThin);
   prior.name = "prior";
@@ -23,7 +24,8 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   Lane failed{.run = i, .name = "registration did not converge"};
   double unconverged = 0;
   for (std::size_t k = 0; k < keyframes.rows; ++k) {
-    if (keyframes.text("status")[k] == "converged") continue;
+    const std::string& status = keyframes.text("status")[k];
+    if (status == "converged" || status == "not_registered") continue;
     ++unconverged;
     const double t_s = keyframes["t_s"][k];
     failed.intervals.emplace_back(t_s - 0.25, t_s + 0.25);
@@ -40,6 +42,7 @@ std::string improvement(const Results& results, std::size_t i) {
   const EpochTable& k = *results.runs[i].keyframes;
   double better = 0, defined = 0;
   for (std::size_t row = 0; row < k.rows; ++row) {
+    if (k.text("status")[row] == "not_registered") continue;  // the first one
     const double prior = k["prior_error_m"][row], registered = k["registered_error_m"][row];
     if (!std::isfinite(prior) || !std::isfinite(registered)) continue;
     ++defined;
@@ -58,6 +61,7 @@ std::string registration_section(const Results& results) {
   chart.solid = true;
   std::vector<std::size_t> drawn;
   std::vector<Line> all;
+  std::vector<std::string> unregistered;
   std::string missing, caption;
   for (const std::size_t i : pure_runs(results)) {
     const Run& run = results.runs[i];
@@ -65,11 +69,19 @@ std::string registration_section(const Results& results) {
       missing += note(missing_file(run, "keyframes", "_keyframes.csv"));
       continue;
     }
+    if (!run.registers()) {
+      unregistered.push_back(run.fidelity);
+      continue;
+    }
     drawn.push_back(i);
     all.push_back(column_line(results, i, *run.keyframes, "prior_error_m"));
     all.push_back(column_line(results, i, *run.keyframes, "registered_error_m"));
     caption += (caption.empty() ? "" : "<br>") + improvement(results, i);
   }
+  if (!unregistered.empty())
+    missing += note((unregistered.size() == 1 ? "Run " : "Runs ") + listed(unregistered) +
+                    " registered nothing ([registration] method = \"none\"): each keyframe stands where the filter "
+                    "placed it.");
   if (drawn.empty()) return section("registration", title, {}, missing);
   const Axis y = error_axis(all);  // one scale for all runs, so that the panels can be compared
   for (const std::size_t i : drawn) {

@@ -61,6 +61,8 @@ struct Run {
   std::optional<CloudSummary> prior_cloud, registered_cloud;
 
   double figure(std::string_view key) const;
+  /// False where each keyframe stayed where the filter had placed it: [registration] method "none".
+  bool registers() const;
   bool succeeded() const { return outcome == "success"; }
   /// Both sensors of the run's own fidelity: not one of the mixed runs of the 2 x 2.
   bool is_pure() const { return gnss == imu; }

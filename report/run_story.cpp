@@ -60,10 +60,14 @@ Reception reception(const EpochTable& gnss, double from_s, double to_s) {
     const double t = gnss["t_s"][i];
     if (t < from_s || t > to_s) continue;
     ++r.epochs;
-    if (gnss.text("status")[i] == "none") ++r.without_fix;
     // fmin and fmax pass over NaN.
-    r.satellites_min = std::fmin(r.satellites_min, gnss["satellites"][i]);
-    r.satellites_max = std::fmax(r.satellites_max, gnss["satellites"][i]);
+    if (gnss.text("status")[i] == "none") {
+      ++r.without_fix;
+      r.last_reason = gnss.text("reason")[i];
+    } else {
+      r.satellites_min = std::fmin(r.satellites_min, gnss["satellites"][i]);
+      r.satellites_max = std::fmax(r.satellites_max, gnss["satellites"][i]);
+    }
     r.gdop_max = std::fmax(r.gdop_max, gnss["gdop"][i]);
     r.multipath_max_m = std::fmax(r.multipath_max_m, std::abs(gnss["multipath_max_m"][i]));
   }

@@ -26,7 +26,8 @@ std::optional<std::size_t> worst_horizontal_row(const EpochTable& nav);
 /// Reception in the interval [from, to] of gnss epochs.
 struct Reception {
   std::size_t epochs = 0, without_fix = 0;
-  double satellites_min = 0.0, satellites_max = 0.0;  ///< NaN if undefined throughout, as are the next two
+  std::string last_reason = {};                       ///< why the last epoch without a fix had none
+  double satellites_min = 0.0, satellites_max = 0.0;  ///< in fixes; NaN if undefined throughout, as are the next two
   double gdop_max = 0.0;
   double multipath_max_m = 0.0;
 };

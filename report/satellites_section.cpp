@@ -103,7 +103,11 @@ std::string satellites_section(const Results& results) {
     nlos.lines.push_back(nlos_line(results, i));
   }
   const std::string title = "Satellite geometry against time";
-  if (drawn.empty()) return section("satellites", title, {}, missing);
+  if (gdop.lines.empty()) {
+    const bool told =
+        !missing.empty() && !caption.empty();  // fixes without satellites: no chart, but how many there were
+    return section("satellites", title, {}, missing + (told ? "<p class=\"intro\">" + caption + "</p>\n" : ""));
+  }
 
   Chart chart = time_chart(results, "gdop-chart", title);
   const Extremes e = positive_extremes_of(gdop.lines);
@@ -118,7 +122,6 @@ std::string satellites_section(const Results& results) {
     if (g.drawn)
       chart.description += line.name + ": GDOP from " + show_number(g.min) + " to " + show_number(g.max) + ". ";
   }
-  const bool lines = !gdop.lines.empty();
   std::vector<std::size_t> shown;  // in the legend
   for (const std::size_t i : drawn) {
     const auto of_run = [i](const auto& item) { return item.run == i; };
@@ -132,10 +135,8 @@ std::string satellites_section(const Results& results) {
   gdop.notes.push_back(lanes.empty() ? "No epoch is without a fix."
                                      : "Bars at the foot: epochs without a fix, a lane for " + listed(lanes) + ".");
   chart.panels.push_back(std::move(gdop));
-  if (lines) {
-    chart.panels.push_back(std::move(satellites));
-    chart.panels.push_back(std::move(nlos));
-  }
+  chart.panels.push_back(std::move(satellites));
+  chart.panels.push_back(std::move(nlos));
   return section("satellites", title,
                  "The dilution of precision (GDOP) multiplies the error of a range into the error of a fix; it jumps "
                  "where buildings take satellites away.",

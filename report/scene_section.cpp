@@ -35,33 +35,43 @@ std::optional<Eigen::Vector2d> failure_place(const Run& run) {
   return Eigen::Vector2d(run.failure->x_m, run.failure->y_m);
 }
 
-/// `line`: how many labels stand at this place already.
-std::string failure_marker(const Run& run, std::size_t run_number, const MapWindow& window, int line) {
+bool label_on_the_left(const Eigen::Vector2d& p_W, const MapWindow& window) {
+  return p_W.x() - window.min_W.x() > 0.51 * window.size_m().x();
+}
+
+/// A cross, and its words at `label_W`, beside or beneath it.
+std::string failure_marker(const Run& run, std::size_t run_number, const MapWindow& window,
+                           const Eigen::Vector2d& label_W) {
   const auto p_W = failure_place(run);
   if (!p_W) return {};
   const std::string words = run.fidelity + ": " + outcome_label(run.failure->kind) +
                             (std::isfinite(run.failure->t_s) ? " at " + show_quantity(run.failure->t_s, "s") : "");
-  const bool right = (p_W->x() - window.min_W.x()) > 0.51 * window.size_m().x();
-  return "<span class=\"failure " + run_class(run_number) + (right ? " left" : "") + (run.is_pure() ? "" : " mixed") +
-         "\" style=\"" + MapDrawing::place(window, *p_W) +
+  const std::string classes = " " + run_class(run_number) + (run.is_pure() ? "" : " mixed");
+  return "<span class=\"failure" + classes + "\" style=\"" + MapDrawing::place(window, *p_W) +
          "\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><path class=\"halo\" d=\"M3 3L13 13M13 3L3 13\"/><path "
          "d=\"M3 "
-         "3L13 13M13 3L3 13\"/></svg><span class=\"words\" style=\"top:" +
-         fixed(-0.15 + 1.15 * line, 2) + "rem\">" + escape_html(words) + "</span></span>\n";
+         "3L13 13M13 3L3 13\"/></svg></span>\n<span class=\"failure-label" +
+         classes + (label_on_the_left(*p_W, window) ? " left" : "") + "\" style=\"" +
+         MapDrawing::place(window, label_W) + "\">" + escape_html(words) + "</span>\n";
 }
 
-/// All failures; labels of neighbouring ones stand beneath one another.
+/// All failures. Labels of one side that would touch are moved down, the northernmost first.
 std::string failure_markers(const Results& results, const MapWindow& window) {
+  constexpr double kLine = 0.03;  // height of a label as a share of the plan's, on a phone too
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < results.runs.size(); ++i)
+    if (failure_place(results.runs[i])) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return failure_place(results.runs[a])->y() > failure_place(results.runs[b])->y();
+  });
   std::string html;
-  for (std::size_t i = 0; i < results.runs.size(); ++i) {
-    const auto p_W = failure_place(results.runs[i]);
-    if (!p_W) continue;
-    int line = 0;
-    for (std::size_t k = 0; k < i; ++k) {
-      const auto q_W = failure_place(results.runs[k]);
-      if (q_W && (*q_W - *p_W).norm() < 0.06 * window.size_m().maxCoeff()) ++line;
-    }
-    html += failure_marker(results.runs[i], i, window, line);
+  double lowest_m[2] = {1e9, 1e9};  // of the labels on each side so far
+  for (const std::size_t i : order) {
+    Eigen::Vector2d label_W = *failure_place(results.runs[i]);
+    double& lowest = lowest_m[label_on_the_left(label_W, window) ? 1 : 0];
+    label_W.y() = std::min(label_W.y(), lowest - kLine * window.size_m().y());
+    lowest = label_W.y();
+    html += failure_marker(results.runs[i], i, window, label_W);
   }
   return html;
 }
@@ -129,6 +139,7 @@ std::string close_up(const Results& results, const MapDrawing& map, std::size_t 
   const Eigen::Vector2d centre = failed ? Eigen::Vector2d(run.failure->x_m, run.failure->y_m) : truth;
   if (!centre.allFinite()) return {};
   const double horizontal_m = std::hypot(nav["error_e_m"][*row], nav["error_n_m"][*row]);
+  const double total_m = error_norm_m(nav, *row);
   // Wide enough for the error and some street around it, also when the estimate has gone far.
   const double half_m =
       std::clamp(2.5 * (std::isfinite(horizontal_m) ? horizontal_m : 0.0), failed ? 20.0 : 6.0, 400.0);
@@ -139,12 +150,14 @@ std::string close_up(const Results& results, const MapDrawing& map, std::size_t 
   std::string svg = "<path class=\"route\" d=\"" + map.path(results.mission.route_W) + "\"/>\n";
   svg += draw_ribbon(map, run, i, &window, 1e-3 * half_m, 7) + draw_estimate(map, run, i, &window, 1e-3 * half_m) +
          draw_error_ties(map, run, i, window, 1.0);
-  std::string html = failure_marker(run, i, window, 0);
+  std::string html = failure_marker(run, i, window, centre);
   if (!failed)
     html += "<span class=\"spot " + run_class(i) + "\" style=\"" + MapDrawing::place(window, truth) + "\"></span>\n";
   const std::string words =
       what + " at " + show_quantity(t_s, "s") +
-      (std::isfinite(horizontal_m) ? ", estimate " + show_quantity(horizontal_m, "m") + " from truth" : "");
+      (std::isfinite(horizontal_m) ? ", estimate " + show_quantity(horizontal_m, "m") + " from truth horizontally" +
+                                         (std::isfinite(total_m) ? " (" + show_quantity(total_m, "m") + " in 3-D)" : "")
+                                   : "");
   return "<figure class=\"solid " + run_class(i) + "\">\n" +
          map.window(window, "scene", "close-up-" + std::to_string(i), "Close-up of run " + run.fidelity, words + ".",
                     svg, html) +

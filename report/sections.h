@@ -4,8 +4,8 @@
 
 #include "report/results.h"
 
-/// The sections of the page in their order. Each takes the runs in drawing order (html_report.cpp sorts them) and gives
-/// markup; what the results do not hold becomes a note.
+/// The sections of the page in their order. Each takes the runs in the order asked for, the mixed ones last
+/// (html_report.cpp sees to it), and gives markup; what the results do not hold becomes a note.
 namespace canyon::report {
 
 std::string headline(const Results& results);            ///< the page's first line, plain text

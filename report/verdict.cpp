@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "report/format.h"
@@ -50,6 +51,14 @@ std::string waypoints_reached(const Run& run, const Mission& mission) {
   return listed(parts);
 }
 
+/// "waypoint “house”" of a 1-based number.
+std::string waypoint_name(double number, const Mission& mission) {
+  const auto i = static_cast<std::size_t>(std::max(1.0, number)) - 1;
+  if (i >= mission.waypoints.size()) return "the end of the route";
+  const std::string& name = mission.waypoints[i].name;
+  return name.empty() ? "waypoint " + show_count(number) : "waypoint \xE2\x80\x9C" + name + "\xE2\x80\x9D";
+}
+
 std::string success_sentence(const Run& run, const Mission& mission) {
   std::string text = " completed the mission";
   if (const std::string reached = waypoints_reached(run, mission); !reached.empty()) text += ": " + reached;
@@ -77,7 +86,7 @@ std::string failure_sentence(const Run& run, const Mission& mission) {
       if (const auto row = row_at(*run.nav, f.t_s)) {
         const EpochTable& nav = *run.nav;
         const double heading_for = nav["waypoint"][*row];
-        if (std::isfinite(heading_for)) text += ", on its way to waypoint " + show_count(heading_for);
+        if (std::isfinite(heading_for)) text += ", on its way to " + waypoint_name(heading_for, mission);
         if (const double error_m = error_norm_m(nav, *row); std::isfinite(error_m)) {
           text += ", when its own position was wrong by " + show_quantity(error_m, "m") + " (east " +
                   signed_number(nav["error_e_m"][*row]) + ", north " + signed_number(nav["error_n_m"][*row]) + ", up " +
@@ -97,23 +106,25 @@ std::string circumstances(const Run& run) {
   std::string text = run.failure->detail;
   if (!text.empty()) text = capitalised(text) + (text.back() == '.' ? "" : ".");
   if (!run.gnss_epochs || !std::isfinite(run.failure->t_s)) return text;
-  const Reception r = reception(*run.gnss_epochs, run.failure->t_s - kBeforeFailure_s, run.failure->t_s);
+  const double before_s = std::min(kBeforeFailure_s, run.failure->t_s);
+  const Reception r = reception(*run.gnss_epochs, run.failure->t_s - before_s, run.failure->t_s);
   if (r.epochs == 0) return text;
   std::vector<std::string> parts;
   if (std::isfinite(r.satellites_min)) {
     parts.push_back(show_count(r.satellites_min) +
                     (r.satellites_min == r.satellites_max ? "" : "\xE2\x80\x93" + show_count(r.satellites_max)) +
-                    " satellites");
+                    (r.satellites_max == 1 ? " satellite" : " satellites") + " in the fix");
   }
   if (std::isfinite(r.gdop_max)) parts.push_back("a GDOP of up to " + show_number(r.gdop_max));
   if (std::isfinite(r.multipath_max_m))
     parts.push_back("multipath errors of up to " + show_quantity(r.multipath_max_m, "m"));
   if (r.without_fix > 0) {
     parts.push_back(show_count(static_cast<double>(r.without_fix)) + " of " +
-                    count_of(static_cast<double>(r.epochs), "epoch", "epochs") + " without a fix");
+                    count_of(static_cast<double>(r.epochs), "epoch", "epochs") + " without a fix" +
+                    (r.last_reason.empty() ? "" : " (the last: " + r.last_reason + ")"));
   }
   if (parts.empty()) return text;
-  return text + (text.empty() ? "" : " ") + "In the " + show_quantity(kBeforeFailure_s, "s", 2) +
+  return text + (text.empty() ? "" : " ") + "In the " + show_quantity(before_s, "s", before_s < 10 ? 1 : 2) +
          " before: " + listed(parts) + ".";
 }
 
@@ -131,7 +142,8 @@ std::string headline(const Results& results) {
     return capitalised(spoken(a.fidelity)) + " " + present(a) + "; " + spoken(b.fidelity) + " " + present(b) + ".";
   }
   const double ratio = b.figure("position_error_rms_m") / a.figure("position_error_rms_m");
-  std::string text = std::string("Both runs ") + (a.succeeded() ? "complete the mission" : "fail");
+  std::string text = capitalised(spoken(a.fidelity)) + " and " + spoken(b.fidelity) + " both " +
+                     (a.succeeded() ? "complete the mission" : "fail");
   if (std::isfinite(ratio)) {
     text += "; the position error is " + show_number(ratio) + " times as large in " + spoken(b.fidelity);
   }

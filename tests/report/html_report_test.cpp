@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -30,6 +31,13 @@ using canyon::testing::write_synthetic_results;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+/// Text of the section with this id.
+std::string section(const std::string& html, const std::string& id) {
+  const std::size_t start = html.find("<section id=\"" + id + "\"");
+  if (start == std::string::npos) return {};
+  return html.substr(start, html.find("</section>", start) - start);
+}
+
 /// A complete synthetic directory and its page, made once.
 class HtmlReport : public ::testing::Test {
  protected:
@@ -47,13 +55,6 @@ class HtmlReport : public ::testing::Test {
     delete page_;
   }
   static const std::string& page() { return *page_; }
-
-  /// Text of the section with this id.
-  static std::string section(const std::string& html, const std::string& id) {
-    const std::size_t start = html.find("<section id=\"" + id + "\"");
-    if (start == std::string::npos) return {};
-    return html.substr(start, html.find("</section>", start) - start);
-  }
 
  private:
   static inline TemporaryDirectory* folder_ = nullptr;
@@ -188,6 +189,9 @@ TEST_F(HtmlReport, SaysTheVerdictFromTheNumbers) {
   EXPECT_THAT(verdict, HasSubstr("<strong>high</strong> failed: it hit an obstacle after "));
   EXPECT_THAT(verdict, HasSubstr("it had reached 6 of 11 waypoints and 0 of 3 mission waypoints."));
   EXPECT_THAT(verdict, HasSubstr("Front right corner touched building 217."));
+  EXPECT_THAT(page(), Not(HasSubstr("ellipsoidal height")));
+  EXPECT_THAT(page(), HasSubstr("<code>summary.json</code>, <code>epochs/</code> and <code>clouds/</code>"));
+  EXPECT_THAT(page(), HasSubstr("CPU time per simulated second"));
 }
 
 TEST_F(HtmlReport, TellsThatALowGnssHasNoSatellites) {
@@ -208,8 +212,88 @@ TEST_F(DamagedResults, TwoEqualOutcomesAreComparedByTheirErrors) {
     json["runs"][0]["position_error_rms_m"] = 0.25;
     json["runs"][1]["position_error_rms_m"] = 3.0;
   });
-  EXPECT_THAT(page(), HasSubstr("<h1>Both runs complete the mission; the position error is 12.0 times as large in the "
-                                "high-fidelity run.</h1>"));
+  EXPECT_THAT(page(),
+              HasSubstr("<h1>The low-fidelity run and the high-fidelity run both complete the mission; the position "
+                        "error is 12.0 times as large in the high-fidelity run.</h1>"));
+}
+
+TEST_F(DamagedResults, RunsStandInTheOrderAskedFor) {
+  edit_json(file("summary.json"), [](auto& json) { std::swap(json["runs"][0], json["runs"][1]); });
+  const std::string html = page();
+  EXPECT_THAT(html, HasSubstr("<h1>The high-fidelity run fails after "));
+  const std::string verdict = section(html, "verdict");
+  EXPECT_LT(verdict.find("<strong>high</strong>"), verdict.find("<strong>low</strong>"));
+  EXPECT_THAT(section(html, "figures"), HasSubstr("<th scope=\"col\">low\xE2\x80\x89/\xE2\x80\x89high</th>"));
+}
+
+TEST_F(DamagedResults, WithoutRegistrationOneNoteStandsForThePanel) {
+  for (const char* run : {"low", "high"}) {
+    const std::string path = file(std::string("epochs/") + run + "_keyframes.csv");
+    std::string csv = load(path);
+    csv = std::regex_replace(csv, std::regex(",(converged|not_converged|too_few_points),"), ",not_registered,");
+    store(path, csv);
+    std::filesystem::remove(file(std::string("clouds/") + run + "_registered.pcd"));
+  }
+  edit_json(file("summary.json"), [](auto& json) {
+    for (auto& run : json["runs"])
+      for (const char* key : {"registration_error_rms_m", "keyframes_converged", "map_error_rms_m"}) run[key] = nullptr;
+  });
+  const std::string registration = section(page(), "registration");
+  EXPECT_THAT(registration,
+              HasSubstr("Runs low and high registered nothing ([registration] method = &quot;none&quot;): "
+                        "each keyframe stands where the filter placed it."));
+  EXPECT_THAT(registration, Not(HasSubstr("converge")));
+  EXPECT_THAT(registration, Not(HasSubstr("made the pose better")));
+  EXPECT_THAT(section(page(), "maps"), Not(HasSubstr("hold no registered")));
+}
+
+TEST_F(DamagedResults, AnErrorAtTheCapIsNotANumber) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["runs"][0]["map_error_p95_m"] = 5.0;
+    json["runs"][1]["map_error_p95_m"] = 5.0;
+  });
+  EXPECT_THAT(section(page(), "figures"), HasSubstr("map error, registered, 95 %</th><td>\xE2\x89\xA5\xC2\xA0"
+                                                    "5</td><td>\xE2\x89\xA5\xC2\xA0"
+                                                    "5</td><td class=\"undefined\">"));
+}
+
+TEST_F(DamagedResults, AFailureIsToldByItsOwnCircumstances) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["runs"][1]["failure"]["t_s"] = 12.0;
+    json["mission"]["waypoints"][1]["name"] = "crossing";
+  });
+  std::string csv = load(file("epochs/high_gnss.csv"));
+  csv = std::regex_replace(csv, std::regex("\n12,.*"),
+                           "\n12,1590,392412,none,,9,1,0,0,,,,,,,,,,,0,0,0,,,,,0,,1 satellite; 4 needed");
+  store(file("epochs/high_gnss.csv"), csv);
+  const std::string verdict = section(page(), "verdict");
+  EXPECT_THAT(verdict, HasSubstr("on its way to waypoint \xE2\x80\x9C"
+                                 "crossing\xE2\x80\x9D"));
+  EXPECT_THAT(verdict, HasSubstr("In the 12\xC2\xA0s before: "));
+  EXPECT_THAT(verdict, HasSubstr("without a fix (the last: 1 satellite; 4 needed)"));
+  EXPECT_THAT(section(page(), "scene-section"), HasSubstr(" from truth horizontally ("));
+  EXPECT_THAT(section(page(), "scene-section"), HasSubstr(" in 3-D)"));
+}
+
+TEST_F(DamagedResults, APanelOfOneRunShowsNoOthersFailure) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["runs"][0]["outcome"] = "stuck";
+    json["runs"][0]["failure"] = {{"kind", "stuck"}, {"t_s", 5.0}, {"x_m", 1.0}, {"y_m", 1.0}, {"detail", "x"}};
+  });
+  const std::string registration = section(page(), "registration");
+  std::size_t marks = 0;
+  for (std::size_t at = 0; (at = registration.find("<path class=\"mark ", at)) != std::string::npos; ++at) ++marks;
+  EXPECT_EQ(marks, 2u);  // one panel each, one mark each
+  std::size_t labels = 0;
+  for (std::size_t at = 0; (at = registration.find("class=\"mark-label ", at)) != std::string::npos; ++at) ++labels;
+  EXPECT_EQ(labels, 2u);
+}
+
+TEST_F(DamagedResults, ALoneRunWithoutSatellitesHasNoEmptyChart) {
+  edit_json(file("summary.json"), [](auto& json) { json["runs"].erase(1); });
+  const std::string satellites = section(page(), "satellites");
+  EXPECT_THAT(satellites, HasSubstr("Run low has no satellites"));
+  EXPECT_THAT(satellites, Not(HasSubstr("class=\"chart")));
 }
 
 TEST_F(DamagedResults, WithoutEpochsAndCloudsItSaysSo) {
