@@ -99,18 +99,18 @@ TEST(Materials, MistakesAreNamedWithTheirLine) {
     return result.ok() ? std::string() : result.error().str();
   };
   EXPECT_EQ(message("[[material]]\nname = \"a\"\nlidar_reflectence = 0.3\n"),
-            "my.toml:3: material[0].lidar_reflectence: unknown key, expected one of the documented keys; nearest is "
+            "my.toml:3: material[1].lidar_reflectence: unknown key, expected one of the documented keys; nearest is "
             "\"lidar_reflectance\"");
   EXPECT_EQ(message("[[material]]\nname = \"a\"\nlidar_reflectance = 1.3\n"),
-            "my.toml:3: material[0].lidar_reflectance: 1.3 is out of range, expected a number from 0 to 1");
+            "my.toml:3: material[1].lidar_reflectance: 1.3 is out of range, expected a number from 0 to 1");
   EXPECT_EQ(message("[[material]]\nname = \"a\"\nitu = [1.0, 0.0]\n"),
-            "my.toml:3: material[0].itu: found array of 2, expected a list of 4 numbers");
+            "my.toml:3: material[1].itu: found array of 2, expected a list of 4 numbers");
   EXPECT_EQ(message("[[material]]\nname = \"a\"\nitu = [0.5, 0.0, 0.0, 0.0]\n"),
-            "my.toml:3: material[0].itu: a = 0.5, expected a permittivity of at least 1");
+            "my.toml:3: material[1].itu: a = 0.5, expected a permittivity of at least 1");
   EXPECT_EQ(message("[[material]]\nname = \"a\"\nitu = [1.0, 0.0, -1.0, 0.0]\n"),
-            "my.toml:3: material[0].itu: c = -1, expected a conductivity of at least 0");
+            "my.toml:3: material[1].itu: c = -1, expected a conductivity of at least 0");
   EXPECT_EQ(message("[[material]]\nlidar_reflectance = 0.3\n"),
-            "my.toml:1: material[0].name: missing, expected a name");
+            "my.toml:1: material[1].name: missing, expected a name");
   EXPECT_EQ(message("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n"),
             "my.toml:4: material[1].name: \"a\" appears twice, expected unique names");
   EXPECT_EQ(message(""), "my.toml: material: no material, expected at least one [[material]] table");
