@@ -112,7 +112,7 @@ TEST(Materials, MistakesAreNamedWithTheirLine) {
   EXPECT_EQ(message("[[material]]\nlidar_reflectance = 0.3\n"),
             "my.toml:1: material[1].name: missing, expected a name");
   EXPECT_EQ(message("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n"),
-            "my.toml:4: material[1].name: \"a\" appears twice, expected unique names");
+            "my.toml:4: material[2].name: \"a\" appears twice, expected unique names");
   EXPECT_EQ(message(""), "my.toml: material: no material, expected at least one [[material]] table");
   EXPECT_NE(message("[[material]\n").find("my.toml:1: not valid TOML"), std::string::npos)
       << "the rest is the parser's";
