@@ -50,7 +50,8 @@ Result<std::vector<Material>> parse_materials(std::string_view toml, const std::
     const Material& m = file.materials[i];
     const auto mistake = [&](const char* key, std::string what, std::string expected) {
       const ConfigNode* at = rows[i].find(key);
-      return (at ? *at : rows[i]).error(join_values("material[", i + 1, "].", key), std::move(what), std::move(expected));
+      return (at ? *at : rows[i])
+          .error(join_values("material[", i + 1, "].", key), std::move(what), std::move(expected));
     };
     if (m.name.empty()) return mistake("name", "missing", "a name");
     if (!(m.itu_a >= 1.0)) return mistake("itu", join_values("a = ", m.itu_a), "a permittivity of at least 1");
