@@ -22,6 +22,7 @@ struct ImuSample {
   double dt_s = 0.0;
   Eigen::Vector3d dtheta_U = Eigen::Vector3d::Zero();  ///< integral of the inertial angular rate w_IU_U, rad
   Eigen::Vector3d dv_U = Eigen::Vector3d::Zero();      ///< integral of the specific force f_U, m/s
+  bool lost = false;  ///< it did not arrive: the increments are those of the last sample that did, as drivers repeat it
 };
 
 enum class GnssSystem : std::uint8_t { kGps = 0, kGlonass, kGalileo, kBeidou, kQzss, kSbas };
@@ -118,17 +119,20 @@ struct RelativePose {
   Matrix6d covariance = Matrix6d::Constant(kNaN);
 };
 
+/// What the encoder of a wheel counted over (t - dt_s, t], and the forward speed that the nominal wheel makes of it.
 struct OdometerSample {
   GpsTime t;
+  double dt_s = 0.0;
+  std::int64_t ticks = 0;  ///< negative in reverse
   double speed_m_s = 0.0;
 };
 struct BarometerSample {
   GpsTime t;
-  double pressure_pa = 0.0;
+  double pressure_pa = 0.0;  ///< static pressure
 };
 struct MagnetometerSample {
   GpsTime t;
-  Eigen::Vector3d field_U_t = Eigen::Vector3d::Zero();  ///< tesla
+  Eigen::Vector3d field_U_t = Eigen::Vector3d::Zero();  ///< magnetic flux density, tesla
 };
 struct HeadingSample {
   GpsTime t;

@@ -58,6 +58,27 @@ struct GnssTruth {
   std::vector<GnssObservationTruth> satellites;  ///< above the mask, tracked or not
 };
 
+/// True facts of one OdometerSample.
+struct OdometerTruth {
+  GpsTime t;
+  double distance_m = 0.0;  ///< of the wheel's contact point over ground along B's x over the interval
+  double slip = 0.0;        ///< part of the wheel's turning that moved nothing, mean over the interval
+  double scale_error = 0.0;
+};
+
+/// True facts of one BarometerSample.
+struct BarometerTruth {
+  GpsTime t;
+  double pressure_pa = 0.0;  ///< of the standard atmosphere at the true height
+  double drift_pa = 0.0;     ///< weather and sensor
+};
+
+/// True facts of one MagnetometerSample.
+struct MagnetometerTruth {
+  GpsTime t;
+  Eigen::Vector3d field_U_t = Eigen::Vector3d::Zero();  ///< the Earth's, tesla
+};
+
 /// True facts of one LIDAR return; same index as LidarScan::points.
 struct LidarPointTruth {
   float range_m = 0;
