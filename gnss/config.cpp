@@ -99,6 +99,11 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.number("solver_sigma_m", c.solver_sigma_m, {1e-3, 1000.0},
            "1-sigma the solver assumes for a corrected pseudorange at the zenith");
   f.number("max_gdop", c.max_gdop, {1.0, 1e6}, "fixes with a larger GDOP are refused");
+  f.choice("estimator", c.estimator, {"least_squares", "kalman"},
+           "least_squares = each epoch by itself; kalman = position, velocity and time filtered by the receiver, whose "
+           "fixes then have errors that last");
+  f.number("estimator_acceleration_m_s2", c.estimator_acceleration_m_s2, {1e-6, 1000.0},
+           "kalman: white acceleration of the antenna per axis, m/s^2/sqrt(Hz)");
   f.text("systems", c.systems, "satellite systems received, of G R E C J");
   f.file("nav_file", c.nav_file, "",
          "RINEX 2, 3 or 4 navigation file, plain or gzip; without any, the built-in constellation");

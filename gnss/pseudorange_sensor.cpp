@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/check.h"
@@ -60,7 +61,13 @@ class PseudorangeSensor final : public GnssSensor {
         frame_(frame),
         parts_(std::move(parts)),
         first_("gnss.", config, parts_.locks),
-        second_("gnss.second.", config, parts_.locks) {}
+        second_("gnss.second.", config, parts_.locks) {
+    if (config_.estimator != "kalman") return;
+    PvtFilterParameters p;
+    p.acceleration_m_s2 = config_.estimator_acceleration_m_s2;
+    p.start.max_gdop = config_.max_gdop;
+    filter_.emplace(p);
+  }
 
   GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                      const scene::SceneAt& scene) override {
@@ -88,8 +95,13 @@ class PseudorangeSensor final : public GnssSensor {
       out.truth.satellites.push_back(truth);
     }
 
-    const ReceiverParts receiver{*parts_.constellation, *parts_.mode,     *parts_.solver,
-                                 *parts_.weighting,     config_.max_gdop, frame_.origin_E()};
+    const ReceiverParts receiver{*parts_.constellation,
+                                 *parts_.mode,
+                                 *parts_.solver,
+                                 *parts_.weighting,
+                                 config_.max_gdop,
+                                 frame_.origin_E(),
+                                 filter_ ? &*filter_ : nullptr};
     std::vector<Correction> corrections;
     out.fix = compute_fix(receiver, t, out.epoch, inputs, corrections);
     for (std::size_t k = 0; k < corrections.size(); ++k)
@@ -139,6 +151,7 @@ class PseudorangeSensor final : public GnssSensor {
     if (index != last_index_ + 1) {
       first_.locks.restart();
       second_.locks.restart();
+      if (filter_) filter_->reset();
     }
     last_index_ = index;
     first_.locks.begin_epoch(index);
@@ -325,6 +338,7 @@ class PseudorangeSensor final : public GnssSensor {
   LocalFrame frame_;
   PseudorangeParts parts_;
   SignalStreams first_, second_;
+  std::optional<PvtFilter> filter_;
   std::int64_t last_index_ = -2;
   GnssCounters counters_;
 };
@@ -334,6 +348,9 @@ class PseudorangeSensor final : public GnssSensor {
 Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const GnssConfig& c, std::uint64_t seed, GpsTime start,
                                                             GpsTime end, const scene::Scene& scene) {
   CANYON_TRY(PseudorangeParts parts, make_pseudorange_parts(c, seed, start, end));
+  if (c.estimator == "kalman" && !parts.solver->solves_clock())
+    return Error{"", 0, "gnss.estimator", "is \"kalman\", but the solver " + c.solver + " has no receiver clock",
+                 "solver \"least_squares\""};
   return std::unique_ptr<GnssSensor>(std::make_unique<PseudorangeSensor>(c, scene.frame(), std::move(parts)));
 }
 

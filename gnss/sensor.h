@@ -122,13 +122,15 @@ struct GnssConfig {
   double raim_false_alarm = 1e-3;
   double solver_sigma_m = 0.5;  ///< assumed 1-sigma of a corrected pseudorange at zenith
   double max_gdop = 100.0;
-  std::string systems = "G";           ///< RINEX letters of the systems received
-  std::string nav_file;                ///< RINEX navigation file; none at all = built-in constellation
-  std::vector<std::string> nav_files;  ///< further ones
-  std::string almanac_file;            ///< YUMA or SEM, for satellites that have no ephemeris
-  std::string ionex_file;              ///< maps, for ionosphere ionex
-  std::vector<std::string> sp3_files;  ///< precise orbits, for ephemeris_error broadcast_minus_sp3
-  std::string antex_file;              ///< satellite antennas, for the same
+  std::string estimator = "least_squares";   ///< least_squares | kalman
+  double estimator_acceleration_m_s2 = 2.0;  ///< kalman: white acceleration per axis, m/s^2/sqrt(Hz)
+  std::string systems = "G";                 ///< RINEX letters of the systems received
+  std::string nav_file;                      ///< RINEX navigation file; none at all = built-in constellation
+  std::vector<std::string> nav_files;        ///< further ones
+  std::string almanac_file;                  ///< YUMA or SEM, for satellites that have no ephemeris
+  std::string ionex_file;                    ///< maps, for ionosphere ionex
+  std::vector<std::string> sp3_files;        ///< precise orbits, for ephemeris_error broadcast_minus_sp3
+  std::string antex_file;                    ///< satellite antennas, for the same
 };
 void visit(FieldVisitor& f, GnssConfig& c);
 

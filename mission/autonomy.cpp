@@ -73,12 +73,11 @@ Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::Str
   }
   PriorKnowledge prior{Path(polyline, config.corner_radius_m), {}};
   // Waypoints come in order: each is looked for from the one before on, near where the unrounded streets would put it.
-  double s_m = 0.0, along_m = 0.0;
+  double s_m = 0.0;
   std::size_t at = 0;
   for (std::size_t i = 0; i < config.waypoints.size(); ++i) {
     double leg_m = 0.0;
     for (; at < corner[i]; ++at) leg_m += (polyline[at + 1] - polyline[at]).norm();
-    along_m += leg_m;
     s_m = prior.route.project(config.waypoints[i].p_m, s_m, std::min(prior.route.length_m(), s_m + leg_m + 1.0));
     prior.waypoint_s_m.push_back(s_m);
   }

@@ -88,7 +88,7 @@ class Launching final : public PathModel {
     for (int bounce = 0; bounce < kOrder; ++bounce) {
       double range_m = 0.0;
       const scene::Hit hit = first_solid(at_W, towards_W, scene, range_m, counters);
-      if (!hit.hit()) return;
+      if (!hit.hit() || range_m <= 0.0) return;  // zero: the antenna touches it, and what it reflects has no way
       const auto& mesh = scene.scene().mesh();
       if (scene.scene().objects()[mesh.object[hit.triangle]].kind == scene::ObjectKind::kTerrain) return;
       if (scene.scene().materials()[mesh.material[hit.triangle]].rf_absorbing) return;

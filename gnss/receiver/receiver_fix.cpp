@@ -63,21 +63,36 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
   }
 }
 
-/// Velocity from the Dopplers of the satellites in the fix. Carriers are trusted in proportion to codes: what weakens
-/// or bends one does so to the other.
-void fill_velocity(const GnssEpoch& epoch, std::vector<RateMeasurement> rates, double max_gdop, GnssFix& fix) {
-  constexpr double kPerCodeSigma = 0.1;  // 5 cm/s where the code is trusted to 0.5 m
+/// The elements that belong to satellites in the fix.
+template <class T>
+std::vector<T> of_used(const GnssEpoch& epoch, const std::vector<T>& all) {
+  std::vector<T> used;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (epoch.observations[i].used) used.push_back(all[i]);
+  return used;
+}
+
+/// Velocity from the Dopplers of the satellites in the fix.
+void fill_velocity(std::span<const RateMeasurement> rates, double max_gdop, GnssFix& fix) {
   constexpr double kOutlierSigmas = 5.0;
-  std::vector<RateMeasurement> used;
-  for (std::size_t i = 0; i < rates.size(); ++i) {
-    if (!epoch.observations[i].used) continue;
-    rates[i].sigma_m_s = kPerCodeSigma * epoch.observations[i].sigma_m;
-    used.push_back(rates[i]);
-  }
-  const VelocitySolution velocity = solve_velocity(used, fix.p_A_E, {max_gdop, kOutlierSigmas});
+  const VelocitySolution velocity = solve_velocity(rates, fix.p_A_E, {max_gdop, kOutlierSigmas});
   if (!velocity.ok) return;
   fix.v_A_E = velocity.v_E;
   fix.velocity_covariance_E = velocity.covariance_E;
+}
+
+/// An epoch without a position of its own, but with a filter that runs: whatever satellites there are.
+void bridge(PvtFilter& filter, FixStatus status, std::span<const RangeMeasurement> ranges,
+            std::span<const RateMeasurement> rates, const Eigen::Vector3d& at_E, GnssEpoch& epoch, GnssFix& fix) {
+  const PvtFilter::Estimate estimate = filter.update(fix.t, ranges, rates, at_E);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    epoch.observations[i].used = estimate.ranges_used[i];
+    fix.satellites += estimate.ranges_used[i] ? 1 : 0;
+  }
+  if (!estimate.ok || fix.satellites == 0) return;
+  fix.status = status;
+  fix.reason.clear();
+  estimate.fill(fix);
 }
 
 }  // namespace
@@ -94,7 +109,11 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   // Uncorrected ranges tell the position to some tens of metres; corrected for elevations and heights there, to metres;
   // a third pass would change corrections by less than a millimetre.
   Eigen::Vector3d at_E = receiver.guess_E;
-  if (const auto rough = receiver.solver.solve(ranges, receiver.guess_E); rough.ok) at_E = rough.p_E;
+  const auto expected_E = receiver.filter != nullptr ? receiver.filter->predicted_p_E(t) : std::nullopt;
+  if (const auto rough = receiver.solver.solve(ranges, receiver.guess_E); rough.ok)
+    at_E = rough.p_E;
+  else if (expected_E)
+    at_E = *expected_E;
   PositionSolution solution;
   constexpr int kPasses = 2;
   for (int pass = 0; pass < kPasses; ++pass) {
@@ -106,18 +125,29 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   for (std::size_t i = 0; i < observations.size(); ++i)
     observations[i].v_E = turned_by_earth(observations[i].v_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
 
+  // Carriers are trusted in proportion to codes, 5 cm/s where the code is trusted to 0.5 m: what weakens or bends one
+  // does so to the other.
+  for (std::size_t i = 0; i < observations.size(); ++i) rates[i].sigma_m_s = 0.1 * observations[i].sigma_m;
+
   GnssFix fix;
   fix.t = t;
   fix.dop = solution.dop;
   fix.reason = solution.reason;
-  if (!solution.ok) return fix;
+  if (!solution.ok) {
+    if (expected_E) bridge(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
+    return fix;
+  }
   fix.status = receiver.mode.status();
   fix.p_A_E = solution.p_E;
   fix.covariance_E = solution.covariance_E;
   fix.clock_m = solution.clock_m;
   fix.satellites = solution.satellites_used();
   for (std::size_t i = 0; i < observations.size(); ++i) observations[i].used = solution.used[i];
-  fill_velocity(epoch, std::move(rates), receiver.max_gdop, fix);
+  rates = of_used(epoch, rates);
+  if (receiver.filter != nullptr)
+    receiver.filter->update(t, of_used(epoch, ranges), rates, fix.p_A_E).fill(fix);
+  else
+    fill_velocity(rates, receiver.max_gdop, fix);
   return fix;
 }
 

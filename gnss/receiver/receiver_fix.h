@@ -7,6 +7,7 @@
 #include "gnss/receiver/receiver_mode.h"
 #include "gnss/satellites/constellation.h"
 #include "gnss/solver/position_solver.h"
+#include "gnss/solver/pvt_filter.h"
 #include "gnss/solver/weighting.h"
 
 namespace canyon::gnss {
@@ -17,14 +18,16 @@ struct ReceiverParts {
   const ReceiverMode& mode;
   const PositionSolver& solver;
   const RangeWeighting& weighting;
-  double max_gdop = 100.0;  ///< of a velocity
-  Eigen::Vector3d guess_E;  ///< rough position, used while there is no fix; some kilometres are good enough
+  double max_gdop = 100.0;      ///< of a velocity
+  Eigen::Vector3d guess_E;      ///< rough position, used while there is no fix; some kilometres are good enough
+  PvtFilter* filter = nullptr;  ///< of position, velocity and time; without one each epoch is solved by itself
 };
 
 /// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,
 /// clock, correction, sigma, used) and solves them. `inputs` runs parallel to epoch.observations; its receivers_view is
 /// filled in. `corrections` gets what was subtracted. The fix carries the time `t` and not the receiver clock's reading
-/// epoch.t: a receiver corrects its own time tag with the clock that it solves.
+/// epoch.t: a receiver corrects its own time tag with the clock that it solves. A filter is given the satellites that
+/// the epoch's own solution kept; once it runs, it also makes a fix of the few satellites of an epoch that has none.
 GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
                     std::vector<Correction>& corrections);
 

@@ -44,7 +44,6 @@ class ObservationHeaderReader {
   char scale_letter_ = ' ';
   std::size_t listed_ = 0;
   double scale_value_ = 1.0;
-  bool time_system_given_ = false;
 };
 
 }  // namespace canyon::gnss

@@ -6,12 +6,12 @@
 #include "core/check.h"
 #include "core/progress.h"
 #include "core/units.h"
+#include "gnss/atmosphere/ionosphere_map.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/signal.h"
 #include "gnss/single_point/carrier_smoothing.h"
 #include "gnss/single_point/code_choice.h"
 #include "gnss/single_point/group_delay.h"
-#include "gnss/single_point/ionosphere_map.h"
 #include "gnss/single_point/range_corrections.h"
 #include "gnss/sky_view.h"
 #include "gnss/solver/pvt_filter.h"
@@ -125,6 +125,7 @@ class SinglePoint {
     if (!rough.ok) {
       out.fix.dop = rough.dop;
       out.fix.reason = rough.reason;
+      bridge(candidates, out);
       return out;
     }
     at_E = rough.p_E;
@@ -145,7 +146,10 @@ class SinglePoint {
     out.fix.dop = solution.dop;
     out.fix.reason = solution.reason;
     out.integrity = solution.integrity;
-    if (!solution.ok) return out;
+    if (!solution.ok) {
+      bridge(candidates, out);
+      return out;
+    }
     fill(solution, out);
     const std::vector<RateMeasurement> rates = rates_of(candidates, out.epoch);
     if (filter_)
@@ -304,12 +308,26 @@ class SinglePoint {
     std::vector<RangeMeasurement> used;
     for (std::size_t i = 0; i < ranges.size(); ++i)
       if (out.epoch.observations[i].used) used.push_back(ranges[i]);
-    const PvtFilter::Estimate e = filter_->update(out.fix.t, used, rates, out.fix.p_A_E);
-    if (!e.ok) return;
-    out.fix.p_A_E = e.p_E;
-    out.fix.v_A_E = e.v_E;
-    out.fix.clock_m = e.clock_m;
-    out.fix.covariance_E = e.covariance.topLeftCorner<3, 3>();
+    filter_->update(out.fix.t, used, rates, out.fix.p_A_E).fill(out.fix);
+  }
+
+  /// An epoch without a position of its own: a filter that runs makes use of the few satellites that there are.
+  void bridge(const std::vector<Candidate>& candidates, SinglePointEpoch& out) {
+    const auto expected_E = filter_ ? filter_->predicted_p_E(out.fix.t) : std::nullopt;
+    if (!expected_E) return;
+    std::vector<RangeMeasurement> ranges;
+    correct(candidates, out.fix.t, *expected_E, out.epoch, ranges);
+    for (auto& o : out.epoch.observations) o.used = true;
+    const PvtFilter::Estimate e = filter_->update(out.fix.t, ranges, rates_of(candidates, out.epoch), *expected_E);
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      out.epoch.observations[i].used = e.ranges_used[i];
+      out.fix.satellites += e.ranges_used[i] ? 1 : 0;
+    }
+    if (!e.ok || out.fix.satellites == 0) return;
+    out.fix.status = FixStatus::kSingle;
+    out.fix.reason.clear();
+    e.fill(out.fix);
+    guess_E_ = e.p_E;
   }
 
   const ObservationFile& file_;

@@ -153,6 +153,15 @@ void PvtFilter::describe(Estimate& out) const {
   out.covariance = P_.topLeftCorner<6, 6>();
 }
 
+void PvtFilter::Estimate::fill(GnssFix& fix) const {
+  if (!ok) return;
+  fix.p_A_E = p_E;
+  fix.v_A_E = v_E;
+  fix.clock_m = clock_m;
+  fix.covariance_E = covariance.topLeftCorner<3, 3>();
+  fix.velocity_covariance_E = covariance.bottomRightCorner<3, 3>();
+}
+
 PvtFilter::Estimate PvtFilter::update(GpsTime t, std::span<const RangeMeasurement> ranges,
                                       std::span<const RateMeasurement> rates, const Eigen::Vector3d& guess_E) {
   Estimate out;

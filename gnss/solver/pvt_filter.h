@@ -40,12 +40,16 @@ class PvtFilter {
     double nis = kNaN;              ///< normalised innovation squared of what was used
     int nis_degrees = 0;
     bool begun_anew = false;
+
+    /// Puts position, velocity, clock and covariances into a fix; leaves it as it is unless ok.
+    void fill(GnssFix& fix) const;
   };
   /// Times must ascend. Either list may be empty. `guess_E`: for the first epoch, as poor as the Earth's centre.
   Estimate update(GpsTime t, std::span<const RangeMeasurement> ranges, std::span<const RateMeasurement> rates,
                   const Eigen::Vector3d& guess_E);
   /// Where it expects to be; nullopt before it runs.
   std::optional<Eigen::Vector3d> predicted_p_E(GpsTime t) const;
+  /// Forgets all: the next epoch begins anew.
   void reset() { running_ = false; }
 
  private:

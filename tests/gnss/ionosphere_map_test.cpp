@@ -1,4 +1,4 @@
-#include "gnss/single_point/ionosphere_map.h"
+#include "gnss/atmosphere/ionosphere_map.h"
 
 #include <cmath>
 

@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
+#include "core/chi_square.h"
 #include "core/files.h"
 #include "core/units.h"
 #include "gnss/receiver/receiver_mode.h"
@@ -738,6 +740,63 @@ TEST(GnssConfig, ReadsAndRefuses) {
   ASSERT_FALSE(status.ok());
   EXPECT_THAT(status.error().str(), HasSubstr("m.toml:2: gnss.multipath_rule:"));
   EXPECT_THAT(status.error().str(), HasSubstr("correlator"));
+}
+
+// The receiver's own filter: quieter than epochs by themselves, the same bits when measured again, and fixes where the
+// epoch alone has none.
+TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
+  GnssConfig c = errors_off();
+  c.thermal_noise_scale = 1.0;
+  c.code_loop_hz = 5.0;  // independent from epoch to epoch, 2 m
+  c.solver_sigma_m = 2.0;
+  const auto rms = [&](GnssSensor& sensor) {
+    double square = 0.0;
+    for (std::int64_t k = 0; k < 120; ++k) {
+      const GnssOutput out = measure(sensor, k);
+      EXPECT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+      if (k >= 20) square += (out.fix.p_A_E - truth_E()).squaredNorm();
+    }
+    return std::sqrt(square / 100.0);
+  };
+  const auto plain = make(c);
+  c.estimator = "kalman";
+  c.estimator_acceleration_m_s2 = 0.05;
+  const auto filtered = make(c);
+  const double filtered_m = rms(*filtered);
+  EXPECT_LT(filtered_m, 0.7 * rms(*plain));
+  EXPECT_EQ(rms(*filtered), filtered_m);  // index 0 does not follow 119: switched on anew
+
+  // A shaft closes around the antenna: of all satellites a few near the zenith are left.
+  c.paths = "visibility";
+  const auto shaft = WallScene()
+                         .box({-20, -20, 0}, {-6, 20, 12})
+                         .box({6, -20, 0}, {20, 20, 12})
+                         .box({-6, -20, 0}, {6, -6, 12})
+                         .box({-6, 6, 0}, {6, 20, 12})
+                         .build();
+  const auto sensor = make(c);
+  for (std::int64_t k = 0; k < 10; ++k) measure(*sensor, k);
+  c.estimator = "least_squares";
+  const GnssOutput alone = make(c)->measure(10, kStart + 5.0, antenna_W, still, scene::SceneAt(*shaft));
+  const GnssOutput bridged = sensor->measure(10, kStart + 5.0, antenna_W, still, scene::SceneAt(*shaft));
+  ASSERT_GT(alone.epoch.observations.size(), 0u);
+  ASSERT_LT(alone.epoch.observations.size(), 4u);
+  EXPECT_EQ(alone.fix.status, FixStatus::kNone);
+  ASSERT_EQ(bridged.fix.status, FixStatus::kSingle) << bridged.fix.reason;
+  EXPECT_EQ(bridged.fix.satellites, static_cast<int>(bridged.epoch.observations.size()));
+  // As good as it says: chi-square of three degrees, exceeded once in 10,000 times.
+  const Eigen::Vector3d error = bridged.fix.p_A_E - truth_E();
+  EXPECT_LT(error.dot(bridged.fix.covariance_E.ldlt().solve(error)), chi_square_threshold(1e-4, 3));
+}
+
+TEST_F(PseudorangeSensorTest, AFilterNeedsAReceiverClock) {
+  GnssConfig c;
+  c.estimator = "kalman";
+  c.solver = "trilateration";
+  c.receiver_clock = "none";
+  EXPECT_EQ(error_of(c),
+            "gnss.estimator: is \"kalman\", but the solver trilateration has no receiver clock, expected "
+            "solver \"least_squares\"");
 }
 
 }  // namespace

@@ -307,6 +307,32 @@ TEST_F(SyntheticDay, TheFilterIsBetterThanEpochsByThemselves) {
   EXPECT_LT(rms("kalman"), 0.6 * rms("least_squares"));
 }
 
+// Three satellites make no fix, but keep a running filter from drifting; none at all make none in either.
+TEST_F(SyntheticDay, TheFilterBridgesEpochsWithFewSatellites) {
+  const auto f = file([](int k, GnssEpoch& e) {
+    if (k >= 10 && k < 13) e.observations.resize(3);
+  });
+  auto c = plain();
+  c.systems = "G";
+  c.acceleration_m_s2 = 0.01;
+  const auto by_itself = solve_file(f, c);
+  c.estimator = "kalman";
+  const auto filtered = solve_file(f, c);
+  ASSERT_TRUE(by_itself.ok() && filtered.ok());
+  EXPECT_EQ(by_itself->solved(), 37);
+  EXPECT_EQ(filtered->solved(), 40);
+  for (std::size_t k = 10; k < 13; ++k) {
+    const GnssFix& fix = filtered->epochs[k].fix;
+    ASSERT_EQ(fix.status, FixStatus::kSingle);
+    EXPECT_EQ(fix.satellites, 3);
+    EXPECT_TRUE(fix.reason.empty());
+    // Fourth direction from what it knew: 0.01 m/s^2/sqrt(Hz) over 90 s is 0.01 sqrt(90^3 / 3) = 5 m.
+    EXPECT_LT((fix.p_A_E - place_).norm(), 5.0);
+    EXPECT_GT(fix.covariance_E.trace(), filtered->epochs[9].fix.covariance_E.trace());
+  }
+  EXPECT_LT((filtered->epochs[13].fix.p_A_E - place_).norm(), 1.0);
+}
+
 TEST_F(SyntheticDay, ReasonsAndWarningsWordForWord) {
   // From the second epoch on there are three satellites.
   const auto f = file([](int k, GnssEpoch& e) {
