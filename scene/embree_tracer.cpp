@@ -5,17 +5,19 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include "core/check.h"
 #include "core/parallel.h"
+#include "scene/plane_ranges.h"
 #include "scene/tracer.h"
 #include "scene/triangle.h"
 
 namespace canyon::scene {
 namespace {
 
-constexpr std::size_t kPacket = 16;
+constexpr std::size_t kPacket = RayPacket::kRays;
 
 /// One device for the whole process. Trees are built on one thread (see below): the order in which a parallel build
 /// places triangles in the tree may vary, and with it which of two triangles a ray through their common edge meets.
@@ -38,6 +40,43 @@ void check_no_error(const char* during) {
 bool finite(const Ray& ray) {
   return ray.origin.allFinite() && ray.direction.allFinite() && !std::isnan(ray.max_m);
 }
+
+/// Embree's own packet, laid out from ours.
+class Query {
+ public:
+  Query() {
+    std::memset(&packet_, 0, sizeof packet_);
+    std::fill_n(packet_.ray.mask, kPacket, unsigned{kTraceAll});
+    rtcInitIntersectContext(&context_);
+    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
+
+  const RTCRayHit16& trace(RTCScene scene, const RayPacket& rays) {
+    const int traced = lanes_to_trace(rays, valid_);
+    CANYON_CHECK(traced >= 0, "a packet holds a ray that is not finite");
+    traced_ += traced;
+    constexpr std::size_t kBytes = kPacket * sizeof(float);
+    std::memcpy(packet_.ray.org_x, rays.origin_x, kBytes);
+    std::memcpy(packet_.ray.org_y, rays.origin_y, kBytes);
+    std::memcpy(packet_.ray.org_z, rays.origin_z, kBytes);
+    std::memcpy(packet_.ray.dir_x, rays.direction_x, kBytes);
+    std::memcpy(packet_.ray.dir_y, rays.direction_y, kBytes);
+    std::memcpy(packet_.ray.dir_z, rays.direction_z, kBytes);
+    std::memcpy(packet_.ray.tfar, rays.max_m, kBytes);
+    std::fill_n(packet_.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet_.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect16(valid_, scene, &context_, &packet_);
+    return packet_;
+  }
+
+  std::int64_t traced() const { return traced_; }
+
+ private:
+  std::int64_t traced_ = 0;
+  alignas(64) RTCRayHit16 packet_;
+  alignas(64) int valid_[kPacket];
+  RTCIntersectContext context_;
+};
 
 }  // namespace
 
@@ -70,23 +109,69 @@ struct Tracer::Embree {
     rtcReleaseGeometry(geometry);
   }
 
-  /// The range in double precision, from the plane of the triangle that Embree found.
+  std::uint32_t triangle(unsigned geometry_id, unsigned primitive_id) const {
+    return members[geometry_id][primitive_id];
+  }
+
+  Plane plane(std::uint32_t index) const {
+    const Triangle t = Triangle::of(mesh, index);
+    const Eigen::Vector3d n = t.area_normal().normalized();
+    return {n.x(), n.y(), n.z(), n.x() * t.a.x() + n.y() * t.a.y() + n.z() * t.a.z()};
+  }
+
+  /// The planes of all triangles, 32 bytes each; made when the first packet is traced, so that scenes whose sensors
+  /// send no packets do not pay for them.
+  const std::vector<Plane>& planes() const {
+    std::call_once(planes_once, [this] {
+      planes_of_triangles.resize(mesh.triangles.size());
+      for (std::uint32_t i = 0; i < planes_of_triangles.size(); ++i) planes_of_triangles[i] = plane(i);
+    });
+    return planes_of_triangles;
+  }
+  mutable std::once_flag planes_once;
+  mutable std::vector<Plane> planes_of_triangles;
+
+  /// The hit in double precision, from the plane of the triangle that Embree found.
   Hit hit(const Ray& ray, unsigned geometry_id, unsigned primitive_id, float embree_range_m) const {
     Hit result;
     if (geometry_id == RTC_INVALID_GEOMETRY_ID) return result;
-    result.triangle = members[geometry_id][primitive_id];
-    const Triangle triangle = Triangle::of(mesh, result.triangle);
-    const Eigen::Vector3d direction = ray.direction.cast<double>();
-    Eigen::Vector3d normal = triangle.area_normal().normalized();
-    const double approach = normal.dot(direction);
-    const double range_m = normal.dot(triangle.a - ray.origin.cast<double>()) / approach;
-    // A ray within its own plane's rounding of grazing keeps the single-precision range.
-    const bool plausible = std::abs(range_m - embree_range_m) <= 1e-3 * (1.0 + embree_range_m);
-    result.range_m = plausible ? static_cast<float>(std::max(range_m, 0.0)) : embree_range_m;
-    if (approach > 0.0) normal = -normal;
-    result.normal = normal.cast<float>();
+    result.triangle = triangle(geometry_id, primitive_id);
+    const Plane surface = plane(result.triangle);
+    const Eigen::Vector3d o = ray.origin.cast<double>(), d = ray.direction.cast<double>();
+    const PlaneRange found = plane_range(surface, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), embree_range_m);
+    result.range_m = found.range_m;
+    const double towards = found.approach > 0.0 ? -1.0 : 1.0;
+    result.normal = (towards * Eigen::Vector3d(surface.x, surface.y, surface.z)).cast<float>();
     return result;
   }
+};
+
+/// The planes of the triangles that the lanes of a packet met. Neighbouring packets often meet the same ones.
+class LanePlanes {
+ public:
+  explicit LanePlanes(const std::vector<Plane>& planes) : planes_(planes) { held_.fill(Hit::kMiss); }
+
+  std::uint32_t held(std::size_t lane) const { return held_[lane]; }
+
+  void hold(const std::uint32_t* triangle) {
+    Plane plane;
+    std::uint32_t latest = Hit::kMiss;
+    for (std::size_t lane = 0; lane < kPacket; ++lane) {
+      if (triangle[lane] != latest) {
+        latest = triangle[lane];
+        plane = latest == Hit::kMiss ? Plane{} : planes_[latest];
+      }
+      held_[lane] = latest;
+      packet_.set(lane, plane);
+    }
+  }
+
+  const PlanePacket& packet() const { return packet_; }
+
+ private:
+  const std::vector<Plane>& planes_;
+  PlanePacket packet_{};
+  std::array<std::uint32_t, kPacket> held_;
 };
 
 Tracer::Tracer(const SceneParts& parts) : embree_(std::make_unique<Embree>(parts.mesh)) {
@@ -128,36 +213,48 @@ Hit Tracer::trace(const Ray& ray) const {
 
 void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   CANYON_CHECK(rays.size() == hits.size(), "rays = ", rays.size(), ", hits = ", hits.size());
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(64) RTCRayHit16 query;
+  Query query;
+  RayPacket packet;
   for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
     const std::size_t count = std::min(kPacket, rays.size() - begin);
-    alignas(64) int valid[kPacket];
     for (std::size_t lane = 0; lane < kPacket; ++lane) {
-      valid[lane] = lane < count ? -1 : 0;
       const Ray& ray = rays[begin + std::min(lane, count - 1)];
       CANYON_CHECK(finite(ray), "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
-      query.ray.org_x[lane] = ray.origin.x(), query.ray.org_y[lane] = ray.origin.y(),
-      query.ray.org_z[lane] = ray.origin.z();
-      query.ray.dir_x[lane] = ray.direction.x(), query.ray.dir_y[lane] = ray.direction.y();
-      query.ray.dir_z[lane] = ray.direction.z();
-      query.ray.tnear[lane] = 0.0f;
-      query.ray.tfar[lane] = ray.max_m;
-      query.ray.time[lane] = 0.0f;
-      query.ray.mask[lane] = kTraceAll;
-      query.ray.id[lane] = 0;
-      query.ray.flags[lane] = 0;
-      query.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-      query.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+      packet.origin_x[lane] = ray.origin.x(), packet.origin_y[lane] = ray.origin.y();
+      packet.origin_z[lane] = ray.origin.z();
+      packet.direction_x[lane] = ray.direction.x(), packet.direction_y[lane] = ray.direction.y();
+      packet.direction_z[lane] = ray.direction.z();
+      packet.max_m[lane] = lane < count ? ray.max_m : -1.0f;
     }
-    rtcIntersect16(valid, embree_->scene, &context, &query);
+    const RTCRayHit16& found = query.trace(embree_->scene, packet);
     for (std::size_t lane = 0; lane < count; ++lane) {
       hits[begin + lane] =
-          embree_->hit(rays[begin + lane], query.hit.geomID[lane], query.hit.primID[lane], query.ray.tfar[lane]);
+          embree_->hit(rays[begin + lane], found.hit.geomID[lane], found.hit.primID[lane], found.ray.tfar[lane]);
     }
   }
+}
+
+std::int64_t Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
+  CANYON_CHECK(rays.size() == hits.size(), "packets of rays = ", rays.size(), ", of hits = ", hits.size());
+  Query query;
+  LanePlanes planes(embree_->planes());
+  for (std::size_t p = 0; p < rays.size(); ++p) {
+    const RTCRayHit16& found = query.trace(embree_->scene, rays[p]);
+    // Ranges of the packet before: its planes, written one by one, have settled by now and are read as vectors.
+    if (p > 0) plane_ranges(rays[p - 1], planes.packet(), hits[p - 1]);
+    std::uint32_t changed = 0;
+    for (std::size_t lane = 0; lane < kPacket; ++lane) {
+      const unsigned geometry = found.hit.geomID[lane];
+      const bool met = geometry != RTC_INVALID_GEOMETRY_ID;
+      const std::uint32_t triangle = met ? embree_->triangle(geometry, found.hit.primID[lane]) : Hit::kMiss;
+      changed |= planes.held(lane) ^ triangle;
+      hits[p].triangle[lane] = triangle;
+      hits[p].range_m[lane] = met ? found.ray.tfar[lane] : std::numeric_limits<float>::infinity();
+    }
+    if (changed != 0) planes.hold(hits[p].triangle);
+  }
+  if (!rays.empty()) plane_ranges(rays.back(), planes.packet(), hits.back());
+  return query.traced();
 }
 
 bool Tracer::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m,

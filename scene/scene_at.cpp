@@ -19,6 +19,10 @@ void SceneAt::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   scene_->tracer_->trace(rays, hits);
 }
 
+void SceneAt::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
+  traced_rays_.add(scene_->tracer_->trace(rays, hits));
+}
+
 bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) const {
   const Eigen::Vector3d way = b_W - a_W;
   const double length_m = way.norm();

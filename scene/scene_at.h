@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "scene/ray_packet.h"
 #include "scene/scene.h"
 
 namespace canyon::scene {
@@ -54,6 +55,8 @@ class SceneAt {
   /// beam). Every hit is the same as that of trace(ray), except that a ray exactly through an edge may report either
   /// neighbour.
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
+  /// The same for rays that are already packed; nothing but range, incidence and triangle comes back.
+  void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const;
   /// True if anything, trees included, lies on the open segment between a and b (both ends kept clear by 1 mm).
   bool blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) const;
   /// True if anything lies on the ray from p (kept clear by 1 mm) towards the unit direction, up to max_m, except trees

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "scene/ray_packet.h"
 #include "scene/scene.h"
 #include "scene/scene_at.h"
 
@@ -28,6 +29,8 @@ class Tracer {
   /// As SceneAt's; origins, directions and points must be finite.
   Hit trace(const Ray& ray) const;
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
+  /// Returns how many rays were traced.
+  std::int64_t trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const;
   /// Anything of `mask` at ranges (min_m, max_m)?
   bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m,
                 std::uint32_t mask) const;

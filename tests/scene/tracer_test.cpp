@@ -144,7 +144,44 @@ TEST(Trace, PacketsAreTheSameAsSingleRaysHoweverTheSpanIsCut) {
     ASSERT_EQ(pieces[i].range_m, single.range_m) << i;
   }
   EXPECT_EQ(at.counters().traced_rays, 3 * static_cast<std::int64_t>(rays.size()));
-  at.trace({}, {});
+  at.trace(std::span<const Ray>{}, std::span<Hit>{});
+}
+
+TEST(Trace, PackedRaysMeetWhatSingleRaysMeet) {
+  const Scene scene(make_city(coarse_city()));
+  const SceneAt at(scene);
+  const std::vector<Ray> rays = city_rays(160 * RayPacket::kRays);
+  std::vector<RayPacket> packed(rays.size() / RayPacket::kRays);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    RayPacket& p = packed[i / RayPacket::kRays];
+    const std::size_t lane = i % RayPacket::kRays;
+    p.origin_x[lane] = rays[i].origin.x(), p.origin_y[lane] = rays[i].origin.y(), p.origin_z[lane] = rays[i].origin.z();
+    p.direction_x[lane] = rays[i].direction.x(), p.direction_y[lane] = rays[i].direction.y();
+    p.direction_z[lane] = rays[i].direction.z();
+    p.max_m[lane] = i % 7 == 0 ? -1.0f : 200.0f;  // every seventh is not traced
+  }
+  std::vector<HitPacket> hits(packed.size());
+  at.trace(packed, hits);
+  std::int64_t traced = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Ray r = rays[i];
+    r.max_m = 200.0f;
+    const Hit single = i % 7 == 0 ? Hit{} : SceneAt(scene).trace(r);
+    const HitPacket& hit = hits[i / RayPacket::kRays];
+    const std::size_t lane = i % RayPacket::kRays;
+    traced += i % 7 == 0 ? 0 : 1;
+    ASSERT_EQ(hit.triangle[lane], single.triangle) << i;
+    if (!single.hit()) {
+      ASSERT_TRUE(std::isinf(hit.range_m[lane])) << i;
+      continue;
+    }
+    ASSERT_EQ(hit.range_m[lane], single.range_m) << i;
+    // Ours is rounded once; a product of the rounded normal three times more.
+    ASSERT_NEAR(hit.cos_incidence[lane], std::abs(single.normal.dot(r.direction)), 2 * kFloatEps) << i;
+  }
+  EXPECT_EQ(at.counters().traced_rays, traced);
+  packed[1].direction_y[3] = std::nanf("");
+  EXPECT_THROW(at.trace(packed, hits), ProgramError);
 }
 
 TEST(Trace, IsTheSameFromManyThreads) {

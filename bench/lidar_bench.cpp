@@ -1,0 +1,246 @@
+// The LIDAR's speed beside the bare ray tracer: Embree's own packet loop on the same rays, over the same triangles, in
+// the same run. Each benchmark alternates the two, one revolution each, and reports the median of the ratios
+// (share_of_bare) beside both rates: a loaded machine slows both alike.
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+
+#include "core/parallel.h"
+#include "core/units.h"
+#include "lidar/beam_table.h"
+#include "lidar/scanner.h"
+#include "scene/city.h"
+#include "scene/scene_at.h"
+
+namespace {
+
+using canyon::scene::HitPacket;
+using canyon::scene::RayPacket;
+constexpr std::size_t kLanes = RayPacket::kRays;
+
+const canyon::scene::Scene& city() {
+  static const canyon::scene::Scene scene(canyon::scene::make_city({}));
+  return scene;
+}
+
+/// Embree alone: one geometry, ROBUST, no masks.
+class BareEmbree {
+ public:
+  explicit BareEmbree(const canyon::scene::Mesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices.size()));
+    std::memcpy(vertices, mesh.vertices.data(), mesh.vertices.size() * 3 * sizeof(float));
+    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(unsigned), mesh.triangles.size()));
+    std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * 3 * sizeof(unsigned));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  ~BareEmbree() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  BareEmbree(const BareEmbree&) = delete;
+  BareEmbree& operator=(const BareEmbree&) = delete;
+
+  /// The least that a packet loop must do: lay the rays out, trace, keep the ranges.
+  void trace(const std::vector<RayPacket>& rays, std::vector<float>& ranges) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    alignas(64) int valid[kLanes];
+    alignas(64) RTCRayHit16 query;
+    std::fill(valid, valid + kLanes, -1);
+    for (std::size_t p = 0; p < rays.size(); ++p) {
+      std::memcpy(query.ray.org_x, rays[p].origin_x, sizeof query.ray.org_x);
+      std::memcpy(query.ray.org_y, rays[p].origin_y, sizeof query.ray.org_y);
+      std::memcpy(query.ray.org_z, rays[p].origin_z, sizeof query.ray.org_z);
+      std::memcpy(query.ray.dir_x, rays[p].direction_x, sizeof query.ray.dir_x);
+      std::memcpy(query.ray.dir_y, rays[p].direction_y, sizeof query.ray.dir_y);
+      std::memcpy(query.ray.dir_z, rays[p].direction_z, sizeof query.ray.dir_z);
+      std::memcpy(query.ray.tfar, rays[p].max_m, sizeof query.ray.tfar);
+      std::memset(query.ray.tnear, 0, sizeof query.ray.tnear);
+      std::memset(query.ray.time, 0, sizeof query.ray.time);
+      std::memset(query.ray.mask, 0xff, sizeof query.ray.mask);
+      std::memset(query.ray.flags, 0, sizeof query.ray.flags);
+      std::memset(query.hit.geomID, 0xff, sizeof query.hit.geomID);
+      std::memset(query.hit.instID[0], 0xff, sizeof query.hit.instID[0]);
+      rtcIntersect16(valid, scene_, &context, &query);
+      std::memcpy(ranges.data() + p * kLanes, query.ray.tfar, sizeof query.ray.tfar);
+    }
+  }
+
+ private:
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+const BareEmbree& bare() {
+  static const BareEmbree embree(city().mesh());
+  return embree;
+}
+
+Eigen::Vector3d sensor_place() {
+  const Eigen::Vector2d crossing = city().streets().nodes_W[city().streets().nodes_W.size() / 2];
+  return {crossing.x(), crossing.y(), city().ground(crossing.x(), crossing.y())->height_m + 1.8};
+}
+
+enum class Order { kRing, kColumn, kVolley };
+constexpr std::size_t kVolleySteps = 32;
+
+/// The rays of one revolution from a standing sensor.
+std::vector<RayPacket> revolution(const canyon::lidar::BeamTable& table, std::size_t steps, Order order) {
+  const Eigen::Vector3f origin = sensor_place().cast<float>();
+  std::vector<RayPacket> packets;
+  std::size_t lane = kLanes;
+  const auto add = [&](std::size_t ring, std::size_t step) {
+    if (lane == kLanes) packets.emplace_back(), lane = 0;
+    const double azimuth = 2.0 * canyon::kPi * static_cast<double>(step) / static_cast<double>(steps) +
+                           table.beams[ring].azimuth_offset_rad;
+    const double elevation = table.beams[ring].elevation_rad;
+    RayPacket& packet = packets.back();
+    packet.origin_x[lane] = origin.x(), packet.origin_y[lane] = origin.y(), packet.origin_z[lane] = origin.z();
+    packet.direction_x[lane] = static_cast<float>(-std::cos(elevation) * std::cos(azimuth));
+    packet.direction_y[lane] = static_cast<float>(std::cos(elevation) * std::sin(azimuth));
+    packet.direction_z[lane] = static_cast<float>(std::sin(elevation));
+    packet.max_m[lane] = 100.0f;
+    ++lane;
+  };
+  const std::size_t rings = table.beams.size();
+  if (order == Order::kRing) {
+    for (std::size_t j = 0; j < rings; ++j)
+      for (std::size_t c = 0; c < steps; ++c) add(j, c);
+  } else if (order == Order::kVolley) {
+    for (std::size_t first = 0; first < steps; first += kVolleySteps)
+      for (std::size_t j = 0; j < rings; ++j)
+        for (std::size_t c = first; c < std::min(steps, first + kVolleySteps); ++c) add(j, c);
+  } else {
+    for (std::size_t c = 0; c < steps; ++c)
+      for (std::size_t j = 0; j < rings; ++j) add(j, c);
+  }
+  for (; lane < kLanes; ++lane) {  // the last packet is filled up with its last ray
+    RayPacket& packet = packets.back();
+    for (float* v : {packet.origin_x, packet.origin_y, packet.origin_z, packet.direction_x, packet.direction_y,
+                     packet.direction_z, packet.max_m})
+      v[lane] = v[lane - 1];
+  }
+  return packets;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+/// Runs both in turn and reports the median ratio of their rates; `rays` of ours and of theirs may differ.
+template <class Ours, class Theirs>
+void side_by_side(benchmark::State& state, double our_rays, Ours ours, double their_rays, Theirs theirs) {
+  std::vector<double> ratios, our_s, their_s;
+  ours(), theirs();
+  for (auto _ : state) {
+    auto start = std::chrono::steady_clock::now();
+    theirs();
+    their_s.push_back(seconds_since(start));
+    start = std::chrono::steady_clock::now();
+    ours();
+    our_s.push_back(seconds_since(start));
+    state.SetIterationTime(our_s.back());
+    ratios.push_back((our_rays / our_s.back()) / (their_rays / their_s.back()));
+  }
+  state.counters["share_of_bare"] = median(ratios);
+  state.counters["Mrays_s"] = our_rays / median(our_s) * 1e-6;
+  state.counters["bare_Mrays_s"] = their_rays / median(their_s) * 1e-6;
+}
+
+const canyon::lidar::BeamTable& table_of(const char* name) {
+  static std::vector<std::unique_ptr<canyon::lidar::BeamTable>> tables;
+  for (const auto& table : tables)
+    if (table->name == name) return *table;
+  tables.push_back(std::make_unique<canyon::lidar::BeamTable>(*canyon::lidar::load_beam_table(name)));
+  return *tables.back();
+}
+
+void packets_traced(benchmark::State& state, Order order) {
+  const canyon::scene::SceneAt scene(city());
+  const auto rays = revolution(table_of("vlp16"), 1800, order);
+  const auto best = revolution(table_of("vlp16"), 1800, Order::kRing);
+  std::vector<HitPacket> hits(rays.size());
+  std::vector<float> ranges(best.size() * kLanes);
+  const double count = static_cast<double>(rays.size() * kLanes);
+  side_by_side(
+      state, count, [&] { scene.trace(rays, hits); }, count, [&] { bare().trace(best, ranges); });
+}
+BENCHMARK_CAPTURE(packets_traced, ring_order, Order::kRing)->UseManualTime();
+BENCHMARK_CAPTURE(packets_traced, volley_order, Order::kVolley)->UseManualTime();
+BENCHMARK_CAPTURE(packets_traced, column_order, Order::kColumn)->UseManualTime();
+
+/// The bare ray tracer in other orders of the same rays, beside ring order.
+void bare_order(benchmark::State& state, Order order) {
+  const auto rays = revolution(table_of("vlp16"), 1800, order);
+  const auto best = revolution(table_of("vlp16"), 1800, Order::kRing);
+  std::vector<float> ranges(rays.size() * kLanes);
+  const double count = static_cast<double>(rays.size() * kLanes);
+  side_by_side(
+      state, count, [&] { bare().trace(rays, ranges); }, count, [&] { bare().trace(best, ranges); });
+}
+BENCHMARK_CAPTURE(bare_order, volley, Order::kVolley)->UseManualTime();
+BENCHMARK_CAPTURE(bare_order, column, Order::kColumn)->UseManualTime();
+
+canyon::Trajectory driving() {
+  const Eigen::Vector3d place = sensor_place();
+  canyon::Trajectory motion;
+  for (int k = -40; k <= 40; ++k) {
+    const double t = 0.005 * k;
+    motion.append({canyon::GpsTime{1'000'000'000'000'000'000} + t,
+                   {Eigen::Quaterniond::Identity(), place + Eigen::Vector3d(8.0 * t, 0, 0)}});
+  }
+  return motion;
+}
+
+void whole_scan(benchmark::State& state, const canyon::lidar::LidarConfig& config) {
+  canyon::set_threads(1);
+  const canyon::scene::SceneAt scene(city());
+  const auto& table = table_of(config.beams.c_str());
+  const auto best = revolution(table, static_cast<std::size_t>(config.azimuth_steps), Order::kRing);
+  std::vector<float> ranges(best.size() * kLanes);
+  const auto scanner = *canyon::lidar::make_scanner(config, 1);
+  const canyon::Trajectory motion = driving();
+  const double count = static_cast<double>(config.azimuth_steps) * static_cast<double>(table.beams.size());
+  std::int64_t index = 0;
+  side_by_side(
+      state, count,
+      [&] {
+        benchmark::DoNotOptimize(
+            scanner->scan(index++, canyon::GpsTime{1'000'000'000'000'000'000} + 0.1, motion, scene));
+      },
+      static_cast<double>(best.size() * kLanes), [&] { bare().trace(best, ranges); });
+}
+
+canyon::lidar::LidarConfig at_origin() {
+  canyon::lidar::LidarConfig config;
+  config.mount_m.setZero();
+  return config;
+}
+
+void single_ray(benchmark::State& state) {
+  whole_scan(state, at_origin());
+}
+BENCHMARK(single_ray)->UseManualTime();
+
+}  // namespace
