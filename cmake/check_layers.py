@@ -29,7 +29,7 @@ OUTSIDE = ["tests", "bench", "python", "viewer", "examples"]
 
 # Heavy libraries: which includes are theirs, and the only files that may have them.
 LIBRARIES = [
-    ("Embree", r"embree\d?/", ["scene/embree_tracer.cpp"]),
+    ("Embree", r"embree\d?/", ["scene/embree_*.cpp"]),
     ("PCL", r"pcl/", ["lidar/pcl_*.cpp"]),
     ("toml++", r"toml\+\+/", ["core/*.cpp"]),
     ("GeographicLib", r"GeographicLib/", ["core/*.cpp"]),

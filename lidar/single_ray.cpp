@@ -124,7 +124,6 @@ class SingleRay final : public Scanner {
   }
 
   void collect(const scene::SceneAt& scene, LidarOutput& out) const {
-    const scene::Mesh& mesh = scene.scene().mesh();
     const auto& materials = scene.scene().materials();
     out.scan.points.reserve(rays_per_scan());
     out.truth.reserve(rays_per_scan());
@@ -133,10 +132,10 @@ class SingleRay final : public Scanner {
         const std::size_t i = j * steps_ + c;
         const Shot& shot = shot_[i];
         if (shot.measured_m == 0) continue;
-        const std::uint16_t material = mesh.material[shot.triangle];
+        const scene::SceneAt::Surface surface = scene.surface(shot.triangle);
         Eigen::Vector3d p_L = static_cast<double>(shot.measured_m) * direction_L_[i];
         p_L.z() += beams_[j].origin_up_m;
-        const double reflectivity = materials[material].lidar_reflectance * shot.cos_incidence;
+        const double reflectivity = materials[surface.material].lidar_reflectance * shot.cos_incidence;
         out.scan.points.push_back({.x = static_cast<float>(p_L.x()),
                                    .y = static_cast<float>(p_L.y()),
                                    .z = static_cast<float>(p_L.z()),
@@ -146,8 +145,8 @@ class SingleRay final : public Scanner {
                                    .return_index = 0});
         out.truth.push_back({.range_m = shot.range_m,
                              .cos_incidence = shot.cos_incidence,
-                             .material = material,
-                             .object = mesh.object[shot.triangle]});
+                             .material = surface.material,
+                             .object = surface.object});
       }
     }
   }

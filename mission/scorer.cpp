@@ -56,7 +56,7 @@ std::string Scorer::collides(const KinematicState& truth) const {
       const scene::Hit hit =
           scene_.trace({a.cast<float>(), d.normalized().cast<float>(), static_cast<float>(d.norm())});
       if (!hit.hit()) return {};
-      return scene_.scene().objects()[scene_.scene().mesh().object[hit.triangle]].name;
+      return scene_.object(scene_.surface(hit.triangle).object).name;
     };
     for (int i = 0; i < lines; ++i) {
       const double y = -half + 2.0 * half * i / (lines - 1);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/check.h"
-#include "core/parallel.h"
+#include "scene/embree_device.h"
 #include "scene/plane_ranges.h"
 #include "scene/tracer.h"
 #include "scene/triangle.h"
@@ -17,29 +17,9 @@
 namespace canyon::scene {
 namespace {
 
+using embree::device;
+
 constexpr std::size_t kPacket = RayPacket::kRays;
-
-/// One device for the whole process. Trees are built on one thread (see below): the order in which a parallel build
-/// places triangles in the tree may vary, and with it which of two triangles a ray through their common edge meets.
-RTCDevice device() {
-  static const RTCDevice instance = [] {
-    RTCDevice made = rtcNewDevice(nullptr);
-    CANYON_CHECK(made != nullptr, "Embree error ", static_cast<int>(rtcGetDeviceError(nullptr)));
-    CANYON_CHECK(rtcGetDeviceProperty(made, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0,
-                 "this Embree was built without ray masks");
-    return made;
-  }();
-  return instance;
-}
-
-void check_no_error(const char* during) {
-  const RTCError error = rtcGetDeviceError(device());
-  CANYON_CHECK(error == RTC_ERROR_NONE, "Embree error ", static_cast<int>(error), " during ", during);
-}
-
-bool finite(const Ray& ray) {
-  return ray.origin.allFinite() && ray.direction.allFinite() && !std::isnan(ray.max_m);
-}
 
 /// Embree's own packet, laid out from ours.
 class Query {
@@ -113,11 +93,7 @@ struct Tracer::Embree {
     return members[geometry_id][primitive_id];
   }
 
-  Plane plane(std::uint32_t index) const {
-    const Triangle t = Triangle::of(mesh, index);
-    const Eigen::Vector3d n = t.area_normal().normalized();
-    return {n.x(), n.y(), n.z(), n.x() * t.a.x() + n.y() * t.a.y() + n.z() * t.a.z()};
-  }
+  Plane plane(std::uint32_t index) const { return embree::plane_of(Triangle::of(mesh, index)); }
 
   /// The planes of all triangles, 32 bytes each; made when the first packet is traced, so that scenes whose sensors
   /// send no packets do not pay for them.
@@ -136,12 +112,7 @@ struct Tracer::Embree {
     Hit result;
     if (geometry_id == RTC_INVALID_GEOMETRY_ID) return result;
     result.triangle = triangle(geometry_id, primitive_id);
-    const Plane surface = plane(result.triangle);
-    const Eigen::Vector3d o = ray.origin.cast<double>(), d = ray.direction.cast<double>();
-    const PlaneRange found = plane_range(surface, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), embree_range_m);
-    result.range_m = found.range_m;
-    const double towards = found.approach > 0.0 ? -1.0 : 1.0;
-    result.normal = (towards * Eigen::Vector3d(surface.x, surface.y, surface.z)).cast<float>();
+    embree::refine(ray, plane(result.triangle), embree_range_m, result);
     return result;
   }
 };
@@ -189,15 +160,13 @@ Tracer::Tracer(const SceneParts& parts) : embree_(std::make_unique<Embree>(parts
   if (bytes > 0) std::memcpy(rtcGetBufferData(vertices), mesh.vertices.data(), bytes);
   for (unsigned id = 0; id < 3; ++id) embree_->add_geometry(id, vertices);
   rtcReleaseBuffer(vertices);
-  // Embree's own "threads=1" would limit oneTBB in the whole process.
-  run_on_one_thread([&] { rtcCommitScene(embree_->scene); });
-  check_no_error("the building of the acceleration structure");
+  embree::build(embree_->scene);
 }
 
 Tracer::~Tracer() = default;
 
 Hit Tracer::trace(const Ray& ray) const {
-  CANYON_CHECK(finite(ray), "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
+  embree::check_finite(ray);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};
@@ -219,7 +188,7 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
     const std::size_t count = std::min(kPacket, rays.size() - begin);
     for (std::size_t lane = 0; lane < kPacket; ++lane) {
       const Ray& ray = rays[begin + std::min(lane, count - 1)];
-      CANYON_CHECK(finite(ray), "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
+      embree::check_finite(ray);
       packet.origin_x[lane] = ray.origin.x(), packet.origin_y[lane] = ray.origin.y();
       packet.origin_z[lane] = ray.origin.z();
       packet.direction_x[lane] = ray.direction.x(), packet.direction_y[lane] = ray.direction.y();

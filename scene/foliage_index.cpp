@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace canyon::scene {
 namespace {
@@ -10,17 +11,19 @@ namespace {
 constexpr double kCell_m = 10.0;
 constexpr int kMaxCells = 1000;  // per side; larger scenes get larger cells
 
-double chord_m(const Foliage& crown, const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) {
+/// Where the ray enters and leaves the crown; leaves no later than it enters if it does not meet it.
+std::pair<double, double> chord(const Foliage& crown, const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W,
+                                double max_m) {
   // In the frame where the crown is a unit sphere: |o + s d|^2 = 1.
   const Eigen::Vector3d o = (p_W - crown.center_W).cwiseQuotient(crown.radii_m);
   const Eigen::Vector3d d = direction_W.cwiseQuotient(crown.radii_m);
   const double dd = d.squaredNorm(), od = o.dot(d);
   const double discriminant = od * od - dd * (o.squaredNorm() - 1.0);
-  if (discriminant <= 0.0) return 0.0;
+  if (discriminant <= 0.0) return {0.0, 0.0};
   const double root = std::sqrt(discriminant);
   const double enter_m = std::max((-od - root) / dd, 0.0);
   const double leave_m = std::min((-od + root) / dd, max_m);
-  return std::max(leave_m - enter_m, 0.0);
+  return {enter_m, leave_m};
 }
 
 /// (-a, -b, 1) of the plane z = a x + b y + c that fits the crowns' centers; level if they do not tell.
@@ -95,8 +98,9 @@ void FoliageIndex::add_cell(const Cell& cell, const Eigen::Vector3d& p_W, const 
   }
 }
 
-double FoliageIndex::chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {
-  if (cells_.empty()) return 0.0;
+void FoliageIndex::find(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
+                        std::vector<std::uint32_t>& met) const {
+  if (cells_.empty()) return;
   // The part of the ray inside the layer of crowns, and inside the rectangle around them.
   double begin_m = 0.0, end_m = max_m;
   const auto clip = [&](double at, double inverse_speed, double low, double high) {
@@ -112,10 +116,9 @@ double FoliageIndex::chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d&
   clip(slope_.dot(p_W), 1.0 / slope_.dot(direction_W), floor_m_, ceiling_m_);
   clip(p_W.x(), slow_x, low_.x(), high_.x());
   clip(p_W.y(), slow_y, low_.y(), high_.y());
-  if (!(begin_m <= end_m)) return 0.0;
+  if (!(begin_m <= end_m)) return;
 
   // From cell to cell of the grid (Amanatides & Woo 1987).
-  std::vector<std::uint32_t> met;
   const Eigen::Vector2d origin = low_.head<2>(), d = direction_W.head<2>();
   const Eigen::Vector2d start = p_W.head<2>() + begin_m * d - origin;
   int column = std::clamp(static_cast<int>(start.x() * per_m_), 0, columns_ - 1);
@@ -143,12 +146,32 @@ double FoliageIndex::chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d&
       next_y += width_y;
     }
   }
-  if (met.empty()) return 0.0;
   std::sort(met.begin(), met.end());
   met.erase(std::unique(met.begin(), met.end()), met.end());
+}
+
+double FoliageIndex::chords_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {
+  std::vector<std::uint32_t> met;
+  find(p_W, direction_W, max_m, met);
   double sum_m = 0.0;
-  for (const std::uint32_t i : met) sum_m += chord_m(crowns_[i], p_W, direction_W, max_m);
+  for (const std::uint32_t i : met) {
+    const auto [enter_m, leave_m] = chord(crowns_[i], p_W, direction_W, max_m);
+    const double weight = crowns_[i].leaf_density_m2_m3 / Foliage::kReferenceLeafDensity;
+    sum_m += weight * std::max(leave_m - enter_m, 0.0);
+  }
   return sum_m;
+}
+
+void FoliageIndex::passages(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
+                            std::vector<CrownPassage>& out) const {
+  out.clear();
+  thread_local std::vector<std::uint32_t> met;
+  met.clear();
+  find(p_W, direction_W, max_m, met);
+  for (const std::uint32_t i : met) {
+    const auto [enter_m, leave_m] = chord(crowns_[i], p_W, direction_W, max_m);
+    if (leave_m > enter_m) out.push_back({enter_m, leave_m, crowns_[i].leaf_density_m2_m3, i});
+  }
 }
 
 }  // namespace canyon::scene

@@ -26,22 +26,6 @@ void check_indices(const SceneParts& parts) {
   for (const Building& b : parts.buildings) CANYON_CHECK(b.object < parts.objects.size(), b.name, " object ", b.object);
 }
 
-std::size_t drop_unusable_triangles(Mesh& mesh) {
-  std::size_t kept = 0;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (!Triangle::of(mesh, i).usable()) continue;
-    mesh.triangles[kept] = mesh.triangles[i];
-    mesh.material[kept] = mesh.material[i];
-    mesh.object[kept] = mesh.object[i];
-    ++kept;
-  }
-  const std::size_t dropped = mesh.triangles.size() - kept;
-  mesh.triangles.resize(kept);
-  mesh.material.resize(kept);
-  mesh.object.resize(kept);
-  return dropped;
-}
-
 Extent extent_of(const Mesh& mesh) {
   Extent extent;
   for (const auto& triangle : mesh.triangles) {
@@ -114,7 +98,10 @@ std::optional<Scene::Ground> Scene::ground(double x, double y) const {
 
 const Building* Scene::building_at(const Eigen::Vector2d& xy) const {
   for (const Building& building : parts_.buildings) {
-    if (polygon_contains(building.footprint_W, xy)) return &building;
+    if (!polygon_contains(building.footprint_W, xy)) continue;
+    const auto& yards = building.courtyards_W;
+    if (std::none_of(yards.begin(), yards.end(), [&](const auto& yard) { return polygon_contains(yard, xy); }))
+      return &building;
   }
   return nullptr;
 }
@@ -128,7 +115,20 @@ std::string Scene::hash() const {
   append_bytes(bytes, mesh.material.data(), mesh.material.size());
   append_bytes(bytes, mesh.object.data(), mesh.object.size());
   for (const Material& m : parts_.materials) {
-    const double values[] = {m.itu_a, m.itu_b, m.itu_c, m.itu_d, m.lidar_reflectance, m.rf_absorbing ? 1.0 : 0.0};
+    const double values[] = {m.itu_a,
+                             m.itu_b,
+                             m.itu_c,
+                             m.itu_d,
+                             m.thickness_m,
+                             m.roughness_m,
+                             m.reflectance(850.0),
+                             m.reflectance(905.0),
+                             m.reflectance(1550.0),
+                             m.lidar_specular,
+                             m.lidar_specular_lobe_deg,
+                             m.lidar_retro_1_sr,
+                             m.lidar_transmittance,
+                             m.rf_absorbing ? 1.0 : 0.0};
     append_bytes(bytes, m.name.data(), m.name.size());
     append_bytes(bytes, values, std::size(values));
   }
@@ -140,6 +140,7 @@ std::string Scene::hash() const {
   for (const Foliage& f : parts_.foliage) {
     append_bytes(bytes, f.center_W.data(), 3);
     append_bytes(bytes, f.radii_m.data(), 3);
+    append_bytes(bytes, &f.leaf_density_m2_m3, 1);
   }
   const Geodetic& origin = parts_.frame.origin();
   const double frame[] = {origin.lat_rad, origin.lon_rad, origin.h_m, parts_.undulation_m};

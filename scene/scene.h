@@ -29,7 +29,7 @@ struct Mesh {
   std::vector<std::uint32_t> object;    ///< per triangle, index into Scene::objects()
 };
 
-enum class ObjectKind : std::uint8_t { kTerrain, kBuilding, kVehicle, kTree, kWall, kPole, kOther };
+enum class ObjectKind : std::uint8_t { kTerrain, kBuilding, kVehicle, kTree, kWall, kPole, kOther, kPerson };
 
 struct SceneObject {
   std::string name;  ///< "building 17"; unique
@@ -40,9 +40,10 @@ struct SceneObject {
 struct Building {
   std::string name;
   std::uint32_t object = 0;
-  std::vector<Eigen::Vector2d> footprint_W;  ///< counter-clockwise
-  double base_m = 0.0;                       ///< lowest ground at the footprint, W height
-  double height_m = 0.0;                     ///< roof above base
+  std::vector<Eigen::Vector2d> footprint_W;                ///< counter-clockwise
+  std::vector<std::vector<Eigen::Vector2d>> courtyards_W;  ///< holes of the footprint, clockwise
+  double base_m = 0.0;                                     ///< lowest ground at the footprint, W height
+  double height_m = 0.0;                                   ///< roof above base
 };
 
 /// Everything a scene is made of, before it becomes immutable.
@@ -104,7 +105,7 @@ class Scene {
   };
   std::optional<Ground> ground(double x, double y) const;
 
-  /// The building whose footprint contains (x, y); nullptr if none.
+  /// The building whose footprint, courtyards left out, contains (x, y); nullptr if none.
   const Building* building_at(const Eigen::Vector2d& xy) const;
 
   /// SHA-256 over geometry, materials and frame, for the manifest.

@@ -1,5 +1,6 @@
 #include "scene/scene_at.h"
 
+#include "core/check.h"
 #include "scene/tracer.h"
 
 namespace canyon::scene {
@@ -9,18 +10,52 @@ constexpr float kClearance_m = 1e-3f;
 
 }  // namespace
 
+void SceneAt::set_instances(std::vector<Instance> instances) {
+  moving_objects_.clear();
+  for (const Instance& i : instances) {
+    CANYON_CHECK(i.shape != nullptr, "instance ", i.name, " has no shape");
+    for (const std::uint16_t m : i.shape->mesh().material)
+      CANYON_CHECK(m < scene_->materials().size(), "instance ", i.name, " material ", m);
+    moving_objects_.push_back({i.name, i.shape->kind()});
+  }
+  instances_ = instances.empty() ? nullptr : std::make_shared<const InstanceSet>(std::move(instances));
+}
+
+const std::vector<Instance>& SceneAt::instances() const {
+  static const std::vector<Instance> kNone;
+  return instances_ ? instances_->instances() : kNone;
+}
+
+SceneAt::Surface SceneAt::moving_surface(std::uint32_t triangle) const {
+  const std::size_t first = scene_->mesh().triangles.size();
+  CANYON_CHECK(instances_ != nullptr, "triangle ", triangle, " of ", first);
+  const InstanceSet::Member member = instances_->member(triangle - static_cast<std::uint32_t>(first));
+  return {instances_->instances()[member.instance].shape->mesh().material[member.triangle],
+          static_cast<std::uint32_t>(scene_->objects().size()) + member.instance, true};
+}
+
+const SceneObject& SceneAt::object(std::uint32_t index) const {
+  const auto& fixed = scene_->objects();
+  CANYON_CHECK(index < fixed.size() + moving_objects_.size(), "object ", index);
+  return index < fixed.size() ? fixed[index] : moving_objects_[index - fixed.size()];
+}
+
 Hit SceneAt::trace(const Ray& ray) const {
   traced_rays_.add(1);
-  return scene_->tracer_->trace(ray);
+  Hit hit = scene_->tracer_->trace(ray);
+  if (instances_) instances_->trace(ray, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hit);
+  return hit;
 }
 
 void SceneAt::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   traced_rays_.add(static_cast<std::int64_t>(rays.size()));
   scene_->tracer_->trace(rays, hits);
+  if (instances_) instances_->trace(rays, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
 }
 
 void SceneAt::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
   traced_rays_.add(scene_->tracer_->trace(rays, hits));
+  if (instances_) instances_->trace(rays, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
 }
 
 bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) const {
@@ -28,20 +63,30 @@ bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) co
   const double length_m = way.norm();
   if (length_m <= 2.0 * kClearance_m) return false;
   occlusion_rays_.add(1);
-  return scene_->tracer_->occluded(a_W.cast<float>(), (way / length_m).cast<float>(), kClearance_m,
-                                   static_cast<float>(length_m - kClearance_m), kTraceAll);
+  const Eigen::Vector3f origin = a_W.cast<float>(), direction = (way / length_m).cast<float>();
+  const auto max_m = static_cast<float>(length_m - kClearance_m);
+  return scene_->tracer_->occluded(origin, direction, kClearance_m, max_m, kTraceAll) ||
+         (instances_ && instances_->occluded(origin, direction, kClearance_m, max_m));
 }
 
 bool SceneAt::blocked_towards(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
                               bool ignore_foliage) const {
   if (max_m <= kClearance_m) return false;
   occlusion_rays_.add(1);
-  return scene_->tracer_->occluded(p_W.cast<float>(), direction_W.cast<float>(), kClearance_m,
-                                   static_cast<float>(max_m), ignore_foliage ? kTraceTerrain | kTraceSolid : kTraceAll);
+  const Eigen::Vector3f origin = p_W.cast<float>(), direction = direction_W.cast<float>();
+  const auto end_m = static_cast<float>(max_m);
+  const std::uint32_t mask = ignore_foliage ? kTraceTerrain | kTraceSolid : kTraceAll;
+  return scene_->tracer_->occluded(origin, direction, kClearance_m, end_m, mask) ||
+         (instances_ && instances_->occluded(origin, direction, kClearance_m, end_m));
 }
 
 double SceneAt::foliage_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {
   return scene_->crowns_.chords_m(p_W, direction_W, max_m);
+}
+
+void SceneAt::crown_passages(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
+                             std::vector<CrownPassage>& out) const {
+  scene_->crowns_.passages(p_W, direction_W, max_m, out);
 }
 
 NearestSurface SceneAt::nearest(const Eigen::Vector3d& p_W, double max_m) const {

@@ -3,10 +3,13 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
+#include "scene/instances.h"
 #include "scene/ray_packet.h"
 #include "scene/scene.h"
 
@@ -40,14 +43,38 @@ struct TraceCounters {
   std::int64_t nearest_queries = 0;
 };
 
-/// The scene at one time as sensors receive it; one per run (moving instances will live here). Cheap to make and to
-/// copy. All queries are const and thread-safe. Counts its rays, for cost reports. Ray origins, directions and points
-/// must be finite; single precision resolves 0.06 mm at 1 km from W's origin.
+/// The scene at one time as sensors receive it; one per run. Cheap to make and to copy; a copy keeps the instances it
+/// was made with. All queries are const and thread-safe. Counts its rays, for cost reports. Ray origins, directions and
+/// points must be finite; single precision resolves 0.06 mm at 1 km from W's origin.
+///
+/// Moving things have an acceleration structure of their own over their shapes', made anew at each step; the static
+/// scene's is never touched, and a scene without moving things pays nothing for them. Triangles from
+/// scene().mesh().triangles.size() on, and objects from scene().objects().size() on, are of moving things: surface()
+/// and object() know both.
 class SceneAt {
  public:
   explicit SceneAt(const Scene& scene) : scene_(&scene) {}
 
   const Scene& scene() const { return *scene_; }
+
+  /// Puts the moving things where they are now; their shapes' materials must be the scene's. Not while other threads
+  /// trace.
+  void set_instances(std::vector<Instance> instances);
+  /// Moving object k is scene().objects().size() + k.
+  const std::vector<Instance>& instances() const;
+
+  /// What a ray met: index of its material, of its object, and whether it is a moving thing.
+  struct Surface {
+    std::uint16_t material = 0;
+    std::uint32_t object = 0;
+    bool moving = false;
+  };
+  Surface surface(std::uint32_t triangle) const {
+    const Mesh& mesh = scene_->mesh();
+    if (triangle < mesh.triangles.size()) return {mesh.material[triangle], mesh.object[triangle], false};
+    return moving_surface(triangle);
+  }
+  const SceneObject& object(std::uint32_t index) const;
 
   Hit trace(const Ray& ray) const;
   /// Many rays at once, on the calling thread. hits.size() == rays.size(). Rays go in packets of 16 neighbours: three
@@ -63,12 +90,16 @@ class SceneAt {
   /// (trunk and crown: every triangle of an ObjectKind::kTree) when `ignore_foliage`.
   bool blocked_towards(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m = 1e5,
                        bool ignore_foliage = true) const;
-  /// Length of the way through tree crowns along the ray, m: the chords through all Foliage ellipsoids, summed (where
-  /// crowns overlap, both count). The direction must be a unit vector.
+  /// Length of the way through tree crowns along the ray, m, as if all were of the reference leaf density: the chords
+  /// through all Foliage ellipsoids times density / reference, summed (where crowns overlap, both count). The direction
+  /// must be a unit vector.
   double foliage_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m = 1e5) const;
+  /// The chords themselves, by crown; replaces what is in `out`.
+  void crown_passages(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
+                      std::vector<CrownPassage>& out) const;
 
-  /// Nearest point of any surface, trees and terrain included, within max_m of p, in double precision (static scene;
-  /// used by the scorer). `triangle` is kMiss if there is none; of equally near triangles the one with the lowest
+  /// Nearest point of any static surface, trees and terrain included, within max_m of p, in double precision (used by
+  /// the scorer). `triangle` is kMiss if there is none; of equally near triangles the one with the lowest
   /// index.
   NearestSurface nearest(const Eigen::Vector3d& p_W, double max_m) const;
 
@@ -87,7 +118,11 @@ class SceneAt {
     std::atomic<std::int64_t> n{0};
   };
 
+  Surface moving_surface(std::uint32_t triangle) const;
+
   const Scene* scene_;
+  std::shared_ptr<const InstanceSet> instances_;  ///< null: nothing moves
+  std::vector<SceneObject> moving_objects_;
   mutable Counter traced_rays_, occlusion_rays_, nearest_queries_;
 };
 

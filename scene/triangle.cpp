@@ -37,4 +37,20 @@ bool Triangle::usable() const {
   return area_normal().norm() > 1e-6 * longest_m;
 }
 
+std::size_t drop_unusable_triangles(Mesh& mesh) {
+  std::size_t kept = 0;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!Triangle::of(mesh, i).usable()) continue;
+    mesh.triangles[kept] = mesh.triangles[i];
+    mesh.material[kept] = mesh.material[i];
+    mesh.object[kept] = mesh.object[i];
+    ++kept;
+  }
+  const std::size_t dropped = mesh.triangles.size() - kept;
+  mesh.triangles.resize(kept);
+  mesh.material.resize(kept);
+  mesh.object.resize(kept);
+  return dropped;
+}
+
 }  // namespace canyon::scene

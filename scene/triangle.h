@@ -24,4 +24,7 @@ struct Triangle {
   bool usable() const;
 };
 
+/// Drops the triangles that no ray can meet (not usable()), and counts them.
+std::size_t drop_unusable_triangles(Mesh& mesh);
+
 }  // namespace canyon::scene

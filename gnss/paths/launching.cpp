@@ -72,8 +72,7 @@ class Launching final : public PathModel {
       ++counters.occlusion_rays;
       if (!hit.hit()) return hit;
       range_m += hit.range_m;
-      const auto& mesh = scene.scene().mesh();
-      if (scene.scene().objects()[mesh.object[hit.triangle]].kind != scene::ObjectKind::kTree) return hit;
+      if (scene.object(scene.surface(hit.triangle).object).kind != scene::ObjectKind::kTree) return hit;
       range_m += kOff_m;
     }
     return {};
@@ -89,10 +88,12 @@ class Launching final : public PathModel {
       double range_m = 0.0;
       const scene::Hit hit = first_solid(at_W, towards_W, scene, range_m, counters);
       if (!hit.hit() || range_m <= 0.0) return;  // zero: the antenna touches it, and what it reflects has no way
-      const auto& mesh = scene.scene().mesh();
-      if (scene.scene().objects()[mesh.object[hit.triangle]].kind == scene::ObjectKind::kTerrain) return;
-      if (scene.scene().materials()[mesh.material[hit.triangle]].rf_absorbing) return;
-      const Eigen::Vector3d outward_W = scene::Triangle::of(mesh, hit.triangle).area_normal().normalized();
+      const scene::SceneAt::Surface surface = scene.surface(hit.triangle);
+      if (surface.moving) return;  // stands in the way; reflections are those of what stands still
+      if (scene.object(surface.object).kind == scene::ObjectKind::kTerrain) return;
+      if (scene.scene().materials()[surface.material].rf_absorbing) return;
+      const Eigen::Vector3d outward_W =
+          scene::Triangle::of(scene.scene().mesh(), hit.triangle).area_normal().normalized();
       if (outward_W.dot(towards_W) >= 0.0) return;  // from behind
       const auto b = static_cast<std::size_t>(bounce);
       ray.points_W[b] = at_W + range_m * towards_W;

@@ -52,5 +52,22 @@ TEST(FoliageIndex, FewOrNoCrowns) {
   EXPECT_EQ(one.chords_m({0, 0, 8}, {0, 0, 1}, 1e5), 0.0);
 }
 
+TEST(FoliageIndex, LeafDensityWeighsAndPassagesTellTheChords) {
+  const FoliageIndex two({{{0, 0, 5}, {2, 2, 2}, 0.5}, {{10, 0, 5}, {1, 1, 1}, 3.0}});
+  EXPECT_NEAR(two.chords_m({-9, 0, 5}, {1, 0, 0}, 1e5), 0.5 * 4.0 + 3.0 * 2.0, 1e-12);
+  std::vector<CrownPassage> passages{{}, {}, {}};
+  two.passages({-9, 0, 5}, {1, 0, 0}, 19.5, passages);
+  ASSERT_EQ(passages.size(), 2u);
+  EXPECT_EQ(passages[0].crown, 0u);
+  EXPECT_NEAR(passages[0].enter_m, 7.0, 1e-12);
+  EXPECT_NEAR(passages[0].leave_m, 11.0, 1e-12);
+  EXPECT_EQ(passages[0].leaf_density_m2_m3, 0.5);
+  EXPECT_EQ(passages[1].crown, 1u);
+  EXPECT_NEAR(passages[1].enter_m, 18.0, 1e-12);
+  EXPECT_NEAR(passages[1].leave_m, 19.5, 1e-12);  // cut by the ray's end
+  two.passages({-9, 0, 9}, {1, 0, 0}, 1e5, passages);
+  EXPECT_TRUE(passages.empty());
+}
+
 }  // namespace
 }  // namespace canyon::scene

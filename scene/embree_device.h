@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/check.h"
+#include "scene/plane_ranges.h"
+#include "scene/scene_at.h"
+#include "scene/triangle.h"
+
+struct RTCDeviceTy;
+struct RTCSceneTy;
+
+/// What the files that know Embree (embree_*.cpp) share.
+namespace canyon::scene::embree {
+
+/// One device for the whole process.
+RTCDeviceTy* device();
+/// Throws if Embree has reported an error since the last call.
+void check_no_error(const char* during);
+/// Builds the tree of a scene on the calling thread: the order in which a parallel build places triangles in the tree
+/// may vary, and with it which of two triangles a ray through their common edge meets.
+void build(RTCSceneTy* scene);
+
+/// Throws unless the ray's numbers are finite.
+inline void check_finite(const Ray& ray) {
+  CANYON_CHECK(ray.origin.allFinite() && ray.direction.allFinite() && !std::isnan(ray.max_m), "origin ",
+               ray.origin.transpose(), " direction ", ray.direction.transpose());
+}
+
+inline Plane plane_of(const Triangle& t) {
+  const Eigen::Vector3d n = t.area_normal().normalized();
+  return {n.x(), n.y(), n.z(), n.x() * t.a.x() + n.y() * t.a.y() + n.z() * t.a.z()};
+}
+
+/// Range and normal of a hit in double precision, from the plane of the triangle that Embree found at `traced_m`.
+inline void refine(const Ray& ray, const Plane& plane, float traced_m, Hit& hit) {
+  const Eigen::Vector3d o = ray.origin.cast<double>(), d = ray.direction.cast<double>();
+  const PlaneRange found = plane_range(plane, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), traced_m);
+  hit.range_m = found.range_m;
+  const double towards = found.approach > 0.0 ? -1.0 : 1.0;
+  hit.normal = (towards * Eigen::Vector3d(plane.x, plane.y, plane.z)).cast<float>();
+}
+
+}  // namespace canyon::scene::embree

@@ -1,0 +1,188 @@
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "core/check.h"
+#include "scene/embree_device.h"
+#include "scene/instances.h"
+#include "scene/triangle.h"
+
+namespace canyon::scene {
+
+using embree::device;
+
+struct RigidShape::Embree {
+  RTCScene scene = nullptr;
+  ~Embree() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+};
+
+RigidShape::RigidShape(std::string name, ObjectKind kind, Mesh mesh)
+    : name_(std::move(name)), kind_(kind), mesh_(std::move(mesh)), embree_(std::make_unique<Embree>()) {
+  mesh_.object.assign(mesh_.triangles.size(), 0);
+  drop_unusable_triangles(mesh_);
+  embree_->scene = rtcNewScene(device());
+  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+  if (!mesh_.triangles.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(Eigen::Vector3f), mesh_.vertices.size());
+    std::memcpy(vertices, mesh_.vertices.data(), mesh_.vertices.size() * sizeof(Eigen::Vector3f));
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            3 * sizeof(std::uint32_t), mesh_.triangles.size());
+    std::memcpy(indices, mesh_.triangles.data(), mesh_.triangles.size() * 3 * sizeof(std::uint32_t));
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(embree_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  embree::build(embree_->scene);
+}
+
+RigidShape::~RigidShape() = default;
+
+struct InstanceSet::Embree {
+  RTCScene scene = nullptr;
+  ~Embree() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+  }
+};
+
+InstanceSet::InstanceSet(std::vector<Instance> instances)
+    : instances_(std::move(instances)), embree_(std::make_unique<Embree>()) {
+  embree_->scene = rtcNewScene(device());
+  rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+  first_.push_back(0);
+  for (std::uint32_t i = 0; i < instances_.size(); ++i) {
+    const Pose& X_WS = instances_[i].X_WS;
+    CANYON_CHECK(X_WS.p.allFinite() && X_WS.R.coeffs().allFinite(), "instance ", instances_[i].name);
+    const Eigen::Matrix<float, 3, 4> transform = X_WS.matrix().topRows<3>().cast<float>();  // by columns
+    RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, instances_[i].shape->embree_->scene);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(embree_->scene, geometry, i);
+    rtcReleaseGeometry(geometry);
+    first_.push_back(first_.back() + static_cast<std::uint32_t>(instances_[i].shape->mesh().triangles.size()));
+  }
+  embree::build(embree_->scene);
+}
+
+InstanceSet::~InstanceSet() = default;
+
+InstanceSet::Member InstanceSet::member(std::uint32_t triangle) const {
+  CANYON_CHECK(triangle < first_.back(), "triangle ", triangle, " of ", first_.back());
+  const auto after = std::upper_bound(first_.begin(), first_.end(), triangle);
+  const auto instance = static_cast<std::uint32_t>(after - first_.begin() - 1);
+  return {instance, triangle - first_[instance]};
+}
+
+Plane InstanceSet::plane(const Member& member) const {
+  const Instance& instance = instances_[member.instance];
+  const Triangle in_S = Triangle::of(instance.shape->mesh(), member.triangle);
+  const Pose& X_WS = instance.X_WS;
+  return embree::plane_of({X_WS * in_S.a, X_WS * in_S.b, X_WS * in_S.c});
+}
+
+namespace {
+
+/// Embree's own packet over the instances: nothing behind `reach_m` is looked for.
+class Query {
+ public:
+  Query() {
+    std::memset(&packet_, 0, sizeof packet_);
+    std::fill_n(packet_.ray.mask, RayPacket::kRays, 0xffffffffu);
+    rtcInitIntersectContext(&context_);
+    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  }
+
+  void set(std::size_t lane, float ox, float oy, float oz, float dx, float dy, float dz, float reach_m) {
+    packet_.ray.org_x[lane] = ox, packet_.ray.org_y[lane] = oy, packet_.ray.org_z[lane] = oz;
+    packet_.ray.dir_x[lane] = dx, packet_.ray.dir_y[lane] = dy, packet_.ray.dir_z[lane] = dz;
+    packet_.ray.tfar[lane] = reach_m;
+    valid_[lane] = reach_m >= 0.0f ? -1 : 0;
+  }
+
+  void trace(RTCScene scene) {
+    std::fill_n(packet_.hit.geomID, RayPacket::kRays, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(packet_.hit.instID[0], RayPacket::kRays, RTC_INVALID_GEOMETRY_ID);
+    rtcIntersect16(valid_, scene, &context_, &packet_);
+  }
+
+  bool met(std::size_t lane) const { return valid_[lane] != 0 && packet_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
+  InstanceSet::Member member(std::size_t lane) const { return {packet_.hit.instID[0][lane], packet_.hit.primID[lane]}; }
+  float range_m(std::size_t lane) const { return packet_.ray.tfar[lane]; }
+
+ private:
+  alignas(64) RTCRayHit16 packet_;
+  alignas(64) int valid_[RayPacket::kRays];
+  RTCIntersectContext context_;
+};
+
+}  // namespace
+
+void InstanceSet::trace(const Ray& ray, std::uint32_t first_triangle, Hit& hit) const {
+  trace(std::span<const Ray>(&ray, 1), first_triangle, std::span<Hit>(&hit, 1));
+}
+
+void InstanceSet::trace(std::span<const Ray> rays, std::uint32_t first_triangle, std::span<Hit> hits) const {
+  Query query;
+  for (std::size_t begin = 0; begin < rays.size(); begin += RayPacket::kRays) {
+    const std::size_t count = std::min(RayPacket::kRays, rays.size() - begin);
+    for (std::size_t lane = 0; lane < RayPacket::kRays; ++lane) {
+      const std::size_t k = begin + std::min(lane, count - 1);
+      const Eigen::Vector3f &o = rays[k].origin, &d = rays[k].direction;
+      const float reach_m = hits[k].hit() ? hits[k].range_m : rays[k].max_m;
+      query.set(lane, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), lane < count ? reach_m : -1.0f);
+    }
+    query.trace(embree_->scene);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      if (!query.met(lane)) continue;
+      const Member member = query.member(lane);
+      Hit& hit = hits[begin + lane];
+      hit.triangle = first_triangle + first_[member.instance] + member.triangle;
+      embree::refine(rays[begin + lane], plane(member), query.range_m(lane), hit);
+    }
+  }
+}
+
+void InstanceSet::trace(std::span<const RayPacket> rays, std::uint32_t first_triangle,
+                        std::span<HitPacket> hits) const {
+  Query query;
+  for (std::size_t p = 0; p < rays.size(); ++p) {
+    const RayPacket& r = rays[p];
+    HitPacket& h = hits[p];
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i)
+      query.set(i, r.origin_x[i], r.origin_y[i], r.origin_z[i], r.direction_x[i], r.direction_y[i], r.direction_z[i],
+                std::min(h.range_m[i], r.max_m[i]));
+    query.trace(embree_->scene);
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      if (!query.met(i)) continue;
+      const Member member = query.member(i);
+      const PlaneRange found = plane_range(plane(member), r.origin_x[i], r.origin_y[i], r.origin_z[i], r.direction_x[i],
+                                           r.direction_y[i], r.direction_z[i], query.range_m(i));
+      h.triangle[i] = first_triangle + first_[member.instance] + member.triangle;
+      h.range_m[i] = found.range_m;
+      h.cos_incidence[i] = static_cast<float>(std::min(std::abs(found.approach), 1.0));
+    }
+  }
+}
+
+bool InstanceSet::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m,
+                           float max_m) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay query{};
+  query.org_x = origin.x(), query.org_y = origin.y(), query.org_z = origin.z();
+  query.dir_x = direction.x(), query.dir_y = direction.y(), query.dir_z = direction.z();
+  query.tnear = min_m;
+  query.tfar = max_m;
+  query.mask = 0xffffffffu;
+  rtcOccluded1(embree_->scene, &context, &query);
+  return query.tfar < 0.0f;  // Embree sets -infinity
+}
+
+}  // namespace canyon::scene
