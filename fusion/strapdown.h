@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/earth.h"
+#include "core/gravity.h"
 #include "core/time.h"
 
 namespace canyon::fusion {
@@ -39,9 +40,9 @@ struct InertialStep {
 /// Integrates increments to attitude, velocity and position in E. One-level interface; the models are in the table
 /// below.
 ///
-/// All share the frame: E turns by w_IE dt exactly, gravity is WGS84 normal gravity (or what is given), gravity and
-/// Coriolis are taken at the middle of the interval, position is the trapezoid of velocity. They differ in how they
-/// treat the turning of U within the interval (coning and sculling).
+/// All share the frame: E turns by w_IE dt exactly, gravity is WGS84 normal gravity (or what is given). They differ in
+/// how they treat the turning of U within the interval (coning and sculling), and in the order to which they take
+/// gravity, Coriolis and position.
 class Strapdown {
  public:
   virtual ~Strapdown() = default;
@@ -51,23 +52,20 @@ class Strapdown {
   virtual InertialStep advance(NavState& state, const Increments& increments) = 0;
 };
 
-/// Gravity (gravitation plus centrifugal) in E at a position in E, m/s^2.
-using GravityFunction = Eigen::Vector3d (*)(const Eigen::Vector3d& p_E);
-
-/// One row of the table of integrators. `order` is the order of the global error in the interval for smooth motion and
-/// exact increments.
+/// One row of the table of integrators. The orders are those of the global error in the interval, for smooth motion
+/// and exact increments, once the integrator has seen the increments it looks back to.
 struct StrapdownRow {
   const char* name;
   std::unique_ptr<Strapdown> (*make)(GravityFunction gravity);
-  int order;
+  int order;  ///< of position, the lowest
+  int velocity_order, attitude_order;
   const char* doc;
 };
 
 std::span<const StrapdownRow> strapdown_models();
 std::vector<std::string> strapdown_names();
 /// A model by name; throws ProgramError for a name that is not in the table (check user input against
-/// strapdown_names()). Gravity is exchangeable because 1.4e-6 m/s^2, by which two usual "normal gravities" differ, are
-/// 0.26 m after ten minutes.
+/// strapdown_names()). Why gravity is exchangeable is told in core/gravity.h.
 std::unique_ptr<Strapdown> make_strapdown(std::string_view name, GravityFunction gravity = gravity_E);
 
 }  // namespace canyon::fusion

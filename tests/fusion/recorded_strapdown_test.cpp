@@ -14,17 +14,6 @@
 namespace canyon::fusion {
 namespace {
 
-/// Gravity as the recording was made with it (KF-GINS, earth.h: GRS80 series in latitude, free-air terms in height).
-/// WGS84 normal gravity differs by 1.4e-6 m/s^2, which alone are 0.28 m after 599 s.
-Eigen::Vector3d kf_gins_gravity_E(const Eigen::Vector3d& p_E) {
-  const Geodetic at = geodetic_from_ecef(p_E);
-  const double s2 = std::sin(at.lat_rad) * std::sin(at.lat_rad);
-  const double s4 = s2 * s2;
-  const double g0 = 9.7803267715 * (1 + 0.0052790414 * s2 + 0.0000232718 * s4 + 1.262e-7 * s2 * s4 + 7e-10 * s4 * s4);
-  const double g = g0 + (-3.0876910891e-6 + 4.3977311e-9 * s2) * at.h_m + 0.7211e-12 * at.h_m * at.h_m;
-  return -g * rotation_E_from_enu(at).col(2);
-}
-
 /// Position error, m, at those whole seconds.
 std::map<int, double> free_run(const testing::RecordedRun& run, const char* model, GravityFunction gravity,
                                std::initializer_list<int> seconds) {
@@ -51,7 +40,7 @@ TEST(RecordedStrapdown, IdealImuStaysWithinThePublicFiltersFigures) {
   CANYON_REAL_DATA(gnss, "inertial/sim_leador_a15/gnss_1hz.csv");
   CANYON_REAL_DATA(truth, "inertial/sim_leador_a15/truth_10hz.csv");
   const testing::RecordedRun run = testing::read_sim_leador(imu, gnss, truth);
-  const auto errors = free_run(run, "two_sample", kf_gins_gravity_E, {60, 120, 300, 599});
+  const auto errors = free_run(run, "two_sample", gravity_by_name("grs80_series"), {60, 120, 300, 599});
   const std::map<int, double> kf_gins_m = {{60, 0.29e-3}, {120, 1.2e-3}, {300, 2.5e-3}, {599, 8.2e-3}};
   for (const auto& [second, limit_m] : kf_gins_m) {
     ASSERT_TRUE(errors.count(second)) << second;
@@ -60,7 +49,7 @@ TEST(RecordedStrapdown, IdealImuStaysWithinThePublicFiltersFigures) {
     EXPECT_LT(errors.at(second), limit_m) << second;
   }
   // Without sculling the same path is lost by metres.
-  EXPECT_GT(free_run(run, "euler", kf_gins_gravity_E, {599}).at(599), 1.0);
+  EXPECT_GT(free_run(run, "euler", gravity_by_name("grs80_series"), {599}).at(599), 1.0);
 }
 
 }  // namespace

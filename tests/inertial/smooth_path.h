@@ -18,12 +18,15 @@ class SmoothPath {
   GpsTime start() const { return start_; }
 
   KinematicState at(GpsTime t) const {
-    const double s = t - start_;
+    KinematicState k = at(t - start_);
+    k.t = t;
+    return k;
+  }
+  KinematicState at(double s) const {
     const Sine x{100.0, 0.10, 0.0, s}, y{80.0, 0.13, 0.7, s}, z{3.0, 0.20, 0.2, s};
     const Sine yaw{1.3, 0.27, 0.3, s}, pitch{0.05, 1.1, 0.0, s}, roll{0.08, 0.9, 0.5, s};
 
     KinematicState k;
-    k.t = t;
     k.X_WB.R = rotation_from({.yaw_rad = yaw.value(), .pitch_rad = pitch.value(), .roll_rad = roll.value()});
     k.X_WB.p = {x.value(), y.value(), z.value()};
     k.v_WB_W = {x.first(), y.first(), z.first()};

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace canyon {
+
+/// Gravity (gravitation plus centrifugal) in E at a position in E, m/s^2.
+using GravityFunction = Eigen::Vector3d (*)(const Eigen::Vector3d& p_E);
+
+/// One row of the table of gravity models. Two usual "normal gravities" differ by 1.4e-6 m/s^2, which are 0.26 m after
+/// ten minutes of free inertial navigation: a simulated log must be integrated with the gravity it was made with. For a
+/// real log the choice does not matter, as the Earth's own anomalies are 10 to 100 times larger.
+struct GravityModel {
+  const char* name;
+  GravityFunction at;
+  const char* doc;
+};
+
+std::span<const GravityModel> gravity_models();
+std::vector<std::string> gravity_names();
+/// A model by name; throws ProgramError for a name that is not in the table.
+GravityFunction gravity_by_name(std::string_view name);
+
+}  // namespace canyon
