@@ -78,7 +78,8 @@ Result<NavigationRecord> record_of(const LineReader& in, const std::vector<std::
   if (v[0] != std::floor(v[0]) || v[0] < 0.0 || v[0] > 14000.0)
     return in.error("GPS week " + std::string(fields[places[0]]), "a whole number from 0 to 14000");
   if (std::abs(v[2]) > 90.0) return in.error("latitude " + std::string(fields[places[2]]), "degrees from -90 to 90");
-  if (std::abs(v[3]) > 360.0) return in.error("longitude " + std::string(fields[places[3]]), "degrees from -360 to 360");
+  if (std::abs(v[3]) > 360.0)
+    return in.error("longitude " + std::string(fields[places[3]]), "degrees from -360 to 360");
   CANYON_TRY(const std::int64_t sow_ns, parse_seconds(in, fields[places[1]]));
   const Geodetic at{v[2] * kDegree, v[3] * kDegree, v[4]};
   NavigationRecord record;

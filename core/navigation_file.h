@@ -32,10 +32,11 @@ struct NavigationFile {
   std::string gravity;  ///< the gravity model that a comment `# gravity NAME` states; else empty
 };
 
-/// Reads the KF-GINS text format, `week sow lat lon h vN vE vD roll pitch heading` (degrees, metres, m/s), columns apart
-/// by blanks or commas; or CSV whose header names `sow` or `t_s`, `lat_deg`, `lon_deg`, `h_m`, `roll_deg`, `pitch_deg`,
-/// `yaw_deg` or `heading_deg` and, if it has them, `gps_week`, `vn`, `ve`, `vd` (or `vn_m_s`, ...). Angles are those of
-/// forward-right-down in north-east-down. Without a week it is 0. Times must increase; errors name the line.
+/// Reads the KF-GINS text format, `week sow lat lon h vN vE vD roll pitch heading` (degrees, metres, m/s), columns
+/// apart by blanks or commas; or CSV whose header names `sow` or `t_s`, `lat_deg`, `lon_deg`, `h_m`, `roll_deg`,
+/// `pitch_deg`, `yaw_deg` or `heading_deg` and, if it has them, `gps_week`, `vn`, `ve`, `vd` (or `vn_m_s`, ...). Angles
+/// are those of forward-right-down in north-east-down. Without a week it is 0. Times must increase; errors name the
+/// line.
 Result<NavigationFile> read_navigation_file(const std::string& path);
 /// In the KF-GINS text format; a comment at the top names the columns, and the gravity if `gravity` is not empty.
 Status write_navigation_file(const std::string& path, const NavigationFile& file);

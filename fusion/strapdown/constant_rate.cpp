@@ -18,7 +18,8 @@ class ConstantRate final : public Strapdown {
   InertialStep advance(NavState& state, const Increments& now) override {
     const Eigen::Vector3d turned = now.dtheta_U.cross(now.dv_U), twice = now.dtheta_U.cross(turned);
     const Factors k(now.dtheta_U.norm());
-    const InertialStep step{.rotation_U = now.dtheta_U, .dv_start_U = now.dv_U + k.velocity * turned + k.square * twice};
+    const InertialStep step{.rotation_U = now.dtheta_U,
+                            .dv_start_U = now.dv_U + k.velocity * turned + k.square * twice};
     const Eigen::Vector3d displacement = now.dt_s * (0.5 * now.dv_U + k.square * turned + k.fourth * twice);
     move(state, step, now.dt_s, gravity_, displacement - 0.5 * now.dt_s * step.dv_start_U);
     return step;

@@ -39,16 +39,16 @@ struct Cubic {
 /// order in the interval.
 Vector3d rotation_to(const Cubic& turn, double x) {
   const double x3 = x * x * x;
-  return turn.integral(x) + 0.5 * x3 *
-                                (turn.k1.cross(turn.k2) / 3.0 + 0.5 * x * turn.k1.cross(turn.k3) +
-                                 0.2 * x * x * turn.k2.cross(turn.k3));
+  return turn.integral(x) +
+         0.5 * x3 *
+             (turn.k1.cross(turn.k2) / 3.0 + 0.5 * x * turn.k1.cross(turn.k3) + 0.2 * x * x * turn.k2.cross(turn.k3));
 }
 
 /// Rate and force quadratic in time over the last three intervals. Velocity and position then solve, in E,
 ///   v' = R_EU f + g(p) - 2 w_IE x v,   p' = v
 /// by Gauss-Legendre collocation at three points (order 6; Hairer, Norsett & Wanner, Solving Ordinary Differential
-/// Equations I, II.7), so that what is left is the error of the quadratics, of fourth order. After a reset the first two
-/// intervals have fewer predecessors and lower order.
+/// Equations I, II.7), so that what is left is the error of the quadratics, of fourth order. After a reset the first
+/// two intervals have fewer predecessors and lower order.
 class ThreeSample final : public Strapdown {
  public:
   explicit ThreeSample(GravityFunction gravity) : gravity_(gravity) {}
@@ -90,8 +90,10 @@ class ThreeSample final : public Strapdown {
     // Each round gains a factor 2 w_IE h < 1e-5: after two of them the equations hold to rounding.
     for (int round = 0; round < 2; ++round) {
       std::array<Vector3d, 3> v, p;
-      for (std::size_t i = 0; i < 3; ++i) v[i] = v0 + h * (kInner[i][0] * a[0] + kInner[i][1] * a[1] + kInner[i][2] * a[2]);
-      for (std::size_t i = 0; i < 3; ++i) p[i] = p0 + h * (kInner[i][0] * v[0] + kInner[i][1] * v[1] + kInner[i][2] * v[2]);
+      for (std::size_t i = 0; i < 3; ++i)
+        v[i] = v0 + h * (kInner[i][0] * a[0] + kInner[i][1] * a[1] + kInner[i][2] * a[2]);
+      for (std::size_t i = 0; i < 3; ++i)
+        p[i] = p0 + h * (kInner[i][0] * v[0] + kInner[i][1] * v[1] + kInner[i][2] * v[2]);
       for (std::size_t i = 0; i < 3; ++i) a[i] = force_E[i] + gravity_(p[i]) - 2.0 * earth_rate_E().cross(v[i]);
     }
     Vector3d dv = Vector3d::Zero(), dp = h * v0;
@@ -107,10 +109,9 @@ class ThreeSample final : public Strapdown {
   static constexpr double kRoot15 = 3.872983346207417;
   static constexpr double kNode[3] = {0.5 - kRoot15 / 10.0, 0.5, 0.5 + kRoot15 / 10.0};
   static constexpr double kWeight[3] = {5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0};
-  static constexpr double kInner[3][3] = {
-      {5.0 / 36.0, 2.0 / 9.0 - kRoot15 / 15.0, 5.0 / 36.0 - kRoot15 / 30.0},
-      {5.0 / 36.0 + kRoot15 / 24.0, 2.0 / 9.0, 5.0 / 36.0 - kRoot15 / 24.0},
-      {5.0 / 36.0 + kRoot15 / 30.0, 2.0 / 9.0 + kRoot15 / 15.0, 5.0 / 36.0}};
+  static constexpr double kInner[3][3] = {{5.0 / 36.0, 2.0 / 9.0 - kRoot15 / 15.0, 5.0 / 36.0 - kRoot15 / 30.0},
+                                          {5.0 / 36.0 + kRoot15 / 24.0, 2.0 / 9.0, 5.0 / 36.0 - kRoot15 / 24.0},
+                                          {5.0 / 36.0 + kRoot15 / 30.0, 2.0 / 9.0 + kRoot15 / 15.0, 5.0 / 36.0}};
 
   GravityFunction gravity_;
   std::array<Increments, 2> past_;  ///< the latest first

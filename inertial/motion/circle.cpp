@@ -9,8 +9,9 @@ Result<PlacedMotion> make_circle(const MotionConfig& config) {
   return closed_form(config, [=](const Series& t) {
     const Series now = Series(yaw) + Series(rate) * t;
     const SineCosine turn = sine_cosine(now);
-    return kinematics({Series(radius) * (turn.sine - std::sin(yaw)), Series(radius) * (Series(std::cos(yaw)) - turn.cosine), 0.0},
-                      quaternion_from(now, pitch, roll));
+    return kinematics(
+        {Series(radius) * (turn.sine - std::sin(yaw)), Series(radius) * (Series(std::cos(yaw)) - turn.cosine), 0.0},
+        quaternion_from(now, pitch, roll));
   });
 }
 

@@ -2,8 +2,8 @@
 
 namespace canyon::inertial {
 
-/// Lemniscate of Gerono, x = length / 2 sin u, y = width / 2 sin 2u along and across the axis, u = 2 pi t / period, with
-/// waves of height and roll; the nose points along the track, also up and down.
+/// Lemniscate of Gerono, x = length / 2 sin u, y = width / 2 sin 2u along and across the axis, u = 2 pi t / period,
+/// with waves of height and roll; the nose points along the track, also up and down.
 Result<PlacedMotion> make_figure_eight(const MotionConfig& config) {
   const double axis = start_yaw_rad(config), rate = 2.0 * kPi / config.period_s;
   const double a = 0.5 * config.length_m, b = 0.5 * config.width_m;

@@ -36,7 +36,8 @@ Vector6 integral(const PlacedMotion& placed, double from_s, double to_s, double 
   const Vector6 centre = input_at(placed, middle_s);
   Vector6 fine = kKronrod[7] * centre, coarse = kGauss[7] * centre;
   for (int i = 0; i < 7; ++i) {
-    const Vector6 pair = input_at(placed, middle_s - kNode[i] * half_s) + input_at(placed, middle_s + kNode[i] * half_s);
+    const Vector6 pair =
+        input_at(placed, middle_s - kNode[i] * half_s) + input_at(placed, middle_s + kNode[i] * half_s);
     fine += kKronrod[i] * pair;
     coarse += kGauss[i] * pair;
   }

@@ -11,9 +11,11 @@ constexpr MotionRow kRows[] = {
     {"stationary", make_stationary, "at rest at W's origin: heading_deg, pitch_deg, roll_deg"},
     {"straight", make_straight,
      "ahead at a speed that goes smoothly through profile_s, profile_m_s, or at speed_m_s: heading_deg"},
-    {"circle", make_circle, "level, counter-clockwise, nose ahead: radius_m, speed_m_s, heading_deg at the start, roll_deg"},
+    {"circle", make_circle,
+     "level, counter-clockwise, nose ahead: radius_m, speed_m_s, heading_deg at the start, roll_deg"},
     {"figure_eight", make_figure_eight,
-     "a lying eight, nose ahead: length_m, width_m, period_s, climb_m (height), sway_deg (roll), heading_deg of its axis"},
+     "a lying eight, nose ahead: length_m, width_m, period_s, climb_m (height), sway_deg (roll), heading_deg of its "
+     "axis"},
     {"coning", make_coning, "classical coning in place, the axis on a cone about the vertical: cone_deg, cone_hz"},
     {"spline", make_spline,
      "smooth through the points of `file`, CSV of t_s,x_m,y_m,z_m and yaw_deg,pitch_deg,roll_deg or nose ahead"},

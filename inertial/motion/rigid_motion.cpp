@@ -54,8 +54,7 @@ KinematicState compose(const KinematicState& X_WB, const KinematicState& X_BC) {
   k.t = X_WB.t;
   k.X_WB = X_WB.X_WB * X_BC.X_WB;
   k.v_WB_W = X_WB.v_WB_W + R_WB * (v + w.cross(p));
-  k.a_WB_W =
-      X_WB.a_WB_W + R_WB * (X_BC.a_WB_W + 2.0 * w.cross(v) + X_WB.alpha_WB_B.cross(p) + w.cross(w.cross(p)));
+  k.a_WB_W = X_WB.a_WB_W + R_WB * (X_BC.a_WB_W + 2.0 * w.cross(v) + X_WB.alpha_WB_B.cross(p) + w.cross(w.cross(p)));
   k.w_WB_B = w_C + X_BC.w_WB_B;
   k.alpha_WB_B = R_CB * X_WB.alpha_WB_B + w_C.cross(X_BC.w_WB_B) + X_BC.alpha_WB_B;
   return k;

@@ -4,8 +4,8 @@
 
 namespace canyon::inertial {
 
-/// A function of time at an instant as its Taylor polynomial of third order: c[k] is the k-th derivative over k!. A path
-/// written in such numbers brings its exact derivatives with it (automatic differentiation; Griewank & Walther,
+/// A function of time at an instant as its Taylor polynomial of third order: c[k] is the k-th derivative over k!. A
+/// path written in such numbers brings its exact derivatives with it (automatic differentiation; Griewank & Walther,
 /// Evaluating Derivatives, 13.2).
 struct Series {
   double c[4] = {0.0, 0.0, 0.0, 0.0};

@@ -21,7 +21,8 @@ Result<PoseKnots> read_points(const std::string& path) {
   PoseKnots knots;
   while (in.next(line)) {
     const auto fields = split(line, ",", false);
-    if (fields.size() != (with_attitude ? 7u : 4u)) return in.error(std::to_string(fields.size()) + " columns", kExpected);
+    if (fields.size() != (with_attitude ? 7u : 4u))
+      return in.error(std::to_string(fields.size()) + " columns", kExpected);
     std::array<double, 7> v{};
     for (std::size_t i = 0; i < fields.size(); ++i) {
       CANYON_TRY(v[i], parse_number(in, fields[i]));

@@ -25,7 +25,8 @@ class SpeedProfile {
     // Integral of the step 10 u^3 - 15 u^4 + 6 u^5.
     const double length_s = t_s_[i] - t_s_[i - 1];
     const Series u = since / length_s, u2 = u * u;
-    return cruise + Series((speed_m_s_[i] - speed_m_s_[i - 1]) * length_s) * (u2 * u2) * (Series(2.5) - Series(3.0) * u + u2);
+    return cruise +
+           Series((speed_m_s_[i] - speed_m_s_[i - 1]) * length_s) * (u2 * u2) * (Series(2.5) - Series(3.0) * u + u2);
   }
 
  private:

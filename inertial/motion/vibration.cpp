@@ -57,8 +57,9 @@ double density(const VibrationConfig& c, double hz) {
   return c.psd_g2_per_hz[i - 1] * std::pow(c.psd_g2_per_hz[i] / c.psd_g2_per_hz[i - 1], x);
 }
 
-/// Random vibration as sinusoids of random phases, one in each of equal steps of the logarithm of frequency, at a random
-/// place in it, of the power the density has there (Shinozuka & Jan 1972): exact derivatives, and the right variance.
+/// Random vibration as sinusoids of random phases, one in each of equal steps of the logarithm of frequency, at a
+/// random place in it, of the power the density has there (Shinozuka & Jan 1972): exact derivatives, and the right
+/// variance.
 void add_random(std::vector<Wave>& waves, const VibrationConfig& c, std::uint64_t seed) {
   const RandomStream place(seed, "imu.vibration.frequency"), phase(seed, "imu.vibration.phase");
   const double ratio = c.psd_hz.back() / c.psd_hz.front();
@@ -70,8 +71,8 @@ void add_random(std::vector<Wave>& waves, const VibrationConfig& c, std::uint64_
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
       const double hz = place.uniform(low, high, axis, k);
       Wave wave{2.0 * kPi * hz, {}, {}};
-      wave.amplitude[axis] = std::sqrt(2.0 * density(c, hz) * (high - low)) * kStandardGravity /
-                             (wave.rate_rad_s * wave.rate_rad_s);
+      wave.amplitude[axis] =
+          std::sqrt(2.0 * density(c, hz) * (high - low)) * kStandardGravity / (wave.rate_rad_s * wave.rate_rad_s);
       wave.phase_rad[axis] = phase.uniform(0.0, 2.0 * kPi, axis, k);
       waves.push_back(wave);
     }

@@ -115,7 +115,8 @@ TEST(Strapdown, ScullingGivesTheBesselAcceleration) {
 }
 
 TEST(Strapdown, TableAndNames) {
-  EXPECT_THAT(strapdown_names(), ::testing::ElementsAre("euler", "trapezoid", "constant_rate", "two_sample", "three_sample"));
+  EXPECT_THAT(strapdown_names(),
+              ::testing::ElementsAre("euler", "trapezoid", "constant_rate", "two_sample", "three_sample"));
   EXPECT_THROW((void)make_strapdown("eulr"), ProgramError);
 }
 

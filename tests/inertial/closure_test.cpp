@@ -98,8 +98,8 @@ TEST(Closure, ThePathsDerivativesAreItsDerivatives) {
   }
 }
 
-/// The same drive with the IMU swinging at 2 Hz, by 30 degrees and 20 m/s^2: where the fourth order's error stands clear
-/// of rounding (1e-8 m in coordinates of 6e6 m).
+/// The same drive with the IMU swinging at 2 Hz, by 30 degrees and 20 m/s^2: where the fourth order's error stands
+/// clear of rounding (1e-8 m in coordinates of 6e6 m).
 PlacedMotion shaken_motion() {
   PlacedMotion placed = testing::smooth_motion();
   inertial::VibrationConfig shake;

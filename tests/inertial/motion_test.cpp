@@ -59,7 +59,8 @@ std::vector<MotionConfig> one_of_each() {
   configs[7] = configs[5];
   configs[7].file = temporary("track.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n2,20,5,1\n3,30,15,2\n6,30,40,0\n8,0,50,0\n");
   configs[8] = configs[3];
-  configs[8].vibration.sinusoid = {{.frequency_hz = 3.0, .acceleration_m_s2 = {1.0, 2.0, 3.0}, .angle_deg = {4.0, 5.0, 6.0}}};
+  configs[8].vibration.sinusoid = {
+      {.frequency_hz = 3.0, .acceleration_m_s2 = {1.0, 2.0, 3.0}, .angle_deg = {4.0, 5.0, 6.0}}};
   configs[8].vibration.psd_hz = {0.5, 2.0};
   configs[8].vibration.psd_g2_per_hz = {0.01, 0.02};
   return configs;
@@ -194,7 +195,8 @@ TEST(MotionVibration, RandomHasItsDensity) {
   c.vibration.psd_lines = 400;
   const auto placed = make_motion(c, 7);
   // Area: from 20 to 80 Hz the density is f times 5e-5, then constant.
-  const double variance = (0.5 * 5e-5 * (80.0 * 80.0 - 20.0 * 20.0) + 0.004 * 120.0) * kStandardGravity * kStandardGravity;
+  const double variance =
+      (0.5 * 5e-5 * (80.0 * 80.0 - 20.0 * 20.0) + 0.004 * 120.0) * kStandardGravity * kStandardGravity;
   Eigen::Vector3d power = Eigen::Vector3d::Zero();
   const int n = 20000;
   for (int k = 0; k < n; ++k) power += placed->motion->at(0.00137 * k).a_WB_W.cwiseAbs2() / n;
@@ -206,7 +208,8 @@ TEST(MotionVibration, RandomHasItsDensity) {
   EXPECT_EQ(make_motion(c, 7)->motion->at(1.0).X_WB.p, placed->motion->at(1.0).X_WB.p);
 }
 
-/// Extremes: 2000 deg/s at 100 g on an arm, at the poles. The force is centripetal, and gravity and Earth rate are there.
+/// Extremes: 2000 deg/s at 100 g on an arm, at the poles. The force is centripetal, and gravity and Earth rate are
+/// there.
 TEST(Motion, CentrifugeOfAHundredG) {
   for (const double lat_deg : {90.0, -90.0, 0.0}) {
     MotionConfig c;
