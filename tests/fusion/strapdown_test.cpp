@@ -58,7 +58,10 @@ TEST(Strapdown, ConingLeavesWhatTheClosedFormsSay) {
   const struct {
     const char* name;
     double drift_rad_s, extra_rad;
-  } rows[] = {{"euler", none, 0.0}, {"two_sample", two, first_step}};
+  } rows[] = {{"euler", none, 0.0},
+              {"trapezoid", none, 0.0},
+              {"constant_rate", none, 0.0},
+              {"two_sample", two, first_step}};
   for (const auto& row : rows) {
     auto strapdown = make_strapdown(row.name, only_centrifugal_E);
     const auto attitude = [&](double t) {
@@ -82,6 +85,66 @@ TEST(Strapdown, ConingLeavesWhatTheClosedFormsSay) {
     const double expected = row.drift_rad_s * n * h + row.extra_rad;
     EXPECT_NEAR(std::abs(error.z()) / expected, 1.0, 10.0 * a * a) << row.name;  // leading terms in a
     EXPECT_LT(error.head<2>().norm(), 0.02 * std::abs(error.z()) + 1e-9) << row.name;
+  }
+}
+
+/// The same motion and three_sample, whose quadratics through D1, D2, D3 correct by (121 D2xD3 - 31 D1xD3 + D1xD2) / 720;
+/// with DixDj = 4 sin^2(a) sin^2(x/2) sin((j - i) x) it leaves -19/720 W sin^2(a) x^4 to leading order: on pure coning
+/// somewhat more than two_sample's 12/720, as it is made for smooth motion.
+TEST(Strapdown, ConingOfThreeSamples) {
+  const double a = 0.01, rate = 2.0 * kPi * 10.0, s2 = std::sin(a) * std::sin(a);
+  const auto drift_rad_s = [&](double h) {
+    auto strapdown = make_strapdown("three_sample", only_centrifugal_E);
+    const auto attitude = [&](double t) {
+      return Eigen::Quaterniond(std::cos(a / 2), std::sin(a / 2) * std::cos(rate * t),
+                                std::sin(a / 2) * std::sin(rate * t), 0.0);
+    };
+    NavState state;
+    const int n = static_cast<int>(std::lround(20.0 / h));
+    for (int k = -2; k < n; ++k) {
+      if (k == 0) {
+        state = NavState{};
+        state.R_EU = attitude(0.0);
+      }
+      const double t0 = k * h, t1 = t0 + h;
+      Increments in;
+      in.dt_s = h;
+      in.dtheta_U = {std::sin(a) * (std::cos(rate * t1) - std::cos(rate * t0)),
+                     std::sin(a) * (std::sin(rate * t1) - std::sin(rate * t0)),
+                     -2.0 * rate * std::pow(std::sin(a / 2), 2) * h};
+      strapdown->advance(state, in);
+    }
+    return so3_log(earth_turn(20.0) * state.R_EU * attitude(20.0).conjugate()).z() / 20.0;
+  };
+  for (const double h : {0.005, 0.0025}) {
+    const double x = rate * h, cross = 4.0 * s2 * std::pow(std::sin(0.5 * x), 2);
+    const double left = 0.5 * s2 * (rate - std::sin(x) / h) - cross * (122.0 * std::sin(x) - 31.0 * std::sin(2.0 * x)) / (720.0 * h);
+    EXPECT_NEAR(left / (-19.0 / 720.0 * rate * s2 * std::pow(x, 4)), 1.0, x * x);
+    EXPECT_NEAR(std::abs(drift_rad_s(h) / left), 1.0, 10.0 * a * a) << h;  // leading terms in a
+  }
+}
+
+/// Rate and force constant in U, at any angle: velocity against a fine Gauss quadrature of the turning force.
+TEST(Strapdown, ConstantRateIsExact) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(1.0, -2.0, 0.5).normalized(), force(3.0, 4.0, -12.0);
+  for (const double angle : {0.0, 1e-7, 1e-3, 0.0999, 0.1001, 1.0, 3.0, 6.0}) {
+    const double h = 0.1;
+    auto strapdown = make_strapdown("constant_rate", only_centrifugal_E);
+    NavState state;
+    const InertialStep step = strapdown->advance(state, {.dt_s = h, .dtheta_U = angle * axis, .dv_U = h * force});
+    Eigen::Vector3d dv = Eigen::Vector3d::Zero(), dp = dv;
+    constexpr int kPanels = 200;
+    for (int i = 0; i < kPanels; ++i) {
+      for (const double node : {0.5 - std::sqrt(15.0) / 10.0, 0.5, 0.5 + std::sqrt(15.0) / 10.0}) {
+        const double u = (i + node) / kPanels, weight = h / kPanels * (node == 0.5 ? 4.0 : 2.5) / 9.0;
+        const Eigen::Vector3d turned = so3_exp(u * angle * axis) * force;
+        dv += weight * turned;
+        dp += weight * h * (1.0 - u) * turned;
+      }
+    }
+    EXPECT_LT((step.dv_start_U - dv).norm(), 1e-14 * 13.0) << angle;
+    // Position is moved in E, which turns by 7e-6 rad meanwhile.
+    EXPECT_LT((state.p_EU_E - dp).norm(), 2.0 * Wgs84::rate_rad_s * h * dp.norm() + 1e-15) << angle;
   }
 }
 
@@ -110,6 +173,11 @@ TEST(Strapdown, ScullingGivesTheBesselAcceleration) {
               relative_error("euler", 0.005));
   EXPECT_LT(std::abs(coarse), std::pow(rate * 0.005, 4));
   EXPECT_NEAR(std::log2(coarse / fine), 4.0, 0.3);
+  for (const double h : {0.005, 0.0025}) {
+    const double x = rate * h, three = relative_error("three_sample", h);
+    std::printf("sculling with three_sample: relative error %.1e at %.0f Hz\n", three, 1.0 / h);
+    EXPECT_NEAR(three / (19.0 / 360.0 * std::pow(x, 4)), 1.0, 2.0 * x * x) << h;  // as for coning, to leading order
+  }
   const double x2 = std::pow(rate * 0.005, 2);  // without any correction: x^2 / 6 to leading order
   EXPECT_NEAR(std::abs(relative_error("euler", 0.005)) / (x2 / 6.0), 1.0, x2);
 }

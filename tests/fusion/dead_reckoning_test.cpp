@@ -1,0 +1,101 @@
+#include "fusion/dead_reckoning.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/units.h"
+
+namespace canyon::fusion {
+namespace {
+
+const Geodetic kPlace{45.0 * kDegree, 7.0 * kDegree, 200.0};
+
+/// A log at rest, one sample each 10 ms.
+std::vector<ImuSample> rest(const NavState& state, int samples) {
+  std::vector<ImuSample> out;
+  for (int k = 1; k <= samples; ++k) {
+    ImuSample s;
+    s.t = state.t + 0.01 * k;
+    s.dt_s = 0.01;
+    s.dtheta_U = 0.01 * (state.R_EU.conjugate() * earth_rate_E());
+    s.dv_U = -0.01 * (state.R_EU.conjugate() * gravity_E(state.p_EU_E));
+    out.push_back(s);
+  }
+  return out;
+}
+
+NavState start() {
+  NavState state = levelled(kPlace, 30.0 * kDegree, {0.0, 0.0, 1.0});
+  state.t = GpsTime::from_week_sow(1590, 1000.0);
+  return state;
+}
+
+TEST(Levelled, PutsTheForceUpAndTheNoseOnItsHeading) {
+  const Eigen::Vector3d force = Eigen::Vector3d(1.0, -2.0, 9.0);
+  const NavState state = levelled(kPlace, 70.0 * kDegree, force);
+  const Eigen::Matrix3d enu = rotation_E_from_enu(kPlace);
+  EXPECT_LT((enu.transpose() * (state.R_EU * force) - Eigen::Vector3d(0.0, 0.0, force.norm())).norm(), 1e-14 * 10);
+  const Eigen::Vector3d nose = enu.transpose() * (state.R_EU * Eigen::Vector3d::UnitX());
+  EXPECT_NEAR(std::atan2(nose.x(), nose.y()), 70.0 * kDegree, 1e-15 * 10);
+}
+
+TEST(DeadReckoning, StartsWhereItIsToldAndSkipsWhatIsBefore) {
+  const NavState initial = start();
+  std::vector<ImuSample> samples = rest(initial, 100);
+  NavState later = initial;
+  later.t = initial.t + 0.4;
+  auto strapdown = make_strapdown("three_sample");
+  const auto states = dead_reckon(samples, later, *strapdown);
+  ASSERT_EQ(states.size(), 61u);
+  EXPECT_EQ(states.front().t, later.t);
+  EXPECT_EQ(states.back().t, samples.back().t);
+  EXPECT_LT((states.back().p_EU_E - initial.p_EU_E).norm(), 1e-8);  // eps of 6.4e6 m
+}
+
+/// Samples that are missing: the one behind stands for the gap, so that a body at rest stays there.
+TEST(DeadReckoning, BridgesAGap) {
+  const NavState initial = start();
+  std::vector<ImuSample> samples = rest(initial, 100);
+  samples.erase(samples.begin() + 20, samples.begin() + 50);
+  auto strapdown = make_strapdown("two_sample");
+  const auto states = dead_reckon(samples, initial, *strapdown);
+  ASSERT_EQ(states.size(), 71u);
+  EXPECT_LT((states.back().p_EU_E - initial.p_EU_E).norm(), 1e-7);
+  EXPECT_LT(states.back().v_EU_E.norm(), 1e-9);
+}
+
+TEST(Interpolation, IsExactOnCubicsAndAtTheEnds) {
+  NavState a = start(), b = a;
+  b.t = a.t + 0.1;
+  // p = p0 + v t + c t^3
+  const Eigen::Vector3d v(10.0, -3.0, 1.0), c(5.0, 7.0, -2.0);
+  a.v_EU_E = v;
+  b.p_EU_E = a.p_EU_E + 0.1 * v + 1e-3 * c;
+  b.v_EU_E = v + 0.03 * c;
+  const NavState middle = interpolate(a, b, a.t + 0.03);
+  EXPECT_LT((middle.p_EU_E - (a.p_EU_E + 0.03 * v + 2.7e-5 * c)).norm(), 4e-9);  // a few eps of 6.4e6 m
+  EXPECT_LT((interpolate(a, b, b.t).v_EU_E - b.v_EU_E).norm(), 1e-14);
+}
+
+TEST(NavigationErrors, AreEstimateMinusReference) {
+  NavState truth = start(), estimate = truth;
+  const Eigen::Matrix3d enu = rotation_E_from_enu(kPlace);
+  estimate.p_EU_E += enu * Eigen::Vector3d(1.0, 2.0, -3.0);
+  estimate.v_EU_E += enu * Eigen::Vector3d(0.1, -0.2, 0.3);
+  estimate.R_EU = truth.R_EU * so3_exp({0.01, 0.02, -0.03});
+  std::vector<NavState> estimates = {estimate, estimate, estimate}, truths = {truth, truth, truth};
+  for (int i = 0; i < 3; ++i) estimates[static_cast<std::size_t>(i)].t = truths[static_cast<std::size_t>(i)].t = truth.t + 1.0 * i;
+  const auto errors = navigation_errors(estimates, truths);
+  ASSERT_EQ(errors.size(), 3u);
+  EXPECT_LT((errors[1].position_enu_m - Eigen::Vector3d(1.0, 2.0, -3.0)).norm(), 1e-8);
+  EXPECT_LT((errors[1].velocity_enu_m_s - Eigen::Vector3d(0.1, -0.2, 0.3)).norm(), 1e-14);
+  EXPECT_LT((errors[1].attitude_rad - Eigen::Vector3d(0.01, 0.02, -0.03)).norm(), 1e-14);
+  const NavErrorStatistics s = navigation_error_statistics(errors);
+  EXPECT_NEAR(s.position_rms_m, std::sqrt(14.0), 1e-8);
+  EXPECT_NEAR(s.final_horizontal_m, std::sqrt(5.0), 1e-8);
+  EXPECT_TRUE(std::isnan(navigation_error_statistics(std::span(errors).first(1)).position_rms_m));
+}
+
+}  // namespace
+}  // namespace canyon::fusion
