@@ -16,7 +16,8 @@ TEST(Gravity, TheModelsAgreeToTheirKnownDifference) {
     for (const double h_m : {-400.0, 0.0, 5000.0}) {
       const Eigen::Vector3d p = ecef_from_geodetic({lat_deg * kDegree, 1.0, h_m});
       const Eigen::Vector3d difference = gravity_by_name("grs80_series")(p) - gravity_by_name("wgs84")(p);
-      // Off the ellipsoid normal gravity leans by 8e-7 h sin(2 lat) m/s^2 per km against the normal; the series does not.
+      // Off the ellipsoid normal gravity leans by 8e-7 h sin(2 lat) m/s^2 per km against the normal; the series does
+      // not.
       EXPECT_LT(difference.norm(), 3e-6 + 1e-8 * std::abs(h_m)) << lat_deg << " " << h_m;
     }
   }

@@ -88,11 +88,13 @@ TEST(NavigationFile, NamesWhatIsWrongAndWhere) {
       "sow,lat_deg,lon_deg,h_m,vn,ve,vd,roll_deg,pitch_deg,heading_deg";
   EXPECT_EQ(message(""), path + ": holds no navigation records, expected at least one line of numbers");
   EXPECT_EQ(message("0 1 30 114\n"), path + ":1: 4 columns, expected " + columns);
-  EXPECT_EQ(message("sow,lat_deg,lon_deg,h_m,roll_deg,pitch_deg\n"), path + ":1: no column \"heading_deg\", expected " + columns);
+  EXPECT_EQ(message("sow,lat_deg,lon_deg,h_m,roll_deg,pitch_deg\n"),
+            path + ":1: no column \"heading_deg\", expected " + columns);
   EXPECT_EQ(message("0 2 30 114 20 0 0 0 0 0 0\n0 2 30 114 20 0 0 0 0 0 0\n"),
             path + ":2: time does not increase, expected records in the order of time");
   EXPECT_EQ(message("0 2 91 114 20 0 0 0 0 0 0\n"), path + ":1: latitude 91, expected degrees from -90 to 90");
-  EXPECT_EQ(message("0.5 2 1 114 20 0 0 0 0 0 0\n"), path + ":1: GPS week 0.5, expected a whole number from 0 to 14000");
+  EXPECT_EQ(message("0.5 2 1 114 20 0 0 0 0 0 0\n"),
+            path + ":1: GPS week 0.5, expected a whole number from 0 to 14000");
 }
 
 TEST(NavigationFile, ReadsTheKfGinsReference) {

@@ -85,7 +85,8 @@ TEST(NavigationErrors, AreEstimateMinusReference) {
   estimate.v_EU_E += enu * Eigen::Vector3d(0.1, -0.2, 0.3);
   estimate.R_EU = truth.R_EU * so3_exp({0.01, 0.02, -0.03});
   std::vector<NavState> estimates = {estimate, estimate, estimate}, truths = {truth, truth, truth};
-  for (int i = 0; i < 3; ++i) estimates[static_cast<std::size_t>(i)].t = truths[static_cast<std::size_t>(i)].t = truth.t + 1.0 * i;
+  for (int i = 0; i < 3; ++i)
+    estimates[static_cast<std::size_t>(i)].t = truths[static_cast<std::size_t>(i)].t = truth.t + 1.0 * i;
   const auto errors = navigation_errors(estimates, truths);
   ASSERT_EQ(errors.size(), 3u);
   EXPECT_LT((errors[1].position_enu_m - Eigen::Vector3d(1.0, 2.0, -3.0)).norm(), 1e-8);

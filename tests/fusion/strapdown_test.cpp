@@ -58,10 +58,8 @@ TEST(Strapdown, ConingLeavesWhatTheClosedFormsSay) {
   const struct {
     const char* name;
     double drift_rad_s, extra_rad;
-  } rows[] = {{"euler", none, 0.0},
-              {"trapezoid", none, 0.0},
-              {"constant_rate", none, 0.0},
-              {"two_sample", two, first_step}};
+  } rows[] = {
+      {"euler", none, 0.0}, {"trapezoid", none, 0.0}, {"constant_rate", none, 0.0}, {"two_sample", two, first_step}};
   for (const auto& row : rows) {
     auto strapdown = make_strapdown(row.name, only_centrifugal_E);
     const auto attitude = [&](double t) {
@@ -88,9 +86,9 @@ TEST(Strapdown, ConingLeavesWhatTheClosedFormsSay) {
   }
 }
 
-/// The same motion and three_sample, whose quadratics through D1, D2, D3 correct by (121 D2xD3 - 31 D1xD3 + D1xD2) / 720;
-/// with DixDj = 4 sin^2(a) sin^2(x/2) sin((j - i) x) it leaves -19/720 W sin^2(a) x^4 to leading order: on pure coning
-/// somewhat more than two_sample's 12/720, as it is made for smooth motion.
+/// The same motion and three_sample, whose quadratics through D1, D2, D3 correct by (121 D2xD3 - 31 D1xD3 + D1xD2) /
+/// 720; with DixDj = 4 sin^2(a) sin^2(x/2) sin((j - i) x) it leaves -19/720 W sin^2(a) x^4 to leading order: on pure
+/// coning somewhat more than two_sample's 12/720, as it is made for smooth motion.
 TEST(Strapdown, ConingOfThreeSamples) {
   const double a = 0.01, rate = 2.0 * kPi * 10.0, s2 = std::sin(a) * std::sin(a);
   const auto drift_rad_s = [&](double h) {
@@ -118,7 +116,8 @@ TEST(Strapdown, ConingOfThreeSamples) {
   };
   for (const double h : {0.005, 0.0025}) {
     const double x = rate * h, cross = 4.0 * s2 * std::pow(std::sin(0.5 * x), 2);
-    const double left = 0.5 * s2 * (rate - std::sin(x) / h) - cross * (122.0 * std::sin(x) - 31.0 * std::sin(2.0 * x)) / (720.0 * h);
+    const double left =
+        0.5 * s2 * (rate - std::sin(x) / h) - cross * (122.0 * std::sin(x) - 31.0 * std::sin(2.0 * x)) / (720.0 * h);
     EXPECT_NEAR(left / (-19.0 / 720.0 * rate * s2 * std::pow(x, 4)), 1.0, x * x);
     EXPECT_NEAR(std::abs(drift_rad_s(h) / left), 1.0, 10.0 * a * a) << h;  // leading terms in a
   }

@@ -21,8 +21,8 @@ std::string white_sensor(double arw_deg_per_sqrt_hr, double vrw_m_s_per_sqrt_hr)
   const std::string path = ::testing::TempDir() + "canyon_white_sensor.toml";
   const std::string others =
       "turn_on_bias_source = \"test\"\nin_run_bias_source = \"test\"\nscale_ppm = 0.0\nmisalignment_mrad = 0.0\n";
-  std::ofstream(path) << "name = \"white\"\n[gyro]\narw_source = \"test\"\narw_deg_per_sqrt_hr = " << arw_deg_per_sqrt_hr
-                      << "\nturn_on_bias_deg_per_hr = 0.0\nin_run_bias_deg_per_hr = 0.0\n"
+  std::ofstream(path) << "name = \"white\"\n[gyro]\narw_source = \"test\"\narw_deg_per_sqrt_hr = "
+                      << arw_deg_per_sqrt_hr << "\nturn_on_bias_deg_per_hr = 0.0\nin_run_bias_deg_per_hr = 0.0\n"
                       << others << "[accel]\nvrw_source = \"test\"\nvrw_m_s_per_sqrt_hr = " << vrw_m_s_per_sqrt_hr
                       << "\nturn_on_bias_mg = 0.0\nin_run_bias_mg = 0.0\n"
                       << others;
