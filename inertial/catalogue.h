@@ -9,6 +9,7 @@
 #include "core/config.h"
 #include "core/imu_noise.h"
 #include "core/result.h"
+#include "inertial/errors/error_figures.h"
 
 namespace canyon::inertial {
 
@@ -18,7 +19,9 @@ struct Figure {
   std::string source;
 };
 
-/// One triad of a unit in the units data sheets use. Gyroscope: deg, hours; accelerometer: m/s per root hour, mg.
+/// One triad of a unit in the units data sheets use. Gyroscope: deg, hours; accelerometer: m/s per root hour, mg. What
+/// each figure does is said in inertial/errors/error_figures.h; docs/inertial.md lists the keys. Figures that a file
+/// does not give are zero, except the first five of each, which must be given.
 struct GyroSheet {
   Figure arw_deg_per_sqrt_hr;
   Figure turn_on_bias_deg_per_hr;
@@ -26,6 +29,23 @@ struct GyroSheet {
   Figure in_run_bias_tau_s{3600.0, ""};
   Figure scale_ppm;
   Figure misalignment_mrad;
+  Figure bias_instability_deg_per_hr;
+  Figure flicker_low_hz{1e-4, ""}, flicker_high_hz{0.1, ""};
+  Figure rate_random_walk_deg_per_hr_per_sqrt_hr;
+  Figure ramp_deg_per_hr_per_hr;
+  Figure quantization_noise_deg;
+  Figure scale_asymmetry_ppm;
+  Figure nonlinearity_percent;
+  Figure package_misalignment_mrad;
+  Figure cross_talk_percent;
+  Figure g_sensitivity_deg_per_hr_per_g;
+  Figure bias_temperature_deg_per_hr_per_k;
+  Figure scale_temperature_ppm_per_k;
+  Figure vibration_rectification_deg_per_hr_per_g2;
+  Figure dead_band_deg_per_s;
+  Figure range_deg_per_s;
+  Figure resolution_deg_per_s;
+  Figure bandwidth_hz;  ///< of the output, -3 dB; for the reader and the proof-mass models, no link takes it
 };
 struct AccelSheet {
   Figure vrw_m_s_per_sqrt_hr;
@@ -34,6 +54,31 @@ struct AccelSheet {
   Figure in_run_bias_tau_s{3600.0, ""};
   Figure scale_ppm;
   Figure misalignment_mrad;
+  Figure bias_instability_mg;
+  Figure flicker_low_hz{1e-4, ""}, flicker_high_hz{0.1, ""};
+  Figure rate_random_walk_mg_per_sqrt_hr;
+  Figure ramp_mg_per_hr;
+  Figure quantization_noise_m_s;
+  Figure scale_asymmetry_ppm;
+  Figure nonlinearity_percent;
+  Figure package_misalignment_mrad;
+  Figure cross_talk_percent;
+  Figure bias_temperature_mg_per_k;
+  Figure scale_temperature_ppm_per_k;
+  Figure vibration_rectification_mg_per_g2;
+  Figure dead_band_mg;
+  Figure range_g;
+  Figure resolution_mg;
+  Figure bandwidth_hz;
+};
+/// The unit as a whole.
+struct UnitSheet {
+  Figure reference_temperature_c{25.0, ""};
+  Figure latency_ms;
+  Figure clock_skew_ppm;
+  Figure clock_jitter_us;
+  Figure loss_percent;
+  Figure loss_length{1.0, ""};
 };
 
 /// Parameters of the error chain of Durst & Goodin 2012, sections 2.2 and 3 (see inertial/paper_formulas.h).
@@ -60,12 +105,19 @@ struct PaperParameters {
 struct CatalogueEntry {
   std::string name;
   std::string description;
+  bool has_gyroscope = true;  ///< false: an accelerometer alone, without a [gyro] table
+  /// The Gauss-Markov bias stands for the same measured floor as `bias_instability`; a chain with flicker noise then
+  /// leaves it out. A fit that finds both processes in a log says false.
+  bool in_run_bias_is_instability = true;
   GyroSheet gyro;
   AccelSheet accel;
+  UnitSheet unit;
   PaperParameters paper;
 
-  /// The same figures in SI.
+  /// What a filter is told, in SI.
   ImuNoise noise() const;
+  /// What the links of the error chain take, in SI.
+  UnitFigures figures() const;
 };
 void visit(FieldVisitor& f, CatalogueEntry& c);
 
@@ -73,7 +125,7 @@ void visit(FieldVisitor& f, CatalogueEntry& c);
 std::vector<std::string> catalogue_names();
 
 /// A built-in entry by name, or a file if `sensor` ends in ".toml". An unknown name is an error that names the nearest
-/// known one; a figure that is not zero and has no source is an error too.
+/// known one; a figure that is not zero and has no source is an error too, and so is one that must be given and is not.
 Result<CatalogueEntry> load_catalogue_entry(const std::string& sensor);
 Result<CatalogueEntry> parse_catalogue_entry(std::string_view toml, const std::string& file_name);
 

@@ -1,5 +1,9 @@
 #include "inertial/error_chain.h"
 
+#include <algorithm>
+
+#include "inertial/errors/error_link.h"
+
 namespace canyon::inertial {
 namespace {
 
@@ -13,13 +17,26 @@ class IdealChain final : public ErrorChain {
 };
 
 constexpr ErrorChainRow kRows[] = {
-    {"datasheet", make_datasheet_chain,
+    {"datasheet", make_datasheet_chain, true,
      "turn-on bias, Gauss-Markov in-run bias, scale factor, misalignment and white noise of the data sheet"},
-    {"white_only", make_white_only_chain, "the same unit's white noise and nothing else: a perfect calibration"},
-    {"paper", make_paper_chain, "the chain of Durst & Goodin 2012 with its slips of units and its recursion corrected"},
-    {"paper_as_printed", make_paper_as_printed_chain, "the chain of Durst & Goodin 2012 exactly as printed"},
-    {"none", make_ideal_chain, "no error"},
+    {"full", make_full_chain, true, "every link that the unit has figures for"},
+    {"white_only", make_white_only_chain, true, "the same unit's white noise and nothing else: a perfect calibration"},
+    {"paper", make_paper_chain, false,
+     "the chain of Durst & Goodin 2012 with its slips of units and its recursion corrected"},
+    {"paper_as_printed", make_paper_as_printed_chain, false, "the chain of Durst & Goodin 2012 exactly as printed"},
+    {"none", make_ideal_chain, false, "no error"},
 };
+
+Error unknown(const std::string& key, const std::string& what, const std::string& name,
+              const std::vector<std::string>& known) {
+  std::string expected = nearest_word(name, known);
+  if (expected.empty()) {
+    for (const std::string& word : known) expected += (expected.empty() ? "one of " : ", ") + word;
+  } else {
+    expected = "\"" + expected + "\"?";
+  }
+  return Error{.file = "", .key = key, .what = "no " + what + " \"" + name + "\"", .expected = expected};
+}
 
 }  // namespace
 
@@ -33,7 +50,25 @@ std::vector<std::string> error_chain_names() {
   return names;
 }
 
-Result<std::unique_ptr<ErrorChain>> make_ideal_chain(const CatalogueEntry&, std::uint64_t, double) {
+Result<std::unique_ptr<ErrorChain>> make_error_chain(const std::string& name, const ChainSetup& setup) {
+  const auto row = std::find_if(std::begin(kRows), std::end(kRows), [&](const auto& r) { return name == r.name; });
+  if (row == std::end(kRows)) return unknown("imu.errors", "error chain", name, error_chain_names());
+  for (const std::string& link : setup.leave_out) {
+    const std::vector<std::string> links = error_link_names();
+    if (std::find(links.begin(), links.end(), link) == links.end()) {
+      return unknown("imu.leave_out", "link", link, links);
+    }
+    if (!row->has_links) {
+      return Error{.file = "",
+                   .key = "imu.leave_out",
+                   .what = "the error chain \"" + name + "\" has no links to leave out",
+                   .expected = "an empty list, or errors = \"datasheet\", \"full\" or \"white_only\""};
+    }
+  }
+  return row->make(setup);
+}
+
+Result<std::unique_ptr<ErrorChain>> make_ideal_chain(const ChainSetup&) {
   return std::unique_ptr<ErrorChain>(std::make_unique<IdealChain>());
 }
 

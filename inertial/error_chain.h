@@ -10,6 +10,7 @@
 #include "core/messages.h"
 #include "core/result.h"
 #include "inertial/catalogue.h"
+#include "inertial/environment.h"
 
 namespace canyon::inertial {
 
@@ -19,31 +20,50 @@ namespace canyon::inertial {
 class ErrorChain {
  public:
   virtual ~ErrorChain() = default;
-  /// Corrupts sample k. The errors depend on (seed, k) alone, not on which samples were asked for before; samples in
-  /// ascending order are the fast case.
+  /// Corrupts sample k. The errors depend on (seed, k) and the motion alone, not on which samples were asked for
+  /// before; samples in ascending order are the fast case.
   virtual void corrupt(std::int64_t k, ImuSample& sample) = 0;
+  /// Corrupts samples first, first + 1, ...: the same bits as one by one, several times faster.
+  virtual void corrupt_batch(std::int64_t first, std::span<ImuSample> samples) {
+    for (ImuSample& sample : samples) corrupt(first++, sample);
+  }
+  /// So many samples before the first one wanted must be corrupted first (and thrown away) for a part of a run to equal
+  /// that part of the whole run: latency and losses look back at earlier motion. 0 for all other errors.
+  virtual std::int64_t memory() const { return 0; }
   /// What a filter should be told of this unit.
   virtual const ImuNoise& noise() const = 0;
+};
+
+/// What a chain is made from.
+struct ChainSetup {
+  CatalogueEntry entry;
+  std::uint64_t seed = 0;
+  double rate_hz = 100.0;
+  std::vector<std::string> leave_out;  ///< names of links (inertial/errors/error_link.h)
+  Environment environment;
 };
 
 /// One row of the table of error chains.
 struct ErrorChainRow {
   const char* name;
-  Result<std::unique_ptr<ErrorChain>> (*make)(const CatalogueEntry& entry, std::uint64_t seed, double rate_hz);
+  Result<std::unique_ptr<ErrorChain>> (*make)(const ChainSetup& setup);
+  bool has_links;  ///< made of the links of inertial/errors, any of which can be left out
   const char* doc;
 };
 
 std::span<const ErrorChainRow> error_chains();
 std::vector<std::string> error_chain_names();
 
+/// The chain of that name. Errors: an unknown name; a link to leave out that the chain does not have; what the row's
+/// maker refuses.
+Result<std::unique_ptr<ErrorChain>> make_error_chain(const std::string& name, const ChainSetup& setup);
+
 /// Makers of the rows, each in the file of its model.
-Result<std::unique_ptr<ErrorChain>> make_ideal_chain(const CatalogueEntry& entry, std::uint64_t seed, double rate_hz);
-Result<std::unique_ptr<ErrorChain>> make_datasheet_chain(const CatalogueEntry& entry, std::uint64_t seed,
-                                                         double rate_hz);
-Result<std::unique_ptr<ErrorChain>> make_white_only_chain(const CatalogueEntry& entry, std::uint64_t seed,
-                                                          double rate_hz);
-Result<std::unique_ptr<ErrorChain>> make_paper_chain(const CatalogueEntry& entry, std::uint64_t seed, double rate_hz);
-Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const CatalogueEntry& entry, std::uint64_t seed,
-                                                                double rate_hz);
+Result<std::unique_ptr<ErrorChain>> make_ideal_chain(const ChainSetup& setup);
+Result<std::unique_ptr<ErrorChain>> make_datasheet_chain(const ChainSetup& setup);
+Result<std::unique_ptr<ErrorChain>> make_white_only_chain(const ChainSetup& setup);
+Result<std::unique_ptr<ErrorChain>> make_full_chain(const ChainSetup& setup);
+Result<std::unique_ptr<ErrorChain>> make_paper_chain(const ChainSetup& setup);
+Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const ChainSetup& setup);
 
 }  // namespace canyon::inertial

@@ -1,8 +1,8 @@
 #include "inertial/imu_model.h"
 
 #include "core/check.h"
+#include "core/units.h"
 #include "inertial/catalogue.h"
-#include "inertial/error_chain.h"
 #include "inertial/true_increments.h"
 
 namespace canyon::inertial {
@@ -31,24 +31,75 @@ class StrapdownImu final : public ImuModel {
 
 void visit(FieldVisitor& f, ImuConfig& c) {
   f.file("sensor", c.sensor, ".toml", "entry of the sensor catalogue, or a TOML file of your own sensor");
+  f.file("gyroscope", c.gyroscope, ".toml", "entry whose gyroscope goes with a sensor that is an accelerometer alone");
   f.choice("errors", c.errors, error_chain_names(), "error chain");
+  f.texts("leave_out", c.leave_out, "links of the error chain that are switched off, by name (docs/inertial.md)");
   f.number("rate_hz", c.rate_hz, {10, 5000}, "samples per second");
   f.vector3("lever_arm_m", c.lever_arm_m, {-100, 100}, "IMU in the body frame; axes parallel to the body's");
+  f.numbers("temperature_times_s", c.temperature_times_s, 0, {0, 1e9},
+            "corners of the unit's temperature over the run; empty: the temperature its figures hold for");
+  f.numbers("temperatures_c", c.temperatures_c, 0, {-100, 200}, "temperatures at these times, constant outside");
+  f.vector3("vibration_g", c.vibration_g, {0, 100}, "RMS of vibration too fast for the samples, per axis");
+}
+
+namespace {
+
+Result<CatalogueEntry> entry_of(const ImuConfig& config) {
+  CANYON_TRY(CatalogueEntry entry, load_catalogue_entry(config.sensor));
+  if (config.gyroscope.empty()) {
+    if (entry.has_gyroscope) return entry;
+    return Error{.file = "",
+                 .key = "imu.gyroscope",
+                 .what = "\"" + entry.name + "\" is an accelerometer alone",
+                 .expected = "a sensor whose gyroscope goes with it, such as \"bmi088\""};
+  }
+  CANYON_TRY(const CatalogueEntry other, load_catalogue_entry(config.gyroscope));
+  if (entry.has_gyroscope || !other.has_gyroscope) {
+    const bool already = entry.has_gyroscope;
+    return Error{.file = "",
+                 .key = "imu.gyroscope",
+                 .what = "\"" + (already ? entry.name : other.name) + (already ? "\" has its own" : "\" has none"),
+                 .expected = already ? "no gyroscope beside it" : "a sensor that has a gyroscope"};
+  }
+  entry.gyro = other.gyro;
+  entry.has_gyroscope = true;
+  return entry;
+}
+
+Result<Environment> environment_of(const ImuConfig& config) {
+  const auto& times = config.temperature_times_s;
+  const auto& temperatures = config.temperatures_c;
+  if (times.size() != temperatures.size()) {
+    return Error{.file = "",
+                 .key = "imu.temperatures_c",
+                 .what = join_values(temperatures.size(), " temperatures for ", times.size(), " times"),
+                 .expected = "as many as temperature_times_s"};
+  }
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    if (times[i] > times[i - 1]) continue;
+    return Error{.file = "",
+                 .key = "imu.temperature_times_s",
+                 .what = join_values(times[i], " s comes after ", times[i - 1], " s"),
+                 .expected = "times that increase"};
+  }
+  return Environment{.temperature_times_s = times,
+                     .temperatures_c = temperatures,
+                     .vibration_rms_m_s2 = kStandardGravity * config.vibration_g};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, std::uint64_t seed) {
+  ChainSetup setup{
+      .entry = {}, .seed = seed, .rate_hz = config.rate_hz, .leave_out = config.leave_out, .environment = {}};
+  CANYON_TRY(setup.entry, entry_of(config));
+  CANYON_TRY(setup.environment, environment_of(config));
+  return make_error_chain(config.errors, setup);
 }
 
 Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame) {
-  CANYON_TRY(const CatalogueEntry entry, load_catalogue_entry(config.sensor));
-  for (const ErrorChainRow& row : error_chains()) {
-    if (config.errors != row.name) continue;
-    CANYON_TRY(std::unique_ptr<ErrorChain> errors, row.make(entry, seed, config.rate_hz));
-    return std::unique_ptr<ImuModel>(std::make_unique<StrapdownImu>(frame, config.lever_arm_m, std::move(errors)));
-  }
-  const std::string nearest = nearest_word(config.errors, error_chain_names());
-  return Error{
-      .file = "",
-      .key = "imu.errors",
-      .what = "no error chain \"" + config.errors + "\"",
-      .expected = nearest.empty() ? "datasheet, white_only, paper, paper_as_printed or none" : "\"" + nearest + "\"?"};
+  CANYON_TRY(std::unique_ptr<ErrorChain> errors, make_error_chain(config, seed));
+  return std::unique_ptr<ImuModel>(std::make_unique<StrapdownImu>(frame, config.lever_arm_m, std::move(errors)));
 }
 
 }  // namespace canyon::inertial

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/config.h"
 #include "core/imu_noise.h"
@@ -11,15 +12,21 @@
 #include "core/messages.h"
 #include "core/result.h"
 #include "core/truth.h"
+#include "inertial/error_chain.h"
 
 namespace canyon::inertial {
 
 /// [imu] of a mission file.
 struct ImuConfig {
   std::string sensor = "high_grade_mems";  ///< entry of inertial/catalogue
-  std::string errors = "datasheet";        ///< datasheet | white_only | paper | none
+  std::string gyroscope;                   ///< entry whose gyroscope goes with a sensor that is an accelerometer alone
+  std::string errors = "datasheet";        ///< row of inertial/error_chain
+  std::vector<std::string> leave_out;      ///< links of the error chain that are switched off
   double rate_hz = 100.0;
   Eigen::Vector3d lever_arm_m{0.0, 0.0, 0.4};  ///< U in B; axes of U parallel to B
+  std::vector<double> temperature_times_s;     ///< profile of the unit's temperature; empty: as its figures hold
+  std::vector<double> temperatures_c;
+  Eigen::Vector3d vibration_g = Eigen::Vector3d::Zero();  ///< RMS of vibration too fast for the samples
 };
 void visit(FieldVisitor& f, ImuConfig& c);
 
@@ -35,6 +42,9 @@ class ImuModel {
 };
 
 Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame);
+
+/// The error chain of that configuration alone, for increments that come from elsewhere.
+Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, std::uint64_t seed);
 
 /// The datasheet noise of a catalogue entry.
 Result<ImuNoise> catalogue_noise(const std::string& sensor);

@@ -3,7 +3,7 @@
 #include "core/random.h"
 #include "core/units.h"
 #include "inertial/error_chain.h"
-#include "inertial/gauss_markov.h"
+#include "inertial/errors/markov_process.h"
 #include "inertial/paper_formulas.h"
 
 /// The error chain of Durst & Goodin 2012, section 2.2, twice: as printed, and corrected. Both take the catalogue's
@@ -129,7 +129,7 @@ class CorrectedTriad {
       : p_(p),
         thermal_(seed, p.name + ".thermal"),
         quantization_(seed, p.name + ".quantization"),
-        recursion_(RandomStream(seed, p.name + ".recursion"), p.white_process, p.tau_s, dt_s),
+        recursion_(MarkovProcess::gauss_markov(seed, p.name + ".recursion", 0, p.white_process, p.tau_s, dt_s)),
         scale_(p.scale_sigma * RandomStream(seed, p.name + ".scale").normal3(0)) {}
 
   void corrupt(std::int64_t k, double dt_s, Eigen::Vector3d& increment) {
@@ -154,7 +154,7 @@ class CorrectedTriad {
  private:
   Triad p_;
   RandomStream thermal_, quantization_;
-  GaussMarkov recursion_;
+  MarkovProcess recursion_;
   Eigen::Vector3d scale_;
 };
 
@@ -184,17 +184,18 @@ Status check_usable(const CatalogueEntry& e) {
 
 }  // namespace
 
-Result<std::unique_ptr<ErrorChain>> make_paper_chain(const CatalogueEntry& entry, std::uint64_t seed, double rate_hz) {
+Result<std::unique_ptr<ErrorChain>> make_paper_chain(const ChainSetup& setup) {
+  const CatalogueEntry& entry = setup.entry;
   CANYON_TRY_STATUS(check_usable(entry));
-  CorrectedTriad gyro(gyro_triad(entry), seed, 1.0 / rate_hz);
-  CorrectedTriad accel(accel_triad(entry), seed, 1.0 / rate_hz);
+  CorrectedTriad gyro(gyro_triad(entry), setup.seed, 1.0 / setup.rate_hz);
+  CorrectedTriad accel(accel_triad(entry), setup.seed, 1.0 / setup.rate_hz);
   const ImuNoise noise{.gyro = gyro.noise(), .accel = accel.noise()};
   return std::unique_ptr<ErrorChain>(
       std::make_unique<PaperChain<CorrectedTriad>>(std::move(gyro), std::move(accel), noise));
 }
 
-Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const CatalogueEntry& entry, std::uint64_t seed,
-                                                                double rate_hz) {
+Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const ChainSetup& setup) {
+  const CatalogueEntry& entry = setup.entry;
   CANYON_TRY_STATUS(check_usable(entry));
   if (entry.paper.correlation_time_s <= 1.0) {
     return Error{.file = "",
@@ -202,9 +203,9 @@ Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const CatalogueE
                  .what = join_values(entry.paper.correlation_time_s, " s makes the printed recursion diverge"),
                  .expected = "more than 1 s, or errors = \"paper\""};
   }
-  PrintedTriad gyro(gyro_triad(entry), seed);
-  PrintedTriad accel(accel_triad(entry), seed);
-  const ImuNoise noise{.gyro = gyro.noise(1.0 / rate_hz), .accel = accel.noise(1.0 / rate_hz)};
+  PrintedTriad gyro(gyro_triad(entry), setup.seed);
+  PrintedTriad accel(accel_triad(entry), setup.seed);
+  const ImuNoise noise{.gyro = gyro.noise(1.0 / setup.rate_hz), .accel = accel.noise(1.0 / setup.rate_hz)};
   return std::unique_ptr<ErrorChain>(
       std::make_unique<PaperChain<PrintedTriad>>(std::move(gyro), std::move(accel), noise));
 }

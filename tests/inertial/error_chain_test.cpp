@@ -7,7 +7,6 @@
 
 #include "core/units.h"
 #include "fusion/consistency.h"
-#include "inertial/gauss_markov.h"
 #include "inertial/imu_model.h"
 #include "tests/inertial/smooth_path.h"
 
@@ -34,6 +33,10 @@ ImuSample still_sample(double rate_hz) {
   return s;
 }
 
+ChainSetup setup(const CatalogueEntry& e, std::uint64_t seed, double rate_hz) {
+  return {.entry = e, .seed = seed, .rate_hz = rate_hz, .leave_out = {}, .environment = {}};
+}
+
 /// What a chain adds to sample k of a constant motion.
 ImuSample added(ErrorChain& chain, std::int64_t k, double rate_hz) {
   const ImuSample clean = still_sample(rate_hz);
@@ -45,7 +48,7 @@ ImuSample added(ErrorChain& chain, std::int64_t k, double rate_hz) {
 }
 
 std::unique_ptr<ErrorChain> datasheet(const CatalogueEntry& e, std::uint64_t seed, double rate_hz = 100.0) {
-  return *make_datasheet_chain(e, seed, rate_hz);
+  return *make_datasheet_chain(setup(e, seed, rate_hz));
 }
 
 /// Angle after t s of ARW: N sqrt(t); position after t s of VRW: N sqrt(t^3 / 3). At any sample rate.
@@ -57,7 +60,7 @@ TEST(ErrorChain, WhiteNoiseObeysItsLawAtAnyRate) {
     const int runs = 400, samples = static_cast<int>(t_s * rate_hz);
     double angle2 = 0.0, position2 = 0.0;
     for (int run = 0; run < runs; ++run) {
-      auto chain = *make_white_only_chain(entry, static_cast<std::uint64_t>(run), rate_hz);
+      auto chain = *make_white_only_chain(setup(entry, static_cast<std::uint64_t>(run), rate_hz));
       Eigen::Vector3d angle = Eigen::Vector3d::Zero(), v = angle, p = angle;
       for (int k = 0; k < samples; ++k) {
         ImuSample s;
@@ -120,7 +123,7 @@ TEST(ErrorChain, SwitchingOneErrorOffShiftsNoOther) {
 
 TEST(ErrorChain, WhiteOnlyIsTheDatasheetsWhiteNoise) {
   CatalogueEntry e = full_entry();
-  auto white_only = *make_white_only_chain(e, 9, 100.0);
+  auto white_only = *make_white_only_chain(setup(e, 9, 100.0));
   GyroSheet gyro;
   gyro.arw_deg_per_sqrt_hr = e.gyro.arw_deg_per_sqrt_hr;
   AccelSheet accel;
@@ -139,8 +142,8 @@ TEST(ErrorChain, WhiteOnlyIsTheDatasheetsWhiteNoise) {
 TEST(ErrorChain, ASampleDependsOnItsNumberNotOnTheWayThere) {
   for (const ErrorChainRow& row : error_chains()) {
     const CatalogueEntry e = *load_catalogue_entry("high_grade_mems");
-    auto in_order = *row.make(e, 3, 100.0);
-    auto jumping = *row.make(e, 3, 100.0);
+    auto in_order = *row.make(setup(e, 3, 100.0));
+    auto jumping = *row.make(setup(e, 3, 100.0));
     std::vector<ImuSample> samples;
     for (int k = 0; k < 60; ++k) samples.push_back(added(*in_order, k, 100.0));
     for (std::size_t k : {59u, 10u, 11u, 0u, 42u}) {
@@ -178,28 +181,6 @@ TEST(ErrorChain, ConstantsHaveTheirSpread) {
               four_sigma_of_variance(2 * units));
 }
 
-/// Variance sigma^2 from the first sample on, correlation exp(-t / tau), at any rate: over an ensemble.
-TEST(GaussMarkov, IsStationaryAndRateIndependent) {
-  const double sigma = 2.0, tau_s = 3.0;
-  const int runs = 1000, n = 3 * runs;
-  for (double rate_hz : {1.0, 50.0}) {
-    double first = 0.0, last = 0.0, product = 0.0;
-    for (int run = 0; run < runs; ++run) {
-      GaussMarkov process(RandomStream(static_cast<std::uint64_t>(run), "test.gm"), sigma, tau_s, 1.0 / rate_hz);
-      const Eigen::Vector3d a = process.at(0);
-      const Eigen::Vector3d b = process.at(static_cast<std::int64_t>(3.0 * rate_hz));
-      first += a.squaredNorm();
-      last += b.squaredNorm();
-      product += a.dot(b);
-    }
-    EXPECT_NEAR(first / n / (sigma * sigma), 1.0, four_sigma_of_variance(n)) << rate_hz;
-    EXPECT_NEAR(last / n / (sigma * sigma), 1.0, four_sigma_of_variance(n)) << rate_hz;
-    // The product of two normals of correlation r has variance 1 + r^2.
-    const double r = std::exp(-1.0);
-    EXPECT_NEAR(product / n / (sigma * sigma), r, 4.0 * std::sqrt((1.0 + r * r) / n)) << rate_hz;
-  }
-}
-
 TEST(PaperChain, QuantizationTelescopes) {
   // The sum of n corrected quantization errors is one difference of two: bounded, not growing like white noise.
   CatalogueEntry e = *load_catalogue_entry("phidget_3_3_3");
@@ -208,7 +189,7 @@ TEST(PaperChain, QuantizationTelescopes) {
   e.paper.gyro.drive_amplitude_m = 1e-3;  // thermal noise far below
   e.gyro.scale_ppm.value = 0.0;
   e.paper.gyro.quantization = 0.01;
-  auto chain = *make_paper_chain(e, 1, 125.0);
+  auto chain = *make_paper_chain(setup(e, 1, 125.0));
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < 20000; ++k) {
     ImuSample s;
@@ -225,8 +206,8 @@ TEST(PaperChain, PrintedNoiseIsABiasTheCorrectedIsNot) {
   CatalogueEntry e = *load_catalogue_entry("phidget_3_3_3");
   e.paper.gyro.zero_offset = e.paper.gyro.white_process = 0.0;
   e.gyro.scale_ppm.value = 0.0;
-  auto printed = *make_paper_as_printed_chain(e, 1, 125.0);
-  auto corrected = *make_paper_chain(e, 1, 125.0);
+  auto printed = *make_paper_as_printed_chain(setup(e, 1, 125.0));
+  auto corrected = *make_paper_chain(setup(e, 1, 125.0));
   double printed_sum = 0.0, corrected_sum = 0.0;
   const int n = 20000;
   for (int k = 0; k < n; ++k) {
@@ -243,18 +224,18 @@ TEST(PaperChain, PrintedNoiseIsABiasTheCorrectedIsNot) {
 }
 
 TEST(PaperChain, NeedsItsParameters) {
-  const auto no_table = make_paper_chain(*load_catalogue_entry("stim300"), 1, 100.0);
+  const auto no_table = make_paper_chain(setup(*load_catalogue_entry("stim300"), 1, 100.0));
   ASSERT_FALSE(no_table.ok());
   EXPECT_THAT(no_table.error().str(),
               ::testing::HasSubstr("\"stim300\" has no parameters for the paper's error chain"));
   CatalogueEntry e = *load_catalogue_entry("phidget_3_3_3");
   e.paper.correlation_time_s = 0.5;
-  const auto diverging = make_paper_as_printed_chain(e, 1, 125.0);
+  const auto diverging = make_paper_as_printed_chain(setup(e, 1, 125.0));
   ASSERT_FALSE(diverging.ok());
   EXPECT_EQ(diverging.error().str(),
             "paper.correlation_time_s: 0.5 s makes the printed recursion diverge, expected more than 1 s, or errors = "
             "\"paper\"");
-  EXPECT_TRUE(make_paper_chain(e, 1, 125.0).ok());
+  EXPECT_TRUE(make_paper_chain(setup(e, 1, 125.0)).ok());
 }
 
 TEST(MakeImu, BuildsEveryChainAndTellsTheFilter) {

@@ -6,7 +6,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
-#include "inertial/gauss_markov.h"
+#include "inertial/errors/markov_process.h"
 
 namespace canyon::inertial {
 namespace {
@@ -39,7 +39,7 @@ TEST(PaperFormulas, RecursionForgetsInMillisecondsNotTenSeconds) {
   // Measured: correlation of successive values is 1 / tau = 0.1; of the corrected process exp(-dt / tau) = 0.9992.
   const int n = 200000;
   const RandomStream stream(11, "test.recursion");
-  GaussMarkov corrected(RandomStream(11, "test.corrected"), 0.15, 10.0, 1.0 / 125.0);
+  MarkovProcess corrected = MarkovProcess::gauss_markov(11, "test.corrected", 0, 0.15, 10.0, 1.0 / 125.0);
   double printed = 0.0, lag = 0.0, square = 0.0, corrected_lag = 0.0, corrected_square = 0.0;
   double previous = corrected.at(0).x();
   for (int k = 1; k <= n; ++k) {
