@@ -18,12 +18,12 @@ inline double exact_double(std::uint64_t k) {
 
 /// The upper 53 bits of the 64-bit word (high, low) times 2^-53: a uniform number in [0, 1). Both products and the sum
 /// are exact.
-inline double uniform53(std::uint32_t low, std::uint32_t high) {
+inline double uniform53(std::uint64_t low, std::uint64_t high) {
   return exact_double(high) * 0x1p-32 + exact_double(low >> 11) * 0x1p-53;
 }
 
 /// The same shifted into (0, 1]: never zero, so its logarithm is finite (at least -36.7).
-inline double uniform53_above_zero(std::uint32_t low, std::uint32_t high) {
+inline double uniform53_above_zero(std::uint64_t low, std::uint64_t high) {
   return exact_double(high) * 0x1p-32 + (exact_double(low >> 11) + 1.0) * 0x1p-53;
 }
 

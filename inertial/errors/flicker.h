@@ -13,8 +13,9 @@ struct FlickerPart {
 /// Flicker noise with the Allan floor `bias_instability` (0.664 B; S(f) = B^2 / (2 pi f) two-sided, IEEE Std 952 annex
 /// C) between two corners, as a sum of independent Gauss-Markov processes: their corners 1 / (2 pi tau) lie in the
 /// middle of equal logarithmic steps of at most a factor 4 between `low_hz` and `high_hz`, all with the same variance.
-/// Between the corners the density follows 1/f to 0.3 %, a factor of 4 away from them; it is flat below `low_hz` and
-/// falls as 1/f^2 above `high_hz`. The whole variance is B^2 / pi ln(high / low). 0 < low_hz < high_hz.
+/// The density is (2 / pi) (atan(high / f) - atan(low / f)) of 1/f, to 0.3 % far from the corners (0.8 % ten times
+/// inside them); it is flat below `low_hz` and falls as 1/f^2 above `high_hz`. The whole variance is B^2 / pi ln(high /
+/// low). 0 < low_hz < high_hz.
 std::vector<FlickerPart> flicker_parts(double bias_instability, double low_hz, double high_hz);
 
 }  // namespace canyon::inertial

@@ -57,6 +57,22 @@ TEST(RandomStream, BatchGivesThePublishedPhiloxVectors) {
   }
 }
 
+// What the instruction set of the machine allows against the plain code, carries of the counter included.
+TEST(RandomStream, EveryInstructionSetGivesTheSameWords) {
+  for (const std::uint64_t first : {0ull, 7ull, (1ull << 32) - 9, ~0ull - 5}) {
+    for (const KnownAnswer& k : kKnownAnswers) {
+      PhiloxTile plain, best;
+      philox_tile_portable(k.key, k.counter[2], first, k.counter[3], plain);
+      philox_tile_of_this_machine()(k.key, k.counter[2], first, k.counter[3], best);
+      for (std::size_t word = 0; word < 4; ++word) {
+        for (std::size_t b = 0; b < kRandomTile / 2; ++b) {
+          ASSERT_EQ(best.words[word][b], plain.words[word][b]) << first << " + " << b;
+        }
+      }
+    }
+  }
+}
+
 TEST(RandomStream, ScalarGivesThePublishedPhiloxVector) {
   const RandomStream stream(splitmix64_inverse(kEmptyHash), "");
   ASSERT_EQ(stream.key(), 0u);

@@ -11,15 +11,81 @@
 namespace canyon::inertial {
 namespace {
 
+constexpr const char* kQuiet =
+    "name = \"mine\"\n"
+    "[gyro]\n"
+    "arw_deg_per_sqrt_hr = 0\nturn_on_bias_deg_per_hr = 0\nin_run_bias_deg_per_hr = 0\nscale_ppm = 0\n"
+    "misalignment_mrad = 0\n"
+    "[accel]\n"
+    "vrw_m_s_per_sqrt_hr = 0\nturn_on_bias_mg = 0\nin_run_bias_mg = 0\nscale_ppm = 0\nmisalignment_mrad = 0\n";
+
 TEST(Catalogue, HoldsTheBuiltInUnits) {
-  EXPECT_THAT(catalogue_names(), ::testing::IsSupersetOf({"adis16405", "adis16465", "high_grade_mems", "ideal",
-                                                          "paper_low", "phidget_3_3_3", "stim300"}));
+  EXPECT_THAT(catalogue_names(),
+              ::testing::IsSupersetOf({"adis16405", "adis16465", "adis16470", "adxl345", "adxl355", "adxl357", "bmi088",
+                                       "hg1930_class", "hg4930_class", "high_grade_mems", "ideal", "mpu6050",
+                                       "paper_low", "phidget_3_3_3", "stim300"}));
   for (const std::string& name : catalogue_names()) {
     const auto entry = load_catalogue_entry(name);
     ASSERT_TRUE(entry.ok()) << entry.error().str();
     EXPECT_EQ((*entry).name, name) << "the entry's name is its file's";
     EXPECT_FALSE((*entry).description.empty());
   }
+}
+
+/// Figures of the sheets in SI, worked out by hand: 0.005 deg/s/sqrt(Hz), 400 ug/sqrt(Hz), 250 deg/s, 16384 LSB/g.
+TEST(Catalogue, FiguresOfTheLinksAreInSi) {
+  const UnitFigures mpu = load_catalogue_entry("mpu6050")->figures();
+  EXPECT_NEAR(mpu.gyro.white_per_sqrt_hz, 0.005 * kDegree, 1e-12);
+  EXPECT_NEAR(mpu.accel.white_per_sqrt_hz, 400e-6 * kStandardGravity, 1e-8);  // six digits in the file
+  EXPECT_NEAR(mpu.gyro.range, 250.0 * kDegree, 1e-12);
+  EXPECT_NEAR(mpu.accel.resolution, kStandardGravity / 16384.0, 1e-11);
+  EXPECT_NEAR(mpu.gyro.g_sensitivity, 0.1 * kDegree / kStandardGravity, 1e-15);
+  EXPECT_NEAR(mpu.accel.bias_temperature, kMilliG, 1e-15);
+  EXPECT_NEAR(mpu.gyro.scale_temperature, 320e-6, 1e-15);
+  EXPECT_NEAR(mpu.gyro.nonlinearity, 0.002, 1e-15);
+  for (const std::string& name : catalogue_names()) {
+    const UnitFigures f = load_catalogue_entry(name)->figures();
+    EXPECT_LE(f.gyro.in_run_bias, f.gyro.turn_on_bias) << name;
+    EXPECT_LE(f.accel.in_run_bias, f.accel.turn_on_bias) << name;
+    EXPECT_TRUE(f.accel.range == 0.0 || f.accel.resolution < f.accel.range) << name;
+  }
+}
+
+TEST(Catalogue, AnAccelerometerAloneTakesAnothersGyroscope) {
+  const auto adxl = load_catalogue_entry("adxl355");
+  ASSERT_TRUE(adxl.ok()) << adxl.error().str();
+  EXPECT_FALSE((*adxl).has_gyroscope);
+  ImuConfig config;
+  config.sensor = "adxl355";
+  const auto alone = make_error_chain(config, 1);
+  ASSERT_FALSE(alone.ok());
+  EXPECT_EQ(
+      alone.error().str(),
+      "imu.gyroscope: \"adxl355\" is an accelerometer alone, expected a sensor whose gyroscope goes with it, such as "
+      "\"bmi088\"");
+  config.gyroscope = "adxl345";
+  EXPECT_EQ(make_error_chain(config, 1).error().str(),
+            "imu.gyroscope: \"adxl345\" has none, expected a sensor that has a gyroscope");
+  config.gyroscope = "bmi088";
+  const auto both = make_error_chain(config, 1);
+  ASSERT_TRUE(both.ok()) << both.error().str();
+  EXPECT_EQ((*both)->noise().gyro.white_per_sqrt_hz, catalogue_noise("bmi088")->gyro.white_per_sqrt_hz);
+  EXPECT_EQ((*both)->noise().accel.white_per_sqrt_hz, catalogue_noise("adxl355")->accel.white_per_sqrt_hz);
+}
+
+TEST(Catalogue, AnAccelerometerAloneHasNoGyroscopeTable) {
+  const auto entry =
+      parse_catalogue_entry("name = \"mine\"\nhas_gyroscope = false\n[gyro]\nscale_ppm = 1\n", "mine.toml");
+  ASSERT_FALSE(entry.ok());
+  EXPECT_EQ(entry.error().str(),
+            "mine.toml:3: gyro: has_gyroscope = false, but there is a [gyro] table, expected one of the two");
+}
+
+TEST(Catalogue, FlickerCornersAreInOrder) {
+  const std::string text = std::regex_replace(kQuiet, std::regex("\\[accel\\]"), "flicker_low_hz = 2.0\n[accel]");
+  const auto entry = parse_catalogue_entry(text, "mine.toml");
+  ASSERT_FALSE(entry.ok());
+  EXPECT_THAT(entry.error().str(), ::testing::HasSubstr("gyro.flicker_low_hz: 2 Hz is not below the upper corner"));
 }
 
 TEST(Catalogue, ConvertsSheetUnitsOnce) {
@@ -61,14 +127,6 @@ TEST(Catalogue, NamesTheNearestSensor) {
   EXPECT_EQ(entry.error().str(), "imu.sensor: no sensor \"stim30\" in the catalogue, expected \"stim300\"?");
   EXPECT_EQ(entry.error().exit_code, 2);
 }
-
-constexpr const char* kQuiet =
-    "name = \"mine\"\n"
-    "[gyro]\n"
-    "arw_deg_per_sqrt_hr = 0\nturn_on_bias_deg_per_hr = 0\nin_run_bias_deg_per_hr = 0\nscale_ppm = 0\n"
-    "misalignment_mrad = 0\n"
-    "[accel]\n"
-    "vrw_m_s_per_sqrt_hr = 0\nturn_on_bias_mg = 0\nin_run_bias_mg = 0\nscale_ppm = 0\nmisalignment_mrad = 0\n";
 
 // 2026-11-21: a file without its angular random walk ran as a gyroscope without noise, and nobody was told.
 TEST(Catalogue, NoiseIsNeverZeroByOmission) {
