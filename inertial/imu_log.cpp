@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/earth.h"
 #include "core/files.h"
 #include "core/line_reader.h"
 #include "core/units.h"
@@ -12,27 +13,48 @@
 namespace canyon::inertial {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s^2
 constexpr const char* kExpectedNames =
     "t_s or --rate, and channels such as gx_rad_s, gy_deg_s, az_m_s2, ax_g, with *FACTOR for counts";
+
+constexpr ImuLogLayout kLayouts[] = {
+    {"euroc", "t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2", "EuRoC and TUM-VI data sets"},
+    {"kf_gins", "t_s,gx_rad,gy_rad*-1,gz_rad*-1,ax_m_s,ay_m_s*-1,az_m_s*-1",
+     "KF-GINS text: increments, turned from front-right-down to front-left-up"},
+};
+
+/// Names that other programs write.
+struct Alias {
+  const char* theirs;
+  const char* ours;
+};
+constexpr Alias kAliases[] = {
+    {"field.header.stamp", "t_ns"},  // rostopic echo -p of sensor_msgs/Imu
+    {"field.angular_velocity.x", "gx_rad_s"},
+    {"field.angular_velocity.y", "gy_rad_s"},
+    {"field.angular_velocity.z", "gz_rad_s"},
+    {"field.linear_acceleration.x", "ax_m_s2"},
+    {"field.linear_acceleration.y", "ay_m_s2"},
+    {"field.linear_acceleration.z", "az_m_s2"},
+    {"timestamp [ns]", "t_ns"},  // EuRoC's names, where they are not behind a #
+    {"w_RS_S_x [rad s^-1]", "gx_rad_s"},
+    {"w_RS_S_y [rad s^-1]", "gy_rad_s"},
+    {"w_RS_S_z [rad s^-1]", "gz_rad_s"},
+    {"a_RS_S_x [m s^-2]", "ax_m_s2"},
+    {"a_RS_S_y [m s^-2]", "ay_m_s2"},
+    {"a_RS_S_z [m s^-2]", "az_m_s2"},
+};
 
 struct Unit {
   const char* suffix;
   char quantity;  ///< t, g or a
   double si;
+  bool increment = false;
 };
 constexpr Unit kUnits[] = {
-    {"s", 't', 1.0},
-    {"ms", 't', 1e-3},
-    {"us", 't', 1e-6},
-    {"ns", 't', 1e-9},
-    {"rad_s", 'g', 1.0},
-    {"deg_s", 'g', kDegree},
-    {"dps", 'g', kDegree},
-    {"deg_h", 'g', kDegree / 3600.0},
-    {"m_s2", 'a', 1.0},
-    {"g", 'a', kGravity},
-    {"mg", 'a', kGravity * 1e-3},
+    {"s", 't', 1.0},         {"ms", 't', 1e-3},           {"us", 't', 1e-6},     {"ns", 't', 1e-9},
+    {"rad_s", 'g', 1.0},     {"deg_s", 'g', kDegree},     {"dps", 'g', kDegree}, {"deg_h", 'g', kDegree / 3600.0},
+    {"rad", 'g', 1.0, true}, {"deg", 'g', kDegree, true}, {"m_s2", 'a', 1.0},    {"g", 'a', kStandardGravity},
+    {"mg", 'a', kMilliG},    {"m_s", 'a', 1.0, true},
 };
 
 /// Where a column goes: 0 time, 1..6 channels.
@@ -40,38 +62,56 @@ struct Column {
   std::size_t field = 0;
   int target = 0;
   double factor = 1.0;
+  bool increment = false;
 };
 
-/// nullopt for names that mean nothing here.
-std::optional<Column> column_of(std::string_view name, std::size_t field) {
-  name = trimmed(name);
-  double factor = 1.0;
-  if (const std::size_t star = name.find('*'); star != std::string_view::npos) {
-    const std::string_view number = trimmed(name.substr(star + 1));
-    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), factor);
-    if (error != std::errc() || stop != number.data() + number.size() || !std::isfinite(factor) || factor == 0.0)
-      return std::nullopt;
-    name = trimmed(name.substr(0, star));
-  }
-  const std::size_t underscore = name.find('_');
-  if (underscore == std::string_view::npos) return std::nullopt;
-  const std::string_view channel = name.substr(0, underscore), suffix = name.substr(underscore + 1);
-  int target = -1;
-  if (channel == "t") target = 0;
+/// 0 time, 1..6 channels, -1 for names that mean nothing here.
+int target_of(std::string_view channel) {
+  if (channel == "t") return 0;
   for (int c = 0; c < 6; ++c)
-    if (channel == kChannelNames[c]) target = c + 1;
-  if (target < 0) return std::nullopt;
-  const char quantity = target == 0 ? 't' : target <= 3 ? 'g' : 'a';
-  for (const Unit& unit : kUnits)
-    if (suffix == unit.suffix && unit.quantity == quantity) return Column{field, target, unit.si * factor};
-  return std::nullopt;
+    if (channel == kChannelNames[c]) return c + 1;
+  return -1;
 }
 
-std::vector<Column> columns_of(std::string_view names) {
+/// nullopt for names that mean nothing here.
+Result<std::optional<Column>> column_of(std::string_view name, std::size_t field, const Error& at) {
+  name = trimmed(name);
+  for (const Alias& alias : kAliases)
+    if (name == alias.theirs) name = alias.ours;
+  const std::string_view whole = name;
+  const std::size_t star = name.find('*');
+  name = trimmed(name.substr(0, star));
+  const std::size_t underscore = name.find('_');
+  const int target = target_of(name.substr(0, underscore));
+  if (target < 0) return std::optional<Column>{};
+  Error error = at;
+  error.what = "column \"" + std::string(whole) + "\": ";
+  error.expected = kExpectedNames;
+  double factor = 1.0;
+  if (star != std::string_view::npos) {
+    const std::string_view number = trimmed(whole.substr(star + 1));
+    const auto [stop, status] = std::from_chars(number.data(), number.data() + number.size(), factor);
+    if (status != std::errc() || stop != number.data() + number.size() || !std::isfinite(factor) || factor == 0.0) {
+      error.what += "no factor";
+      return error;
+    }
+  }
+  const char quantity = target == 0 ? 't' : target <= 3 ? 'g' : 'a';
+  if (underscore != std::string_view::npos)
+    for (const Unit& unit : kUnits)
+      if (name.substr(underscore + 1) == unit.suffix && unit.quantity == quantity)
+        return std::optional<Column>(Column{field, target, unit.si * factor, unit.increment});
+  error.what += "no such unit";
+  return error;
+}
+
+Result<std::vector<Column>> columns_of(std::string_view names, const Error& at) {
   std::vector<Column> out;
   const auto fields = split(names, ",", false);
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    if (const auto column = column_of(fields[i], i)) out.push_back(*column);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    CANYON_TRY(const std::optional<Column> column, column_of(fields[i], i, at));
+    if (column) out.push_back(*column);
+  }
   return out;
 }
 
@@ -91,6 +131,13 @@ Status check_columns(const std::vector<Column>& columns, double rate_hz, const E
     error.what = "no time column";
     return error;
   }
+  for (int target = 1; target <= 6; ++target) {
+    const int triad = (target - 1) / 3;
+    const auto named = [&](int t) { return count([t](const Column& c) { return c.target == t; }) > 0; };
+    if (named(target) || !(named(3 * triad + 1) || named(3 * triad + 2) || named(3 * triad + 3))) continue;
+    error.what = std::string("no column for ") + kChannelNames[target - 1];
+    return error;
+  }
   for (int target = 0; target <= 6; ++target)
     if (count([&](const Column& c) { return c.target == target; }) > 1) {
       error.what = std::string("two columns for ") + (target == 0 ? "t" : kChannelNames[target - 1]);
@@ -106,62 +153,175 @@ double mean_of(const std::vector<double>& x) {
   return sum / static_cast<double>(x.size());
 }
 
-/// What a resting or driving unit cannot show.
-Status check_magnitudes(const std::string& path, const ImuLog& log) {
-  const auto complain = [&](std::string what, std::string expected) {
-    return Error{path, 0, "", std::move(what), std::move(expected)};
-  };
-  for (int c = 0; c < 6; ++c) {
-    const auto& x = log.channels[static_cast<std::size_t>(c)];
-    if (x.size() > 10 && std::all_of(x.begin(), x.end(), [&](double v) { return v == x.front(); }))
-      return complain(std::string(kChannelNames[c]) + " never changes", "a channel that is alive");
+/// Where the log's samples stand in the file, for messages.
+struct Places {
+  std::string path;
+  std::vector<int> lines;
+
+  Error error(std::size_t sample, std::string what, std::string expected) const {
+    return {path, lines[sample], "", std::move(what), std::move(expected)};
   }
-  const auto& ax = log.channels[3];
-  const auto& ay = log.channels[4];
-  const auto& az = log.channels[5];
-  if (ax.empty() || ay.empty() || az.empty()) return Ok{};
-  const double force = std::hypot(mean_of(ax), mean_of(ay), mean_of(az));
-  const double interval_s = (log.t_s.back() - log.t_s.front()) / static_cast<double>(log.size() - 1);
-  const auto near = [&](double expected) { return std::abs(force / expected - 1.0) < 0.1; };
-  if (near(kGravity)) return Ok{};
-  char figure[64];
-  std::snprintf(figure, sizeof figure, "mean specific force %.4g m/s^2", force);
-  if (near(kGravity * interval_s))
-    return complain(std::string(figure) + ": these are velocity increments, not rates",
-                    "m/s^2; divide by the interval with *FACTOR");
-  if (near(1.0)) return complain(std::string(figure) + ": these are g", "names in _g");
-  if (near(1000.0)) return complain(std::string(figure) + ": these are mg", "names in _mg");
-  if (near(100.0 * kGravity)) return complain(std::string(figure) + ": these are cm/s^2", "_m_s2*0.01");
-  if (near(kGravity * kGravity)) return complain(std::string(figure) + ": these are m/s^2", "names in _m_s2");
+};
+
+std::string text(const char* format, auto... values) {
+  char buffer[120];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+/// A sensor's noise never lets it stay at its largest value; a full scale does.
+Status check_saturation(const ImuLog& log, int channel, const Places& places) {
+  constexpr std::size_t kLongest = 5;          // samples in a row
+  constexpr std::size_t kDistinctValues = 16;  // fewer: a sensor of coarse steps, which do stay
+  const auto& x = log.channels[static_cast<std::size_t>(channel)];
+  const auto [least, most] = std::minmax_element(x.begin(), x.end());
+  for (const double extreme : {*most, *least}) {
+    std::size_t run = 0, longest = 0, end = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      run = x[k] == extreme ? run + 1 : 0;
+      if (run > longest) longest = run, end = k;
+    }
+    if (longest < kLongest) continue;
+    std::vector<double> values = x;
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    if (values.size() < kDistinctValues) continue;
+    return places.error(end + 1 - longest,
+                        text("%s stays at its extreme value %.6g %s for %zu samples: saturated", kChannelNames[channel],
+                             extreme, channel < 3 ? "rad/s" : "m/s^2", longest),
+                        "a log within the sensor's range");
+  }
   return Ok{};
 }
 
+Status check_live(const ImuLog& log, const Places& places) {
+  for (int c = 0; c < 6; ++c) {
+    const auto& x = log.channels[static_cast<std::size_t>(c)];
+    if (x.size() <= 10) continue;
+    if (std::all_of(x.begin(), x.end(), [&](double v) { return v == x.front(); }))
+      return places.error(0, std::string(kChannelNames[c]) + " never changes", "a channel that is alive");
+    CANYON_TRY_STATUS(check_saturation(log, c, places));
+  }
+  return Ok{};
+}
+
+/// What no unit can show on average. `as_increments`: the file is said to hold increments.
+Status check_force(const ImuLog& log, double interval_s, bool as_increments, const Places& places) {
+  const double force = std::hypot(mean_of(log.channels[3]), mean_of(log.channels[4]), mean_of(log.channels[5]));
+  const auto near = [&](double expected) { return std::abs(force / expected - 1.0) < 0.1; };
+  if (near(kStandardGravity)) return Ok{};
+  const std::string figure = text("mean specific force %.4g m/s^2: ", force);
+  if (as_increments) {
+    if (near(kStandardGravity / interval_s))
+      return places.error(0, figure + "these are rates, where increments are said", "names in _m_s2");
+    return Ok{};
+  }
+  struct Mistake {
+    double force;
+    const char* what;
+    const char* expected;
+  };
+  const Mistake mistakes[] = {
+      {kStandardGravity * interval_s, "these are velocity increments, not rates", "names in _m_s"},
+      {1.0, "these are g", "names in _g"},
+      {1000.0, "these are mg", "names in _mg"},
+      {100.0 * kStandardGravity, "these are cm/s^2", "_m_s2*0.01"},
+      {kStandardGravity * kStandardGravity, "these are m/s^2", "names in _m_s2"},
+  };
+  const auto off = [&](const Mistake& m) { return std::abs(force / m.force - 1.0); };
+  const Mistake& nearest = *std::min_element(std::begin(mistakes), std::end(mistakes),
+                                             [&](const Mistake& a, const Mistake& b) { return off(a) < off(b); });
+  if (near(nearest.force)) return places.error(0, figure + nearest.what, nearest.expected);
+  return Ok{};
+}
+
+Status check_rates(const ImuLog& log, double interval_s, bool as_increments, const Places& places) {
+  constexpr double kLargest = 100.0;  // rad/s; the fastest gyroscopes on the market end at 70 (4000 deg/s)
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t k = 0; k < log.channels[c].size(); ++k)
+      if (std::abs(log.channels[c][k]) > kLargest)
+        return places.error(k,
+                            text("%s = %.4g rad/s: no gyroscope goes so far; these are %s", kChannelNames[c],
+                                 log.channels[c][k], as_increments ? "rates, where increments are said" : "deg/s"),
+                            as_increments ? "names in _rad_s" : "names in _deg_s");
+  // Only the Earth's rate itself betrays increments: a MEMS bias may have any size, but hardly one so small.
+  if (as_increments || !log.channels[3].empty() || log.channels[0].empty() || log.channels[1].empty() ||
+      log.channels[2].empty())
+    return Ok{};
+  const double rate = std::hypot(mean_of(log.channels[0]), mean_of(log.channels[1]), mean_of(log.channels[2]));
+  if (std::abs(rate / (Wgs84::rate_rad_s * interval_s) - 1.0) < 0.1)
+    return places.error(0,
+                        text("mean rate %.4g rad/s is the Earth's times the interval: these are angle increments, "
+                             "not rates",
+                             rate),
+                        "names in _rad");
+  return Ok{};
+}
+
+Status check_magnitudes(const ImuLog& log, bool as_increments, const Places& places) {
+  const double interval_s = (log.t_s.back() - log.t_s.front()) / static_cast<double>(log.size() - 1);
+  if (!log.channels[3].empty() && !log.channels[4].empty() && !log.channels[5].empty())
+    CANYON_TRY_STATUS(check_force(log, interval_s, as_increments, places));
+  return check_rates(log, interval_s, as_increments, places);
+}
+
+/// Increments divided by the interval that they end; the first by the second's.
+void to_rates(const std::vector<Column>& columns, ImuLog& log) {
+  for (const Column& column : columns) {
+    if (!column.increment) continue;
+    auto& x = log.channels[static_cast<std::size_t>(column.target - 1)];
+    for (std::size_t k = 0; k < x.size(); ++k) x[k] /= k > 0 ? log.t_s[k] - log.t_s[k - 1] : log.t_s[1] - log.t_s[0];
+  }
+}
+
+std::string layout_names() {
+  std::string out;
+  for (const ImuLogLayout& layout : kLayouts) out += (out.empty() ? "" : ", ") + std::string(layout.name);
+  return out;
+}
+
+Result<std::vector<Column>> asked_columns(const ImuLogFormat& format) {
+  std::string names = format.columns;
+  for (const ImuLogLayout& layout : kLayouts)
+    if (names == layout.name) names = layout.columns;
+  const Error at{"--columns", 0, "", "", ""};
+  CANYON_TRY(auto columns, columns_of(names, at));
+  CANYON_TRY_STATUS(check_columns(columns, format.rate_hz, at));
+  return columns;
+}
+
 }  // namespace
+
+std::span<const ImuLogLayout> imu_log_layouts() {
+  return kLayouts;
+}
 
 Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format) {
   CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
   LineReader in(path, text);
   std::vector<Column> columns;
   if (!format.columns.empty()) {
-    columns = columns_of(format.columns);
-    CANYON_TRY_STATUS(check_columns(columns, format.rate_hz, {"--columns", 0, "", "", ""}));
+    CANYON_TRY(columns, asked_columns(format));
   }
   ImuLog log;
+  Places places{path, {}};
   std::string_view line;
   for (bool first = true; in.next(line); first = false) {
     if (first && has_letters(line)) {
       if (!columns.empty()) continue;  // --columns stands for it
-      columns = columns_of(line);
+      CANYON_TRY(columns, columns_of(line, in.error("", "")));
       CANYON_TRY_STATUS(check_columns(columns, format.rate_hz, in.error("", "")));
       continue;
     }
-    if (columns.empty()) return in.error("no header", "a header of names, or --columns");
+    if (columns.empty())
+      return in.error("no header", "a header of names, or --columns with names or a layout: " + layout_names());
     const bool commas = line.find(',') != std::string_view::npos;
     const auto fields = split(line, commas ? "," : " \t;", !commas);
     bool timed = false;
     for (const Column& column : columns) {
       if (column.field >= fields.size())
         return in.error(std::to_string(fields.size()) + " fields", std::to_string(column.field + 1) + " or more");
+      if (column.target == 0 && format.rate_hz > 0.0) continue;
       CANYON_TRY(const double value, parse_number(in, fields[column.field]));
       if (column.target > 0) {
         log.channels[static_cast<std::size_t>(column.target - 1)].push_back(value * column.factor);
@@ -170,15 +330,16 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
       timed = true;
       log.t_s.push_back(value * column.factor);
     }
-    const std::size_t n = std::max_element(log.channels.begin(), log.channels.end(), [](const auto& a, const auto& b) {
-                            return a.size() < b.size();
-                          })->size();
-    if (!timed) log.t_s.push_back(static_cast<double>(n - 1) / format.rate_hz);
-    if (log.t_s.size() >= 2 && !(log.t_s[log.t_s.size() - 2] < log.t_s.back()))
+    if (!timed) log.t_s.push_back(static_cast<double>(log.t_s.size()) / format.rate_hz);
+    if (log.size() >= 2 && !(log.t_s[log.size() - 2] < log.t_s.back()))
       return in.error("time does not increase", "samples in the order of time");
+    places.lines.push_back(in.error("", "").line);
   }
   if (log.size() < 2) return in.empty_file(log.size() == 1 ? "second sample" : "samples");
-  CANYON_TRY_STATUS(check_magnitudes(path, log));
+  to_rates(columns, log);
+  const bool as_increments = std::any_of(columns.begin(), columns.end(), [](const Column& c) { return c.increment; });
+  CANYON_TRY_STATUS(check_magnitudes(log, as_increments, places));
+  if (format.live) CANYON_TRY_STATUS(check_live(log, places));
   return log;
 }
 

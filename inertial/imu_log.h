@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,17 +20,31 @@ struct ImuLog {
 inline constexpr const char* kChannelNames[6] = {"gx", "gy", "gz", "ax", "ay", "az"};
 
 struct ImuLogFormat {
-  /// Column names for a file without header, or instead of its own, separated by commas. A name is a channel and a unit
-  /// (`gx_rad_s`, `gy_deg_s` or `gy_dps`, `az_m_s2`, `ax_g`, `ax_mg`; `t_s`, `t_ms`, `t_us`, `t_ns`), with a factor if
-  /// the file has counts: `gx_deg_s*0.05`. Other names are passed over.
-  std::string columns;
-  double rate_hz = 0.0;  ///< sample rate of a file without a time column
+  /// Column names for a file without header, or instead of its own, separated by commas; or the name of a row of
+  /// imu_log_layouts(). A name is a channel and a unit (`gx_rad_s`, `gy_deg_s` or `gy_dps`, `gz_deg_h`, `az_m_s2`,
+  /// `ax_g`, `ax_mg`; `t_s`, `t_ms`, `t_us`, `t_ns`), with a factor if the file has counts or the axis points the other
+  /// way: `gx_deg_s*0.05`, `gy_rad_s*-1`. Increments over the interval that ends at the time (`gx_rad`, `gx_deg`,
+  /// `ax_m_s`) become rates. Other names are passed over.
+  std::string columns{};
+  /// Sample rate of a file without a time column, or to be taken instead of its times; 0 = the file's times.
+  double rate_hz = 0.0;
+  /// Refuses channels that never change or stay at their extreme value, as those of a working sensor never do.
+  bool live = true;
 };
 
+/// A layout that is in use elsewhere, by name.
+struct ImuLogLayout {
+  const char* name;
+  const char* columns;
+  const char* doc;
+};
+std::span<const ImuLogLayout> imu_log_layouts();
+
 /// Reads CSV, or columns apart by blanks, plain or gzip. Errors name the line: missing columns, fields that are not
-/// numbers, time that does not increase, channels stuck at one value, and magnitudes that betray the unit: a resting
-/// accelerometer shows gravity, so a specific force of some 1 or 980 means g or cm/s^2 where m/s^2 is said, and one of
-/// gravity times the interval means increments.
+/// numbers, time that does not increase, channels stuck at one value or saturated, and magnitudes that betray the unit:
+/// an accelerometer shows gravity on average, so a specific force of some 1 or 980 means g or cm/s^2 where m/s^2 is
+/// said, and one of gravity times the interval means increments; a log of gyroscopes alone at rest shows the Earth's
+/// rate or more.
 Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format);
 
 }  // namespace canyon::inertial

@@ -11,8 +11,6 @@
 namespace canyon::inertial {
 namespace {
 
-// 68.3 %: what one sigma is for a normal variable.
-constexpr double kOutsideEachSide = 0.158655;
 constexpr double kIndependentAverages = 9.0;
 
 /// Sum of squares and count of the differences of one segment's phase x (rate integrated, in samples) at factor m.
@@ -130,7 +128,8 @@ double equivalent_degrees(double slope, double samples, double m) {
   return std::max(1.0, (n - 2.0) / m * q / ((n - 3.0) * (n - 3.0)));
 }
 
-void add_intervals(std::vector<DeviationPoint>& points, double samples) {
+void add_intervals(std::vector<DeviationPoint>& points, double samples, double confidence) {
+  const double outside_each_side = 0.5 * (1.0 - confidence);
   for (std::size_t i = 0; i < points.size(); ++i) {
     DeviationPoint& p = points[i];
     // Slope over about a factor of two to each side, where the curve has that much.
@@ -141,8 +140,8 @@ void add_intervals(std::vector<DeviationPoint>& points, double samples) {
     if (a != b && points[a].deviation > 0.0 && points[b].deviation > 0.0)
       slope = std::log(points[b].deviation / points[a].deviation) / std::log(points[b].tau_s / points[a].tau_s);
     p.edf = equivalent_degrees(slope, samples, static_cast<double>(p.m));
-    p.low = p.deviation * std::sqrt(p.edf / chi_square_threshold(kOutsideEachSide, p.edf));
-    p.high = p.deviation * std::sqrt(p.edf / chi_square_threshold(1.0 - kOutsideEachSide, p.edf));
+    p.low = p.deviation * std::sqrt(p.edf / chi_square_threshold(outside_each_side, p.edf));
+    p.high = p.deviation * std::sqrt(p.edf / chi_square_threshold(1.0 - outside_each_side, p.edf));
   }
 }
 
@@ -207,7 +206,8 @@ std::vector<std::string> deviation_kinds() {
 }
 
 std::vector<DeviationPoint> deviation(const std::string& kind, std::span<const double> rate, const Sampling& sampling,
-                                      std::span<const std::int64_t> factors) {
+                                      std::span<const std::int64_t> factors, double confidence) {
+  CANYON_CHECK(confidence > 0.0 && confidence < 1.0, "confidence = ", confidence);
   const Row& row = row_of(kind);
   for (const Segment& s : sampling.segments)
     CANYON_CHECK(s.begin < s.end && s.end <= rate.size(), "segment ", s.begin, " to ", s.end, " of ", rate.size());
@@ -235,7 +235,7 @@ std::vector<DeviationPoint> deviation(const std::string& kind, std::span<const d
     if (p.edf > 0.0) points.push_back(p);
   std::size_t samples = 0;
   for (const Segment& s : sampling.segments) samples += s.end - s.begin;
-  add_intervals(points, static_cast<double>(samples));
+  add_intervals(points, static_cast<double>(samples), confidence);
   return points;
 }
 

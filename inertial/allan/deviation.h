@@ -12,7 +12,7 @@ struct DeviationPoint {
   double tau_s = 0.0;
   std::int64_t m = 0;  ///< tau in samples
   double deviation = 0.0;
-  double low = 0.0, high = 0.0;  ///< 68.3 % interval, from chi-square with `edf` degrees of freedom
+  double low = 0.0, high = 0.0;  ///< confidence interval, from chi-square with `edf` degrees of freedom
   double edf = 0.0;              ///< equivalent degrees of freedom for the noise type that the slope shows there
 };
 
@@ -41,13 +41,13 @@ std::vector<std::string> deviation_kinds();
 
 /// Deviation of equally spaced rate samples, by name of its row. Differences are taken within segments only and
 /// averaged over all of them; factors for which no segment is long enough are left out. Same bits for any number of
-/// threads.
+/// threads. `confidence`: probability that the interval holds the true deviation.
 ///
 /// overlapping: Allan deviation with all overlapping differences (IEEE 1139-2008, eq. A.6). modified: the same of phase
 /// averaged over tau (Allan & Barnes 1981). hadamard: second differences of the rate, blind to a linear drift (Baugh
 /// 1971), overlapping. total: overlapping on data extended by reflection at both ends (Greenhall, Howe & Percival
 /// 1999); each segment is extended by itself.
 std::vector<DeviationPoint> deviation(const std::string& kind, std::span<const double> rate, const Sampling& sampling,
-                                      std::span<const std::int64_t> factors);
+                                      std::span<const std::int64_t> factors, double confidence = 0.95);
 
 }  // namespace canyon::inertial

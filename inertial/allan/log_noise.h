@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "inertial/allan/deviation.h"
+#include "inertial/allan/noise_fit.h"
+#include "inertial/imu_log.h"
+
+namespace canyon::inertial {
+
+struct LogNoiseOptions {
+  int per_octave = 4;  ///< points of the curves to an octave of the averaging time
+  double confidence = 0.95;
+  std::vector<std::string> processes;  ///< that the fit may use; all if empty
+};
+
+/// The noise of one channel of a resting unit.
+struct ChannelNoise {
+  int channel = 0;                     ///< 0..5, as in ImuLog
+  std::vector<DeviationPoint> points;  ///< overlapping Allan deviation
+  NoiseFit fit;
+};
+
+/// Overlapping Allan deviation of every channel of a log, and the processes fitted to it. The times of the log give its
+/// segments and mean interval (sampling_of).
+Result<std::vector<ChannelNoise>> log_noise(const ImuLog& log, const Sampling& sampling,
+                                            const LogNoiseOptions& options);
+
+}  // namespace canyon::inertial
