@@ -68,7 +68,8 @@ TEST_F(ImuAllanTest, WritesTableCurveAndPicture) {
 }
 
 TEST_F(ImuAllanTest, MistakesAreOneLine) {
-  expect_mistake("imu allan missing.csv", "missing.csv: cannot be read");
+  expect_mistake("imu allan missing.csv",
+                 "missing.csv: cannot be read (No such file or directory), expected a readable file");
   write("given.csv", "t_s,gx_rad_s,gy_rad_s,gz_rad_s\n0,1,2,3\n0.01,1,2\n");
   expect_mistake("imu allan given.csv", "given.csv:3: 3 fields, expected 4 or more");
   expect_mistake("imu allan given.csv --kind mtie", "--kind: \"mtie\" is none, expected of overlapping, modified, ");
