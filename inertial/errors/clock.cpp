@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "core/random.h"
 #include "inertial/errors/error_link.h"
@@ -18,20 +18,20 @@ class Clock final : public ErrorLink {
         jitter_s_(setup.figures.clock_jitter_s) {}
 
   void apply(ImuBlock& block) override {
+    std::array<double, kImuBlock + 1> jitter_s{};
+    if (jitter_s_ > 0.0) {
+      jitter_.fill_normal(std::span(jitter_s).first(block.count + 1), 0, static_cast<std::uint64_t>(block.first));
+      for (double& x : jitter_s) x = std::clamp(jitter_s_ * x, -0.25 * dt_s_, 0.25 * dt_s_);
+    }
     for (std::size_t i = 0; i < block.count; ++i) {
-      const std::int64_t k = block.first + static_cast<std::int64_t>(i);
-      const double offset_s = skew_ * dt_s_ * static_cast<double>(k + 1) + jitter_s(k + 1);
-      block.samples[i].t = block.samples[i].t + offset_s;
-      block.samples[i].dt_s += skew_ * dt_s_ + (jitter_s(k + 1) - jitter_s(k));
+      const auto stamp = static_cast<double>(block.first + static_cast<std::int64_t>(i) + 1);
+      ImuSample& sample = block.samples[i];
+      sample.t = sample.t + (skew_ * dt_s_ * stamp + jitter_s[i + 1]);
+      sample.dt_s += skew_ * dt_s_ + (jitter_s[i + 1] - jitter_s[i]);
     }
   }
 
  private:
-  double jitter_s(std::int64_t stamp) const {
-    if (jitter_s_ == 0.0) return 0.0;
-    return std::clamp(jitter_s_ * jitter_.normal(0, static_cast<std::uint64_t>(stamp)), -0.25 * dt_s_, 0.25 * dt_s_);
-  }
-
   double dt_s_, skew_;
   RandomStream jitter_;
   double jitter_s_;

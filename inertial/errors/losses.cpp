@@ -37,11 +37,19 @@ class Losses final : public ErrorLink {
 
  private:
   bool drawn(std::int64_t group) const { return stream_.uniform(0, static_cast<std::uint64_t>(group)) < drawn_; }
-  bool is_lost(std::int64_t group) const { return group > 0 && drawn(group) && !drawn(group - 1); }
+  bool is_lost(std::int64_t group) {
+    if (group != group_) {
+      group_ = group;
+      group_is_lost_ = group > 0 && drawn(group) && !drawn(group - 1);
+    }
+    return group_is_lost_;
+  }
 
   RandomStream stream_;
   std::int64_t length_;
   double drawn_;
+  std::int64_t group_ = -1;  // the one that was last looked at
+  bool group_is_lost_ = false;
   std::int64_t next_ = -1;
   std::array<std::array<double, 3>, 2> last_{};
 };

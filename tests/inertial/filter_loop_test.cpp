@@ -143,7 +143,7 @@ TEST_P(FilterLoop, CovarianceIsThatOfTheErrors) {
   expect_in_band("innovations", e.nis, 3, runs * static_cast<std::int64_t>(setup.seconds * kFixRate_hz));
 }
 
-INSTANTIATE_TEST_SUITE_P(Chains, FilterLoop, ::testing::Values("datasheet", "white_only"),
+INSTANTIATE_TEST_SUITE_P(Chains, FilterLoop, ::testing::Values("datasheet", "full", "white_only"),
                          [](const auto& param) { return std::string(param.param); });
 
 /// With fixes withheld the estimate drifts, and the covariance says by how much.
