@@ -26,8 +26,13 @@ class Losses final : public ErrorLink {
       block.samples[i].lost = lost;
       for (std::size_t t = 0; t < 2; ++t) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          double& x = block.triads[t].output[axis][i];
-          (lost ? x : last_[t][axis]) = lost ? last_[t][axis] : x;
+          double& output = block.triads[t].output[axis][i];
+          double& last = last_[t][axis];
+          if (lost) {
+            output = last;
+          } else {
+            last = output;
+          }
         }
       }
       next_ = k + 1;
