@@ -56,6 +56,11 @@ class LinkRun {
   ImuBlock block_{};
 };
 
+/// Of the continuous process.
+double gauss_markov_variance(double sigma, double correlation_s, double tau_s) {
+  return allan_variance(kGaussMarkov, sigma, correlation_s, tau_s, 0.0);
+}
+
 /// Allan variance at tau of the rate, from the two windows of length tau in the middle of each run: independent from
 /// run to run and axis to axis, so that the estimate has 3 kRuns degrees of freedom.
 double allan_variance_of_runs(const char* name, const TriadFigures& figures, double rate_hz, double tau_s) {
@@ -103,9 +108,8 @@ TEST(ContinuousTerms, WhiteNoiseAtAnyRate) {
 TEST(ContinuousTerms, GaussMarkovAtAnyRate) {
   TriadFigures f = one(&TriadFigures::in_run_bias, 2e-3);
   f.in_run_bias_tau_s = 0.7;
-  expect_at_all_rates("in_run_bias", f, [&](double tau_s) {
-    return allan_variance(kGaussMarkov, f.in_run_bias, f.in_run_bias_tau_s, tau_s);
-  });
+  expect_at_all_rates("in_run_bias", f,
+                      [&](double tau_s) { return gauss_markov_variance(f.in_run_bias, f.in_run_bias_tau_s, tau_s); });
 }
 
 /// Corners inside and outside what the slowest rate can show (Nyquist at 12.5 Hz).
@@ -117,7 +121,7 @@ TEST(ContinuousTerms, FlickerBetweenStatedCornersAtAnyRate) {
     const auto parts = flicker_parts(f.bias_instability, f.flicker_low_hz, f.flicker_high_hz);
     expect_at_all_rates("flicker", f, [&](double tau_s) {
       double sum = 0.0;
-      for (const FlickerPart& part : parts) sum += allan_variance(kGaussMarkov, part.sigma, part.tau_s, tau_s);
+      for (const FlickerPart& part : parts) sum += gauss_markov_variance(part.sigma, part.tau_s, tau_s);
       return sum;
     });
   }
@@ -168,7 +172,7 @@ TEST(ContinuousTerms, FlickerIsOneOverF) {
   // The floor of the Allan deviation, in the middle of the decades.
   double avar = 0.0;
   for (const FlickerPart& p : flicker_parts(floor, low_hz, high_hz)) {
-    avar += allan_variance(kGaussMarkov, p.sigma, p.tau_s, 5.0);
+    avar += gauss_markov_variance(p.sigma, p.tau_s, 5.0);
   }
   EXPECT_NEAR(std::sqrt(avar) / floor, 1.0, 0.01);
 }
