@@ -30,7 +30,7 @@ struct GyroSheet {
   Figure scale_ppm;
   Figure misalignment_mrad;
   Figure bias_instability_deg_per_hr;
-  Figure flicker_low_hz{1e-4, ""}, flicker_high_hz{0.1, ""};
+  Figure flicker_low_hz{1e-5, ""}, flicker_high_hz{0.1, ""};
   Figure rate_random_walk_deg_per_hr_per_sqrt_hr;
   Figure ramp_deg_per_hr_per_hr;
   Figure quantization_noise_deg;
@@ -55,7 +55,7 @@ struct AccelSheet {
   Figure scale_ppm;
   Figure misalignment_mrad;
   Figure bias_instability_mg;
-  Figure flicker_low_hz{1e-4, ""}, flicker_high_hz{0.1, ""};
+  Figure flicker_low_hz{1e-5, ""}, flicker_high_hz{0.1, ""};
   Figure rate_random_walk_mg_per_sqrt_hr;
   Figure ramp_mg_per_hr;
   Figure quantization_noise_m_s;

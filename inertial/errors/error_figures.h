@@ -10,7 +10,7 @@ struct TriadFigures {
   double in_run_bias = 0.0;        ///< r, stationary sigma of the Gauss-Markov bias
   double in_run_bias_tau_s = 3600.0;
   double bias_instability = 0.0;  ///< r, floor of the Allan deviation: 0.664 B of IEEE Std 952
-  double flicker_low_hz = 1e-4;   ///< corners between which the spectrum is 1/f
+  double flicker_low_hz = 1e-5;   ///< corners between which the spectrum is 1/f
   double flicker_high_hz = 0.1;
   double rate_random_walk = 0.0;         ///< K of IEEE Std 952, r / sqrt(s)
   double ramp = 0.0;                     ///< R of IEEE Std 952, r / s

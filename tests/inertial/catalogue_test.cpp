@@ -1,11 +1,14 @@
 #include "inertial/catalogue.h"
 
+#include <cmath>
 #include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "inertial/allan/noise_terms.h"
+#include "inertial/errors/flicker.h"
 #include "inertial/imu_model.h"
 
 namespace canyon::inertial {
@@ -48,6 +51,23 @@ TEST(Catalogue, FiguresOfTheLinksAreInSi) {
     EXPECT_LE(f.gyro.in_run_bias, f.gyro.turn_on_bias) << name;
     EXPECT_LE(f.accel.in_run_bias, f.accel.turn_on_bias) << name;
     EXPECT_TRUE(f.accel.range == 0.0 || f.accel.resolution < f.accel.range) << name;
+  }
+}
+
+/// The flicker noise of every entry has the floor that its sheet states, within 5 % from 30 to 3000 s.
+TEST(Catalogue, FlickerNoiseHasTheFloorOfTheSheet) {
+  for (const std::string& name : catalogue_names()) {
+    const UnitFigures figures = load_catalogue_entry(name)->figures();
+    for (const TriadFigures* f : {&figures.gyro, &figures.accel}) {
+      if (f->bias_instability == 0.0) continue;
+      for (const double tau_s : {30.0, 100.0, 300.0, 1000.0, 3000.0}) {
+        double avar = 0.0;
+        for (const FlickerPart& p : flicker_parts(f->bias_instability, f->flicker_low_hz, f->flicker_high_hz)) {
+          avar += allan_variance(kGaussMarkov, p.sigma, p.tau_s, tau_s, 0.0);
+        }
+        EXPECT_NEAR(std::sqrt(avar) / f->bias_instability, 1.0, 0.05) << name << " at " << tau_s << " s";
+      }
+    }
   }
 }
 
