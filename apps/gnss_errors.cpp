@@ -21,8 +21,11 @@ constexpr Switch kSwitches[] = {
     {"multipath",
      [](gnss::GnssConfig& c) {
        if (c.paths != "none") c.paths = "visibility";
+       c.diffraction = "none";
+       c.ground_reflection = false;
      }},
     {"noise", [](gnss::GnssConfig& c) { c.thermal_noise_scale = 0.0; }},
+    {"antenna", [](gnss::GnssConfig& c) { c.antenna_phase_centre = false; }},
     {"base_station", [](gnss::GnssConfig& c) { c.base_error_scale = 0.0; }},
 };
 

@@ -206,7 +206,8 @@ Result<int> run(const Options& options) {
   for (std::int64_t k = 0; k < count; ++k) {
     throw_if_cancelled();
     const double t_s = static_cast<double>(k) * options.step_s;
-    epochs.push_back({t_s, sensor->measure(k, setup.start + t_s, p_A_W, Eigen::Vector3d::Zero(), scene)});
+    epochs.push_back({t_s, sensor->measure(gnss::epoch_index(setup.config, t_s), setup.start + t_s, p_A_W,
+                                           Eigen::Vector3d::Zero(), scene)});
   }
   const Geodetic g = setup.scene->frame().to_geodetic(p_A_W);
   const Eigen::Matrix3d R_W_enu = setup.scene->frame().R_EW().transpose() * rotation_E_from_enu(g);

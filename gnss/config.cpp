@@ -45,9 +45,11 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.choice("ionosphere_correction", c.ionosphere_correction, ionosphere_corrections(),
            "mode single: what the receiver subtracts for the ionosphere");
   f.choice("troposphere", c.troposphere, model_names(troposphere_models()), "tropospheric delay");
-  f.number("pressure_hpa", c.pressure_hpa, {100.0, 1100.0}, "air pressure at the receiver");
-  f.number("temperature_c", c.temperature_c, {-80.0, 60.0}, "air temperature at the receiver");
-  f.number("relative_humidity", c.relative_humidity, {0.0, 1.0}, "relative humidity at the receiver");
+  f.number("pressure_hpa", c.pressure_hpa, {100.0, 1100.0}, "air pressure at weather_height_m");
+  f.number("temperature_c", c.temperature_c, {-80.0, 60.0}, "air temperature there");
+  f.number("relative_humidity", c.relative_humidity, {0.0, 1.0}, "relative humidity there");
+  f.number("weather_height_m", c.weather_height_m, {-500.0, 9000.0},
+           "height at which the weather was measured; the standard atmosphere carries it to the receiver's");
   f.choice("ephemeris_error", c.ephemeris_error, model_names(ephemeris_error_models()),
            "error of the broadcast orbit and satellite clock");
   f.number("ephemeris_sigma_m", c.ephemeris_sigma_m, {0.0, 1000.0},

@@ -128,7 +128,7 @@ Result<PseudorangeParts> make_pseudorange_parts(const GnssConfig& c, std::uint64
     CANYON_TRY(ionosphere_parameters.maps, read_maps(c, start, end, parts.warnings));
   }
   parts.ionosphere = ionosphere->make(ionosphere_parameters);
-  parts.troposphere = troposphere->make({c.pressure_hpa, c.temperature_c, c.relative_humidity});
+  parts.troposphere = troposphere->make({{c.pressure_hpa, c.temperature_c, c.relative_humidity}, c.weather_height_m});
   EphemerisErrorParameters orbit{seed, c.ephemeris_sigma_m, c.ephemeris_tau_s, parts.constellation, {}};
   if (c.ephemeris_error == "broadcast_minus_sp3") {
     CANYON_TRY(orbit.precise, make_precise_source(c, source, parts.warnings));

@@ -1,5 +1,7 @@
 #include "gnss/sensor.h"
 
+#include <cmath>
+
 #include "gnss/sensor_models.h"
 
 namespace canyon::gnss {
@@ -18,6 +20,10 @@ constexpr ModelRow<MakeSensor> kSensors[] = {
 
 std::span<const ModelRow<MakeSensor>> sensor_models() {
   return kSensors;
+}
+
+std::int64_t epoch_index(const GnssConfig& config, double t_s) {
+  return std::llround(t_s * config.rate_hz);
 }
 
 Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,

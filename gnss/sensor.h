@@ -80,6 +80,7 @@ struct GnssConfig {
   double pressure_hpa = 1022.0;
   double temperature_c = 12.8;
   double relative_humidity = 0.80;
+  double weather_height_m = 0.0;  ///< where these three hold
   std::string ephemeris_error = "gauss_markov";
   double ephemeris_sigma_m = 1.0;
   double ephemeris_tau_s = 3600.0;
@@ -133,6 +134,10 @@ struct GnssConfig {
   std::string antex_file;                    ///< satellite antennas, for the same
 };
 void visit(FieldVisitor& f, GnssConfig& c);
+
+/// Index of the epoch `t_s` after the start, in steps of the configured rate. Epochs looked at hours apart are not
+/// consecutive, so each finds the receiver running, not still to regain what was hidden an hour ago.
+std::int64_t epoch_index(const GnssConfig& config, double t_s);
 
 /// Builds the configured sensor: reads the navigation file if one is named and checks that it covers [start, end].
 Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,

@@ -38,7 +38,9 @@ void measure_cell(const GnssMapConfig& config, const scene::SceneAt& scene, gnss
   double visible = 0.0, horizontal = 0.0, up = 0.0;
   std::vector<double> gdop;
   for (int k = 0; k < config.epochs; ++k) {
-    const auto epoch = sensor.measure(k, config.start + k * config.step_s, p_A_W, Eigen::Vector3d::Zero(), scene);
+    const double t_s = k * config.step_s;
+    const auto epoch =
+        sensor.measure(gnss::epoch_index(config.gnss, t_s), config.start + t_s, p_A_W, Eigen::Vector3d::Zero(), scene);
     for (const GnssObservationTruth& s : epoch.truth.satellites) visible += s.line_of_sight ? 1.0 : 0.0;
     if (epoch.fix.status == FixStatus::kNone) continue;
     const Eigen::Vector3d error = scene.scene().frame().to_W(epoch.fix.p_A_E) - p_A_W;

@@ -15,17 +15,17 @@ double slant_m(const Weather& weather, const SkyView& v) {
 
 class SaastamoinenNiell final : public TroposphereModel {
  public:
-  explicit SaastamoinenNiell(const Weather& at_receiver) : weather_(at_receiver) {}
-  double delay_m(const SkyView& view) const override { return slant_m(weather_, view); }
+  explicit SaastamoinenNiell(const MeasuredWeather& measured) : measured_(measured) {}
+  double delay_m(const SkyView& view) const override { return slant_m(measured_.at(view.receiver.h_m), view); }
 
  private:
-  Weather weather_;
+  MeasuredWeather measured_;
 };
 
 }  // namespace
 
-std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const Weather& at_receiver) {
-  return std::make_unique<SaastamoinenNiell>(at_receiver);
+std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const MeasuredWeather& measured) {
+  return std::make_unique<SaastamoinenNiell>(measured);
 }
 
 double standard_troposphere_m(const SkyView& view) {

@@ -17,12 +17,12 @@ class TroposphereModel {
   virtual double delay_m(const SkyView& view) const = 0;
 };
 
-using MakeTroposphere = std::unique_ptr<TroposphereModel>(const Weather& at_receiver);
+using MakeTroposphere = std::unique_ptr<TroposphereModel>(const MeasuredWeather& measured);
 std::span<const ModelRow<MakeTroposphere>> troposphere_models();
 
-std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const Weather& at_receiver);
-std::unique_ptr<TroposphereModel> make_paper_printed_troposphere(const Weather& at_receiver);
-std::unique_ptr<TroposphereModel> make_paper_corrected_troposphere(const Weather& at_receiver);
+std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const MeasuredWeather& measured);
+std::unique_ptr<TroposphereModel> make_paper_printed_troposphere(const MeasuredWeather& measured);
+std::unique_ptr<TroposphereModel> make_paper_corrected_troposphere(const MeasuredWeather& measured);
 
 /// The paper's dry delay, m: 2.2779 P / (1 - 0.00266 cos 2 lat - per_km h), P in hPa, h in km, result printed in mm.
 double paper_dry_delay_m(double pressure_hpa, double lat_rad, double height_m, double per_km);

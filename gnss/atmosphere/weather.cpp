@@ -13,6 +13,12 @@ Weather standard_weather(double height_m) {
   return {pressure_hpa * std::exp(-(h - low) / 6341.62), 15.0 - 6.5e-3 * low, 0.5};
 }
 
+Weather MeasuredWeather::at(double to_m) const {
+  const Weather here = standard_weather(height_m), there = standard_weather(to_m);
+  return {weather.pressure_hpa * there.pressure_hpa / here.pressure_hpa,
+          weather.temperature_c + there.temperature_c - here.temperature_c, weather.relative_humidity};
+}
+
 double vapour_pressure_hpa(const Weather& w) {
   return w.relative_humidity * 6.112 * std::exp(17.62 * w.temperature_c / (243.12 + w.temperature_c));
 }

@@ -14,6 +14,16 @@ struct Weather {
 /// 20000] m.
 Weather standard_weather(double height_m);
 
+/// Weather as it was measured somewhere.
+struct MeasuredWeather {
+  Weather weather;
+  double height_m = 0.0;  ///< above mean sea level, where it holds
+
+  /// Carried to another height by the standard atmosphere: pressure in its proportion, temperature by its difference,
+  /// relative humidity unchanged.
+  Weather at(double height_m) const;
+};
+
 /// Partial pressure of water vapour, hPa: Magnus formula with the WMO (2008) constants.
 double vapour_pressure_hpa(const Weather& w);
 

@@ -23,6 +23,13 @@ struct Bend {
   bool shadow;        ///< the straight way passes on the solid's side of the edge
 };
 
+/// Does the straight way from p towards the unit vector s pass on the solid's side of the edge?
+bool in_shadow(const scene::Edge& edge, const Eigen::Vector3d& p_W, const Eigen::Vector3d& point_W,
+               const Eigen::Vector3d& s) {
+  const Eigen::Vector3d way = point_W - p_W;
+  return (way - way.dot(s) * s).dot(edge.outward_W) > 0.0;
+}
+
 /// nullopt if the bend lies beyond the edge's ends, or the edge throws no shadow of that satellite.
 std::optional<Bend> bend(const scene::Edge& edge, const Eigen::Vector3d& p_W, const Eigen::Vector3d& s) {
   if (edge.normal_1_W.dot(s) * edge.normal_2_W.dot(s) >= 0.0) return std::nullopt;
@@ -44,7 +51,7 @@ std::optional<Bend> bend(const scene::Edge& edge, const Eigen::Vector3d& p_W, co
   // |way| - way . s without the difference of nearly equal numbers.
   const Eigen::Vector3d off = way - forward_m * s;
   b.detour_m = off.squaredNorm() / (b.distance_m + forward_m);
-  b.shadow = off.dot(edge.outward_W) > 0.0;
+  b.shadow = in_shadow(edge, p_W, b.point_W, s);
   return b;
 }
 
@@ -131,17 +138,43 @@ class KnifeEdges final : public DiffractionModel {
     if (!twice_) open = true;
     if (!solid(edge, b, scene)) return;
     const Eigen::Vector3d at_W = outside(edge, b);
-    if (open) {
-      add(field, b.detour_m, 1, at_W, p_W, scene.foliage_m(at_W, s), scene, out, counters);
+    if (!open) {
+      second_edge(edge, b, at_W, p_W, s, scene, counters, out);
       return;
     }
-    second_edge(b, at_W, p_W, s, scene, counters, out);
+    const std::complex<double> beside = twice_ ? lit_beside(b, at_W, p_W, scene, counters) : 1.0;
+    add(field * beside, b.detour_m, 1, at_W, p_W, scene.foliage_m(at_W, s), scene, out, counters);
+  }
+
+  /// What the edge that comes nearest to the way from p to a bend, without cutting it off, makes of its field.
+  std::complex<double> lit_beside(const Bend& far, const Eigen::Vector3d& far_W, const Eigen::Vector3d& p_W,
+                                  const scene::SceneAt& scene, GnssCounters& counters) const {
+    const Eigen::Vector3d to_far_W = (far.point_W - p_W) / far.distance_m;
+    const auto& edges = scene.scene().edges();
+    std::vector<std::uint32_t> candidates;
+    edges.shading(p_W, std::asin(std::clamp(to_far_W.z(), 0.0, 1.0)), largest_detour_m_, candidates);
+    double nearest_nu = kDeepest;
+    std::complex<double> field = 1.0;
+    for (const std::uint32_t i : candidates) {
+      const scene::Edge& edge = edges.edges()[i];
+      const auto b = bend(edge, p_W, to_far_W);
+      if (!b || b->shadow || b->distance_m > far.distance_m - kOff_m) continue;
+      const double detour_m = (far.point_W - b->point_W).norm() + b->distance_m - far.distance_m;
+      const double nu = knife_edge_nu(std::max(detour_m, 0.0), kL1WavelengthM);
+      if (nu >= nearest_nu || !solid(edge, *b, scene)) continue;
+      const Eigen::Vector3d at_W = outside(edge, *b);
+      counters.occlusion_rays += 2;
+      if (scene.blocked(p_W, at_W) || scene.blocked(at_W, far_W)) continue;
+      nearest_nu = nu;
+      field = knife_edge_field(-nu);
+    }
+    return field;
   }
 
   /// The edge is itself in the shadow of another one.
-  void second_edge(const Bend& first, const Eigen::Vector3d& first_W, const Eigen::Vector3d& p_W,
-                   const Eigen::Vector3d& s, const scene::SceneAt& scene, GnssCounters& counters,
-                   SignalPaths& out) const {
+  void second_edge(const scene::Edge& near, const Bend& first, const Eigen::Vector3d& first_W,
+                   const Eigen::Vector3d& p_W, const Eigen::Vector3d& s, const scene::SceneAt& scene,
+                   GnssCounters& counters, SignalPaths& out) const {
     const auto& edges = scene.scene().edges();
     std::vector<std::uint32_t> candidates;
     edges.shading(first_W, std::asin(std::clamp(s.z(), 0.0, 1.0)), largest_detour_m_, candidates);
@@ -150,9 +183,13 @@ class KnifeEdges final : public DiffractionModel {
       const auto b = bend(edge, first_W, s);
       if (!b || !b->shadow || b->detour_m > largest_detour_m_ || b->distance_m < 0.1) continue;
       const Eigen::Vector3d second_W = outside(edge, *b);
-      // The first edge sees the wave come from the second.
-      const double detour_m = b->distance_m + first.distance_m - (b->point_W - p_W).norm();
-      const std::complex<double> near_field = knife_edge_field(knife_edge_nu(std::max(detour_m, 0.0), kL1WavelengthM));
+      // The near edge sees the wave come from the far one. Where the way from there to p passes above it, that way is
+      // an echo by itself, with the near edge beside it.
+      const Eigen::Vector3d whole_W = b->point_W - p_W;
+      const double whole_m = whole_W.norm();
+      if (!in_shadow(near, p_W, first.point_W, whole_W / whole_m)) continue;
+      const double detour_m = std::max((b->point_W - first.point_W).norm() + first.distance_m - whole_m, 0.0);
+      const std::complex<double> near_field = knife_edge_field(knife_edge_nu(detour_m, kL1WavelengthM));
       const std::complex<double> far_field = knife_edge_field(knife_edge_nu(b->detour_m, kL1WavelengthM));
       std::complex<double> field = near_field * far_field;
       constexpr double kDeep = 0.17782794;  // 15 dB
@@ -163,7 +200,7 @@ class KnifeEdges final : public DiffractionModel {
       const Eigen::Vector3d leg_W = second_W - first_W;
       const double leg_m = leg_W.norm();
       const double foliage_m = scene.foliage_m(second_W, s) + scene.foliage_m(first_W, leg_W / leg_m, leg_m);
-      add(field, b->detour_m + std::max(detour_m, 0.0), 2, first_W, p_W, foliage_m, scene, out, counters);
+      add(field, b->detour_m + detour_m, 2, first_W, p_W, foliage_m, scene, out, counters);
     }
   }
 

@@ -134,7 +134,8 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   fix.dop = solution.dop;
   fix.reason = solution.reason;
   if (!solution.ok) {
-    if (expected_E) bridge(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
+    const bool refused = solution.integrity.status == IntegrityTest::Status::kFailed;
+    if (expected_E && !refused) bridge(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
     return fix;
   }
   fix.status = receiver.mode.status();

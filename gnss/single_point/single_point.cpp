@@ -147,7 +147,7 @@ class SinglePoint {
     out.fix.reason = solution.reason;
     out.integrity = solution.integrity;
     if (!solution.ok) {
-      bridge(candidates, out);
+      if (solution.integrity.status != IntegrityTest::Status::kFailed) bridge(candidates, out);
       return out;
     }
     fill(solution, out);

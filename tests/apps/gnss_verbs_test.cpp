@@ -78,7 +78,7 @@ TEST_F(GnssVerbsTest, SimulationAlongAWay) {
 TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("gnss simulate --at 1,2,3 --errors noise,magic",
                  "--errors: \"magic\" is not an error, expected none, all, or of ionosphere troposphere ephemeris "
-                 "receiver_clock multipath noise base_station");
+                 "receiver_clock multipath noise antenna base_station");
   expect_mistake("gnss simulate", "command line: no place given, expected --at LAT,LON,H or --trajectory FILE");
   write("given_way.csv", "1610,306000,32.35,-90.88,60\n1610,306010,32.35,-90.88,60\n");
   expect_mistake("gnss simulate --trajectory given_way.csv --duration 20",

@@ -150,6 +150,32 @@ TEST(Diffraction, TwoEdges) {
   for (const SignalPath& e : trace(*scene, s, "knife_edge", p).echoes) EXPECT_EQ(e.diffractions, 1);
 }
 
+// A low house whose roof rises through the line from the antenna to the high one's roof, which hides the satellite. All
+// echoes together are the field over the far edge times that over the near one, on both sides of the line and through
+// it.
+TEST(Diffraction, TwoEdgesAddUpOnBothSidesOfTheLine) {
+  const Eigen::Vector3d s = direction(270, 28.0);
+  const Eigen::Vector3d far(-50, 0, 2.0 + 50.0 * std::tan(28.4 * kDegree));
+  // P.526-15 section 4.2: the far edge's loss as the near edge sees it, where that cuts the way off.
+  const auto over_far = [&](const Eigen::Vector3d& from) {
+    return knife_edge_field(knife_edge_nu((far - from).norm() - (far - from).dot(s), kL1WavelengthM));
+  };
+  PathParameters p;
+  p.weakest_nlos_db = -60.0;
+  for (double elevation_deg = 27.4; elevation_deg < 29.5; elevation_deg += 0.1) {
+    const Eigen::Vector3d near(-10, 0, 2.0 + 10.0 * std::tan(elevation_deg * kDegree));
+    const auto scene =
+        WallScene().box({-14, -300, 0}, {-10, 300, near.z()}).box({-60, -300, 0}, {-50, 300, far.z()}).build();
+    std::complex<double> sum = 0.0;
+    for (const SignalPath& e : trace(*scene, s, "double_knife_edge", p).echoes)
+      sum += e.copolar * std::polar(1.0, -2.0 * kPi * e.excess_m / kL1WavelengthM);
+    const double more_m = (far - near).norm() + (near - kAntenna).norm() - (far - kAntenna).norm();
+    const double nu = std::copysign(knife_edge_nu(more_m, kL1WavelengthM), elevation_deg - 28.4);
+    // The roofs' far sides are edges too, at 14 and 60 m; level roofs hide them from below but for their ripples.
+    EXPECT_LT(std::abs(sum - over_far(nu > 0.0 ? near : kAntenna) * knife_edge_field(nu)), 0.02) << elevation_deg;
+  }
+}
+
 TEST(GroundReflection, LevelGroundHasTheClosedForm) {
   scene::SceneParts parts;
   parts.frame = LocalFrame(Geodetic{testing::kVicksburgLat, testing::kVicksburgLon, 60.0});

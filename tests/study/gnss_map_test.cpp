@@ -1,5 +1,6 @@
 #include "study/gnss_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -57,6 +58,30 @@ TEST_F(GnssMapTest, SameBitsForAnyNumberOfThreads) {
     const double a = one->error_horizontal_m.values[i], b = eight->error_horizontal_m.values[i];
     EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << i;
   }
+}
+
+// Hours apart, a satellite that has risen since counts at once: the median GDOP of a day is that of its hours measured
+// one by one.
+TEST_F(GnssMapTest, ADayIsItsHours) {
+  scene::CityConfig empty;
+  empty.empty = true;
+  const scene::Scene field(scene::make_city(empty));
+  GnssMapConfig c = config();
+  c.cell_m = 1000.0;
+  c.step_s = 3600.0;
+  c.epochs = 11;
+  const auto day = map_gnss(c, field, nullptr);
+  ASSERT_TRUE(day.ok());
+  std::vector<double> gdop;
+  c.epochs = 1;
+  for (int k = 0; k < 11; ++k) {
+    const auto hour = map_gnss(c, field, nullptr);
+    ASSERT_TRUE(hour.ok());
+    gdop.push_back(hour->gdop.values[0]);
+    c.start = c.start + 3600.0;
+  }
+  std::sort(gdop.begin(), gdop.end());
+  EXPECT_NEAR(day->gdop.values[0], gdop[5], 1e-9);
 }
 
 TEST_F(GnssMapTest, UnreadableNavigationFileIsTold) {
