@@ -1,10 +1,12 @@
 #include "gnss/paths/bounce.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
 #include "core/units.h"
+#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -17,6 +19,20 @@ Eigen::Vector3d across(const Eigen::Vector3d& way_W, const Eigen::Vector3d& norm
 }
 
 }  // namespace
+
+Bounce bounce_off(const scene::Material& material, const Eigen::Vector3d& incoming_W, const Eigen::Vector3d& normal_W,
+                  double further_roughness_m) {
+  Bounce b{incoming_W, normal_W, {}, 1.0};
+  if (material.rf_absorbing) return b;
+  const double cosine = std::clamp(-incoming_W.dot(normal_W), 0.0, 1.0), incidence_rad = std::acos(cosine);
+  const std::complex<double> permittivity = material.permittivity(kL1Hz);
+  b.coefficients = material.thickness_m > 0.0
+                       ? fresnel_slab(permittivity, material.thickness_m, kL1WavelengthM, incidence_rad)
+                       : fresnel(permittivity, incidence_rad);
+  const double roughness_m = std::hypot(material.roughness_m, further_roughness_m);
+  if (roughness_m > 0.0) b.factor = roughness_factor(roughness_m, cosine, kL1WavelengthM);
+  return b;
+}
 
 CircularField reflected_field(std::span<const Bounce> bounces) {
   CircularField field;

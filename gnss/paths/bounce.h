@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "gnss/paths/fresnel.h"
+#include "scene/material.h"
 
 namespace canyon::gnss {
 
@@ -16,6 +17,11 @@ struct Bounce {
   Fresnel coefficients;
   double factor = 1.0;  ///< further loss of field, both polarizations: roughness, size
 };
+
+/// At L1, off a material: its slab if it has a thickness, else a half-space; its own roughness and a further one,
+/// independent of it. Nothing comes back from an absorber.
+Bounce bounce_off(const scene::Material& material, const Eigen::Vector3d& incoming_W, const Eigen::Vector3d& normal_W,
+                  double further_roughness_m);
 
 /// Field of a right-hand circular wave of amplitude 1 after reflections, in the order of propagation.
 struct CircularField {

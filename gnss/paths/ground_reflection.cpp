@@ -78,11 +78,7 @@ void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_
     const double cosine = std::min(plane.normal_W.dot(s), 1.0);
     const double excess_m = 2.0 * (plane.normal_W.dot(p_A_W) - plane.offset_m) * cosine;
     if (material.rf_absorbing || (out[i].line_of_sight && excess_m > p.cutoff_m)) continue;
-    Bounce bounce;
-    bounce.incoming_W = -s;
-    bounce.normal_W = plane.normal_W;
-    bounce.coefficients = fresnel(material.permittivity(kL1Hz), std::acos(cosine));
-    bounce.factor = roughness_factor(p.roughness_m, cosine, kL1WavelengthM);
+    const Bounce bounce = bounce_off(material, -s, plane.normal_W, p.roughness_m);
     const CircularField field = reflected_field({&bounce, 1});
     const double weakest_db = out[i].line_of_sight ? p.weakest_db : p.weakest_nlos_db;
     if (std::norm(field.copolar) + std::norm(field.crosspolar) < std::pow(10.0, weakest_db / 10.0)) continue;

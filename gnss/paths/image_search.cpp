@@ -287,14 +287,10 @@ class Search {
     for (std::size_t j = k; j-- > 0;) {
       const scene::Facet& f = facets_[sequence_[j]];
       const scene::Material& material = scene_.scene().materials()[f.material];
-      const double cos_incidence = std::clamp(-incoming_W.dot(f.normal_W), 0.0, 1.0);
       Bounce& b = bounces[k - 1 - j];
-      b.incoming_W = incoming_W;
-      b.normal_W = f.normal_W;
-      b.coefficients =
-          material.rf_absorbing ? Fresnel{} : fresnel(material.permittivity(kL1Hz), std::acos(cos_incidence));
-      if (p_.roughness_m > 0.0) b.factor *= roughness_factor(p_.roughness_m, cos_incidence, kL1WavelengthM);
+      b = bounce_off(material, incoming_W, f.normal_W, p_.roughness_m);
       if (p_.finite_facets) {
+        const double cos_incidence = std::clamp(-incoming_W.dot(f.normal_W), 0.0, 1.0);
         const double distance_m = (points_W[j] - images_W_[j]).norm();
         b.factor *= std::min(1.0, f.area_m2 * cos_incidence / (kL1WavelengthM * distance_m));
       }

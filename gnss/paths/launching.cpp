@@ -129,13 +129,10 @@ class Launching final : public PathModel {
       path.facets[j] = *facet;
       const scene::Facet& f = scene.scene().facets().facets()[*facet];
       const Eigen::Vector3d from_W = j == 0 ? p_A_W : ray.points_W[j - 1];
-      const double cosine = std::clamp(-incoming_W.dot(ray.normals_W[j]), 0.0, 1.0);
       Bounce& b = bounces[last - j];
-      b.incoming_W = incoming_W;
-      b.normal_W = ray.normals_W[j];
-      b.coefficients = fresnel(scene.scene().materials()[f.material].permittivity(kL1Hz), std::acos(cosine));
-      b.factor = roughness_factor(p_.roughness_m, cosine, kL1WavelengthM);
+      b = bounce_off(scene.scene().materials()[f.material], incoming_W, ray.normals_W[j], p_.roughness_m);
       if (p_.finite_facets) {
+        const double cosine = std::clamp(-incoming_W.dot(ray.normals_W[j]), 0.0, 1.0);
         const double before_m = j == 0 ? 0.0 : (ray.points_W[0] - p_A_W).norm();
         const double distance_m = before_m + (ray.points_W[j] - from_W).norm();
         b.factor *= std::min(1.0, f.area_m2 * cosine / (kL1WavelengthM * distance_m));

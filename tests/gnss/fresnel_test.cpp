@@ -55,6 +55,28 @@ TEST(Fresnel, ConcreteAndMetal) {
   }
 }
 
+// A slab against its closed forms: nothing of a thickness of nothing, the half-space if thick and lossy, nothing again
+// at half a wavelength inside and most at a quarter, where n^2 makes (1 - n^2) / (1 + n^2) of a lossless one.
+TEST(FresnelSlab, ThinThickHalfAndQuarterWave) {
+  const double wavelength_m = kL1WavelengthM;
+  const std::complex<double> concrete(5.24, -0.75), glass(6.25, 0.0);
+  EXPECT_LT(std::abs(fresnel_slab(concrete, 1e-9, wavelength_m, 0.5).te), 1e-6);
+  for (const double incidence_rad : {0.0, 0.7, 1.4}) {
+    const Fresnel half = fresnel(concrete, incidence_rad),
+                  thick = fresnel_slab(concrete, 5.0, wavelength_m, incidence_rad);
+    EXPECT_LT(std::abs(half.te - thick.te), 1e-6);
+    EXPECT_LT(std::abs(half.tm - thick.tm), 1e-6);
+  }
+  EXPECT_LT(std::abs(fresnel_slab(glass, 0.5 * wavelength_m / 2.5, wavelength_m, 0.0).te), 1e-12);
+  EXPECT_NEAR(fresnel_slab(glass, 0.25 * wavelength_m / 2.5, wavelength_m, 0.0).te.real(), (1.0 - 6.25) / (1.0 + 6.25),
+              1e-12);
+  // Energy: what a lossless slab does not reflect goes through, so it never exceeds 1; a conductor reflects all.
+  for (double d_m = 0.001; d_m < 0.3; d_m += 0.007)
+    for (double incidence_rad = 0.0; incidence_rad < 1.57; incidence_rad += 0.1)
+      EXPECT_LE(std::abs(fresnel_slab(glass, d_m, wavelength_m, incidence_rad).tm), 1.0 + 1e-12);
+  EXPECT_NEAR(std::abs(fresnel_slab({1.0, -1e8}, 0.001, wavelength_m, 0.3).te), 1.0, 1e-3);
+}
+
 TEST(Fresnel, LimitsAndBrewster) {
   const std::complex<double> glass(6.31, 0.0);
   // Normal incidence: (1 - n)/(1 + n), the sense of rotation reverses whole. Grazing: -1, it stays whole.

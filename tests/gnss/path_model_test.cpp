@@ -163,7 +163,11 @@ TEST(Specular1, MaterialGivesTheCoefficients) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "glass").build();
   const auto paths = trace(*make_specular1({}), *scene, {direction(90, 45)});
   ASSERT_EQ(paths[0].echoes.size(), 1u);
-  EXPECT_NEAR(std::abs(paths[0].echoes[0].crosspolar), 0.422, 1e-3);  // glass at 45 deg
+  const scene::Material& glass = scene->materials()[WallScene().material("glass")];
+  EXPECT_EQ(glass.thickness_m, 0.006);
+  const Fresnel pane = fresnel_slab(glass.permittivity(kL1Hz), 0.006, kL1WavelengthM, 45.0 * kDegree);
+  EXPECT_NEAR(std::abs(paths[0].echoes[0].crosspolar), std::abs(pane.cross), 1e-12);
+  EXPECT_NEAR(std::abs(paths[0].echoes[0].copolar), std::abs(pane.co), 1e-12);
 }
 
 // Reflections come sorted by excess, and each satisfies the law of reflection with a clear way; the street canyon has

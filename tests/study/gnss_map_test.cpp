@@ -67,6 +67,7 @@ TEST_F(GnssMapTest, ADayIsItsHours) {
   empty.empty = true;
   const scene::Scene field(scene::make_city(empty));
   GnssMapConfig c = config();
+  c.gnss.raim = "none";  // what it excludes depends on the noise
   c.cell_m = 1000.0;
   c.step_s = 3600.0;
   c.epochs = 11;
@@ -81,7 +82,7 @@ TEST_F(GnssMapTest, ADayIsItsHours) {
     c.start = c.start + 3600.0;
   }
   std::sort(gdop.begin(), gdop.end());
-  EXPECT_NEAR(day->gdop.values[0], gdop[5], 1e-9);
+  EXPECT_NEAR(day->gdop.values[0], gdop[5], 1e-5);  // the fixes, metres apart by noise, see the sky alike
 }
 
 TEST_F(GnssMapTest, UnreadableNavigationFileIsTold) {
