@@ -39,7 +39,7 @@ void visit(FieldVisitor& f, ImuConfig& c) {
   f.numbers("temperature_times_s", c.temperature_times_s, 0, {0, 1e9},
             "corners of the unit's temperature over the run; empty: the temperature its figures hold for");
   f.numbers("temperatures_c", c.temperatures_c, 0, {-100, 200}, "temperatures at these times, constant outside");
-  f.vector3("vibration_g", c.vibration_g, {0, 100}, "RMS of vibration too fast for the samples, per axis");
+  f.vector3("vibration_m_s2", c.vibration_m_s2, {0, 1000}, "RMS of vibration too fast for the samples, per axis");
 }
 
 namespace {
@@ -82,9 +82,8 @@ Result<Environment> environment_of(const ImuConfig& config) {
                  .what = join_values(times[i], " s comes after ", times[i - 1], " s"),
                  .expected = "times that increase"};
   }
-  return Environment{.temperature_times_s = times,
-                     .temperatures_c = temperatures,
-                     .vibration_rms_m_s2 = kStandardGravity * config.vibration_g};
+  return Environment{
+      .temperature_times_s = times, .temperatures_c = temperatures, .vibration_rms_m_s2 = config.vibration_m_s2};
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ struct ImuConfig {
   Eigen::Vector3d lever_arm_m{0.0, 0.0, 0.4};  ///< U in B; axes of U parallel to B
   std::vector<double> temperature_times_s;     ///< profile of the unit's temperature; empty: as its figures hold
   std::vector<double> temperatures_c;
-  Eigen::Vector3d vibration_g = Eigen::Vector3d::Zero();  ///< RMS of vibration too fast for the samples
+  Eigen::Vector3d vibration_m_s2 = Eigen::Vector3d::Zero();  ///< RMS of vibration too fast for the samples
 };
 void visit(FieldVisitor& f, ImuConfig& c);
 
