@@ -34,6 +34,8 @@ Verb gnss_simulate_verb();
 Verb gnss_solve_verb();
 Verb gnss_orbit_error_verb();
 Verb imu_allan_verb();
+Verb imu_simulate_verb();
+Verb imu_dead_reckon_verb();
 
 /// The largest --seed: what a TOML integer and a JSON number both carry without loss.
 inline constexpr double kLargestSeed = 9e15;

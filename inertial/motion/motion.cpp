@@ -63,7 +63,6 @@ void visit(FieldVisitor& f, MotionConfig& c) {
   f.number("smoothing_s", c.smoothing_s, {0, 1e5},
            "period of an oscillation of which smoothing leaves half; 0: through every point");
   f.number("file_rate_hz", c.file_rate_hz, {1e-6, 1e5}, "poses per second of a file without times");
-  f.vector3("lever_arm_m", c.lever_arm_m, {-100, 100}, "IMU in the body frame; axes parallel to the body's");
   f.group("vibration", c.vibration, "vibration of the IMU against the body");
 }
 
@@ -85,7 +84,6 @@ Result<PlacedMotion> make_motion(const MotionConfig& config, std::uint64_t seed)
   for (const MotionRow& row : kRows) {
     if (config.path != row.name) continue;
     CANYON_TRY(PlacedMotion placed, row.make(config));
-    placed.lever_arm_m = config.lever_arm_m;
     CANYON_TRY(placed.motion, with_vibration(placed.motion, config.vibration, seed));
     return placed;
   }

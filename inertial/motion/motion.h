@@ -56,7 +56,6 @@ struct MotionConfig {
   double cone_deg = 1.0, cone_hz = 10.0;
   std::string file;
   double smoothing_s = 0.0, file_rate_hz = 10.0;
-  Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
   VibrationConfig vibration;
 };
 void visit(FieldVisitor& f, MotionConfig& c);
@@ -82,7 +81,7 @@ struct MotionRow {
 std::span<const MotionRow> motion_models();
 std::vector<std::string> motion_names();
 
-/// The motion that the configuration names, with its vibration. Random vibration draws its phases from the streams
+/// The motion that the configuration names, with its vibration; the IMU at the body's origin. Random vibration draws its phases from the streams
 /// "imu.vibration.*".
 Result<PlacedMotion> make_motion(const MotionConfig& config, std::uint64_t seed);
 

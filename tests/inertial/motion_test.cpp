@@ -290,8 +290,8 @@ TEST(Motion, GeneratorObeysNewtonAndEulerOverTenMinutes) {
   eight.path = "figure_eight";
   eight.climb_m = 5.0;
   eight.sway_deg = 20.0;
-  eight.lever_arm_m = {0.5, -0.3, 1.0};
   motions.emplace_back("figure eight", *make_motion(eight, 1));
+  motions.back().second.lever_arm_m = {0.5, -0.3, 1.0};
   eight.lat_deg = 90.0;
   motions.emplace_back("figure eight at the pole", *make_motion(eight, 1));
   for (const auto& [name, placed] : motions) {

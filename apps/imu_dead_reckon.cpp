@@ -1,0 +1,402 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/gnss_setup.h"
+#include "apps/json.h"
+#include "apps/usage_errors.h"
+#include "apps/verb.h"
+#include "core/files.h"
+#include "core/navigation_file.h"
+#include "core/parallel.h"
+#include "core/units.h"
+#include "fusion/dead_reckoning.h"
+#include "inertial/imu_log.h"
+#include "report/time_plot.h"
+
+namespace canyon::apps {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string imu, columns, truth, initial, at_rest, axes, gravity, out;
+  std::string integrator = "two_sample";
+  double level_s = 10.0;
+  bool force = false;
+};
+
+constexpr double kSameInstant_s = 1e-6;
+
+/// Whether the file begins with a number: then it has no header, and is taken for the KF-GINS text format.
+Result<bool> is_bare(const std::string& path) {
+  CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
+  const std::size_t at = text.find_first_not_of(" \t\r\n");
+  return at != std::string::npos && std::string_view("0123456789.-+").find(text[at]) != std::string_view::npos;
+}
+
+struct Recording {
+  std::vector<ImuSample> samples;
+  bool increments = false;  ///< the KF-GINS text format
+};
+
+/// Increments over the interval that ends at each stamp, in forward-left-up; the first interval is as long as the
+/// second. Stamps are seconds of `week`.
+Result<Recording> read_imu(const Options& options, int week) {
+  CANYON_TRY(const bool bare, is_bare(options.imu));
+  Recording out;
+  out.increments = options.columns == "kf_gins" || (options.columns.empty() && bare);
+  CANYON_TRY(const inertial::ImuLog log, inertial::read_imu_log(options.imu, {.columns = out.increments ? "kf_gins" : options.columns,
+                                                                               .rate_hz = 0.0,
+                                                                               .live = false}));
+  for (int c = 0; c < 6; ++c)
+    if (log.channels[static_cast<std::size_t>(c)].empty())
+      return Error{options.imu, 0, "", std::string("no column for ") + inertial::kChannelNames[c], "all six channels"};
+  const Eigen::Vector3d sign = options.axes == "frd" && !out.increments ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    const double dt_s = k > 0 ? log.t_s[k] - log.t_s[k - 1] : log.t_s[1] - log.t_s[0];
+    const auto& c = log.channels;
+    ImuSample s;
+    s.t = GpsTime::from_week_sow(week, 0.0) + log.t_s[k];
+    s.dt_s = dt_s;
+    s.dtheta_U = dt_s * sign.cwiseProduct(Eigen::Vector3d(c[0][k], c[1][k], c[2][k]));
+    s.dv_U = dt_s * sign.cwiseProduct(Eigen::Vector3d(c[3][k], c[4][k], c[5][k]));
+    out.samples.push_back(s);
+  }
+  return out;
+}
+
+fusion::NavState state_of(const NavigationRecord& record) {
+  return {.t = record.t, .R_EU = record.X_EU.R, .p_EU_E = record.X_EU.p, .v_EU_E = record.v_EU_E};
+}
+
+/// Where the integration starts and what it is compared with.
+struct Reference {
+  fusion::NavState initial;
+  std::vector<fusion::NavState> truth;  ///< empty: none
+  std::string gravity;                  ///< that the truth file states
+};
+
+GpsTime first_instant(const std::vector<ImuSample>& samples) {
+  return samples.front().t - samples.front().dt_s;
+}
+
+/// The first reference state that falls on the edge of a sample; else the first edge within the reference.
+Result<fusion::NavState> start_in_truth(const std::vector<fusion::NavState>& truth,
+                                        const std::vector<ImuSample>& samples, const Options& options) {
+  std::vector<GpsTime> edges = {first_instant(samples)};
+  for (const ImuSample& s : samples) edges.push_back(s.t);
+  std::size_t next = 0;
+  for (const fusion::NavState& state : truth) {
+    while (next < edges.size() && edges[next] < state.t - kSameInstant_s) ++next;
+    if (next + 1 >= edges.size()) break;
+    if (edges[next] - state.t > kSameInstant_s) continue;
+    fusion::NavState start = state;
+    start.t = edges[next];
+    return start;
+  }
+  for (const GpsTime edge : edges)
+    for (std::size_t i = 0; i + 1 < truth.size(); ++i)
+      if (truth[i].t < edge && edge < truth[i + 1].t && edge < edges.back())
+        return fusion::interpolate(truth[i], truth[i + 1], edge);
+  char range[160];
+  std::snprintf(range, sizeof range, "times from %.3f to %.3f s of the week, as in %s", edges.front().sow_s(),
+                edges.back().sow_s(), options.imu.c_str());
+  char own[80];
+  std::snprintf(own, sizeof own, "covers %.3f to %.3f s of the week", truth.front().t.sow_s(), truth.back().t.sow_s());
+  return Error{options.truth, 0, "", own, range};
+}
+
+Result<Reference> from_initial(const Options& options, const std::vector<ImuSample>& samples) {
+  CANYON_TRY(const auto v, parse_numbers(options.initial, 9, "--initial",
+                                         "LAT,LON,H,VN,VE,VD,ROLL,PITCH,HEADING: degrees, metres, m/s"));
+  NavigationRecord record;
+  const Geodetic at{v[0] * kDegree, v[1] * kDegree, v[2]};
+  const Eigen::Matrix3d enu = rotation_E_from_enu(at);
+  record.t = first_instant(samples);
+  record.X_EU.p = ecef_from_geodetic(at);
+  record.X_EU.R = attitude_from_ned(at, v[6] * kDegree, v[7] * kDegree, v[8] * kDegree);
+  record.v_EU_E = enu * Eigen::Vector3d(v[4], v[3], -v[5]);
+  return Reference{state_of(record), {}, ""};
+}
+
+/// At rest all the time: levelled with the mean force of the first seconds, heading as given.
+Result<Reference> from_rest(const Options& options, const std::vector<ImuSample>& samples) {
+  CANYON_TRY(const auto v, parse_numbers(options.at_rest, 4, "--static", "LAT,LON,H,HEADING: degrees, metres"));
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const ImuSample& s : samples) {
+    if (s.t - samples.front().t > options.level_s) break;
+    force += s.dv_U;
+  }
+  Reference out;
+  out.initial = fusion::levelled({v[0] * kDegree, v[1] * kDegree, v[2]}, v[3] * kDegree, force);
+  out.initial.t = first_instant(samples);
+  out.truth = {out.initial};
+  for (const ImuSample& s : samples) {
+    out.truth.push_back(out.initial);
+    out.truth.back().t = s.t;
+  }
+  return out;
+}
+
+/// Gravity must pull down in the first second; an axis convention mistaken turns it round.
+Status check_axes(const Options& options, const std::vector<ImuSample>& samples, const fusion::NavState& initial) {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const ImuSample& s : samples)
+    if (s.t > initial.t && s.t - initial.t < 1.0) force += s.dv_U;
+  if ((initial.R_EU * force).dot(gravity_E(initial.p_EU_E)) <= 0.0) return Ok{};
+  return Error{options.imu, 0, "", "in the initial attitude the specific force points down",
+               options.axes == "frd" ? "--axes flu" : "forward-left-up axes, or --axes frd"};
+}
+
+std::size_t gaps_in(const std::vector<ImuSample>& samples) {
+  std::size_t gaps = 0;
+  for (std::size_t k = 2; k < samples.size(); ++k) gaps += samples[k].dt_s > 1.5 * samples[k - 1].dt_s ? 1 : 0;
+  return gaps;
+}
+
+struct Outcome {
+  Recording recording;
+  Reference reference;
+  std::string gravity;
+  std::vector<fusion::NavState> states;
+  std::vector<fusion::NavError> errors;
+  fusion::NavErrorStatistics statistics;
+};
+
+Json vector_json(const Eigen::Vector3d& v) {
+  return Json::array({or_null(v.x()), or_null(v.y()), or_null(v.z())});
+}
+
+Json summary_json(const Options& options, const Outcome& o) {
+  const auto& s = o.statistics;
+  return Json{{"rms_3d_m", or_null(s.position_rms_m)},
+              {"rms_e_m", or_null(s.position_rms_enu_m.x())},
+              {"rms_n_m", or_null(s.position_rms_enu_m.y())},
+              {"rms_u_m", or_null(s.position_rms_enu_m.z())},
+              {"velocity_rms_m_s", vector_json(s.velocity_rms_enu_m_s)},
+              {"attitude_rms_deg", vector_json(s.attitude_rms_rad / kDegree)},
+              {"nees_mean", nullptr},
+              {"nis_mean", nullptr},
+              {"outage", nullptr},
+              {"final_error_m", or_null(s.final_error_m)},
+              {"final_horizontal_error_m", or_null(s.final_horizontal_m)},
+              {"integrator", options.integrator},
+              {"gravity", o.gravity},
+              {"samples", o.states.size() - 1},
+              {"gaps", gaps_in(o.recording.samples)},
+              {"compared", o.errors.empty() ? 0 : o.errors.size() - 1},
+              {"start_sow_s", o.states.front().t.sow_s()},
+              {"duration_s", o.states.back().t - o.states.front().t}};
+}
+
+void append_row(std::string& out, const char* format, auto... values) {
+  char row[400];
+  std::snprintf(row, sizeof row, format, values...);
+  out += row;
+}
+
+std::string drift_csv(const Outcome& o) {
+  std::string out =
+      "t_s,error_e_m,error_n_m,error_u_m,error_ve_m_s,error_vn_m_s,error_vu_m_s,error_roll_deg,error_pitch_deg,"
+      "error_yaw_deg\n";
+  for (const fusion::NavError& e : o.errors) {
+    const Eigen::Vector3d p = e.position_enu_m, v = e.velocity_enu_m_s, a = e.attitude_rad / kDegree;
+    append_row(out, "%.9f,%.7f,%.7f,%.7f,", e.t - o.states.front().t, p.x(), p.y(), p.z());
+    if (v.allFinite()) {
+      append_row(out, "%.9f,%.9f,%.9f,", v.x(), v.y(), v.z());
+    } else {
+      out += ",,,";
+    }
+    append_row(out, "%.10f,%.10f,%.10f\n", a.x(), a.y(), a.z());
+  }
+  return out;
+}
+
+/// What each gyroscope and accelerometer says by itself, without any navigation: the paper's dead-reckoned "heading" of
+/// three orthogonal gyroscopes is the plain integral of each one's rate.
+struct PlainIntegrals {
+  std::vector<double> t_s;
+  std::vector<double> rate_deg_s[3], angle_deg[3];
+
+  explicit PlainIntegrals(const Outcome& o) {
+    Eigen::Vector3d angle = Eigen::Vector3d::Zero();
+    for (const ImuSample& s : o.recording.samples) {
+      if (s.t <= o.states.front().t) continue;
+      t_s.push_back(s.t - o.states.front().t);
+      angle += s.dtheta_U / kDegree;
+      for (int i = 0; i < 3; ++i) {
+        rate_deg_s[i].push_back(s.dtheta_U[i] / s.dt_s / kDegree);
+        angle_deg[i].push_back(angle[i]);
+      }
+    }
+  }
+};
+
+std::string heading_csv(const Outcome& o, const PlainIntegrals& plain) {
+  std::string out = "t_s,roll_deg,pitch_deg,heading_deg,angle_x_deg,angle_y_deg,angle_z_deg\n";
+  for (std::size_t k = 0; k < plain.t_s.size(); ++k) {
+    const fusion::NavState& s = o.states[k + 1];
+    const NedAttitude a = ned_attitude(geodetic_from_ecef(s.p_EU_E), s.R_EU);
+    append_row(out, "%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", plain.t_s[k], a.roll_rad / kDegree, a.pitch_rad / kDegree,
+               a.heading_rad / kDegree, plain.angle_deg[0][k], plain.angle_deg[1][k], plain.angle_deg[2][k]);
+  }
+  return out;
+}
+
+std::string plot_svg(const Options& options, const Outcome& o, const PlainIntegrals& plain) {
+  using report::TimePanel;
+  const char* const axes[3] = {"x", "y", "z"};
+  TimePanel rates{"Angular rate (as the paper's figure 2)", "deg/s", {}};
+  TimePanel angles{"Integral of each gyroscope (as figures 3 and 7)", "deg", {}};
+  for (int i = 0; i < 3; ++i) {
+    rates.curves.push_back({axes[i], plain.t_s, plain.rate_deg_s[i]});
+    angles.curves.push_back({axes[i], plain.t_s, plain.angle_deg[i]});
+  }
+  std::vector<TimePanel> panels = {rates, angles};
+  if (!o.errors.empty()) {
+    TimePanel attitude{"Attitude error", "deg", {{"roll", {}, {}}, {"pitch", {}, {}}, {"yaw", {}, {}}}};
+    TimePanel position{"Position error (as figure 7)", "m", {{"east", {}, {}}, {"north", {}, {}}, {"up", {}, {}}}};
+    for (const fusion::NavError& e : o.errors) {
+      for (int i = 0; i < 3; ++i) {
+        const auto u = static_cast<std::size_t>(i);
+        for (TimePanel* panel : {&attitude, &position}) panel->curves[u].t_s.push_back(e.t - o.states.front().t);
+        attitude.curves[u].y.push_back(e.attitude_rad[i] / kDegree);
+        position.curves[u].y.push_back(e.position_enu_m[i]);
+      }
+    }
+    panels.push_back(attitude);
+    panels.push_back(position);
+  }
+  return report::time_plot_svg("Dead reckoning of " + options.imu + ", " + options.integrator, panels);
+}
+
+Status write_output(const Options& options, const Outcome& o) {
+  if (options.out.empty()) return Ok{};
+  CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
+  const std::string folder = staged.staging_path() + "/";
+  const PlainIntegrals plain(o);
+  NavigationFile path;
+  path.gravity = o.gravity;
+  for (const fusion::NavState& s : o.states) path.records.push_back({s.t, {s.R_EU, s.p_EU_E}, s.v_EU_E});
+  CANYON_TRY_STATUS(write_navigation_file(folder + "estimate.nav", path));
+  CANYON_TRY_STATUS(write_text_file(folder + "heading.csv", heading_csv(o, plain)));
+  if (!o.errors.empty()) CANYON_TRY_STATUS(write_text_file(folder + "drift.csv", drift_csv(o)));
+  CANYON_TRY_STATUS(write_text_file(folder + "drift.svg", plot_svg(options, o, plain)));
+  CANYON_TRY_STATUS(write_text_file(folder + "summary.json", summary_json(options, o).dump(2) + "\n"));
+  return staged.commit();
+}
+
+void tell(const Options& options, const Outcome& o) {
+  const auto& s = o.statistics;
+  std::printf("%s: %zu samples, %.3f s from %.3f s of the week; %s, gravity %s\n", options.imu.c_str(),
+              o.states.size() - 1, o.states.back().t - o.states.front().t, o.states.front().t.sow_s(),
+              options.integrator.c_str(), o.gravity.c_str());
+  if (o.errors.size() < 2) {
+    const Geodetic at = geodetic_from_ecef(o.states.back().p_EU_E);
+    std::printf("  at the end: %.9f, %.9f deg, %.3f m\n", at.lat_rad / kDegree, at.lon_rad / kDegree, at.h_m);
+    return;
+  }
+  const auto row = [](const char* what, const Eigen::Vector3d& v, const char* unit) {
+    std::printf("  %-32s %12.6g %12.6g %12.6g %s\n", what, v.x(), v.y(), v.z(), unit);
+  };
+  row("position RMS, east north up", s.position_rms_enu_m, "m");
+  row("velocity RMS, east north up", s.velocity_rms_enu_m_s, "m/s");
+  row("attitude RMS, roll pitch yaw", s.attitude_rms_rad / kDegree, "deg");
+  row("at the end, east north up", o.errors.back().position_enu_m, "m");
+  std::printf("  final error %.6g m, of it horizontal %.6g m\n", s.final_error_m, s.final_horizontal_m);
+}
+
+Result<Reference> reference_of(const Options& options, const NavigationFile& truth,
+                               const std::vector<ImuSample>& samples) {
+  if (!options.initial.empty()) return from_initial(options, samples);
+  if (!options.at_rest.empty()) return from_rest(options, samples);
+  Reference out;
+  out.gravity = truth.gravity;
+  for (const NavigationRecord& record : truth.records) out.truth.push_back(state_of(record));
+  CANYON_TRY(out.initial, start_in_truth(out.truth, samples, options));
+  if (!out.initial.v_EU_E.allFinite())
+    return Error{options.truth, 0, "", "has no velocity to start from", "columns vn,ve,vd"};
+  return out;
+}
+
+Result<int> run(const Options& options) {
+  set_threads(options.common.threads);
+  NavigationFile truth;
+  if (!options.truth.empty()) {
+    CANYON_TRY(truth, read_navigation_file(options.truth));
+  }
+  Outcome o;
+  CANYON_TRY(o.recording, read_imu(options, truth.records.empty() ? 0 : truth.records.front().t.week()));
+  CANYON_TRY(o.reference, reference_of(options, truth, o.recording.samples));
+  CANYON_TRY_STATUS(check_axes(options, o.recording.samples, o.reference.initial));
+  o.gravity = !options.gravity.empty()        ? options.gravity
+              : !o.reference.gravity.empty() ? o.reference.gravity
+              : o.recording.increments       ? "grs80_series"
+                                             : "wgs84";
+  const auto strapdown = fusion::make_strapdown(options.integrator, gravity_by_name(o.gravity));
+  o.states = fusion::dead_reckon(o.recording.samples, o.reference.initial, *strapdown);
+  o.errors = fusion::navigation_errors(o.states, o.reference.truth);
+  o.statistics = fusion::navigation_error_statistics(o.errors);
+  CANYON_TRY_STATUS(write_output(options, o));
+  if (options.common.json)
+    std::printf("%s\n", summary_json(options, o).dump().c_str());
+  else
+    tell(options, o);
+  return 0;
+}
+
+VerbAction declare(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  declare_common(app, options->common);
+  app.add_option("--imu", options->imu,
+                 "the log: CSV of rates (header t_s,gx_rad_s,...,az_m_s2; the mean over the interval that ends at t_s), "
+                 "or KF-GINS text of increments (sow, rad, m/s; forward-right-down)")
+      ->required();
+  app.add_option("--columns", options->columns, "column names or layout of the log, as for imu allan");
+  auto* truth = app.add_option("--truth", options->truth,
+                               "reference to start from and compare with: KF-GINS text, or CSV with "
+                               "sow,lat_deg,lon_deg,h_m,vn,ve,vd,roll_deg,pitch_deg,heading_deg");
+  auto* initial = app.add_option("--initial", options->initial,
+                                 "LAT,LON,H,VN,VE,VD,ROLL,PITCH,HEADING at the log's start: degrees, metres, m/s");
+  auto* rest = app.add_option("--static", options->at_rest,
+                              "LAT,LON,H,HEADING of a log at rest: levelled with its own first seconds, compared with "
+                              "standing still");
+  truth->excludes(initial)->excludes(rest);
+  initial->excludes(rest);
+  app.add_option("--level", options->level_s, "seconds that --static takes for levelling")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--integrator", options->integrator, "strapdown model")
+      ->capture_default_str()
+      ->check(CLI::IsMember(fusion::strapdown_names()));
+  app.add_option("--gravity", options->gravity,
+                 "wgs84 or grs80_series; default: what the truth file states, else that of KF-GINS (grs80_series) for "
+                 "its text format and wgs84 for CSV")
+      ->check(CLI::IsMember(gravity_names()));
+  app.add_option("--axes", options->axes, "axes of a CSV log: flu (forward-left-up, the default) or frd")
+      ->check(CLI::IsMember(std::vector<std::string>{"flu", "frd"}));
+  app.add_option("--out", options->out,
+                 "directory for estimate.nav, heading.csv, drift.csv, drift.svg and summary.json");
+  app.add_flag("--force", options->force,
+               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  return [options]() -> Result<int> {
+    if (options->truth.empty() && options->initial.empty() && options->at_rest.empty())
+      return Error{"", 0, "command line", "no start given", "--truth FILE, --initial ... or --static ..."};
+    return run(*options);
+  };
+}
+
+}  // namespace
+
+Verb imu_dead_reckon_verb() {
+  return {"imu dead-reckon", "free inertial navigation on a log, and how it drifts",
+          "canyon imu dead-reckon --imu imu.csv --truth truth.nav --out drift", declare};
+}
+
+}  // namespace canyon::apps
