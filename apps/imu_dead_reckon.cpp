@@ -51,13 +51,15 @@ Result<Recording> read_imu(const Options& options, int week) {
   CANYON_TRY(const bool bare, is_bare(options.imu));
   Recording out;
   out.increments = options.columns == "kf_gins" || (options.columns.empty() && bare);
-  CANYON_TRY(const inertial::ImuLog log, inertial::read_imu_log(options.imu, {.columns = out.increments ? "kf_gins" : options.columns,
-                                                                               .rate_hz = 0.0,
-                                                                               .live = false}));
+  CANYON_TRY(
+      const inertial::ImuLog log,
+      inertial::read_imu_log(options.imu,
+                             {.columns = out.increments ? "kf_gins" : options.columns, .rate_hz = 0.0, .live = false}));
   for (int c = 0; c < 6; ++c)
     if (log.channels[static_cast<std::size_t>(c)].empty())
       return Error{options.imu, 0, "", std::string("no column for ") + inertial::kChannelNames[c], "all six channels"};
-  const Eigen::Vector3d sign = options.axes == "frd" && !out.increments ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
+  const Eigen::Vector3d sign =
+      options.axes == "frd" && !out.increments ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
   for (std::size_t k = 0; k < log.size(); ++k) {
     const double dt_s = k > 0 ? log.t_s[k] - log.t_s[k - 1] : log.t_s[1] - log.t_s[0];
     const auto& c = log.channels;
@@ -335,7 +337,7 @@ Result<int> run(const Options& options) {
   CANYON_TRY(o.recording, read_imu(options, truth.records.empty() ? 0 : truth.records.front().t.week()));
   CANYON_TRY(o.reference, reference_of(options, truth, o.recording.samples));
   CANYON_TRY_STATUS(check_axes(options, o.recording.samples, o.reference.initial));
-  o.gravity = !options.gravity.empty()        ? options.gravity
+  o.gravity = !options.gravity.empty()       ? options.gravity
               : !o.reference.gravity.empty() ? o.reference.gravity
               : o.recording.increments       ? "grs80_series"
                                              : "wgs84";
@@ -354,9 +356,10 @@ Result<int> run(const Options& options) {
 VerbAction declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   declare_common(app, options->common);
-  app.add_option("--imu", options->imu,
-                 "the log: CSV of rates (header t_s,gx_rad_s,...,az_m_s2; the mean over the interval that ends at t_s), "
-                 "or KF-GINS text of increments (sow, rad, m/s; forward-right-down)")
+  app.add_option(
+         "--imu", options->imu,
+         "the log: CSV of rates (header t_s,gx_rad_s,...,az_m_s2; the mean over the interval that ends at t_s), "
+         "or KF-GINS text of increments (sow, rad, m/s; forward-right-down)")
       ->required();
   app.add_option("--columns", options->columns, "column names or layout of the log, as for imu allan");
   auto* truth = app.add_option("--truth", options->truth,

@@ -218,24 +218,25 @@ Json summary_json(const Options& options, const Simulation& s) {
   const Geodetic& origin = s.motion.frame.origin();
   std::size_t lost = 0;
   for (const ImuSample& m : s.measured) lost += m.lost ? 1 : 0;
-  return Json{{"samples", s.truth.size()},
-              {"rate_hz", s.rate_hz},
-              {"duration_s", s.truth.back().t - s.motion.start},
-              {"start_gps_week", s.motion.start.week()},
-              {"start_sow_s", s.motion.start.sow_s()},
-              {"sensor", s.sensor},
-              {"errors", s.errors},
-              {"seed", options.seed},
-              {"lost", lost},
-              {"speed_max_m_s", speed_m_s},
-              {"rate_max_deg_s", rate_rad_s / kDegree},
-              {"specific_force_max_m_s2", force_m_s2},
-              {"origin",
-               {{"lat_deg", origin.lat_rad / kDegree}, {"lon_deg", origin.lon_rad / kDegree}, {"h_m", origin.h_m}}},
-              {"frame", "imu.csv, errors.csv: forward-left-up, means over the interval that ends at t_s; imu_kf_gins.txt: "
-                        "forward-right-down, increments (rad, m/s) over the same; truth.nav: the IMU, forward-right-down "
-                        "in north-east-down; times are seconds of the start's GPS week"},
-              {"gravity", "wgs84"}};
+  return Json{
+      {"samples", s.truth.size()},
+      {"rate_hz", s.rate_hz},
+      {"duration_s", s.truth.back().t - s.motion.start},
+      {"start_gps_week", s.motion.start.week()},
+      {"start_sow_s", s.motion.start.sow_s()},
+      {"sensor", s.sensor},
+      {"errors", s.errors},
+      {"seed", options.seed},
+      {"lost", lost},
+      {"speed_max_m_s", speed_m_s},
+      {"rate_max_deg_s", rate_rad_s / kDegree},
+      {"specific_force_max_m_s2", force_m_s2},
+      {"origin", {{"lat_deg", origin.lat_rad / kDegree}, {"lon_deg", origin.lon_rad / kDegree}, {"h_m", origin.h_m}}},
+      {"frame",
+       "imu.csv, errors.csv: forward-left-up, means over the interval that ends at t_s; imu_kf_gins.txt: "
+       "forward-right-down, increments (rad, m/s) over the same; truth.nav: the IMU, forward-right-down "
+       "in north-east-down; times are seconds of the start's GPS week"},
+      {"gravity", "wgs84"}};
 }
 
 Status write_output(const Options& options, const Simulation& s, const Json& summary) {
@@ -273,8 +274,7 @@ Result<int> run(const Options& options) {
 
 std::string paths_help() {
   std::string out = "a motion in closed form, or a TOML file of one:";
-  for (const inertial::MotionRow& row : inertial::motion_models())
-    out += std::string("\n") + row.name + ": " + row.doc;
+  for (const inertial::MotionRow& row : inertial::motion_models()) out += std::string("\n") + row.name + ": " + row.doc;
   return out;
 }
 
@@ -305,14 +305,16 @@ VerbAction declare(CLI::App& app) {
   app.add_option("--seed", options->seed, "seed of every random stream")
       ->capture_default_str()
       ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
-  app.add_option("--out", options->out,
-                 "directory for imu.csv, imu_kf_gins.txt, errors.csv, truth.nav and summary.json; NAME.csv or NAME.txt: "
-                 "the log alone, as rates or as KF-GINS increments");
+  app.add_option(
+      "--out", options->out,
+      "directory for imu.csv, imu_kf_gins.txt, errors.csv, truth.nav and summary.json; NAME.csv or NAME.txt: "
+      "the log alone, as rates or as KF-GINS increments");
   app.add_flag("--force", options->force,
                "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->path.empty() && options->points.empty() && options->trajectory.empty())
-      return Error{"", 0, "command line", "no motion given", "--at LAT,LON,H, --path NAME, --points or --trajectory FILE"};
+      return Error{"", 0, "command line", "no motion given",
+                   "--at LAT,LON,H, --path NAME, --points or --trajectory FILE"};
     return run(*options);
   };
 }
@@ -321,7 +323,8 @@ VerbAction declare(CLI::App& app) {
 
 Verb imu_simulate_verb() {
   return {"imu simulate", "an inertial sensor's log on any motion, with its truth",
-          "canyon imu simulate --sensor stim300 --path circle --set radius_m=50 --set speed_m_s=10 --out circle", declare};
+          "canyon imu simulate --sensor stim300 --path circle --set radius_m=50 --set speed_m_s=10 --out circle",
+          declare};
 }
 
 }  // namespace canyon::apps

@@ -36,7 +36,8 @@ class PlotWriter {
   }
 
   std::string write() {
-    for (std::size_t i = 0; i < panels_.size(); ++i) panel(panels_[i], kTop + static_cast<double>(i) * (kHeight + kGap));
+    for (std::size_t i = 0; i < panels_.size(); ++i)
+      panel(panels_[i], kTop + static_cast<double>(i) * (kHeight + kGap));
     const double foot = kTop + static_cast<double>(panels_.size()) * (kHeight + kGap) - kGap;
     for (const Tick& tick : time_.ticks())
       text(x_px(tick.value), foot + 18, tick.label, "text-anchor=\"middle\" fill=\"#59636d\"");
@@ -89,7 +90,8 @@ class PlotWriter {
         command = 'L';
       }
     }
-    out_ += "<path d=\"" + path + "\" stroke=\"" + colour + "\" fill=\"none\" stroke-linejoin=\"round\" stroke-width=\"1.4\"/>\n";
+    out_ += "<path d=\"" + path + "\" stroke=\"" + colour +
+            "\" fill=\"none\" stroke-linejoin=\"round\" stroke-width=\"1.4\"/>\n";
   }
 
   const std::vector<TimePanel>& panels_;

@@ -81,8 +81,8 @@ struct MotionRow {
 std::span<const MotionRow> motion_models();
 std::vector<std::string> motion_names();
 
-/// The motion that the configuration names, with its vibration; the IMU at the body's origin. Random vibration draws its phases from the streams
-/// "imu.vibration.*".
+/// The motion that the configuration names, with its vibration; the IMU at the body's origin. Random vibration draws
+/// its phases from the streams "imu.vibration.*".
 Result<PlacedMotion> make_motion(const MotionConfig& config, std::uint64_t seed);
 
 /// Increments of an ideal IMU over (from_s, to_s]: integrals of rate and specific force (inertial/true_increments.h) to

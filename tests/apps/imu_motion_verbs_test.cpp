@@ -27,13 +27,14 @@ class ImuMotionVerbsTest : public testing::CommandLineTest {
   /// A sensor with a constant accelerometer bias and nothing else.
   void write_biased_sensor() const {
     const std::string others = "in_run_bias_source = \"test\"\nscale_ppm = 0.0\nmisalignment_mrad = 0.0\n";
-    write("biased.toml",
-          "name = \"biased\"\n[gyro]\narw_deg_per_sqrt_hr = 0.0\nturn_on_bias_deg_per_hr = 0.0\nin_run_bias_deg_per_hr = "
-          "0.0\n" +
-              others +
-              "[accel]\nvrw_m_s_per_sqrt_hr = 0.0\nturn_on_bias_mg = 1.0\nturn_on_bias_source = \"test\"\n"
-              "in_run_bias_mg = 0.0\n" +
-              others);
+    write(
+        "biased.toml",
+        "name = \"biased\"\n[gyro]\narw_deg_per_sqrt_hr = 0.0\nturn_on_bias_deg_per_hr = 0.0\nin_run_bias_deg_per_hr = "
+        "0.0\n" +
+            others +
+            "[accel]\nvrw_m_s_per_sqrt_hr = 0.0\nturn_on_bias_mg = 1.0\nturn_on_bias_source = \"test\"\n"
+            "in_run_bias_mg = 0.0\n" +
+            others);
   }
 };
 
@@ -45,7 +46,8 @@ TEST_F(ImuMotionVerbsTest, WhatIsSimulatedWithoutErrorsIsFoundAgain) {
   EXPECT_EQ(made["samples"], 120000);
   EXPECT_LE(made["speed_max_m_s"].get<double>(), 15.0);
   EXPECT_LE(made["rate_max_deg_s"].get<double>(), 25.0);
-  EXPECT_THAT(read("eight/imu.csv"), StartsWith("t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n604700.005000000,"));
+  EXPECT_THAT(read("eight/imu.csv"),
+              StartsWith("t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n604700.005000000,"));
   for (const char* log : {"imu.csv", "imu_kf_gins.txt"}) {
     const auto drift = json_of(std::string("imu dead-reckon --imu eight/") + log + " --truth eight/truth.nav");
     EXPECT_EQ(drift["compared"], 120000) << log;
@@ -79,7 +81,9 @@ TEST_F(ImuMotionVerbsTest, ErrorsDriftAsTheirLawSays) {
 }
 
 TEST_F(ImuMotionVerbsTest, AStaticLogIsLevelledByItself) {
-  json_of("imu simulate --at 45,7,200 --errors none --set pitch_deg=3 --set roll_deg=-2 --duration 60 --rate 50 --out still");
+  json_of(
+      "imu simulate --at 45,7,200 --errors none --set pitch_deg=3 --set roll_deg=-2 --duration 60 --rate 50 --out "
+      "still");
   const auto drift = json_of("imu dead-reckon --imu still/imu.csv --static 45,7,200,0");
   EXPECT_LT(drift["final_error_m"].get<double>(), 1e-3);
 }
@@ -87,10 +91,12 @@ TEST_F(ImuMotionVerbsTest, AStaticLogIsLevelledByItself) {
 TEST_F(ImuMotionVerbsTest, PointsAndRecordingsBecomeLogs) {
   write("given.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n10,80,10,1\n20,120,60,0\n30,200,90,2\n");
   json_of("imu simulate --points given.csv --at 45,7,200 --errors none --rate 100 --out points");
-  EXPECT_LT(json_of("imu dead-reckon --imu points/imu.csv --truth points/truth.nav")["final_error_m"].get<double>(), 1e-3);
+  EXPECT_LT(json_of("imu dead-reckon --imu points/imu.csv --truth points/truth.nav")["final_error_m"].get<double>(),
+            1e-3);
   // Its truth, as a recording, becomes a log of the same motion again.
   json_of("imu simulate --trajectory points/truth.nav --errors none --rate 100 --out again");
-  EXPECT_LT(json_of("imu dead-reckon --imu again/imu.csv --truth points/truth.nav")["final_error_m"].get<double>(), 1e-3);
+  EXPECT_LT(json_of("imu dead-reckon --imu again/imu.csv --truth points/truth.nav")["final_error_m"].get<double>(),
+            1e-3);
 }
 
 TEST_F(ImuMotionVerbsTest, SameSeedSameBitsForAnyNumberOfThreads) {
@@ -105,7 +111,8 @@ TEST_F(ImuMotionVerbsTest, MistakesAreToldInOneLine) {
                  "command line: no motion given, expected --at LAT,LON,H, --path NAME, --points or --trajectory FILE");
   expect_mistake("imu simulate --path circel", "--path: path: \"circel\"");
   expect_mistake("imu simulate --path circle --set radius=5", "--set:1: radius: unknown key, expected \"radius_m\"?");
-  expect_mistake("imu simulate --at 45,7", "--at: \"45,7\" cannot be read, expected LAT,LON,H: degrees, degrees, metres");
+  expect_mistake("imu simulate --at 45,7",
+                 "--at: \"45,7\" cannot be read, expected LAT,LON,H: degrees, degrees, metres");
   write("given.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,5,0,0\n");
   expect_mistake("imu simulate --points given.csv", "given.csv: 2 points, expected three or more");
   write("given.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,5,0,0\n2,5,0,0\n3,5,0,0\n");
@@ -115,7 +122,8 @@ TEST_F(ImuMotionVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("imu simulate --points given.csv",
                  "given.csv:3: time does not increase, expected points in the order of time");
   write("given.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,9,1,0\n2,18,0,0\n");
-  expect_mistake("imu simulate --points given.csv --duration 3", "--duration: 3 s, expected at most 2 s, the length of the trajectory");
+  expect_mistake("imu simulate --points given.csv --duration 3",
+                 "--duration: 3 s, expected at most 2 s, the length of the trajectory");
   expect_mistake("imu dead-reckon --imu given.csv",
                  "command line: no start given, expected --truth FILE, --initial ... or --static ...");
   expect_mistake("imu dead-reckon --imu nowhere.csv --static 45,7,200,0", "nowhere.csv");
@@ -137,8 +145,9 @@ TEST_F(ImuMotionVerbsTest, MistakenLogsAreRecognized) {
   expect_mistake("imu dead-reckon --axes frd --imu given_still/imu.csv" + truth,
                  "in the initial attitude the specific force points down, expected --axes flu");
   write("given.nav", "0 1000 45 7 200 0 0 0 0 0 0\n0 1001 45 7 200 0 0 0 0 0 0\n");
-  expect_mistake("imu dead-reckon --imu given_still/imu.csv --truth given.nav",
-                 "given.nav: covers 1000.000 to 1001.000 s of the week, expected times from 0.000 to 2.000 s of the week");
+  expect_mistake(
+      "imu dead-reckon --imu given_still/imu.csv --truth given.nav",
+      "given.nav: covers 1000.000 to 1001.000 s of the week, expected times from 0.000 to 2.000 s of the week");
 }
 
 /// The ideal log of another program on a real car's path: within a public filter's figure after ten minutes.
@@ -151,8 +160,8 @@ TEST_F(ImuMotionVerbsTest, IdealLogOfARealDrive) {
     double v[6];
     std::memcpy(v, bytes.data() + k * 48, 48);
     char row[200];
-    std::snprintf(row, sizeof row, "%.2f %.17g %.17g %.17g %.17g %.17g %.17g\n", 457000.0 + 0.01 * static_cast<double>(k + 1),
-                  v[0], v[1], v[2], v[3], v[4], v[5]);
+    std::snprintf(row, sizeof row, "%.2f %.17g %.17g %.17g %.17g %.17g %.17g\n",
+                  457000.0 + 0.01 * static_cast<double>(k + 1), v[0], v[1], v[2], v[3], v[4], v[5]);
     text += row;
   }
   write("ideal.txt", text);
