@@ -41,7 +41,7 @@ class ImuMotionVerbsTest : public testing::CommandLineTest {
 /// A drive of at most 15 m/s and 25 deg/s, integrated over ten minutes from both logs: within the millimetre.
 TEST_F(ImuMotionVerbsTest, WhatIsSimulatedWithoutErrorsIsFoundAgain) {
   const auto made = json_of(
-      "imu simulate --path figure_eight --set length_m=120 --set width_m=100 --set period_s=60 --set climb_m=2 --set "
+      "imu simulate --path figure_eight --set length_m=120 --set width_m=100 --set period_s=75 --set climb_m=2 --set "
       "sway_deg=4 --set imu.lever_arm_m=[0.3,0.1,0.5] --errors none --start 1590:604700 --out eight");
   EXPECT_EQ(made["samples"], 120000);
   EXPECT_LE(made["speed_max_m_s"].get<double>(), 15.0);
