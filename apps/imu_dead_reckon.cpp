@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -25,7 +26,7 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string imu, columns, truth, initial, at_rest, axes, gravity, out;
+  std::string imu, columns, truth, initial, at_rest, axes = "flu", gravity, out;
   std::string integrator = "two_sample";
   double level_s = 10.0;
   bool force = false;
@@ -51,20 +52,27 @@ Result<Recording> read_imu(const Options& options, int week) {
   CANYON_TRY(const bool bare, is_bare(options.imu));
   Recording out;
   out.increments = options.columns == "kf_gins" || (options.columns.empty() && bare);
-  CANYON_TRY(
-      const inertial::ImuLog log,
-      inertial::read_imu_log(options.imu,
-                             {.columns = out.increments ? "kf_gins" : options.columns, .rate_hz = 0.0, .live = false}));
+  inertial::ImuLogFormat format;
+  format.columns = out.increments ? "kf_gins" : options.columns;
+  auto log = inertial::read_imu_log(options.imu, format);
+  if (!log) {
+    // What only a dead or saturated channel speaks against can still be integrated.
+    const Error refused = log.error();
+    format.live = false;
+    log = inertial::read_imu_log(options.imu, format);
+    if (!log) return log.error();
+    std::fprintf(stderr, "warning: %s\n", refused.str().c_str());
+  }
   for (int c = 0; c < 6; ++c)
-    if (log.channels[static_cast<std::size_t>(c)].empty())
+    if (log->channels[static_cast<std::size_t>(c)].empty())
       return Error{options.imu, 0, "", std::string("no column for ") + inertial::kChannelNames[c], "all six channels"};
   const Eigen::Vector3d sign =
       options.axes == "frd" && !out.increments ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
-  for (std::size_t k = 0; k < log.size(); ++k) {
-    const double dt_s = k > 0 ? log.t_s[k] - log.t_s[k - 1] : log.t_s[1] - log.t_s[0];
-    const auto& c = log.channels;
+  for (std::size_t k = 0; k < log->size(); ++k) {
+    const double dt_s = k > 0 ? log->t_s[k] - log->t_s[k - 1] : log->t_s[1] - log->t_s[0];
+    const auto& c = log->channels;
     ImuSample s;
-    s.t = GpsTime::from_week_sow(week, 0.0) + log.t_s[k];
+    s.t = GpsTime::from_week_sow(week, 0.0) + log->t_s[k];
     s.dt_s = dt_s;
     s.dtheta_U = dt_s * sign.cwiseProduct(Eigen::Vector3d(c[0][k], c[1][k], c[2][k]));
     s.dv_U = dt_s * sign.cwiseProduct(Eigen::Vector3d(c[3][k], c[4][k], c[5][k]));
@@ -102,16 +110,20 @@ Result<fusion::NavState> start_in_truth(const std::vector<fusion::NavState>& tru
     start.t = edges[next];
     return start;
   }
-  for (const GpsTime edge : edges)
-    for (std::size_t i = 0; i + 1 < truth.size(); ++i)
-      if (truth[i].t < edge && edge < truth[i + 1].t && edge < edges.back())
-        return fusion::interpolate(truth[i], truth[i + 1], edge);
-  char range[160];
-  std::snprintf(range, sizeof range, "times from %.3f to %.3f s of the week, as in %s", edges.front().sow_s(),
-                edges.back().sow_s(), options.imu.c_str());
-  char own[80];
-  std::snprintf(own, sizeof own, "covers %.3f to %.3f s of the week", truth.front().t.sow_s(), truth.back().t.sow_s());
-  return Error{options.truth, 0, "", own, range};
+  for (const GpsTime edge : edges) {
+    const auto behind = std::upper_bound(truth.begin(), truth.end(), edge,
+                                         [](GpsTime t, const fusion::NavState& state) { return t < state.t; });
+    if (behind != truth.begin() && behind != truth.end() && edge < edges.back())
+      return fusion::interpolate(*(behind - 1), *behind, edge);
+  }
+  const auto range = [&](GpsTime first, GpsTime last) {
+    const GpsTime week = GpsTime::from_week_sow(truth.front().t.week(), 0.0);
+    char text[80];
+    std::snprintf(text, sizeof text, "%.3f to %.3f s of the week", first - week, last - week);
+    return std::string(text);
+  };
+  return Error{options.truth, 0, "", "covers " + range(truth.front().t, truth.back().t),
+               "times from " + range(edges.front(), edges.back()) + ", as in " + options.imu};
 }
 
 Result<Reference> from_initial(const Options& options, const std::vector<ImuSample>& samples) {
@@ -327,7 +339,19 @@ Result<Reference> reference_of(const Options& options, const NavigationFile& tru
   return out;
 }
 
+Status check_name(const std::string& option, const std::string& name, const std::vector<std::string>& known) {
+  std::string list;
+  for (const std::string& one : known) {
+    if (one == name) return Ok{};
+    list += (list.empty() ? "one of " : ", ") + one;
+  }
+  return Error{option, 0, "", "\"" + name + "\"", list};
+}
+
 Result<int> run(const Options& options) {
+  CANYON_TRY_STATUS(check_name("--integrator", options.integrator, fusion::strapdown_names()));
+  if (!options.gravity.empty()) CANYON_TRY_STATUS(check_name("--gravity", options.gravity, gravity_names()));
+  CANYON_TRY_STATUS(check_name("--axes", options.axes, {"flu", "frd"}));
   set_threads(options.common.threads);
   NavigationFile truth;
   if (!options.truth.empty()) {
@@ -353,6 +377,13 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
+std::string integrators_help() {
+  std::string out = "strapdown model:";
+  for (const fusion::StrapdownRow& row : fusion::strapdown_models())
+    out += std::string("\n") + row.name + ", order " + std::to_string(row.order) + ": " + row.doc;
+  return out;
+}
+
 VerbAction declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   declare_common(app, options->common);
@@ -375,15 +406,11 @@ VerbAction declare(CLI::App& app) {
   app.add_option("--level", options->level_s, "seconds that --static takes for levelling")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--integrator", options->integrator, "strapdown model")
-      ->capture_default_str()
-      ->check(CLI::IsMember(fusion::strapdown_names()));
+  app.add_option("--integrator", options->integrator, integrators_help())->capture_default_str();
   app.add_option("--gravity", options->gravity,
                  "wgs84 or grs80_series; default: what the truth file states, else that of KF-GINS (grs80_series) for "
-                 "its text format and wgs84 for CSV")
-      ->check(CLI::IsMember(gravity_names()));
-  app.add_option("--axes", options->axes, "axes of a CSV log: flu (forward-left-up, the default) or frd")
-      ->check(CLI::IsMember(std::vector<std::string>{"flu", "frd"}));
+                 "its text format and wgs84 for CSV");
+  app.add_option("--axes", options->axes, "axes of a CSV log: flu (forward-left-up) or frd")->capture_default_str();
   app.add_option("--out", options->out,
                  "directory for estimate.nav, heading.csv, drift.csv, drift.svg and summary.json");
   app.add_flag("--force", options->force,

@@ -8,6 +8,7 @@
 #include "core/files.h"
 #include "core/line_reader.h"
 #include "core/trajectory.h"
+#include "core/units.h"
 
 namespace canyon {
 namespace {
@@ -126,6 +127,10 @@ namespace {
 constexpr std::array<std::string_view, 9> kCsvColumns = {"gps_week", "sow", "x_m", "y_m", "z_m",
                                                          "qw",       "qx",  "qy",  "qz"};
 
+/// What a mission writes into epochs/RUN_nav.csv of its true poses.
+constexpr std::array<std::string_view, 8> kMissionColumns = {
+    "gps_week", "sow", "true_x_m", "true_y_m", "true_z_m", "true_yaw_deg", "true_pitch_deg", "true_roll_deg"};
+
 std::string csv_header() {
   std::string header;
   for (const std::string_view column : kCsvColumns) header += (header.empty() ? "" : ",") + std::string(column);
@@ -141,11 +146,14 @@ Result<Trajectory> read_csv_trajectory(const std::string& path) {
   std::string_view line;
   if (!in.next(line)) return in.empty_file("poses");
   const auto names = split(line, ",", false);
+  const bool of_mission = line.find(",true_x_m,") != std::string_view::npos;
+  const std::span<const std::string_view> columns =
+      of_mission ? std::span<const std::string_view>(kMissionColumns) : kCsvColumns;
   std::array<std::size_t, kCsvColumns.size()> place{};
-  for (std::size_t c = 0; c < kCsvColumns.size(); ++c) {
-    while (place[c] < names.size() && trimmed(names[place[c]]) != kCsvColumns[c]) ++place[c];
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    while (place[c] < names.size() && trimmed(names[place[c]]) != columns[c]) ++place[c];
     if (place[c] == names.size()) {
-      return in.error("no column \"" + std::string(kCsvColumns[c]) + "\"", "the header " + csv_header());
+      return in.error("no column \"" + std::string(columns[c]) + "\"", "the header " + csv_header());
     }
   }
   Trajectory trajectory;
@@ -160,10 +168,13 @@ Result<Trajectory> read_csv_trajectory(const std::string& path) {
     }
     CANYON_TRY(const std::int64_t sow_ns, parse_seconds(in, fields[place[1]]));
     std::array<double, 7> v{};
-    for (std::size_t i = 0; i < 7; ++i) {
+    for (std::size_t i = 0; i + 2 < columns.size(); ++i) {
       CANYON_TRY(v[i], parse_number(in, fields[place[i + 2]]));
     }
-    CANYON_TRY(const Eigen::Quaterniond q, parse_quaternion(in, v[3], v[4], v[5], v[6]));
+    Eigen::Quaterniond q = rotation_from({v[3] * kDegree, v[4] * kDegree, v[5] * kDegree});
+    if (!of_mission) {
+      CANYON_TRY(q, parse_quaternion(in, v[3], v[4], v[5], v[6]));
+    }
     const GpsTime t{GpsTime::from_week_sow(static_cast<int>(week), 0.0).ns + sow_ns};
     CANYON_TRY_STATUS(append_in_order(in, trajectory, t, {q, {v[0], v[1], v[2]}}));
   }

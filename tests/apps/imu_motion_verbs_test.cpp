@@ -109,8 +109,10 @@ TEST_F(ImuMotionVerbsTest, SameSeedSameBitsForAnyNumberOfThreads) {
 TEST_F(ImuMotionVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("imu simulate --errors none",
                  "command line: no motion given, expected --at LAT,LON,H, --path NAME, --points or --trajectory FILE");
-  expect_mistake("imu simulate --path circel", "--path: path: \"circel\"");
-  expect_mistake("imu simulate --path circle --set radius=5", "--set:1: radius: unknown key, expected \"radius_m\"?");
+  expect_mistake("imu simulate --path circel",
+                 "--path: path: unknown name \"circel\", expected one of \"stationary\", \"straight\", \"circle\", ");
+  expect_mistake("imu simulate --path circle --set radius=5",
+                 "--set:1: radius: unknown key, expected one of the documented keys; nearest is \"radius_m\"");
   expect_mistake("imu simulate --at 45,7",
                  "--at: \"45,7\" cannot be read, expected LAT,LON,H: degrees, degrees, metres");
   write("given.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,5,0,0\n");
@@ -126,6 +128,8 @@ TEST_F(ImuMotionVerbsTest, MistakesAreToldInOneLine) {
                  "--duration: 3 s, expected at most 2 s, the length of the trajectory");
   expect_mistake("imu dead-reckon --imu given.csv",
                  "command line: no start given, expected --truth FILE, --initial ... or --static ...");
+  expect_mistake("imu dead-reckon --imu given.csv --static 45,7,200,0 --integrator rk",
+                 "--integrator: \"rk\", expected one of euler, trapezoid, constant_rate, two_sample, three_sample");
   expect_mistake("imu dead-reckon --imu nowhere.csv --static 45,7,200,0", "nowhere.csv");
 }
 

@@ -99,6 +99,20 @@ TEST(TrajectoryFiles, TumOfOthers) {
   EXPECT_NEAR(t->poses()[1].X_WB.R.x(), std::sqrt(0.5), 4.5e-16);
 }
 
+TEST(TrajectoryFiles, TrueMotionOfAMission) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("c");
+  ASSERT_TRUE(write_text_file(file,
+                              "t_s,gps_week,sow,true_x_m,true_y_m,true_z_m,true_yaw_deg,true_pitch_deg,true_roll_deg,"
+                              "est_x_m\n0.1,1590,5.1,1,2,3,90,0,0,1.5\n")
+                  .ok());
+  const auto t = read_csv_trajectory(file);
+  ASSERT_TRUE(t.ok()) << t.error().str();
+  EXPECT_EQ(t->poses()[0].t.sow_ns(), 5'100'000'000);
+  EXPECT_EQ(t->poses()[0].X_WB.p, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_LT((t->poses()[0].X_WB.R * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 4 * 2.3e-16);
+}
+
 TEST(TrajectoryFiles, CsvColumnsAreFoundByName) {
   const TemporaryFolder folder;
   const std::string file = folder.file("c");
