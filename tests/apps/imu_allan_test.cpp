@@ -49,7 +49,9 @@ TEST_F(ImuAllanTest, JsonKeepsItsContract) {
     EXPECT_FALSE(a["hadamard"]["deviation"].empty());
     const double n = (axis[0] == 'g' ? 1e-3 : 1e-2) * 0.1;
     const auto& white = a["fit"]["white"];
-    if (white["determined"].is_boolean()) EXPECT_NEAR(white["value"].get<double>() / n, 1.0, 0.03) << axis;
+    if (white["determined"].is_boolean()) {
+      EXPECT_NEAR(white["value"].get<double>() / n, 1.0, 0.03) << axis;
+    }
     EXPECT_EQ(a["fit"]["ramp"]["determined"], false);
     EXPECT_TRUE(a["fit"]["ramp"]["value"].is_null());
     EXPECT_TRUE(a["fit"]["ramp"]["sigma"].is_null());
@@ -64,7 +66,7 @@ TEST_F(ImuAllanTest, WritesTableCurveAndPicture) {
   EXPECT_THAT(read("out/allan.csv"),
               HasSubstr("axis,kind,tau_s,samples,deviation,low,high,degrees_of_freedom,fit,unit"));
   EXPECT_THAT(read("out/allan.svg"), HasSubstr("Allan deviation of given.csv"));
-  EXPECT_NO_THROW((void)nlohmann::json::parse(read("out/allan.json")));
+  EXPECT_TRUE(nlohmann::json::accept(read("out/allan.json")));
 }
 
 TEST_F(ImuAllanTest, MistakesAreOneLine) {
