@@ -43,6 +43,9 @@ NavState levelled(const Geodetic& at, double heading_rad, const Eigen::Vector3d&
   NavState state;
   state.R_EU = (Eigen::Quaterniond(rotation_E_from_enu(at)) * rotation_from(attitude)).normalized();
   state.p_EU_E = ecef_from_geodetic(at);
+  // Above the ellipsoid gravity leans against its normal, by 8e-10 rad per metre: 3 mm after a minute at 200 m.
+  state.R_EU =
+      (Eigen::Quaterniond::FromTwoVectors(state.R_EU * force_U, -gravity_E(state.p_EU_E)) * state.R_EU).normalized();
   return state;
 }
 

@@ -18,7 +18,7 @@ namespace canyon::fusion {
 std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavState& initial, Strapdown& strapdown);
 
 /// A state at rest at that place and heading, its attitude levelled with a specific force (of any length) measured
-/// there. `t` is left 0.
+/// there, which stands against WGS84 normal gravity. `t` is left 0.
 NavState levelled(const Geodetic& at, double heading_rad, const Eigen::Vector3d& force_U);
 
 /// State at t, between two states: position cubic (it has their velocities), velocity linear, attitude on the geodesic.

@@ -52,11 +52,14 @@ Error cannot_join(double t_s, const char* what, std::string expected) {
 
 Status check_direction(const QuinticSpline& position, const std::vector<double>& t_s) {
   constexpr int kPerInterval = 8;
+  Eigen::Vector2d before = Eigen::Vector2d::Zero();
   for (std::size_t i = 0; i + 1 < t_s.size(); ++i) {
     for (int k = 0; k <= kPerInterval; ++k) {
       const double t = t_s[i] + (t_s[i + 1] - t_s[i]) * k / kPerInterval;
-      if (std::hypot(position.at(t, 0).first(), position.at(t, 1).first()) < kLeastSpeed_m_s)
+      const Eigen::Vector2d v(position.at(t, 0).first(), position.at(t, 1).first());
+      if (v.norm() < kLeastSpeed_m_s || v.dot(before) < 0.0)
         return cannot_join(t, "there is no direction of travel", "attitudes where the body halts or turns back");
+      before = v;
     }
   }
   return Ok{};

@@ -35,9 +35,11 @@ TEST(Levelled, PutsTheForceUpAndTheNoseOnItsHeading) {
   const Eigen::Vector3d force = Eigen::Vector3d(1.0, -2.0, 9.0);
   const NavState state = levelled(kPlace, 70.0 * kDegree, force);
   const Eigen::Matrix3d enu = rotation_E_from_enu(kPlace);
-  EXPECT_LT((enu.transpose() * (state.R_EU * force) - Eigen::Vector3d(0.0, 0.0, force.norm())).norm(), 1e-14 * 10);
+  const Eigen::Vector3d up = -gravity_E(state.p_EU_E).normalized();
+  EXPECT_LT((state.R_EU * force.normalized() - up).norm(), 1e-15 * 10);
+  EXPECT_NEAR(up.dot(enu.col(2)), 1.0, 1e-13);  // 1.6e-7 rad at 200 m, squared
   const Eigen::Vector3d nose = enu.transpose() * (state.R_EU * Eigen::Vector3d::UnitX());
-  EXPECT_NEAR(std::atan2(nose.x(), nose.y()), 70.0 * kDegree, 1e-15 * 10);
+  EXPECT_NEAR(std::atan2(nose.x(), nose.y()), 70.0 * kDegree, 2e-7);  // turned by that lean
 }
 
 TEST(DeadReckoning, StartsWhereItIsToldAndSkipsWhatIsBefore) {
