@@ -103,5 +103,25 @@ TEST(NoiseLaws, OneMilligNorth) {
   EXPECT_NEAR(drift().x(), 34.4, 1e-3 * 34.4 + 0.05);  // the figure has three digits
 }
 
+/// A gyroscope bias about north tilts the unit, and gravity then pulls it west: g d t^3 / 6, d t.
+TEST(NoiseLaws, GyroscopeBiasGrowsWithTimeCubed) {
+  const double d = 10.0 * kDegree / kHour, t = 60.0, dt = 0.01;
+  inertial::MotionConfig config;
+  config.lat_deg = 45.0;
+  config.lon_deg = config.height_m = 0.0;
+  const auto placed = inertial::make_motion(config, 1);
+  ImuSample sample = inertial::motion_increments(*placed, 0.0, dt);
+  sample.dtheta_U.x() += d * dt;  // heading 0: x is north
+  auto strapdown = fusion::make_strapdown("two_sample");
+  const fusion::NavState start = fusion::levelled(kPlace, 0.0, Eigen::Vector3d::UnitZ());
+  fusion::NavState state = start;
+  for (int k = 0; k < 6000; ++k)
+    strapdown->advance(state, {.dt_s = dt, .dtheta_U = sample.dtheta_U, .dv_U = sample.dv_U});
+  const Eigen::Vector3d drift = placed->frame.R_EW().transpose() * (state.p_EU_E - start.p_EU_E);
+  const double law_m = gravity_E(start.p_EU_E).norm() * d * t * t * t / 6.0;
+  EXPECT_NEAR(std::abs(drift.x()) / law_m, 1.0, 1e-3);  // Schuler: (t / 806 s)^2 / 20
+  EXPECT_NEAR(state.R_EU.angularDistance(start.R_EU) / (d * t), 1.0, 1e-4);
+}
+
 }  // namespace
 }  // namespace canyon
