@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -92,14 +93,10 @@ struct Reference {
   std::string gravity;                  ///< that the truth file states
 };
 
-GpsTime first_instant(const std::vector<ImuSample>& samples) {
-  return samples.front().t - samples.front().dt_s;
-}
-
 /// The first reference state that falls on the edge of a sample; else the first edge within the reference.
 Result<fusion::NavState> start_in_truth(const std::vector<fusion::NavState>& truth,
                                         const std::vector<ImuSample>& samples, const Options& options) {
-  std::vector<GpsTime> edges = {first_instant(samples)};
+  std::vector<GpsTime> edges = {samples.front().t - samples.front().dt_s};
   for (const ImuSample& s : samples) edges.push_back(s.t);
   std::size_t next = 0;
   for (const fusion::NavState& state : truth) {
@@ -132,7 +129,7 @@ Result<Reference> from_initial(const Options& options, const std::vector<ImuSamp
   NavigationRecord record;
   const Geodetic at{v[0] * kDegree, v[1] * kDegree, v[2]};
   const Eigen::Matrix3d enu = rotation_E_from_enu(at);
-  record.t = first_instant(samples);
+  record.t = samples.front().t;
   record.X_EU.p = ecef_from_geodetic(at);
   record.X_EU.R = attitude_from_ned(at, v[6] * kDegree, v[7] * kDegree, v[8] * kDegree);
   record.v_EU_E = enu * Eigen::Vector3d(v[4], v[3], -v[5]);
@@ -149,8 +146,7 @@ Result<Reference> from_rest(const Options& options, const std::vector<ImuSample>
   }
   Reference out;
   out.initial = fusion::levelled({v[0] * kDegree, v[1] * kDegree, v[2]}, v[3] * kDegree, force);
-  out.initial.t = first_instant(samples);
-  out.truth = {out.initial};
+  out.initial.t = samples.front().t;
   for (const ImuSample& s : samples) {
     out.truth.push_back(out.initial);
     out.truth.back().t = s.t;
@@ -287,7 +283,9 @@ std::string plot_svg(const Options& options, const Outcome& o, const PlainIntegr
     panels.push_back(attitude);
     panels.push_back(position);
   }
-  return report::time_plot_svg("Dead reckoning of " + options.imu + ", " + options.integrator, panels);
+  return report::time_plot_svg(
+      "Dead reckoning of " + std::filesystem::path(options.imu).filename().string() + ", " + options.integrator,
+      panels);
 }
 
 Status write_output(const Options& options, const Outcome& o) {
@@ -396,8 +394,9 @@ VerbAction declare(CLI::App& app) {
   auto* truth = app.add_option("--truth", options->truth,
                                "reference to start from and compare with: KF-GINS text, or CSV with "
                                "sow,lat_deg,lon_deg,h_m,vn,ve,vd,roll_deg,pitch_deg,heading_deg");
-  auto* initial = app.add_option("--initial", options->initial,
-                                 "LAT,LON,H,VN,VE,VD,ROLL,PITCH,HEADING at the log's start: degrees, metres, m/s");
+  auto* initial =
+      app.add_option("--initial", options->initial,
+                     "LAT,LON,H,VN,VE,VD,ROLL,PITCH,HEADING at the log's first stamp: degrees, metres, m/s");
   auto* rest = app.add_option("--static", options->at_rest,
                               "LAT,LON,H,HEADING of a log at rest: levelled with its own first seconds, compared with "
                               "standing still");
