@@ -5,30 +5,41 @@
 
 #include "core/config_text.h"
 #include "core/units.h"
-#include "lidar/scanner_models.h"
+#include "lidar/detector.h"
+#include "lidar/echo_model.h"
+#include "lidar/return_choice.h"
+#include "lidar/volley_scanner.h"
 
 namespace canyon::lidar {
 namespace {
 
-struct Row {
-  const char* name;
-  std::unique_ptr<Scanner> (*make)(const LidarConfig&, const BeamTable&, std::uint64_t seed);
-  const char* doc;
-};
-
-constexpr Row kModels[] = {
-    {"single_ray", &make_single_ray,
-     "one infinitely thin ray per firing, Gaussian range noise, Lambertian reflectivity"},
-};
-
 Error config_error(const char* key, std::string what, std::string expected) {
   return Error{"", 0, std::string("lidar.") + key, std::move(what), std::move(expected)};
+}
+
+/// The row that a key names.
+template <class Row>
+Result<const Row*> row_of(const std::vector<Row>& rows, const char* key, const std::string& name) {
+  std::string known;
+  for (const Row& row : rows) {
+    if (name == row.name) return &row;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
+  }
+  return config_error(key, std::string("unknown ") + key + " \"" + name + '"', "one of " + known);
 }
 
 Status validate(const LidarConfig& c, const BeamTable& table) {
   if (!(c.min_range_m < c.max_range_m)) {
     return config_error("min_range_m", number_text(c.min_range_m),
                         "less than max_range_m, " + number_text(c.max_range_m));
+  }
+  if (((c.ego_max_m - c.ego_min_m).array() < 0).any()) {
+    return config_error("ego_max_m", "a corner lower than ego_min_m", "ego_min_m or more along each axis");
+  }
+  if (c.azimuth_steps == 0) {
+    if (table.cycle_s > 0) return Ok{};
+    return config_error("azimuth_steps", "0",
+                        "the number of firings per revolution (" + table.name + " has no shortest firing cycle)");
   }
   const double firing_s = 1.0 / (c.rate_hz * static_cast<double>(c.azimuth_steps));
   const double needed_s = std::max(table.cycle_s, table.last_firing_s());
@@ -43,37 +54,19 @@ Status validate(const LidarConfig& c, const BeamTable& table) {
 
 }  // namespace
 
-void visit(FieldVisitor& f, LidarConfig& c) {
-  f.file("beams", c.beams, ".csv", "beam table: the name of a built-in one (vlp16, grid16) or the path of a .csv file");
-  std::vector<std::string> models;
-  for (const Row& row : kModels) models.emplace_back(row.name);
-  f.choice("model", c.model, models, "how a beam meets the scene");
-  f.number("rate_hz", c.rate_hz, {0.1, 100}, "revolutions per second");
-  f.integer("azimuth_steps", c.azimuth_steps, {1, 100000}, "firings of every laser per revolution");
-  f.vector3("mount_m", c.mount_m, {-100, 100}, "position of the sensor in the body: forward, left, up");
-  f.vector3("mount_yaw_pitch_roll_deg", c.mount_yaw_pitch_roll_deg, {-360, 360},
-            "orientation of the sensor in the body");
-  f.number("min_range_m", c.min_range_m, {0, 1e4}, "shorter measured ranges are not reported");
-  f.number("max_range_m", c.max_range_m, {0, 1e4}, "longer measured ranges are not reported");
-  f.number("range_noise_m", c.range_noise_m, {0, 10}, "1-sigma of the range noise, independent per ray");
-  f.number("range_quantum_m", c.range_quantum_m, {0, 1}, "step of the reported range; 0 = continuous");
-  f.flag("blinded", c.blinded, "the sensor returns nothing (coupling studies)");
-}
-
 Pose sensor_in_body(const LidarConfig& config) {
   const Eigen::Vector3d angles = config.mount_yaw_pitch_roll_deg * kDegree;
   return {rotation_from({.yaw_rad = angles[0], .pitch_rad = angles[1], .roll_rad = angles[2]}), config.mount_m};
 }
 
 Result<std::unique_ptr<Scanner>> make_scanner(const LidarConfig& config, std::uint64_t seed) {
-  CANYON_TRY(const BeamTable table, load_beam_table(config.beams));
+  CANYON_TRY(BeamTable table, load_beam_table(config.beams));
   CANYON_TRY_STATUS(validate(config, table));
-  for (const Row& row : kModels) {
-    if (config.model == row.name) return row.make(config, table, seed);
-  }
-  std::string known;
-  for (const Row& row : kModels) known += (known.empty() ? "" : ", ") + std::string(row.name);
-  return config_error("model", "unknown model \"" + config.model + '"', "one of " + known);
+  CANYON_TRY(const EchoModelRow* model, row_of(echo_models(), "model", config.model));
+  CANYON_TRY(const DetectorRow* detector, row_of(detectors(), "detector", config.detector));
+  CANYON_TRY(const ReturnModeRow* returns, row_of(return_modes(), "returns", config.returns));
+  return make_volley_scanner(config, std::move(table), model->make(config, seed), detector->make(config, seed),
+                             returns->mode, seed);
 }
 
 }  // namespace canyon::lidar

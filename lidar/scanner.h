@@ -1,47 +1,44 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "core/config.h"
 #include "core/messages.h"
 #include "core/result.h"
 #include "core/trajectory.h"
 #include "core/truth.h"
+#include "lidar/lidar_config.h"
 #include "scene/scene_at.h"
 
 namespace canyon::lidar {
 
-/// [lidar] of a mission file.
-struct LidarConfig {
-  std::string beams = "vlp16";  ///< table in lidar/beams
-  std::string model = "single_ray";
-  double rate_hz = 10.0;                              ///< revolutions per second
-  std::int64_t azimuth_steps = 1800;                  ///< firings per revolution
-  Eigen::Vector3d mount_m{0.3, 0.0, 1.8};             ///< L in B
-  Eigen::Vector3d mount_yaw_pitch_roll_deg{0, 0, 0};  ///< R_BL
-  double min_range_m = 0.9;
-  double max_range_m = 100.0;
-  double range_noise_m = 0.02;  ///< 1-sigma; VLP-16 manual: +-3 cm typical accuracy
-  double range_quantum_m = 0.002;
-  bool blinded = false;  ///< returns nothing (coupling studies)
-};
-void visit(FieldVisitor& f, LidarConfig& c);
+/// Material and object of a return that no surface sent (a drop, another sensor's pulse), in LidarPointTruth.
+inline constexpr std::uint16_t kNoMaterial = 0xffff;
+inline constexpr std::uint32_t kNoObject = 0xffffffff;
 
 struct LidarOutput {
   LidarScan scan;
   std::vector<LidarPointTruth> truth;  ///< same index as scan.points
 };
 
-/// A spinning LIDAR. Makes the scan stamped t from rays fired over (t - period, t] against the buffered true motion.
+/// A LIDAR that scans. Makes the scan stamped t from rays fired over (t - period, t] against the buffered true motion.
+///
+/// Each ray leaves from where the sensor truly is at its firing time. What comes back goes through the chain of
+/// LidarConfig: how the beam meets the scene (`model`), the air (`weather`), other sensors (`crosstalk`), the receiver
+/// (`detector`), which echoes it reports (`returns`), bias, quantization and range limits. Points come in the order of
+/// firing: cycle by cycle, within a cycle by firing time (equal times: by laser), within a shot by range; return_index
+/// counts these from 0. A point lies where the sensor believes it pointed.
 class Scanner {
  public:
   virtual ~Scanner() = default;
-  /// `truth` must cover [t - period, t]; poses of B in W. `index` numbers the revolution.
+  /// `truth` must cover [t - latency - period, t - latency], lasers that run free one firing cycle more at the
+  /// beginning; poses of B in W. `index` numbers the revolution.
   virtual LidarOutput scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene) = 0;
+  /// True distances along the middle of every beam, laser by laser in the order of firing; infinity where nothing is
+  /// met within max_range_m. Neither noise nor any other model.
+  virtual std::vector<float> true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth,
+                                         const scene::SceneAt& scene) = 0;
   virtual std::int64_t rays() const = 0;  ///< fired so far
 };
 

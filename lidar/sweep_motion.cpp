@@ -8,8 +8,21 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr double kNodeSpacing_s = 0.25e-3;
+// What a chord between two nodes may be off the arc; and nodes are never closer than this.
+constexpr double kChordAngle_rad = 3e-8;
+constexpr double kChordWay_m = 1e-7;
+constexpr double kClosest_s = 0.05e-3;
 constexpr double kTimeTolerance_s = 1e-8;  // a point's time_s in single precision: 4 ns at 0.1 s
+
+/// A chord over h deviates from an arc of rate w by (w h)^2 / 8 in direction, and in place by the acceleration times
+/// h^2 / 8, which on a screw motion is w times the sensor's speed.
+double node_spacing_s(const Vector6d& twist_per_s, const Pose& X_BL) {
+  const double w_rad_s = twist_per_s.head<3>().norm();
+  const double speed_m_s = twist_per_s.tail<3>().norm() + w_rad_s * X_BL.p.norm();
+  const double by_angle_s = std::sqrt(8.0 * kChordAngle_rad) / std::max(w_rad_s, 1e-12);
+  const double by_way_s = std::sqrt(8.0 * kChordWay_m / std::max(w_rad_s * speed_m_s, 1e-12));
+  return std::max(kClosest_s, std::min(by_angle_s, by_way_s));
+}
 
 }  // namespace
 
@@ -39,13 +52,16 @@ SweepMotion::SweepMotion(const Trajectory& motion, GpsTime stamp, double first_s
     const double b_s = b.t - stamp;
     const double from_s = std::max(a_s, begin_s);
     const double to_s = std::min(b_s, end_s);
-    const int pieces = std::max(1, static_cast<int>(std::ceil((to_s - from_s) / kNodeSpacing_s - 1e-6)));
+    const Vector6d twist = (a.X_WB.inverse() * b.X_WB).log();
+    const double length_s = b_s - a_s;
+    const double spacing_s = node_spacing_s(twist / length_s, X_BL);
+    const int pieces = std::max(1, static_cast<int>(std::ceil((to_s - from_s) / spacing_s - 1e-6)));
     for (int i = 0; i < pieces; ++i) {
       const double time_s = from_s + (to_s - from_s) * i / pieces;
       if (!nodes_.empty() && time_s <= nodes_.back().time_s) continue;
-      add(time_s, interpolate(a.X_WB, b.X_WB, (time_s - a_s) / (b_s - a_s)));
+      add(time_s, a.X_WB * Pose::exp(twist * ((time_s - a_s) / length_s)));
     }
-    if (to_s >= end_s) add(end_s, interpolate(a.X_WB, b.X_WB, (end_s - a_s) / (b_s - a_s)));
+    if (to_s >= end_s) add(end_s, a.X_WB * Pose::exp(twist * ((end_s - a_s) / length_s)));
   }
 }
 
@@ -54,9 +70,7 @@ bool SweepMotion::covers(double time_s) const {
          time_s <= nodes_.back().time_s + kTimeTolerance_s;
 }
 
-SweepMotion::Placement SweepMotion::at(double time_s, std::size_t& hint) const {
-  CANYON_CHECK(covers(time_s), "time_s = ", time_s);
-  if (nodes_.size() == 1) return nodes_.front().placement;
+std::size_t SweepMotion::before(double time_s, std::size_t& hint) const {
   if (hint + 1 >= nodes_.size() || time_s < nodes_[hint].time_s) {
     const auto next = std::upper_bound(nodes_.begin(), nodes_.end(), time_s,
                                        [](double t, const Node& node) { return t < node.time_s; });
@@ -64,10 +78,58 @@ SweepMotion::Placement SweepMotion::at(double time_s, std::size_t& hint) const {
     hint = std::min<std::size_t>(index < 0 ? 0 : static_cast<std::size_t>(index), nodes_.size() - 2);
   }
   while (hint + 2 < nodes_.size() && time_s >= nodes_[hint + 1].time_s) ++hint;
-  const Node& a = nodes_[hint];
+  return hint;
+}
+
+SweepMotion::Placement SweepMotion::at(double time_s, std::size_t& hint) const {
+  CANYON_CHECK(covers(time_s), "time_s = ", time_s);
+  if (nodes_.size() == 1) return nodes_.front().placement;
+  const Node& a = nodes_[before(time_s, hint)];
   const Node& b = nodes_[hint + 1];
   const double s = (time_s - a.time_s) / (b.time_s - a.time_s);
   return {a.placement.R + s * (b.placement.R - a.placement.R), a.placement.p + s * (b.placement.p - a.placement.p)};
+}
+
+void SweepMotion::placements(double time_s, double step_s, std::size_t& hint, PlacementPacket& out) const {
+  CANYON_CHECK(!nodes_.empty(), "nothing is covered at ", time_s);
+  const auto store = [&out](std::size_t lane, const Eigen::Matrix3d& R, const Eigen::Vector3d& p) {
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) out.R[3 * row + column][lane] = static_cast<float>(R(row, column));
+      out.p[row][lane] = static_cast<float>(p[row]);
+    }
+  };
+  if (nodes_.size() == 1) {
+    for (std::size_t i = 0; i < PlacementPacket::kShots; ++i) {
+      store(i, nodes_.front().placement.R, nodes_.front().placement.p);
+    }
+    for (int k = 0; k < 3; ++k) out.w_WL_L[k] = out.v_WL_W[k] = 0.0f;
+    return;
+  }
+  const double first = nodes_.front().time_s, last = nodes_.back().time_s;
+  const auto clamped = [&](std::size_t i) { return std::clamp(time_s + static_cast<double>(i) * step_s, first, last); };
+  static_assert(sizeof(Placement) == 12 * sizeof(double));
+  const std::size_t segment = before(clamped(0), hint);
+  if (time_s >= first && before(clamped(PlacementPacket::kShots - 1), hint) == segment && clamped(15) < last) {
+    const Node &a = nodes_[segment], &b = nodes_[segment + 1];
+    const double length_s = b.time_s - a.time_s;
+    spread_placements(a.placement.R.data(), b.placement.R.data(), (time_s - a.time_s) / length_s, step_s / length_s,
+                      out);
+  } else {
+    for (std::size_t i = 0; i < PlacementPacket::kShots; ++i) {
+      const Placement placement = at(clamped(i), hint);
+      store(i, placement.R, placement.p);
+    }
+  }
+  const Node& a = nodes_[before(clamped(PlacementPacket::kShots / 2), hint)];
+  const Node& b = nodes_[hint + 1];
+  const double length_s = b.time_s - a.time_s;
+  const Eigen::Matrix3d W =
+      a.placement.R.transpose() * (b.placement.R - a.placement.R) / length_s;  // skew: first order
+  const Eigen::Vector3d w(0.5 * (W(2, 1) - W(1, 2)), 0.5 * (W(0, 2) - W(2, 0)), 0.5 * (W(1, 0) - W(0, 1)));
+  for (int k = 0; k < 3; ++k) {
+    out.w_WL_L[k] = static_cast<float>(w[k]);
+    out.v_WL_W[k] = static_cast<float>((b.placement.p[k] - a.placement.p[k]) / length_s);
+  }
 }
 
 }  // namespace canyon::lidar

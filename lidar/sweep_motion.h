@@ -5,21 +5,21 @@
 #include <Eigen/Core>
 
 #include "core/trajectory.h"
+#include "lidar/aim.h"
 
 namespace canyon::lidar {
 
 /// The sensor's motion through one sweep, sampled so densely that it may be read linearly: tens of thousands of rays
 /// then cost a few multiplications each, not an SE(3) interpolation each.
 ///
-/// Nodes lie at every pose of the trajectory and at most 0.25 ms apart between them, on the SE(3) geodesic. The chord
-/// between nodes deviates from the arc by at most (w h)^2 / 8 in direction and a h^2 / 8 in position: at 2 rad/s and 10
-/// m/s^2 3e-8 rad (3 um at 100 m) and 0.1 um.
+/// Nodes lie at every pose of the trajectory and between them on the SE(3) geodesic, so close that a chord deviates
+/// from the arc by at most 3e-8 rad (3 um at 100 m) and 0.1 um.
 class SweepMotion {
  public:
   /// A rigid transform as a matrix; on a chord R is orthogonal to 1e-7.
   struct Placement {
     Eigen::Matrix3d R;
-    Eigen::Vector3d p;
+    Eigen::Vector3d p;  ///< follows R in memory
     Eigen::Vector3d operator*(const Eigen::Vector3d& x) const { return R * x + p; }
   };
 
@@ -34,11 +34,17 @@ class SweepMotion {
   /// Fast for times that ascend from call to call.
   Placement at(double time_s, std::size_t& hint) const;
 
+  /// Placements at time_s + i * step_s, i = 0..15, with the rates at the middle; times outside are taken to be the
+  /// nearest covered. Something must be covered.
+  void placements(double time_s, double step_s, std::size_t& hint, PlacementPacket& out) const;
+
  private:
   struct Node {
     double time_s;
     Placement placement;
   };
+  /// Index of the node before time_s, which another follows; moves `hint`. More than one node.
+  std::size_t before(double time_s, std::size_t& hint) const;
   std::vector<Node> nodes_;  // time ascending; empty: nothing covered
 };
 

@@ -61,6 +61,8 @@ class Query {
 }  // namespace
 
 struct Tracer::Embree {
+  class LanePlanes;
+
   explicit Embree(const Mesh& the_mesh) : mesh(the_mesh) {}
   ~Embree() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -95,17 +97,26 @@ struct Tracer::Embree {
 
   Plane plane(std::uint32_t index) const { return embree::plane_of(Triangle::of(mesh, index)); }
 
-  /// The planes of all triangles, 32 bytes each; made when the first packet is traced, so that scenes whose sensors
-  /// send no packets do not pay for them.
-  const std::vector<Plane>& planes() const {
-    std::call_once(planes_once, [this] {
-      planes_of_triangles.resize(mesh.triangles.size());
-      for (std::uint32_t i = 0; i < planes_of_triangles.size(); ++i) planes_of_triangles[i] = plane(i);
+  /// What packets need of the triangles, geometry after geometry (`first` is where each begins): 36 bytes each, made
+  /// when the first packet is traced, so that scenes whose sensors send none do not pay.
+  struct Surfaces {
+    std::array<std::uint32_t, 3> first{};
+    std::vector<Plane> planes;
+    std::vector<std::uint32_t> triangles;  ///< index in the mesh
+  };
+  const Surfaces& surfaces() const {
+    std::call_once(surfaces_once, [this] {
+      for (std::size_t id = 0; id < members.size(); ++id) {
+        made_surfaces.first[id] = static_cast<std::uint32_t>(made_surfaces.triangles.size());
+        made_surfaces.triangles.insert(made_surfaces.triangles.end(), members[id].begin(), members[id].end());
+      }
+      made_surfaces.planes.reserve(made_surfaces.triangles.size());
+      for (const std::uint32_t index : made_surfaces.triangles) made_surfaces.planes.push_back(plane(index));
     });
-    return planes_of_triangles;
+    return made_surfaces;
   }
-  mutable std::once_flag planes_once;
-  mutable std::vector<Plane> planes_of_triangles;
+  mutable std::once_flag surfaces_once;
+  mutable Surfaces made_surfaces;
 
   /// The hit in double precision, from the plane of the triangle that Embree found.
   Hit hit(const Ray& ray, unsigned geometry_id, unsigned primitive_id, float embree_range_m) const {
@@ -117,32 +128,44 @@ struct Tracer::Embree {
   }
 };
 
-/// The planes of the triangles that the lanes of a packet met. Neighbouring packets often meet the same ones.
-class LanePlanes {
+/// The planes of what the lanes of a packet met. Neighbouring packets often meet the same.
+class Tracer::Embree::LanePlanes {
  public:
-  explicit LanePlanes(const std::vector<Plane>& planes) : planes_(planes) { held_.fill(Hit::kMiss); }
+  explicit LanePlanes(const Surfaces& surfaces) : surfaces_(surfaces) {
+    held_.fill(Hit::kMiss);
+    triangles_.fill(Hit::kMiss);
+  }
 
-  std::uint32_t held(std::size_t lane) const { return held_[lane]; }
-
-  void hold(const std::uint32_t* triangle) {
-    Plane plane;
-    std::uint32_t latest = Hit::kMiss;
-    for (std::size_t lane = 0; lane < kPacket; ++lane) {
-      if (triangle[lane] != latest) {
-        latest = triangle[lane];
-        plane = latest == Hit::kMiss ? Plane{} : planes_[latest];
-      }
-      held_[lane] = latest;
-      packet_.set(lane, plane);
-    }
+  /// Takes indices into the surfaces and leaves indices of the mesh.
+  void hold(std::uint32_t* index) {
+    std::uint32_t changed = 0;
+    for (std::size_t lane = 0; lane < kPacket; ++lane) changed |= held_[lane] ^ index[lane];
+    if (changed != 0) renew(index);
+    std::copy(triangles_.begin(), triangles_.end(), index);
   }
 
   const PlanePacket& packet() const { return packet_; }
 
  private:
-  const std::vector<Plane>& planes_;
+  void renew(const std::uint32_t* index) {
+    Plane plane;
+    std::uint32_t latest = Hit::kMiss, triangle = Hit::kMiss;
+    for (std::size_t lane = 0; lane < kPacket; ++lane) {
+      if (index[lane] != latest) {
+        latest = index[lane];
+        const bool met = latest != Hit::kMiss;
+        plane = met ? surfaces_.planes[latest] : Plane{};
+        triangle = met ? surfaces_.triangles[latest] : Hit::kMiss;
+      }
+      held_[lane] = latest;
+      triangles_[lane] = triangle;
+      packet_.set(lane, plane);
+    }
+  }
+
+  const Surfaces& surfaces_;
   PlanePacket packet_{};
-  std::array<std::uint32_t, kPacket> held_;
+  std::array<std::uint32_t, kPacket> held_, triangles_;
 };
 
 Tracer::Tracer(const SceneParts& parts) : embree_(std::make_unique<Embree>(parts.mesh)) {
@@ -205,24 +228,27 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
 
 std::int64_t Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
   CANYON_CHECK(rays.size() == hits.size(), "packets of rays = ", rays.size(), ", of hits = ", hits.size());
+  // Three steps, each a packet behind the one before, so that nothing waits: a packet is traced and what it met is
+  // called into the cache; its planes are laid out by lane; ranges are computed from them.
   Query query;
-  LanePlanes planes(embree_->planes());
-  for (std::size_t p = 0; p < rays.size(); ++p) {
-    const RTCRayHit16& found = query.trace(embree_->scene, rays[p]);
-    // Ranges of the packet before: its planes, written one by one, have settled by now and are read as vectors.
-    if (p > 0) plane_ranges(rays[p - 1], planes.packet(), hits[p - 1]);
-    std::uint32_t changed = 0;
-    for (std::size_t lane = 0; lane < kPacket; ++lane) {
-      const unsigned geometry = found.hit.geomID[lane];
-      const bool met = geometry != RTC_INVALID_GEOMETRY_ID;
-      const std::uint32_t triangle = met ? embree_->triangle(geometry, found.hit.primID[lane]) : Hit::kMiss;
-      changed |= planes.held(lane) ^ triangle;
-      hits[p].triangle[lane] = triangle;
-      hits[p].range_m[lane] = met ? found.ray.tfar[lane] : std::numeric_limits<float>::infinity();
+  const Embree::Surfaces& surfaces = embree_->surfaces();
+  std::array<Embree::LanePlanes, 2> lanes{Embree::LanePlanes(surfaces), Embree::LanePlanes(surfaces)};
+  for (std::size_t p = 0; p < rays.size() + 2; ++p) {
+    if (p < rays.size()) {
+      const RTCRayHit16& found = query.trace(embree_->scene, rays[p]);
+      for (std::size_t lane = 0; lane < kPacket; ++lane) {
+        const unsigned geometry = found.hit.geomID[lane];
+        const bool met = geometry != RTC_INVALID_GEOMETRY_ID;
+        const std::uint32_t index = met ? surfaces.first[geometry] + found.hit.primID[lane] : 0;
+        __builtin_prefetch(surfaces.planes.data() + index);
+        __builtin_prefetch(surfaces.triangles.data() + index);
+        hits[p].triangle[lane] = met ? index : Hit::kMiss;
+        hits[p].range_m[lane] = met ? found.ray.tfar[lane] : std::numeric_limits<float>::infinity();
+      }
     }
-    if (changed != 0) planes.hold(hits[p].triangle);
+    if (p >= 1 && p <= rays.size()) lanes[(p - 1) % 2].hold(hits[p - 1].triangle);
+    if (p >= 2) plane_ranges(rays[p - 2], lanes[p % 2].packet(), hits[p - 2]);
   }
-  if (!rays.empty()) plane_ranges(rays.back(), planes.packet(), hits.back());
   return query.traced();
 }
 

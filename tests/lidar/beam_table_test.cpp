@@ -114,10 +114,9 @@ TEST(BeamTable, MistakesAreNamedWithTheirPlace) {
   EXPECT_EQ(error_of(kHead + "0,91,0,0,0\n"), "my.csv:3: elevation_deg: \"91\", expected a number from -90 to 90");
   EXPECT_EQ(error_of(kHead + "0,0,0,0,0\n2,0,0,0,0\n"), "my.csv:4: \"2,0,0,0,0\", expected laser 1");
   EXPECT_EQ(error_of(kHead + "0,0,0,0,60\n"), "my.csv:1: cycle_us: 55.296, expected more than the last firing_us, 60");
-  EXPECT_EQ(
-      load_beam_table("vlp61").error().str(),
-      "lidar.beams: unknown beam table \"vlp61\" (did you mean \"vlp16\"?), expected one of grid16, vlp16, or the path "
-      "of a .csv file");
+  EXPECT_EQ(load_beam_table("vlp61").error().str(),
+            "lidar.beams: unknown beam table \"vlp61\" (did you mean \"vlp16\"?), expected one of grid16, hdl32e, "
+            "hdl64e, mid360, os1_128, os1_64, vlp16, grid:LASERS:MIN_DEG:MAX_DEG, or the path of a .csv file");
   EXPECT_EQ(load_beam_table("no_such.csv").error().exit_code, 2);
 }
 

@@ -232,10 +232,11 @@ TEST(SingleRay, RangesComeInStepsAndWithinTheLimits) {
   for (std::size_t i = 0; i < out.truth.size(); ++i) {
     const LidarPoint& p = out.scan.points[i];
     const double measured_m = (position(p) - Eigen::Vector3d(0, 0, table.beams[p.ring].origin_up_m)).norm();
-    // Rounding of three float coordinates of 25 m.
-    EXPECT_NEAR(std::remainder(measured_m, 0.002), 0, 25 * 1.2e-7);
-    EXPECT_GE(measured_m, 20.5 - 3e-6);
-    EXPECT_LE(measured_m, 25.0 + 3e-6);
+    // Rounding of three float coordinates of 25 m, and of a direction in floats: its length is 1 to four roundings.
+    constexpr double kRounding_m = 25 * 6 * 6e-8;
+    EXPECT_NEAR(std::remainder(measured_m, 0.002), 0, kRounding_m);
+    EXPECT_GE(measured_m, 20.5 - kRounding_m);
+    EXPECT_LE(measured_m, 25.0 + kRounding_m);
     beyond |= out.truth[i].range_m > 25.0f;
   }
   EXPECT_TRUE(beyond) << "a surface just beyond the limit may measure within it";
@@ -316,9 +317,11 @@ TEST(LidarConfig, MistakesAreNamed) {
   EXPECT_EQ(error_of([](LidarConfig& c) { c.min_range_m = 100; }),
             "lidar.min_range_m: 100, expected less than max_range_m, 100");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.model = "two_ray"; }),
-            "lidar.model: unknown model \"two_ray\", expected one of single_ray");
+            "lidar.model: unknown model \"two_ray\", expected one of single_ray, footprint");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "os1"; }),
-            "lidar.beams: unknown beam table \"os1\", expected one of grid16, vlp16, or the path of a .csv file");
+            "lidar.beams: unknown beam table \"os1\" (did you mean \"os1_64\"?), expected one of grid16, hdl32e, "
+            "hdl64e, mid360, "
+            "os1_128, os1_64, vlp16, grid:LASERS:MIN_DEG:MAX_DEG, or the path of a .csv file");
 }
 
 TEST(LidarConfig, EveryFieldIsReadFromTheMissionFile) {

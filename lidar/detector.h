@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "lidar/lidar_config.h"
+#include "lidar/volley.h"
+
+namespace canyon::lidar {
+
+/// What the receiver makes of the echoes: sets measured_m (0: missed) and intensity. Const and thread-safe.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+  virtual void detect(const Volley& volley, EchoList& echoes) const = 0;
+};
+
+/// One row per model: `[lidar] detector`.
+struct DetectorRow {
+  const char* name;
+  std::unique_ptr<Detector> (*make)(const LidarConfig& config, std::uint64_t seed);
+  const char* doc;
+};
+const std::vector<DetectorRow>& detectors();
+
+std::unique_ptr<Detector> make_ideal_detector(const LidarConfig& config, std::uint64_t seed);
+std::unique_ptr<Detector> make_radiometric_detector(const LidarConfig& config, std::uint64_t seed);
+
+/// Standard normal draws of each shot's first echo: stream of the laser, one per firing.
+void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::vector<double>& out);
+
+}  // namespace canyon::lidar

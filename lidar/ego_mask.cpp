@@ -1,0 +1,26 @@
+#include "lidar/ego_mask.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace canyon::lidar {
+
+void EgoMask::hide(const AimPacket& aim, scene::RayPacket& rays) const {
+  for (std::size_t i = 0; i < AimPacket::kShots; ++i) {
+    const Eigen::Vector3d o = X_BL_ * Eigen::Vector3d(aim.origin_x[i], aim.origin_y[i], aim.origin_z[i]);
+    const Eigen::Vector3d d = X_BL_.R * Eigen::Vector3d(aim.direction_x[i], aim.direction_y[i], aim.direction_z[i]);
+    double enter = 0.0, leave = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < 3; ++k) {
+      if (d[k] == 0.0) {
+        if (o[k] < min_B_[k] || o[k] > max_B_[k]) leave = -1.0;
+        continue;
+      }
+      const double a = (min_B_[k] - o[k]) / d[k], b = (max_B_[k] - o[k]) / d[k];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    if (enter <= leave) rays.max_m[i] = -1.0f;
+  }
+}
+
+}  // namespace canyon::lidar

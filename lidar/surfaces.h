@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "scene/scene_at.h"
+
+namespace canyon::lidar {
+
+/// How much light the scene's surfaces send back at one wavelength.
+///
+/// Apparent reflectivity: what a Lambertian surface square to the beam would need to send as much. Of a surface met at
+/// the angle theta: reflectance * cos(theta) of its diffuse part; of its mirror, of facets whose slopes have the standard
+/// deviation s (Torrance and Sparrow 1967, no shadowing), share * exp(-tan(theta)^2 / (2 s^2)) / (8 s^2 cos(theta)^5); of
+/// a retroreflector pi R_A cos(theta).
+class Surfaces {
+ public:
+  Surfaces(const scene::SceneAt& scene, double wavelength_nm);
+
+  float reflectivity(std::uint32_t triangle, float cos_incidence) const {
+    const Light& light = lights_[scene_->surface(triangle).material];
+    const float diffuse = light.reflectance * cos_incidence;
+    return light.plain ? diffuse : diffuse + special(light, cos_incidence);
+  }
+
+ private:
+  struct Light {
+    float reflectance = 0;
+    float mirror = 0, slope = 1;
+    float retro = 0;
+    bool plain = true;
+  };
+  static float special(const Light& light, float cos_incidence);
+
+  const scene::SceneAt* scene_;
+  std::vector<Light> lights_;  ///< by material
+};
+
+}  // namespace canyon::lidar

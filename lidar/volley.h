@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/random.h"
+#include "lidar/aim.h"
+#include "lidar/firing_pattern.h"
+#include "scene/ray_packet.h"
+
+namespace canyon::lidar {
+
+/// The shots of all lasers in up to 32 consecutive firing cycles: what a scan is computed by. Its arrays stay in the
+/// cache, its rays go to the tracer in packets of sixteen neighbouring azimuths of one laser, and it is long enough for
+/// the random numbers to be drawn in batches.
+///
+/// Shot (laser, cycle) is in packet laser * 2 + cycle / 16, lane cycle % 16; shots are numbered packet * 16 + lane.
+struct Volley {
+  static constexpr std::size_t kCycles = 32;
+  static constexpr std::size_t kLanes = AimPacket::kShots;
+  static constexpr std::size_t kPacketsPerLaser = kCycles / kLanes;
+
+  std::size_t lasers = 0;
+  std::size_t first_cycle = 0;   ///< in its scan
+  std::size_t cycles = 0;        ///< <= kCycles
+  std::uint64_t first_draw = 0;  ///< sample index of its first cycle in the random streams; the entity is the laser
+  double first_s = 0.0;          ///< time of its first cycle after the scan's stamp
+  double step_s = 0.0;
+  PlacementPacket placements[kPacketsPerLaser];
+  std::vector<AimPacket> aims;  ///< nominal: where the sensor believes it points
+  std::vector<scene::RayPacket> rays;
+
+  std::size_t packets() const { return lasers * kPacketsPerLaser; }
+  std::size_t shots() const { return packets() * kLanes; }
+  static std::size_t shot(std::size_t laser, std::size_t cycle) { return laser * kCycles + cycle; }
+  static std::size_t laser_of(std::size_t shot) { return shot / kCycles; }
+  static std::size_t cycle_of(std::size_t shot) { return shot % kCycles; }
+  std::uint64_t draw_of(std::size_t shot) const { return first_draw + cycle_of(shot); }
+  Eigen::Vector3f nominal_direction(std::size_t shot) const {
+    const AimPacket& aim = aims[shot / kLanes];
+    const std::size_t lane = shot % kLanes;
+    return {aim.direction_x[lane], aim.direction_y[lane], aim.direction_z[lane]};
+  }
+  Eigen::Vector3f nominal_origin(std::size_t shot) const {
+    const AimPacket& aim = aims[shot / kLanes];
+    const std::size_t lane = shot % kLanes;
+    return {aim.origin_x[lane], aim.origin_y[lane], aim.origin_z[lane]};
+  }
+};
+
+/// Light that came back from one distance of one shot.
+struct Echo {
+  float range_m = 0;       ///< true
+  float reflectivity = 0;  ///< apparent: what a Lambertian surface square to the beam would need to give as much
+  float cos_incidence = 0;
+  std::uint32_t triangle = 0xffffffffu;  ///< scene::Hit::kMiss: of no surface (a droplet, another sensor's pulse)
+  float measured_m = 0;                  ///< the detector's; 0: not detected
+  float intensity = 0;                   ///< the detector's
+};
+
+/// The echoes of all shots of a volley, nearest first in each shot.
+struct EchoList {
+  std::vector<Echo> echoes;
+  std::vector<std::uint32_t> first;  ///< of each shot, and one more: the end
+
+  void clear(std::size_t shots) {
+    echoes.clear();
+    first.clear();
+    first.reserve(shots + 1);
+    first.push_back(0);
+  }
+  void end_shot() { first.push_back(static_cast<std::uint32_t>(echoes.size())); }
+};
+
+}  // namespace canyon::lidar
