@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "lidar/detector.h"
+
 namespace canyon::lidar {
 
 void Crosstalk::apply(const Volley& volley, EchoList& list) const {
@@ -15,9 +17,9 @@ void Crosstalk::apply(const Volley& volley, EchoList& list) const {
     const bool fired = volley.rays[shot / Volley::kLanes].max_m[shot % Volley::kLanes] >= 0;
     if (fired && stream_.uniform(laser, draw, 0) < config_.crosstalk) {
       const double range_m = stream_.uniform(config_.min_range_m, config_.max_range_m, laser, draw, 1);
-      const double ratio = range_m / config_.range_at_10_percent_m;
+      const double signal = stream_.uniform(1.0, 10.0, laser, draw, 2);
       pulse = {.range_m = static_cast<float>(range_m),
-               .reflectivity = static_cast<float>(0.1 * ratio * ratio * stream_.uniform(1.0, 10.0, laser, draw, 2)),
+               .reflectivity = static_cast<float>(signal / signal_gain(config_, range_m)),
                .cos_incidence = 1.0f};
     }
     for (std::uint32_t e = list.first[shot]; e < list.first[shot + 1]; ++e) {

@@ -1,5 +1,6 @@
 #include "lidar/detector.h"
 
+#include <algorithm>
 #include <span>
 
 namespace canyon::lidar {
@@ -11,6 +12,11 @@ const std::vector<DetectorRow>& detectors() {
        "radar equation against a threshold: dropouts, noise that grows as the signal fades, saturation"},
   };
   return kRows;
+}
+
+double signal_gain(const LidarConfig& config, double range_m) {
+  const double ratio = config.range_at_10_percent_m / std::max({range_m, config.full_overlap_m, 0.01});
+  return 10.0 * ratio * ratio;
 }
 
 void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::vector<double>& out) {

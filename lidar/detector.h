@@ -26,6 +26,11 @@ const std::vector<DetectorRow>& detectors();
 std::unique_ptr<Detector> make_ideal_detector(const LidarConfig& config, std::uint64_t seed);
 std::unique_ptr<Detector> make_radiometric_detector(const LidarConfig& config, std::uint64_t seed);
 
+/// Energy received from a surface of apparent reflectivity 1 at range_m, in units of the detection threshold:
+/// 10 (range_at_10_percent / range)^2. Nearer than full_overlap_m emitter and receiver look past each other in part, which
+/// takes as much as nearness brings: the value there.
+double signal_gain(const LidarConfig& config, double range_m);
+
 /// Standard normal draws of each shot's first echo: stream of the laser, one per firing.
 void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::vector<double>& out);
 

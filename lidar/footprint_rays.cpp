@@ -41,7 +41,7 @@ CANYON_VECTOR_CLONES void spread_beam(const scene::RayPacket& shots, std::size_t
     ux = along_x ? -dz : 0.0f, uy = along_x ? 0.0f : dz, uz = along_x ? dx : -dy;
     square = ux * ux + uy * uy + uz * uz;
   }
-  const float unit = 1.0f / std::sqrt(square);
+  const float unit = square > 0.0f ? 1.0f / std::sqrt(square) : 0.0f;  // 0: not traced
   ux *= unit, uy *= unit, uz *= unit;
   const float vx = dy * uz - dz * uy, vy = dz * ux - dx * uz, vz = dx * uy - dy * ux;
   const float ox = shots.origin_x[lane], oy = shots.origin_y[lane], oz = shots.origin_z[lane];

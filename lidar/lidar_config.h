@@ -45,6 +45,7 @@ struct LidarConfig {
   Eigen::Vector2d divergence_mrad{3.0, 1.5};  ///< VLP-16 manual: full width, across and along the spin axis
   double pulse_m = 0.75;                      ///< 5 ns (HDL-64E manual), as range
   double range_at_10_percent_m = 50.0;
+  double full_overlap_m = 5.0;
   double threshold_snr = 6.0;
   double saturation = 1000.0;
   double saturation_walk_m = 0.0;

@@ -10,7 +10,7 @@ namespace {
 /// range^2. It is counted in units of the detection threshold, and scaled so that a Lambertian target of 10 % square to
 /// the beam reaches the threshold at `range_at_10_percent_m`:
 ///
-///   signal = (reflectivity / 0.1) (range_at_10_percent / range)^2.
+///   signal = (reflectivity / 0.1) (range_at_10_percent / range)^2, constant nearer than full_overlap_m.
 ///
 /// The receiver's noise is Gaussian, 1 / threshold_snr. An echo is detected if signal + noise > 1: half of those at the
 /// threshold itself, Phi(threshold_snr (signal - 1)) elsewhere. Timing of an edge that rises over the pulse, in noise:
@@ -43,8 +43,7 @@ class RadiometricDetector final : public Detector {
 
  private:
   void detect(Echo& echo, double signal_normal, double range_normal) const {
-    const double range_m = std::max<double>(echo.range_m, 0.01);
-    const double gain = 10.0 * (config_.range_at_10_percent_m / range_m) * (config_.range_at_10_percent_m / range_m);
+    const double gain = signal_gain(config_, echo.range_m);
     const double signal = echo.reflectivity * gain;
     const double received = signal + signal_normal / config_.threshold_snr;
     echo.measured_m = 0;

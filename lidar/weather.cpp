@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/units.h"
+#include "lidar/detector.h"
 
 namespace canyon::lidar {
 namespace {
@@ -100,8 +101,7 @@ Weather::Weather(const LidarConfig& config, std::uint64_t seed) : config_(config
 
 double Weather::mean_signal(double range_m) const {
   const double reflectivity = kPi * backscatter_1_m_sr_ * config_.pulse_m;
-  const double ratio = config_.range_at_10_percent_m / range_m;
-  return 10.0 * reflectivity * ratio * ratio * std::exp(-2.0 * extinction_1_m_ * range_m);
+  return reflectivity * signal_gain(config_, range_m) * std::exp(-2.0 * extinction_1_m_ * range_m);
 }
 
 double Weather::false_return_probability(double range_m) const {
@@ -121,9 +121,8 @@ Echo Weather::false_return(std::uint32_t laser, std::uint64_t draw, double surfa
       config_.min_range_m + config_.pulse_m * (static_cast<double>(cell) + stream_.uniform(laser, draw, 1));
   if (range_m >= surface_m) return {};
   const double signal = 1.0 - mean_signal(range_m) * std::log(1.0 - stream_.uniform(laser, draw, 2));
-  const double ratio = range_m / config_.range_at_10_percent_m;
   return {.range_m = static_cast<float>(range_m),
-          .reflectivity = static_cast<float>(0.1 * signal * ratio * ratio),
+          .reflectivity = static_cast<float>(signal / signal_gain(config_, range_m)),
           .cos_incidence = 1.0f};
 }
 
