@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
+#include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 
+#include "core/files.h"
 #include "core/random.h"
 #include "lidar/cloud_files.h"
+#include "lidar/scan_files.h"
 
 namespace canyon::lidar {
 namespace {
@@ -59,6 +62,51 @@ TEST_F(PclReader, WritesWhatWeRead) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     EXPECT_EQ((*points)[i].p_W, Eigen::Vector3f(cloud[i].getVector3fMap()));
     EXPECT_EQ((*points)[i].intensity, cloud[i].intensity);
+  }
+}
+
+/// A structured scan as PCD and as PLY, every field by name.
+TEST_F(PclReader, ReadsOurScans) {
+  std::vector<LidarPoint> points;
+  const RandomStream random(2, "test.scan");
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    const Eigen::Vector3f p = Eigen::Vector3d(random.normal3(i) * 30.0).cast<float>();
+    points.push_back({.x = p.x(),
+                      .y = p.y(),
+                      .z = p.z(),
+                      .intensity = static_cast<float>(random.uniform(5, i)),
+                      .time_s = -1e-4f * static_cast<float>(i),
+                      .ring = static_cast<std::uint16_t>(i % 700),
+                      .return_index = static_cast<std::uint8_t>(i % 3)});
+  }
+  for (const std::string format : {"pcd", "ply"}) {
+    ASSERT_TRUE(write_text_file(path_, (*cloud_format(format, ""))->text(GpsTime{}, points)).ok());
+    pcl::PCLPointCloud2 raw;
+    ASSERT_EQ(format == "pcd" ? pcl::io::loadPCDFile(path_, raw) : pcl::io::loadPLYFile(path_, raw), 0);
+    ASSERT_EQ(raw.width * raw.height, points.size());
+    const auto bytes_of = [&](const std::string& name, std::size_t i) {
+      for (const auto& field : raw.fields)
+        if (field.name == name) return raw.data.data() + i * raw.point_step + field.offset;
+      ADD_FAILURE() << "no field " << name;
+      return raw.data.data();
+    };
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const LidarPoint& p = points[i];
+      const auto expect_float = [&](const char* name, float expected) {
+        float value;
+        std::memcpy(&value, bytes_of(name, i), 4);
+        ASSERT_EQ(value, expected) << format << ' ' << name;
+      };
+      expect_float("x", p.x);
+      expect_float("y", p.y);
+      expect_float("z", p.z);
+      expect_float("intensity", p.intensity);
+      expect_float("time", p.time_s);
+      std::uint16_t ring;
+      std::memcpy(&ring, bytes_of("ring", i), 2);
+      ASSERT_EQ(ring, p.ring) << format;
+      ASSERT_EQ(*bytes_of("return", i), p.return_index) << format;
+    }
   }
 }
 
