@@ -45,7 +45,7 @@ std::string text(const char* format, auto... values) {
 struct Setup {
   lidar::LidarConfig lidar;
   std::shared_ptr<const scene::Scene> scene;
-  GpsTime start;       ///< stamp of the first scan
+  GpsTime start;  ///< stamp of the first scan
   Trajectory motion;
   std::int64_t scans = 1;
 };
@@ -93,8 +93,8 @@ Result<Setup> setup_of(const Options& options) {
   if (options.trajectory.empty()) {
     out.start = *start;
     out.scans = options.scans;
-    CANYON_TRY(out.motion, standing(options, *out.scene, *start,
-                                    before_s + static_cast<double>(options.scans) * period_s));
+    CANYON_TRY(out.motion,
+               standing(options, *out.scene, *start, before_s + static_cast<double>(options.scans) * period_s));
     return out;
   }
   CANYON_TRY(out.motion, read_trajectory(options.trajectory));
@@ -135,12 +135,12 @@ Result<PacketOutput> packet_output(const Options& options, const lidar::LidarCon
   CANYON_TRY(out.writer, lidar::velodyne::PacketWriter::create(config));
   if (options.udp.empty()) return out;
   const auto colon = options.udp.find(':');
-  CANYON_TRY(const auto port, parse_numbers(colon == std::string::npos ? "2368" : options.udp.substr(colon + 1), 1, "--udp",
-                                            "ADDRESS or ADDRESS:PORT"));
+  CANYON_TRY(const auto port, parse_numbers(colon == std::string::npos ? "2368" : options.udp.substr(colon + 1), 1,
+                                            "--udp", "ADDRESS or ADDRESS:PORT"));
   if (!(port[0] >= 1 && port[0] <= 65535))
     return Error{"--udp", 0, "", '"' + options.udp + '"', "a port from 1 to 65535"};
-  CANYON_TRY(auto sender, lidar::velodyne::UdpSender::open(options.udp.substr(0, colon),
-                                                           static_cast<std::uint16_t>(port[0])));
+  CANYON_TRY(auto sender,
+             lidar::velodyne::UdpSender::open(options.udp.substr(0, colon), static_cast<std::uint16_t>(port[0])));
   out.udp.emplace(std::move(sender));
   return out;
 }
@@ -180,7 +180,8 @@ Result<int> run(const Options& options) {
     CANYON_TRY_STATUS(packets.add(k, output.scan, !options.pcap.empty()));
     if (staged) {
       const std::string stem = staged->staging_path() + text("/scan_%06lld", static_cast<long long>(k));
-      CANYON_TRY_STATUS(write_text_file(stem + "." + format->name, format->text(t, in_frame(options, setup, output.scan))));
+      CANYON_TRY_STATUS(
+          write_text_file(stem + "." + format->name, format->text(t, in_frame(options, setup, output.scan))));
       CANYON_TRY_STATUS(write_text_file(stem + "_truth.csv", lidar::truth_csv(output.truth, scene)));
     }
     progress.advance(1);
@@ -192,7 +193,7 @@ Result<int> run(const Options& options) {
     CANYON_TRY_STATUS(staged->commit());
   }
   if (options.common.json) {
-    const Json out{{"scans", setup.scans},   {"rays", scanner->rays()},   {"points", points},
+    const Json out{{"scans", setup.scans},       {"rays", scanner->rays()},     {"points", points},
                    {"packets", packets.packets}, {"start", setup.start.iso(9)}, {"rate_hz", setup.lidar.rate_hz},
                    {"beams", setup.lidar.beams}, {"model", setup.lidar.model}};
     std::printf("%s\n", out.dump().c_str());
@@ -215,9 +216,10 @@ VerbAction declare(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--fidelity", options->fidelity, "whose LIDAR: low, paper, high, or one of the mission file's own")
       ->capture_default_str();
-  auto* at = app.add_option("--at", options->at, "X,Y,H,YAW of the vehicle: metres in the scene, metres above ground, degrees");
-  auto* trajectory =
-      app.add_option("--trajectory", options->trajectory, "drive along poses of the vehicle in the scene (TUM, or .csv)");
+  auto* at = app.add_option("--at", options->at,
+                            "X,Y,H,YAW of the vehicle: metres in the scene, metres above ground, degrees");
+  auto* trajectory = app.add_option("--trajectory", options->trajectory,
+                                    "drive along poses of the vehicle in the scene (TUM, or .csv)");
   at->excludes(trajectory);
   app.add_option("--scans", options->scans, "with --at: how many revolutions")
       ->capture_default_str()
@@ -233,7 +235,8 @@ VerbAction declare(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
   app.add_option("--format", options->format, "of the clouds: pcd, ply or las")->capture_default_str();
-  app.add_option("--frame", options->frame, "of the clouds: sensor (as measured) or scene (placed with the true motion)")
+  app.add_option("--frame", options->frame,
+                 "of the clouds: sensor (as measured) or scene (placed with the true motion)")
       ->capture_default_str()
       ->check(CLI::IsMember({"sensor", "scene"}));
   app.add_option("--pcap", options->pcap, "write the sensor's packets as a capture (vlp16, hdl32e)");
@@ -252,7 +255,8 @@ VerbAction declare(CLI::App& app) {
 
 Verb lidar_scan_verb() {
   return {"lidar scan", "scans from a place or along a drive, as clouds with their truth or as the sensor's packets",
-          "canyon lidar scan --at 120,-40,0,90 --beams os1_64 --azimuth-steps 1024 --model footprint --out scan", declare};
+          "canyon lidar scan --at 120,-40,0,90 --beams os1_64 --azimuth-steps 1024 --model footprint --out scan",
+          declare};
 }
 
 }  // namespace canyon::apps

@@ -36,6 +36,7 @@ Verb gnss_orbit_error_verb();
 Verb imu_allan_verb();
 Verb imu_simulate_verb();
 Verb imu_dead_reckon_verb();
+Verb lidar_scan_verb();
 
 /// The largest --seed: what a TOML integer and a JSON number both carry without loss.
 inline constexpr double kLargestSeed = 9e15;

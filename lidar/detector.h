@@ -27,8 +27,8 @@ std::unique_ptr<Detector> make_ideal_detector(const LidarConfig& config, std::ui
 std::unique_ptr<Detector> make_radiometric_detector(const LidarConfig& config, std::uint64_t seed);
 
 /// Energy received from a surface of apparent reflectivity 1 at range_m, in units of the detection threshold:
-/// 10 (range_at_10_percent / range)^2. Nearer than full_overlap_m emitter and receiver look past each other in part, which
-/// takes as much as nearness brings: the value there.
+/// 10 (range_at_10_percent / range)^2. Nearer than full_overlap_m emitter and receiver look past each other in part,
+/// which takes as much as nearness brings: the value there.
 double signal_gain(const LidarConfig& config, double range_m);
 
 /// Standard normal draws of each shot's first echo: stream of the laser, one per firing.

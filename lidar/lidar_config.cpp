@@ -62,8 +62,9 @@ void visit(FieldVisitor& f, LidarConfig& c) {
   f.number("pulse_m", c.pulse_m, {1e-3, 100}, "length of the pulse as range, half of it in space; nearer echoes merge");
   f.number("range_at_10_percent_m", c.range_at_10_percent_m, {0.1, 1e5},
            "where a 10 % target square to the beam is at the detection threshold (radiometric, false returns)");
-  f.number("full_overlap_m", c.full_overlap_m, {0, 1e3},
-           "from where on the receiver sees the whole beam; nearer, the signal is constant (radiometric, false returns)");
+  f.number(
+      "full_overlap_m", c.full_overlap_m, {0, 1e3},
+      "from where on the receiver sees the whole beam; nearer, the signal is constant (radiometric, false returns)");
   f.number("threshold_snr", c.threshold_snr, {0.1, 1e3}, "detection threshold over the receiver's noise (radiometric)");
   f.number("saturation", c.saturation, {1, 1e9}, "signal over threshold from which the receiver clips (radiometric)");
   f.number("saturation_walk_m", c.saturation_walk_m, {0, 10},

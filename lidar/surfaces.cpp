@@ -25,8 +25,7 @@ float Surfaces::special(const Light& light, float cos_incidence) {
   const float tan_square = (1.0f - square) / std::max(square, 1e-12f);
   if (light.mirror > 0 && tan_square < 64.0f * light.slope * light.slope) {
     const float spread = light.slope * light.slope;
-    mirror =
-        light.mirror * std::exp(-tan_square / (2.0f * spread)) / (8.0f * spread * square * square * cos_incidence);
+    mirror = light.mirror * std::exp(-tan_square / (2.0f * spread)) / (8.0f * spread * square * square * cos_incidence);
   }
   return mirror + light.retro * cos_incidence;
 }

@@ -9,9 +9,9 @@ namespace canyon::lidar {
 /// How much light the scene's surfaces send back at one wavelength.
 ///
 /// Apparent reflectivity: what a Lambertian surface square to the beam would need to send as much. Of a surface met at
-/// the angle theta: reflectance * cos(theta) of its diffuse part; of its mirror, of facets whose slopes have the standard
-/// deviation s (Torrance and Sparrow 1967, no shadowing), share * exp(-tan(theta)^2 / (2 s^2)) / (8 s^2 cos(theta)^5); of
-/// a retroreflector pi R_A cos(theta).
+/// the angle theta: reflectance * cos(theta) of its diffuse part; of its mirror, of facets whose slopes have the
+/// standard deviation s (Torrance and Sparrow 1967, no shadowing), share * exp(-tan(theta)^2 / (2 s^2)) / (8 s^2
+/// cos(theta)^5); of a retroreflector pi R_A cos(theta).
 class Surfaces {
  public:
   Surfaces(const scene::SceneAt& scene, double wavelength_nm);

@@ -11,13 +11,13 @@ namespace canyon::lidar::velodyne {
 
 /// One return of a packet.
 struct Return {
-  double time_us = 0;           ///< of its firing, after the packet's first
-  double azimuth_deg = 0;       ///< of the beam, clockwise from forward, [0, 360)
+  double time_us = 0;      ///< of its firing, after the packet's first
+  double azimuth_deg = 0;  ///< of the beam, clockwise from forward, [0, 360)
   double distance_m = 0;
   std::uint8_t reflectivity = 0;
   std::uint16_t laser = 0;
   std::uint8_t block = 0;
-  LidarPoint point;             ///< in L; time_s after the packet's first firing; return_index 1 = the other of two
+  LidarPoint point;  ///< in L; time_s after the packet's first firing; return_index 1 = the other of two
 };
 
 /// The returns of a packet, block by block, channel by channel; channels without one are left out. The head's azimuth
@@ -27,10 +27,10 @@ std::vector<Return> decode(const Packet& packet, const BeamTable& table);
 /// What a recording of packets says of its timing.
 struct Timing {
   std::size_t packets = 0;
-  double packet_us = 0;                               ///< mean between packets' time stamps
-  double azimuth_step_deg = 0;                        ///< mean between blocks of different cycles
+  double packet_us = 0;         ///< mean between packets' time stamps
+  double azimuth_step_deg = 0;  ///< mean between blocks of different cycles
   double azimuth_step_min_deg = 0, azimuth_step_max_deg = 0;
-  double rpm = 0;                                     ///< from step and the product's block time
+  double rpm = 0;  ///< from step and the product's block time
 };
 /// Of consecutive packets of one product, two or more.
 Timing timing(const std::vector<Packet>& packets);

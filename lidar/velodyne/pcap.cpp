@@ -49,9 +49,9 @@ std::string ip_header(std::size_t payload_bytes) {
   std::string ip;
   put(ip, 0x4500, 2, true);  // version 4, five words
   put(ip, kIpHeader + kUdpHeader + payload_bytes, 2, true);
-  put(ip, 0, 4, true);        // identification, no fragment
-  put(ip, 0xff11, 2, true);   // time to live, UDP
-  put(ip, 0, 2, true);        // checksum, below
+  put(ip, 0, 4, true);       // identification, no fragment
+  put(ip, 0xff11, 2, true);  // time to live, UDP
+  put(ip, 0, 2, true);       // checksum, below
   put(ip, 0xc0a801c9, 4, true);
   put(ip, 0xffffffff, 4, true);
   std::uint32_t sum = 0;

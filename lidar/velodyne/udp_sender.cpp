@@ -34,7 +34,8 @@ Status UdpSender::send(std::string_view payload) const {
   to.sin_family = AF_INET;
   to.sin_port = htons(port_);
   to.sin_addr.s_addr = address_;
-  const auto sent = sendto(socket_, payload.data(), payload.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  const auto sent =
+      sendto(socket_, payload.data(), payload.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
   if (sent != static_cast<ssize_t>(payload.size()))
     return Error{"", 0, "udp", std::string("could not send: ") + std::strerror(errno), "", 1};
   return Ok{};

@@ -76,10 +76,10 @@ TEST(Footprint, OffsetsHaveTheBeamsMoments) {
   EXPECT_NEAR(ab / 16, 0, 1e-6 * 1.5e-3 * 0.5e-3);
 }
 
-/// The plane x + y tan(tilt) = d seen by a level beam at yaw 0: the sub-rays' ranges are d / (1 + tan(a) tan(tilt)) with
-/// a the angle across, so that to second order their mean is d (1 + s^2 tan^2) and their spread d s tan, s = sigma. Energy
-/// goes with cos(incidence) / range^2 = const * (1 + 3 a tan), which pulls the mean towards the nearer part: the
-/// energy-weighted mean is d (1 + s^2 tan^2 - 3 s^2 tan^2) = d (1 - 2 s^2 tan^2).
+/// The plane x + y tan(tilt) = d seen by a level beam at yaw 0: the sub-rays' ranges are d / (1 + tan(a) tan(tilt))
+/// with a the angle across, so that to second order their mean is d (1 + s^2 tan^2) and their spread d s tan, s =
+/// sigma. Energy goes with cos(incidence) / range^2 = const * (1 + 3 a tan), which pulls the mean towards the nearer
+/// part: the energy-weighted mean is d (1 + s^2 tan^2 - 3 s^2 tan^2) = d (1 - 2 s^2 tan^2).
 TEST(Footprint, OnATiltedPlaneTheEchoIsTheEnergyWeightedMean) {
   for (const double tilt_deg : {0.0, 45.0, 70.0}) {
     const double tangent = std::tan(tilt_deg * kDegree), d = 40.0;
@@ -190,7 +190,8 @@ TEST(Returns, EachModeReportsWhatItSays) {
   EXPECT_EQ(ranges_m["strongest"], std::vector<double>({25}));
   EXPECT_EQ(ranges_m["first"], std::vector<double>({20}));
   EXPECT_EQ(ranges_m["last"], std::vector<double>({25}));
-  EXPECT_EQ(ranges_m["dual"], std::vector<double>({20, 25})) << "the strongest is the last: the second strongest with it";
+  EXPECT_EQ(ranges_m["dual"], std::vector<double>({20, 25}))
+      << "the strongest is the last: the second strongest with it";
   EXPECT_EQ(ranges_m["all"], std::vector<double>({20, 25}));
 }
 
@@ -446,8 +447,7 @@ TEST(Effects, LatencyShowsThePast) {
   LidarConfig config = level_laser();
   const auto ranges = [&](double latency_s) {
     config.latency_s = latency_s;
-    return (*make_scanner(config, 1))
-        ->scan(0, kStart, testing::twisting(Pose{}, twist), scene::SceneAt(scene));
+    return (*make_scanner(config, 1))->scan(0, kStart, testing::twisting(Pose{}, twist), scene::SceneAt(scene));
   };
   const LidarOutput prompt = ranges(0), late = ranges(0.05);
   EXPECT_EQ(prompt.scan.t, late.scan.t);
@@ -472,7 +472,8 @@ TEST(Effects, TheOwnVehicleIsHidden) {
     const Eigen::Vector3d origin = config.mount_m + up, way = position(p) - up;
     for (int k = 0; k <= 1000; ++k) {
       const Eigen::Vector3d at = origin + way * (k / 1000.0);
-      const bool inside = ((at - config.ego_min_m).array() > 1e-6).all() && ((config.ego_max_m - at).array() > 1e-6).all();
+      const bool inside =
+          ((at - config.ego_min_m).array() > 1e-6).all() && ((config.ego_max_m - at).array() > 1e-6).all();
       ASSERT_FALSE(inside);
     }
   }
@@ -491,8 +492,7 @@ TEST(Beams, RangesToASphere) {
                                                 std::sin(up));
   };
   for (int i = 0; i < kAround; ++i)
-    for (int j = 0; j < kUp; ++j)
-      mesh.quad(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1), 0);
+    for (int j = 0; j < kUp; ++j) mesh.quad(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1), 0);
   // A chord of angle a lies at most r a^2 / 8 inside: 2 pi / 4096 and 0.4 / 256 together, 1.2 um.
   const double sag_m = kRadius_m * (std::pow(2 * kPi / kAround, 2) + std::pow(0.4 / kUp, 2)) / 8;
   ASSERT_LT(sag_m, 2e-6);
@@ -513,7 +513,8 @@ TEST(Beams, RangesToASphere) {
                             std::sin(elevation));
     const double b = d.dot(center);
     const double expected = b - std::sqrt(b * b - center.squaredNorm() + kRadius_m * kRadius_m);
-    if (std::abs(expected * d.z() - center.z()) > 0.95 * kRadius_m * std::sin(0.2)) continue;  // above or below the band
+    if (std::abs(expected * d.z() - center.z()) > 0.95 * kRadius_m * std::sin(0.2))
+      continue;  // above or below the band
     ASSERT_NEAR(out.truth[i].range_m, expected, 1e-4) << i;
     ++compared;
   }
@@ -535,8 +536,8 @@ TEST(Beams, EveryBuiltInSensorScansARoom) {
     for (std::size_t i = 0; i < out.truth.size(); ++i) {
       const Eigen::Vector3d p = position(out.scan.points[i]);
       // On a wall, the floor or the ceiling.
-      const double off = std::min({std::abs(std::abs(p.x()) - 20), std::abs(std::abs(p.y()) - 15),
-                                   std::abs(std::abs(p.z()) - 8)});
+      const double off =
+          std::min({std::abs(std::abs(p.x()) - 20), std::abs(std::abs(p.y()) - 15), std::abs(std::abs(p.z()) - 8)});
       ASSERT_LT(off, 1e-4) << name << " " << p.transpose();
     }
   }
@@ -616,8 +617,7 @@ TEST(Extremes, FiveKilometresFromTheOrigin) {
   LidarConfig config = ideal_lidar();
   const LidarOutput out = scan_of(parts, config, pose_at(far_m, 0, 2, 0));
   ASSERT_GT(out.truth.size(), 1000u);
-  for (std::size_t i = 0; i < out.truth.size(); ++i)
-    EXPECT_NEAR(out.scan.points[i].x, 20.0, 2 * 0.25e-3 + 1e-4);
+  for (std::size_t i = 0; i < out.truth.size(); ++i) EXPECT_NEAR(out.scan.points[i].x, 20.0, 2 * 0.25e-3 + 1e-4);
 }
 
 TEST(Models, SameBitsForAnyNumberOfThreads) {

@@ -90,7 +90,8 @@ TEST(ScanFiles, EmptyCloudsAreFilesToo) {
 }
 
 TEST(ScanFiles, UnknownFormatsAreNamed) {
-  EXPECT_EQ(cloud_format("laz", "--format").error().str(), "--format: unknown format \"laz\", expected one of pcd, ply, las");
+  EXPECT_EQ(cloud_format("laz", "--format").error().str(),
+            "--format: unknown format \"laz\", expected one of pcd, ply, las");
 }
 
 TEST(ScanFiles, TruthGoesLineByLineWithThePoints) {

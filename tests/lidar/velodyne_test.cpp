@@ -165,8 +165,8 @@ TEST_P(Packets, SayWhatTheScansSaid) {
       ASSERT_EQ(r.laser, p.ring) << i;
       // The float time of a point, and the stamp in whole nanoseconds.
       ASSERT_NEAR(stamped.t - kStart + 1e-6 * r.time_us, scanned_s[i], 1e-8) << i;
-      // Ranges are whole quanta in both; azimuths are rounded to 0.01 deg, and interpolated over a block rounded at both
-      // ends.
+      // Ranges are whole quanta in both; azimuths are rounded to 0.01 deg, and interpolated over a block rounded at
+      // both ends.
       const double range_m = lidar::testing::position(p).norm();
       ASSERT_NEAR(r.point.z, p.z, 1e-5);
       ASSERT_LT((lidar::testing::position(r.point) - lidar::testing::position(p)).norm(),
@@ -242,7 +242,8 @@ TEST_F(Pcap, ReadsBackWhatWasWritten) {
 
 TEST_F(Pcap, DamagedFilesAreToldAndNeverCrash) {
   const std::string good = pcap_text({{0, 2368, std::string(1206, 'x')}, {1, 2368, std::string(1206, 'y')}});
-  EXPECT_EQ(error_of(""), path_ + ": too short to be a capture, expected a capture in pcap format with Ethernet frames");
+  EXPECT_EQ(error_of(""),
+            path_ + ": too short to be a capture, expected a capture in pcap format with Ethernet frames");
   EXPECT_EQ(error_of(std::string(1000, 'z')),
             path_ + ": does not begin as a capture, expected a capture in pcap format with Ethernet frames");
   std::string other_link = good;
@@ -255,9 +256,8 @@ TEST_F(Pcap, DamagedFilesAreToldAndNeverCrash) {
     const std::size_t whole = (length - 24) / (16 + 42 + 1206);
     EXPECT_EQ(capture->datagrams.size(), whole);
     const bool inside = (length - 24) % (16 + 42 + 1206) != 0;
-    EXPECT_EQ(capture->warning, inside ? path_ + ": ends inside packet " + std::to_string(whole + 1) +
-                                             "; the rest was read"
-                                       : "");
+    EXPECT_EQ(capture->warning,
+              inside ? path_ + ": ends inside packet " + std::to_string(whole + 1) + "; the rest was read" : "");
   }
 }
 
