@@ -29,6 +29,9 @@ std::string system_message(int code) {
   return std::system_category().message(code);
 }
 
+/// Text shrinks to a fiftieth at best; a file that grows beyond both of these was made to fill memory.
+constexpr std::size_t kMostGrowth = 200, kAlwaysAllowed = std::size_t{1} << 26;
+
 /// Unpacks all members of a gzip file.
 Result<std::string> gunzip(const std::string& path, const std::string& packed) {
   z_stream stream = {};
@@ -54,6 +57,8 @@ Result<std::string> gunzip(const std::string& path, const std::string& packed) {
     stream.avail_out = static_cast<uInt>(buffer.size());
     status = inflate(&stream, Z_NO_FLUSH);
     text.append(buffer.data(), buffer.size() - stream.avail_out);
+    if (text.size() > std::max(kAlwaysAllowed, kMostGrowth * packed.size()))
+      return file_error(path, "unpacks to more than " + std::to_string(kMostGrowth) + " times its size", "a text file");
     if (status == Z_STREAM_END) {
       if (stream.avail_in == 0 && fed == packed.size()) return text;
       inflateReset(&stream);  // another member follows

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/median.h"
 #include "core/units.h"
 #include "gnss/products/clock_datum.h"
 #include "gnss/satellites/system_constants.h"
@@ -34,12 +35,6 @@ Weights weights_of(SatelliteId sv) {
     default:
       return {0.98, 1.0 / 49.0};
   }
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 /// Subtracts from one value of each sample its median over the satellites of the epoch and system: the time scales of

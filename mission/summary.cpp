@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/median.h"
 #include "core/units.h"
 
 namespace canyon::mission {
@@ -21,13 +22,6 @@ ErrorStatistics error_statistics(std::vector<double> x) {
   out.p95 = x[static_cast<std::size_t>(std::ceil(0.95 * n)) - 1];
   out.max = x.back();
   return out;
-}
-
-double median(std::vector<double> x) {
-  if (x.empty()) return kNaN;
-  std::sort(x.begin(), x.end());
-  const std::size_t half = x.size() / 2;
-  return x.size() % 2 == 1 ? x[half] : 0.5 * (x[half - 1] + x[half]);
 }
 
 NavError nav_error(const NavRow& row) {

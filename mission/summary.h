@@ -15,7 +15,6 @@ struct ErrorStatistics {
 };
 /// Of |x|; p95 by nearest rank.
 ErrorStatistics error_statistics(std::vector<double> x);
-double median(std::vector<double> x);
 
 /// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
 struct RunSummary {

@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "core/check.h"
+#include "core/median.h"
 #include "core/units.h"
 #include "gnss/errors/ephemeris_error.h"
 #include "gnss/products/clock_datum.h"
@@ -47,12 +47,9 @@ class MeasuredEphemeris final : public EphemerisError {
       differences_[sv] = {p->p_E, b->p_E - p->p_E, clock_m};
       clocks[sv.system].push_back(clock_m);
     }
-    for (auto& [system, values] : clocks) std::sort(values.begin(), values.end());
-    for (auto& [sv, d] : differences_) {
-      const auto& values = clocks.at(sv.system);
-      const std::size_t half = values.size() / 2;
-      d.clock_m -= values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-    }
+    std::map<GnssSystem, double> common_m;
+    for (const auto& [system, values] : clocks) common_m[system] = median(values);
+    for (auto& [sv, d] : differences_) d.clock_m -= common_m.at(sv.system);
     return differences_;
   }
 

@@ -27,6 +27,15 @@ std::string gzip(const std::string& text) {
   return out;
 }
 
+// Some kilobytes that unpack to very much: an error, not all of the memory.
+TEST(GzipFile, OneThatFillsMemoryIsAnError) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("bomb.gz");
+  ASSERT_TRUE(write_text_file(file, gzip(std::string(70'000'000, '0'))).ok());
+  EXPECT_EQ(read_text_or_gzip_file(file).error().str(),
+            file + ": unpacks to more than 200 times its size, expected a text file");
+}
+
 std::string long_text() {
   const RandomStream random(1, "test.text");
   std::string text;
