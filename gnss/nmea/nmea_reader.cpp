@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "core/units.h"
 #include "gnss/nmea/sentence.h"
+#include "gnss/rinex/calendar_fields.h"
 #include "gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
@@ -98,7 +99,7 @@ class Reader {
   }
 
   bool set_date(int year, int month, int day) {
-    if (month < 1 || month > 12 || day < 1 || day > 31 || year < 1980 || year > 2200) return false;
+    if (!is_date(year, month, day)) return false;
     day_ = GpsTime::from_calendar(year, month, day, 0, 0, 0.0);
     return true;
   }
@@ -114,8 +115,7 @@ class Reader {
 
   void close_epoch() {
     if (open_ && day_ && (has_place_ || record_.quality == 0)) {
-      const GpsTime utc = *day_ + time_s_;
-      record_.t = utc + static_cast<double>(utc.leap_seconds());
+      record_.t = gps_time_of_utc(*day_ + time_s_, time_s_ >= 86400.0);
       out_.records.push_back(record_);
     }
     record_ = {};

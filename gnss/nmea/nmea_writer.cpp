@@ -64,10 +64,12 @@ struct Clock {
 
 Clock utc(GpsTime t) {
   // Rounded before it is cut into fields, so that no field reads 60.
-  GpsTime rounded{(t.ns + 5'000'000) / 10'000'000 * 10'000'000};
-  rounded.ns -= static_cast<std::int64_t>(t.leap_seconds()) * kNsPerSecond;
-  const CalendarTime c = calendar(rounded);
-  const auto hundredths = static_cast<int>(std::llround(c.second * 100.0));
+  const GpsTime rounded{(t.ns + 5'000'000) / 10'000'000 * 10'000'000};
+  const int leap = rounded.leap_seconds();
+  // The second before the count grows is 23:59:60.
+  const int second_60 = (rounded + 1.0).leap_seconds() - leap;
+  const CalendarTime c = calendar(rounded - static_cast<double>(leap + second_60));
+  const auto hundredths = static_cast<int>(std::llround((c.second + second_60) * 100.0));
   return {text("%02d%02d%02d.%02d", c.hour, c.minute, hundredths / 100, hundredths % 100),
           text("%02d%02d%02d", c.day, c.month, c.year % 100)};
 }

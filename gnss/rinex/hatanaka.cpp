@@ -16,6 +16,9 @@ namespace {
 constexpr int kHighestOrder = 9;
 constexpr std::int64_t kLargest = 9'999'999'999'999;  // F14.3 holds 13 digits and a point
 constexpr std::size_t kMostSatellites = 999;
+/// A value takes at least a byte, where the text has 16; more than this many times its size no file that was compressed
+/// becomes.
+constexpr std::size_t kMostGrowth = 64, kRoom = std::size_t{1} << 20;
 
 /// One number that is sent as differences in time.
 class Arc {
@@ -91,14 +94,18 @@ void append_fixed(std::string& out, std::int64_t value, int decimals, std::size_
 /// State of one satellite between epochs.
 struct Satellite {
   std::int64_t epoch = -1;  // in which it was seen last
-  std::vector<Arc> arcs;
+  std::size_t types = 0;
+  std::vector<Arc> arcs;  // up to the last number that its line had
   std::string flags;
 };
 
 class Decoder {
  public:
   Decoder(std::string_view text, const std::string& file)
-      : lines_(text), file_(file), warnings_(file, "damaged values and epochs") {
+      : lines_(text),
+        file_(file),
+        largest_(kMostGrowth * text.size() + kRoom),
+        warnings_(file, "damaged values and epochs") {
     out_.text.reserve(4 * text.size());
     satellites_.resize(26 * 100);
   }
@@ -106,7 +113,13 @@ class Decoder {
   Result<HatanakaText> decode() {
     CANYON_TRY_STATUS(read_compact_header());
     CANYON_TRY_STATUS(copy_header());
-    while (lines_.next()) read_epoch();
+    while (lines_.next()) {
+      read_epoch();
+      if (out_.text.size() > largest_)
+        return Error{file_, lines_.number(), "",
+                     "the file unpacks to more than " + std::to_string(kMostGrowth) + " times its size",
+                     "an observation file"};
+    }
     out_.warnings = warnings_.list();
     return std::move(out_);
   }
@@ -236,14 +249,17 @@ class Decoder {
 
   void read_satellite(std::string_view name, Satellite& s, std::vector<int>& body_lines) {
     const std::size_t types = types_[static_cast<std::size_t>((name[0] == ' ' ? 'G' : name[0]) - 'A')];
-    if (s.epoch != epoch_ - 1 || s.arcs.size() != types) {
-      s.arcs.assign(types, {});
+    if (s.epoch != epoch_ - 1 || s.types != types) {
+      s.types = types;
+      s.arcs.clear();
       s.flags.clear();
     }
     s.epoch = epoch_;
     std::string_view rest = lines_.line();
     missing_.assign(types, true);
-    for (std::size_t k = 0; k < types; ++k) {
+    std::size_t k = 0;
+    for (; k < types && !rest.empty(); ++k) {
+      if (k == s.arcs.size()) s.arcs.emplace_back();
       const std::string_view field = rest.substr(0, std::min(rest.find(' '), rest.size()));
       rest.remove_prefix(std::min(field.size() + 1, rest.size()));
       if (field.empty()) {
@@ -257,6 +273,7 @@ class Decoder {
         s.arcs[k].end();
       }
     }
+    if (k < s.arcs.size()) s.arcs.resize(k);
     overlay(s.flags, rest);
     if (s.flags.size() < 2 * types) s.flags.resize(2 * types, ' ');
     put_satellite(name, s, types, body_lines);
@@ -302,6 +319,7 @@ class Decoder {
 
   TextLines lines_;
   const std::string& file_;
+  std::size_t largest_;  // text that may come out
   ReaderWarnings warnings_;
   HatanakaText out_;
   bool modern_ = true;

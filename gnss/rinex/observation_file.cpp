@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/files.h"
+#include "gnss/rinex/calendar_fields.h"
 #include "gnss/rinex/hatanaka.h"
 #include "gnss/rinex/observation_header.h"
 #include "gnss/rinex/reader_warnings.h"
@@ -64,8 +66,8 @@ std::optional<EpochLine> parse_epoch_line(std::string_view line, bool version3) 
   const auto second = fortran_number(columns(line, at + 12, 11));
   if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
   const int full_year = version3 ? *year : *year + (*year < 80 ? 2000 : 1900);
-  if (full_year < 1980 || full_year > 2260 || *month < 1 || *month > 12 || *day < 1 || *day > 31 || *hour < 0 ||
-      *hour > 23 || *minute < 0 || *minute > 59 || *second < 0.0 || *second >= 61.0)
+  if (!is_date(full_year, *month, *day) || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || *second < 0.0 ||
+      *second >= 61.0)
     return std::nullopt;
   out.time = CalendarTime{full_year, *month, *day, *hour, *minute, *second};
   const std::string_view offset = columns(line, version3 ? 41 : 68, version3 ? 15 : 12);
@@ -77,11 +79,7 @@ GpsTime to_gps_time(const CalendarTime& c, const std::string& time_system) {
   GpsTime t = GpsTime::from_calendar(c.year, c.month, c.day, c.hour, c.minute, c.second);
   if (time_system == "BDT") return t + 14.0;
   if (time_system != "GLO") return t;
-  // GLONASS time of RINEX is UTC. The count of leap seconds is that of the end of this second, so that the first second
-  // after a leap second has the new one.
-  const int leap = (t + (t.leap_seconds() + 1.0)).leap_seconds();
-  // 23:59:60 comes out as 00:00:00, when the new count holds already.
-  return t + static_cast<double>(c.second >= 60.0 ? leap - 1 : leap);
+  return gps_time_of_utc(t, c.second >= 60.0);  // GLONASS time of RINEX is UTC
 }
 
 class Reader {
@@ -94,6 +92,7 @@ class Reader {
   Result<ObservationFile> read() {
     CANYON_TRY_STATUS(read_header());
     while (next_data_line()) CANYON_TRY_STATUS(read_epoch());
+    drop_waiting();
     out_.damaged += warnings_.count();
     out_.warnings = warnings_.list();
     out_.header = header_.header();
@@ -178,7 +177,6 @@ class Reader {
     out.after_power_failure = line.flag == 1;
     out.clock_offset_s = line.clock_offset_s;
     out.code_set = out_.code_sets.size() - 1;
-    out.satellites.reserve(static_cast<std::size_t>(line.number));
     return out;
   }
 
@@ -192,13 +190,47 @@ class Reader {
   }
   static bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || c == ' '; }
 
+  /// Time ascends. An epoch that goes back waits: if more epochs follow it than it contradicts, those were the wrong
+  /// ones, with a time tag in the future; else it is.
   void keep(ObservationEpoch epoch, int flag) {
     if (flag == 6) return;  // cycle slips, not observations
-    if (!out_.epochs.empty() && epoch.t <= out_.epochs.back().t) {
-      warnings_.add(epoch.line, "epoch " + epoch.t.iso() + " does not follow " + out_.epochs.back().t.iso());
+    auto& kept = out_.epochs;
+    if (kept.empty() || epoch.t > kept.back().t) {
+      drop_waiting();
+      kept.push_back(std::move(epoch));
       return;
     }
-    out_.epochs.push_back(std::move(epoch));
+    if (!waiting_.empty() && epoch.t <= waiting_.back().t) drop_waiting();
+    waiting_.push_back(std::move(epoch));
+    const auto wrong =
+        std::find_if(kept.begin(), kept.end(), [&](const ObservationEpoch& e) { return e.t >= waiting_.front().t; });
+    if (static_cast<std::ptrdiff_t>(waiting_.size()) <= kept.end() - wrong) return;
+    for (auto e = wrong; e != kept.end(); ++e)
+      warnings_.add(e->line, "epoch " + e->t.iso() + " lies after those that follow it");
+    kept.erase(wrong, kept.end());
+    std::move(waiting_.begin(), waiting_.end(), std::back_inserter(kept));
+    waiting_.clear();
+  }
+
+  void drop_waiting() {
+    for (const auto& e : waiting_)
+      warnings_.add(e.line, "epoch " + e.t.iso() + " does not follow " + out_.epochs.back().t.iso());
+    waiting_.clear();
+  }
+
+  /// False, with a warning, for a satellite that the epoch has already.
+  bool is_new(SatelliteId sv, const ObservationEpoch& epoch) {
+    const bool known = std::any_of(epoch.satellites.begin(), epoch.satellites.end(),
+                                   [sv](const SatelliteObservations& s) { return s.sv == sv; });
+    if (known) warnings_.add(number(), sv.str() + " stands twice in its epoch");
+    return !known;
+  }
+
+  /// Values up to the last that is there: short lines take little memory, whatever the header announces.
+  void add_satellite(SatelliteId sv, ObservationEpoch& epoch) const {
+    std::size_t n = values_.size();
+    while (n > 0 && values_[n - 1].missing() && values_[n - 1].loss_of_lock == 0) --n;
+    epoch.satellites.push_back({sv, {values_.begin(), values_.begin() + static_cast<std::ptrdiff_t>(n)}});
   }
 
   void read_observations3(const EpochLine& line) {
@@ -220,11 +252,11 @@ class Reader {
         skip_satellite(record.substr(0, std::min<std::size_t>(3, record.size())));
         continue;
       }
-      SatelliteObservations& s = epoch.satellites.emplace_back();
-      s.sv = *sv;
+      if (!is_new(*sv, epoch)) continue;
       const auto& scale = header_.scale(sv->system);
-      s.values.resize(header_.codes()[static_cast<std::size_t>(sv->system)].size());
-      for (std::size_t k = 0; k < s.values.size(); ++k) read_value(record, 3 + kField * k, scale[k], s.sv, s.values[k]);
+      values_.assign(header_.codes()[static_cast<std::size_t>(sv->system)].size(), {});
+      for (std::size_t k = 0; k < values_.size(); ++k) read_value(record, 3 + kField * k, scale[k], *sv, values_[k]);
+      add_satellite(*sv, epoch);
     }
     keep(std::move(epoch), line.flag);
   }
@@ -248,20 +280,18 @@ class Reader {
     for (int i = 0; i < line.number; ++i) {
       const std::string_view name(names.data() + 3 * i, 3);
       const auto sv = satellite(name);
-      SatelliteObservations s;
-      if (sv) s.sv = *sv;
-      s.values.resize(types);
+      values_.assign(types, {});
       for (std::size_t k = 0; k < types; ++k) {
         if (k % 5 == 0 && !next_data_line()) {
           warnings_.add(epoch.line, "the file ends inside the epoch");
           return;
         }
-        if (sv) read_value(lines_.line(), kField * (k % 5), 1.0, s.sv, s.values[k]);
+        if (sv) read_value(lines_.line(), kField * (k % 5), 1.0, *sv, values_[k]);
       }
-      if (sv)
-        epoch.satellites.push_back(std::move(s));
-      else
+      if (!sv)
         skip_satellite(name);
+      else if (is_new(*sv, epoch))
+        add_satellite(*sv, epoch);
     }
     keep(std::move(epoch), line.flag);
   }
@@ -291,6 +321,8 @@ class Reader {
   ObservationHeaderReader header_;
   ReaderWarnings warnings_;
   ObservationFile out_;
+  std::vector<ObservationEpoch> waiting_;  // ascending; they go back behind the last one kept
+  std::vector<ObservationValue> values_;   // of the satellite at hand
   bool lost_ = false;
 };
 

@@ -29,7 +29,7 @@ struct ObservationValue {
 
 struct SatelliteObservations {
   SatelliteId sv;
-  std::vector<ObservationValue> values;  ///< as many as the epoch's codes of its system
+  std::vector<ObservationValue> values;  ///< by the epoch's codes of its system; what is not there is missing
 };
 
 struct ObservationEpoch {
@@ -52,14 +52,12 @@ struct ObservationEvent {
 struct ObservationHeader {
   double version = 0.0;
   char system = 'G';  ///< G R E C J S, M = mixed
-  std::string marker_name, marker_number, receiver, antenna;
+  std::string marker_name, receiver, antenna;
   std::optional<Eigen::Vector3d> approx_position_E;  ///< of the marker, as the header says: good to metres at best
-  Eigen::Vector3d antenna_delta_hen = Eigen::Vector3d::Zero();  ///< of the antenna from the marker: up, east, north, m
   std::optional<double> interval_s;
   std::string time_system = "GPS";      ///< of the file: GPS, GLO, GAL, QZS, BDT; epochs are converted when read
   std::map<int, int> glonass_channels;  ///< frequency number by slot
   std::optional<int> leap_seconds;
-  bool clock_offset_applied = false;
 };
 
 /// A RINEX observation file.
@@ -82,8 +80,9 @@ struct ObservationFile {
 /// Reads a RINEX 2, 3 or 4 observation file: plain, gzip, Hatanaka-compressed (CRINEX 1 and 3), or both.
 ///
 /// Codes of RINEX 2 are given as RINEX 3 has them. Values that are blank or 0.0 are missing. Numbers that do not parse
-/// or are cut off, epochs that cannot be read, or that go back in time, are skipped with a warning that names their
-/// line (of the file as it is stored, compressed or not). Errors, each with file and line: empty, not RINEX, wrong
+/// or are cut off, epochs that cannot be read, or that do not stand in the order of time with most of those around
+/// them, and satellites that an epoch has already are skipped with a warning that names their line (of the file as it
+/// is stored, compressed or not). Errors, each with file and line: empty, not RINEX, wrong
 /// version or type, no end of header, no codes, no epoch at all. Survives arbitrary bytes.
 Result<ObservationFile> read_observation_file(const std::string& path);
 Result<ObservationFile> parse_observation_file(std::string_view text, const std::string& file_name);

@@ -53,7 +53,6 @@ Status ObservationHeaderReader::line(std::string_view line, int number) {
   if (label == "SYS / SCALE FACTOR") return scale_factor(line, number);
   if (label == "GLONASS SLOT / FRQ #") return glonass_slots(line, number);
   if (label == "MARKER NAME") header_.marker_name = columns(line, 0, 60);
-  if (label == "MARKER NUMBER") header_.marker_number = columns(line, 0, 20);
   if (label == "REC # / TYPE / VERS") header_.receiver = columns(line, 20, 20);
   if (label == "ANT # / TYPE") header_.antenna = columns(line, 20, 20);
   if (label == "APPROX POSITION XYZ" && !columns(line, 0, 60).empty()) {
@@ -62,14 +61,8 @@ Status ObservationHeaderReader::line(std::string_view line, int number) {
     // Moving receivers write zeros, which is the Earth's centre, not a position.
     if (position->norm() > 1e6) header_.approx_position_E = *position;
   }
-  if (label == "ANTENNA: DELTA H/E/N" && !columns(line, 0, 60).empty()) {
-    const auto delta = three_numbers(line);
-    if (!delta) return cannot_read("ANTENNA: DELTA H/E/N", number, "three numbers");
-    header_.antenna_delta_hen = *delta;
-  }
   if (label == "INTERVAL") header_.interval_s = fortran_number(columns(line, 0, 10));
   if (label == "LEAP SECONDS") header_.leap_seconds = whole_number(columns(line, 0, 6));
-  if (label == "RCV CLOCK OFFS APPL") header_.clock_offset_applied = columns(line, 0, 6) == "1";
   if (label == "TIME OF FIRST OBS") {
     const std::string_view system = columns(line, 48, 3);
     if (system == "GPS" || system == "GLO" || system == "GAL" || system == "QZS" || system == "BDT") {

@@ -154,5 +154,17 @@ TEST(Hatanaka, RealRinex4HourRecompressesToItself) {
   expect_recompression(path);
 }
 
+// Three bytes an epoch that stand for a line of sixteen thousand: an error, not all of the memory.
+TEST(Hatanaka, AFileThatFillsMemoryIsAnError) {
+  std::string text = two_lines(true) + field("     3.04           OBSERVATION DATA    G", "RINEX VERSION / TYPE") +
+                     field("G  999 C1C", "SYS / # / OBS TYPES") + field("", "END OF HEADER") +
+                     "> 2020 06 25 00 00 00.0000000  0  1      G01\n\n" + std::string(999 + 1997, ' ') + "1\n";
+  for (int k = 0; k < 20000; ++k) text += "\n\n\n";
+  const auto out = undo_hatanaka(text, "a.crx");
+  ASSERT_FALSE(out.ok());
+  EXPECT_EQ(out.error().what, "the file unpacks to more than 64 times its size");
+  EXPECT_GT(out.error().line, 7);
+}
+
 }  // namespace
 }  // namespace canyon::gnss

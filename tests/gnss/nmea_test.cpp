@@ -92,6 +92,27 @@ TEST(NmeaRoundTrip, PlacesAndTimes) {
   }
 }
 
+// Through the leap second at the end of 2016: UTC says 59, 60, 00, and a reader makes GPS time of it again.
+TEST(NmeaRoundTrip, LeapSecond) {
+  const GpsTime new_year = GpsTime::from_calendar(2017, 1, 1, 0, 0, 18.0);
+  std::string log;
+  const char* const labels[] = {"235959.00", "235960.00", "000000.00", "000001.00"};
+  for (int k = 0; k < 4; ++k) {
+    NmeaEpoch e;
+    e.fix.t = new_year + (k - 2.0);
+    e.fix.status = FixStatus::kSingle;
+    e.fix.p_A_E = ecef_from_geodetic({0.5, 0.2, 100.0});
+    const std::string text = nmea_text(e);
+    EXPECT_THAT(text, HasSubstr(std::string("$GPGGA,") + labels[k])) << text;
+    EXPECT_THAT(text, HasSubstr(k < 2 ? ",311216," : ",010117,")) << text;
+    log += text;
+  }
+  const auto file = parse_nmea(log, "log.nmea");
+  ASSERT_TRUE(file.ok());
+  ASSERT_EQ(file->records.size(), 4u);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(file->records[static_cast<std::size_t>(k)].t, new_year + (k - 2.0)) << k;
+}
+
 TEST(NmeaReader, DamagedLinesAreCountedAndNamed) {
   std::string text = nmea_text(epoch_at({0.5, 0.5, 10.0}));
   text += "$GPGGA,130001.00,9999.0,N,00000.0,E,1,05,1.0,1.0,M,0.0,M,,*00\r\n";

@@ -40,7 +40,6 @@ TEST(ObservationFile, Rinex3) {
   EXPECT_EQ(f->header.marker_name, "HERE");
   EXPECT_EQ(f->header.version, 3.04);
   EXPECT_EQ(*f->header.approx_position_E, Eigen::Vector3d(1112189.9031, -4842955.0319, 3985352.2376));
-  EXPECT_EQ(f->header.antenna_delta_hen, Eigen::Vector3d(0.216, 0.01, -0.02));
   EXPECT_THAT(f->header.glonass_channels, ElementsAre(std::pair(1, 1), std::pair(2, -4)));
   ASSERT_EQ(f->epochs.size(), 1u);
   const auto& e = f->epochs[0];
@@ -55,7 +54,7 @@ TEST(ObservationFile, Rinex3) {
   EXPECT_EQ(e.satellites[0].values[1].strength, 7);
   EXPECT_EQ(e.satellites[0].values[2].value, -1234.567);
   EXPECT_EQ(e.satellites[0].values[3].value, 45.25);
-  EXPECT_TRUE(e.satellites[1].values[1].missing());
+  EXPECT_EQ(e.satellites[1].values.size(), 1u);  // L1C is missing
   EXPECT_EQ(f->codes(e, GnssSystem::kGlonass)[1].str(), "L1C");
   EXPECT_EQ(f->other_system_satellites, 1);
   EXPECT_THAT(f->warnings, ElementsAre());
@@ -196,13 +195,86 @@ TEST(ObservationFile, DamageIsCountedWordForWord) {
       ElementsAre("a.rnx:16: G05: \"  20000x00.123\", expected a number as F14.3; skipped",
                   "a.rnx:17: G06: \" 1051000\", expected a number as F14.3; skipped",
                   "a.rnx:18: not an epoch line: \"> 2020 13 25 00 01 30.0000000  0  1\", expected an epoch; skipped",
-                  "a.rnx:20: epoch 2020-06-25T00:00:30.000 does not follow 2020-06-25T00:01:00.000; skipped",
-                  "a.rnx:22: the epoch has 1 satellites, expected 2 as announced; skipped"));
+                  "a.rnx:22: the epoch has 1 satellites, expected 2 as announced; skipped",
+                  "a.rnx:20: epoch 2020-06-25T00:00:30.000 does not follow 2020-06-25T00:01:00.000; skipped"));
   EXPECT_EQ(f->damaged, 5);
   ASSERT_EQ(f->epochs.size(), 3u);
   EXPECT_TRUE(f->epochs[1].satellites[0].values[0].missing());
   EXPECT_EQ(f->epochs[1].satellites[0].values[1].value, 105100000.456);
-  EXPECT_TRUE(f->epochs[1].satellites[1].values[1].missing());
+  EXPECT_EQ(f->epochs[1].satellites[1].values.size(), 1u);
+}
+
+/// Epochs every 30 s with one satellite; `minute` of each.
+std::string epochs_at(const std::vector<double>& minutes) {
+  std::string out;
+  for (const double m : minutes) {
+    const CalendarTime c = calendar(GpsTime::from_calendar(2020, 6, 25, 0, 0, 0) + 60.0 * m);
+    char line[64];
+    std::snprintf(line, sizeof line, "> %04d %02d %02d %02d %02d%11.7f  0  1\n", c.year, c.month, c.day, c.hour,
+                  c.minute, c.second);
+    out += line + std::string("G05  20000000.123\n");
+  }
+  return out;
+}
+
+std::vector<double> minutes_of(const ObservationFile& f) {
+  std::vector<double> out;
+  for (const auto& e : f.epochs) out.push_back((e.t - GpsTime::from_calendar(2020, 6, 25, 0, 0, 0)) / 60.0);
+  return out;
+}
+
+// One time tag in the future costs that epoch, not all that follow; one in the past, or a piece that stands in the file
+// twice, costs no more.
+TEST(ObservationFile, AWrongTimeTagCostsOneEpoch) {
+  const auto read = [](const std::vector<double>& minutes) {
+    return *parse_observation_file(header3() + epochs_at(minutes), "a.rnx");
+  };
+  const auto future = read({0, 1, 700, 3, 4, 5});
+  EXPECT_THAT(minutes_of(future), ElementsAre(0, 1, 3, 4, 5));
+  EXPECT_THAT(future.warnings,
+              ElementsAre("a.rnx:15: epoch 2020-06-25T11:40:00.000 lies after those that follow it; skipped"));
+  EXPECT_THAT(minutes_of(read({700, 1, 2, 3})), ElementsAre(1, 2, 3));
+  EXPECT_THAT(minutes_of(read({0, 700, 701, 3, 4, 5})), ElementsAre(0, 3, 4, 5));
+  EXPECT_THAT(minutes_of(read({0, 10, 1, 11, 12})), ElementsAre(0, 10, 11, 12));
+  EXPECT_THAT(minutes_of(read({0, 1, 2, 3, 0, 1, 2, 3, 4})), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(minutes_of(read({0, 1, 2, 2, 3})), ElementsAre(0, 1, 2, 3));
+  const auto last = read({0, 1, 2, 1});
+  EXPECT_THAT(minutes_of(last), ElementsAre(0, 1, 2));
+  EXPECT_THAT(last.warnings, ElementsAre("a.rnx:17: epoch 2020-06-25T00:01:00.000 does not follow "
+                                         "2020-06-25T00:02:00.000; skipped"));
+}
+
+// 31 February is no day, though the calendar's arithmetic would make it 2 March.
+TEST(ObservationFile, ImpossibleDates) {
+  const auto f = *parse_observation_file(
+      header3() + kEpoch3 + "> 2021 02 31 00 00 30.0000000  0  1\nG05  20000000.123\n", "a.rnx");
+  EXPECT_EQ(f.epochs.size(), 1u);
+  EXPECT_THAT(f.warnings,
+              ElementsAre("a.rnx:15: not an epoch line: \"> 2021 02 31 00 00 30.0000000  0  1\", expected an "
+                          "epoch; skipped"));
+}
+
+TEST(ObservationFile, ASatelliteThatStandsTwiceCountsOnce) {
+  const auto f = *parse_observation_file(header3() +
+                                             "> 2020 06 25 00 00 30.0000000  0  3\n"
+                                             "G05  20000000.123\nG07  21000000.123\nG05  22000000.123\n",
+                                         "a.rnx");
+  ASSERT_EQ(f.epochs[0].satellites.size(), 2u);
+  EXPECT_EQ(f.epochs[0].satellites[0].values[0].value, 20000000.123);
+  EXPECT_THAT(f.warnings, ElementsAre("a.rnx:14: G05 stands twice in its epoch; skipped"));
+  EXPECT_EQ(f.damaged, 1);
+}
+
+// A header that announces many codes does not make short lines long.
+TEST(ObservationFile, ShortLinesTakeLittleMemory) {
+  std::string more = field("E   52 C1C L1C D1C S1C C5Q L5Q D5Q S5Q C7Q L7Q D7Q S7Q C8Q", "SYS / # / OBS TYPES");
+  for (int k = 0; k < 3; ++k)
+    more += field("       L8Q D8Q S8Q C6C L6C D6C S6C C1X L1X D1X S1X C5X L5X", "SYS / # / OBS TYPES");
+  const auto f =
+      *parse_observation_file(header3(more) + "> 2020 06 25 00 00 30.0000000  0999\nE01\nE02  20000000.123\n", "a.rnx");
+  EXPECT_EQ(f.epochs[0].satellites[0].values.capacity(), 0u);
+  EXPECT_EQ(f.epochs[0].satellites[1].values.capacity(), 1u);
+  EXPECT_LT(f.epochs[0].satellites.capacity(), 10u);
 }
 
 // A file may end anywhere; what was cut off is never taken for a number.
