@@ -50,6 +50,8 @@ void print_warnings(const Input& in) {
     for (const auto& w : warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
   };
   print(in.nav.warnings);
+  if (const std::string skipped = in.nav.skipped(); !skipped.empty())
+    print({in.nav.names() + ": records that are not used: " + skipped});
   print(in.precise.warnings);
   if (in.clocks) print(in.clocks->warnings);
   if (in.antennas) print(in.antennas->warnings);

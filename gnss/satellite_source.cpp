@@ -23,6 +23,8 @@ Result<SatelliteSource> make_satellite_source(const GnssConfig& config, GpsTime 
   }
   CANYON_TRY_STATUS(check_coverage(source.navigation, config.systems, start, end, "gnss.nav_file"));
   source.warnings = source.navigation.warnings;
+  if (const std::string skipped = source.navigation.skipped(); !skipped.empty())
+    source.warnings.push_back(source.navigation.names() + ": records that are not used: " + skipped);
   source.constellation = make_broadcast(source.navigation, {.systems = config.systems});
   source.klobuchar = source.navigation.klobuchar_at(GnssSystem::kGps, start).value_or(kBuiltInKlobuchar);
   return source;

@@ -16,6 +16,9 @@ struct KlobucharCoefficients {
 inline constexpr KlobucharCoefficients kBuiltInKlobuchar{{0.4657e-8, 0.1490e-7, -0.5960e-7, -0.1192e-6},
                                                          {0.8192e5, 0.8192e5, -0.6554e5, -0.5243e6}};
 
+/// Whether messages can hold such coefficients, with room: alpha up to 2^-17, beta up to 2^23 in 8 bits.
+bool is_sane(const KlobucharCoefficients& coefficients);
+
 /// Slant delay at L1, m, for a receiver at geodetic latitude and longitude that sees a satellite at azimuth (from
 /// north, clockwise) and elevation in [0, pi/2].
 double klobuchar_delay_m(const KlobucharCoefficients& coefficients, GpsTime t, double lat_rad, double lon_rad,

@@ -7,12 +7,14 @@
 #include "core/units.h"
 #include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/text_lines.h"
+#include "gnss/satellites/ephemeris_limits.h"
 
 namespace canyon::gnss {
 namespace {
 
 constexpr double kValidS = 14.0 * 86400.0;
 constexpr double kSemicircle = kPi;
+namespace limits = ephemeris_limits;
 
 /// Words of a line.
 std::vector<std::string_view> words(std::string_view line) {
@@ -66,6 +68,21 @@ class AlmanacReader {
     return once + turns * kTurnS;
   }
 
+  static std::string beyond_limits(const KeplerEphemeris& r) {
+    struct Field {
+      const char* name;
+      double value, limit;
+    };
+    for (const Field& f : {Field{"af0", r.af0_s, limits::kClockS}, Field{"af1", r.af1, limits::kClockRate},
+                           Field{"orbital inclination", r.i0_rad, limits::kAngleRad},
+                           Field{"rate of right ascension", r.omega_dot_rad_s, limits::kRateRadS},
+                           Field{"right ascension", r.omega0_rad, limits::kAngleRad},
+                           Field{"argument of perigee", r.argument_of_perigee_rad, limits::kAngleRad},
+                           Field{"mean anomaly", r.m0_rad, limits::kAngleRad}})
+      if (!(std::abs(f.value) < f.limit)) return f.name + (" = " + join_values(f.value));
+    return "";
+  }
+
   /// Keeps the record if it can be one; `line` is where it begins.
   void keep(KeplerEphemeris r, double number, double week, double toa_s, double health, int line) {
     const auto sv = satellite(number);
@@ -80,15 +97,19 @@ class AlmanacReader {
       what = "time of applicability: week " + join_values(week) + ", " + join_values(toa_s) + " s";
     else if (!(health >= 0.0 && health <= 255.0))
       what = "health = " + join_values(health);
-    else if (!(std::abs(r.af0_s) < 1.0))
-      what = "af0 = " + join_values(r.af0_s);
+    else
+      what = beyond_limits(r);
+    if (what.empty()) {
+      r.sv = *sv;
+      r.message = NavigationMessage::kAlmanac;
+      r.toe = r.toc = applicability(week, toa_s);
+      if (const double radius_m = limits::radius_at_toe_m(r); !limits::is_sane_radius(radius_m))
+        what = "distance from the Earth's centre = " + join_values(radius_m) + " m";
+    }
     if (!what.empty()) {
       warnings_.note(line, what + " cannot be; the record is skipped");
       return;
     }
-    r.sv = *sv;
-    r.message = NavigationMessage::kAlmanac;
-    r.toe = r.toc = applicability(week, toa_s);
     r.health = static_cast<int>(health);
     r.valid_before_s = r.valid_after_s = kValidS;
     out_.kepler.push_back(r);

@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "gnss/rinex/text_lines.h"
+#include "gnss/satellites/ephemeris_limits.h"
 #include "gnss/satellites/system_constants.h"
 
 namespace canyon::gnss {
 namespace {
 
 using Message = NavigationMessage;
+namespace limits = ephemeris_limits;
 
 /// Where a number stands: line 1, 2, ... of the record and place 0..3 in it; line 0 = the message has no such number.
 struct Place {
@@ -91,22 +93,29 @@ Validity validity(const KeplerEphemeris& r, std::optional<double> fit_field) {
   return {half_s, half_s};
 }
 
+/// A number that must stay below `limit` in size.
+double bounded(RecordFields& f, std::size_t line, std::size_t index, const char* name, double limit) {
+  const double value = f.orbit(line, index, name);
+  f.require(std::abs(value) <= limit, line, name + (" = " + join_values(value)), "at most " + join_values(limit));
+  return value;
+}
+
 void read_orbit(RecordFields& f, KeplerEphemeris& r) {
-  r.crs_m = f.orbit(1, 1, "Crs");
-  r.delta_n_rad_s = f.orbit(1, 2, "delta n");
-  r.m0_rad = f.orbit(1, 3, "M0");
-  r.cuc_rad = f.orbit(2, 0, "Cuc");
+  r.crs_m = bounded(f, 1, 1, "Crs", limits::kHarmonicM);
+  r.delta_n_rad_s = bounded(f, 1, 2, "delta n", limits::kRateRadS);
+  r.m0_rad = bounded(f, 1, 3, "M0", limits::kAngleRad);
+  r.cuc_rad = bounded(f, 2, 0, "Cuc", limits::kHarmonicRad);
   r.e = f.orbit(2, 1, "e");
-  r.cus_rad = f.orbit(2, 2, "Cus");
+  r.cus_rad = bounded(f, 2, 2, "Cus", limits::kHarmonicRad);
   r.sqrt_a = f.orbit(2, 3, "sqrt(A)");
-  r.cic_rad = f.orbit(3, 1, "Cic");
-  r.omega0_rad = f.orbit(3, 2, "OMEGA0");
-  r.cis_rad = f.orbit(3, 3, "Cis");
-  r.i0_rad = f.orbit(4, 0, "i0");
-  r.crc_m = f.orbit(4, 1, "Crc");
-  r.argument_of_perigee_rad = f.orbit(4, 2, "omega");
-  r.omega_dot_rad_s = f.orbit(4, 3, "OMEGA DOT");
-  r.idot_rad_s = f.orbit(5, 0, "IDOT");
+  r.cic_rad = bounded(f, 3, 1, "Cic", limits::kHarmonicRad);
+  r.omega0_rad = bounded(f, 3, 2, "OMEGA0", limits::kAngleRad);
+  r.cis_rad = bounded(f, 3, 3, "Cis", limits::kHarmonicRad);
+  r.i0_rad = bounded(f, 4, 0, "i0", limits::kAngleRad);
+  r.crc_m = bounded(f, 4, 1, "Crc", limits::kHarmonicM);
+  r.argument_of_perigee_rad = bounded(f, 4, 2, "omega", limits::kAngleRad);
+  r.omega_dot_rad_s = bounded(f, 4, 3, "OMEGA DOT", limits::kRateRadS);
+  r.idot_rad_s = bounded(f, 5, 0, "IDOT", limits::kRateRadS);
   f.require(r.e >= 0.0 && r.e < 1.0, 2, "e = " + join_values(r.e), "at least 0 and less than 1");
   f.require(r.sqrt_a >= 1000.0 && r.sqrt_a <= 10000.0, 2, "sqrt(A) = " + join_values(r.sqrt_a),
             "1000 to 10000 m^0.5 (GPS: 5154)");
@@ -142,7 +151,7 @@ std::optional<Message> kepler_message(GnssSystem system, std::string_view name) 
 }
 
 Message kepler_message_of_old_record(const RecordLines& record, SatelliteId sv) {
-  if (sv.system == GnssSystem::kBeidou) return sv.prn <= 5 || sv.prn >= 59 ? Message::kD2 : Message::kD1;
+  if (sv.system == GnssSystem::kBeidou) return beidou_message(sv.prn);
   if (sv.system != GnssSystem::kGalileo) return Message::kLnav;
   if (record.lines.size() < 6) return Message::kInav;  // damaged, as its own reader will say
   const auto sources =
@@ -172,8 +181,8 @@ Result<KeplerEphemeris> parse_kepler_record(const RecordLines& record, Satellite
   r.af2_per_s = f.clock(2, "af2");
   read_orbit(f, r);
   if (layout.modern) {
-    r.a_dot_m_s = f.orbit(1, 0, "A DOT");
-    r.delta_n_dot_rad_s2 = f.orbit(5, 1, "delta n dot");
+    r.a_dot_m_s = bounded(f, 1, 0, "A DOT", limits::kGrowthMS);
+    r.delta_n_dot_rad_s2 = bounded(f, 5, 1, "delta n dot", limits::kRateOfRateRadS2);
   }
   read_times(f, layout, toc_own, r);
 
@@ -181,7 +190,8 @@ Result<KeplerEphemeris> parse_kepler_record(const RecordLines& record, Satellite
     return place.line == 0 ? std::nullopt : f.known(place.line, place.index, name);
   };
   const double accuracy = optional_at(layout.accuracy, "accuracy").value_or(0.0);
-  r.accuracy_m = layout.modern && sv.system != GnssSystem::kBeidou ? accuracy_of_index_m(accuracy) : accuracy;
+  // B-CNAV's SISAI is an index whose metres its ICD leaves to a document of its own.
+  r.accuracy_m = !layout.modern ? accuracy : sv.system == GnssSystem::kBeidou ? kNaN : accuracy_of_index_m(accuracy);
   const double health = f.orbit(layout.health.line, layout.health.index, "health");
   r.tgd_s = optional_at(layout.tgd, "TGD").value_or(0.0);
   r.tgd2_s = optional_at(layout.tgd2, "second TGD").value_or(0.0);
@@ -191,11 +201,19 @@ Result<KeplerEphemeris> parse_kepler_record(const RecordLines& record, Satellite
   const auto fit = message == Message::kLnav ? f.known(7, 1, "fit interval") : std::nullopt;
 
   f.require(health >= 0.0 && health <= 511.0, layout.health.line, "health = " + join_values(health), "0 to 511");
-  f.require(std::abs(r.af0_s) < 1.0, 0, "af0 = " + join_values(r.af0_s), "less than 1 s");
+  f.require(std::abs(r.af0_s) < limits::kClockS, 0, "af0 = " + join_values(r.af0_s), "less than 1 s");
+  f.require(std::abs(r.af1) < limits::kClockRate, 0, "af1 = " + join_values(r.af1), "less than 1e-7");
+  f.require(std::abs(r.af2_per_s) < limits::kClockRateOfRate, 0, "af2 = " + join_values(r.af2_per_s),
+            "less than 1e-12 /s");
   const double longest_delay_s = std::max(
       {std::abs(r.tgd_s), std::abs(r.tgd2_s), std::abs(r.isc_s[1]), std::abs(r.isc_s[2]), std::abs(r.isc_s[5])});
   f.require(longest_delay_s < 1e-3, layout.tgd.line, "group delay = " + join_values(longest_delay_s) + " s",
             "less than 0.001 s");
+  if (f.ok()) {
+    const double radius_m = limits::radius_at_toe_m(r);
+    f.require(limits::is_sane_radius(radius_m), 1, "distance from the Earth's centre = " + join_values(radius_m) + " m",
+              "6300 to 100000 km");
+  }
   if (!f.ok()) return f.error();
 
   r.health = static_cast<int>(health);

@@ -4,9 +4,9 @@
 #include <cstdio>
 
 #include "core/files.h"
-#include "gnss/rinex/correction_record.h"
 #include "gnss/rinex/glonass_record.h"
 #include "gnss/rinex/kepler_record.h"
+#include "gnss/rinex/klobuchar_record.h"
 #include "gnss/rinex/navigation_header.h"
 #include "gnss/rinex/reader_warnings.h"
 #include "gnss/rinex/satellite_name.h"
@@ -119,10 +119,6 @@ class RecordReader {
       }
     } else if (kind == "ION" && is_klobuchar(system, message)) {
       keep(parse_klobuchar_record(record, sv), out_.klobuchar);
-    } else if (kind == "ION" && system == GnssSystem::kGalileo && message == "IFNV") {
-      keep(parse_nequick_record(record, sv), out_.nequick);
-    } else if (kind == "STO" && known && system != GnssSystem::kSbas) {
-      keep(parse_time_offset_record(record, sv), out_.time_corrections);
     } else {
       // Bounded, whatever bytes stand there.
       const bool plain = printable(kind + message).find('?') == std::string::npos && out_.skipped_records.size() < 64;
@@ -203,7 +199,6 @@ Result<NavigationData> parse_navigation_file(std::string_view text, const std::s
   CANYON_TRY(const NavigationHeader header, parse_navigation_header(lines, file_name));
   NavigationData out;
   out.files.push_back({file_name, header.version});
-  out.time_corrections = header.time_corrections;
   out.leap_seconds = header.leap_seconds;
   out.warnings = header.warnings;
   RecordReader reader(lines, header, file_name, out);
@@ -222,10 +217,6 @@ Result<NavigationData> parse_navigation_file(std::string_view text, const std::s
   for (BroadcastKlobuchar k : header.klobuchar) {
     k.t = *first;
     out.klobuchar.push_back(k);
-  }
-  for (BroadcastNequick n : header.nequick) {
-    n.t = *first;
-    out.nequick.push_back(n);
   }
   return out;
 }

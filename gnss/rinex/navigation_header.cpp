@@ -65,14 +65,10 @@ class HeaderReader {
         return Ok{};
       }
       if (name == "ION ALPHA" || name == "ION BETA" || name == "IONOSPHERIC CORR")
-        CANYON_TRY_STATUS(ionosphere(name));
+        ionosphere(name);
       else if (name == "LEAP SECONDS") {
         out_.leap_seconds = whole_number(columns(lines_.line(), 0, 6));
         if (!out_.leap_seconds) return unreadable("LEAP SECONDS", "a whole number");
-      } else if (name == "TIME SYSTEM CORR") {
-        time_correction(0, 5, 17, 22, 16, 38, 7, 45, 5);
-      } else if (name == "DELTA-UTC: A0,A1,T,W") {
-        time_correction(std::string_view::npos, 3, 19, 22, 19, 41, 9, 50, 9);
       }
     }
     return Error{file_, lines_.number(), "", "the file ends inside its header", "a line \"END OF HEADER\""};
@@ -87,47 +83,28 @@ class HeaderReader {
     return Error{file_, lines_.number(), what, "cannot be read", expected};
   }
 
-  /// RINEX 2: two lines of GPS. RINEX 3: GPSA, GPSB, BDSA, ... and GAL; of several (BDSA by hour) the first counts.
-  Status ionosphere(std::string_view name) {
+  /// RINEX 2: two lines of GPS. RINEX 3: GPSA, GPSB, BDSA, ...; of several (BDSA by hour) the first counts. Galileo's
+  /// NeQuick is not used. A line that cannot be read is left out: the ephemerides are good without it.
+  void ionosphere(std::string_view name) {
     const std::string_view line = lines_.line();
     const bool version2 = name != "IONOSPHERIC CORR";
     const std::string_view code = version2 ? (name == "ION ALPHA" ? "GPSA" : "GPSB") : columns(line, 0, 4);
     static const std::map<std::string_view, GnssSystem> systems = {
         {"GPS", GnssSystem::kGps}, {"QZS", GnssSystem::kQzss}, {"BDS", GnssSystem::kBeidou}};
-    if (code == "GAL") {
-      const auto a = four_numbers(line, 5);
-      if (!a) return unreadable("GAL ionosphere", "four numbers");
-      if (out_.nequick.empty()) out_.nequick.push_back({{}, (*a)[0], (*a)[1], (*a)[2]});
-      return Ok{};
-    }
     const auto system = systems.find(code.substr(0, 3));
-    if (system == systems.end() || code.size() != 4) return Ok{};  // NavIC and whatever comes
+    if (system == systems.end() || code.size() != 4) return;  // GAL, NavIC and whatever comes
     const auto values = four_numbers(line, version2 ? 2 : 5);
-    if (!values) return unreadable(code.back() == 'A' ? "ION ALPHA" : "ION BETA", "four numbers");
-    Pair& pair = klobuchar_[system->second];
-    auto& half = code.back() == 'A' ? pair.alpha : pair.beta;
-    if (!half) half = values;
-    return Ok{};
-  }
-
-  /// No position depends on it, so one that cannot be read is only warned of.
-  void time_correction(std::size_t code_at, std::size_t a0_at, std::size_t a0_width, std::size_t a1_at,
-                       std::size_t a1_width, std::size_t sow_at, std::size_t sow_width, std::size_t week_at,
-                       std::size_t week_width) {
-    const std::string_view line = lines_.line();
-    const std::string_view code = code_at == std::string_view::npos ? "GPUT" : columns(line, code_at, 4);
-    const auto a0 = fortran_number(columns(line, a0_at, a0_width)), a1 = fortran_number(columns(line, a1_at, a1_width));
-    if (!a0 || !a1) {
-      out_.warnings.push_back(unreadable("time system correction", "two numbers").str() + "; skipped");
+    const bool alpha = code.back() == 'A';
+    const bool sane =
+        values && is_sane(alpha ? KlobucharCoefficients{*values, {}} : KlobucharCoefficients{{}, *values});
+    if (!sane) {
+      const std::string expected = alpha ? "four numbers up to 1e-4" : "four numbers up to 1e8";
+      out_.warnings.push_back(unreadable(std::string(code), expected).str() + "; skipped");
       return;
     }
-    // The reference time is often left out (GLUT) or 0; the correction hardly depends on it.
-    const auto sow = fortran_number(columns(line, sow_at, sow_width));
-    const auto week = whole_number(columns(line, week_at, week_width));
-    TimeSystemCorrection out{std::string(code), {}, *a0, *a1, 0.0};
-    if (sow && week && *week >= 0 && *week < 10000 && *sow >= 0.0 && *sow <= kSecondsPerWeek)
-      out.t_reference = GpsTime::from_week_sow(*week, *sow);
-    out_.time_corrections.push_back(out);
+    Pair& pair = klobuchar_[system->second];
+    auto& half = alpha ? pair.alpha : pair.beta;
+    if (!half) half = values;
   }
 
   TextLines& lines_;

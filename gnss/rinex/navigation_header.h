@@ -14,10 +14,8 @@ struct NavigationHeader {
   double version = 0.0;
   char system = 'G';  ///< of all records of a RINEX 2 file, G or R; of RINEX 3 and 4 as written, M = mixed
   std::vector<BroadcastKlobuchar> klobuchar;  ///< without their times, which the header does not tell
-  std::vector<BroadcastNequick> nequick;      ///< the same
-  std::vector<TimeSystemCorrection> time_corrections;
   std::optional<int> leap_seconds;
-  std::vector<std::string> warnings;  ///< corrections between time systems that cannot be read
+  std::vector<std::string> warnings;  ///< ionosphere coefficients that cannot be read, `file:line: what`
 
   bool version2() const { return version < 3.0; }
 };

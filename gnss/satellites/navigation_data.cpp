@@ -19,13 +19,18 @@ std::string NavigationData::names() const {
   return out;
 }
 
+std::string NavigationData::skipped() const {
+  std::string out;
+  for (const auto& [kind, count] : skipped_records)
+    out += (out.empty() ? "" : ", ") + std::to_string(count) + " " + kind;
+  return out;
+}
+
 void NavigationData::append(NavigationData other) {
   append_all(files, other.files);
   append_all(kepler, other.kepler);
   append_all(glonass, other.glonass);
   append_all(klobuchar, other.klobuchar);
-  append_all(nequick, other.nequick);
-  append_all(time_corrections, other.time_corrections);
   append_all(warnings, other.warnings);
   if (!leap_seconds) leap_seconds = other.leap_seconds;
   for (const auto& [kind, count] : other.skipped_records) skipped_records[kind] += count;

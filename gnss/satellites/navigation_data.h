@@ -19,20 +19,6 @@ struct BroadcastKlobuchar {
   KlobucharCoefficients coefficients;
 };
 
-/// Galileo's effective ionisation level (OS SIS ICD, 5.1.6): a0 + a1 mu + a2 mu^2 of the modified dip latitude in deg.
-struct BroadcastNequick {
-  GpsTime t;
-  double a0_sfu = 0.0, a1_sfu_per_deg = 0.0, a2_sfu_per_deg2 = 0.0;
-};
-
-/// Difference of two time systems, a0 + a1 (t - t_reference) [+ a2 (t - t_reference)^2]; `code` as in RINEX: "GPUT" GPS
-/// to UTC, "GAGP" Galileo to GPS, "GLUT" GLONASS to UTC, "BDGA", ...
-struct TimeSystemCorrection {
-  std::string code;
-  GpsTime t_reference;
-  double a0_s = 0.0, a1 = 0.0, a2_per_s = 0.0;
-};
-
 /// All that navigation files say, of one or several of them together, in the order given.
 struct NavigationData {
   struct Source {
@@ -43,8 +29,6 @@ struct NavigationData {
   std::vector<KeplerEphemeris> kepler;  ///< GPS, QZSS, Galileo, BeiDou; unhealthy ones included
   std::vector<GlonassEphemeris> glonass;
   std::vector<BroadcastKlobuchar> klobuchar;
-  std::vector<BroadcastNequick> nequick;
-  std::vector<TimeSystemCorrection> time_corrections;
   std::optional<int> leap_seconds;             ///< of the header; the conversion of times uses core/time.h's own table
   std::map<std::string, int> skipped_records;  ///< kinds that are not used, for example "EPH SBAS", and how many
   std::vector<std::string> warnings;           ///< damaged records that were skipped, `file:line: what`
@@ -52,6 +36,8 @@ struct NavigationData {
   bool has_ephemeris() const { return !kepler.empty() || !glonass.empty(); }
   /// Names of the files, comma separated.
   std::string names() const;
+  /// "12 EPH S SBAS, 3 STO G LNAV" of skipped_records; empty if there are none.
+  std::string skipped() const;
   /// Appends another file's records.
   void append(NavigationData other);
   /// The last coefficients of that system given at or before t, else its first; nullopt if it has none.

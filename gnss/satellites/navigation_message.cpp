@@ -2,6 +2,10 @@
 
 namespace canyon::gnss {
 
+NavigationMessage beidou_message(int prn) {
+  return prn <= 5 || prn >= 59 ? NavigationMessage::kD2 : NavigationMessage::kD1;
+}
+
 const char* name_of(NavigationMessage message) {
   switch (message) {
     case NavigationMessage::kLnav:

@@ -19,6 +19,9 @@ enum class NavigationMessage : std::uint8_t {
   kAlmanac,  ///< GPS, QZSS: no ephemeris at all, but the almanac of one
 };
 
+/// Of BeiDou's B1I: D2 from the geostationary satellites C01 to C05 and C59 to C63, D1 from the others.
+NavigationMessage beidou_message(int prn);
+
 /// RINEX 4's name: "LNAV", "CNV1", ...
 const char* name_of(NavigationMessage message);
 

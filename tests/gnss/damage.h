@@ -18,6 +18,20 @@ inline void for_each_truncation(const std::string& text, const std::function<voi
   }
 }
 
+/// Calls `read` with each number of D19.12, in turn, replaced by numbers that no message can hold and by ones that look
+/// innocent but are too large for their place: bytes at random hardly ever change an exponent.
+inline void for_each_extreme_number(const std::string& text, const std::function<void(const std::string&)>& read) {
+  for (std::size_t at = 18; at + 4 < text.size(); ++at) {
+    const bool exponent = (text[at - 3] == 'D' || text[at - 3] == 'E') && (text[at - 2] == '+' || text[at - 2] == '-');
+    if (!exponent || text[at] < '0' || text[at] > '9') continue;
+    for (const char* extreme : {" 1.00000000000D+306", "-1.00000000000D+300", " 1.000000000000D+09",
+                                "-1.000000000000D+01", " 4.000000000000D+00", " 0.000000000000D+00"}) {
+      std::string damaged = text;
+      read(damaged.replace(at - 18, 19, extreme));
+    }
+  }
+}
+
 /// Calls `read` `trials` times with `bytes` random bytes written at random places, every fifth time also cut at random.
 inline void for_each_damage(const std::string& text, int trials, int bytes,
                             const std::function<void(const std::string&)>& read) {

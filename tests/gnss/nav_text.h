@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -27,7 +28,7 @@ inline KeplerEphemeris sample_ephemeris(int prn, GpsTime toe) {
   r.omega0_rad = -3.0 + 1.0472 * (prn % 6);
   r.omega_dot_rad_s = -8.1e-9;
   r.argument_of_perigee_rad = 0.3 * prn;
-  r.m0_rad = -2.5 + 0.9 * prn;
+  r.m0_rad = std::remainder(-2.5 + 0.9 * prn, 2.0 * kPi);
   r.delta_n_rad_s = 4.6e-9;
   r.cuc_rad = -4.8e-6;
   r.cus_rad = 5.5e-6;

@@ -142,12 +142,34 @@ TEST(NavigationFile, ErrorsWordForWord) {
 }
 
 TEST(NavigationFile, HeaderErrorsWordForWord) {
-  EXPECT_EQ(error_of(replaced(header(false), "4.6570D-09", "4.6570X-09")),
-            "brdc.10n:2: ION ALPHA: cannot be read, expected four numbers");
-  EXPECT_EQ(error_of(replaced(header(true), "8.1920D+04", "8.1920D+  ")),
-            "brdc.10n:3: ION BETA: cannot be read, expected four numbers");
   EXPECT_EQ(error_of(replaced(header(false), "    15", "    1x")),
             "brdc.10n:4: LEAP SECONDS: cannot be read, expected a whole number");
+}
+
+// The ephemerides are good without the ionosphere's coefficients: whoever needs those will say so.
+TEST(NavigationFile, IonosphereThatCannotBeReadIsAWarning) {
+  const auto warnings_of = [](const std::string& head) {
+    const auto file = parse_navigation_file(head + record(sample_ephemeris(1, kStart), head[5] == '3'), "brdc.10n");
+    EXPECT_TRUE(file.ok()) << file.error().str();
+    EXPECT_TRUE(file->klobuchar.empty());
+    return file->warnings;
+  };
+  EXPECT_THAT(warnings_of(replaced(header(false), "4.6570D-09", "4.6570X-09")),
+              ElementsAre("brdc.10n:2: GPSA: cannot be read, expected four numbers up to 1e-4; skipped"));
+  EXPECT_THAT(warnings_of(replaced(header(true), "8.1920D+04", "8.1920D+  ")),
+              ElementsAre("brdc.10n:3: GPSB: cannot be read, expected four numbers up to 1e8; skipped"));
+  EXPECT_THAT(warnings_of(replaced(header(true), "8.1920D+04", "          ")),
+              ElementsAre("brdc.10n:3: GPSB: cannot be read, expected four numbers up to 1e8; skipped"));
+  EXPECT_THAT(warnings_of(replaced(header(true), "8.1920D+04", "8.192D+300")),
+              ElementsAre("brdc.10n:3: GPSB: cannot be read, expected four numbers up to 1e8; skipped"));
+  // Galileo's fourth field is blank in many files.
+  const std::string galileo = header_line("GAL    4.5750D+01  1.2891D-01  1.4053D-02", "IONOSPHERIC CORR");
+  const std::string head = header(true);
+  const auto file = parse_navigation_file(
+      head.substr(0, 81) + galileo + head.substr(81) + record(sample_ephemeris(1, kStart), true), "brdc.10n");
+  ASSERT_TRUE(file.ok()) << file.error().str();
+  EXPECT_THAT(file->warnings, ElementsAre());
+  EXPECT_EQ(file->klobuchar.size(), 1u);
 }
 
 TEST(NavigationFile, NoUsableRecordIsAnError) {
