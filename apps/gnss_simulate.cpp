@@ -13,6 +13,7 @@
 #include "apps/gnss_setup.h"
 #include "apps/json.h"
 #include "core/files.h"
+#include "core/median.h"
 #include "core/parallel.h"
 #include "core/place_files.h"
 #include "core/progress.h"
@@ -20,9 +21,8 @@
 #include "gnss/nmea/nmea_writer.h"
 #include "gnss/rinex/navigation_writer.h"
 #include "gnss/rinex/observation_writer.h"
+#include "gnss/rinex/simulated_navigation.h"
 #include "gnss/satellite_source.h"
-#include "gnss/satellites/ephemeris_fit.h"
-#include "mission/summary.h"
 
 namespace canyon::apps {
 
@@ -79,7 +79,7 @@ struct Totals {
   }
   double nlos_share() const { return tracked > 0 ? static_cast<double>(nlos) / static_cast<double>(tracked) : kNaN; }
   double rms_m() const { return fixes > 0 ? std::sqrt(square_m2 / static_cast<double>(fixes)) : kNaN; }
-  double gdop_median() const { return mission::median(gdop); }
+  double gdop_median() const { return median(gdop); }
 };
 
 /// The files of a simulation, filled epoch by epoch.
@@ -180,23 +180,14 @@ Result<std::string> observations(const std::vector<GnssEpoch>& epochs, const Opt
   return out;
 }
 
-/// RINEX navigation: the records that could be used in that time, or for a built-in constellation records fitted to it.
-std::string navigation(const gnss::SatelliteSource& source, GpsTime start, GpsTime end) {
-  if (source.navigation.has_ephemeris()) {
-    gnss::NavigationData data = gnss::used_records(source.navigation);
-    // A margin for light times and receiver clocks.
-    const GpsTime first = start - 10.0, last = end + 10.0;
-    std::erase_if(data.kepler, [&](const gnss::KeplerEphemeris& r) {
-      return r.toe + r.valid_after_s < first || r.toe - r.valid_before_s > last;
-    });
-    std::erase_if(data.glonass, [&](const gnss::GlonassEphemeris& r) {
-      return r.toe + gnss::GlonassEphemeris::kValidS < first || r.toe - gnss::GlonassEphemeris::kValidS > last;
-    });
-    return gnss::navigation_file_text(data);
-  }
-  gnss::NavigationData data = gnss::fit_navigation_data(*source.constellation, start - 600.0, end + 600.0);
-  data.klobuchar.push_back({GnssSystem::kGps, start, source.klobuchar});
-  return gnss::navigation_file_text(data);
+/// RINEX navigation of the satellites simulated; warns of those that it cannot describe.
+Result<std::string> navigation(const gnss::SatelliteSource& source, const std::string& systems, GpsTime start,
+                               GpsTime end) {
+  CANYON_TRY(auto simulated, gnss::simulated_navigation(*source.constellation, source.navigation, systems, start, end));
+  for (const std::string& warning : simulated.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (!simulated.data.klobuchar_at(GnssSystem::kGps, start))
+    simulated.data.klobuchar.push_back({GnssSystem::kGps, start, source.klobuchar});
+  return gnss::navigation_file_text(simulated.data);
 }
 
 void tell(const Options& options, const Totals& totals, const GnssSetup& setup) {
@@ -276,8 +267,10 @@ Result<int> run(const Options& options) {
     CANYON_TRY(const std::string text, observations(recorder.epochs(), options, source, path.at(setup.start)->p_E));
     CANYON_TRY_STATUS(write_text_file(options.rinex_obs, text));
   }
-  if (!options.rinex_nav.empty())
-    CANYON_TRY_STATUS(write_text_file(options.rinex_nav, navigation(source, setup.start, setup.start + duration_s)));
+  if (!options.rinex_nav.empty()) {
+    CANYON_TRY(const std::string text, navigation(source, setup.config.systems, setup.start, setup.start + duration_s));
+    CANYON_TRY_STATUS(write_text_file(options.rinex_nav, text));
+  }
   if (!options.nmea.empty()) CANYON_TRY_STATUS(write_text_file(options.nmea, recorder.nmea()));
   tell(options, totals, setup);
   return 0;

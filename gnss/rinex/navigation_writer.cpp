@@ -1,29 +1,17 @@
 #include "gnss/rinex/navigation_writer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <optional>
 
-#include "core/check.h"
 #include "core/version.h"
+#include "gnss/rinex/written_lines.h"
 #include "gnss/satellites/system_constants.h"
 
 namespace canyon::gnss {
 namespace {
 
-std::string text(const char* format, auto... values) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
-std::string labelled(std::string line, const char* label) {
-  line.resize(60, ' ');
-  return line + label + "\n";
-}
-
 std::string number(double value) {
-  return text("%19.12E", value);
+  return formatted("%19.12E", value);
 }
 
 std::string row(double a, double b, double c, double d) {
@@ -31,16 +19,11 @@ std::string row(double a, double b, double c, double d) {
 }
 
 std::string epoch_line(SatelliteId sv, GpsTime own_time, double a, double b, double c) {
-  CANYON_CHECK(own_time.ns % kNsPerSecond == 0, sv.str(), ": clock epoch ", own_time.iso(9), " is no whole second");
   const CalendarTime t = calendar(own_time);
   return sv.str() +
-         text(" %04d %02d %02d %02d %02d %02d", t.year, t.month, t.day, t.hour, t.minute, static_cast<int>(t.second)) +
+         formatted(" %04d %02d %02d %02d %02d %02d", t.year, t.month, t.day, t.hour, t.minute,
+                   static_cast<int>(t.second)) +
          number(a) + number(b) + number(c) + "\n";
-}
-
-bool in_rinex3(NavigationMessage m) {
-  return m == NavigationMessage::kLnav || m == NavigationMessage::kInav || m == NavigationMessage::kFnav ||
-         m == NavigationMessage::kD1 || m == NavigationMessage::kD2;
 }
 
 /// Field 2 of line 5: Galileo's data sources (RINEX 3.04 table A8): I/NAV from E1-B and E5b, clock of E5b and E1; F/NAV
@@ -82,6 +65,17 @@ std::string record(const GlonassEphemeris& r) {
   return out;
 }
 
+/// The first record whose epoch is no whole second.
+template <class Record>
+std::optional<Error> broken_second(const std::vector<Record>& records, GpsTime Record::*epoch,
+                                   const NavigationData& data) {
+  for (const Record& r : records)
+    if ((r.*epoch).ns % kNsPerSecond != 0)
+      return Error{data.names(), 0, "", r.sv.str() + ": the epoch " + (r.*epoch).iso(9) + " cannot be written",
+                   "a whole second, as RINEX 3 has it"};
+  return std::nullopt;
+}
+
 std::string ionosphere(const NavigationData& data) {
   std::string out;
   for (const auto& [system, name] :
@@ -90,31 +84,38 @@ std::string ionosphere(const NavigationData& data) {
                                     [s = system](const auto& k) { return k.system == s; });
     if (found == data.klobuchar.end()) continue;
     const auto& [a, b] = found->coefficients;
-    out += labelled(text("%sA %12.4E%12.4E%12.4E%12.4E", name, a[0], a[1], a[2], a[3]), "IONOSPHERIC CORR");
-    out += labelled(text("%sB %12.4E%12.4E%12.4E%12.4E", name, b[0], b[1], b[2], b[3]), "IONOSPHERIC CORR");
+    out += labelled(formatted("%sA %12.4E%12.4E%12.4E%12.4E", name, a[0], a[1], a[2], a[3]), "IONOSPHERIC CORR");
+    out += labelled(formatted("%sB %12.4E%12.4E%12.4E%12.4E", name, b[0], b[1], b[2], b[3]), "IONOSPHERIC CORR");
   }
   return out;
 }
 
 }  // namespace
 
-std::string navigation_file_text(const NavigationData& data) {
+bool is_in_rinex3(NavigationMessage m) {
+  return m == NavigationMessage::kLnav || m == NavigationMessage::kInav || m == NavigationMessage::kFnav ||
+         m == NavigationMessage::kD1 || m == NavigationMessage::kD2 || m == NavigationMessage::kFdma;
+}
+
+Result<std::string> navigation_file_text(const NavigationData& data) {
   std::vector<KeplerEphemeris> kepler;
   std::copy_if(data.kepler.begin(), data.kepler.end(), std::back_inserter(kepler),
-               [](const auto& r) { return in_rinex3(r.message); });
+               [](const auto& r) { return is_in_rinex3(r.message); });
   auto glonass = data.glonass;
+  if (auto error = broken_second(kepler, &KeplerEphemeris::toc, data)) return *std::move(error);
+  if (auto error = broken_second(glonass, &GlonassEphemeris::toe, data)) return *std::move(error);
   std::stable_sort(kepler.begin(), kepler.end(),
                    [](const auto& a, const auto& b) { return a.sv != b.sv ? a.sv < b.sv : a.toe < b.toe; });
   std::stable_sort(glonass.begin(), glonass.end(),
                    [](const auto& a, const auto& b) { return a.sv != b.sv ? a.sv < b.sv : a.toe < b.toe; });
 
-  std::string out = labelled(text("%9.2f           NAVIGATION DATA     M: MIXED", 3.04), "RINEX VERSION / TYPE");
-  out += labelled(text("%-20s%-20s", (std::string("canyon ") + kVersion).c_str(), ""), "PGM / RUN BY / DATE");
+  std::string out = labelled(formatted("%9.2f           NAVIGATION DATA     M: MIXED", 3.04), "RINEX VERSION / TYPE");
+  out += labelled(formatted("%-20s%-20s", (std::string("canyon ") + kVersion).c_str(), ""), "PGM / RUN BY / DATE");
   out += ionosphere(data);
   const bool any = !kepler.empty() || !glonass.empty();
   if (any) {
     const GpsTime t = kepler.empty() ? glonass.front().toe : kepler.front().toe;
-    out += labelled(text("%6d", t.leap_seconds()), "LEAP SECONDS");
+    out += labelled(formatted("%6d", t.leap_seconds()), "LEAP SECONDS");
   }
   out += labelled("", "END OF HEADER");
   for (const auto& r : kepler) out += record(r);

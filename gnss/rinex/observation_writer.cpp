@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "core/check.h"
 #include "core/version.h"
+#include "gnss/rinex/written_lines.h"
 #include "gnss/signal.h"
 
 namespace canyon::gnss {
@@ -15,29 +15,17 @@ namespace {
 
 constexpr std::string_view kKinds = "CLDS";
 
-std::string text(const char* format, auto... values) {
-  char buffer[160];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
-std::string labelled(std::string line, const char* label) {
-  line.resize(60, ' ');
-  return line + label + "\n";
-}
-
 char attribute(GnssSystem system, int band) {
   switch (system) {
     case GnssSystem::kGps:
-      return band == 2 ? 'W' : band == 5 ? 'Q' : 'C';
+    case GnssSystem::kQzss:
+      return band == 2 ? 'L' : band == 5 ? 'Q' : 'C';
     case GnssSystem::kGlonass:
       return 'C';
     case GnssSystem::kGalileo:
       return band == 1 || band == 6 ? 'C' : 'Q';
     case GnssSystem::kBeidou:
       return band == 1 || band == 5 ? 'P' : 'I';
-    case GnssSystem::kQzss:
-      return band == 2 ? 'L' : band == 5 ? 'Q' : 'C';
     case GnssSystem::kSbas:
       return band == 5 ? 'I' : 'C';
   }
@@ -47,7 +35,7 @@ char attribute(GnssSystem system, int band) {
 /// F14.3 and the two flags.
 std::string field(double value, bool slipped, double cn0_dbhz) {
   if (!std::isfinite(value)) return std::string(16, ' ');
-  std::string out = text("%14.3f", value);
+  std::string out = formatted("%14.3f", value);
   if (out.size() != 14 || value == 0.0) return std::string(16, ' ');  // 0.000 would read as missing
   out += slipped ? '1' : ' ';
   // RINEX: 1 is below 12 dB-Hz, 9 from 54 on.
@@ -70,7 +58,7 @@ std::optional<Measured> of_band(const GnssObservation& o, int band) {
 
 std::string time_of(GpsTime t) {
   const CalendarTime c = calendar(t);
-  return text("%6d%6d%6d%6d%6d%13.7f     GPS", c.year, c.month, c.day, c.hour, c.minute, c.second);
+  return formatted("%6d%6d%6d%6d%6d%13.7f     GPS", c.year, c.month, c.day, c.hour, c.minute, c.second);
 }
 
 /// The tag in the file has 100 ns.
@@ -96,41 +84,42 @@ ObservationWriter::ObservationWriter(ObservationWriterOptions options) : options
 }
 
 std::string ObservationWriter::header() const {
-  std::string out =
-      labelled(text("%9.2f           OBSERVATION DATA    %-20s", 3.04,
-                    options_.bands.size() > 1 ? "M: MIXED"
-                                              : std::string(1, system_letter(options_.bands.front().first)).c_str()),
-               "RINEX VERSION / TYPE");
+  std::string out = labelled(
+      formatted(
+          "%9.2f           OBSERVATION DATA    %-20s", 3.04,
+          options_.bands.size() > 1 ? "M: MIXED" : std::string(1, system_letter(options_.bands.front().first)).c_str()),
+      "RINEX VERSION / TYPE");
   const CalendarTime c = calendar(options_.first);
-  out += labelled(text("%-20s%-20s%04d%02d%02d %02d%02d%02d GPS", (std::string("canyon ") + kVersion).c_str(), "",
-                       c.year, c.month, c.day, c.hour, c.minute, static_cast<int>(c.second)),
+  out += labelled(formatted("%-20s%-20s%04d%02d%02d %02d%02d%02d GPS", (std::string("canyon ") + kVersion).c_str(), "",
+                            c.year, c.month, c.day, c.hour, c.minute, static_cast<int>(c.second)),
                   "PGM / RUN BY / DATE");
   out += labelled("simulated observations", "COMMENT");
   out += labelled(options_.marker.substr(0, 60), "MARKER NAME");
   out += labelled("", "OBSERVER / AGENCY");
-  out += labelled(text("%-20s%-20s%-20s", "", "SIMULATED", kVersion), "REC # / TYPE / VERS");
-  out += labelled(text("%-20s%-20s", "", "NONE"), "ANT # / TYPE");
+  out += labelled(formatted("%-20s%-20s%-20s", "", "SIMULATED", kVersion), "REC # / TYPE / VERS");
+  out += labelled(formatted("%-20s%-20s", "", "NONE"), "ANT # / TYPE");
   const Eigen::Vector3d p_E = options_.approx_position_E.value_or(Eigen::Vector3d::Zero());
-  out += labelled(text("%14.4f%14.4f%14.4f", p_E.x(), p_E.y(), p_E.z()), "APPROX POSITION XYZ");
-  out += labelled(text("%14.4f%14.4f%14.4f", 0.0, 0.0, 0.0), "ANTENNA: DELTA H/E/N");
+  out += labelled(formatted("%14.4f%14.4f%14.4f", p_E.x(), p_E.y(), p_E.z()), "APPROX POSITION XYZ");
+  out += labelled(formatted("%14.4f%14.4f%14.4f", 0.0, 0.0, 0.0), "ANTENNA: DELTA H/E/N");
   for (const auto& [system, bands] : options_.bands) {
     std::vector<std::string> codes;
     for (const int band : bands)
       for (const char kind : kKinds) codes.push_back(code(kind, system, band).str());
     for (std::size_t i = 0; i < codes.size(); i += 13) {
-      std::string line = i == 0 ? text("%c  %3zu", system_letter(system), codes.size()) : std::string(6, ' ');
+      std::string line = i == 0 ? formatted("%c  %3zu", system_letter(system), codes.size()) : std::string(6, ' ');
       for (std::size_t k = i; k < std::min(i + 13, codes.size()); ++k) line += " " + codes[k];
       out += labelled(line, "SYS / # / OBS TYPES");
     }
   }
   out += labelled("DBHZ", "SIGNAL STRENGTH UNIT");
-  if (options_.interval_s) out += labelled(text("%10.3f", *options_.interval_s), "INTERVAL");
+  if (options_.interval_s) out += labelled(formatted("%10.3f", *options_.interval_s), "INTERVAL");
   out += labelled(time_of(rounded(options_.first)), "TIME OF FIRST OBS");
   for (const auto& [system, bands] : options_.bands)
     for (const int band : bands)
-      out += labelled(text("%c %s", system_letter(system), code('L', system, band).str().c_str()), "SYS / PHASE SHIFT");
+      out += labelled(formatted("%c %s", system_letter(system), code('L', system, band).str().c_str()),
+                      "SYS / PHASE SHIFT");
   if (!options_.glonass_channels.empty()) {
-    std::string line = text("%3zu ", options_.glonass_channels.size());
+    std::string line = formatted("%3zu ", options_.glonass_channels.size());
     int on_line = 0;
     for (const auto& [slot, channel] : options_.glonass_channels) {
       if (on_line == 8) {
@@ -138,13 +127,13 @@ std::string ObservationWriter::header() const {
         line = "    ";
         on_line = 0;
       }
-      line += text("R%02d %2d ", slot, channel);
+      line += formatted("R%02d %2d ", slot, channel);
       ++on_line;
     }
     out += labelled(line, "GLONASS SLOT / FRQ #");
     out += labelled(" C1C    0.000 C1P    0.000 C2C    0.000 C2P    0.000", "GLONASS COD/PHS/BIS");
   }
-  out += labelled(text("%6d", options_.first.leap_seconds()), "LEAP SECONDS");
+  out += labelled(formatted("%6d", options_.first.leap_seconds()), "LEAP SECONDS");
   return out + labelled("", "END OF HEADER");
 }
 
@@ -167,7 +156,8 @@ std::string ObservationWriter::epoch(const GnssEpoch& epoch) const {
     ++count;
   }
   const CalendarTime c = calendar(rounded(epoch.t));
-  return text("> %04d %02d %02d %02d %02d%11.7f  0%3d\n", c.year, c.month, c.day, c.hour, c.minute, c.second, count) +
+  return formatted("> %04d %02d %02d %02d %02d%11.7f  0%3d\n", c.year, c.month, c.day, c.hour, c.minute, c.second,
+                   count) +
          body;
 }
 

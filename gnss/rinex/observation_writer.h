@@ -35,7 +35,7 @@ class ObservationWriter {
   /// not fit its field, is blank. A slipped phase has bit 0 of its loss-of-lock indicator set.
   std::string epoch(const GnssEpoch& epoch) const;
 
-  /// The code that a band's signal is written under: G 1C 2W 5Q, R 1C 2C, E 1C 5Q 6C 7Q 8Q, C 1P 2I 5P 6I 7I,
+  /// The code that a band's signal is written under: G 1C 2L 5Q, R 1C 2C, E 1C 5Q 6C 7Q 8Q, C 1P 2I 5P 6I 7I,
   /// J 1C 2L 5Q, S 1C 5I.
   static ObservationCode code(char kind, GnssSystem system, int band);
 

@@ -2,10 +2,13 @@
 #include <map>
 #include <string>
 
+#include <Eigen/Geometry>
+
 #include "core/check.h"
 #include "core/units.h"
 #include "gnss/satellites/constellation.h"
 #include "gnss/satellites/csv_table.h"
+#include "gnss/satellites/glonass_channels.h"
 #include "gnss/satellites/kepler.h"
 #include "gnss/satellites/navigation_data.h"
 #include "gnss/satellites/system_constants.h"
@@ -40,6 +43,7 @@ struct Orbit {
   double node_rad, latitude_rad;    // at the epoch, in E of the epoch; mean argument of latitude
   double node_rate, latitude_rate;  // rad/s, in the rotating frame E
   double a_m, e, perigee_rad, inclination_rad;
+  double radius_wave_m, latitude_wave_rad;  // amplitudes at twice the argument of latitude
   int channel;
 };
 
@@ -70,8 +74,14 @@ void add_row(const std::vector<std::string_view>& row, const std::map<int, int>&
                                          : table_number(row[13]) * kDegree / 86400.0;
     o.node_rate = drift - c.earth_rate_rad_s;
     o.latitude_rate = -o.node_rate * table_number(row[11]) / table_number(row[12]);
-    const auto channel = channels.find(satellites[k].prn);
-    if (satellites[k].system == GnssSystem::kGlonass && channel != channels.end()) o.channel = channel->second;
+    if (satellites[k].system == GnssSystem::kGlonass) {
+      o.channel = channels.at(satellites[k].prn);
+      // What the flattening does to a circular orbit within a revolution, to first order: Hill's equations with its
+      // force. GLONASS's users integrate that force, so its messages could not describe a plain circle.
+      const double squared_sine = std::pow(std::sin(o.inclination_rad), 2);
+      o.radius_wave_m = 0.25 * kJ2 * kEquatorRadiusM * kEquatorRadiusM / o.a_m * squared_sine;
+      o.latitude_wave_rad = 0.5 * o.radius_wave_m / o.a_m;
+    }
     CANYON_CHECK(orbits.emplace(satellites[k], o).second, satellites[k].str(), " stands twice in the table");
   }
 }
@@ -80,9 +90,7 @@ class NominalOrbits final : public Constellation {
  public:
   explicit NominalOrbits(const std::string& systems)
       : epoch_(GpsTime::from_calendar(2010, 3, 21, 0, 0, 15.0)) {  // GPS - UTC = 15 s then
-    std::map<int, int> channels;
-    for (const auto& row : table_rows("gnss/tables/glonass_channels.csv"))
-      channels[static_cast<int>(table_number(row[0]))] = static_cast<int>(table_number(row[1]));
+    const std::map<int, int> channels = glonass_channel_plan();
     for (const auto& row : table_rows("gnss/tables/nominal_orbits.csv"))
       if (systems.find(row[0].front()) != std::string::npos) add_row(row, channels, orbits_);
     for (const auto& [sv, orbit] : orbits_) satellites_.push_back(sv);
@@ -98,8 +106,9 @@ class NominalOrbits final : public Constellation {
     const double M = o.latitude_rad + turned(o.latitude_rate, t) - o.perigee_rad;
     const double E = eccentric_anomaly(M, o.e);
     const double E_dot = o.latitude_rate / (1.0 - o.e * std::cos(E)), root = std::sqrt(1.0 - o.e * o.e);
-    const Eigen::Vector2d perifocal = o.a_m * Eigen::Vector2d(std::cos(E) - o.e, root * std::sin(E)),
-                          rate = o.a_m * E_dot * Eigen::Vector2d(-std::sin(E), root * std::cos(E));
+    Eigen::Vector2d perifocal = o.a_m * Eigen::Vector2d(std::cos(E) - o.e, root * std::sin(E)),
+                    rate = o.a_m * E_dot * Eigen::Vector2d(-std::sin(E), root * std::cos(E));
+    if (o.radius_wave_m != 0.0) add_waves(o, 2.0 * (M + o.perigee_rad), perifocal, rate);
 
     const double cw = std::cos(o.perigee_rad), sw = std::sin(o.perigee_rad), cn = std::cos(node), sn = std::sin(node),
                  ci = std::cos(o.inclination_rad), si = std::sin(o.inclination_rad);
@@ -116,6 +125,17 @@ class NominalOrbits final : public Constellation {
   }
 
  private:
+  /// Stretches and turns the position in the orbital plane by the waves, and its rate with it.
+  static void add_waves(const Orbit& o, double twice_latitude, Eigen::Vector2d& p, Eigen::Vector2d& rate) {
+    const double c = std::cos(twice_latitude), s = std::sin(twice_latitude), turns = 2.0 * o.latitude_rate;
+    const double stretch = 1.0 + o.radius_wave_m / o.a_m * c, stretch_rate = -o.radius_wave_m / o.a_m * s * turns;
+    const double turned_rate = o.latitude_wave_rad * c * turns;
+    const Eigen::Rotation2Dd turn(o.latitude_wave_rad * s);
+    const Eigen::Vector2d across(-p.y(), p.x());
+    rate = turn * (stretch * rate + stretch_rate * p + stretch * turned_rate * across).eval();
+    p = turn * (stretch * p).eval();
+  }
+
   /// Angle turned at a constant rate since the epoch, modulo 2 pi; whole days apart, as in nominal_gps.cpp.
   double turned(double rate_rad_s, GpsTime t) const {
     constexpr std::int64_t kDayNs = 86400 * kNsPerSecond;

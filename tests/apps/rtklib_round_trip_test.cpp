@@ -84,6 +84,25 @@ TEST_F(RtklibRoundTripTest, WithErrorsBothSolversAgree) {
   EXPECT_GT(std::sqrt(error), 0.3);  // the errors were on
 }
 
+// The built-in satellites of four systems: state vectors for GLONASS, D2 messages for BeiDou's geostationary ones.
+TEST_F(RtklibRoundTripTest, FourBuiltInSystems) {
+  for (const auto& [systems, lat, lon] : {std::tuple("GRE", 32.35, -90.88), {"GREC", 30.0, 115.0}}) {
+    const std::string place = std::to_string(lat) + "," + std::to_string(lon) + ",60";
+    ASSERT_EQ(canyon("gnss simulate --at " + place + " --systems " + systems +
+                     " --duration 3600 --rate 0.0333333333333 --errors none --rinex-obs obs.rnx --rinex-nav nav.rnx"),
+              0)
+        << read("stderr");
+    EXPECT_EQ(read("stderr"), "");
+    const Eigen::Vector3d truth = ecef_from_geodetic({lat * kDegree, lon * kDegree, 60.0});
+    const auto found = rnx2rtkp(false);
+    ASSERT_EQ(found.size(), 121U);
+    double worst_m = 0.0;
+    for (const auto& [sow, p] : found) worst_m = std::max(worst_m, (p - truth).norm());
+    EXPECT_LT(worst_m, 0.05) << systems;
+    std::printf("%s: %.4f m\n", systems, worst_m);
+  }
+}
+
 // The real satellites of a day, four systems, written again with what the receiver would measure.
 TEST_F(RtklibRoundTripTest, FourSystemsOfARealDay) {
   CANYON_REAL_DATA(nav, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");

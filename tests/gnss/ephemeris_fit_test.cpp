@@ -28,7 +28,7 @@ TEST(EphemerisFit, NominalOrbitsAreFollowedToRounding) {
 
 TEST(EphemerisFit, RecordsMakeTheSameConstellationAgain) {
   const auto nominal = make_nominal_gps();
-  const NavigationData data = fit_navigation_data(*nominal, kToe - 1800.0, kToe + 5400.0);
+  const NavigationData data = fit_navigation_data(*nominal, nominal->satellites(), kToe - 1800.0, kToe + 5400.0);
   const auto again = make_broadcast(data);
   EXPECT_EQ(again->satellites(), nominal->satellites());
   EXPECT_EQ(data.leap_seconds, 15);
@@ -63,9 +63,38 @@ TEST(EphemerisFitReal, BroadcastRecordsAreFoundAgain) {
   EXPECT_GT(fitted_records, 10);
 }
 
+// The built-in satellites of all systems, also those over the equator, whose node is undefined: D2 messages for
+// BeiDou's, LNAV for QZSS's.
+TEST(EphemerisFit, NominalOrbitsOfAllSystems) {
+  const auto nominal = make_nominal("ECJ");
+  for (const SatelliteId sv : nominal->satellites()) {
+    const auto fitted = fit_ephemeris(*nominal, sv, kToe);
+    ASSERT_TRUE(fitted.has_value()) << sv.str();
+    EXPECT_LT(fitted->max_m, 1e-3) << sv.str();
+    EXPECT_EQ(fitted->ephemeris.geostationary_frame(), sv.system == GnssSystem::kBeidou && sv.prn >= 59);
+  }
+}
+
+// GLONASS's users integrate the force of the Earth's flattening; second order of it, and what the published node rate
+// has from the Moon and the Sun, are left.
+TEST(EphemerisFit, StateVectorsOfGlonass) {
+  const auto nominal = make_nominal("R");
+  double worst_m = 0.0;
+  for (const SatelliteId sv : nominal->satellites())
+    for (double s = 0.0; s < 43200.0; s += 2700.0) {
+      const auto fitted = fit_state_vector(*nominal, sv, kToe + s);
+      ASSERT_TRUE(fitted.has_value()) << sv.str();
+      worst_m = std::max(worst_m, fitted->max_m);
+      EXPECT_EQ(fitted->ephemeris.frequency_channel, nominal->state(sv, kToe)->frequency_channel);
+    }
+  EXPECT_LT(worst_m, 0.01);  // measured 7 mm
+}
+
 TEST(EphemerisFit, WhatCannotBeFitted) {
   const auto nominal = make_nominal_gps();
   EXPECT_FALSE(fit_ephemeris(*nominal, {GnssSystem::kGlonass, 1}, kToe).has_value());
+  EXPECT_FALSE(fit_state_vector(*nominal, {GnssSystem::kGps, 1}, kToe).has_value());
+  EXPECT_FALSE(fit_state_vector(*nominal, {GnssSystem::kGlonass, 1}, kToe).has_value());
   EXPECT_FALSE(fit_ephemeris(*nominal, {GnssSystem::kGps, 30}, kToe).has_value());
 }
 

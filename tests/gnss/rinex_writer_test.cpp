@@ -45,7 +45,7 @@ Written written() {
   const NavigationData data = synthetic_navigation();
   const auto constellation = make_broadcast(data);
   Written out;
-  out.navigation = navigation_file_text(data);
+  out.navigation = *navigation_file_text(data);
   const GpsTime first = kSyntheticNoon + 60.0;
   const ObservationWriter writer(all_systems(first));
   out.observations = writer.header();
@@ -94,7 +94,7 @@ TEST(ObservationWriter, HeaderAndRowsWordForWord) {
   const ObservationWriter writer(o);
   const std::string header = writer.header();
   EXPECT_THAT(header, HasSubstr("     3.04           OBSERVATION DATA    M: MIXED            RINEX VERSION / TYPE\n"));
-  EXPECT_THAT(header, HasSubstr("G   12 C1C L1C D1C S1C C2W L2W D2W S2W C5Q L5Q D5Q S5Q      SYS / # / OBS TYPES\n"));
+  EXPECT_THAT(header, HasSubstr("G   12 C1C L1C D1C S1C C2L L2L D2L S2L C5Q L5Q D5Q S5Q      SYS / # / OBS TYPES\n"));
   EXPECT_THAT(header, HasSubstr("R    4 C1C L1C D1C S1C                                      SYS / # / OBS TYPES\n"));
   EXPECT_THAT(header, HasSubstr("  2020     6    25    12     0    0.0000000     GPS         TIME OF FIRST OBS\n"));
   EXPECT_THAT(header, HasSubstr("  2 R01  1 R02 -4                                           GLONASS SLOT / FRQ #\n"));
@@ -119,7 +119,7 @@ TEST(ObservationWriter, HeaderAndRowsWordForWord) {
 
 TEST(NavigationWriter, WhatIsWrittenIsReadBack) {
   const NavigationData data = synthetic_navigation();
-  const std::string text = navigation_file_text(data);
+  const std::string text = *navigation_file_text(data);
   const auto back = parse_navigation_file(text, "w.nav");
   ASSERT_TRUE(back.ok()) << back.error().str();
   EXPECT_THAT(back->warnings, ElementsAre());
@@ -146,7 +146,7 @@ TEST(NavigationWriter, RealDayOfAllSystems) {
   CANYON_REAL_DATA(path, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");
   const auto data = read_navigation_file(path);
   ASSERT_TRUE(data.ok());
-  const auto back = parse_navigation_file(navigation_file_text(*data), "w.nav");
+  const auto back = parse_navigation_file(*navigation_file_text(*data), "w.nav");
   ASSERT_TRUE(back.ok()) << back.error().str();
   EXPECT_THAT(back->warnings, ElementsAre());
   EXPECT_EQ(back->kepler.size(), data->kepler.size());
