@@ -10,11 +10,11 @@
 #include "apps/gnss_setup.h"
 #include "apps/json.h"
 #include "core/files.h"
+#include "core/median.h"
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/units.h"
 #include "gnss/paths/obstruction.h"
-#include "mission/summary.h"
 #include "report/sky_plot.h"
 
 namespace canyon::apps {
@@ -80,9 +80,9 @@ std::string satellites_csv(const std::vector<Epoch>& epochs) {
   for (const Epoch& e : epochs)
     for (const GnssObservationTruth& s : e.output.truth.satellites) {
       const double cn0 = cn0_of(e.output, s.sv);
-      out += text("%.3f,%s,%.3f,%.3f,%s,%d,%d,%d,%.3f\n", e.t_s, s.sv.str().c_str(), s.elevation_rad / kDegree,
+      out += text("%.3f,%s,%.3f,%.3f,%s,%d,%d,%d,%s\n", e.t_s, s.sv.str().c_str(), s.elevation_rad / kDegree,
                   s.azimuth_rad / kDegree, std::isfinite(cn0) ? text("%.2f", cn0).c_str() : "", s.line_of_sight ? 1 : 0,
-                  s.tracked ? 1 : 0, s.reflections, s.multipath_m);
+                  s.tracked ? 1 : 0, s.reflections, s.tracked ? text("%.3f", s.multipath_m).c_str() : "");
     }
   return out;
 }
@@ -179,8 +179,8 @@ void print(const std::vector<Epoch>& epochs, const gnss::ObstructionMask& mask, 
     if (e.output.fix.status != FixStatus::kNone) gdop.push_back(e.output.fix.dop.gdop);
   }
   std::printf("over %zu epochs: fix in %zu; GDOP median %.2f, max %.2f; satellites median %.0f, fewest %.0f\n",
-              epochs.size(), gdop.size(), mission::median(gdop),
-              gdop.empty() ? kNaN : *std::max_element(gdop.begin(), gdop.end()), mission::median(satellites),
+              epochs.size(), gdop.size(), median(gdop),
+              gdop.empty() ? kNaN : *std::max_element(gdop.begin(), gdop.end()), median(satellites),
               *std::min_element(satellites.begin(), satellites.end()));
 }
 

@@ -69,7 +69,7 @@ Result<gnss::Truth> truth_of(const Options& options) {
 }
 
 Json summary_json(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s,
-                  const gnss::ObservationFile& file) {
+                  const gnss::ObservationFile& file, const gnss::NavigationData& navigation) {
   Json json{{"epochs", s.epochs},
             {"solved", s.solved},
             {"compared", s.compared},
@@ -87,16 +87,24 @@ Json summary_json(const gnss::SinglePointResult& result, const gnss::PositionSta
             {"velocity_rms_n_m_s", or_null(s.velocity_rms_enu_m_s.y())},
             {"velocity_rms_u_m_s", or_null(s.velocity_rms_enu_m_s.z())},
             {"damaged_records", file.damaged},
+            {"other_system_satellites", file.other_system_satellites},
             {"warnings", result.warnings.size() + file.warnings.size()}};
+  json["skipped_navigation_records"] = Json::object();
+  for (const auto& [kind, count] : navigation.skipped_records) json["skipped_navigation_records"][kind] = count;
   json["unsolved"] = Json::object();
   for (const auto& [reason, count] : result.reasons) json["unsolved"][reason] = count;
   return json;
 }
 
-void tell(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s, const gnss::ObservationFile& file) {
+void tell(const gnss::SinglePointResult& result, const gnss::PositionStatistics& s, const gnss::ObservationFile& file,
+          const gnss::NavigationData& navigation) {
   std::printf("%s: %d epochs from %s GPS time, %d solved\n", file.name.c_str(), s.epochs,
               file.epochs.front().t.iso(0).c_str(), s.solved);
   for (const auto& [reason, count] : result.reasons) std::printf("  %6d without: %s\n", count, reason.c_str());
+  if (file.other_system_satellites > 0)
+    std::printf("  %6d observations of satellites of other systems, not used\n", file.other_system_satellites);
+  if (const std::string skipped = navigation.skipped(); !skipped.empty())
+    std::printf("  navigation records not used: %s\n", skipped.c_str());
   if (s.compared == 0) return;
   std::printf("  error, m     mean     std\n");
   const char* axes[] = {"east", "north", "up"};
@@ -114,9 +122,10 @@ Status write_output(const Options& options, const gnss::SinglePointResult& resul
   return staged.commit();
 }
 
-/// Broadcast orbits and clocks, or precise ones with the broadcast group delays.
+/// Broadcast orbits and clocks, or precise ones with the broadcast group delays and GLONASS's channels.
 Result<std::unique_ptr<gnss::Constellation>> satellites(const Options& options, const gnss::SinglePointConfig& config,
                                                         const gnss::NavigationData& navigation,
+                                                        const gnss::ObservationHeader& header,
                                                         std::vector<std::string>& warnings) {
   if (options.sp3.empty()) {
     gnss::BroadcastOptions broadcast;
@@ -128,7 +137,8 @@ Result<std::unique_ptr<gnss::Constellation>> satellites(const Options& options, 
   warnings.insert(warnings.end(), orbits.warnings.begin(), orbits.warnings.end());
   gnss::PreciseOptions precise;
   precise.systems = config.systems;
-  precise.group_delays = &navigation;
+  precise.broadcast = &navigation;
+  precise.glonass_channels = header.glonass_channels;
   std::optional<gnss::AntexFile> antennas;
   if (!options.antex.empty()) {
     CANYON_TRY(antennas, gnss::read_antex_file(options.antex));
@@ -148,7 +158,7 @@ Result<int> run(const Options& options) {
   CANYON_TRY(const auto navigation, gnss::read_navigation_files(options.navigation));
   CANYON_TRY(const auto file, gnss::read_observation_file(options.observations));
   std::vector<std::string> warnings = navigation.warnings;
-  CANYON_TRY(const auto constellation, satellites(options, config, navigation, warnings));
+  CANYON_TRY(const auto constellation, satellites(options, config, navigation, file.header, warnings));
   std::optional<gnss::IonexMaps> maps;
   if (!options.ionex.empty()) {
     CANYON_TRY(maps, gnss::read_ionex_file(options.ionex));
@@ -160,7 +170,7 @@ Result<int> run(const Options& options) {
   std::vector<GnssFix> fixes;
   for (const auto& e : result.epochs) fixes.push_back(e.fix);
   const auto statistics = gnss::position_statistics(fixes, truth);
-  const auto json = summary_json(result, statistics, file);
+  const auto json = summary_json(result, statistics, file, navigation);
   CANYON_TRY_STATUS(write_output(options, result, json));
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
@@ -168,7 +178,7 @@ Result<int> run(const Options& options) {
   if (options.common.json)
     std::printf("%s\n", json.dump().c_str());
   else
-    tell(result, statistics, file);
+    tell(result, statistics, file, navigation);
   return 0;
 }
 

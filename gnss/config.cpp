@@ -77,7 +77,8 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   std::vector<std::string> modulations = modulation_names();
   modulations.insert(modulations.begin(), "auto");
   f.choice("modulation", c.modulation, modulations, "of the tracked signals; auto = each system's open signal");
-  f.choice("second_frequency", c.second_frequency, {"L2", "L5"}, "mode dual: L2 and its like, or L5, E5a, B2a");
+  f.choice("second_frequency", c.second_frequency, {"L2", "L5"},
+           "mode dual: L2 and its like (Galileo E5b, BeiDou B3I), or L5, E5a, B2a");
   f.choice("correlator", c.correlator, {"early_late", "double_delta"}, "one or two pairs of early and late");
   f.choice("discriminator", c.discriminator, {"power", "coherent"}, "early minus late of powers, or in phase");
   f.number("correlator_spacing_chips", c.correlator_spacing_chips, {0.01, 1.0}, "early to late, in the signal's chips");

@@ -94,7 +94,7 @@ int second_band(GnssSystem system, const std::string& second_frequency) {
     case GnssSystem::kGalileo:
       return l5 ? 5 : 7;
     case GnssSystem::kBeidou:
-      return l5 ? 5 : 7;
+      return l5 ? 5 : 6;  // B3I: only BeiDou-2 sends B2I
     case GnssSystem::kGps:
     case GnssSystem::kQzss:
     case GnssSystem::kSbas:

@@ -9,11 +9,11 @@
 #include "gnss/pseudorange_parts.h"
 #include "gnss/receiver/carrier_noise.h"
 #include "gnss/receiver/loop_noise.h"
-#include "gnss/receiver/range_rate.h"
 #include "gnss/receiver/receiver_fix.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/sensor_models.h"
 #include "gnss/signal.h"
+#include "gnss/solver/velocity.h"
 
 namespace canyon::gnss {
 namespace {
@@ -193,7 +193,9 @@ class PseudorangeSensor final : public GnssSensor {
       truth.diffractions += p.diffractions > 0 ? 1 : 0;
     }
     truth.range_m = sight.signal.range_m;
-    truth.range_rate_m_s = range_rate_m_s(sight.signal, epoch.out.truth.p_A_E, epoch.out.truth.v_A_E);
+    const SatelliteState& satellite = sight.signal.state;
+    truth.range_rate_m_s =
+        range_rate_m_s({.p_E = satellite.p_E, .v_E = satellite.v_E}, epoch.out.truth.p_A_E, epoch.out.truth.v_A_E);
     return truth;
   }
 

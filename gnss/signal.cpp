@@ -30,7 +30,8 @@ constexpr Carrier kCarriers[] = {
 
 double carrier_hz(GnssSystem system, int band, int channel) {
   for (const Carrier& c : kCarriers)
-    if (c.system == system && c.band == band) return c.hz + channel * c.per_channel_hz;
+    if (c.system == system && c.band == band)
+      return c.per_channel_hz != 0.0 && channel == kUnknownChannel ? kNaN : c.hz + channel * c.per_channel_hz;
   return kNaN;
 }
 

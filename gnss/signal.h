@@ -14,8 +14,11 @@ inline constexpr double kL1Hz = 1575.42e6;
 inline constexpr double kL1WavelengthM = kSpeedOfLight / kL1Hz;
 inline constexpr double kCaChipM = kSpeedOfLight / 1.023e6;  ///< length of a C/A code chip, 293.05 m
 
+/// GLONASS frequency number of a satellite whose channel nobody tells.
+inline constexpr int kUnknownChannel = 99;
+
 /// Carrier frequency, Hz, of a RINEX band digit (RINEX 4.01, tables 10 to 16); NaN for a band the system does not have.
-/// `channel`: GLONASS frequency number, -7..6.
+/// `channel`: GLONASS frequency number, -7..6; kUnknownChannel gives NaN for its FDMA bands.
 double carrier_hz(GnssSystem system, int band, int channel = 0);
 /// Band of the system's first open single-frequency signal: 1 (L1, E1, G1), but 2 (B1I) for BeiDou.
 int first_band(GnssSystem system);

@@ -54,8 +54,11 @@ class Launching final : public PathModel {
              counters);
     }
     for (std::size_t k = 0; k < out.size(); ++k) {
-      for (const auto& [sequence, best] : caught[k])
-        connect(p_A_W, directions_W[k], best.second, scene, out[k], counters);
+      // A wall that lies on a border of the keys' rounding stands under two of them: the nearer ray counts.
+      std::vector<const std::pair<double, Launched>*> rays;
+      for (const auto& [sequence, best] : caught[k]) rays.push_back(&best);
+      std::stable_sort(rays.begin(), rays.end(), [](const auto* a, const auto* b) { return a->first > b->first; });
+      for (const auto* ray : rays) connect(p_A_W, directions_W[k], ray->second, scene, out[k], counters);
       std::stable_sort(out[k].echoes.begin(), out[k].echoes.end(),
                        [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
     }
@@ -139,6 +142,11 @@ class Launching final : public PathModel {
       }
       incoming_W -= 2.0 * incoming_W.dot(b.normal_W) * b.normal_W;
     }
+    path.reflections = ray.bounces;
+    const bool known = std::any_of(out.echoes.begin(), out.echoes.end(), [&](const SignalPath& e) {
+      return e.reflections == path.reflections && e.facets == path.facets;
+    });
+    if (known) return;
     const CircularField field = reflected_field({bounces.data(), last + 1});
     const double weakest_db = out.line_of_sight ? p_.weakest_db : p_.weakest_nlos_db;
     if (std::norm(field.copolar) + std::norm(field.crosspolar) < std::pow(10.0, weakest_db / 10.0)) return;
@@ -148,7 +156,6 @@ class Launching final : public PathModel {
     path.copolar = field.copolar;
     path.crosspolar = field.crosspolar;
     path.arrival_W = (ray.points_W[0] - p_A_W).normalized();
-    path.reflections = ray.bounces;
     path.foliage_m = scene.foliage_m(end_W, s);
     Eigen::Vector3d at_W = p_A_W;
     for (std::size_t j = 0; j <= last; ++j) {

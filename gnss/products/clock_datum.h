@@ -13,7 +13,8 @@ struct BandPair {
 };
 BandPair precise_clock_bands(GnssSystem system);
 
-/// Weights of the ionosphere-free combination of two bands: first + second = 1.
+/// Weights of the ionosphere-free combination of two bands: first + second = 1. They are the same for all channels of
+/// GLONASS, whose two carriers keep the ratio 9 : 7.
 struct CombinationWeights {
   double first, second;
 };

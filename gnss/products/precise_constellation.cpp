@@ -6,7 +6,9 @@
 #include "core/units.h"
 #include "gnss/products/clock_datum.h"
 #include "gnss/products/precise_orbits.h"
+#include "gnss/satellites/glonass_channels.h"
 #include "gnss/satellites/system_constants.h"
+#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -23,6 +25,8 @@ struct Track {
   std::vector<Run> runs;
   std::vector<Antenna> antennas;
   std::array<double, 10> group_delay_s{};
+  unsigned borrowed_delay_bands = 0;
+  int frequency_channel = 0;
 };
 
 struct Motion {
@@ -67,10 +71,19 @@ std::optional<std::array<double, 10>> delays_for_precise_clock(const KeplerEphem
       return known({1, 5, 7});
     case NavigationMessage::kD1:
     case NavigationMessage::kD2:
-      return known({2, 6, 7});
+      return known({1, 2, 6, 7});
     default:
       return std::nullopt;
   }
+}
+
+/// By slot; what is nearer to the observations counts.
+std::map<int, int> glonass_channels(const PreciseOptions& options) {
+  std::map<int, int> channels = options.glonass_channels;
+  if (options.broadcast != nullptr)
+    for (const auto& r : options.broadcast->glonass) channels.emplace(r.sv.prn, r.frequency_channel);
+  channels.merge(glonass_channel_plan());
+  return channels;
 }
 
 class Precise final : public Constellation {
@@ -81,19 +94,27 @@ class Precise final : public Constellation {
     if (options.clocks != nullptr) clocks_ = *options.clocks;
     for (const auto& [sv, samples] : orbits.satellites) {
       if (options.systems.find(system_letter(sv.system)) == std::string::npos) continue;
-      Track track{samples, runs_of(samples), {}, {}};
+      Track track{samples, runs_of(samples), {}, {}, 0, 0};
       if (options.antennas != nullptr)
         for (const auto& antenna : options.antennas->antennas)
           if (antenna.sv == sv) track.antennas.push_back(antenna);
       tracks_.emplace(sv, std::move(track));
       satellites_.push_back(sv);
     }
-    if (options.group_delays != nullptr)
-      for (const auto& r : options.group_delays->kepler) {
+    if (options.broadcast != nullptr)
+      for (const auto& r : options.broadcast->kepler) {
         const auto found = tracks_.find(r.sv);
         const auto delays = delays_for_precise_clock(r);
-        if (found != tracks_.end() && delays) found->second.group_delay_s = *delays;
+        if (found == tracks_.end() || !delays) continue;
+        found->second.group_delay_s = *delays;
+        found->second.borrowed_delay_bands = r.borrowed_delay_bands();
       }
+    const std::map<int, int> channels = glonass_channels(options);
+    for (auto& [sv, track] : tracks_) {
+      if (sv.system != GnssSystem::kGlonass) continue;
+      const auto known = channels.find(sv.prn);
+      track.frequency_channel = known == channels.end() ? kUnknownChannel : known->second;
+    }
   }
 
   const std::vector<SatelliteId>& satellites() const override { return satellites_; }
@@ -122,6 +143,8 @@ class Precise final : public Constellation {
     s.clock_s = clock->value + kPerC2 * m.p_E.dot(m.v_E);
     s.clock_rate = clock->rate + kPerC2 * (v_inertial.squaredNorm() - earth.mu_m3_s2 / m.p_E.norm());
     s.group_delay_s = track.group_delay_s;
+    s.borrowed_delay_bands = track.borrowed_delay_bands;
+    s.frequency_channel = track.frequency_channel;
     for (const auto& antenna : track.antennas)
       if ((!antenna.valid_from || t >= *antenna.valid_from) && (!antenna.valid_to || t <= *antenna.valid_to)) {
         s.p_E += satellite_offset_E(antenna, m.p_E, t);

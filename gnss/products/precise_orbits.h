@@ -52,8 +52,12 @@ struct PreciseOptions {
   /// Satellite antennas: from the centre of mass to the phase centre of the ionosphere-free combination of the clocks.
   /// Without them p_E is the centre of mass, and ranges are too long by up to 2.7 m.
   const AntexFile* antennas = nullptr;
-  /// Broadcast group delays, which single-frequency users need with any clock; without them they are 0.
-  const NavigationData* group_delays = nullptr;
+  /// Broadcast group delays, which single-frequency users need with any clock (without them they are 0), and GLONASS's
+  /// frequency numbers.
+  const NavigationData* broadcast = nullptr;
+  /// GLONASS frequency numbers by slot, as an observation file's header tells them; they come before those of
+  /// `broadcast`, and those before the public plan.
+  std::map<int, int> glonass_channels = {};
 };
 
 /// Interpolated precise orbits and clocks.

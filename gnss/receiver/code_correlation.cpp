@@ -46,6 +46,7 @@ double chip_rate_hz(Modulation modulation) {
 }
 
 Modulation modulation_of(GnssSystem system, int band) {
+  if (system == GnssSystem::kBeidou && band == 7) return Modulation::kBpsk2;  // B2I
   if (band >= 5) return Modulation::kBpsk10;
   switch (system) {
     case GnssSystem::kGlonass:

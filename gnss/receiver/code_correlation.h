@@ -11,8 +11,9 @@
 namespace canyon::gnss {
 
 /// Spreading of a ranging signal. BPSK(n): rectangular chips at n x 1.023 MHz (GPS and QZSS C/A and L2C n = 1, BeiDou
-/// B1I n = 2, GPS L5 and Galileo E5a n = 10; GLONASS FDMA 0.511 MHz). BOC(1,1): chips at 1.023 MHz, each two half-chips
-/// of opposite sign (sine phase; Galileo E1, GPS L1C, BeiDou B1C but for their small high-frequency part).
+/// B1I and B2I n = 2, B3I, GPS L5 and Galileo E5a n = 10; GLONASS FDMA 0.511 MHz). BOC(1,1): chips at 1.023 MHz, each
+/// two half-chips of opposite sign (sine phase; Galileo E1, GPS L1C, BeiDou B1C but for their small high-frequency
+/// part).
 enum class Modulation { kBpsk05, kBpsk1, kBpsk2, kBpsk10, kBoc11 };
 inline constexpr std::size_t kModulations = 5;
 

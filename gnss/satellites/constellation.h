@@ -23,7 +23,9 @@ struct SatelliteState {
   /// alone subtracts from clock_s: TGD, BGD, ISC. 0 where the message does not tell.
   std::array<double, 10> group_delay_s{};
   double accuracy_m = kNaN;   ///< 1-sigma of the range that the message announces (URA, SISA); NaN where it does not
-  int frequency_channel = 0;  ///< GLONASS FDMA: -7..6; 0 otherwise
+  int frequency_channel = 0;  ///< GLONASS FDMA: -7..6, kUnknownChannel where nobody tells; 0 otherwise
+  /// Bit b: the message does not tell the delay of band b, and group_delay_s has that of a band close by.
+  unsigned borrowed_delay_bands = 0;
 
   /// Clock for a user of one band alone.
   double clock_of_band_s(int band) const { return clock_s - group_delay_s.at(static_cast<std::size_t>(band)); }
@@ -46,9 +48,9 @@ class Constellation {
 std::unique_ptr<Constellation> make_nominal_gps();
 
 /// Nominal constellations without any file, of the systems of these RINEX letters (G R E C J; others throw): GPS as
-/// above; Galileo and GLONASS Walker 24/3/1; BeiDou-3 with 24 MEO, 3 IGSO and 3 GEO; QZSS with 3 inclined satellites
-/// and one GEO (gnss/tables/nominal_orbits.csv, with sources). Ground tracks repeat, clocks are perfect, GLONASS has
-/// its channels.
+/// above; Galileo and GLONASS Walker 24/3/1 (GLONASS's with the waves that the Earth's flattening makes); BeiDou-3 with
+/// 24 MEO, 3 IGSO and 3 GEO; QZSS with 3 inclined satellites and one GEO (gnss/tables/nominal_orbits.csv, with
+/// sources). Ground tracks repeat, clocks are perfect, GLONASS has its channels.
 std::unique_ptr<Constellation> make_nominal(const std::string& systems);
 
 }  // namespace canyon::gnss

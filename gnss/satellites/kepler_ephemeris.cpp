@@ -87,12 +87,12 @@ std::array<double, 10> KeplerEphemeris::group_delay_s() const {
       break;
     case Message::kD1:
     case Message::kD2:  // BDS-SIS-ICD-B1I 3.0, 5.2.4.10: the clock is that of B3I, band 6
-      out[2] = tgd_s;
+      out[1] = out[2] = tgd_s;
       out[7] = tgd2_s;
       break;
     case Message::kBcnav1:
     case Message::kBcnav2:  // BDS-SIS-ICD-B1C 1.0, 7.6.2: pilot components; the data components add their ISC
-      out[1] = tgd_s;
+      out[1] = out[2] = tgd_s;
       out[5] = tgd2_s;
       break;
     case Message::kFdma:
@@ -100,6 +100,12 @@ std::array<double, 10> KeplerEphemeris::group_delay_s() const {
       break;
   }
   return out;
+}
+
+unsigned KeplerEphemeris::borrowed_delay_bands() const {
+  if (message == Message::kD1 || message == Message::kD2) return 1u << 1;
+  if (message == Message::kBcnav1 || message == Message::kBcnav2) return 1u << 2;
+  return 0;
 }
 
 SatelliteState KeplerEphemeris::at(GpsTime t) const {
@@ -140,6 +146,7 @@ SatelliteState KeplerEphemeris::at(GpsTime t) const {
   s.clock_s = af0_s + af1 * tc_s + af2_per_s * tc_s * tc_s + relativity * sin_E;
   s.clock_rate = af1 + 2.0 * af2_per_s * tc_s + relativity * cos_E * E_dot;
   s.group_delay_s = group_delay_s();
+  s.borrowed_delay_bands = borrowed_delay_bands();
   s.accuracy_m = accuracy_m;
   return s;
 }

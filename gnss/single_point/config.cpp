@@ -17,8 +17,10 @@ void visit(FieldVisitor& f, SinglePointConfig& c) {
   f.choice("group_delay", c.group_delay, {"none", "broadcast", "rtklib"},
            "broadcast = TGD, BGD, ISC for the band used; rtklib = the same, but GLONASS clocks read as those of an "
            "ionosphere-free combination");
-  f.choice("ionosphere", c.ionosphere, ionosphere_corrections_of_observations(),
-           "what is subtracted for the ionosphere; with two frequencies it does not matter");
+  f.choice(
+      "ionosphere", c.ionosphere, ionosphere_corrections_of_observations(),
+      "what is subtracted for the ionosphere: klobuchar = GPS's coefficients for all, klobuchar_own = each system's "
+      "own where it sends some; with two frequencies it does not matter");
   f.choice("troposphere", c.troposphere, troposphere_corrections_of_observations(),
            "what is subtracted for the troposphere");
   f.number("shared_ionosphere", c.shared_ionosphere, {0.0, 10.0},

@@ -1,12 +1,15 @@
 #include "gnss/single_point/group_delay.h"
 
+#include <cmath>
 #include <utility>
 
-#include "gnss/signal.h"
+#include "core/units.h"
+#include "gnss/products/clock_datum.h"
 
 namespace canyon::gnss {
 namespace {
 
+constexpr double kLentDelayS = 3.3e-9;  // KeplerEphemeris::group_delay_s()
 constexpr double kGlonassGamma = (1602.0 / 1246.0) * (1602.0 / 1246.0);
 
 std::array<double, 10> rtklib_bands_s(const KeplerEphemeris& r) {
@@ -46,13 +49,19 @@ double GroupDelays::delay_s(const SatelliteState& state, SatelliteId sv, int ban
   const auto delay_s = by_band_s(state, sv);
   const double first_s = delay_s.at(static_cast<std::size_t>(band));
   if (!second_band) return first_s;
-  const double a = first_weight(carrier_hz(sv.system, band, state.frequency_channel),
-                                carrier_hz(sv.system, *second_band, state.frequency_channel));
-  return a * first_s - (a - 1.0) * delay_s.at(static_cast<std::size_t>(*second_band));
+  const CombinationWeights w = ionosphere_free(sv.system, {band, *second_band});
+  return w.first * first_s + w.second * delay_s.at(static_cast<std::size_t>(*second_band));
 }
 
-double first_weight(double first_hz, double second_hz) {
-  return first_hz * first_hz / (first_hz * first_hz - second_hz * second_hz);
+double GroupDelays::sigma_m(const SatelliteState& state, SatelliteId sv, int band,
+                            std::optional<int> second_band) const {
+  if (model_ == "none") return 0.0;
+  const auto of_band = [&](int b) {
+    return (state.borrowed_delay_bands >> b & 1u) != 0 ? kSpeedOfLight * kLentDelayS : 0.0;
+  };
+  if (!second_band) return of_band(band);
+  const CombinationWeights w = ionosphere_free(sv.system, {band, *second_band});
+  return std::hypot(w.first * of_band(band), w.second * of_band(*second_band));
 }
 
 }  // namespace canyon::gnss

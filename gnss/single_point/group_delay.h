@@ -22,6 +22,8 @@ class GroupDelays {
 
   /// s. `second_band`: of the combination with `band`.
   double delay_s(const SatelliteState& state, SatelliteId sv, int band, std::optional<int> second_band) const;
+  /// 1-sigma of delay_s(), m: 0 where the message tells it, else how far a lent one (SatelliteState) is off.
+  double sigma_m(const SatelliteState& state, SatelliteId sv, int band, std::optional<int> second_band) const;
 
  private:
   std::array<double, 10> by_band_s(const SatelliteState& state, SatelliteId sv) const;
@@ -29,8 +31,5 @@ class GroupDelays {
   std::string model_;
   std::map<SatelliteId, std::array<double, 10>> rtklib_s_;
 };
-
-/// Weight of the first signal in the ionosphere-free combination a P1 - (a - 1) P2: f1^2 / (f1^2 - f2^2).
-double first_weight(double first_hz, double second_hz);
 
 }  // namespace canyon::gnss

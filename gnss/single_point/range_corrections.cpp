@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "gnss/atmosphere/beidou_klobuchar.h"
 #include "gnss/atmosphere/troposphere.h"
+#include "gnss/products/clock_datum.h"
 #include "gnss/signal.h"
-#include "gnss/single_point/group_delay.h"
 
 namespace canyon::gnss {
 namespace {
@@ -37,10 +38,15 @@ std::vector<std::string> ionosphere_corrections_of_observations() {
   return {"none", "klobuchar", "klobuchar_own", "ionex"};
 }
 
-double ionosphere_correction_m(const std::string& model, const KlobucharCoefficients& klobuchar, const SkyView& view) {
-  if (model == "none") return 0.0;
-  return klobuchar_delay_m(klobuchar, view.t, view.receiver.lat_rad, view.receiver.lon_rad, view.azimuth_rad,
-                           std::max(view.elevation_rad, kLowestRad));
+double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& coefficients, const SkyView& view) {
+  SkyView held = view;
+  held.elevation_rad = std::max(held.elevation_rad, kLowestRad);
+  if (system == GnssSystem::kBeidou) {
+    const double to_l1 = carrier_hz(GnssSystem::kBeidou, 2) / kL1Hz;
+    return to_l1 * to_l1 * beidou_klobuchar_delay_m(coefficients, held);
+  }
+  return klobuchar_delay_m(coefficients, held.t, held.receiver.lat_rad, held.receiver.lon_rad, held.azimuth_rad,
+                           held.elevation_rad);
 }
 
 std::vector<std::string> troposphere_corrections_of_observations() {
@@ -60,12 +66,13 @@ CodeMeasurement single_measurement(const SignalObservation& signal, SatelliteId 
 }
 
 CodeMeasurement ionosphere_free_measurement(const SignalPair& pair, SatelliteId sv, int frequency_channel) {
-  const double hz1 = carrier_hz(sv.system, digit(pair.first.code.band), frequency_channel);
-  const double hz2 = carrier_hz(sv.system, digit(pair.second.code.band), frequency_channel);
-  const double a = first_weight(hz1, hz2), b = a - 1.0;
-  return {a * pair.first.pseudorange_m - b * pair.second.pseudorange_m,
-          kSpeedOfLight * (a * pair.first.phase_cycles / hz1 - b * pair.second.phase_cycles / hz2), hz1,
-          std::hypot(a, b)};
+  const BandPair bands{digit(pair.first.code.band), digit(pair.second.code.band)};
+  const double hz1 = carrier_hz(sv.system, bands.first, frequency_channel);
+  const double hz2 = carrier_hz(sv.system, bands.second, frequency_channel);
+  const CombinationWeights w = ionosphere_free(sv.system, bands);
+  return {w.first * pair.first.pseudorange_m + w.second * pair.second.pseudorange_m,
+          kSpeedOfLight * (w.first * pair.first.phase_cycles / hz1 + w.second * pair.second.phase_cycles / hz2), hz1,
+          std::hypot(w.first, w.second)};
 }
 
 }  // namespace canyon::gnss

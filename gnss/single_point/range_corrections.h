@@ -10,10 +10,11 @@
 
 namespace canyon::gnss {
 
-/// Delay at L1, m, that a named model subtracts; `klobuchar` are the coefficients of the satellite's ionosphere.
-/// Elevations below 5 deg are held there.
+/// Names of the models of the ionosphere.
 std::vector<std::string> ionosphere_corrections_of_observations();
-double ionosphere_correction_m(const std::string& model, const KlobucharCoefficients& klobuchar, const SkyView& view);
+/// Klobuchar's delay at L1, m, with the coefficients of a system by that system's own formula: BeiDou's
+/// (gnss/atmosphere/beidou_klobuchar.h), else that of GPS. Elevations below 5 deg are held there.
+double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& coefficients, const SkyView& view);
 
 /// none | saastamoinen_niell (standard atmosphere, ladder of gnss/atmosphere) | saastamoinen_cosecant: zenith delays of
 /// a standard atmosphere with 70 % humidity over sin(elevation), as RTKLIB has it.
@@ -24,10 +25,10 @@ double troposphere_correction_m(const std::string& model, const SkyView& view);
 struct CodeMeasurement {
   double pseudorange_m = kNaN;
   double phase_m = kNaN;      ///< carrier phase of the same, with an unknown constant
-  double hz = kNaN;           ///< of the signal; of the first one of two
+  double hz = kNaN;           ///< of the signal; of the first one of two; NaN for a GLONASS channel not known
   double noise_factor = 1.0;  ///< 1-sigma of the combination over that of one signal
 };
-/// a P1 - b P2 with a = f1^2 / (f1^2 - f2^2), b = a - 1.
+/// Of a GLONASS satellite whose channel is not known, phase and hz are NaN.
 CodeMeasurement single_measurement(const SignalObservation& signal, SatelliteId sv, int frequency_channel);
 CodeMeasurement ionosphere_free_measurement(const SignalPair& pair, SatelliteId sv, int frequency_channel);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/check.h"
 #include "core/progress.h"
@@ -30,8 +31,9 @@ struct Candidate {
   SignalObservation signal;
   SatelliteState state;  // at transmission, in E of transmission
   double group_delay_s = 0.0;
+  double group_delay_sigma_m = 0.0;
   bool loss_of_lock = false;
-  KlobucharCoefficients klobuchar;
+  BroadcastKlobuchar klobuchar;
 };
 
 /// Satellites observed without an ephemeris: told once each.
@@ -59,6 +61,27 @@ class MissingEphemerides {
   std::map<SatelliteId, Missing> by_satellite_;
 };
 
+/// Satellites that are used with something missing: told in one line, with the first epoch's number.
+class Shortcomings {
+ public:
+  Shortcomings(const std::string& file, std::string what) : file_(file), what_(std::move(what)) {}
+  void add(SatelliteId sv, int line) {
+    if (satellites_.empty()) line_ = line;
+    satellites_.insert(sv);
+  }
+  void append_to(std::vector<std::string>& warnings) const {
+    if (satellites_.empty()) return;
+    std::string names;
+    for (const SatelliteId sv : satellites_) names += (names.empty() ? "" : ", ") + sv.str();
+    warnings.push_back(Error{file_, line_, "", names + ": " + what_}.str());
+  }
+
+ private:
+  std::string file_, what_;
+  int line_ = 0;
+  std::set<SatelliteId> satellites_;
+};
+
 /// The figures in a reason differ from epoch to epoch; what is counted is the kind.
 std::string kind_of(const std::string& reason) {
   return reason.substr(0, reason.find(':'));
@@ -72,7 +95,11 @@ class SinglePoint {
         config_(config),
         group_delays_(config.group_delay, inputs.navigation),
         smoothing_(config.smoothing_s),
-        missing_(file.name) {
+        missing_(file.name),
+        without_channel_(file.name, "no one tells the GLONASS channel; phase and Doppler are not used"),
+        lent_delay_(file.name,
+                    "the navigation message does not tell this band's group delay; that of the band beside it is used, "
+                    "and its ranges count for less") {
     const auto* weighting = find_model(range_weightings(), config.weighting);
     CANYON_CHECK(weighting != nullptr, "weighting ", config.weighting);
     weighting_ = weighting->make({config.sigma_m});
@@ -103,6 +130,8 @@ class SinglePoint {
       if (fix.status == FixStatus::kNone) ++out.reasons[kind_of(fix.reason)];
     }
     out.warnings = missing_.list();
+    without_channel_.append_to(out.warnings);
+    lent_delay_.append_to(out.warnings);
     if (observed_ == 0)
       return Error{file_.name, 0, "systems", "no pseudorange of the systems " + config_.systems + " in it",
                    "systems that were observed"};
@@ -188,8 +217,12 @@ class SinglePoint {
       c.state = view->state;
       const int channel = c.state.frequency_channel;
       c.code = pair ? ionosphere_free_measurement(*pair, s.sv, channel) : single_measurement(*signal, s.sv, channel);
-      c.group_delay_s = group_delays_.delay_s(c.state, s.sv, signal->code.band - '0',
-                                              pair ? std::optional(pair->second.code.band - '0') : std::nullopt);
+      if (std::isnan(c.code.hz)) without_channel_.add(s.sv, epoch.line);
+      const int band = signal->code.band - '0';
+      const auto second = pair ? std::optional(pair->second.code.band - '0') : std::nullopt;
+      c.group_delay_s = group_delays_.delay_s(c.state, s.sv, band, second);
+      c.group_delay_sigma_m = group_delays_.sigma_m(c.state, s.sv, band, second);
+      if (c.group_delay_sigma_m > 0.0) lent_delay_.add(s.sv, epoch.line);
       if (uses_klobuchar()) c.klobuchar = coefficients(s.sv.system, epoch.t);
       if (std::isfinite(c.code.pseudorange_m)) out.push_back(c);
     }
@@ -198,10 +231,11 @@ class SinglePoint {
 
   bool uses_klobuchar() const { return config_.frequencies == "single" && config_.ionosphere.starts_with("klobuchar"); }
 
-  KlobucharCoefficients coefficients(GnssSystem system, GpsTime t) const {
+  BroadcastKlobuchar coefficients(GnssSystem system, GpsTime t) const {
     if (config_.ionosphere == "klobuchar_own")
-      if (const auto own = inputs_.navigation.klobuchar_at(system, t)) return *own;
-    return inputs_.navigation.klobuchar_at(GnssSystem::kGps, t).value_or(KlobucharCoefficients{});
+      if (const auto own = inputs_.navigation.klobuchar_at(system, t)) return {system, t, *own};
+    return {GnssSystem::kGps, t,
+            inputs_.navigation.klobuchar_at(GnssSystem::kGps, t).value_or(KlobucharCoefficients{})};
   }
 
   static RangeMeasurement uncorrected(const Candidate& c, double sigma_m) {
@@ -221,14 +255,16 @@ class SinglePoint {
 
   double ionosphere_m(const Candidate& c, const SkyView& view) const {
     if (config_.frequencies != "single" || config_.ionosphere == "none") return 0.0;
-    const double scale = kL1Hz / c.code.hz;
+    // A GLONASS channel that nobody tells changes the delay by less than 1 %.
+    const double hz = std::isnan(c.code.hz) ? carrier_hz(c.sv.system, c.signal.code.band - '0') : c.code.hz;
+    const double scale = kL1Hz / hz;
     if (config_.ionosphere == "ionex") {
       SkyView held = view;
       held.elevation_rad = std::max(held.elevation_rad, 5.0 * kDegree);
       const double delay_m = ionosphere_map_delay_m(*inputs_.ionosphere_maps, held);
       return std::isfinite(delay_m) ? scale * scale * delay_m : 0.0;  // holes of a map; its time was checked
     }
-    return scale * scale * ionosphere_correction_m(config_.ionosphere, c.klobuchar, view);
+    return scale * scale * klobuchar_correction_m(c.klobuchar.system, c.klobuchar.coefficients, view);
   }
 
   void smooth(std::vector<Candidate>& candidates, const ObservationEpoch& epoch, const Eigen::Vector3d& at_E) {
@@ -257,17 +293,19 @@ class SinglePoint {
       const double delay_m = ionosphere_m(c, view);
       o.v_E = turned_by_earth(c.state.v_E, travel_s);
       o.pseudorange_m = c.code.pseudorange_m;
-      o.carrier_phase_cycles = c.signal.phase_cycles;
-      o.doppler_hz = c.signal.doppler_hz;
+      const bool carrier_known = std::isfinite(c.code.hz);
+      o.carrier_phase_cycles = carrier_known ? c.signal.phase_cycles : kNaN;
+      o.doppler_hz = carrier_known ? c.signal.doppler_hz : kNaN;
       o.cn0_dbhz = c.signal.cn0_dbhz;
       o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
       o.correction_m = delay_m + troposphere_correction_m(config_.troposphere, view);
-      o.sigma_m = weighting_->sigma_m({.system = c.sv.system,
-                                       .elevation_rad = view.elevation_rad,
-                                       .cn0_dbhz = o.cn0_dbhz,
-                                       .ionosphere_m = delay_m,
-                                       .code_factor = c.code.noise_factor,
-                                       .accuracy_m = c.state.accuracy_m});
+      o.sigma_m = std::hypot(weighting_->sigma_m({.system = c.sv.system,
+                                                  .elevation_rad = view.elevation_rad,
+                                                  .cn0_dbhz = o.cn0_dbhz,
+                                                  .ionosphere_m = delay_m,
+                                                  .code_factor = c.code.noise_factor,
+                                                  .accuracy_m = c.state.accuracy_m}),
+                             c.group_delay_sigma_m);
       epoch.observations.push_back(o);
       ranges.push_back({c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, config_.shared_ionosphere * delay_m});
     }
@@ -340,6 +378,7 @@ class SinglePoint {
   GroupDelays group_delays_;
   CarrierSmoothing smoothing_;
   MissingEphemerides missing_;
+  Shortcomings without_channel_, lent_delay_;
   std::int64_t observed_ = 0, with_ephemeris_ = 0;
 };
 

@@ -18,9 +18,9 @@ struct RateMeasurement {
 /// Rate of the pseudorange that a Doppler shift means: -doppler_hz c / carrier_hz (positive Doppler: approaching).
 double pseudorange_rate_m_s(double doppler_hz, double carrier_hz);
 
-/// Rate of the range between a satellite and a receiver at p_E that moves with v_E, m/s, by the receiver's clock. The
-/// turning of E while the signal travels and the change of the travel time are in it, which neglected would cost up to
-/// 7 mm/s.
+/// Rate of the range between a satellite and a receiver at p_E that moves with v_E, m/s, by the receiver's clock.
+/// Exact: the turning of E while the signal travels and the change of the travel time are in it, which neglected would
+/// cost up to 2 cm/s. Of `m` only the satellite counts.
 double range_rate_m_s(const RateMeasurement& m, const Eigen::Vector3d& p_E, const Eigen::Vector3d& v_E);
 
 struct VelocitySolution {

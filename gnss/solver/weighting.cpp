@@ -89,7 +89,7 @@ class Rtklib final : public Weighting {
     const double s = sin_elevation(q);
     const double factor = q.system == GnssSystem::kGlonass ? 1.5 : q.system == GnssSystem::kSbas ? 3.0 : 1.0;
     const double code2 = q.code_factor * q.code_factor * factor * factor * 0.09 * (1.0 + 1.0 / s);
-    const double troposphere_m = 0.3 / (std::sin(q.elevation_rad) + 0.1);
+    const double troposphere_m = 0.3 / (s + 0.1);
     const double ionosphere_m = 0.5 * q.ionosphere_m, satellite_m = accuracy_m(q);
     return std::sqrt(code2 + 0.09 + ionosphere_m * ionosphere_m + troposphere_m * troposphere_m +
                      satellite_m * satellite_m);

@@ -6,7 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "gnss/satellites/constellation.h"
 #include "tests/apps/command_line_fixture.h"
+#include "tests/gnss/product_text.h"
+#include "tests/support/test_data.h"
 
 namespace canyon::apps {
 namespace {
@@ -47,6 +50,161 @@ TEST_F(GnssSolveTest, SolvesWhatWasSimulated) {
   EXPECT_THAT(read("dir/positions.csv"), HasSubstr(",single,"));
   // Without a truth there are no errors to tell: null, never 0.
   EXPECT_TRUE(nlohmann::json::parse(read("dir/summary.json"))["rms_3d_m"].is_null());
+}
+
+/// A constellation seen at its centres of mass, `offset_m` further out than the antennas.
+class CentresOfMass final : public gnss::Constellation {
+ public:
+  CentresOfMass(const gnss::Constellation& antennas, double offset_m) : antennas_(antennas), offset_m_(offset_m) {}
+  const std::vector<SatelliteId>& satellites() const override { return antennas_.satellites(); }
+  std::optional<gnss::SatelliteState> state(SatelliteId sv, GpsTime t) const override {
+    auto s = antennas_.state(sv, t);
+    if (s) s->p_E += offset_m_ * s->p_E.normalized();
+    return s;
+  }
+
+ private:
+  const gnss::Constellation& antennas_;
+  double offset_m_;
+};
+
+/// ANTEX of 24 GPS and 24 GLONASS satellites whose antennas stand `up_mm` from the centre of mass towards the Earth.
+std::string antex(double up_mm) {
+  const auto line = [](std::string text, const char* label) {
+    text.resize(60, ' ');
+    return text + label + "\n";
+  };
+  std::string out = line("     1.4            M", "ANTEX VERSION / SYST") + line("A", "PCV TYPE / REFANT") +
+                    line("", "END OF HEADER");
+  char text[80];
+  for (const char system : {'G', 'R'})
+    for (int prn = 1; prn <= 24; ++prn) {
+      out += line("", "START OF ANTENNA");
+      std::snprintf(text, sizeof text, "%-20s%c%02d", "BLOCK TEST", system, prn);
+      out += line(text, "TYPE / SERIAL NO") + line("     0.0", "DAZI") +
+             line("     0.0  17.0   1.0", "ZEN1 / ZEN2 / DZEN") + line("     2", "# OF FREQUENCIES");
+      for (const char band : {'1', '2'}) {
+        std::snprintf(text, sizeof text, "   %c0%c", system, band);
+        const std::string name = text;
+        out += line(name, "START OF FREQUENCY");
+        std::snprintf(text, sizeof text, "%10.2f%10.2f%10.2f", 0.0, 0.0, up_mm);
+        out += line(text, "NORTH / EAST / UP") + "   NOAZI";
+        for (int k = 0; k < 18; ++k) out += "    0.00";
+        out += "\n" + line(name, "END OF FREQUENCY");
+      }
+      out += line("", "END OF ANTENNA");
+    }
+  return out;
+}
+
+// Precise orbits, clocks and antennas, GLONASS's channels from the header of the observations.
+TEST_F(GnssSolveTest, PreciseOrbitsAndAntennas) {
+  const GpsTime start = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+  ASSERT_EQ(canyon("gnss simulate --at 32.35,-90.88,60 --systems GR --start 2010-11-17T13:00:00 --duration 600 --rate "
+                   "0.1 --errors none --rinex-obs given.rnx --rinex-nav given.nav"),
+            0)
+      << read("stderr");
+  EXPECT_EQ(read("stderr"), "");
+  const auto nominal = gnss::make_nominal("GR");
+  write("given.sp3", gnss::testing::sp3_text(CentresOfMass(*nominal, 2.0), start - 5400.0, 300.0, 40));
+  write("given.atx", antex(2000.0));
+  write("smooth.toml", "ionosphere = \"none\"\ntroposphere = \"none\"\nshared_ionosphere = 0.0\n");
+  const auto solved = [&](const std::string& more) {
+    EXPECT_EQ(canyon("gnss solve --obs given.rnx --nav given.nav --sp3 given.sp3 --config smooth.toml --json " +
+                     std::string(kTruth) + " " + more),
+              0)
+        << read("stderr");
+    const auto json = nlohmann::json::parse(read("stdout"));
+    EXPECT_EQ(json["solved"], 61);
+    return json;
+  };
+  for (const char* systems : {"R", "GR"}) {
+    const auto json = solved(std::string("--antex given.atx --systems ") + systems);
+    // Positions in the file to 1 mm, ranges to 1 mm, times a PDOP of 3 at most.
+    EXPECT_LT(json["rms_3d_m"].get<double>(), 0.02) << systems;
+    for (const char* axis : {"e", "n", "u"})
+      EXPECT_LT(json[std::string("velocity_rms_") + axis + "_m_s"].get<double>(), 0.01) << systems;
+    EXPECT_EQ(read("stderr"), "");
+  }
+  // Without the antennas the ranges are 2 m off, most of it in the clock; that is told.
+  const auto bare = solved("--systems G");
+  EXPECT_GT(bare["rms_3d_m"].get<double>(), 0.02);
+  EXPECT_LT(bare["rms_3d_m"].get<double>(), 1.0);
+  EXPECT_EQ(
+      read("stderr"),
+      "warning: given.sp3: without --antex its positions are taken as those of the antennas; IGS products give the "
+      "centre of mass, and ranges err by metres\n");
+}
+
+/// IONEX of one shell, `tecu` everywhere at noon, half as much at midnight.
+std::string ionex(double tecu) {
+  const auto line = [](std::string text, const char* label) {
+    text.resize(60, ' ');
+    return text + label + "\n";
+  };
+  std::string out =
+      line("     1.0            IONOSPHERE MAPS     GPS", "IONEX VERSION / TYPE") + line("  6371.0", "BASE RADIUS") +
+      line("     2", "MAP DIMENSION") + line("   450.0 450.0   0.0", "HGT1 / HGT2 / DHGT") +
+      line("    90.0 -90.0 -30.0", "LAT1 / LAT2 / DLAT") + line("  -180.0 180.0  60.0", "LON1 / LON2 / DLON") +
+      line("    -1", "EXPONENT") + line("", "END OF HEADER");
+  char text[80];
+  for (int k = 0; k < 3; ++k) {
+    const CalendarTime c = calendar(GpsTime::from_calendar(2010, 11, 17, 0, 0, 0.0) + 43200.0 * k);
+    out += line("     " + std::to_string(k + 1), "START OF TEC MAP");
+    std::snprintf(text, sizeof text, "%6d%6d%6d%6d%6d%6d", c.year, c.month, c.day, c.hour, c.minute, 0);
+    out += line(text, "EPOCH OF CURRENT MAP");
+    for (double lat = 90.0; lat >= -90.0; lat -= 30.0) {
+      std::snprintf(text, sizeof text, "  %6.1f%6.1f%6.1f%6.1f%6.1f", lat, -180.0, 180.0, 60.0, 450.0);
+      out += line(text, "LAT/LON1/LON2/DLON/H");
+      for (int i = 0; i < 7; ++i) {
+        std::snprintf(text, sizeof text, "%5d", static_cast<int>(10.0 * tecu * (k == 1 ? 1.0 : 0.5)));
+        out += text;
+      }
+      out += "\n";
+    }
+    out += line("     " + std::to_string(k + 1), "END OF TEC MAP");
+  }
+  return out + line("", "END OF FILE");
+}
+
+// An ionosphere by maps: what was simulated with them is solved with them.
+TEST_F(GnssSolveTest, IonosphereMaps) {
+  write("given.ionex", ionex(80.0));
+  write("ionex.toml",
+        "base = \"vicksburg\"\n[scene]\nempty = true\n[gnss]\nmode = \"single_uncorrected\"\nionosphere = \"ionex\"\n"
+        "ionex_file = \"given.ionex\"\n");
+  ASSERT_EQ(canyon("gnss simulate --scene ionex.toml --at 32.35,-90.88,60 --start 2010-11-17T13:00:00 --duration 60 "
+                   "--errors ionosphere --rinex-obs given.rnx --rinex-nav given.nav"),
+            0)
+      << read("stderr");
+  write("maps.toml", "ionosphere = \"ionex\"\ntroposphere = \"none\"\nsmoothing_s = 0.0\nshared_ionosphere = 0.0\n");
+  const auto rms_m = [&](const std::string& more) {
+    EXPECT_EQ(
+        canyon("gnss solve --obs given.rnx --nav given.nav --systems G --json " + std::string(kTruth) + " " + more), 0)
+        << read("stderr");
+    return nlohmann::json::parse(read("stdout"))["rms_3d_m"].get<double>();
+  };
+  EXPECT_LT(rms_m("--config maps.toml --ionex given.ionex"), 0.01);
+  EXPECT_GT(rms_m("--config vacuum.toml"), 3.0);  // 12 m at the zenith
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav --config maps.toml",
+                 "ionosphere: \"ionex\" needs ionosphere maps, expected an IONEX file (--ionex)");
+}
+
+// The station of 2020-06-25 with its SP3 file: three systems (the file has no BeiDou), all epochs.
+TEST_F(GnssSolveTest, RealPreciseOrbits) {
+  CANYON_REAL_DATA(obs, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_30S_MO.crx.gz");
+  CANYON_REAL_DATA(nav, "gnss/esbc_2020_177/ESBC00DNK_R_20201770000_01D_MN.rnx.gz");
+  CANYON_REAL_DATA(sp3, "gnss/esbc_2020_177/GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz");
+  ASSERT_EQ(canyon("gnss solve --obs '" + obs + "' --nav '" + nav + "' --sp3 '" + sp3 +
+                   "' --systems GRE --json --truth-ecef 3582104.902,532590.196,5232755.293"),
+            0)
+      << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(json["epochs"], 2880);
+  EXPECT_EQ(json["solved"], 2866);                 // the last orbit is of 23:45
+  EXPECT_LT(json["rms_3d_m"].get<double>(), 1.2);  // measured 1.133
+  EXPECT_THAT(read("stderr"), HasSubstr("without --antex"));
+  EXPECT_THAT(json["skipped_navigation_records"]["EPH S"].get<int>(), ::testing::Gt(0));
 }
 
 TEST_F(GnssSolveTest, MistakesWordForWord) {

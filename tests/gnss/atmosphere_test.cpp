@@ -97,6 +97,9 @@ TEST(Troposphere, PaperAsPrintedAndCorrected) {
   EXPECT_NEAR(make_paper_corrected_troposphere(weather)->delay_m(view_at(30.0)), good_m, 5e-4 * good_m);
   // With h in metres the printed height term would make the denominator vanish near 357 m; in km it is harmless.
   EXPECT_NEAR(paper_dry_delay_m(1022.0, kLat, 357.0, 0.0028), 2.33, 0.01);
+  // 0.0028 per metre: more than a kilometre of delay at 356 m, and less than none at 357 m.
+  EXPECT_GT(paper_dry_delay_m(1022.0, kLat, 356.0, 2.8), 1000.0);
+  EXPECT_LT(paper_dry_delay_m(1022.0, kLat, 357.0, 2.8), -1000.0);
 }
 
 TEST(Troposphere, StandardAtmosphere) {

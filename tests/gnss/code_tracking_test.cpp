@@ -334,6 +334,8 @@ TEST(CodeCorrelation, NamesAndChips) {
   EXPECT_EQ(modulation_of(GnssSystem::kGps, 5), Modulation::kBpsk10);
   EXPECT_EQ(modulation_of(GnssSystem::kGalileo, 1), Modulation::kBoc11);
   EXPECT_EQ(modulation_of(GnssSystem::kBeidou, 2), Modulation::kBpsk2);
+  EXPECT_EQ(modulation_of(GnssSystem::kBeidou, 6), Modulation::kBpsk10);
+  EXPECT_EQ(modulation_of(GnssSystem::kBeidou, 7), Modulation::kBpsk2);
   EXPECT_EQ(modulation_of("boc11"), Modulation::kBoc11);
   EXPECT_NEAR(CodeCorrelation(Modulation::kBpsk10, 0.0).chip_m(), 29.305, 1e-3);
   const CodeCorrelation boc(Modulation::kBoc11, 0.0);

@@ -275,6 +275,31 @@ TEST(ImageSearch, ReachLeavesNothingOutInTheCity) {
   EXPECT_LE(missed_twice, twice / 10);
 }
 
+// Walls whose distance lies on the border of what the launched rays' sequences are keyed by: one echo for each way.
+TEST(Launching, AWayIsOneEcho) {
+  const auto street = WallScene()
+                          .box({-60, -300, -5}, {-12.005, 300, 60}, "metal")
+                          .box({9.005, -300, -5}, {60, 300, 60}, "metal")
+                          .build();
+  const scene::SceneAt at(*street);
+  std::vector<Eigen::Vector3d> directions;
+  for (int azimuth = 20; azimuth < 360; azimuth += 20)
+    for (const double elevation : {30.0, 60.0}) directions.push_back(testing::direction(azimuth, elevation));
+  std::vector<SignalPaths> launched(directions.size());
+  GnssCounters counters;
+  PathParameters p = everything();
+  p.launched_rays = 50000;
+  find_model(path_models(), "launching")->make(p)->trace({0.0, 0.0, 1.5}, directions, at, launched, counters);
+  int echoes = 0;
+  for (const auto& paths : launched) {
+    std::set<decltype(SignalPath::facets)> ways;
+    for (const auto& e : paths.echoes) ways.insert(e.facets);
+    EXPECT_EQ(ways.size(), paths.echoes.size());
+    echoes += static_cast<int>(paths.echoes.size());
+  }
+  EXPECT_GT(echoes, 10);
+}
+
 // The comparison model: with more rays it finds more of the same ways, and its lengths come nearer to the exact ones.
 TEST(Launching, ComesNearerToTheExactWaysWithMoreRays) {
   // A street that turns: walls at 12 m and 9 m, a third across.

@@ -7,6 +7,7 @@
 
 #include "core/units.h"
 #include "gnss/rinex/navigation_file.h"
+#include "gnss/signal.h"
 #include "tests/gnss/damage.h"
 #include "tests/gnss/nav_text.h"
 #include "tests/gnss/product_text.h"
@@ -243,6 +244,36 @@ TEST(PreciseConstellation, RealOrbitsWithVelocities) {
   EXPECT_LT(std::sqrt(velocity2 / n), 1e-4);  // measured 0.06 mm/s
 }
 
+// SP3 files do not tell GLONASS's channels: the observations' header does, else the broadcast, else the public plan.
+TEST(PreciseConstellation, GlonassChannels) {
+  NavigationData data;
+  for (int slot = 1; slot <= 4; ++slot) {
+    KeplerEphemeris r = sample_ephemeris(1, kStart + 10800.0);
+    r.sv.prn = static_cast<std::uint8_t>(slot == 4 ? 26 : slot);
+    r.valid_before_s = r.valid_after_s = 4.0 * 3600.0;
+    data.kepler.push_back(r);
+  }
+  std::string text = sp3_text(*make_broadcast(data), kStart, 900.0, 24);
+  for (std::size_t at = text.find("PG"); at != std::string::npos; at = text.find("PG", at)) text[at + 1] = 'R';
+  NavigationData broadcast;
+  for (const int slot : {1, 2}) {
+    GlonassEphemeris g;
+    g.sv = {GnssSystem::kGlonass, static_cast<std::uint8_t>(slot)};
+    g.frequency_channel = 3;
+    broadcast.glonass.push_back(g);
+  }
+  const auto precise = make_precise(parsed(text), {.broadcast = &broadcast, .glonass_channels = {{1, -6}}});
+  const auto channel = [&](std::uint8_t slot) {
+    return precise->state({GnssSystem::kGlonass, slot}, kStart + 10800.0)->frequency_channel;
+  };
+  EXPECT_EQ(channel(1), -6);
+  EXPECT_EQ(channel(2), 3);
+  EXPECT_EQ(channel(3), 5);  // the plan's
+  EXPECT_EQ(channel(26), kUnknownChannel);
+  EXPECT_TRUE(std::isnan(carrier_hz(GnssSystem::kGlonass, 1, kUnknownChannel)));
+  EXPECT_EQ(carrier_hz(GnssSystem::kGlonass, 3, kUnknownChannel), 1202.025e6);  // CDMA
+}
+
 // A user of one frequency needs the broadcast group delays with any clock. For Galileo they come from I/NAV, whose
 // clock is another one (E1, E5b): against a clock of E1 and E5a the delay of E1 must be BGD(E1, E5a) itself.
 TEST(PreciseConstellation, GroupDelaysReferToThePreciseClock) {
@@ -258,7 +289,7 @@ TEST(PreciseConstellation, GroupDelaysReferToThePreciseClock) {
   data.kepler.push_back(r);
   for (auto& k : data.kepler) k.valid_before_s = k.valid_after_s = 4.0 * 3600.0;
   const auto truth = make_broadcast(data);
-  const auto precise = make_precise(parsed(sp3_text(*truth, kStart, 900.0, 24)), {.group_delays = &data});
+  const auto precise = make_precise(parsed(sp3_text(*truth, kStart, 900.0, 24)), {.broadcast = &data});
   const auto e = precise->state({GnssSystem::kGalileo, 1}, kStart + 10800.0);
   ASSERT_TRUE(e.has_value());
   EXPECT_NEAR(e->group_delay_s[1], 3e-9, 1e-21);

@@ -8,6 +8,7 @@
 #include "core/chi_square.h"
 #include "core/files.h"
 #include "core/units.h"
+#include "gnss/pseudorange_parts.h"
 #include "gnss/receiver/receiver_mode.h"
 #include "gnss/sensor.h"
 #include "gnss/signal.h"
@@ -254,6 +255,9 @@ TEST_F(PseudorangeSensorTest, SecondFrequencies) {
               return c;
             }()),
             "no error");
+  // B3I, which every BeiDou satellite sends; B2I is of BeiDou-2 alone.
+  EXPECT_EQ(second_band(GnssSystem::kBeidou, "L2"), 6);
+  EXPECT_EQ(second_band(GnssSystem::kBeidou, "L5"), 5);
 }
 
 // Switching any effect off, or on, leaves the others' draws untouched to the bit.

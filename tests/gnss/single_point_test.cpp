@@ -6,11 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
+#include "gnss/atmosphere/beidou_klobuchar.h"
+#include "gnss/products/precise_orbits.h"
 #include "gnss/rinex/hatanaka.h"
 #include "gnss/rinex/navigation_file.h"
 #include "gnss/rinex/observation_writer.h"
 #include "gnss/single_point/position_statistics.h"
 #include "gnss/single_point/solution_file.h"
+#include "tests/gnss/product_text.h"
 #include "tests/gnss/rtklib_runner.h"
 #include "tests/gnss/synthetic_sky.h"
 #include "tests/support/outside_program.h"
@@ -40,13 +43,20 @@ struct Solved {
   SinglePointResult result;
 };
 
-Solved solve(const Station& station, const SinglePointConfig& config) {
+/// With `sp3`: its orbits and clocks, without antennas.
+Solved solve(const Station& station, const SinglePointConfig& config, const std::string& sp3 = "") {
   const auto file = read_observation_file(station.observations);
   const auto navigation = read_navigation_file(station.navigation);
   EXPECT_TRUE(file.ok() && navigation.ok());
   BroadcastOptions options;
   options.systems = config.systems;
-  const auto constellation = make_broadcast(*navigation, options);
+  std::unique_ptr<Constellation> constellation;
+  if (sp3.empty())
+    constellation = make_broadcast(*navigation, options);
+  else
+    constellation = make_precise(
+        *read_sp3_file(sp3),
+        {.systems = config.systems, .broadcast = &*navigation, .glonass_channels = file->header.glonass_channels});
   auto result = solve_observations(*file, {*constellation, *navigation}, config);
   EXPECT_TRUE(result.ok()) << result.error().str();
   std::vector<GnssFix> fixes;
@@ -156,6 +166,22 @@ TEST(SinglePoint, EsbcIsInEtrs89) {
   EXPECT_LT(itrf.rms_3d_m, etrs.rms_3d_m);
 }
 
+// Precise orbits and clocks, in the frame that they are in (ITRF); ANTEX of that day is not at hand, so ranges err by
+// the satellites' antenna offsets, most of which goes into the clock. The file ends at 23:45, and orbits 7.5 minutes
+// later.
+TEST(SinglePoint, EsbcWithPreciseOrbits) {
+  CANYON_ESBC(esbc);
+  CANYON_REAL_DATA(sp3, "gnss/esbc_2020_177/GRG0MGXFIN_20201770000_01D_15M_ORB.SP3.gz");
+  const Station itrf{esbc.observations, esbc.navigation, antenna_of_esbc_itrf()};
+  const auto gps = solve(itrf, recommended("G"), sp3).statistics;
+  EXPECT_EQ(gps.solved, 2866);
+  EXPECT_LT(gps.rms_3d_m, 1.4);  // measured 1.347; broadcast 1.711
+  // SP3 does not tell GLONASS's channels. With channel 0 for all of them: 17.3 m and 2.16 m/s.
+  const auto glonass = solve(itrf, recommended("R"), sp3).statistics;
+  EXPECT_LT(glonass.rms_3d_m, 5.2);                      // measured 5.133
+  EXPECT_LT(glonass.velocity_rms_enu_m_s.norm(), 0.05);  // measured 0.041
+}
+
 TEST(SinglePoint, ArlLikeForLikeAndRecommended) {
   CANYON_REAL_DATA(navigation, "gnss/arl_2015_200/arlm2000.15n");
   for (const auto& [hour, bound_m] : {std::pair("a", 3.595), {"b", 3.795}, {"z", 2.405}}) {
@@ -184,7 +210,7 @@ double rms_to_rtklib_m(const Solved& ours, const std::map<std::int64_t, Eigen::V
 
 /// rnx2rtkp takes neither gzip nor Hatanaka by itself: our own unpacked text is what it gets.
 void expect_agreement(const Station& station, const char* systems, int rtklib_systems) {
-  const testing::ScratchDirectory scratch;
+  const canyon::testing::ScratchDirectory scratch;
   const auto packed = read_text_or_gzip_file(station.observations);
   ASSERT_TRUE(packed.ok());
   const auto plain = is_hatanaka(*packed) ? undo_hatanaka(*packed, "f")->text : *packed;
@@ -222,15 +248,19 @@ class SyntheticDay : public ::testing::Test {
   const Eigen::Vector3d place_ = ecef_from_geodetic({52.0 * kDegree, 13.0 * kDegree, 120.0});
 
   /// Twenty minutes of all systems on one band, with a change made to each epoch.
-  ObservationFile file(const std::function<void(int, GnssEpoch&)>& change) const {
-    const auto constellation = make_broadcast(navigation_);
+  ObservationFile file(const std::function<void(int, GnssEpoch&)>& change, int beidou_band = 2) const {
+    return file_of(navigation_, change, beidou_band);
+  }
+  ObservationFile file_of(const NavigationData& navigation, const std::function<void(int, GnssEpoch&)>& change,
+                          int beidou_band = 2) const {
+    const auto constellation = make_broadcast(navigation);
     const GpsTime first = kSyntheticNoon + 30.0;
     ObservationWriter writer({.first = first,
                               .approx_position_E = place_,
                               .bands = {{GnssSystem::kGps, {1}},
                                         {GnssSystem::kGlonass, {1}},
                                         {GnssSystem::kGalileo, {1}},
-                                        {GnssSystem::kBeidou, {2}}}});
+                                        {GnssSystem::kBeidou, {beidou_band}}}});
     std::string text = writer.header();
     for (int k = 0; k < 40; ++k) {
       auto epoch = SyntheticReceiver{*constellation}.at(first + 30.0 * k, place_, Eigen::Vector3d::Zero());
@@ -331,6 +361,104 @@ TEST_F(SyntheticDay, TheFilterBridgesEpochsWithFewSatellites) {
     EXPECT_GT(fix.covariance_E.trace(), filtered->epochs[9].fix.covariance_E.trace());
   }
   EXPECT_LT((filtered->epochs[13].fix.p_A_E - place_).norm(), 1.0);
+}
+
+/// What an SP3 file every 30 s says of these records.
+PreciseOrbits orbits_of(const NavigationData& navigation) {
+  return *parse_sp3_file(testing::sp3_text(*make_broadcast(navigation), kSyntheticNoon - 1140.0, 30.0, 79), "s.sp3");
+}
+
+// The precise twin of the stations. SP3 files do not tell GLONASS's channels; a wrong one would give velocities of
+// metres per second, and let the smoothed ranges drift.
+TEST_F(SyntheticDay, PreciseOrbitsOfGlonassKeepItsChannels) {
+  const auto f = file([](int, GnssEpoch&) {});
+  auto c = plain();
+  c.systems = "R";
+  c.smoothing_s = 300.0;
+  const auto precise = make_precise(orbits_of(navigation_), {.broadcast = &navigation_});
+  const auto r = solve_observations(f, {*precise, navigation_}, c);
+  ASSERT_TRUE(r.ok()) << r.error().str();
+  EXPECT_THAT(r->warnings, ElementsAre());
+  // Positions in the file to 1 mm, clocks to 1 ps; the ten points spread the rounding of the last hardly further.
+  for (std::size_t k = 0; k < 36; ++k) {
+    ASSERT_EQ(r->epochs[k].fix.status, FixStatus::kSingle) << r->epochs[k].fix.reason;
+    EXPECT_LT((r->epochs[k].fix.p_A_E - place_).norm(), 0.004 * r->epochs[k].fix.dop.pdop) << k;
+    EXPECT_LT(r->epochs[k].fix.v_A_E.norm(), 0.003 * r->epochs[k].fix.dop.pdop) << k;
+  }
+}
+
+TEST_F(SyntheticDay, AGlonassChannelThatNobodyTellsCostsPhaseAndDoppler) {
+  auto navigation = navigation_;
+  for (auto& g : navigation.glonass) g.sv.prn = static_cast<std::uint8_t>(g.sv.prn + 24);  // outside the public plan
+  const auto f = file_of(navigation, [](int, GnssEpoch&) {});
+  auto c = plain();
+  c.systems = "R";
+  c.smoothing_s = 300.0;
+  const auto r = solve_observations(f, {*make_precise(orbits_of(navigation)), navigation}, c);
+  ASSERT_TRUE(r.ok()) << r.error().str();
+  ASSERT_EQ(r->warnings.size(), 1u);
+  EXPECT_THAT(r->warnings[0], HasSubstr("synthetic.rnx:" + std::to_string(f.epochs.front().line) + ": R2"));
+  EXPECT_THAT(r->warnings[0], HasSubstr(": no one tells the GLONASS channel; phase and Doppler are not used"));
+  for (std::size_t k = 0; k < 36; ++k) {
+    EXPECT_LT((r->epochs[k].fix.p_A_E - place_).norm(), 0.004 * r->epochs[k].fix.dop.pdop) << k;
+    EXPECT_TRUE(std::isnan(r->epochs[k].fix.v_A_E.x()));
+    for (const auto& o : r->epochs[k].epoch.observations) EXPECT_TRUE(std::isnan(o.carrier_phase_cycles));
+  }
+}
+
+// D1 does not tell the group delay of B1C, the only BeiDou signal of many receivers; that of B1I is near.
+TEST_F(SyntheticDay, B1cIsSolvedWithTheGroupDelayOfB1i) {
+  const auto f = file(
+      [](int, GnssEpoch& e) {
+        for (auto& o : e.observations) {
+          if (o.sv.system != GnssSystem::kBeidou) continue;
+          o.band = 1;
+          const double ratio = kL1Hz / carrier_hz(GnssSystem::kBeidou, 2);
+          o.carrier_phase_cycles *= ratio;
+          o.doppler_hz *= ratio;
+        }
+      },
+      1);
+  auto c = plain();
+  c.systems = "C";
+  const auto r = solve_file(f, c);
+  ASSERT_TRUE(r.ok()) << r.error().str();
+  for (const auto& e : r->epochs) EXPECT_LT((e.fix.p_A_E - place_).norm(), 0.001 * e.fix.dop.pdop);
+  ASSERT_EQ(r->warnings.size(), 1u);
+  EXPECT_THAT(r->warnings[0], HasSubstr(": the navigation message does not tell this band's group delay; that of the "
+                                        "band beside it is used, and its ranges count for less"));
+  // They count for less: 3.3 ns on top.
+  const auto plain_sigma_m = solve_file(file([](int, GnssEpoch&) {}), c)->epochs[0].epoch.observations[0].sigma_m;
+  EXPECT_NEAR(r->epochs[0].epoch.observations[0].sigma_m, std::hypot(plain_sigma_m, 3.3e-9 * kSpeedOfLight), 1e-12);
+}
+
+// Each system's delays by its own coefficients and its own formula.
+TEST_F(SyntheticDay, OwnKlobucharOfBeidou) {
+  auto navigation = navigation_;
+  const KlobucharCoefficients own{{2.1e-8, 7.4e-8, -5.0e-7, 8.0e-7}, {1.3e5, -2.0e5, 2.5e6, -3.0e6}};
+  navigation.klobuchar.push_back({GnssSystem::kBeidou, kSyntheticNoon, own});
+  const auto constellation = make_broadcast(navigation_);
+  const auto f = file([&](int, GnssEpoch& e) {
+    const Horizon horizon(place_);
+    for (auto& o : e.observations) {
+      const auto s = transmission_to(*constellation, o.sv, e.t, place_);
+      const SkyView v = horizon.view(e.t, s->p_E());
+      const double hz = carrier_hz(o.sv.system, o.band, s->state.frequency_channel);
+      o.pseudorange_m += o.sv.system == GnssSystem::kBeidou
+                             ? beidou_klobuchar_delay_m(own, v)
+                             : klobuchar_delay_m(kBuiltInKlobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad,
+                                                 v.azimuth_rad, v.elevation_rad) *
+                                   std::pow(kL1Hz / hz, 2);
+    }
+  });
+  auto c = plain();
+  c.ionosphere = "klobuchar_own";
+  for (const char* systems : {"C", "GREC"}) {
+    c.systems = systems;
+    const auto r = solve_observations(f, {*constellation, navigation}, c);
+    ASSERT_TRUE(r.ok()) << r.error().str();
+    for (const auto& e : r->epochs) EXPECT_LT((e.fix.p_A_E - place_).norm(), 0.001 * e.fix.dop.pdop) << systems;
+  }
 }
 
 TEST_F(SyntheticDay, ReasonsAndWarningsWordForWord) {

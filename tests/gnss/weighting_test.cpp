@@ -33,7 +33,7 @@ TEST(Weighting, ClosedForms) {
 // Whatever the model, a satellite lower or weaker, or a combination of signals, is not trusted more.
 TEST(Weighting, NeverFallsWithElevationNorRisesWithStrength) {
   for (const auto& row : range_weightings()) {
-    for (double e = 0.0; e < 90.0; e += 5.0) {
+    for (double e = -10.0; e < 90.0; e += 5.0) {
       EXPECT_LE(sigma_m(row.name, at(e + 5.0, 40)), sigma_m(row.name, at(e, 40))) << row.name;
       EXPECT_LE(sigma_m(row.name, at(e, 45)), sigma_m(row.name, at(e, 30))) << row.name;
     }
