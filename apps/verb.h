@@ -34,6 +34,7 @@ Verb gnss_simulate_verb();
 Verb gnss_solve_verb();
 Verb gnss_orbit_error_verb();
 Verb imu_allan_verb();
+Verb imu_fit_verb();
 Verb imu_simulate_verb();
 Verb imu_dead_reckon_verb();
 Verb lidar_scan_verb();

@@ -44,6 +44,14 @@ constexpr GyroRow kGyroRows[] = {
      &TriadFigures::white_per_sqrt_hz,
      GyroRow::kRequired,
      "angular random walk"},
+    {"neighbour_correlation",
+     "neighbour_correlation_source",
+     &GyroSheet::neighbour_correlation,
+     {0, 0.5},
+     1.0,
+     &TriadFigures::neighbour_correlation,
+     GyroRow::kOptional,
+     "of the white noise, by a low-pass of the sensor that reaches beyond one sample"},
     {"turn_on_bias_deg_per_hr",
      "turn_on_bias_source",
      &GyroSheet::turn_on_bias_deg_per_hr,
@@ -239,6 +247,14 @@ constexpr AccelRow kAccelRows[] = {
      &TriadFigures::white_per_sqrt_hz,
      AccelRow::kRequired,
      "velocity random walk"},
+    {"neighbour_correlation",
+     "neighbour_correlation_source",
+     &AccelSheet::neighbour_correlation,
+     {0, 0.5},
+     1.0,
+     &TriadFigures::neighbour_correlation,
+     AccelRow::kOptional,
+     "of the white noise, by a low-pass of the sensor that reaches beyond one sample"},
     {"turn_on_bias_mg",
      "turn_on_bias_source",
      &AccelSheet::turn_on_bias_mg,
@@ -534,6 +550,7 @@ void visit(FieldVisitor& f, CatalogueEntry& c) {
   f.group("accel", c.accel, "accelerometer triad");
   f.group("unit", c.unit, "the unit as a whole");
   f.group("paper", c.paper, "parameters of the error chain of Durst & Goodin 2012");
+  f.group("mems", c.mems, "proof masses, pick-offs and electronics");
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "core/imu_noise.h"
 #include "core/result.h"
 #include "inertial/errors/error_figures.h"
+#include "inertial/mems/mems_figures.h"
 
 namespace canyon::inertial {
 
@@ -24,6 +25,7 @@ struct Figure {
 /// does not give are zero, except the first five of each, which must be given.
 struct GyroSheet {
   Figure arw_deg_per_sqrt_hr;
+  Figure neighbour_correlation;
   Figure turn_on_bias_deg_per_hr;
   Figure in_run_bias_deg_per_hr;
   Figure in_run_bias_tau_s{3600.0, ""};
@@ -49,6 +51,7 @@ struct GyroSheet {
 };
 struct AccelSheet {
   Figure vrw_m_s_per_sqrt_hr;
+  Figure neighbour_correlation;
   Figure turn_on_bias_mg;
   Figure in_run_bias_mg;
   Figure in_run_bias_tau_s{3600.0, ""};
@@ -113,6 +116,7 @@ struct CatalogueEntry {
   AccelSheet accel;
   UnitSheet unit;
   PaperParameters paper;
+  MemsFigures mems;
 
   /// What a filter is told, in SI.
   ImuNoise noise() const;

@@ -20,6 +20,8 @@ constexpr ErrorChainRow kRows[] = {
     {"datasheet", make_datasheet_chain, true,
      "turn-on bias, Gauss-Markov in-run bias, scale factor, misalignment and white noise of the data sheet"},
     {"full", make_full_chain, true, "every link that the unit has figures for"},
+    {"physics", make_physics_chain, true,
+     "proof masses, thermally excited, pick-offs, filters and front ends; then the other links of \"full\""},
     {"white_only", make_white_only_chain, true, "the same unit's white noise and nothing else: a perfect calibration"},
     {"paper", make_paper_chain, false,
      "the chain of Durst & Goodin 2012 with its slips of units and its recursion corrected"},
@@ -62,7 +64,7 @@ Result<std::unique_ptr<ErrorChain>> make_error_chain(const std::string& name, co
       return Error{.file = "",
                    .key = "imu.leave_out",
                    .what = "the error chain \"" + name + "\" has no links to leave out",
-                   .expected = "an empty list, or errors = \"datasheet\", \"full\" or \"white_only\""};
+                   .expected = "an empty list, or errors = \"datasheet\", \"full\", \"physics\" or \"white_only\""};
     }
   }
   return row->make(setup);

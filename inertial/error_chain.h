@@ -39,8 +39,8 @@ struct ChainSetup {
   CatalogueEntry entry;
   std::uint64_t seed = 0;
   double rate_hz = 100.0;
-  std::vector<std::string> leave_out;  ///< names of links (inertial/errors/error_link.h)
-  Environment environment;
+  std::vector<std::string> leave_out{};  ///< names of links (inertial/errors/error_link.h)
+  Environment environment{};
 };
 
 /// One row of the table of error chains.
@@ -63,6 +63,7 @@ Result<std::unique_ptr<ErrorChain>> make_ideal_chain(const ChainSetup& setup);
 Result<std::unique_ptr<ErrorChain>> make_datasheet_chain(const ChainSetup& setup);
 Result<std::unique_ptr<ErrorChain>> make_white_only_chain(const ChainSetup& setup);
 Result<std::unique_ptr<ErrorChain>> make_full_chain(const ChainSetup& setup);
+Result<std::unique_ptr<ErrorChain>> make_physics_chain(const ChainSetup& setup);
 Result<std::unique_ptr<ErrorChain>> make_paper_chain(const ChainSetup& setup);
 Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const ChainSetup& setup);
 

@@ -14,7 +14,7 @@ namespace {
 /// One triad's parameters in SI, shared by both chains.
 struct Triad {
   std::string name;        // prefix of the streams
-  double thermal_density;  // per sqrt(Hz)
+  double thermal_n;        // N of IEEE Std 952, per sqrt(Hz)
   double thermal_printed;  // what the printed formula gives, whatever its unit
   double quant_printed;
   double quantization;   // rad or m/s
@@ -32,7 +32,7 @@ Triad gyro_triad(const CatalogueEntry& e) {
   const double resistance = p.mass_kg * omega_0 / p.quality_factor;
   return {
       .name = "imu.gyro",
-      .thermal_density = gyro_thermal_density(temperature_k, omega_0, p.mass_kg, p.quality_factor, p.drive_amplitude_m),
+      .thermal_n = gyro_thermal_density(temperature_k, omega_0, p.mass_kg, p.quality_factor, p.drive_amplitude_m),
       .thermal_printed =
           gyro_thermal_as_printed_m(p.quality_factor, stiffness, temperature_k, resistance, p.bandwidth_hz),
       .quant_printed = quantization_as_printed(p.quality_factor, e.paper.run_time_hr),
@@ -50,7 +50,7 @@ Triad accel_triad(const CatalogueEntry& e) {
   const double density = accel_thermal_density(e.paper.temperature_k, omega_0, p.mass_kg, p.quality_factor);
   return {
       .name = "imu.accel",
-      .thermal_density = density,
+      .thermal_n = density / std::sqrt(2.0),
       .thermal_printed = density,
       .quant_printed = quantization_as_printed(p.quality_factor, e.paper.run_time_hr),
       .quantization = p.quantization,
@@ -136,14 +136,14 @@ class CorrectedTriad {
     const auto i = static_cast<std::uint64_t>(k);
     const Eigen::Vector3d bias = Eigen::Vector3d::Constant(p_.zero_offset) + recursion_.at(k);
     Eigen::Vector3d error = scale_.cwiseProduct(increment) + bias * dt_s;
-    error += p_.thermal_density * std::sqrt(dt_s) * thermal_.normal3(i);
+    error += p_.thermal_n * std::sqrt(dt_s) * thermal_.normal3(i);
     if (p_.quantization > 0.0) error += p_.quantization * (quantization_.normal3(i + 1) - quantization_.normal3(i));
     increment += error;
   }
 
   TriadNoise noise() const {
     TriadNoise n;
-    n.white_per_sqrt_hz = p_.thermal_density;
+    n.white_per_sqrt_hz = p_.thermal_n;
     n.turn_on_bias_sigma = std::abs(p_.zero_offset);
     n.in_run_bias_sigma = p_.white_process;
     n.in_run_bias_tau_s = p_.tau_s;

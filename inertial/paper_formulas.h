@@ -6,7 +6,8 @@ namespace canyon::inertial {
 
 /// sigma_aT = sqrt(4 k_B T omega_0 / (m Q)): the accelerometer's thermal noise, m/s^2/sqrt(Hz).
 /// The formula is right (Gabrielson 1993), but it is a density: the paper adds a draw of that size to every sample
-/// whatever the rate, so its noise power depends on the rate. Here it is used as what it is, a density.
+/// whatever the rate, so its noise power depends on the rate. Here it is used as what it is, a one-sided density; N of
+/// IEEE Std 952, the root of the two-sided one, is 1 / sqrt(2) of it.
 double accel_thermal_density(double temperature_k, double omega_0_rad_s, double mass_kg, double quality_factor);
 
 /// sigma_gT = (Q / k) sqrt(4 k_B T R B), as printed.
@@ -17,7 +18,8 @@ double gyro_thermal_as_printed_m(double quality_factor, double stiffness_n_m, do
 
 /// The rate whose Coriolis force 2 m Omega omega_0 x_d equals the thermal force sqrt(4 k_B T R), R = m omega_0 / Q:
 ///   sqrt(k_B T / (m omega_0 Q)) / x_d,  rad/s/sqrt(Hz),
-/// with x_d the amplitude of the drive motion. This is the rate-equivalent form of the quantity the paper prints.
+/// with x_d the amplitude of the drive motion: N of IEEE Std 952, the root of a two-sided density, after demodulation
+/// (inertial/mems/element_model.h). This is the rate-equivalent form of the quantity the paper prints.
 double gyro_thermal_density(double temperature_k, double omega_0_rad_s, double mass_kg, double quality_factor,
                             double drive_amplitude_m);
 

@@ -50,8 +50,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Real sensors are not exactly a sum of these processes: filters and rounding bend the curve by some per cent where
-// long logs would tell it to a tenth of one. 1-sigma of a point's deviation beyond statistics.
-constexpr double kModelTolerance = 0.02;
+// long logs would tell it to a tenth of one. 1-sigma of a point's deviation beyond statistics: the smallest of these
+// with which the misfit is what statistics and it explain.
+constexpr double kModelTolerances[] = {0.001, 0.005, 0.02};
 constexpr double kDeterminedSigmas = 2.0;
 // A process that forgets within a hundred samples is white noise as the sensor's bandwidth shapes it, not a bias.
 constexpr double kLeastCorrelationSamples = 100.0;
@@ -77,13 +78,13 @@ struct Combination {
 /// One point: residual of the logarithm of the variance.
 class LogVariance {
  public:
-  LogVariance(const Combination& model, const DeviationPoint& point, int per_octave)
+  LogVariance(const Combination& model, const DeviationPoint& point, int per_octave, double tolerance)
       : model_(model),
         tau_s_(point.tau_s),
         interval_s_(point.tau_s / static_cast<double>(point.m)),
         // The logarithm of a chi-square estimate lies low by 1 / edf on average.
         measured_(2.0 * std::log(point.deviation) + 1.0 / point.edf),
-        weight_(1.0 / std::sqrt(per_octave * 2.0 / point.edf + 4.0 * kModelTolerance * kModelTolerance)) {}
+        weight_(1.0 / std::sqrt(per_octave * 2.0 / point.edf + 4.0 * tolerance * tolerance)) {}
 
   template <class T>
   bool operator()(T const* const* parameters, T* residual) const {
@@ -167,7 +168,8 @@ std::vector<double> standard_deviations(ceres::Problem& problem, const std::vect
   return sigmas;
 }
 
-Solution solve(const Combination& model, std::span<const DeviationPoint> points, int per_octave, Seconds start) {
+Solution solve(const Combination& model, std::span<const DeviationPoint> points, int per_octave, double tolerance,
+               Seconds start) {
   Solution out{model, {}, {}, kInfinity};
   std::vector<Limits> limits;
   for (const int term : model.terms) {
@@ -182,7 +184,8 @@ Solution solve(const Combination& model, std::span<const DeviationPoint> points,
   }
   ceres::Problem problem;
   for (const DeviationPoint& point : points) {
-    auto* cost = new ceres::DynamicAutoDiffCostFunction<LogVariance, 10>(new LogVariance(out.model, point, per_octave));
+    auto* cost = new ceres::DynamicAutoDiffCostFunction<LogVariance, 10>(
+        new LogVariance(out.model, point, per_octave, tolerance));
     cost->AddParameterBlock(static_cast<int>(out.logs.size()));
     cost->SetNumResiduals(1);
     problem.AddResidualBlock(cost, nullptr, out.logs.data());
@@ -206,9 +209,13 @@ Solution solve(const Combination& model, std::span<const DeviationPoint> points,
 /// The search for the combination with the least information criterion.
 class Search {
  public:
-  Search(std::span<const DeviationPoint> points, int per_octave, const std::vector<std::string>& allowed)
-      : points_(points), per_octave_(per_octave), allowed_(allowed) {}
+  Search(std::span<const DeviationPoint> points, int per_octave, double tolerance,
+         const std::vector<std::string>& allowed)
+      : points_(points), per_octave_(per_octave), tolerance_(tolerance), allowed_(allowed) {}
 
+  double chi_square_per_dof() const {
+    return best_.chi_square / std::max(1.0, effective_points() - static_cast<double>(best_.logs.size()));
+  }
   double effective_points() const { return std::max(2.0, static_cast<double>(points_.size()) / per_octave_); }
 
   Solution best() {
@@ -222,7 +229,7 @@ class Search {
     const double before = least_;
     double frequency_hz = 0.0;
     for (double start = range.low; start < range.high; start *= std::sqrt(2.0)) {
-      const double criterion = weigh(solve(with, points_, per_octave_, {seconds_of(without), start}));
+      const double criterion = weigh(solve(with, points_, per_octave_, tolerance_, {seconds_of(without), start}));
       if (criterion < before && criterion == least_) frequency_hz = best_frequency();
     }
     if (frequency_hz > 0.0) try_all(frequency_hz);
@@ -280,16 +287,17 @@ class Search {
     if (static_cast<double>(model.parameters()) > effective_points()) return;
     const bool markov = std::find(model.terms.begin(), model.terms.end(), kGaussMarkov) != model.terms.end();
     if (!markov) {
-      weigh(solve(model, points_, per_octave_, {0.0, frequency_hz}));
+      weigh(solve(model, points_, per_octave_, tolerance_, {0.0, frequency_hz}));
       return;
     }
     const Limits range = second_limits(kGaussMarkov, points_);
     for (double start = 1.5 * range.low; start <= std::max(points_.back().tau_s, 1.5 * range.low); start *= 10.0)
-      weigh(solve(model, points_, per_octave_, {start, frequency_hz}));
+      weigh(solve(model, points_, per_octave_, tolerance_, {start, frequency_hz}));
   }
 
   std::span<const DeviationPoint> points_;
   int per_octave_;
+  double tolerance_;
   const std::vector<std::string>& allowed_;
   Solution best_;
   double least_ = kInfinity;
@@ -306,12 +314,15 @@ Result<NoiseFit> fit_noise(std::span<const DeviationPoint> points, int points_pe
   if (used.size() < 3)
     return Error{"", 0, "", std::to_string(used.size()) + " points of deviation above zero",
                  "three or more: a longer log"};
-  Search search(used, points_per_octave, allowed);
-  const Solution best = search.best();
-  const double dof = std::max(1.0, search.effective_points() - static_cast<double>(best.logs.size()));
   NoiseFit fit;
+  Solution best;
+  for (const double tolerance : kModelTolerances) {
+    Search search(used, points_per_octave, tolerance, allowed);
+    best = search.best();
+    fit.chi_square_per_dof = search.chi_square_per_dof();
+    if (fit.chi_square_per_dof <= 1.0) break;
+  }
   fit.interval_s = used.front().tau_s / static_cast<double>(used.front().m);
-  fit.chi_square_per_dof = best.chi_square / dof;
   // Where the processes describe the curve worse than its statistics, the sigmas grow with the misfit.
   const double inflation = std::sqrt(std::max(1.0, fit.chi_square_per_dof));
   for (const char* name : kNoiseTermNames) fit.terms.push_back({name, 0.0, kInfinity, false});

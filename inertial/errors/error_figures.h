@@ -5,9 +5,10 @@ namespace canyon::inertial {
 /// Every figure of one triad that a link of the error chain takes, in SI: r is rad/s for a gyroscope, m/s^2 for an
 /// accelerometer. 0: the unit has no such error, or none is known, and the link is not built.
 struct TriadFigures {
-  double white_per_sqrt_hz = 0.0;  ///< N of IEEE Std 952, r / sqrt(Hz)
-  double turn_on_bias = 0.0;       ///< r, 1-sigma
-  double in_run_bias = 0.0;        ///< r, stationary sigma of the Gauss-Markov bias
+  double white_per_sqrt_hz = 0.0;      ///< N of IEEE Std 952, r / sqrt(Hz)
+  double neighbour_correlation = 0.0;  ///< of the white noise's samples, by a low-pass beyond one sample; 0 to 0.5
+  double turn_on_bias = 0.0;           ///< r, 1-sigma
+  double in_run_bias = 0.0;            ///< r, stationary sigma of the Gauss-Markov bias
   double in_run_bias_tau_s = 3600.0;
   double bias_instability = 0.0;  ///< r, floor of the Allan deviation: 0.664 B of IEEE Std 952
   double flicker_low_hz = 1e-5;   ///< corners between which the spectrum is 1/f

@@ -11,8 +11,9 @@ void visit(FieldVisitor& f, ElementFigures& c) {
   f.number("travel_m", c.travel_m, {1e-12, 1e-3}, "to the stops (accelerometer)");
   f.number("drive_amplitude_m", c.drive_amplitude_m, {1e-9, 1e-3}, "drive amplitude (gyroscope)");
   f.number("split_hz", c.split_hz, {-1e5, 1e5}, "sense minus drive resonance (gyroscope)");
-  f.number("range", c.range, {0, 1e6}, "where the front end clips, g or deg/s; 0 = nowhere");
-  f.number("bandwidth_hz", c.bandwidth_hz, {1e-2, 1e6}, "corner of the anti-alias filter");
+  f.number("range", c.range, {0, 1e6}, "where the front end clips, g or deg/s; 0 = at the range of the sheet");
+  f.number("bandwidth_hz", c.bandwidth_hz, {0, 1e6},
+           "corner of the anti-alias filter; 0 = of the sheet, else 0.4 of the sample rate");
   f.integer("filter_order", c.filter_order, {0, 4}, "Butterworth order; 0 = none, samples are taken as they come");
   f.choice("pick_off", c.pick_off, pick_off_names(), "how the displacement is read");
   f.group("pick_off_figures", c.pick_off_figures, "of the pick-off");

@@ -16,8 +16,8 @@ struct ElementFigures {
   double travel_m = 1e-6;           ///< to the stops; accelerometer only
   double drive_amplitude_m = 5e-6;  ///< gyroscope only
   double split_hz = 0.0;            ///< sense minus drive resonance; gyroscope only
-  double range = 0.0;               ///< where the front end clips, g or deg/s; 0: nowhere
-  double bandwidth_hz = 40.0;       ///< corner of the anti-alias filter
+  double range = 0.0;               ///< where the front end clips, g or deg/s; 0: where the sheet says, if it does
+  double bandwidth_hz = 0.0;        ///< corner of the anti-alias filter; 0: the sheet's, else 0.4 of the sample rate
   std::int64_t filter_order = 2;    ///< Butterworth, 0: none, the output is sampled as it is
   std::string pick_off = "capacitive";
   PickOffFigures pick_off_figures{};

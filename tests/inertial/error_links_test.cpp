@@ -400,7 +400,7 @@ TEST(ImuConfig, MistakesAreNamed) {
               c.leave_out = {"flicker"};
             }),
             "imu.leave_out: the error chain \"paper\" has no links to leave out, expected an empty list, or errors = "
-            "\"datasheet\", \"full\" or \"white_only\"");
+            "\"datasheet\", \"full\", \"physics\" or \"white_only\"");
   EXPECT_EQ(refusal([](ImuConfig& c) { c.temperatures_c = {20.0}; }),
             "imu.temperatures_c: 1 temperatures for 0 times, expected as many as temperature_times_s");
   EXPECT_EQ(refusal([](ImuConfig& c) {

@@ -20,6 +20,7 @@ ElementFigures quiet(double quality_factor) {
   f.pick_off_figures.bridge_ohm = 1.0;
   f.pick_off_figures.bias_v = 100.0;  // thermal noise of the mass alone
   f.pick_off_figures.strain_cubic = 0.0;
+  f.bandwidth_hz = 40.0;
   return f;
 }
 
@@ -302,6 +303,7 @@ TEST(Gyroscope, ThermalNoiseIsTheFormulas) {
   f.pick_off = "piezoresistive";
   f.pick_off_figures.bridge_ohm = 1.0;
   f.pick_off_figures.bias_v = 100.0;
+  f.bandwidth_hz = 40.0;
   const double w = 2.0 * kPi * 1e4, xd = f.drive_amplitude_m;
   const ElementModel model = *gyroscope_model(f, kTemperature_k);
   EXPECT_NEAR(model.thermal_n / gyro_thermal_density(kTemperature_k, w, 1e-8, 1000.0, xd), 1.0, 1e-12);
