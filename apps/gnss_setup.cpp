@@ -13,7 +13,8 @@ namespace canyon::apps {
 void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* default_scene) {
   declare_common(app, options.common);
   options.scene = default_scene;
-  app.add_option("--scene", options.scene, "a mission file's scene, \"vicksburg\" (built in) or \"none\" (open sky)")
+  app.add_option("--scene", options.scene,
+                 "a mission file's scene, a scene file, \"vicksburg\" (built in) or \"none\" (open sky)")
       ->capture_default_str();
   app.add_option("--fidelity", options.fidelity, "whose receiver: high, paper, or one of the mission file's own")
       ->capture_default_str();
@@ -30,11 +31,13 @@ void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* de
 
 Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optional<Geodetic>& place) {
   const bool open_sky = options.scene == "none", built_in = options.scene == mission::kDefaultMission;
-  CANYON_TRY(auto file, mission::MissionFile::load(open_sky || built_in ? "" : options.scene));
+  const bool mission_file = options.scene.ends_with(".toml");
+  CANYON_TRY(auto file, mission::MissionFile::load(mission_file ? options.scene : ""));
   if (!options.systems.empty()) file.set_option("gnss.systems", ConfigNode::of(options.systems), "--systems");
   if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
   CANYON_TRY_STATUS(file.check_fidelities({options.fidelity}, "--fidelity"));
-  CANYON_TRY(const mission::MissionConfig config, file.resolve(options.fidelity));
+  CANYON_TRY(mission::MissionConfig config, file.resolve(options.fidelity));
+  if (!open_sky && !built_in && !mission_file) config.scene.from.file = options.scene;
 
   GnssSetup out;
   out.config = config.gnss;
@@ -55,7 +58,7 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
     out.scene = std::make_shared<const scene::Scene>(std::move(parts));
   } else {
     mission::SceneCache scenes;
-    out.scene = scenes.get(config.scene);
+    CANYON_TRY(out.scene, scenes.get(config.scene));
   }
   return out;
 }

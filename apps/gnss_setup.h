@@ -16,7 +16,7 @@ namespace canyon::apps {
 /// Options shared by the verbs that simulate GNSS by itself.
 struct GnssSetupOptions {
   CommonOptions common;
-  std::string scene;  ///< a mission file, "vicksburg", or "none"
+  std::string scene;  ///< a mission file, a scene file, "vicksburg", or "none"
   std::string fidelity = "high";
   std::vector<std::string> nav;
   std::string systems, start, out;

@@ -28,6 +28,8 @@ Verb compare_verb();
 Verb run_verb();
 Verb report_verb();
 Verb keys_verb();
+Verb scene_info_verb();
+Verb scene_make_verb();
 Verb gnss_sky_verb();
 Verb gnss_map_verb();
 Verb gnss_simulate_verb();

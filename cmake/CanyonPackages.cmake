@@ -4,6 +4,11 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(ZLIB REQUIRED)
+# Scenes from files: map projections, GeoTIFF, XML. PROJ and libtiff are used directly: GDAL would bring a hundred shared libraries to
+# the start of every run for one raster format.
+find_package(PROJ REQUIRED)
+find_package(TIFF REQUIRED)
+find_package(LibXml2 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
@@ -24,6 +29,10 @@ if(CANYON_WITH_PCL)
   # looks for although none of these components needs it, would bring its libraries along, and wants MPI to be installed.
   set(CMAKE_DISABLE_FIND_PACKAGE_VTK ON)
   find_package(PCL 1.13 REQUIRED COMPONENTS common search kdtree filters registration)
+endif()
+
+if(CANYON_WITH_ASSIMP)
+  find_package(assimp 5.2 REQUIRED)
 endif()
 
 if(CANYON_WITH_CERES)

@@ -37,12 +37,13 @@ LIBRARIES = [
     ("oneTBB", r"(tbb|oneapi)/", ["core/*.cpp"]),
     ("OpenSSL", r"openssl/", ["core/*.cpp"]),
     ("zlib", r"zlib\.h", ["core/*.cpp", "report/*.cpp"]),
-    ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp"]),
+    ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp", "scene/*.cpp"]),
     ("CLI11", r"CLI/", ["apps/*.cpp"]),
     ("Ceres", r"ceres/", ["inertial/*.cpp", "fusion/*.cpp"]),
-    ("assimp", r"assimp/", ["scene/*.cpp"]),
-    ("GDAL", r"(gdal|ogr|cpl)_?\w*\.h", ["scene/*.cpp"]),
-    ("PROJ", r"proj\w*\.h", ["scene/*.cpp"]),
+    ("assimp", r"assimp/", ["scene/importers/assimp.cpp"]),
+    ("libxml2", r"libxml/", ["scene/importers/xml_file.cpp"]),
+    ("libtiff", r"tiff\w*\.h", ["scene/elevation/geotiff.cpp"]),
+    ("PROJ", r"proj\w*\.h", ["scene/projection.cpp"]),
     ("SQLite", r"sqlite3\.h", ["study/*.cpp"]),
 ]
 # PCL's registration headers take 18 s and 1.4 GB per file.

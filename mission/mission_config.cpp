@@ -31,7 +31,7 @@ void visit(FieldVisitor& f, RunConfig& c) {
 }
 
 void visit(FieldVisitor& f, MissionConfig& c) {
-  f.group("scene", c.scene, "the built-in city");
+  f.group("scene", c.scene, "the built-in city, or a scene from files");
   f.group("time", c.time, "start and limits");
   f.group("vehicle", c.vehicle, "the ground vehicle");
   f.group("gnss", c.gnss, "the GNSS receiver and its errors");

@@ -12,7 +12,7 @@
 #include "lidar/scanner.h"
 #include "mission/autonomy.h"
 #include "mission/vehicle.h"
-#include "scene/city.h"
+#include "scene/scene_source.h"
 
 namespace canyon::mission {
 
@@ -52,7 +52,7 @@ void visit(FieldVisitor& f, RunConfig& c);
 
 /// Everything one run needs, resolved. The sections of a mission file in their order.
 struct MissionConfig {
-  scene::CityConfig scene;
+  scene::SceneConfig scene;
   TimeConfig time;
   VehicleConfig vehicle;
   gnss::GnssConfig gnss;

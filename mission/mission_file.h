@@ -70,7 +70,7 @@ struct PreparedMission {
 /// Scenes by configuration, so that the runs of a comparison share one.
 class SceneCache {
  public:
-  std::shared_ptr<const scene::Scene> get(const scene::CityConfig& config);
+  Result<std::shared_ptr<const scene::Scene>> get(const scene::SceneConfig& config);
 
  private:
   std::map<std::string, std::shared_ptr<const scene::Scene>> scenes_;

@@ -57,10 +57,13 @@ Result<std::vector<InputFile>> read_inputs(const MissionConfig& config) {
 
 }  // namespace
 
-std::shared_ptr<const scene::Scene> SceneCache::get(const scene::CityConfig& config) {
-  scene::CityConfig copy = config;
+Result<std::shared_ptr<const scene::Scene>> SceneCache::get(const scene::SceneConfig& config) {
+  scene::SceneConfig copy = config;
   auto& slot = scenes_[fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); })];
-  if (!slot) slot = std::make_shared<scene::Scene>(scene::make_city(config));
+  if (!slot) {
+    CANYON_TRY(scene::ImportedScene made, scene::make_scene(config));
+    slot = std::make_shared<scene::Scene>(std::move(made.parts));
+  }
   return slot;
 }
 
@@ -81,14 +84,14 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
 
   CANYON_TRY(mission.files, read_inputs(config));
 
-  mission.scene = scenes.get(config.scene);
+  CANYON_TRY(mission.scene, scenes.get(config.scene));
   const scene::Scene& scene = *mission.scene;
   CANYON_TRY_STATUS(check_standing_place(scene, config.vehicle.start_m, "vehicle.start_m", ""));
   for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
     const Waypoint& waypoint = config.autonomy.waypoints[i];
     const std::string key = "autonomy.waypoint[" + std::to_string(i + 1) + "]";
     CANYON_TRY_STATUS(check_standing_place(scene, waypoint.p_m, key, "waypoint \"" + waypoint.name + "\" at "));
-    if (!waypoint.is_mission() || config.scene.empty) continue;
+    if (!waypoint.is_mission() || config.scene.city.empty) continue;
     std::vector<std::string> names;
     for (const auto& building : scene.buildings()) names.push_back(building.name);
     if (std::find(names.begin(), names.end(), waypoint.observe) == names.end())

@@ -19,6 +19,8 @@ class MeshBuilder {
   std::uint16_t material(const std::string& name) const;
   /// A new object; later shapes belong to it until the next call.
   std::uint32_t begin_object(std::string name, ObjectKind kind);
+  /// Later shapes belong to an object that is there already.
+  void resume_object(std::uint32_t object) { object_ = object; }
 
   void triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, std::uint16_t material);
   /// Two triangles, a b c and a c d.

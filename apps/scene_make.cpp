@@ -1,0 +1,74 @@
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "apps/verb.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "scene/city.h"
+#include "scene/written_scene.h"
+
+namespace canyon::apps {
+
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string what, out = "city";
+  scene::CityConfig city;
+  bool force = false;
+};
+
+Result<int> run(const Options& options) {
+  set_threads(options.common.threads);
+  CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
+  const scene::SceneParts parts = scene::make_city(options.city);
+  CANYON_TRY_STATUS(scene::write_scene(parts, staged.staging_path()));
+  CANYON_TRY_STATUS(staged.commit());
+  const std::size_t triangles = parts.mesh.triangles.size(), buildings = parts.buildings.size();
+  if (options.common.json) {
+    const nlohmann::ordered_json json{
+        {"name", parts.name}, {"buildings", buildings}, {"triangles", triangles}, {"directory", staged.final_path()}};
+    std::printf("%s\n", json.dump().c_str());
+    return 0;
+  }
+  std::printf(
+      "%s: %zu buildings, %zu triangles\n\nFiles: %s/scene.json (what canyon reads), scene.obj, scene.mtl, "
+      "materials.toml\n",
+      parts.name.c_str(), buildings, triangles, staged.final_path().c_str());
+  return 0;
+}
+
+VerbAction declare(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  declare_common(app, options->common);
+  scene::CityConfig& city = options->city;
+  app.add_option("what", options->what, "what to make: \"city\", the built-in one")
+      ->required()
+      ->check(CLI::IsMember({"city"}));
+  app.add_option("--seed", city.seed, "seed of the city")
+      ->capture_default_str()
+      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
+  app.add_option("--extent", city.extent_m, "edge of the square, m")
+      ->capture_default_str()
+      ->check(CLI::Range(200.0, 5000.0));
+  app.add_option("--block", city.block_m, "street to street, m")->capture_default_str()->check(CLI::Range(40.0, 500.0));
+  app.add_option("--slope", city.slope_percent, "mean slope of the terrain, percent")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 20.0));
+  app.add_option("--out", options->out, "directory for the files")->capture_default_str();
+  app.add_flag("--force", options->force,
+               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Verb scene_make_verb() {
+  return {"scene make", "the built-in city as files: OBJ and MTL, materials, streets",
+          "canyon scene make city --seed 7 --out my_city", declare};
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,361 @@
+#include "scene/import.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "core/config_text.h"
+#include "core/files.h"
+#include "core/geoid.h"
+#include "core/units.h"
+#include "scene/elevation/elevation.h"
+#include "scene/free_space.h"
+#include "scene/ground_surface.h"
+#include "scene/importers/assemble.h"
+#include "scene/importers/importer.h"
+#include "scene/projection.h"
+#include "scene/written_scene.h"
+
+namespace canyon::scene {
+
+void visit(FieldVisitor& f, ImportConfig& c) {
+  f.file("file", c.file, "", "scene file, in place of the built-in city (docs/scenes.md lists the formats)");
+  f.files("more_files", c.more_files, "further files of the same place: bridges, streets");
+  f.file("terrain", c.terrain, "",
+         "elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII grid; else what the files say of the ground");
+  f.text("crs", c.crs, "coordinate system, as PROJ knows it, in place of the file's own; axes east, north");
+  f.choice("heights", c.heights, {"auto", "orthometric", "ellipsoidal"},
+           "what heights in the files are above; auto: as the coordinate system says, else orthometric");
+  f.number("undulation_m", c.undulation_m, {-1000.0, 200.0},
+           "geoid above the ellipsoid; -1000: of GeographicLib's geoid where that is installed, else 0 with a warning");
+  f.numbers("center_deg", c.center_deg, 0, {-360.0, 360.0},
+            "latitude, longitude of W's origin; empty: the middle of the scene");
+  f.number("radius_m", c.radius_m, {0.0, 1e6}, "if > 0: only what is that near to W's origin is read");
+  f.number("ground_cell_m", c.ground_cell_m, {0.5, 100.0}, "cells of terrain made from heights");
+  f.number("margin_m", c.margin_m, {1.0, 5000.0}, "terrain made around what the files hold");
+  f.text("height_property", c.height_property, "property with a building's height; empty: those of the known layouts");
+  f.text("ground_property", c.ground_property, "property with the height of the ground");
+  f.text("storeys_property", c.storeys_property, "property with the number of storeys");
+  f.number("storey_m", c.storey_m, {1.0, 10.0}, "height of a storey where only their number is known");
+  f.number("default_height_m", c.default_height_m, {0.0, 500.0}, "of buildings that say nothing; 0: they are left out");
+  f.choice("up_axis", c.up_axis, {"auto", "y", "z"}, "of mesh files; auto: y of glTF, z of all else");
+  f.text("wall_material", c.wall_material, "of walls that say nothing");
+  f.text("roof_material", c.roof_material, "of roofs that say nothing");
+  f.text("ground_material", c.ground_material, "of ground that says nothing");
+  f.files("materials", c.materials, "the user's own material tables, over the built-in one");
+  f.choice(
+      "streets", c.streets, {"auto", "file", "free_space"},
+      "streets for the route: of the file, or the middle lines of the free space; auto: of the file if it has any");
+}
+
+namespace {
+
+class Import {
+ public:
+  Import(const ImportConfig& config, const Geodetic& origin) : config_(config), origin_(origin) {}
+
+  Result<ImportedScene> run() {
+    CANYON_TRY_STATUS(read_files());
+    CANYON_TRY_STATUS(find_origin());
+    for (std::size_t i = 0; i < scenes_.size(); ++i) place(i);
+    if (config_.radius_m > 0.0) clip();
+    if (count_dropped_ > 0)
+      out_.report.warnings.push_back(std::to_string(count_dropped_) +
+                                     " points outside the coordinate system's domain: their surfaces are left out");
+    CANYON_TRY_STATUS(make_terrain());
+    assemble(scenes_, config_, out_.parts, out_.report);
+    make_streets();
+    for (const RawScene& scene : scenes_)
+      out_.report.warnings.insert(out_.report.warnings.end(), scene.warnings.begin(), scene.warnings.end());
+    return std::move(out_);
+  }
+
+ private:
+  Status read_files() {
+    CANYON_TRY(out_.parts.materials, load_materials(config_.materials));
+    for (const std::string& name : {config_.wall_material, config_.roof_material, config_.ground_material}) {
+      const auto& table = out_.parts.materials;
+      if (std::none_of(table.begin(), table.end(), [&](const Material& m) { return m.name == name; }))
+        return Error{"", 0, "scene.wall_material", "no material \"" + name + "\"", "a material of the table"};
+    }
+    ReadOptions options{config_.height_property, config_.ground_property, config_.storeys_property,
+                        config_.up_axis,         config_.storey_m,        config_.default_height_m};
+    std::vector<std::string> paths{config_.file};
+    paths.insert(paths.end(), config_.more_files.begin(), config_.more_files.end());
+    for (const std::string& path : paths) {
+      CANYON_TRY(RawScene scene, read_scene_file(path, options));
+      if (!config_.crs.empty()) scene.frame = {config_.crs, false};
+      if (scene.frame.crs.empty()) {
+        projections_.emplace_back();
+      } else {
+        CANYON_TRY(Projection projection, Projection::make(scene.frame, path, "crs"));
+        if (out_.report.crs.empty()) out_.report.crs = projection.name(), out_.report.vertical = projection.vertical();
+        projections_.push_back(std::move(projection));
+      }
+      scenes_.push_back(std::move(scene));
+    }
+    out_.parts.name = std::filesystem::path(config_.file).filename().string();
+    return Ok{};
+  }
+
+  /// Calls body for every point of a scene with its height: corners, footprints on their ground (NaN where unknown).
+  template <class Body>
+  static void for_points(const RawScene& scene, const Body& body) {
+    for (const RawPolygon& polygon : scene.polygons)
+      for (const auto& ring : polygon.rings)
+        for (const Eigen::Vector3d& p : ring) body(p);
+    for (const RawMesh& mesh : scene.meshes)
+      for (const Eigen::Vector3d& p : mesh.vertices) body(p);
+    for (const RawFootprint& f : scene.footprints)
+      for (const Eigen::Vector2d& p : f.rings[0]) body(Eigen::Vector3d(p.x(), p.y(), f.ground_m));
+  }
+
+  /// W's origin: the middle of what was read, at the median of the ground's heights, in whole metres.
+  Status find_origin() {
+    if (!config_.center_deg.empty() && config_.center_deg.size() != 2)
+      return Error{"", 0, "scene.center_deg", std::to_string(config_.center_deg.size()) + " numbers",
+                   "latitude, longitude"};
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+    std::vector<double> heights;
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+      if (!projections_[i]) continue;
+      for (const RawFootprint& f : scenes_[i].footprints)
+        if (std::isfinite(f.ground_m)) heights.push_back(f.ground_m);
+      std::vector<double> lowest(scenes_[i].objects.size(), 1e300);
+      for (const RawPolygon& polygon : scenes_[i].polygons)
+        for (const auto& ring : polygon.rings)
+          for (const Eigen::Vector3d& p : ring) lowest[polygon.object] = std::min(lowest[polygon.object], p.z());
+      for (const double h : lowest)
+        if (h < 1e300 && heights.size() < 1000000 && scenes_[i].footprints.empty()) heights.push_back(h);
+      // A few points of a large scene tell its middle well enough only if they are its outermost: all are looked at.
+      for_points(scenes_[i], [&](const Eigen::Vector3d& p) {
+        const auto g = projections_[i]->to_geodetic({p.x(), p.y(), 0.0});
+        if (!g) return;
+        low = low.cwiseMin(Eigen::Vector2d(g->lat_rad, g->lon_rad));
+        high = high.cwiseMax(Eigen::Vector2d(g->lat_rad, g->lon_rad));
+      });
+    }
+    if (low.x() > high.x()) {  // all in local metres
+      out_.parts.frame = LocalFrame(origin_);
+      out_.report.undulation_source = "none";
+      return Ok{};
+    }
+    Geodetic middle{0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), 0.0};
+    if (config_.center_deg.size() == 2)
+      middle = {config_.center_deg[0] * kDegree, config_.center_deg[1] * kDegree, 0.0};
+    ellipsoidal_ =
+        config_.heights == "ellipsoidal" || (config_.heights == "auto" && out_.report.vertical == "ellipsoid");
+    if (out_.report.vertical.empty()) out_.report.vertical = ellipsoidal_ ? "ellipsoid" : "orthometric (assumed)";
+    undulation_m_ = 0.0;
+    out_.report.undulation_source = "none";
+    if (!ellipsoidal_) {
+      if (config_.undulation_m > ImportConfig::kUndulationUnknown) {
+        undulation_m_ = config_.undulation_m;
+        out_.report.undulation_source = "stated";
+      } else if (const auto geoid = geoid_height(middle)) {
+        undulation_m_ = geoid->undulation_m;
+        out_.report.undulation_source = geoid->model;
+      } else {
+        out_.report.warnings.push_back(
+            "no geoid model is installed and none is stated (scene.undulation_m): heights above sea level are taken "
+            "for ellipsoidal ones");
+      }
+    }
+    double ground_m = 0.0;
+    if (!config_.terrain.empty()) {
+      CANYON_TRY_STATUS(read_terrain());
+      ground_m = terrain_height(middle).value_or(0.0);
+    } else if (!heights.empty()) {
+      std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2),
+                       heights.end());
+      ground_m = heights[heights.size() / 2];
+    }
+    middle.h_m = std::round(ground_m) + undulation_m_;
+    out_.parts.frame = LocalFrame(middle);
+    out_.parts.undulation_m = undulation_m_;
+    return Ok{};
+  }
+
+  Status read_terrain() {
+    CANYON_TRY(elevation_, read_elevation(config_.terrain));
+    if (elevation_.frame.crs.empty() && config_.crs.empty())
+      return Error{config_.terrain, 0, "crs", "does not say its coordinate system",
+                   "a GeoTIFF that does, a .prj beside it, or scene.crs"};
+    const SourceFrame frame =
+        elevation_.frame.crs.empty() ? SourceFrame{config_.crs, false} : SourceFrame{elevation_.frame.crs, false};
+    CANYON_TRY(terrain_projection_, Projection::make(frame, config_.terrain, "crs"));
+    return Ok{};
+  }
+
+  std::optional<double> terrain_height(const Geodetic& g) const {
+    const auto p = terrain_projection_->from_geodetic(g);
+    return p ? elevation_.height(*p) : std::nullopt;
+  }
+
+  /// From the file's coordinates to W.
+  void place(std::size_t i) {
+    RawScene& scene = scenes_[i];
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto to_W = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+      if (!projections_[i]) return scene.y_up ? Eigen::Vector3d(p.x(), -p.z(), p.y()) : p;
+      const auto g = projections_[i]->to_geodetic(p);
+      if (!g) {
+        ++count_dropped_;
+        return Eigen::Vector3d::Constant(nan);
+      }
+      return out_.parts.frame.from_geodetic({g->lat_rad, g->lon_rad, g->h_m + undulation_m_});
+    };
+    const double level_m = projections_[i] ? out_.parts.frame.origin().h_m - undulation_m_ : 0.0;
+    for (RawPolygon& polygon : scene.polygons)
+      for (auto& ring : polygon.rings)
+        for (Eigen::Vector3d& p : ring) p = to_W(p);
+    for (RawMesh& mesh : scene.meshes)
+      for (Eigen::Vector3d& p : mesh.vertices) p = to_W(p);
+    for (RawFootprint& f : scene.footprints) {
+      const bool known = std::isfinite(f.ground_m);
+      double sum_m = 0.0;
+      for (auto& ring : f.rings) {
+        for (Eigen::Vector2d& p : ring) {
+          const Eigen::Vector3d p_W = to_W({p.x(), p.y(), known ? f.ground_m : level_m});
+          p = p_W.head<2>();
+          if (&ring == &f.rings[0]) sum_m += p_W.z();
+        }
+      }
+      if (known) f.ground_m = sum_m / static_cast<double>(f.rings[0].size());
+    }
+    for (RawStreet& street : scene.streets)
+      for (Eigen::Vector2d& p : street.points) p = to_W({p.x(), p.y(), level_m}).head<2>();
+    const auto lost = [](const auto& ring) {
+      return std::any_of(ring.begin(), ring.end(), [](const auto& p) { return !p.allFinite(); });
+    };
+    std::erase_if(scene.polygons, [&](const RawPolygon& p) {
+      return projections_[i] && std::any_of(p.rings.begin(), p.rings.end(), lost);
+    });
+    std::erase_if(scene.footprints,
+                  [&](const RawFootprint& f) { return std::any_of(f.rings.begin(), f.rings.end(), lost); });
+    std::erase_if(scene.streets, [&](const RawStreet& s) { return lost(s.points); });
+  }
+
+  /// Leaves out what begins farther from the origin than the radius.
+  void clip() {
+    const auto far = [&](const auto& p) { return !(p.template head<2>().norm() <= config_.radius_m); };
+    const auto all_far = [&](const auto& ring) { return std::all_of(ring.begin(), ring.end(), far); };
+    for (RawScene& scene : scenes_) {
+      std::erase_if(scene.polygons, [&](const RawPolygon& p) { return all_far(p.rings[0]); });
+      std::erase_if(scene.footprints, [&](const RawFootprint& f) { return all_far(f.rings[0]); });
+      std::erase_if(scene.streets, [&](const RawStreet& s) { return all_far(s.points); });
+      for (RawMesh& mesh : scene.meshes) {
+        std::size_t kept = 0;
+        for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+          const auto& t = mesh.triangles[k];
+          if (far(mesh.vertices[t[0]]) && far(mesh.vertices[t[1]]) && far(mesh.vertices[t[2]])) continue;
+          mesh.triangles[kept] = mesh.triangles[k];
+          mesh.object[kept] = mesh.object[k];
+          mesh.material[kept++] = mesh.material[k];
+        }
+        mesh.triangles.resize(kept);
+        mesh.object.resize(kept);
+        mesh.material.resize(kept);
+      }
+    }
+  }
+
+  bool files_have_terrain() const {
+    return std::any_of(scenes_.begin(), scenes_.end(), [](const RawScene& scene) {
+      return std::any_of(scene.objects.begin(), scene.objects.end(),
+                         [](const SceneObject& o) { return o.kind == ObjectKind::kTerrain; });
+    });
+  }
+
+  Status make_terrain() {
+    if (config_.terrain.empty() && files_have_terrain()) {
+      out_.report.ground = "surfaces of the file";
+      return Ok{};
+    }
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+    for (const RawScene& scene : scenes_)
+      for_points(scene, [&](const Eigen::Vector3d& p) {
+        if (!p.head<2>().allFinite()) return;
+        low = low.cwiseMin(p.head<2>());
+        high = high.cwiseMax(p.head<2>());
+      });
+    if (low.x() > high.x()) {
+      out_.report.ground = "none";
+      return Ok{};
+    }
+    if (config_.radius_m > 0.0) low = low.cwiseMax(-config_.radius_m), high = high.cwiseMin(config_.radius_m);
+    low.array() -= config_.margin_m;
+    high.array() += config_.margin_m;
+    const double cells = (high - low).prod() / (config_.ground_cell_m * config_.ground_cell_m);
+    if (!(cells < 2e7))
+      return Error{"", 0, "scene.ground_cell_m", "terrain of " + number_text(std::round(cells)) + " cells",
+                   "larger cells, or scene.radius_m"};
+    GroundGrid grid = ground_grid(low, high, config_.ground_cell_m);
+    const LocalFrame& frame = out_.parts.frame;
+    if (!config_.terrain.empty()) {
+      if (!terrain_projection_) CANYON_TRY_STATUS(read_terrain());
+      const bool known = fill_ground(grid, [&](const Eigen::Vector2d& p) -> std::optional<double> {
+        Geodetic g = frame.to_geodetic({p.x(), p.y(), 0.0});
+        const auto h = terrain_height(g);
+        if (!h) return std::nullopt;
+        g.h_m = *h + (terrain_projection_->ellipsoidal() ? 0.0 : undulation_m_);
+        return frame.from_geodetic(g).z();
+      });
+      if (!known)
+        return Error{config_.terrain, 0, "", "does not cover the scene", "an elevation model of the same place"};
+      out_.report.ground = std::filesystem::path(config_.terrain).filename().string();
+    } else {
+      const auto heights = ground_points(scenes_);
+      fit_ground(grid, heights);
+      out_.report.ground = heights.empty()
+                               ? "level"
+                               : "fitted to " + std::to_string(heights.size()) + " heights of the ground at buildings";
+    }
+    add_ground(grid, config_.ground_material, out_.parts);
+    return Ok{};
+  }
+
+  void make_streets() {
+    const bool of_file = !out_.parts.streets.edges.empty();
+    if (config_.streets == "file" || (config_.streets == "auto" && of_file)) {
+      out_.report.streets = of_file ? "of the file" : "none";
+      return;
+    }
+    out_.parts.streets = free_space_streets(out_.parts);
+    out_.report.streets = out_.parts.streets.edges.empty() ? "none" : "middle lines of the free space";
+  }
+
+  const ImportConfig& config_;
+  Geodetic origin_;
+  ImportedScene out_;
+  std::vector<RawScene> scenes_;
+  std::vector<std::optional<Projection>> projections_;
+  bool ellipsoidal_ = false;
+  double undulation_m_ = 0.0;
+  Elevation elevation_;
+  std::optional<Projection> terrain_projection_;
+  int count_dropped_ = 0;
+};
+
+}  // namespace
+
+Result<ImportedScene> import_scene(const ImportConfig& config, const Geodetic& origin) {
+  if (config.file.ends_with(".json")) {
+    CANYON_TRY(const std::string text, read_text_file(config.file));
+    if (is_written_scene(std::string_view(text).substr(0, 1024))) {
+      ImportedScene out;
+      CANYON_TRY(out.parts, read_written_scene(config.file));
+      out.report = {.crs = {},
+                    .vertical = "ellipsoid",
+                    .undulation_source = "stated",
+                    .ground = "surfaces of the file",
+                    .streets = "of the file",
+                    .warnings = {}};
+      return out;
+    }
+  }
+  return Import(config, origin).run();
+}
+
+}  // namespace canyon::scene

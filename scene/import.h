@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/config.h"
+#include "core/result.h"
+#include "scene/scene.h"
+
+namespace canyon::scene {
+
+/// The part of [scene] that says how a scene is read from files.
+struct ImportConfig {
+  std::string file;                     ///< empty: the built-in city
+  std::vector<std::string> more_files;  ///< bridges, streets, ... of the same place
+  std::string terrain;                  ///< elevation model; empty: what the files say of the ground
+  std::string crs;                      ///< over what the file says
+  std::string heights = "auto";
+  double undulation_m = kUndulationUnknown;
+  std::vector<double> center_deg;  ///< latitude, longitude of W's origin; empty: the middle of the scene
+  double radius_m = 0.0;           ///< > 0: only what is that near to W's origin
+  double ground_cell_m = 5.0;
+  double margin_m = 60.0;  ///< of terrain around the buildings
+  std::string height_property, ground_property, storeys_property;
+  double storey_m = 3.0;
+  double default_height_m = 9.0;
+  std::string up_axis = "auto";
+  std::string wall_material = "concrete", roof_material = "roofing", ground_material = "asphalt";
+  std::vector<std::string> materials;  ///< the user's own tables
+  std::string streets = "auto";
+
+  static constexpr double kUndulationUnknown = -1000.0;
+};
+void visit(FieldVisitor& f, ImportConfig& c);
+
+/// What was read, and what a user should know of it.
+struct ImportReport {
+  std::string crs, vertical;          ///< names; empty: local metres
+  std::string undulation_source;      ///< "egm96-5", "stated", "none"
+  std::string ground;                 ///< where the terrain is from
+  std::string streets;                ///< where the streets are from
+  std::vector<std::string> warnings;  ///< counted
+};
+
+struct ImportedScene {
+  SceneParts parts;
+  ImportReport report;
+};
+
+/// Reads the files of a scene and sets them into W: local east-north-up around the middle of the scene (or center_deg),
+/// at the height of the ground there. Buildings stand on the terrain without gaps: their walls reach half a metre below
+/// the lowest ground around them. `origin` is where a scene in local metres lies.
+Result<ImportedScene> import_scene(const ImportConfig& config, const Geodetic& origin);
+
+}  // namespace canyon::scene

@@ -1,0 +1,243 @@
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "scene/importers/importer.h"
+#include "scene/importers/json_text.h"
+
+namespace canyon::scene {
+namespace {
+
+using Json = nlohmann::json;
+
+struct Row {
+  const char* type;
+  ObjectKind kind;
+  const char* material;
+};
+/// City objects and what they are to a vehicle; a type that is not here is kOther.
+constexpr Row kTypes[] = {{"Building", ObjectKind::kBuilding, ""},
+                          {"BuildingPart", ObjectKind::kBuilding, ""},
+                          {"BuildingInstallation", ObjectKind::kBuilding, ""},
+                          {"Road", ObjectKind::kTerrain, "asphalt"},
+                          {"Railway", ObjectKind::kTerrain, "ground"},
+                          {"TransportSquare", ObjectKind::kTerrain, "asphalt"},
+                          {"LandUse", ObjectKind::kTerrain, "ground"},
+                          {"PlantCover", ObjectKind::kTerrain, "grass"},
+                          {"WaterBody", ObjectKind::kTerrain, "wet_ground"},
+                          {"TINRelief", ObjectKind::kTerrain, "ground"},
+                          {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
+                          {"Bridge", ObjectKind::kOther, "concrete"}};
+
+Row row_of(const std::string& type) {
+  for (const Row& row : kTypes)
+    if (type == row.type) return row;
+  return {"", ObjectKind::kOther, ""};
+}
+
+struct Surface {
+  const char* type;
+  const char* material;
+};
+constexpr Surface kSurfaces[] = {{"Window", "glass"}, {"Door", "wood"}, {"WaterSurface", "wet_ground"}};
+
+class CityJsonReader {
+ public:
+  explicit CityJsonReader(const std::string& path) : path_(path) {}
+
+  Result<RawScene> read() {
+    CANYON_TRY(const std::string text, read_text_or_gzip_file(path_));
+    // A CityJSONSeq has one object per line: first the header, then features with vertices of their own.
+    std::size_t begin = 0;
+    int line = 1;
+    const std::size_t first_end = text.find('\n');
+    const std::string_view first = std::string_view(text).substr(0, first_end);
+    const bool sequence =
+        first_end != std::string::npos && Json::accept(first) && text.find("\"CityJSONFeature\"") != std::string::npos;
+    if (!sequence) {
+      CANYON_TRY(const Json document, parse_json(text, path_));
+      CANYON_TRY_STATUS(header(document));
+      CANYON_TRY_STATUS(city_objects(document, 0));
+    }
+    while (sequence && begin < text.size()) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size());
+      const std::string_view record = std::string_view(text).substr(begin, end - begin);
+      if (record.find_first_not_of(" \t\r") != std::string_view::npos) {
+        CANYON_TRY(const Json document, parse_json(record, path_, line));
+        if (line == 1) CANYON_TRY_STATUS(header(document));
+        CANYON_TRY_STATUS(city_objects(document, line));
+      }
+      begin = end + 1;
+      ++line;
+    }
+    if (scene_.polygons.empty()) return Error{path_, 0, "CityObjects", "no surface", "city objects with geometry"};
+    if (templates_ > 0) scene_.warnings.push_back(std::to_string(templates_) + " geometry templates are left out");
+    if (dangling_ > 0)
+      scene_.warnings.push_back(std::to_string(dangling_) + " rings with vertices that do not exist are left out");
+    return std::move(scene_);
+  }
+
+ private:
+  Status header(const Json& document) {
+    if (!document.is_object() || document.value("type", "") != "CityJSON")
+      return Error{path_, 0, "type", "not a CityJSON file", "\"type\": \"CityJSON\""};
+    const std::string version =
+        document.contains("version") && document["version"].is_string() ? document["version"].get<std::string>() : "";
+    if (version.rfind("1.", 0) != 0 && version.rfind("2.", 0) != 0)
+      return Error{path_, 0, "version", "\"" + version + "\" is not known", "1.0, 1.1 or 2.0"};
+    if (const auto transform = document.find("transform"); transform != document.end()) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto scale = number(*transform, "scale", k), translate = number(*transform, "translate", k);
+        if (!scale || !translate)
+          return Error{path_, 0, "transform", "not understood", "scale and translate of three numbers"};
+        scale_[static_cast<Eigen::Index>(k)] = *scale;
+        translate_[static_cast<Eigen::Index>(k)] = *translate;
+      }
+    }
+    const Json::json_pointer crs("/metadata/referenceSystem");
+    if (document.contains(crs) && document[crs].is_string())
+      scene_.frame = frame_by_name(document[crs].get<std::string>());
+    return Ok{};
+  }
+
+  static std::optional<double> number(const Json& object, const char* key, std::size_t k) {
+    const auto list = object.find(key);
+    if (list == object.end() || !list->is_array() || list->size() <= k || !(*list)[k].is_number()) return std::nullopt;
+    return (*list)[k].get<double>();
+  }
+
+  Status city_objects(const Json& document, int line) {
+    vertices_.clear();
+    const auto vertices = document.find("vertices");
+    const auto objects = document.find("CityObjects");
+    if (vertices == document.end() || !vertices->is_array() || objects == document.end() || !objects->is_object())
+      return Error{path_, line, "CityObjects", "no vertices or no city objects", "a CityJSON file"};
+    for (const Json& v : *vertices) {
+      if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
+        return Error{path_, line, "vertices[" + std::to_string(vertices_.size()) + "]", "not understood",
+                     "three numbers"};
+      const Eigen::Vector3d raw(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+      vertices_.push_back(raw.cwiseProduct(scale_) + translate_);
+    }
+    for (const auto& [id, object] : objects->items()) {
+      if (!object.is_object()) return Error{path_, line, "CityObjects." + id, "not an object", "a city object"};
+      const auto geometry = object.find("geometry");
+      if (geometry == object.end() || !geometry->is_array() || geometry->empty()) continue;
+      CANYON_TRY_STATUS(add(*objects, id, object, *geometry, line));
+    }
+    return Ok{};
+  }
+
+  /// The object that a part belongs to in the end.
+  static std::string root_of(const Json& objects, std::string id) {
+    for (int depth = 0; depth < 16; ++depth) {
+      const auto object = objects.find(id);
+      if (object == objects.end()) return id;
+      const auto parents = object->find("parents");
+      if (parents == object->end() || !parents->is_array() || parents->empty() || !(*parents)[0].is_string()) return id;
+      id = (*parents)[0].get<std::string>();
+    }
+    return id;
+  }
+
+  static double level_of_detail(const Json& geometry) {
+    const auto lod = geometry.find("lod");
+    if (lod == geometry.end()) return 0.0;
+    return lod->is_number() ? lod->get<double>() : lod->is_string() ? std::atof(lod->get<std::string>().c_str()) : 0.0;
+  }
+
+  Status add(const Json& objects, const std::string& id, const Json& object, const Json& geometries, int line) {
+    const Json* best = nullptr;
+    for (const Json& g : geometries) {
+      if (!g.is_object() || !g.contains("boundaries")) continue;
+      if (g.value("type", "") == "GeometryInstance") {
+        ++templates_;
+        continue;
+      }
+      if (best == nullptr || level_of_detail(g) > level_of_detail(*best)) best = &g;
+    }
+    if (best == nullptr) return Ok{};
+    const std::string root = root_of(objects, id);
+    const Row row = row_of(object.value("type", ""));
+    const auto [entry, fresh] = by_id_.try_emplace(root, 0u);
+    if (fresh) entry->second = scene_.add_object(root, row.kind);
+    object_ = entry->second;
+    material_ = scene_.material(row.material);
+    const Json none;
+    const Json::json_pointer values("/semantics/values"), surfaces("/semantics/surfaces");
+    surfaces_ = best->contains(surfaces) ? &(*best)[surfaces] : nullptr;
+    const std::string type = best->value("type", "");
+    const int depth = type == "Solid" ? 1 : type == "MultiSolid" || type == "CompositeSolid" ? 2 : 0;
+    if (type != "Solid" && type != "MultiSolid" && type != "CompositeSolid" && type != "MultiSurface" &&
+        type != "CompositeSurface")
+      return Ok{};  // points and lines
+    if (!faces((*best)["boundaries"], best->contains(values) ? (*best)[values] : none, depth))
+      return Error{path_, line, "CityObjects." + id + ".geometry", "boundaries are not understood", "a " + type};
+    return Ok{};
+  }
+
+  /// Boundaries `depth` levels above the list of faces; semantic values run along.
+  bool faces(const Json& boundaries, const Json& values, int depth) {
+    if (!boundaries.is_array()) return false;
+    for (std::size_t i = 0; i < boundaries.size(); ++i) {
+      const Json value = values.is_array() && i < values.size() ? values[i] : Json();
+      if (depth > 0) {
+        if (!faces(boundaries[i], value, depth - 1)) return false;
+      } else if (!face(boundaries[i], value)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  bool face(const Json& rings, const Json& value) {
+    if (!rings.is_array()) return false;
+    RawPolygon polygon{.object = object_, .material = material_};
+    if (surfaces_ != nullptr && surfaces_->is_array() && value.is_number_unsigned() &&
+        value.get<std::size_t>() < surfaces_->size()) {
+      const std::string type = (*surfaces_)[value.get<std::size_t>()].value("type", "");
+      polygon.ground_surface = type == "GroundSurface";
+      for (const Surface& s : kSurfaces)
+        if (type == s.type) polygon.material = scene_.material(s.material);
+    }
+    for (const Json& ring : rings) {
+      if (!ring.is_array()) return false;
+      std::vector<Eigen::Vector3d> points;
+      bool complete = true;
+      for (const Json& index : ring) {
+        if (!index.is_number_unsigned()) return false;
+        complete = complete && index.get<std::size_t>() < vertices_.size();
+        if (complete) points.push_back(vertices_[index.get<std::size_t>()]);
+      }
+      if (complete && points.size() >= 3) {
+        polygon.rings.push_back(std::move(points));
+      } else {
+        dangling_ += complete ? 0 : 1;
+        if (polygon.rings.empty()) return true;  // without its outer ring there is no face
+      }
+    }
+    if (!polygon.rings.empty()) scene_.polygons.push_back(std::move(polygon));
+    return true;
+  }
+
+  std::string path_;
+  RawScene scene_;
+  Eigen::Vector3d scale_ = Eigen::Vector3d::Ones(), translate_ = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> vertices_;
+  std::map<std::string, std::uint32_t> by_id_;
+  std::uint32_t object_ = 0, material_ = 0;
+  const Json* surfaces_ = nullptr;
+  int templates_ = 0, dangling_ = 0;
+};
+
+}  // namespace
+
+Result<RawScene> read_cityjson(const std::string& path, const ReadOptions&) {
+  return CityJsonReader(path).read();
+}
+
+}  // namespace canyon::scene

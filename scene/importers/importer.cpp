@@ -1,0 +1,180 @@
+#include "scene/importers/importer.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/config_text.h"
+#include "core/files.h"
+
+namespace canyon::scene {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+bool holds(std::string_view text, const char* word) {
+  return text.find(word) != std::string_view::npos;
+}
+
+bool is_cityjson(std::string_view text) {
+  return holds(text, "\"CityObjects\"") || holds(text, "\"CityJSON\"");
+}
+bool is_geojson(std::string_view text) {
+  return holds(text, "FeatureCollection") || (holds(text, "\"Feature\"") && !is_cityjson(text));
+}
+bool is_citygml(std::string_view text) {
+  return holds(text, "CityModel");
+}
+bool is_osm(std::string_view text) {
+  return holds(text, "<osm");
+}
+bool is_mitsuba(std::string_view text) {
+  return holds(text, "<scene");
+}
+
+}  // namespace
+
+const std::vector<SceneFormat>& scene_formats() {
+  static const std::vector<SceneFormat> formats = {
+      {"OBJ", {".obj"}, read_obj, "Wavefront OBJ with MTL; groups and objects become objects"},
+      {"PLY", {".ply"}, read_ply, "Stanford PLY, ascii and both binary forms"},
+      {"CityJSON",
+       {".city.json", ".city.jsonl", ".jsonl", ".json"},
+       read_cityjson,
+       "CityJSON 1.0, 1.1 and 2.0, and CityJSONSeq",
+       is_cityjson},
+      {"GeoJSON",
+       {".geojson", ".json"},
+       read_geojson,
+       "footprints with heights, surfaces with heights of their own, streets as lines",
+       is_geojson},
+      {"CityGML",
+       {".gml", ".citygml", ".xml"},
+       read_citygml,
+       "CityGML 1.0 and 2.0, PLATEAU's i-UR included",
+       is_citygml},
+      {"OSM", {".osm", ".xml"}, read_osm, "OpenStreetMap XML: buildings and streets", is_osm},
+      {"Mitsuba",
+       {".xml"},
+       read_mitsuba,
+       "Mitsuba and Sionna scenes of PLY and OBJ meshes with ITU materials",
+       is_mitsuba},
+#ifdef CANYON_WITH_ASSIMP
+      {"glTF", {".gltf", ".glb"}, read_with_assimp, "glTF 2.0, y up (assimp)"},
+      {"assimp", {".dae", ".fbx", ".stl", ".3ds"}, read_with_assimp, "what else assimp reads"},
+#endif
+  };
+  return formats;
+}
+
+Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& options) {
+  std::string name = lower(path);
+  if (name.ends_with(".gz")) name.resize(name.size() - 3);
+  std::vector<const SceneFormat*> candidates;
+  std::string endings;
+  for (const SceneFormat& format : scene_formats()) {
+    bool fits = false;
+    for (const char* ending : format.endings) {
+      fits = fits || name.ends_with(ending);
+      if (endings.find(std::string(ending) + " ") == std::string::npos) endings += std::string(ending) + " ";
+    }
+    if (fits) candidates.push_back(&format);
+  }
+  endings.pop_back();
+  if (candidates.empty()) {
+#ifndef CANYON_WITH_ASSIMP
+    if (name.ends_with(".gltf") || name.ends_with(".glb"))
+      return Error{path, 0, "", "this canyon was built without glTF", "a build with CANYON_WITH_ASSIMP=ON"};
+#endif
+    return Error{path, 0, "", "a scene format that is not known", "a file that ends with " + endings};
+  }
+  const auto read = [&](const SceneFormat& format) -> Result<RawScene> {
+    CANYON_TRY(RawScene scene, format.read(path, options));
+    if (options.up_axis != "auto") scene.y_up = options.up_axis == "y";
+    return scene;
+  };
+  if (candidates.size() == 1 && candidates[0]->looks_like == nullptr) return read(*candidates[0]);
+
+  CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
+  std::string expected;
+  for (const SceneFormat* format : candidates) {
+    if (format->looks_like == nullptr || format->looks_like(text)) return read(*format);
+    expected += (expected.empty() ? "" : " or ") + std::string(format->name);
+  }
+  return Error{path, 0, "", "does not look like a scene", expected};
+}
+
+SourceFrame frame_by_name(const std::string& name) {
+  if (name.find("CRS84") != std::string::npos) return {"OGC:CRS84", true};
+  if (name.find("EPSG") == std::string::npos) return {name, true};
+  // The last number after each "EPSG"; a version may stand between ("EPSG/0/7415", "EPSG::6668", "EPSG:9.9:4326").
+  std::string codes;
+  for (std::size_t at = name.find("EPSG"); at != std::string::npos;) {
+    const std::size_t next = name.find("EPSG", at + 4);
+    std::string part = name.substr(at, next == std::string::npos ? next : next - at);
+    while (!part.empty() && !std::isdigit(static_cast<unsigned char>(part.back()))) part.pop_back();
+    std::size_t begin = part.size();
+    while (begin > 0 && std::isdigit(static_cast<unsigned char>(part[begin - 1]))) --begin;
+    if (begin < part.size()) codes += (codes.empty() ? "EPSG:" : "+") + part.substr(begin);
+    at = next;
+  }
+  // "EPSG:31467" alone is the old way of writing, and means east first.
+  return {codes, name.rfind("EPSG:", 0) != 0};
+}
+
+double MissingHeights::resolve(double height_m, double storeys, const ReadOptions& options) {
+  if (height_m > 0.0 && height_m < 2000.0) return height_m;
+  if (storeys > 0.0 && storeys < 300.0) {
+    ++from_storeys;
+    return storeys * options.storey_m;
+  }
+  if (options.default_height_m > 0.0) {
+    ++by_default;
+    return options.default_height_m;
+  }
+  ++left_out;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+void MissingHeights::tell(RawScene& scene, const ReadOptions& options) const {
+  if (from_storeys > 0)
+    scene.warnings.push_back(std::to_string(from_storeys) + " buildings without a height: storeys of " +
+                             number_text(options.storey_m) + " m");
+  if (by_default > 0)
+    scene.warnings.push_back(std::to_string(by_default) + " buildings without a height or storeys: " +
+                             number_text(options.default_height_m) + " m (scene.default_height_m)");
+  if (left_out > 0)
+    scene.warnings.push_back(std::to_string(left_out) + " buildings without a height or storeys are left out");
+}
+
+ObjectKind kind_by_name(std::string_view name, ObjectKind otherwise) {
+  struct Row {
+    const char* word;
+    ObjectKind kind;
+  };
+  static constexpr Row kRows[] = {
+      {"terrain", ObjectKind::kTerrain},   {"ground", ObjectKind::kTerrain}, {"plane", ObjectKind::kTerrain},
+      {"floor", ObjectKind::kTerrain},     {"street", ObjectKind::kTerrain}, {"road", ObjectKind::kTerrain},
+      {"building", ObjectKind::kBuilding}, {"house", ObjectKind::kBuilding}, {"bldg", ObjectKind::kBuilding},
+      {"vehicle", ObjectKind::kVehicle},   {"car", ObjectKind::kVehicle},    {"tree", ObjectKind::kTree},
+      {"wall", ObjectKind::kWall},         {"pole", ObjectKind::kPole},      {"person", ObjectKind::kPerson},
+  };
+  const std::string text = lower(name);
+  // Whole words only: "car_2" is a vehicle, "Oscar" is not.
+  for (const Row& row : kRows) {
+    const std::size_t length = std::char_traits<char>::length(row.word);
+    for (std::size_t at = text.find(row.word); at != std::string::npos; at = text.find(row.word, at + 1)) {
+      const auto letter = [&](std::size_t i) {
+        return i < text.size() && std::isalpha(static_cast<unsigned char>(text[i]));
+      };
+      if ((at == 0 || !letter(at - 1)) && !letter(at + length)) return row.kind;
+    }
+  }
+  return otherwise;
+}
+
+}  // namespace canyon::scene

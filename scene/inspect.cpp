@@ -1,0 +1,183 @@
+#include "scene/inspect.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+
+#include "scene/triangle.h"
+
+namespace canyon::scene {
+namespace {
+
+using Key = std::array<float, 3>;
+
+/// The edges of one object's triangles.
+class ObjectEdges {
+ public:
+  explicit ObjectEdges(const Scene& scene) : scene_(scene) {}
+
+  void add(std::uint32_t triangle) {
+    const Mesh& mesh = scene_.mesh();
+    std::array<std::uint32_t, 3> ids;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3f p = mesh.vertices[mesh.triangles[triangle][k]] + Eigen::Vector3f::Zero();
+      const auto [entry, fresh] =
+          ids_.try_emplace(Key{p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(places_.size()));
+      if (fresh) places_.push_back(p.cast<double>());
+      ids[k] = entry->second;
+    }
+    const Eigen::Vector3d &a = places_[ids[0]], &b = places_[ids[1]], &c = places_[ids[2]];
+    six_volumes_m3_ += (a - places_[0]).dot((b - places_[0]).cross(c - places_[0]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = ids[k], to = ids[(k + 1) % 3];
+      Count& count = edges_[{std::min(from, to), std::max(from, to)}];
+      ++(from < to ? count.forward : count.backward);
+    }
+    std::sort(ids.begin(), ids.end());
+    repeated_ += triangles_.insert(ids).second ? 0 : 1;
+  }
+
+  void sum_up(Soundness& out) const {
+    std::size_t open = 0, crowded = 0, flipped = 0;
+    for (const auto& [ends, count] : edges_) {
+      const int n = count.forward + count.backward;
+      if (n == 1 && !buried(places_[ends.first], places_[ends.second])) ++open;
+      if (n == 2 && count.forward != count.backward) ++flipped;
+      if (n > 2) ++crowded;
+    }
+    ++out.objects;
+    out.open_edges += open;
+    out.crowded_edges += crowded;
+    out.flipped_edges += flipped;
+    out.repeated_triangles += repeated_;
+    if (open == 0 && crowded == 0) {
+      ++out.watertight;
+      if (flipped == 0 && six_volumes_m3_ < 0.0 && closed_below()) ++out.inside_out;
+    }
+  }
+
+ private:
+  struct Count {
+    int forward = 0, backward = 0;
+  };
+
+  bool buried(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+    const auto below = [&](const Eigen::Vector3d& p) {
+      const auto ground = scene_.ground(p.x(), p.y());
+      return ground && p.z() <= ground->height_m;
+    };
+    return below(a) && below(b);
+  }
+  /// The volume of what is open below the ground says nothing.
+  bool closed_below() const {
+    return std::none_of(edges_.begin(), edges_.end(),
+                        [](const auto& e) { return e.second.forward + e.second.backward == 1; });
+  }
+
+  const Scene& scene_;
+  std::map<Key, std::uint32_t> ids_;
+  std::vector<Eigen::Vector3d> places_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Count> edges_;
+  std::set<std::array<std::uint32_t, 3>> triangles_;
+  std::size_t repeated_ = 0;
+  double six_volumes_m3_ = 0.0;
+};
+
+/// Cells of the plan that lie within reach of a street; all if there are no streets.
+class NearStreets {
+ public:
+  NearStreets(const Scene& scene, double reach_m) : streets_(scene.streets()), reach_m_(reach_m) {}
+
+  bool operator()(const Eigen::Vector2d& p) {
+    if (streets_.edges.empty()) return true;
+    const std::pair<long long, long long> cell{std::llround(p.x() / kCell_m), std::llround(p.y() / kCell_m)};
+    const auto [entry, fresh] = known_.try_emplace(cell, false);
+    if (fresh)
+      entry->second = streets_.distance_to({static_cast<double>(cell.first) * kCell_m,
+                                            static_cast<double>(cell.second) * kCell_m}) <= reach_m_;
+    return entry->second;
+  }
+
+ private:
+  static constexpr double kCell_m = 10.0;
+  const StreetGraph& streets_;
+  double reach_m_;
+  std::map<std::pair<long long, long long>, bool> known_;
+};
+
+}  // namespace
+
+std::vector<MaterialArea> material_areas(const Scene& scene) {
+  const Mesh& mesh = scene.mesh();
+  std::vector<MaterialArea> areas(scene.materials().size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    MaterialArea& area = areas[mesh.material[i]];
+    ++area.triangles;
+    area.area_m2 += 0.5 * Triangle::of(mesh, i).area_normal().norm();
+  }
+  for (std::size_t i = 0; i < areas.size(); ++i) areas[i].name = scene.materials()[i].name;
+  std::erase_if(areas, [](const MaterialArea& a) { return a.triangles == 0; });
+  std::stable_sort(areas.begin(), areas.end(), [](const auto& a, const auto& b) { return a.area_m2 > b.area_m2; });
+  return areas;
+}
+
+Soundness soundness(const Scene& scene) {
+  const Mesh& mesh = scene.mesh();
+  std::vector<std::vector<std::uint32_t>> by_object(scene.objects().size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const ObjectKind kind = scene.objects()[mesh.object[i]].kind;
+    if (kind != ObjectKind::kTerrain && kind != ObjectKind::kTree) by_object[mesh.object[i]].push_back(i);
+  }
+  Soundness out;
+  for (const auto& members : by_object) {
+    if (members.empty()) continue;
+    ObjectEdges edges(scene);
+    for (const std::uint32_t i : members) edges.add(i);
+    edges.sum_up(out);
+  }
+  return out;
+}
+
+SensorNeeds sensor_needs(const Scene& scene) {
+  SensorNeeds out;
+  const Mesh& mesh = scene.mesh();
+  for (const Facet& facet : scene.facets().facets()) {
+    ++out.facets;
+    const Material& m = scene.materials()[facet.material];
+    out.reflecting_facets += !m.rf_absorbing && (m.itu_a > 1.0 || m.itu_c > 0.0);
+  }
+  out.edges = scene.edges().edges().size();
+  NearStreets near(scene, out.lidar_reach_m);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    out.tree_triangles += scene.objects()[mesh.object[i]].kind == ObjectKind::kTree;
+    const Triangle t = Triangle::of(mesh, i);
+    out.near_triangles += near(((t.a + t.b + t.c) / 3.0).head<2>());
+    const Material& m = scene.materials()[mesh.material[i]];
+    out.specular = out.specular || m.lidar_specular > 0.0;
+    out.retro = out.retro || m.lidar_retro_1_sr > 0.0;
+    out.transparent = out.transparent || m.lidar_transmittance > 0.0;
+  }
+  const auto say = [](std::vector<std::string>& list, bool needed, std::string what, const std::string& else_what) {
+    list.push_back(needed ? "needs " + std::move(what) : "does not need " + else_what);
+  };
+  say(out.gnss, out.reflecting_facets > 0, std::to_string(out.reflecting_facets) + " mirrors for reflections",
+      "reflections: nothing mirrors");
+  say(out.gnss, out.edges > 0, std::to_string(out.edges) + " edges for diffraction", "diffraction: nothing stands up");
+  say(out.gnss, !scene.foliage().empty(), std::to_string(scene.foliage().size()) + " tree crowns for attenuation",
+      "attenuation by foliage: there are no crowns");
+  if (out.tree_triangles > 0) say(out.gnss, false, "", std::to_string(out.tree_triangles) + " triangles of trees");
+  say(out.lidar, true, std::to_string(out.near_triangles) + " triangles within 120 m of a street", "");
+  if (out.near_triangles < mesh.triangles.size())
+    say(out.lidar, false, "", std::to_string(mesh.triangles.size() - out.near_triangles) + " triangles farther away");
+  say(out.lidar, out.specular, "a mirror part of reflectance (glass, metal)",
+      "a mirror part of reflectance: no such material");
+  say(out.lidar, out.retro, "retro-reflection", "retro-reflection: no such material");
+  say(out.lidar, out.transparent, "second returns through glass", "second returns through glass: there is none");
+  say(out.lidar, false, "", "mirrors and edges");
+  return out;
+}
+
+}  // namespace canyon::scene

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "core/earth.h"
+#include "core/result.h"
+#include "scene/importers/raw_scene.h"
+
+namespace canyon::scene {
+
+/// From the coordinates of a map to WGS84 and back: any coordinate system that PROJ knows, with the best of its
+/// transformations that need no further files. Heights are left alone: only what they mean is told.
+class Projection {
+ public:
+  /// `file` and `key` are named in the error.
+  static Result<Projection> make(const SourceFrame& frame, const std::string& file, const std::string& key);
+
+  /// Latitude and longitude of a point, with the height handed through; nullopt outside of the system's domain.
+  std::optional<Geodetic> to_geodetic(const Eigen::Vector3d& p) const;
+  /// Back, without the height.
+  std::optional<Eigen::Vector2d> from_geodetic(const Geodetic& g) const;
+
+  /// What the heights are above, as the system says: "NAP height", "ellipsoid"; empty if it says nothing.
+  const std::string& vertical() const { return vertical_; }
+  bool ellipsoidal() const { return vertical_ == "ellipsoid"; }
+  const std::string& name() const { return name_; }
+
+ private:
+  struct Proj;
+  std::shared_ptr<Proj> proj_;
+  std::string name_, vertical_;
+};
+
+}  // namespace canyon::scene

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "scene/city.h"
+#include "scene/import.h"
+
+namespace canyon::scene {
+
+/// [scene] of a mission: the built-in city, or a scene read from files.
+struct SceneConfig {
+  CityConfig city;
+  ImportConfig from;
+};
+void visit(FieldVisitor& f, SceneConfig& c);
+
+/// The scene that a configuration asks for. lat_deg, lon_deg and base_height_m of the city place files in local metres.
+Result<ImportedScene> make_scene(const SceneConfig& config);
+
+}  // namespace canyon::scene
