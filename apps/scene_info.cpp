@@ -5,15 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "apps/scene_options.h"
 #include "apps/verb.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/units.h"
-#include "mission/mission_file.h"
 #include "report/raster_map.h"
 #include "scene/inspect.h"
 #include "scene/scene_at.h"
-#include "scene/scene_source.h"
 
 namespace canyon::apps {
 
@@ -23,23 +22,10 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   CommonOptions common;
-  std::string scene, picture;
-  scene::ImportConfig from;
+  SceneOptions scene;
+  std::string picture;
   double cell_m = 1.0;
 };
-
-/// The [scene] of a mission file, the built-in city, or a scene file with the options.
-Result<scene::SceneConfig> scene_config(const Options& options) {
-  scene::SceneConfig config;
-  if (options.scene == mission::kDefaultMission || options.scene.ends_with(".toml")) {
-    CANYON_TRY(const auto file, mission::MissionFile::load(options.scene.ends_with(".toml") ? options.scene : ""));
-    CANYON_TRY(const mission::MissionConfig mission, file.resolve("high"));
-    return mission.scene;
-  }
-  config.from = options.from;
-  config.from.file = options.scene;
-  return config;
-}
 
 /// Height above the ground of what is seen from above; NaN outside.
 Grid heights_from_above(const scene::Scene& scene, double cell_m) {
@@ -155,7 +141,7 @@ void print_text(const scene::Scene& scene, const scene::ImportReport& report, co
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
-  CANYON_TRY(const scene::SceneConfig config, scene_config(options));
+  CANYON_TRY(const scene::SceneConfig config, scene_config(options.scene));
   CANYON_TRY(scene::ImportedScene made, scene::make_scene(config));
   const scene::Scene scene(std::move(made.parts));
   Facts facts{scene.extent(),          Eigen::Vector3d::Zero(),   0.0, scene::material_areas(scene),
@@ -173,16 +159,7 @@ Result<int> run(const Options& options) {
 VerbAction declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   declare_common(app, options->common);
-  scene::ImportConfig& from = options->from;
-  app.add_option("scene", options->scene, "a scene file, a mission file's scene, or \"vicksburg\" (built in)")
-      ->required()
-      ->type_name("FILE");
-  app.add_option("--more", from.more_files, "further files of the same place");
-  app.add_option("--terrain", from.terrain, "elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII grid");
-  app.add_option("--crs", from.crs, "coordinate system in place of the file's own, as PROJ knows it");
-  app.add_option("--undulation", from.undulation_m,
-                 "geoid above the ellipsoid, m; else GeographicLib's geoid where it is installed");
-  app.add_option("--materials", from.materials, "material tables over the built-in one");
+  declare_scene_options(app, options->scene);
   app.add_option("--picture", options->picture, "draws the scene from above: .svg or .png");
   app.add_option("--cell", options->cell_m, "of the picture, m")->capture_default_str()->check(CLI::Range(0.1, 100.0));
   return [options] { return run(*options); };

@@ -4,10 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "apps/scene_options.h"
 #include "apps/verb.h"
 #include "core/files.h"
 #include "core/parallel.h"
-#include "scene/city.h"
 #include "scene/written_scene.h"
 
 namespace canyon::apps {
@@ -16,15 +16,21 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string what, out = "city";
+  SceneOptions scene;
   scene::CityConfig city;
+  std::string out = "scene";
   bool force = false;
 };
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
   CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
-  const scene::SceneParts parts = scene::make_city(options.city);
+  scene::SceneConfig config{.city = options.city, .from = {}, .moving = {}};
+  if (options.scene.scene != "city") {
+    CANYON_TRY(config, scene_config(options.scene));
+  }
+  CANYON_TRY(const scene::ImportedScene made, scene::make_scene(config));
+  const scene::SceneParts& parts = made.parts;
   CANYON_TRY_STATUS(scene::write_scene(parts, staged.staging_path()));
   CANYON_TRY_STATUS(staged.commit());
   const std::size_t triangles = parts.mesh.triangles.size(), buildings = parts.buildings.size();
@@ -44,11 +50,10 @@ Result<int> run(const Options& options) {
 VerbAction declare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   declare_common(app, options->common);
+  declare_scene_options(app, options->scene);
+  app.get_option("scene")->description("\"city\", the built-in one; or a scene file, or a mission file's scene");
   scene::CityConfig& city = options->city;
-  app.add_option("what", options->what, "what to make: \"city\", the built-in one")
-      ->required()
-      ->check(CLI::IsMember({"city"}));
-  app.add_option("--seed", city.seed, "seed of the city")
+  app.add_option("--seed", city.seed, "seed of the built-in city")
       ->capture_default_str()
       ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
   app.add_option("--extent", city.extent_m, "edge of the square, m")
@@ -67,7 +72,7 @@ VerbAction declare(CLI::App& app) {
 }  // namespace
 
 Verb scene_make_verb() {
-  return {"scene make", "the built-in city as files: OBJ and MTL, materials, streets",
+  return {"scene make", "the built-in city, or any scene, as files: OBJ and MTL, materials, streets",
           "canyon scene make city --seed 7 --out my_city", declare};
 }
 

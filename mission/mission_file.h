@@ -61,6 +61,7 @@ struct InputFile {
 struct PreparedMission {
   std::shared_ptr<const scene::Scene> scene;
   GpsTime start;
+  scene::Traffic traffic;  ///< what moves in the scene, by the time since the start
   PriorKnowledge prior;
   double nominal_s = 0.0;
   double time_limit_s = 0.0;  ///< of [time] limit_factor and limit_s the shorter: when a run ends at the latest

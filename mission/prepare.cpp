@@ -100,6 +100,7 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
                    .expected = "a building of the scene; nearest is \"" + nearest_word(waypoint.observe, names) + "\""};
   }
 
+  CANYON_TRY(mission.traffic, scene::Traffic::make(config.scene.moving, scene));
   CANYON_TRY(mission.prior, plan_route(config.autonomy, scene.streets(), config.vehicle.start_m));
   std::vector<double> stops{mission.prior.route.length_m()};
   double holds_s = 0.0;

@@ -113,6 +113,7 @@ bool MissionRun::step() {
   ++k_;
   const GpsTime t = tick(mission_.start, k_, config_.imu.rate_hz);
   PartClock& clock = record_.clock;
+  if (!mission_.traffic.empty()) scene_.set_instances(mission_.traffic.at(t - mission_.start));
 
   const Vehicle::Step& nodes =
       clock.charge(Part::kVehicle, [&]() -> const Vehicle::Step& { return vehicle_.advance(command_, t); });

@@ -7,6 +7,7 @@ namespace canyon::scene {
 void visit(FieldVisitor& f, SceneConfig& c) {
   visit(f, c.from);
   visit(f, c.city);
+  f.list("moving", c.moving, "a thing that moves: every sensor meets it, and the vehicle must not");
 }
 
 Result<ImportedScene> make_scene(const SceneConfig& config) {

@@ -2,13 +2,15 @@
 
 #include "scene/city.h"
 #include "scene/import.h"
+#include "scene/traffic.h"
 
 namespace canyon::scene {
 
-/// [scene] of a mission: the built-in city, or a scene read from files.
+/// [scene] of a mission: the built-in city, or a scene read from files; and what moves in it.
 struct SceneConfig {
   CityConfig city;
   ImportConfig from;
+  std::vector<MovingConfig> moving;
 };
 void visit(FieldVisitor& f, SceneConfig& c);
 

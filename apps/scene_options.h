@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "apps/verb.h"
+#include "scene/scene_source.h"
+
+namespace canyon::apps {
+
+/// Options that say which scene, shared by the verbs of group scene.
+struct SceneOptions {
+  std::string scene;  ///< a scene file, a mission file, "vicksburg" or "city"
+  scene::ImportConfig from;
+};
+void declare_scene_options(CLI::App& app, SceneOptions& options);
+
+/// [scene] of a mission file or of the built-in mission, or the scene file with the options.
+Result<scene::SceneConfig> scene_config(const SceneOptions& options);
+
+}  // namespace canyon::apps
