@@ -103,8 +103,9 @@ std::vector<Instance> Traffic::at(double t_s) const {
       left_m -= length_m;
     }
     const auto ground = scene_->ground(p.x(), p.y());
-    const Eigen::Vector3d up = ground ? ground->normal_W : Eigen::Vector3d::UnitZ();
-    // Upright to the ground, headed along the way.
+    // Headed along the way; upright to the ground, but for people.
+    const bool level = !ground || m.shape->kind() == ObjectKind::kPerson;
+    const Eigen::Vector3d up = level ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : ground->normal_W;
     const Eigen::Vector3d left = up.cross(Eigen::Vector3d(ahead.x(), ahead.y(), 0.0)).normalized();
     Eigen::Matrix3d R;
     R << left.cross(up), left, up;

@@ -53,6 +53,18 @@ void bridge(const Points& points, const std::vector<std::uint32_t>& hole, std::v
       seen = i;
     }
   }
+  // Bridges have made several corners of one place: the one whose inside m lies in.
+  const Eigen::Vector2d end = points[polygon[seen]];
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    if (points[polygon[i]] != end) continue;
+    const Eigen::Vector2d& before = points[polygon[(i + polygon.size() - 1) % polygon.size()]];
+    const Eigen::Vector2d& after = points[polygon[(i + 1) % polygon.size()]];
+    const bool left_in = cross(before, end, m) >= 0.0, left_out = cross(end, after, m) >= 0.0;
+    if (cross(before, end, after) > 0.0 ? left_in && left_out : left_in || left_out) {
+      seen = i;
+      break;
+    }
+  }
   std::vector<std::uint32_t> cut(rightmost, hole.end());
   cut.insert(cut.end(), hole.begin(), rightmost);
   cut.push_back(*rightmost);

@@ -34,14 +34,15 @@ TEST(Degenerate, TrianglesThatNoRayCanMeetAreDroppedAndCountedFromFiles) {
   const canyon::testing::ScratchDirectory scratch;
   const std::string path = scratch.file("bad.obj");
   // A good triangle; two of no area; one with a corner that is not a number; a corner twice at the same place.
-  std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv nan 0 0\nv 0 0 0\nv 1 0 0\n"
-                         "f 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2 5\nf 6 7 3\n";
+  std::ofstream(path)
+      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv nan 0 0\nv 0 0 0\nv 1 0 0\n"
+         "v -9 -9 -1\nv 9 -9 -1\nv 0 9 -1\no ground\nf 8 9 10\no plate\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 1 2 5\nf 6 7 3\n";
   ImportConfig config;
   config.file = path;
   const auto made = import_scene(config, {});
   ASSERT_TRUE(made.ok()) << made.error().str();
   const Scene scene(made->parts);
-  EXPECT_EQ(scene.mesh().triangles.size(), 2u);
+  EXPECT_EQ(scene.mesh().triangles.size(), 3u);
   EXPECT_EQ(scene.dropped_triangles(), 3u);
   EXPECT_TRUE(scene.extent().max.allFinite());
   EXPECT_EQ(soundness(scene).repeated_triangles, 1u);  // by place, not by index
