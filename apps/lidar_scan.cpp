@@ -86,7 +86,7 @@ Result<Setup> setup_of(const Options& options) {
   if (!start) return file.locate(start.error());
   if (const auto scanner = lidar::make_scanner(out.lidar, 1); !scanner) return file.locate(scanner.error());
   mission::SceneCache scenes;
-  out.scene = scenes.get(config.scene);
+  CANYON_TRY(out.scene, scenes.get(config.scene));
   const double period_s = 1.0 / out.lidar.rate_hz;
   // Lasers that run free begin a scan up to one cycle, below 1 ms, before its period.
   const double before_s = period_s + out.lidar.latency_s + 1e-3;
