@@ -67,32 +67,32 @@ int run_command_line(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("\nExample, the same mission at three fidelities side by side:\n  canyon compare --out first");
   std::map<const CLI::App*, VerbAction> actions;
-  compare_verb(), run_verb(), report_verb(), keys_verb(), gnss_sky_verb(), gnss_simulate_verb(), gnss_solve_verb(),
-      gnss_orbit_error_verb(), gnss_map_verb(), imu_allan_verb(), imu_fit_verb(), imu_simulate_verb(),
-      imu_dead_reckon_verb(), lidar_scan_verb(), scene_make_verb(), scene_info_verb()
-}) {
-  CLI::App* sub = declare_verb(app, verb);
-  sub->footer(std::string("\nExample:\n  ") + verb.example);
-  actions[sub] = verb.declare(*sub);
-}
-try {
-  app.parse(argc, argv);
-} catch (const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-  return complain(usage_error(app, error, {argv + 1, argv + argc}));
-}
+  for (const Verb& verb :
+       {compare_verb(), run_verb(), report_verb(), keys_verb(), gnss_sky_verb(), gnss_simulate_verb(),
+        gnss_solve_verb(), gnss_orbit_error_verb(), gnss_map_verb(), imu_allan_verb(), imu_fit_verb(),
+        imu_simulate_verb(), imu_dead_reckon_verb(), lidar_scan_verb(), scene_make_verb(), scene_info_verb()}) {
+    CLI::App* sub = declare_verb(app, verb);
+    sub->footer(std::string("\nExample:\n  ") + verb.example);
+    actions[sub] = verb.declare(*sub);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return complain(usage_error(app, error, {argv + 1, argv + argc}));
+  }
 
-install_cancel_handler();
-try {
-  const auto result = actions.at(chosen(app))();
-  return result ? *result : complain(result.error());
-} catch (const Cancelled&) {
-  std::fprintf(stderr, "interrupted: nothing was written\n");
-  return 130;
-} catch (const std::exception& error) {
-  std::fprintf(stderr, "canyon could not finish: %s\n", error.what());
-  return 1;
-}
+  install_cancel_handler();
+  try {
+    const auto result = actions.at(chosen(app))();
+    return result ? *result : complain(result.error());
+  } catch (const Cancelled&) {
+    std::fprintf(stderr, "interrupted: nothing was written\n");
+    return 130;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "canyon could not finish: %s\n", error.what());
+    return 1;
+  }
 }
 
 }  // namespace canyon::apps
