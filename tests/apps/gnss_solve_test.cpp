@@ -26,7 +26,7 @@ class GnssSolveTest : public testing::CommandLineTest {
               0)
         << read("stderr");
   }
-  static constexpr const char* kTruth = "--truth-ecef=-82832.8838,-5393009.5926,3393436.0361";
+  static constexpr const char* kTruth = "--truth-ecef=-82834.0589,-5392805.4332,3393314.4988";
 };
 
 TEST_F(GnssSolveTest, SolvesWhatWasSimulated) {
