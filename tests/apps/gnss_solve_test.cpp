@@ -80,7 +80,7 @@ std::string antex(double up_mm) {
   for (const char system : {'G', 'R'})
     for (int prn = 1; prn <= 24; ++prn) {
       out += line("", "START OF ANTENNA");
-      std::snprintf(text, sizeof text, "%-20s%c%02d", "BLOCK TEST", system, prn);
+      std::snprintf(text, sizeof text, "%-20s%c%02d%17s%c0%02d", "BLOCK TEST", system, prn, "", system, prn);
       out += line(text, "TYPE / SERIAL NO") + line("     0.0", "DAZI") +
              line("     0.0  17.0   1.0", "ZEN1 / ZEN2 / DZEN") + line("     2", "# OF FREQUENCIES");
       for (const char band : {'1', '2'}) {
