@@ -49,9 +49,10 @@ TEST_F(ImuAllanTest, JsonKeepsItsContract) {
     EXPECT_FALSE(a["hadamard"]["deviation"].empty());
     const double n = (axis[0] == 'g' ? 1e-3 : 1e-2) * 0.1;
     const auto& white = a["fit"]["white"];
-    if (white["determined"].is_boolean()) {
-      EXPECT_NEAR(white["value"].get<double>() / n, 1.0, 0.03) << axis;
-    }
+    ASSERT_EQ(white["determined"], true) << axis;
+    // As good as it says, and it says a few percent: 5 sigma.
+    EXPECT_LT(std::abs(white["value"].get<double>() - n), 5.0 * white["sigma"].get<double>()) << axis;
+    EXPECT_LT(white["sigma"].get<double>(), 0.05 * n) << axis;
     EXPECT_EQ(a["fit"]["ramp"]["determined"], false);
     EXPECT_TRUE(a["fit"]["ramp"]["value"].is_null());
     EXPECT_TRUE(a["fit"]["ramp"]["sigma"].is_null());
