@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
+#include "core/singular_values.h"
 #include "core/units.h"
 #include "gnss/satellites/system_constants.h"
 #include "gnss/signal.h"
@@ -136,9 +136,7 @@ Vector fitted(const Samples& samples, Vector x, const Vector& scales, const Make
       jacobian.col(j) =
           0.5 * (position_errors(samples, make_record(minus)) - position_errors(samples, make_record(plus)));
     }
-    Eigen::BDCSVD<Eigen::MatrixXd> svd(jacobian, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    svd.setThreshold(1e-9);
-    const Vector step = svd.solve(residual);
+    const Vector step = SingularValues(jacobian).solve(residual, 1e-9);
     x += step.cwiseProduct(scales);
     if (step.norm() < 1e-7) break;
   }

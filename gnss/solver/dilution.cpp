@@ -1,6 +1,5 @@
-#include <Eigen/SVD>
-
 #include "core/check.h"
+#include "core/singular_values.h"
 #include "gnss/solver/position_solver.h"
 #include "gnss/solver/receiver_clocks.h"
 
@@ -12,8 +11,8 @@ Dop from_design(const Eigen::MatrixXd& H, bool clock) {
   if (H.rows() < H.cols()) return dop;
   // Singular values instead of the normal equations: these would lose half the digits, and coplanar geometries their
   // GDOP.
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(H, Eigen::ComputeThinV);
-  const Eigen::MatrixXd scaled = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  const SingularValues svd(H);
+  const Eigen::MatrixXd scaled = svd.V * svd.values.cwiseInverse().asDiagonal();
   const Eigen::VectorXd variance = scaled.rowwise().squaredNorm();
   dop.hdop = std::sqrt(variance(0) + variance(1));
   dop.vdop = std::sqrt(variance(2));

@@ -4,10 +4,9 @@
 #include <cstdio>
 #include <numeric>
 
-#include <Eigen/SVD>
-
 #include "core/check.h"
 #include "core/earth.h"
+#include "core/singular_values.h"
 #include "core/units.h"
 #include "gnss/satellites/transmission.h"
 #include "gnss/signal.h"
@@ -51,10 +50,10 @@ Fit fit(const std::vector<Linear>& lines, std::span<const RateMeasurement> rates
     A(i, 3) = weight;
     b[i] = weight * (rates[k].rate_m_s - lines[k].of_satellite_m_s / lines[k].stretch);
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(A, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const SingularValues svd(A);
   Fit out;
-  out.x = svd.solve(b);
-  const Eigen::MatrixXd scaled = svd.matrixV() * svd.singularValues().cwiseInverse().asDiagonal();
+  out.x = svd.solve(b, 1e-15);
+  const Eigen::MatrixXd scaled = svd.V * svd.values.cwiseInverse().asDiagonal();
   out.covariance = scaled * scaled.transpose();
   const Eigen::VectorXd residual = b - A * out.x;
   out.standardised.resize(n);
