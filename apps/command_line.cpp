@@ -53,11 +53,11 @@ const CLI::App* chosen(const CLI::App& app) {
 
 }  // namespace
 
-void declare_common(CLI::App& app, CommonOptions& options) {
-  app.add_option("--threads", options.threads, "threads for everything; 0 = all cores")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 1024));
-  app.add_flag("--json", options.json, "print one JSON object on stdout and nothing else");
+void declare_common(Arguments& arguments, CommonOptions& options) {
+  arguments.option("--threads", options.threads, "threads for everything; 0 = all cores")
+      .default_shown()
+      .within(0, 1024);
+  arguments.flag("--json", options.json, "print one JSON object on stdout and nothing else");
 }
 
 int run_command_line(int argc, char** argv) {
@@ -73,7 +73,8 @@ int run_command_line(int argc, char** argv) {
         imu_simulate_verb(), imu_dead_reckon_verb(), lidar_scan_verb(), scene_make_verb(), scene_info_verb()}) {
     CLI::App* sub = declare_verb(app, verb);
     sub->footer(std::string("\nExample:\n  ") + verb.example);
-    actions[sub] = verb.declare(*sub);
+    Arguments arguments(*sub);
+    actions[sub] = verb.declare(arguments);
   }
   try {
     app.parse(argc, argv);

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include "apps/drive.h"
 #include "apps/usage_errors.h"
 
@@ -10,19 +8,20 @@ namespace canyon::apps {
 
 namespace {
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   struct Options {
     MissionOptions mission;
     std::string fidelities = "low,high,paper";
     bool no_two_by_two = false;
   };
   const auto options = std::make_shared<Options>();
-  declare_mission_options(app, options->mission);
-  app.add_option("--fidelities", options->fidelities,
-                 "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
-                 "over first")
-      ->capture_default_str();
-  app.add_flag("--no-2x2", options->no_two_by_two, "leave out the mixed runs low/high GNSS x low/high IMU");
+  declare_mission_options(arguments, options->mission);
+  arguments
+      .option("--fidelities", options->fidelities,
+              "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
+              "over first")
+      .default_shown();
+  arguments.flag("--no-2x2", options->no_two_by_two, "leave out the mixed runs low/high GNSS x low/high IMU");
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
     const std::vector<std::string> fidelities = split_list(options->fidelities);

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
@@ -120,18 +118,14 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_gnss_setup(app, options->setup, "vicksburg");
-  app.add_option("--cell", options->cell_m, "edge of a cell, m")->capture_default_str()->check(CLI::Range(0.1, 1000.0));
-  app.add_option("--height", options->height_m, "of the antenna above ground, m")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 1000.0));
-  app.add_option("--duration", options->duration_s, "seconds to cover, 86400 for a day; 0 = the start alone")
-      ->check(CLI::Range(0.0, 7.0 * 86400.0));
-  app.add_option("--step", options->step_s, "seconds between epochs")
-      ->capture_default_str()
-      ->check(CLI::Range(1.0, 86400.0));
+  declare_gnss_setup(arguments, options->setup, "vicksburg");
+  arguments.option("--cell", options->cell_m, "edge of a cell, m").default_shown().within(0.1, 1000.0);
+  arguments.option("--height", options->height_m, "of the antenna above ground, m").default_shown().within(0.1, 1000.0);
+  arguments.option("--duration", options->duration_s, "seconds to cover, 86400 for a day; 0 = the start alone")
+      .within(0.0, 7.0 * 86400.0);
+  arguments.option("--step", options->step_s, "seconds between epochs").default_shown().within(1.0, 86400.0);
   return [options]() -> Result<int> {
     if (options->setup.scene == "none") return Error{"--scene", 0, "", "\"none\" has no ground to map", "a scene"};
     return run(*options);

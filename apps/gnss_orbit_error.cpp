@@ -2,8 +2,6 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/json.h"
@@ -165,21 +163,22 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  app.add_option("--nav", options->nav, "RINEX navigation files")->required();
-  app.add_option("--sp3", options->sp3, "SP3 files of the same days")->required();
-  app.add_option("--clk", options->clk, "RINEX clock file, instead of the clocks of the SP3 files");
-  app.add_option("--antex", options->antex, "ANTEX file: satellite antenna offsets; none = leave them in")
-      ->capture_default_str();
-  app.add_option("--systems", options->systems, "satellite systems, letters of GRECJ")->capture_default_str();
-  app.add_option("--ephemeris", options->choice,
-                 "record used: nearest (reference time nearest to the epoch) or transmitted (newest sent by then)")
-      ->check(CLI::IsMember({"nearest", "transmitted"}))
-      ->capture_default_str();
-  app.add_option("--out", options->out, "directory for orbit_error.csv, every satellite and epoch");
-  app.add_flag("--force", options->force, "replace an existing --out");
+  declare_common(arguments, options->common);
+  arguments.option("--nav", options->nav, "RINEX navigation files").required();
+  arguments.option("--sp3", options->sp3, "SP3 files of the same days").required();
+  arguments.option("--clk", options->clk, "RINEX clock file, instead of the clocks of the SP3 files");
+  arguments.option("--antex", options->antex, "ANTEX file: satellite antenna offsets; none = leave them in")
+      .default_shown();
+  arguments.option("--systems", options->systems, "satellite systems, letters of GRECJ").default_shown();
+  arguments
+      .option("--ephemeris", options->choice,
+              "record used: nearest (reference time nearest to the epoch) or transmitted (newest sent by then)")
+      .among({"nearest", "transmitted"})
+      .default_shown();
+  arguments.option("--out", options->out, "directory for orbit_error.csv, every satellite and epoch");
+  arguments.flag("--force", options->force, "replace an existing --out");
   return [options]() -> Result<int> { return run(*options); };
 }
 

@@ -3,30 +3,30 @@
 #include <charconv>
 #include <cmath>
 
-#include <CLI/CLI.hpp>
-
 #include "core/units.h"
 #include "mission/mission_file.h"
 
 namespace canyon::apps {
 
-void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* default_scene) {
-  declare_common(app, options.common);
+void declare_gnss_setup(Arguments& arguments, GnssSetupOptions& options, const char* default_scene) {
+  declare_common(arguments, options.common);
   options.scene = default_scene;
-  app.add_option("--scene", options.scene,
-                 "a mission file's scene, a scene file, \"vicksburg\" (built in) or \"none\" (open sky)")
-      ->capture_default_str();
-  app.add_option("--fidelity", options.fidelity, "whose receiver: high, paper, or one of the mission file's own")
-      ->capture_default_str();
-  app.add_option("--nav", options.nav, "RINEX navigation files; without them the built-in constellation");
-  app.add_option("--systems", options.systems, "satellite systems received, letters of GRECJ; default: the fidelity's");
-  app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
-  app.add_option("--seed", options.seed, "seed of every random stream")
-      ->capture_default_str()
-      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
-  app.add_option("--out", options.out, "directory for the files; without it only the summary is printed");
-  app.add_flag("--force", options.force,
-               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  arguments
+      .option("--scene", options.scene,
+              "a mission file's scene, a scene file, \"vicksburg\" (built in) or \"none\" (open sky)")
+      .default_shown();
+  arguments.option("--fidelity", options.fidelity, "whose receiver: high, paper, or one of the mission file's own")
+      .default_shown();
+  arguments.option("--nav", options.nav, "RINEX navigation files; without them the built-in constellation");
+  arguments.option("--systems", options.systems,
+                   "satellite systems received, letters of GRECJ; default: the fidelity's");
+  arguments.option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+  arguments.option("--seed", options.seed, "seed of every random stream")
+      .default_shown()
+      .within(std::int64_t{0}, kLargestSeed);
+  arguments.option("--out", options.out, "directory for the files; without it only the summary is printed");
+  arguments.flag("--force", options.force,
+                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
 }
 
 Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optional<Geodetic>& place) {

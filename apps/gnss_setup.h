@@ -23,7 +23,7 @@ struct GnssSetupOptions {
   std::int64_t seed = 1;
   bool force = false;
 };
-void declare_gnss_setup(CLI::App& app, GnssSetupOptions& options, const char* default_scene);
+void declare_gnss_setup(Arguments& arguments, GnssSetupOptions& options, const char* default_scene);
 
 /// What the options describe: a receiver's configuration, a scene to be in, a time to begin.
 struct GnssSetup {

@@ -5,8 +5,6 @@
 #include <memory>
 #include <set>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_errors.h"
@@ -276,27 +274,27 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_gnss_setup(app, options->setup, "none");
-  auto* at = app.add_option("--at", options->at, "LAT,LON,H of the antenna: degrees, degrees, ellipsoidal metres");
-  auto* trajectory = app.add_option(
+  declare_gnss_setup(arguments, options->setup, "none");
+  const auto at =
+      arguments.option("--at", options->at, "LAT,LON,H of the antenna: degrees, degrees, ellipsoidal metres");
+  const auto trajectory = arguments.option(
       "--trajectory", options->trajectory,
       "way of the antenna: CSV of gps_week,sow and lat_deg,lon_deg,h_m or x_m,y_m,z_m; or .tum, poses of "
       "the vehicle in the scene's frame W");
-  at->excludes(trajectory);
-  app.add_option("--duration", options->duration_s, "seconds; default: one epoch with --at, all of --trajectory")
-      ->check(CLI::Range(0.0, 30.0 * 86400.0));
-  app.add_option("--rate", options->rate_hz, "epochs per second")
-      ->capture_default_str()
-      ->check(CLI::Range(1e-4, 100.0));
-  app.add_option(
-         "--errors", options->errors,
-         "all, none, or a list of: ionosphere,troposphere,ephemeris,receiver_clock,multipath,noise,base_station")
-      ->capture_default_str();
-  app.add_option("--rinex-obs", options->rinex_obs, "RINEX 3.04 observation file to write");
-  app.add_option("--rinex-nav", options->rinex_nav, "RINEX 3.04 navigation file to write, of the satellites simulated");
-  app.add_option("--nmea", options->nmea, "NMEA 0183 log to write: GGA, RMC, GSA, GSV");
+  at.excludes(trajectory);
+  arguments.option("--duration", options->duration_s, "seconds; default: one epoch with --at, all of --trajectory")
+      .within(0.0, 30.0 * 86400.0);
+  arguments.option("--rate", options->rate_hz, "epochs per second").default_shown().within(1e-4, 100.0);
+  arguments
+      .option("--errors", options->errors,
+              "all, none, or a list of: ionosphere,troposphere,ephemeris,receiver_clock,multipath,noise,base_station")
+      .default_shown();
+  arguments.option("--rinex-obs", options->rinex_obs, "RINEX 3.04 observation file to write");
+  arguments.option("--rinex-nav", options->rinex_nav,
+                   "RINEX 3.04 navigation file to write, of the satellites simulated");
+  arguments.option("--nmea", options->nmea, "NMEA 0183 log to write: GGA, RMC, GSA, GSV");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->trajectory.empty())
       return Error{"", 0, "command line", "no place given", "--at LAT,LON,H or --trajectory FILE"};

@@ -3,8 +3,6 @@
 #include <map>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
@@ -231,18 +229,17 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_gnss_setup(app, options->setup, "none");
-  auto* at = app.add_option("--at", options->at, "LAT,LON,H of the antenna: degrees, degrees, ellipsoidal metres");
-  auto* xy =
-      app.add_option("--xy", options->xy, "X,Y of the antenna in the scene, metres east and north of its origin");
-  at->excludes(xy);
-  app.add_option("--height", options->height_m, "with --xy: metres above ground")->capture_default_str();
-  app.add_option("--duration", options->duration_s, "seconds to follow the sky")->check(CLI::Range(0.0, 7.0 * 86400.0));
-  app.add_option("--step", options->step_s, "seconds between epochs")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 86400.0));
+  declare_gnss_setup(arguments, options->setup, "none");
+  const auto at =
+      arguments.option("--at", options->at, "LAT,LON,H of the antenna: degrees, degrees, ellipsoidal metres");
+  const auto xy =
+      arguments.option("--xy", options->xy, "X,Y of the antenna in the scene, metres east and north of its origin");
+  at.excludes(xy);
+  arguments.option("--height", options->height_m, "with --xy: metres above ground").default_shown();
+  arguments.option("--duration", options->duration_s, "seconds to follow the sky").within(0.0, 7.0 * 86400.0);
+  arguments.option("--step", options->step_s, "seconds between epochs").default_shown().within(0.1, 86400.0);
   return [options]() -> Result<int> {
     if (options->at.empty() && (options->xy.empty() || options->setup.scene == "none"))
       return Error{"", 0, "command line", "no place given", "--at LAT,LON,H, or --scene and --xy X,Y"};

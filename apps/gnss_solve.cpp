@@ -2,8 +2,6 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/json.h"
@@ -182,27 +180,29 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  app.add_option("--obs", options->observations, "RINEX 2, 3 or 4 observations; also gzipped or Hatanaka-compressed")
-      ->required();
-  app.add_option("--nav", options->navigation, "RINEX navigation files of the same day")->required();
-  app.add_option("--sp3", options->sp3, "precise orbits and clocks (SP3) instead of the broadcast ones");
-  app.add_option("--antex", options->antex,
-                 "satellite antennas (ANTEX), for SP3 files whose positions are those of the centre of mass");
-  app.add_option("--ionex", options->ionex, "ionosphere maps (IONEX), for ionosphere = \"ionex\" in --config");
-  app.add_option("--systems", options->systems, "satellite systems by their letters, of GRECJ; default GREC");
-  app.add_option("--mask", options->mask_deg, "elevation mask, degrees")->check(CLI::Range(-10.0, 89.0));
-  app.add_option("--config", options->config,
-                 "options of the solution (TOML), such as examples/rtklib_equivalent.toml");
-  auto* ecef = app.add_option("--truth-ecef", options->truth_ecef, "X,Y,Z of the antenna, in the frame of the orbits");
-  app.add_option("--truth", options->truth,
-                 "true antenna over time: CSV of gps_week,sow and lat_deg,lon_deg,h_m or x_m,y_m,z_m")
-      ->excludes(ecef);
-  app.add_option("--out", options->out, "positions per epoch: a file NAME.csv, or a directory");
-  app.add_flag("--force", options->force,
-               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  declare_common(arguments, options->common);
+  arguments.option("--obs", options->observations, "RINEX 2, 3 or 4 observations; also gzipped or Hatanaka-compressed")
+      .required();
+  arguments.option("--nav", options->navigation, "RINEX navigation files of the same day").required();
+  arguments.option("--sp3", options->sp3, "precise orbits and clocks (SP3) instead of the broadcast ones");
+  arguments.option("--antex", options->antex,
+                   "satellite antennas (ANTEX), for SP3 files whose positions are those of the centre of mass");
+  arguments.option("--ionex", options->ionex, "ionosphere maps (IONEX), for ionosphere = \"ionex\" in --config");
+  arguments.option("--systems", options->systems, "satellite systems by their letters, of GRECJ; default GREC");
+  arguments.option("--mask", options->mask_deg, "elevation mask, degrees").within(-10.0, 89.0);
+  arguments.option("--config", options->config,
+                   "options of the solution (TOML), such as examples/rtklib_equivalent.toml");
+  const auto ecef =
+      arguments.option("--truth-ecef", options->truth_ecef, "X,Y,Z of the antenna, in the frame of the orbits");
+  arguments
+      .option("--truth", options->truth,
+              "true antenna over time: CSV of gps_week,sow and lat_deg,lon_deg,h_m or x_m,y_m,z_m")
+      .excludes(ecef);
+  arguments.option("--out", options->out, "positions per epoch: a file NAME.csv, or a directory");
+  arguments.flag("--force", options->force,
+                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> { return run(*options); };
 }
 

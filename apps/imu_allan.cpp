@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/imu_log_options.h"
@@ -264,22 +262,22 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  declare_imu_log(app, options->log);
-  app.add_option("--kind", options->kinds, "deviations beside the overlapping one: modified,hadamard,total");
-  app.add_option("--processes", options->processes,
-                 "processes that the fit may use; default all: quantization,white,bias_instability,rate_random_walk,"
-                 "ramp,gauss_markov,sinusoid,band_limit");
-  app.add_option("--per-octave", options->per_octave, "points of the curves to an octave of averaging time")
-      ->check(CLI::Range(1, 64))
-      ->capture_default_str();
-  app.add_option("--confidence", options->confidence_percent, "of the intervals, per cent")
-      ->check(CLI::Range(1.0, 99.99))
-      ->capture_default_str();
-  app.add_option("--out", options->out, "directory for allan.csv, allan.json and allan.svg");
-  app.add_flag("--force", options->force, "replace an existing --out");
+  declare_common(arguments, options->common);
+  declare_imu_log(arguments, options->log);
+  arguments.option("--kind", options->kinds, "deviations beside the overlapping one: modified,hadamard,total");
+  arguments.option("--processes", options->processes,
+                   "processes that the fit may use; default all: quantization,white,bias_instability,rate_random_walk,"
+                   "ramp,gauss_markov,sinusoid,band_limit");
+  arguments.option("--per-octave", options->per_octave, "points of the curves to an octave of averaging time")
+      .within(1, 64)
+      .default_shown();
+  arguments.option("--confidence", options->confidence_percent, "of the intervals, per cent")
+      .within(1.0, 99.99)
+      .default_shown();
+  arguments.option("--out", options->out, "directory for allan.csv, allan.json and allan.svg");
+  arguments.flag("--force", options->force, "replace an existing --out");
   return [options]() -> Result<int> { return run(*options); };
 }
 

@@ -5,8 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
@@ -382,38 +380,40 @@ std::string integrators_help() {
   return out;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  app.add_option(
-         "--imu", options->imu,
-         "the log: CSV of rates (header t_s,gx_rad_s,...,az_m_s2; the mean over the interval that ends at t_s), "
-         "or KF-GINS text of increments (sow, rad, m/s; forward-right-down)")
-      ->required();
-  app.add_option("--columns", options->columns, "column names or layout of the log, as for imu allan");
-  auto* truth = app.add_option("--truth", options->truth,
-                               "reference to start from and compare with: KF-GINS text, or CSV with "
-                               "sow,lat_deg,lon_deg,h_m,vn,ve,vd,roll_deg,pitch_deg,heading_deg");
-  auto* initial =
-      app.add_option("--initial", options->initial,
-                     "LAT,LON,H,VN,VE,VD,ROLL,PITCH,HEADING at the log's first stamp: degrees, metres, m/s");
-  auto* rest = app.add_option("--static", options->at_rest,
-                              "LAT,LON,H,HEADING of a log at rest: levelled with its own first seconds, compared with "
-                              "standing still");
-  truth->excludes(initial)->excludes(rest);
-  initial->excludes(rest);
-  app.add_option("--level", options->level_s, "seconds that --static takes for levelling")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
-  app.add_option("--integrator", options->integrator, integrators_help())->capture_default_str();
-  app.add_option("--gravity", options->gravity,
-                 "wgs84 or grs80_series; default: what the truth file states, else that of KF-GINS (grs80_series) for "
-                 "its text format and wgs84 for CSV");
-  app.add_option("--axes", options->axes, "axes of a CSV log: flu (forward-left-up) or frd")->capture_default_str();
-  app.add_option("--out", options->out,
-                 "directory for estimate.nav, heading.csv, drift.csv, drift.svg and summary.json");
-  app.add_flag("--force", options->force,
-               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  declare_common(arguments, options->common);
+  arguments
+      .option("--imu", options->imu,
+              "the log: CSV of rates (header t_s,gx_rad_s,...,az_m_s2; the mean over the interval that ends at t_s), "
+              "or KF-GINS text of increments (sow, rad, m/s; forward-right-down)")
+      .required();
+  arguments.option("--columns", options->columns, "column names or layout of the log, as for imu allan");
+  const auto truth = arguments.option("--truth", options->truth,
+                                      "reference to start from and compare with: KF-GINS text, or CSV with "
+                                      "sow,lat_deg,lon_deg,h_m,vn,ve,vd,roll_deg,pitch_deg,heading_deg");
+  const auto initial =
+      arguments.option("--initial", options->initial,
+                       "LAT,LON,H,VN,VE,VD,ROLL,PITCH,HEADING at the log's first stamp: degrees, metres, m/s");
+  const auto rest =
+      arguments.option("--static", options->at_rest,
+                       "LAT,LON,H,HEADING of a log at rest: levelled with its own first seconds, compared with "
+                       "standing still");
+  truth.excludes(initial).excludes(rest);
+  initial.excludes(rest);
+  arguments.option("--level", options->level_s, "seconds that --static takes for levelling")
+      .default_shown()
+      .within(0.0, 1e6);
+  arguments.option("--integrator", options->integrator, integrators_help()).default_shown();
+  arguments.option(
+      "--gravity", options->gravity,
+      "wgs84 or grs80_series; default: what the truth file states, else that of KF-GINS (grs80_series) for "
+      "its text format and wgs84 for CSV");
+  arguments.option("--axes", options->axes, "axes of a CSV log: flu (forward-left-up) or frd").default_shown();
+  arguments.option("--out", options->out,
+                   "directory for estimate.nav, heading.csv, drift.csv, drift.svg and summary.json");
+  arguments.flag("--force", options->force,
+                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> {
     if (options->truth.empty() && options->initial.empty() && options->at_rest.empty())
       return Error{"", 0, "command line", "no start given", "--truth FILE, --initial ... or --static ..."};

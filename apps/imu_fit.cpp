@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/imu_log_options.h"
@@ -220,26 +218,22 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  declare_imu_log(app, options->log);
-  auto* ways = app.add_option_group("way", "one of");
-  ways->add_flag("--static", options->at_rest, "the unit rests: noise and bias, as a catalogue entry");
-  ways->add_flag("--positions", options->positions,
-                 "the unit rests in nine or more positions: bias, scale and misalignment of the accelerometer against "
-                 "gravity, bias of the gyroscope");
-  ways->add_option(
-      "--truth", options->truth,
-      "log of a reference beside it, true rates or increments at the same times: bias, scale, misalignment");
-  ways->require_option(1);
-  app.add_option("--truth-columns", options->truth_columns, "as --columns, of the reference");
-  app.add_option("--gravity", options->gravity_m_s2, "local gravity, m/s^2")
-      ->check(CLI::Range(9.7, 9.9))
-      ->capture_default_str();
-  app.add_option("--name", options->name, "of the entry; default: the log's");
-  app.add_option("--out", options->out, "file for the entry, which [imu] sensor and --sensor take: mine.toml");
-  app.add_flag("--force", options->force, "replace an existing --out");
+  declare_common(arguments, options->common);
+  declare_imu_log(arguments, options->log);
+  Arguments ways = arguments.one_of("way");
+  ways.flag("--static", options->at_rest, "the unit rests: noise and bias, as a catalogue entry");
+  ways.flag("--positions", options->positions,
+            "the unit rests in nine or more positions: bias, scale and misalignment of the accelerometer against "
+            "gravity, bias of the gyroscope");
+  ways.option("--truth", options->truth,
+              "log of a reference beside it, true rates or increments at the same times: bias, scale, misalignment");
+  arguments.option("--truth-columns", options->truth_columns, "as --columns, of the reference");
+  arguments.option("--gravity", options->gravity_m_s2, "local gravity, m/s^2").within(9.7, 9.9).default_shown();
+  arguments.option("--name", options->name, "of the entry; default: the log's");
+  arguments.option("--out", options->out, "file for the entry, which [imu] sensor and --sensor take: mine.toml");
+  arguments.flag("--force", options->force, "replace an existing --out");
   return [options]() -> Result<int> { return run(*options); };
 }
 

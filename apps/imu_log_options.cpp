@@ -1,20 +1,19 @@
 #include "apps/imu_log_options.h"
 
-#include <CLI/CLI.hpp>
-
 namespace canyon::apps {
 
-void declare_imu_log(CLI::App& app, ImuLogOptions& options) {
+void declare_imu_log(Arguments& arguments, ImuLogOptions& options) {
   std::string layouts;
   for (const inertial::ImuLogLayout& layout : inertial::imu_log_layouts())
     layouts += (layouts.empty() ? "" : "; ") + std::string(layout.name) + " (" + layout.doc + ")";
-  app.add_option("LOG", options.log,
-                 "CSV or columns apart by blanks, plain or gzip; the header names channels and units: t_s, gx_rad_s "
-                 "(or _deg_s, _deg_h, _rad and _deg for increments), ax_m_s2 (or _g, _mg, _m_s)")
-      ->required();
-  app.add_option("--rate", options.rate_hz, "samples per second: for a log without times, or instead of its times")
-      ->check(CLI::Range(1e-3, 1e6));
-  app.add_option(
+  arguments
+      .option("LOG", options.log,
+              "CSV or columns apart by blanks, plain or gzip; the header names channels and units: t_s, gx_rad_s "
+              "(or _deg_s, _deg_h, _rad and _deg for increments), ax_m_s2 (or _g, _mg, _m_s)")
+      .required();
+  arguments.option("--rate", options.rate_hz, "samples per second: for a log without times, or instead of its times")
+      .within(1e-3, 1e6);
+  arguments.option(
       "--columns", options.columns,
       "column names for a log without header, with *FACTOR for counts: t_us,gx_deg_s*0.05,...; or a layout: " +
           layouts);

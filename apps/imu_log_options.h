@@ -2,12 +2,9 @@
 
 #include <string>
 
+#include "apps/arguments.h"
 #include "inertial/allan/log_noise.h"
 #include "inertial/imu_log.h"
-
-namespace CLI {
-class App;
-}
 
 namespace canyon::apps {
 
@@ -16,7 +13,7 @@ struct ImuLogOptions {
   std::string log, columns;
   double rate_hz = 0.0;
 };
-void declare_imu_log(CLI::App& app, ImuLogOptions& options);
+void declare_imu_log(Arguments& arguments, ImuLogOptions& options);
 
 /// Reads the log; `live` as in ImuLogFormat.
 Result<inertial::ImuLog> read_log(const ImuLogOptions& options, bool live);

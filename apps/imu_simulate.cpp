@@ -5,8 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
@@ -278,39 +276,41 @@ std::string paths_help() {
   return out;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  app.add_option("--sensor", options->sensor,
-                 "entry of the catalogue, or a TOML file of your own sensor; default high_grade_mems");
-  app.add_option("--errors", options->errors, "error chain, default datasheet; none: an ideal sensor");
-  auto* path = app.add_option("--path", options->path, paths_help());
-  auto* points = app.add_option("--points", options->points,
-                                "smooth through points: CSV of t_s,x_m,y_m,z_m and yaw_deg,pitch_deg,roll_deg or nose "
-                                "ahead, in W");
-  auto* trajectory =
-      app.add_option("--trajectory", options->trajectory,
-                     "a recorded trajectory: .tum, .kitti or CSV of poses in W; KF-GINS truth text, or CSV with "
-                     "sow,lat_deg,lon_deg,h_m,roll_deg,pitch_deg,heading_deg");
-  path->excludes(points)->excludes(trajectory);
-  points->excludes(trajectory);
-  app.add_option("--set", options->settings,
-                 "KEY=VALUE of the motion, as radius_m=50 or smoothing_s=0.5, or of the sensor, as "
-                 "imu.lever_arm_m=[0.3,0,0.5] or 'imu.leave_out=[\"white\"]'; may be repeated");
-  app.add_option("--at", options->at, "LAT,LON,H: where it stands, or W's origin; degrees, ellipsoidal metres");
-  app.add_option("--start", options->start, "first instant: ISO date or WEEK:SOW; default: the trajectory's, else 0:0");
-  app.add_option("--rate", options->rate_hz, "samples per second; default 200")->check(CLI::Range(10.0, 5000.0));
-  app.add_option("--duration", options->duration_s, "seconds; default: all of a trajectory, else 600")
-      ->check(CLI::Range(0.0, 1e7));
-  app.add_option("--seed", options->seed, "seed of every random stream")
-      ->capture_default_str()
-      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
-  app.add_option(
+  declare_common(arguments, options->common);
+  arguments.option("--sensor", options->sensor,
+                   "entry of the catalogue, or a TOML file of your own sensor; default high_grade_mems");
+  arguments.option("--errors", options->errors, "error chain, default datasheet; none: an ideal sensor");
+  const auto path = arguments.option("--path", options->path, paths_help());
+  const auto points =
+      arguments.option("--points", options->points,
+                       "smooth through points: CSV of t_s,x_m,y_m,z_m and yaw_deg,pitch_deg,roll_deg or nose "
+                       "ahead, in W");
+  const auto trajectory =
+      arguments.option("--trajectory", options->trajectory,
+                       "a recorded trajectory: .tum, .kitti or CSV of poses in W; KF-GINS truth text, or CSV with "
+                       "sow,lat_deg,lon_deg,h_m,roll_deg,pitch_deg,heading_deg");
+  path.excludes(points).excludes(trajectory);
+  points.excludes(trajectory);
+  arguments.option("--set", options->settings,
+                   "KEY=VALUE of the motion, as radius_m=50 or smoothing_s=0.5, or of the sensor, as "
+                   "imu.lever_arm_m=[0.3,0,0.5] or 'imu.leave_out=[\"white\"]'; may be repeated");
+  arguments.option("--at", options->at, "LAT,LON,H: where it stands, or W's origin; degrees, ellipsoidal metres");
+  arguments.option("--start", options->start,
+                   "first instant: ISO date or WEEK:SOW; default: the trajectory's, else 0:0");
+  arguments.option("--rate", options->rate_hz, "samples per second; default 200").within(10.0, 5000.0);
+  arguments.option("--duration", options->duration_s, "seconds; default: all of a trajectory, else 600")
+      .within(0.0, 1e7);
+  arguments.option("--seed", options->seed, "seed of every random stream")
+      .default_shown()
+      .within(std::int64_t{0}, kLargestSeed);
+  arguments.option(
       "--out", options->out,
       "directory for imu.csv, imu_kf_gins.txt, errors.csv, truth.nav and summary.json; NAME.csv or NAME.txt: "
       "the log alone, as rates or as KF-GINS increments");
-  app.add_flag("--force", options->force,
-               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  arguments.flag("--force", options->force,
+                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->path.empty() && options->points.empty() && options->trajectory.empty())
       return Error{"", 0, "command line", "no motion given",

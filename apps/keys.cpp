@@ -1,8 +1,6 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/json.h"
@@ -27,9 +25,9 @@ Json keys_json() {
   return out;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<CommonOptions>();
-  declare_common(app, *options);
+  declare_common(arguments, *options);
   return [options]() -> Result<int> {
     if (options->json)
       std::printf("%s\n", keys_json().dump().c_str());

@@ -3,8 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/gnss_setup.h"
@@ -209,41 +207,41 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  app.add_option("--scene", options->scene, "a mission file's scene and LIDAR, or \"vicksburg\" (built in)")
-      ->capture_default_str();
-  app.add_option("--fidelity", options->fidelity, "whose LIDAR: low, paper, high, or one of the mission file's own")
-      ->capture_default_str();
-  auto* at = app.add_option("--at", options->at,
-                            "X,Y,H,YAW of the vehicle: metres in the scene, metres above ground, degrees");
-  auto* trajectory = app.add_option("--trajectory", options->trajectory,
-                                    "drive along poses of the vehicle in the scene (TUM, or .csv)");
-  at->excludes(trajectory);
-  app.add_option("--scans", options->scans, "with --at: how many revolutions")
-      ->capture_default_str()
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}));
-  app.add_option("--beams", options->beams, "beam table; all [lidar] keys can be set in the mission file");
-  app.add_option("--model", options->model, "single_ray or footprint");
-  app.add_option("--detector", options->detector, "ideal or radiometric");
-  app.add_option("--returns", options->returns, "strongest, first, last, dual or all");
-  app.add_option("--rate", options->rate_hz, "revolutions per second");
-  app.add_option("--azimuth-steps", options->azimuth_steps, "firings per revolution; 0 = as fast as the lasers can");
-  app.add_option("--start", options->start, "stamp of the first scan, with --at");
-  app.add_option("--seed", options->seed, "seed of every random stream")
-      ->capture_default_str()
-      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
-  app.add_option("--format", options->format, "of the clouds: pcd, ply or las")->capture_default_str();
-  app.add_option("--frame", options->frame,
-                 "of the clouds: sensor (as measured) or scene (placed with the true motion)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"sensor", "scene"}));
-  app.add_option("--pcap", options->pcap, "write the sensor's packets as a capture (vlp16, hdl32e)");
-  app.add_option("--udp", options->udp, "send the sensor's packets to ADDRESS[:PORT]");
-  app.add_option("--out", options->out, "directory for clouds and truth; without it only the summary is printed");
-  app.add_flag("--force", options->force,
-               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  declare_common(arguments, options->common);
+  arguments.option("--scene", options->scene, "a mission file's scene and LIDAR, or \"vicksburg\" (built in)")
+      .default_shown();
+  arguments.option("--fidelity", options->fidelity, "whose LIDAR: low, paper, high, or one of the mission file's own")
+      .default_shown();
+  const auto at = arguments.option("--at", options->at,
+                                   "X,Y,H,YAW of the vehicle: metres in the scene, metres above ground, degrees");
+  const auto trajectory = arguments.option("--trajectory", options->trajectory,
+                                           "drive along poses of the vehicle in the scene (TUM, or .csv)");
+  at.excludes(trajectory);
+  arguments.option("--scans", options->scans, "with --at: how many revolutions")
+      .default_shown()
+      .within(std::int64_t{1}, std::int64_t{1'000'000});
+  arguments.option("--beams", options->beams, "beam table; all [lidar] keys can be set in the mission file");
+  arguments.option("--model", options->model, "single_ray or footprint");
+  arguments.option("--detector", options->detector, "ideal or radiometric");
+  arguments.option("--returns", options->returns, "strongest, first, last, dual or all");
+  arguments.option("--rate", options->rate_hz, "revolutions per second");
+  arguments.option("--azimuth-steps", options->azimuth_steps, "firings per revolution; 0 = as fast as the lasers can");
+  arguments.option("--start", options->start, "stamp of the first scan, with --at");
+  arguments.option("--seed", options->seed, "seed of every random stream")
+      .default_shown()
+      .within(std::int64_t{0}, kLargestSeed);
+  arguments.option("--format", options->format, "of the clouds: pcd, ply or las").default_shown();
+  arguments
+      .option("--frame", options->frame, "of the clouds: sensor (as measured) or scene (placed with the true motion)")
+      .default_shown()
+      .among({"sensor", "scene"});
+  arguments.option("--pcap", options->pcap, "write the sensor's packets as a capture (vlp16, hdl32e)");
+  arguments.option("--udp", options->udp, "send the sensor's packets to ADDRESS[:PORT]");
+  arguments.option("--out", options->out, "directory for clouds and truth; without it only the summary is printed");
+  arguments.flag("--force", options->force,
+                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->trajectory.empty())
       return Error{"", 0, "command line", "no place given", "--at X,Y,H,YAW or --trajectory FILE"};

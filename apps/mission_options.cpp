@@ -2,21 +2,19 @@
 
 #include <ctime>
 
-#include <CLI/CLI.hpp>
-
 namespace canyon::apps {
 
-void declare_mission_options(CLI::App& app, MissionOptions& options) {
-  declare_common(app, options.common);
-  app.add_option("mission", options.mission, "mission file (TOML); without it the built-in mission")
-      ->type_name("MISSION.toml");
-  app.add_option("--seed", options.seed, "seed of every random stream; without it the mission's")
-      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
-  app.add_option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
-  app.add_option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
-  app.add_option("--out", options.out, "results directory; default results/<mission>-<seed>-<time>");
-  app.add_flag("--force", options.force,
-               "replace the results directory if it exists; only one that canyon wrote, or an empty one");
+void declare_mission_options(Arguments& arguments, MissionOptions& options) {
+  declare_common(arguments, options.common);
+  arguments.option("mission", options.mission, "mission file (TOML); without it the built-in mission")
+      .type("MISSION.toml");
+  arguments.option("--seed", options.seed, "seed of every random stream; without it the mission's")
+      .within(std::int64_t{0}, kLargestSeed);
+  arguments.option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
+  arguments.option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+  arguments.option("--out", options.out, "results directory; default results/<mission>-<seed>-<time>");
+  arguments.flag("--force", options.force,
+                 "replace the results directory if it exists; only one that canyon wrote, or an empty one");
 }
 
 Result<mission::MissionFile> load_mission(const MissionOptions& options) {

@@ -17,7 +17,7 @@ struct MissionOptions {
   std::string nav, start, out;
   bool force = false;
 };
-void declare_mission_options(CLI::App& app, MissionOptions& options);
+void declare_mission_options(Arguments& arguments, MissionOptions& options);
 
 /// The mission file with the options laid over it.
 Result<mission::MissionFile> load_mission(const MissionOptions& options);

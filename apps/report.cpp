@@ -2,8 +2,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include <nlohmann/json.hpp>
 
 #include "apps/verb.h"
@@ -13,14 +11,14 @@ namespace canyon::apps {
 
 namespace {
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   struct Options {
     CommonOptions common;
     std::string directory;
   };
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  app.add_option("directory", options->directory, "results directory of compare or run")->required();
+  declare_common(arguments, options->common);
+  arguments.option("directory", options->directory, "results directory of compare or run").required();
   return [options]() -> Result<int> {
     const std::string file = options->directory + "/report.html";
     CANYON_TRY_STATUS(report::write_html_report(options->directory, file));

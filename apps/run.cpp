@@ -1,22 +1,20 @@
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
 #include "apps/drive.h"
 
 namespace canyon::apps {
 
 namespace {
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   struct Options {
     MissionOptions mission;
     std::string fidelity = "high";
   };
   const auto options = std::make_shared<Options>();
-  declare_mission_options(app, options->mission);
-  app.add_option("--fidelity", options->fidelity, "low, paper, high, or one of the mission file's own")
-      ->capture_default_str();
+  declare_mission_options(arguments, options->mission);
+  arguments.option("--fidelity", options->fidelity, "low, paper, high, or one of the mission file's own")
+      .default_shown();
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
     CANYON_TRY_STATUS(file.check_fidelities({options->fidelity}, "--fidelity"));

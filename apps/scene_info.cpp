@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/scene_options.h"
@@ -156,12 +155,12 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  declare_scene_options(app, options->scene);
-  app.add_option("--picture", options->picture, "draws the scene from above: .svg or .png");
-  app.add_option("--cell", options->cell_m, "of the picture, m")->capture_default_str()->check(CLI::Range(0.1, 100.0));
+  declare_common(arguments, options->common);
+  declare_scene_options(arguments, options->scene, "a scene file, a mission file's scene, or \"vicksburg\" (built in)");
+  arguments.option("--picture", options->picture, "draws the scene from above: .svg or .png");
+  arguments.option("--cell", options->cell_m, "of the picture, m").default_shown().within(0.1, 100.0);
   return [options] { return run(*options); };
 }
 

@@ -1,7 +1,6 @@
 #include <cstdio>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "apps/scene_options.h"
@@ -47,25 +46,23 @@ Result<int> run(const Options& options) {
   return 0;
 }
 
-VerbAction declare(CLI::App& app) {
+VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  declare_common(app, options->common);
-  declare_scene_options(app, options->scene);
-  app.get_option("scene")->description("\"city\", the built-in one; or a scene file, or a mission file's scene");
+  declare_common(arguments, options->common);
+  declare_scene_options(arguments, options->scene,
+                        "\"city\", the built-in one; or a scene file, or a mission file's scene");
   scene::CityConfig& city = options->city;
-  app.add_option("--seed", city.seed, "seed of the built-in city")
-      ->capture_default_str()
-      ->check(CLI::Range(std::int64_t{0}, static_cast<std::int64_t>(kLargestSeed)));
-  app.add_option("--extent", city.extent_m, "edge of the square, m")
-      ->capture_default_str()
-      ->check(CLI::Range(200.0, 5000.0));
-  app.add_option("--block", city.block_m, "street to street, m")->capture_default_str()->check(CLI::Range(40.0, 500.0));
-  app.add_option("--slope", city.slope_percent, "mean slope of the terrain, percent")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 20.0));
-  app.add_option("--out", options->out, "directory for the files")->capture_default_str();
-  app.add_flag("--force", options->force,
-               "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  arguments.option("--seed", city.seed, "seed of the built-in city")
+      .default_shown()
+      .within(std::int64_t{0}, kLargestSeed);
+  arguments.option("--extent", city.extent_m, "edge of the square, m").default_shown().within(200.0, 5000.0);
+  arguments.option("--block", city.block_m, "street to street, m").default_shown().within(40.0, 500.0);
+  arguments.option("--slope", city.slope_percent, "mean slope of the terrain, percent")
+      .default_shown()
+      .within(0.0, 20.0);
+  arguments.option("--out", options->out, "directory for the files").default_shown();
+  arguments.flag("--force", options->force,
+                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options] { return run(*options); };
 }
 

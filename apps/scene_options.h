@@ -12,7 +12,8 @@ struct SceneOptions {
   std::string scene;  ///< a scene file, a mission file, "vicksburg" or "city"
   scene::ImportConfig from;
 };
-void declare_scene_options(CLI::App& app, SceneOptions& options);
+/// `scenes`: what the argument may be, for --help.
+void declare_scene_options(Arguments& arguments, SceneOptions& options, const char* scenes);
 
 /// [scene] of a mission file or of the built-in mission, or the scene file with the options.
 Result<scene::SceneConfig> scene_config(const SceneOptions& options);

@@ -1,14 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
-#include <string>
-#include <vector>
 
+#include "apps/arguments.h"
 #include "core/result.h"
-
-namespace CLI {
-class App;
-}
 
 namespace canyon::apps {
 
@@ -20,8 +16,8 @@ struct Verb {
   const char* name;  ///< "run"; "gnss solve" is verb solve of group gnss
   const char* summary;
   const char* example;  ///< shown by --help
-  /// Declares the arguments on `app` and returns what to do once they are parsed.
-  VerbAction (*declare)(CLI::App& app);
+  /// Declares the arguments and returns what to do once they are parsed.
+  VerbAction (*declare)(Arguments& arguments);
 };
 
 Verb compare_verb();
@@ -42,13 +38,13 @@ Verb imu_dead_reckon_verb();
 Verb lidar_scan_verb();
 
 /// The largest --seed: what a TOML integer and a JSON number both carry without loss.
-inline constexpr double kLargestSeed = 9e15;
+inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;
 
 /// Options that every verb has.
 struct CommonOptions {
   int threads = 0;
   bool json = false;
 };
-void declare_common(CLI::App& app, CommonOptions& options);
+void declare_common(Arguments& arguments, CommonOptions& options);
 
 }  // namespace canyon::apps
