@@ -1,4 +1,19 @@
-# canyon_library(NAME [LINK libs...] [PRIVATE libs...]): every .cpp of the folder, one static library canyon_NAME.
+# canyon_precompile(TARGET ROOT): what nearly all files include is precompiled once, for ROOT (further arguments: headers of
+# ROOT's own), and used by every TARGET.
+function(canyon_precompile target root)
+  if(NOT CANYON_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  if(target STREQUAL root)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional>
+                              <span> <string> <string_view> <vector> <Eigen/Core> <Eigen/Geometry> <nlohmann/json.hpp> ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${root})
+  endif()
+endfunction()
+
+# canyon_library(NAME [LINK libs...] [PRIVATE libs...] [EXCLUDE patterns...]): every .cpp of the folder, one static library
+# canyon_NAME.
 function(canyon_library name)
   cmake_parse_arguments(ARG "" "" "LINK;PRIVATE;EXCLUDE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -7,6 +22,7 @@ function(canyon_library name)
   endforeach()
   add_library(canyon_${name} STATIC ${sources})
   target_link_libraries(canyon_${name} PUBLIC canyon_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE})
+  canyon_precompile(canyon_${name} canyon_core)
 endfunction()
 
 # canyon_embed(OUT_VARIABLE FILE...): sources that hold the files' bytes and the table that core/embedded.cpp reads.
@@ -43,6 +59,7 @@ function(canyon_test folder)
   set(target canyon_${folder}_tests)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE canyon_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  canyon_precompile(${target} canyon_core_tests <gmock/gmock.h> <gtest/gtest.h>)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "-*Nightly*" PROPERTIES LABELS ${folder} TIMEOUT 300)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "*Nightly*" TEST_LIST ${target}_nightly
                        PROPERTIES LABELS "nightly" TIMEOUT 3600)

@@ -25,7 +25,9 @@ Result<const Row*> row_of(const std::vector<Row>& rows, const char* key, const s
     if (name == row.name) return &row;
     known += (known.empty() ? "" : ", ") + std::string(row.name);
   }
-  return config_error(key, std::string("unknown ") + key + " \"" + name + '"', "one of " + known);
+  std::string what = "unknown ";
+  what.append(key).append(" \"").append(name).append("\"");
+  return config_error(key, std::move(what), "one of " + known);
 }
 
 Status validate(const LidarConfig& c, const BeamTable& table) {

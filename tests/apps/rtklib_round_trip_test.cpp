@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "tests/apps/command_line_fixture.h"
 #include "tests/gnss/rtklib_runner.h"
+#include "tests/support/outside_program.h"
 #include "tests/support/test_data.h"
 
 namespace canyon::apps {
@@ -21,7 +22,7 @@ class RtklibRoundTripTest : public testing::CommandLineTest {
  protected:
   void SetUp() override {
     CommandLineTest::SetUp();
-    if (std::system("command -v rnx2rtkp > /dev/null 2>&1") != 0) GTEST_SKIP() << "rnx2rtkp is not installed";
+    CANYON_OUTSIDE_PROGRAM("rnx2rtkp");
   }
 
   /// Positions by seconds of the week (the receiver's clock tags them within microseconds), as rnx2rtkp finds them in
