@@ -1,0 +1,130 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <Eigen/Cholesky>
+
+#include "core/chi_square.h"
+#include "gnss/receiver/receiver_mode.h"
+#include "tests/gnss/pseudorange_sensor_fixture.h"
+
+namespace canyon::gnss {
+namespace {
+
+using testing::errors_off;
+using ::testing::HasSubstr;
+using testing::kStart;
+using testing::open_sky;
+using testing::PseudorangeSensorTest;
+using testing::WallScene;
+
+TEST_F(PseudorangeSensorTest, ModesLeaveWhatTheySay) {
+  const GnssOutput raw = measure(*make(open_sky("single_uncorrected")), 3),
+                   single = measure(*make(open_sky("single")), 3), dgps = measure(*make(open_sky("dgps")), 3),
+                   paper = measure(*make(open_sky("dgps_paper")), 3);
+  ASSERT_GE(raw.truth.satellites.size(), 5u);
+  for (std::size_t i = 0; i < raw.truth.satellites.size(); ++i) {
+    const auto &r = raw.truth.satellites[i], &s = single.truth.satellites[i], &d = dgps.truth.satellites[i],
+               &p = paper.truth.satellites[i];
+    EXPECT_GT(r.ionosphere_m, 1.9);
+    EXPECT_GT(r.troposphere_m, 2.4);
+    EXPECT_DOUBLE_EQ(s.ionosphere_m, 0.5 * r.ionosphere_m);
+    EXPECT_LT(std::abs(s.troposphere_m), 0.1 * r.troposphere_m);
+    EXPECT_EQ(s.ephemeris_m, r.ephemeris_m);
+    // 5 km of baseline: 2 mm/km x 5 km x obliquity 3 x 4 sigma; orbit x 5 km / 20,000 km.
+    EXPECT_LT(std::abs(d.ionosphere_m), 4 * 0.010 * 3.1);
+    EXPECT_LT(std::abs(d.troposphere_m), 4 * 0.005 * 6.0);
+    EXPECT_NEAR(d.ephemeris_m, r.ephemeris_m * 5e3 / r.range_m, 1e-9);
+    EXPECT_NE(d.ionosphere_m, 0.0);
+    EXPECT_EQ(d.noise_m, r.noise_m);
+    EXPECT_NE(d.base_m, 0.0);  // the base's own error comes with its correction
+    EXPECT_EQ(p.ionosphere_m, 0.0);
+    EXPECT_EQ(p.ephemeris_m, 0.0);
+    EXPECT_EQ(p.troposphere_m, r.troposphere_m);
+  }
+  EXPECT_EQ(raw.fix.status, FixStatus::kSingle);
+  EXPECT_EQ(dgps.fix.status, FixStatus::kDifferential);
+  EXPECT_EQ(paper.fix.status, FixStatus::kDifferential);
+}
+
+TEST_F(PseudorangeSensorTest, DgpsResidualsGrowWithTheBaseline) {
+  GnssConfig c = open_sky("dgps");
+  c.base_error_scale = 0.0;
+  c.thermal_noise_scale = 0.0;
+  const auto error_at = [&](double baseline_km) {
+    c.baseline_km = baseline_km;
+    const auto sensor = make(c);
+    return (measure(*sensor, 1).fix.p_A_E - truth_E()).norm();
+  };
+  EXPECT_LT(error_at(0.0), 1e-4);
+  const double near_m = error_at(5.0);
+  EXPECT_GT(near_m, 1e-3);
+  EXPECT_NEAR(error_at(50.0), 10.0 * near_m, 1e-2 * 10.0 * near_m);  // linear, but for the curvature of the ranges
+}
+
+TEST(GnssConfig, ModesSayWhetherTheyCorrectTheAtmosphere) {
+  for (const auto& row : receiver_modes()) {
+    const auto mode = row.make({});
+    EXPECT_THAT(row.doc, HasSubstr(mode->corrects_atmosphere() ? "residual atmosphere" : "raw atmosphere")) << row.name;
+  }
+}
+
+// The receiver's own filter: quieter than epochs by themselves, the same bits when measured again, and fixes where the
+// epoch alone has none.
+TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
+  GnssConfig c = errors_off();
+  c.thermal_noise_scale = 1.0;
+  c.code_loop_hz = 5.0;  // independent from epoch to epoch, 2 m
+  c.solver_sigma_m = 2.0;
+  const auto rms = [&](GnssSensor& sensor) {
+    double square = 0.0;
+    for (std::int64_t k = 0; k < 120; ++k) {
+      const GnssOutput out = measure(sensor, k);
+      EXPECT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
+      if (k >= 20) square += (out.fix.p_A_E - truth_E()).squaredNorm();
+    }
+    return std::sqrt(square / 100.0);
+  };
+  const auto plain = make(c);
+  c.estimator = "kalman";
+  c.estimator_acceleration_m_s2 = 0.05;
+  const auto filtered = make(c);
+  const double filtered_m = rms(*filtered);
+  EXPECT_LT(filtered_m, 0.7 * rms(*plain));
+  EXPECT_EQ(rms(*filtered), filtered_m);  // index 0 does not follow 119: switched on anew
+
+  // A shaft closes around the antenna: of all satellites a few near the zenith are left.
+  c.paths = "visibility";
+  const auto shaft = WallScene()
+                         .box({-20, -20, 0}, {-6, 20, 12})
+                         .box({6, -20, 0}, {20, 20, 12})
+                         .box({-6, -20, 0}, {6, -6, 12})
+                         .box({-6, 6, 0}, {6, 20, 12})
+                         .build();
+  const auto sensor = make(c);
+  for (std::int64_t k = 0; k < 10; ++k) measure(*sensor, k);
+  c.estimator = "least_squares";
+  const GnssOutput alone = make(c)->measure(10, kStart + 5.0, antenna_W, still, scene::SceneAt(*shaft));
+  const GnssOutput bridged = sensor->measure(10, kStart + 5.0, antenna_W, still, scene::SceneAt(*shaft));
+  ASSERT_GT(alone.epoch.observations.size(), 0u);
+  ASSERT_LT(alone.epoch.observations.size(), 4u);
+  EXPECT_EQ(alone.fix.status, FixStatus::kNone);
+  ASSERT_EQ(bridged.fix.status, FixStatus::kSingle) << bridged.fix.reason;
+  EXPECT_EQ(bridged.fix.satellites, static_cast<int>(bridged.epoch.observations.size()));
+  // As good as it says: chi-square of three degrees, exceeded once in 10,000 times.
+  const Eigen::Vector3d error = bridged.fix.p_A_E - truth_E();
+  EXPECT_LT(error.dot(bridged.fix.covariance_E.ldlt().solve(error)), chi_square_threshold(1e-4, 3));
+}
+
+TEST_F(PseudorangeSensorTest, AFilterNeedsAReceiverClock) {
+  GnssConfig c;
+  c.estimator = "kalman";
+  c.solver = "trilateration";
+  c.receiver_clock = "none";
+  EXPECT_EQ(error_of(c),
+            "gnss.estimator: is \"kalman\", but the solver trilateration has no receiver clock, expected "
+            "solver \"least_squares\"");
+}
+
+}  // namespace
+}  // namespace canyon::gnss
