@@ -2,6 +2,8 @@
 
 #include <ctime>
 
+#include "core/files.h"
+
 namespace canyon::apps {
 
 void declare_mission_options(Arguments& arguments, MissionOptions& options) {
@@ -32,7 +34,7 @@ std::string output_directory(const MissionOptions& options, const mission::Missi
   localtime_r(&now, &local);
   char stamp[32];
   std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
-  return "results/" + config.run.name + "-" + std::to_string(config.run.seed) + "-" + stamp;
+  return free_name("results/" + config.run.name + "-" + std::to_string(config.run.seed) + "-" + stamp);
 }
 
 }  // namespace canyon::apps

@@ -53,6 +53,7 @@ Result<ConfigNode> ConfigNode::parse(std::string_view toml, const std::string& f
     error.file = file_name;
     error.line = static_cast<int>(parsed.error().source().begin.line);
     error.what = "not valid TOML: " + std::string(parsed.error().description());
+    error.expected = "TOML 1.0";
     return error;
   }
   ConfigNode root = convert(parsed.table(), file_name);

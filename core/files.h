@@ -16,6 +16,9 @@ Status write_text_file(const std::string& path, std::string_view text);
 /// SHA-256 of bytes as 64 hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
 
+/// `path`, or `path`-2, -3, ... where nothing of that name exists.
+std::string free_name(const std::string& path);
+
 /// A directory that becomes visible under its final name only when complete. Until commit() everything is written under
 /// a temporary name beside it; the destructor removes what was not committed.
 class StagedDirectory {
@@ -29,6 +32,8 @@ class StagedDirectory {
   ~StagedDirectory();
 
   const std::string& staging_path() const { return staging_; }
+  /// Where it will be. After commit(), where it is: if without `force` another has taken the name meanwhile, what was
+  /// computed is not lost but has the next free_name().
   const std::string& final_path() const { return final_; }
   Status commit();
 

@@ -49,6 +49,13 @@ void remove_empty(const std::vector<std::string>& outermost_first) {
 
 }  // namespace
 
+std::string free_name(const std::string& path) {
+  std::string name = path;
+  std::error_code code;
+  for (int n = 2; fs::exists(fs::symlink_status(name, code)); ++n) name = path + "-" + std::to_string(n);
+  return name;
+}
+
 StagedDirectory::StagedDirectory(std::string final_path, std::string staging, bool force,
                                  std::vector<std::string> parents)
     : final_(std::move(final_path)),
@@ -116,9 +123,8 @@ Result<StagedDirectory> StagedDirectory::create(const std::string& path, bool fo
 Status StagedDirectory::commit() {
   CANYON_CHECK(!staging_.empty(), "committed twice: ", final_);
   std::error_code code;
+  if (!force_) final_ = free_name(final_);
   const bool replace = fs::exists(fs::symlink_status(final_, code));
-  if (replace && !force_)
-    return directory_error(final_, "output directory has appeared meanwhile", "a new one or --force");
   if (replace && !may_be_replaced(final_)) return not_ours(final_);
   CANYON_TRY_STATUS(
       write_text_file(staging_ + "/" + kMarker, "written by canyon; --force may replace this directory\n"));

@@ -10,6 +10,7 @@ import collections
 import json
 import math
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -53,7 +54,7 @@ def main():
         n = sum(counts.values())
         low, high = wilson(counts["success"], n)
         kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(counts.items()))
-        median = sorted(errors[fidelity])[n // 2]
+        median = statistics.median(errors[fidelity])
         print(f'| {fidelity} | {counts["success"]} of {n} | {low:.2f} to {high:.2f} | {kinds} | {median:.2f} m |')
     return 0
 

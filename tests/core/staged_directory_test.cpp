@@ -168,18 +168,20 @@ TEST(StagedDirectory, ForceReplacesNoFileAndNotTheCurrentDirectory) {
   EXPECT_TRUE(fs::exists(inner));
 }
 
-TEST(StagedDirectory, OneThatAppearsMeanwhileIsNotOverwritten) {
+TEST(StagedDirectory, BesideOneThatAppearsMeanwhile) {
   const TemporaryFolder folder;
   const std::string path = folder.file("x");
   {
     auto staged = StagedDirectory::create(path, false);
     ASSERT_TRUE(staged.ok());
     fs::create_directory(path);
-    EXPECT_EQ(staged->commit().error().str(),
-              path + ": output directory has appeared meanwhile, expected a new one or --force");
+    fs::create_directory(path + "-2");
+    EXPECT_TRUE(staged->commit().ok());
+    EXPECT_EQ(staged->final_path(), path + "-3");
   }
   EXPECT_TRUE(fs::is_empty(path));
-  EXPECT_EQ(folder.entries(), 1);
+  EXPECT_TRUE(fs::exists(path + "-3/.canyon"));
+  EXPECT_EQ(folder.entries(), 3);
 }
 
 TEST(StagedDirectory, AParentThatIsAFileIsNotWritable) {
