@@ -17,8 +17,9 @@ A mission file is TOML. Beside the sections below it may hold
 
 - `base = "vicksburg"`, before any section: start from that built-in mission and change what differs;
 - `[fidelity.NAME]` sections, such as `[fidelity.mine.gnss]`: what the fidelity NAME (letters, digits, `-`, `_`) lays over the
-  mission. What all runs of a comparison share cannot stand there: `scene`, `time`, `run.name`, `run.seed`, `vehicle.start_m`,
-  `vehicle.start_heading_deg` and the waypoints.
+  mission. One that is not built in starts from another: from `base = "low"` if `[fidelity.NAME]` says so, else from `high`.
+  What all runs of a comparison share cannot stand there: `scene`, `time`, `success`, `run.name`, `run.seed`,
+  `vehicle.start_m`, `vehicle.start_heading_deg` and the waypoints.
 
 Later layers win: the base mission, the built-in fidelity (at the foot of this page), the file's sections, the file's
 `[fidelity.NAME]`, options of the command line. An array, such as the waypoints, is replaced as a whole. Unknown keys are errors.

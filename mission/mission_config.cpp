@@ -4,7 +4,6 @@ namespace canyon::mission {
 
 void visit(FieldVisitor& f, TimeConfig& c) {
   f.text("start", c.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
-  f.number("limit_factor", c.limit_factor, {1, 100}, "time limit as a multiple of the nominal time");
   f.number("limit_s", c.limit_s, {0, 1e5}, "ends the run after this time at the latest; 0 = no such limit");
 }
 
@@ -14,6 +13,7 @@ void visit(FieldVisitor& f, SuccessConfig& c) {
   f.number("stopped_speed_m_s", c.stopped_speed_m_s, {0.001, 1}, "slower than this counts as standing");
   f.number("facade_share", c.facade_share, {0, 1}, "share of a 5 x 5 grid on the facade that must be in sight");
   f.number("camera_height_m", c.camera_height_m, {0, 10}, "of the camera above B");
+  f.number("limit_factor", c.limit_factor, {1, 100}, "time limit as a multiple of the nominal time");
   f.number("stuck_after_s", c.stuck_after_s, {5, 1e4}, "standing still this long without observing ends the run");
 }
 
@@ -32,7 +32,7 @@ void visit(FieldVisitor& f, RunConfig& c) {
 
 void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("scene", c.scene, "the built-in city, or a scene from files");
-  f.group("time", c.time, "start and limits");
+  f.group("time", c.time, "start, and an early end");
   f.group("vehicle", c.vehicle, "the ground vehicle");
   f.group("gnss", c.gnss, "the GNSS receiver and its errors");
   f.group("imu", c.imu, "the inertial sensor and its errors");

@@ -19,7 +19,6 @@ namespace canyon::mission {
 /// [time]
 struct TimeConfig {
   std::string start = "2010-11-17T13:00:00";  ///< the paper's field test
-  double limit_factor = 1.5;                  ///< time limit as a multiple of the nominal time
   double limit_s = 0.0;                       ///< if > 0: ends the run after this time at the latest (short tests)
 };
 void visit(FieldVisitor& f, TimeConfig& c);
@@ -31,6 +30,7 @@ struct SuccessConfig {
   double stopped_speed_m_s = 0.1;
   double facade_share = 0.5;     ///< of a 5 x 5 grid on the building's façade that must be in sight
   double camera_height_m = 1.5;  ///< above B
+  double limit_factor = 1.5;     ///< time limit as a multiple of the nominal time
   double stuck_after_s = 90.0;   ///< standing still this long without observing ends the run
 };
 void visit(FieldVisitor& f, SuccessConfig& c);

@@ -12,6 +12,7 @@ namespace canyon::mission {
 namespace {
 
 constexpr const char* kFidelityFile = "missions/fidelities.toml";
+constexpr const char* kDefaultFidelityBase = "high";
 
 std::string mission_key(const std::string& name) {
   return "missions/" + name + ".toml";
@@ -56,8 +57,14 @@ bool is_plain_name(const std::string& name) {
 }
 
 /// What one results directory has once, so that its runs must share it.
-constexpr const char* kShared[] = {
-    "scene", "time", "run.name", "run.seed", "vehicle.start_m", "vehicle.start_heading_deg", "autonomy.waypoint"};
+constexpr const char* kShared[] = {"scene",
+                                   "time",
+                                   "success",
+                                   "run.name",
+                                   "run.seed",
+                                   "vehicle.start_m",
+                                   "vehicle.start_heading_deg",
+                                   "autonomy.waypoint"};
 
 Status check_name(const ConfigNode& tree) {
   const ConfigNode* node = tree.find("run.name");
@@ -107,12 +114,43 @@ Status MissionFile::check_user_fidelities() const {
     const std::string key = "fidelity." + name;
     if (!is_plain_name(name)) return node.error("fidelity", "found the name \"" + name + "\"", kPlainName);
     if (node.table() == nullptr) return node.error(key, "found " + node.describe(), "a table");
+    const ConfigNode* base = node.find("base");
+    if (base != nullptr && builtin_fidelities_.find(key) != nullptr)
+      return base->error(key + ".base", "\"" + name + "\" is built in", "a base only for a fidelity of your own");
     for (const char* shared : kShared)
       if (const ConfigNode* own = node.find(shared))
         return own->error(key + "." + shared, "is shared by all runs", "it outside of [fidelity], for all of them");
-    CANYON_TRY_STATUS(resolve(name));
+    CANYON_TRY_STATUS(ancestry(name));
+    const auto resolved = resolve(name);
+    if (resolved) continue;
+    Error error = resolved.error();
+    const ConfigNode* written = node.find(error.key);
+    if (written != nullptr && written->line_ == error.line) error.key = key + "." + error.key;
+    return error;
   }
   return Ok{};
+}
+
+Result<std::vector<std::string>> MissionFile::ancestry(const std::string& fidelity) const {
+  const auto known = fidelities();
+  std::vector<std::string> names{fidelity};
+  while (builtin_fidelities_.find("fidelity." + names.front()) == nullptr) {
+    const std::string key = "fidelity." + names.front() + ".base";
+    const ConfigNode* node = nullptr;
+    for (const ConfigNode* tree : {&base_, &user_})
+      if (const ConfigNode* found = tree->find(key)) node = found;
+    if (node == nullptr) {
+      names.insert(names.begin(), kDefaultFidelityBase);
+      continue;
+    }
+    const auto* name = std::get_if<std::string>(&node->value_);
+    if (name == nullptr || std::find(known.begin(), known.end(), *name) == known.end())
+      return node->error(key, node->describe() + " is not a fidelity", "one of " + joined(known));
+    if (std::find(names.begin(), names.end(), *name) != names.end())
+      return node->error(key, "\"" + *name + "\" is based on this fidelity in turn", "another one");
+    names.insert(names.begin(), *name);
+  }
+  return names;
 }
 
 void MissionFile::set_option(const std::string& key, ConfigNode value, const std::string& option) {
@@ -150,9 +188,11 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
                  .key = "fidelity." + fidelity,
                  .what = "unknown fidelity",
                  .expected = "one of " + joined(known)};
+  CANYON_TRY(const std::vector<std::string> lineage, ancestry(fidelity));
   ConfigNode tree = base_;
   const auto lay_fidelity = [&](const ConfigNode& from) {
-    if (const ConfigNode* over = from.find("fidelity." + fidelity)) tree.overlay(*over);
+    for (const std::string& name : lineage)
+      if (const ConfigNode* over = from.find("fidelity." + name)) tree.overlay(*over);
   };
   lay_fidelity(base_);
   lay_fidelity(builtin_fidelities_);
@@ -160,6 +200,7 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
   lay_fidelity(user_);
   tree.overlay(options_);
   tree.erase("fidelity");
+  tree.erase("base");
   return tree;
 }
 

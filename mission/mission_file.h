@@ -20,8 +20,9 @@ inline constexpr const char* kDefaultMission = "vicksburg";
 ///
 /// Layers, later ones win: the base mission (`base = "vicksburg"`, a built-in), the built-in fidelity, the user's
 /// sections, the user's [fidelity.NAME], options of the command line. So a user's `[gnss] rate_hz = 5` holds for every
-/// fidelity. What the runs of a comparison share (scene, time, seed, name, start, waypoints) cannot differ between
-/// fidelities. All fidelities of the user's file are read and checked at once, whichever will be used.
+/// fidelity. A fidelity that is not built in is laid over the one that its key `base` names, over `high` without it.
+/// What the runs of a comparison share (scene, time, seed, name, start, waypoints) cannot differ between fidelities.
+/// All fidelities of the user's file are read and checked at once, whichever will be used.
 class MissionFile {
  public:
   /// Reads a mission file; an empty path gives the built-in mission.
@@ -45,6 +46,8 @@ class MissionFile {
  private:
   static Result<MissionFile> from_tree(ConfigNode tree, const std::string& file_name);
   Status check_user_fidelities() const;
+  /// The fidelities that one is made of, from the built-in one it starts from to itself.
+  Result<std::vector<std::string>> ancestry(const std::string& fidelity) const;
   Result<ConfigNode> resolved_tree(const std::string& fidelity) const;
 
   std::string file_;
@@ -64,7 +67,8 @@ struct PreparedMission {
   scene::Traffic traffic;  ///< what moves in the scene, by the time since the start
   PriorKnowledge prior;
   double nominal_s = 0.0;
-  double time_limit_s = 0.0;  ///< of [time] limit_factor and limit_s the shorter: when a run ends at the latest
+  double time_limit_s =
+      0.0;  ///< of [success] limit_factor and [time] limit_s the shorter: when a run ends at the latest
   std::vector<InputFile> files;
 };
 

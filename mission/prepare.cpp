@@ -114,7 +114,7 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
                                      {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2,
                                       config.vehicle.max_acceleration_m_s2, config.autonomy.braking_m_s2},
                                      stops);
-  mission.time_limit_s = config.time.limit_factor * mission.nominal_s;
+  mission.time_limit_s = config.success.limit_factor * mission.nominal_s;
   if (config.time.limit_s > 0.0) mission.time_limit_s = std::min(mission.time_limit_s, config.time.limit_s);
   return mission;
 }

@@ -8,6 +8,7 @@
 namespace canyon::mission {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 MissionFile parse(const std::string& toml) {
@@ -63,6 +64,37 @@ TEST(MissionFile, AFidelityOfOnesOwn) {
   EXPECT_EQ(file.resolve("mine")->gnss.mode, "single");
   EXPECT_EQ(file.resolve("nobody").error().str(),
             "my.toml: fidelity.nobody: unknown fidelity, expected one of high, low, paper, mine");
+}
+
+/// Keys whose values differ between two fidelities.
+std::vector<std::string> differences(const MissionFile& file, const std::string& a, const std::string& b) {
+  const auto fields = [&](const std::string& fidelity) {
+    MissionConfig config = *file.resolve(fidelity);
+    return documented_fields("", [&config](FieldVisitor& f) { visit(f, config); });
+  };
+  const auto of_a = fields(a), of_b = fields(b);
+  std::vector<std::string> keys;
+  for (std::size_t i = 0; i < of_a.size(); ++i)
+    if (of_a[i].default_value != of_b[i].default_value) keys.push_back(of_a[i].key);
+  return keys;
+}
+
+TEST(MissionFile, AFidelityIsLaidOverItsBase) {
+  const MissionFile file = parse(
+      "base = \"vicksburg\"\n[fidelity.careful.fusion]\ngate_sigma = 3.0\n[fidelity.rough]\nbase = \"low\"\n"
+      "gnss.rate_hz = 4.0\n[fidelity.rougher]\nbase = \"rough\"\nimu.rate_hz = 200.0\n");
+  EXPECT_THAT(differences(file, "high", "careful"), ElementsAre("fusion.gate_sigma"));
+  EXPECT_THAT(differences(file, "low", "rough"), ElementsAre("gnss.rate_hz"));
+  EXPECT_THAT(differences(file, "low", "rougher"), ElementsAre("gnss.rate_hz", "imu.rate_hz"));
+}
+
+TEST(MissionFileMessages, BaseOfAFidelity) {
+  EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.mine]\nbase = \"hihg\"\n"),
+            "my.toml:3: fidelity.mine.base: string \"hihg\" is not a fidelity, expected one of high, low, paper, mine");
+  EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.a]\nbase = \"b\"\n[fidelity.b]\nbase = \"a\"\n"),
+            "my.toml:5: fidelity.b.base: \"a\" is based on this fidelity in turn, expected another one");
+  EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.low]\nbase = \"high\"\n"),
+            "my.toml:3: fidelity.low.base: \"low\" is built in, expected a base only for a fidelity of your own");
 }
 
 TEST(MissionFileMessages, UnknownKeyNamesTheNearest) {
@@ -169,7 +201,8 @@ TEST(MissionFileMessages, AFidelityThatIsNoTable) {
 
 TEST(MissionFileMessages, AMistakeInAFidelityThatIsNotUsed) {
   EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.later.gnss]\nmask_degg = 5.0\n"),
-            "my.toml:3: gnss.mask_degg: unknown key, expected one of the documented keys; nearest is \"mask_deg\"");
+            "my.toml:3: fidelity.later.gnss.mask_degg: unknown key, expected one of the documented keys; nearest is "
+            "\"mask_deg\"");
 }
 
 TEST(MissionFileMessages, FidelitiesThatAreAskedFor) {
@@ -212,7 +245,7 @@ TEST(Prepare, TheShorterOfTheTwoLimitsHolds) {
   EXPECT_EQ(prepared("").time_limit_s, 1.5 * nominal_s);
   EXPECT_EQ(prepared("limit_s = 20").time_limit_s, 20.0);
   EXPECT_EQ(prepared("limit_s = 90000").time_limit_s, 1.5 * nominal_s);
-  EXPECT_EQ(prepared("limit_s = 90000\nlimit_factor = 2").time_limit_s, 2.0 * nominal_s);
+  EXPECT_EQ(prepared("limit_s = 90000\n[success]\nlimit_factor = 2").time_limit_s, 2.0 * nominal_s);
 }
 
 TEST(Prepare, FilesAreReadToTheEndAndTheirHashesKept) {
