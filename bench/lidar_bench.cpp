@@ -17,8 +17,10 @@
 #include "core/parallel.h"
 #include "core/units.h"
 #include "lidar/beam_table.h"
+#include "lidar/firing_pattern.h"
 #include "lidar/footprint_rays.h"
 #include "lidar/scanner.h"
+#include "lidar/sweep_motion.h"
 #include "scene/city.h"
 #include "scene/scene_at.h"
 
@@ -64,8 +66,8 @@ class BareEmbree {
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     alignas(64) int valid[kLanes];
     alignas(64) RTCRayHit16 query;
-    std::fill(valid, valid + kLanes, -1);
     for (std::size_t p = 0; p < rays.size(); ++p) {
+      for (std::size_t i = 0; i < kLanes; ++i) valid[i] = rays[p].max_m[i] >= 0.0f ? -1 : 0;
       std::memcpy(query.ray.org_x, rays[p].origin_x, sizeof query.ray.org_x);
       std::memcpy(query.ray.org_y, rays[p].origin_y, sizeof query.ray.org_y);
       std::memcpy(query.ray.org_z, rays[p].origin_z, sizeof query.ray.org_z);
@@ -219,19 +221,43 @@ canyon::Trajectory driving() {
   return motion;
 }
 
+/// The very rays of the driving sensor's revolution, ring by ring.
+std::vector<RayPacket> driving_rays(const canyon::lidar::LidarConfig& config, const canyon::Trajectory& motion) {
+  const canyon::lidar::FiringPattern pattern(table_of(config.beams.c_str()), config.rate_hz,
+                                             static_cast<std::size_t>(config.azimuth_steps));
+  const auto sweep = pattern.sweep(0);
+  const canyon::lidar::SweepMotion path(motion, kStart, -1.0 / config.rate_hz, 0.0, canyon::Pose{}, canyon::Pose{});
+  std::vector<RayPacket> packets;
+  for (std::size_t laser = 0; laser < pattern.lasers(); ++laser) {
+    std::size_t hint = 0;
+    for (std::size_t cycle = 0; cycle < sweep.cycles; cycle += kLanes) {
+      canyon::lidar::AimPacket aim;
+      canyon::lidar::PlacementPacket placements;
+      pattern.aim(sweep, laser, cycle, aim);
+      path.placements(
+          sweep.start_s + pattern.step_s() * static_cast<double>(cycle) + pattern.table().beams[laser].firing_s,
+          pattern.step_s(), hint, placements);
+      canyon::lidar::place_shots(aim, placements, 0.0f, static_cast<float>(config.max_range_m), packets.emplace_back());
+      for (std::size_t lane = sweep.cycles - cycle; lane < kLanes; ++lane) packets.back().max_m[lane] = -1.0f;
+    }
+  }
+  return packets;
+}
+
 void whole_scan(benchmark::State& state, const canyon::lidar::LidarConfig& config) {
   canyon::set_threads(1);
   const canyon::scene::SceneAt scene(city());
   const auto& table = table_of(config.beams.c_str());
-  const auto best = revolution(table, static_cast<std::size_t>(config.azimuth_steps), Order::kRing);
+  const canyon::Trajectory motion = driving();
+  const auto best = driving_rays(config, motion);
   std::vector<float> ranges(best.size() * kLanes);
   const auto scanner = *canyon::lidar::make_scanner(config, 1);
-  const canyon::Trajectory motion = driving();
   const double count = static_cast<double>(config.azimuth_steps) * static_cast<double>(table.beams.size());
   std::int64_t index = 0;
+  canyon::lidar::LidarOutput out;
   side_by_side(
-      state, count, [&] { benchmark::DoNotOptimize(scanner->scan(index++, kStart, motion, scene)); },
-      static_cast<double>(best.size() * kLanes), [&] { bare().trace(best, ranges); });
+      state, count, [&] { scanner->scan(index++, kStart, motion, scene, out); }, count,
+      [&] { bare().trace(best, ranges); });
 }
 
 canyon::lidar::LidarConfig at_origin() {
@@ -245,18 +271,19 @@ void single_ray_ranges(benchmark::State& state, const char* beams, int steps) {
   canyon::set_threads(1);
   const canyon::scene::SceneAt scene(city());
   const auto& table = table_of(beams);
-  const auto best = revolution(table, static_cast<std::size_t>(steps), Order::kRing);
-  std::vector<float> ranges(best.size() * kLanes);
   canyon::lidar::LidarConfig config = at_origin();
   config.beams = beams;
   config.azimuth_steps = steps;
-  const auto scanner = *canyon::lidar::make_scanner(config, 1);
   const canyon::Trajectory motion = driving();
+  const auto best = driving_rays(config, motion);
+  std::vector<float> ranges(best.size() * kLanes);
+  const auto scanner = *canyon::lidar::make_scanner(config, 1);
   std::int64_t index = 0;
+  std::vector<float> out;
+  const double count = steps * static_cast<double>(table.beams.size());
   side_by_side(
-      state, steps * static_cast<double>(table.beams.size()),
-      [&] { benchmark::DoNotOptimize(scanner->true_ranges(index++, kStart, motion, scene)); },
-      static_cast<double>(best.size() * kLanes), [&] { bare().trace(best, ranges); });
+      state, count, [&] { scanner->true_ranges(index++, kStart, motion, scene, out); }, count,
+      [&] { bare().trace(best, ranges); });
 }
 BENCHMARK_CAPTURE(single_ray_ranges, vlp16, "vlp16", 1800)->UseManualTime();
 BENCHMARK_CAPTURE(single_ray_ranges, os1_128, "os1_128", 1024)->UseManualTime();
@@ -272,7 +299,8 @@ void footprint_scan(benchmark::State& state) {
   const canyon::scene::SceneAt scene(city());
   canyon::lidar::LidarConfig config = at_origin();
   config.model = "footprint";
-  const auto middle = revolution(table_of("vlp16"), 1800, Order::kRing);
+  const canyon::Trajectory motion = driving();
+  const auto middle = driving_rays(config, motion);
   const auto offsets = canyon::lidar::footprint_offsets(0.75e-3, 0.375e-3);
   const float up[3] = {0, 0, 1};
   std::vector<RayPacket> best(middle.size() * kLanes);
@@ -280,11 +308,11 @@ void footprint_scan(benchmark::State& state) {
     canyon::lidar::spread_beam(middle[i / kLanes], i % kLanes, up, offsets, best[i]);
   std::vector<float> ranges(best.size() * kLanes);
   const auto scanner = *canyon::lidar::make_scanner(config, 1);
-  const canyon::Trajectory motion = driving();
-  const double count = static_cast<double>(best.size() * kLanes);
+  const double count = 1800.0 * 16.0 * kLanes;
   std::int64_t index = 0;
+  canyon::lidar::LidarOutput out;
   side_by_side(
-      state, count, [&] { benchmark::DoNotOptimize(scanner->scan(index++, kStart, motion, scene)); }, count,
+      state, count, [&] { scanner->scan(index++, kStart, motion, scene, out); }, count,
       [&] { bare().trace(best, ranges); });
 }
 BENCHMARK(footprint_scan)->UseManualTime();
@@ -297,11 +325,12 @@ void two_threads(benchmark::State& state) {
   config.azimuth_steps = 1024;
   const auto scanner = *canyon::lidar::make_scanner(config, 1);
   const canyon::Trajectory motion = driving();
+  canyon::lidar::LidarOutput out;
   const auto seconds = [&](int threads) {
     canyon::set_threads(threads);
     timespec a{}, b{};
     clock_gettime(CLOCK_MONOTONIC, &a);
-    benchmark::DoNotOptimize(scanner->scan(0, kStart, motion, scene));
+    scanner->scan(0, kStart, motion, scene, out);
     clock_gettime(CLOCK_MONOTONIC, &b);
     return static_cast<double>(b.tv_sec - a.tv_sec) + 1e-9 * static_cast<double>(b.tv_nsec - a.tv_nsec);
   };

@@ -1,5 +1,7 @@
 #include "lidar/aim.h"
 
+#include <cstring>
+
 #include "core/vector_clones.h"
 
 namespace canyon::lidar {
@@ -35,6 +37,25 @@ CANYON_VECTOR_CLONES void spread_placements(const double* from, const double* to
     float* __restrict row = k < 9 ? out.R[3 * (k % 3) + k / 3] : out.p[k - 9];
     for (std::size_t i = 0; i < kShots; ++i)
       row[i] = static_cast<float>(start + (share + static_cast<double>(static_cast<int>(i)) * share_step) * change);
+  }
+}
+
+CANYON_VECTOR_CLONES void spread_some_placements(const double* from, const double* to, const double* shares,
+                                                 const int* among, PlacementPacket& out) {
+  double share[kShots];
+  int taken[kShots];
+  std::memcpy(share, shares, sizeof share);
+  std::memcpy(taken, among, sizeof taken);
+  for (std::size_t k = 0; k < 12; ++k) {
+    const double start = from[k], change = to[k] - from[k];
+    float* row = k < 9 ? out.R[3 * (k % 3) + k / 3] : out.p[k - 9];
+    float values[kShots];
+    std::memcpy(values, row, sizeof values);
+    for (std::size_t i = 0; i < kShots; ++i) {
+      const auto value = static_cast<float>(start + share[i] * change);
+      values[i] = taken[i] != 0 ? value : values[i];
+    }
+    std::memcpy(row, values, sizeof values);
   }
 }
 

@@ -41,6 +41,10 @@ void aim_head(const HeadBeam& beam, const HeadAngles& head, AimPacket& out);
 /// Placements between two: R by columns and p, twelve numbers each, at the shares share + i * share_step of the way.
 void spread_placements(const double* from, const double* to, double share, double share_step, PlacementPacket& out);
 
+/// The same for the lanes of which `among` is not 0, each at its own share of the way; the others stay as they are.
+void spread_some_placements(const double* from, const double* to, const double* shares, const int* among,
+                            PlacementPacket& out);
+
 /// Rays in W of shots fired `late_s` after the times of the placements; their reach is max_m.
 void place_shots(const AimPacket& aim, const PlacementPacket& placements, float late_s, float max_m,
                  scene::RayPacket& out);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/random.h"
+#include "lidar/echoes.h"
 #include "lidar/lidar_config.h"
 #include "lidar/volley.h"
 
@@ -13,7 +14,7 @@ namespace canyon::lidar {
 class Crosstalk {
  public:
   Crosstalk(const LidarConfig& config, std::uint64_t seed) : config_(config), stream_(seed, "lidar.crosstalk") {}
-  void apply(const Volley& volley, EchoList& echoes) const;
+  void apply(const Volley& volley, Echoes& echoes) const;
 
  private:
   LidarConfig config_;

@@ -19,11 +19,11 @@ double signal_gain(const LidarConfig& config, double range_m) {
   return 10.0 * ratio * ratio;
 }
 
-void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::vector<double>& out) {
+void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::size_t layer, std::vector<double>& out) {
   out.resize(volley.shots());
   for (std::size_t laser = 0; laser < volley.lasers; ++laser) {
     stream.fill_normal(std::span(out).subspan(laser * Volley::kCycles, Volley::kCycles),
-                       static_cast<std::uint32_t>(laser), volley.first_draw);
+                       static_cast<std::uint32_t>(laser), volley.first_draw, static_cast<std::uint32_t>(layer));
   }
 }
 

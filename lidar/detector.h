@@ -3,16 +3,17 @@
 #include <memory>
 #include <vector>
 
+#include "lidar/echoes.h"
 #include "lidar/lidar_config.h"
 #include "lidar/volley.h"
 
 namespace canyon::lidar {
 
-/// What the receiver makes of the echoes: sets measured_m (0: missed) and intensity. Const and thread-safe.
+/// What the receiver makes of the echoes: sets measured_m and intensity. Const and thread-safe.
 class Detector {
  public:
   virtual ~Detector() = default;
-  virtual void detect(const Volley& volley, EchoList& echoes) const = 0;
+  virtual void detect(const Volley& volley, Echoes& echoes) const = 0;
 };
 
 /// One row per model: `[lidar] detector`.
@@ -31,7 +32,7 @@ std::unique_ptr<Detector> make_radiometric_detector(const LidarConfig& config, s
 /// which takes as much as nearness brings: the value there.
 double signal_gain(const LidarConfig& config, double range_m);
 
-/// Standard normal draws of each shot's first echo: stream of the laser, one per firing.
-void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::vector<double>& out);
+/// Standard normal draws of each shot's echo in a layer: entity = laser, index = firing cycle, n = layer.
+void fill_shot_normals(const RandomStream& stream, const Volley& volley, std::size_t layer, std::vector<double>& out);
 
 }  // namespace canyon::lidar

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lidar/echoes.h"
 #include "lidar/lidar_config.h"
 #include "lidar/surfaces.h"
 #include "lidar/volley.h"
@@ -17,7 +18,7 @@ class EchoModel {
   virtual ~EchoModel() = default;
   /// The echoes of all shots whose ray has max_m >= 0.
   virtual void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces,
-                     EchoList& out) const = 0;
+                     Echoes& out) const = 0;
   virtual std::size_t rays_per_shot() const = 0;
 };
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
 
 #include "core/units.h"
 #include "lidar/echo_model.h"
@@ -10,12 +12,6 @@ namespace canyon::lidar {
 namespace {
 
 constexpr std::size_t kSubRays = FootprintOffsets::kRays;
-
-/// One sub-ray's light.
-struct Glint {
-  float range_m, power, cos_incidence;  // power: reflectivity / range^2
-  std::uint32_t triangle;
-};
 
 /// A beam of Gaussian cross-section, sixteen sub-rays of equal energy. `divergence_mrad` is its full width at 1/e^2 of
 /// the middle's intensity, so four standard deviations.
@@ -29,71 +25,101 @@ class Footprint final : public EchoModel {
       : pulse_m_(static_cast<float>(config.pulse_m)),
         offsets_(footprint_offsets(1e-3 * config.divergence_mrad[0] / 4.0, 1e-3 * config.divergence_mrad[1] / 4.0)) {}
 
-  void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces,
-             EchoList& out) const override {
-    std::array<scene::RayPacket, Volley::kLanes> rays;
-    std::array<scene::HitPacket, Volley::kLanes> hits;
-    out.clear(volley.shots());
-    for (std::size_t p = 0; p < volley.packets(); ++p) {
-      const PlacementPacket& placements = volley.placements[p % Volley::kPacketsPerLaser];
-      for (std::size_t lane = 0; lane < Volley::kLanes; ++lane) {
+  void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
+    std::array<scene::RayPacket, Volley::kCycles> rays;
+    std::array<scene::HitPacket, Volley::kCycles> hits;
+    const std::span<EchoPacket> first = out.start(volley.packets());
+    for (std::size_t laser = 0; laser < volley.lasers; ++laser) {
+      for (std::size_t c = 0; c < Volley::kCycles; ++c) {
+        const std::size_t lane = c % Volley::kLanes;
+        const PlacementPacket& placements = volley.placements[c / Volley::kLanes];
         const float up[3] = {placements.R[2][lane], placements.R[5][lane], placements.R[8][lane]};
-        spread_beam(volley.rays[p], lane, up, offsets_, rays[lane]);
+        spread_beam(volley.rays[Volley::shot(laser, c) / Volley::kLanes], lane, up, offsets_, rays[c]);
       }
       scene.trace(rays, hits);
-      for (const scene::HitPacket& hit : hits) {
-        gather(hit, surfaces, out);
-        out.end_shot();
+      for (std::size_t c = 0; c < Volley::kCycles; ++c) {
+        const std::size_t shot = Volley::shot(laser, c);
+        EchoPacket& packet = first[shot / Volley::kLanes];
+        if (const auto whole = one_echo(hits[c], scene, surfaces)) {
+          packet.set(shot % Volley::kLanes, *whole);
+          continue;
+        }
+        std::array<Echo, kSubRays> glints;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < kSubRays; ++i)
+          if (hits[c].triangle[i] != scene::Hit::kMiss) glints[count++] = surfaces.echo(hits[c], i);
+        packet.set(shot % Volley::kLanes, {});
+        gather({glints.data(), count}, shot, out);
       }
     }
   }
   std::size_t rays_per_shot() const override { return kSubRays; }
 
  private:
-  void gather(const scene::HitPacket& hit, const Surfaces& surfaces, EchoList& out) const {
-    Glint glints[kSubRays];
-    std::size_t count = 0;
-    float nearest_m = 1e30f, farthest_m = 0.0f;
+  /// A sum of glints, each of a sixteenth of the beam's energy.
+  struct Sum {
+    float first_m = 0.0f, power = 0.0f, beyond = 0.0f, cosine = 0.0f, most = -1.0f;
+
+    /// True if this is the brightest so far.
+    bool add(float range_m, float reflectivity, float cos_incidence) {
+      const float p = reflectivity / std::max(range_m * range_m, 1e-6f);
+      power += p;
+      beyond += p * (range_m - first_m);
+      cosine += p * cos_incidence;
+      if (!(p > most)) return false;
+      most = p;
+      return true;
+    }
+    Echo echo(std::uint32_t object, std::uint16_t material) const {
+      if (!(power > 0.0f)) return {{first_m, 0.0f, material, object}, 0.0f};
+      const float range_m = first_m + beyond / power;
+      return {{range_m, cosine / power, material, object}, power * range_m * range_m / static_cast<float>(kSubRays)};
+    }
+  };
+
+  /// The most frequent case, quickly: all that the sub-rays met lies within a pulse's length (or they met nothing).
+  std::optional<Echo> one_echo(const scene::HitPacket& hit, const scene::SceneAt& scene,
+                               const Surfaces& surfaces) const {
+    constexpr float kNothing_m = std::numeric_limits<float>::infinity();
+    float nearest_m = kNothing_m, farthest_m = 0.0f;
     for (std::size_t i = 0; i < kSubRays; ++i) {
+      nearest_m = std::min(nearest_m, hit.range_m[i]);
+      farthest_m = std::max(farthest_m, hit.range_m[i] < kNothing_m ? hit.range_m[i] : 0.0f);
+    }
+    if (nearest_m == kNothing_m) return Echo{};
+    if (farthest_m - nearest_m > pulse_m_) return std::nullopt;
+    std::size_t first = 0;
+    while (hit.triangle[first] == scene::Hit::kMiss) ++first;
+    Sum sum{.first_m = hit.range_m[first]};
+    std::size_t brightest = first;
+    for (std::size_t i = first; i < kSubRays; ++i) {
       if (hit.triangle[i] == scene::Hit::kMiss) continue;
-      const float range_m = hit.range_m[i];
-      nearest_m = std::min(nearest_m, range_m);
-      farthest_m = std::max(farthest_m, range_m);
-      const float reflectivity = surfaces.reflectivity(hit.triangle[i], hit.cos_incidence[i]);
-      glints[count++] = {range_m, reflectivity / std::max(range_m * range_m, 1e-6f), hit.cos_incidence[i],
-                         hit.triangle[i]};
+      const float cosine = hit.cos_incidence[i];
+      if (sum.add(hit.range_m[i], surfaces.reflectivity(hit.triangle[i], cosine), cosine)) brightest = i;
     }
-    if (count == 0) return;
-    if (farthest_m - nearest_m <= pulse_m_) {
-      out.echoes.push_back(merged(glints, count));
-      return;
-    }
+    const auto surface = scene.surface(hit.triangle[brightest]);
+    return sum.echo(surface.object, surface.material);
+  }
+
+  /// Glints as the echoes of a shot.
+  void gather(std::span<Echo> glints, std::size_t shot, Echoes& out) const {
     // A stable order: equal ranges stay in the order of the sub-rays.
-    std::stable_sort(glints, glints + count, [](const Glint& a, const Glint& b) { return a.range_m < b.range_m; });
+    std::stable_sort(glints.begin(), glints.end(),
+                     [](const Echo& a, const Echo& b) { return a.truth.range_m < b.truth.range_m; });
     std::size_t begin = 0;
-    for (std::size_t i = 1; i <= count; ++i) {
-      if (i < count && glints[i].range_m - glints[i - 1].range_m <= pulse_m_) continue;
-      out.echoes.push_back(merged(glints + begin, i - begin));
+    for (std::size_t i = 1; i <= glints.size(); ++i) {
+      if (i < glints.size() && glints[i].truth.range_m - glints[i - 1].truth.range_m <= pulse_m_) continue;
+      out.insert(shot, merged(glints.subspan(begin, i - begin)));
       begin = i;
     }
   }
 
-  static Echo merged(const Glint* glints, std::size_t count) {
-    const float first_m = glints[0].range_m;
-    float power = 0.0f, beyond = 0.0f, cosine = 0.0f;
-    const Glint* brightest = glints;
-    for (std::size_t i = 0; i < count; ++i) {
-      power += glints[i].power;
-      beyond += glints[i].power * (glints[i].range_m - first_m);
-      cosine += glints[i].power * glints[i].cos_incidence;
-      if (glints[i].power > brightest->power) brightest = glints + i;
-    }
-    if (!(power > 0.0f)) return {.range_m = first_m, .triangle = brightest->triangle};
-    const float range_m = first_m + beyond / power;
-    return {.range_m = range_m,
-            .reflectivity = power * range_m * range_m / static_cast<float>(kSubRays),
-            .cos_incidence = cosine / power,
-            .triangle = brightest->triangle};
+  static Echo merged(std::span<const Echo> glints) {
+    Sum sum{.first_m = glints[0].truth.range_m};
+    const Echo* brightest = nullptr;
+    for (const Echo& g : glints)
+      if (sum.add(g.truth.range_m, g.reflectivity, g.truth.cos_incidence)) brightest = &g;
+    return sum.echo(brightest->truth.object, brightest->truth.material);
   }
 
   float pulse_m_;

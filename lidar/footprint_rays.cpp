@@ -31,7 +31,7 @@ FootprintOffsets footprint_offsets(double sigma_across_rad, double sigma_along_r
 }
 
 CANYON_VECTOR_CLONES void spread_beam(const scene::RayPacket& shots, std::size_t lane, const float* up,
-                                      const FootprintOffsets& offsets, scene::RayPacket& out) {
+                                      const FootprintOffsets& __restrict offsets, scene::RayPacket& __restrict rays) {
   const float dx = shots.direction_x[lane], dy = shots.direction_y[lane], dz = shots.direction_z[lane];
   // Across: up x direction; for a beam along the axis anything square to it.
   float ux = up[1] * dz - up[2] * dy, uy = up[2] * dx - up[0] * dz, uz = up[0] * dy - up[1] * dx;
@@ -46,7 +46,6 @@ CANYON_VECTOR_CLONES void spread_beam(const scene::RayPacket& shots, std::size_t
   const float vx = dy * uz - dz * uy, vy = dz * ux - dx * uz, vz = dx * uy - dy * ux;
   const float ox = shots.origin_x[lane], oy = shots.origin_y[lane], oz = shots.origin_z[lane];
   const float max_m = shots.max_m[lane];
-  scene::RayPacket rays;
   for (std::size_t i = 0; i < FootprintOffsets::kRays; ++i) {
     const float a = offsets.across[i], b = offsets.along[i], s = offsets.scale[i];
     rays.direction_x[i] = s * (dx + a * ux + b * vx);
@@ -55,7 +54,6 @@ CANYON_VECTOR_CLONES void spread_beam(const scene::RayPacket& shots, std::size_t
     rays.origin_x[i] = ox, rays.origin_y[i] = oy, rays.origin_z[i] = oz;
     rays.max_m[i] = max_m;
   }
-  out = rays;
 }
 
 }  // namespace canyon::lidar

@@ -1,9 +1,19 @@
-#include <algorithm>
-
+#include "core/vector_clones.h"
 #include "lidar/detector.h"
 
 namespace canyon::lidar {
 namespace {
+
+CANYON_VECTOR_CLONES void measure(double sigma_m, const double* normals, EchoPacket& echoes) {
+  float measured_m[EchoPacket::kShots], intensity[EchoPacket::kShots];
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) {
+    measured_m[i] = static_cast<float>(static_cast<double>(echoes.range_m[i]) + sigma_m * normals[i]);
+    const float share = echoes.reflectivity[i] > 0.0f ? echoes.reflectivity[i] : 0.0f;
+    intensity[i] = share < 1.0f ? share : 1.0f;
+  }
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) echoes.measured_m[i] = measured_m[i];
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) echoes.intensity[i] = intensity[i];
+}
 
 /// Noise: stream "lidar.range", entity = laser, index = firing cycle since the first scan, n = echo of the shot.
 /// Intensity is the apparent reflectivity, as a sensor calibrated for range reports it.
@@ -12,22 +22,13 @@ class IdealDetector final : public Detector {
   IdealDetector(const LidarConfig& config, std::uint64_t seed)
       : sigma_m_(config.range_noise_m), noise_(seed, "lidar.range") {}
 
-  void detect(const Volley& volley, EchoList& list) const override {
+  void detect(const Volley& volley, Echoes& echoes) const override {
     thread_local std::vector<double> normals;
-    if (sigma_m_ > 0) fill_shot_normals(noise_, volley, normals);
-    for (std::size_t shot = 0; shot < volley.shots(); ++shot) {
-      const std::uint32_t begin = list.first[shot], end = list.first[shot + 1];
-      for (std::uint32_t e = begin; e < end; ++e) {
-        Echo& echo = list.echoes[e];
-        double noise = 0;
-        if (sigma_m_ > 0) {
-          noise = e == begin ? normals[shot]
-                             : noise_.normal(static_cast<std::uint32_t>(Volley::laser_of(shot)), volley.draw_of(shot),
-                                             e - begin);
-        }
-        echo.measured_m = static_cast<float>(echo.range_m + sigma_m_ * noise);
-        echo.intensity = std::clamp(echo.reflectivity, 0.0f, 1.0f);
-      }
+    normals.assign(volley.shots(), 0.0);
+    for (std::size_t k = 0; k < echoes.layers(); ++k) {
+      if (sigma_m_ > 0) fill_shot_normals(noise_, volley, k, normals);
+      const std::span<EchoPacket> layer = echoes.layer(k);
+      for (std::size_t p = 0; p < layer.size(); ++p) measure(sigma_m_, normals.data() + p * Volley::kLanes, layer[p]);
     }
   }
 

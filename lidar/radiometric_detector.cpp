@@ -25,35 +25,34 @@ class RadiometricDetector final : public Detector {
   RadiometricDetector(const LidarConfig& config, std::uint64_t seed)
       : config_(config), range_noise_(seed, "lidar.range"), signal_noise_(seed, "lidar.signal") {}
 
-  void detect(const Volley& volley, EchoList& list) const override {
+  void detect(const Volley& volley, Echoes& echoes) const override {
     thread_local std::vector<double> range_normals, signal_normals;
-    fill_shot_normals(range_noise_, volley, range_normals);
-    fill_shot_normals(signal_noise_, volley, signal_normals);
-    for (std::size_t shot = 0; shot < volley.shots(); ++shot) {
-      const std::uint32_t begin = list.first[shot], end = list.first[shot + 1];
-      const auto laser = static_cast<std::uint32_t>(Volley::laser_of(shot));
-      for (std::uint32_t e = begin; e < end; ++e) {
-        const bool first = e == begin;
-        detect(list.echoes[e],
-               first ? signal_normals[shot] : signal_noise_.normal(laser, volley.draw_of(shot), e - begin),
-               first ? range_normals[shot] : range_noise_.normal(laser, volley.draw_of(shot), e - begin));
-      }
+    for (std::size_t k = 0; k < echoes.layers(); ++k) {
+      fill_shot_normals(range_noise_, volley, k, range_normals);
+      fill_shot_normals(signal_noise_, volley, k, signal_normals);
+      const double *range_normal = range_normals.data(), *signal_normal = signal_normals.data();
+      for (EchoPacket& packet : echoes.layer(k))
+        for (std::size_t lane = 0; lane < Volley::kLanes; ++lane)
+          detect(packet, lane, *signal_normal++, *range_normal++);
     }
   }
 
  private:
-  void detect(Echo& echo, double signal_normal, double range_normal) const {
-    const double gain = signal_gain(config_, echo.range_m);
-    const double signal = echo.reflectivity * gain;
+  void detect(EchoPacket& echoes, std::size_t lane, double signal_normal, double range_normal) const {
+    echoes.measured_m[lane] = 0;
+    echoes.intensity[lane] = 0;
+    const float range_m = echoes.range_m[lane];
+    if (range_m == Echo{}.truth.range_m) return;
+    const double gain = signal_gain(config_, range_m);
+    const double signal = echoes.reflectivity[lane] * gain;
     const double received = signal + signal_normal / config_.threshold_snr;
-    echo.measured_m = 0;
     if (!(received > 1.0)) return;
     const double edge_m = config_.pulse_m / (2.0 * config_.threshold_snr * std::max(signal, 1.0));
     const double sigma_m = std::sqrt(config_.range_noise_m * config_.range_noise_m + edge_m * edge_m);
-    double measured_m = echo.range_m + sigma_m * range_normal;
+    double measured_m = range_m + sigma_m * range_normal;
     if (signal > config_.saturation) measured_m -= config_.saturation_walk_m * std::log10(signal / config_.saturation);
-    echo.measured_m = static_cast<float>(measured_m);
-    echo.intensity = static_cast<float>(std::clamp(received / gain, 0.0, 1.0));
+    echoes.measured_m[lane] = static_cast<float>(measured_m);
+    echoes.intensity[lane] = static_cast<float>(std::clamp(received / gain, 0.0, 1.0));
   }
 
   LidarConfig config_;

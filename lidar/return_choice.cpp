@@ -5,12 +5,9 @@
 namespace canyon::lidar {
 namespace {
 
-float strength(const Echo& echo) {
-  return echo.reflectivity / std::max(echo.range_m * echo.range_m, 1e-6f);
-}
-
-const Echo** strongest(const Echo** begin, const Echo** end) {
-  return std::max_element(begin, end, [](const Echo* a, const Echo* b) { return strength(*a) < strength(*b); });
+const DetectedEcho* strongest(const DetectedEcho* begin, const DetectedEcho* end) {
+  return std::max_element(begin, end,
+                          [](const DetectedEcho& a, const DetectedEcho& b) { return a.strength < b.strength; });
 }
 
 }  // namespace
@@ -26,8 +23,9 @@ const std::vector<ReturnModeRow>& return_modes() {
   return kRows;
 }
 
-std::size_t choose_of_several(ReturnMode mode, const Echo** echoes, std::size_t count) {
-  const Echo** const end = echoes + count;
+std::size_t choose_returns(ReturnMode mode, DetectedEcho* echoes, std::size_t count) {
+  if (count <= 1 || mode == ReturnMode::kAll) return count;
+  const DetectedEcho* const end = echoes + count;
   switch (mode) {
     case ReturnMode::kFirst:
       return 1;
@@ -38,7 +36,7 @@ std::size_t choose_of_several(ReturnMode mode, const Echo** echoes, std::size_t 
       echoes[0] = *strongest(echoes, end);
       return 1;
     default: {
-      const Echo* const last = end[-1];
+      const DetectedEcho last = end[-1];
       // If the last is the strongest, the strongest of the others is the second.
       echoes[0] = *strongest(echoes, end - 1);
       echoes[1] = last;

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "lidar/volley.h"
-
 namespace canyon::lidar {
 
 /// Which of a shot's detected echoes the sensor reports: `[lidar] returns`.
@@ -19,14 +17,15 @@ struct ReturnModeRow {
 };
 const std::vector<ReturnModeRow>& return_modes();
 
-/// For two echoes or more.
-std::size_t choose_of_several(ReturnMode mode, const Echo** echoes, std::size_t count);
+/// A detected echo of a shot: its layer, and the energy received, reflectivity / range^2.
+struct DetectedEcho {
+  std::size_t layer = 0;
+  float strength = 0.0f;
+};
 
-/// Keeps the echoes of one shot that the mode reports, nearest first, and returns how many; `echoes` holds the detected
-/// ones, nearest first. Strength is the energy received, reflectivity / range^2; of equals the nearer counts.
-/// Dual: the last and the strongest; where these are one, the second strongest with it.
-inline std::size_t choose_returns(ReturnMode mode, const Echo** echoes, std::size_t count) {
-  return count <= 1 || mode == ReturnMode::kAll ? count : choose_of_several(mode, echoes, count);
-}
+/// Keeps those of a shot's detected echoes that the mode reports and returns how many. Both lists are nearest first; of
+/// equally strong ones the nearer counts. Dual: the last and the strongest; where these are one, the second strongest
+/// with it.
+std::size_t choose_returns(ReturnMode mode, DetectedEcho* echoes, std::size_t count);
 
 }  // namespace canyon::lidar

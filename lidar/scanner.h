@@ -9,13 +9,10 @@
 #include "core/trajectory.h"
 #include "core/truth.h"
 #include "lidar/lidar_config.h"
+#include "lidar/no_surface.h"
 #include "scene/scene_at.h"
 
 namespace canyon::lidar {
-
-/// Material and object of a return that no surface sent (a drop, another sensor's pulse), in LidarPointTruth.
-inline constexpr std::uint16_t kNoMaterial = 0xffff;
-inline constexpr std::uint32_t kNoObject = 0xffffffff;
 
 struct LidarOutput {
   LidarScan scan;
@@ -33,12 +30,24 @@ class Scanner {
  public:
   virtual ~Scanner() = default;
   /// `truth` must cover [t - latency - period, t - latency], lasers that run free one firing cycle more at the
-  /// beginning; poses of B in W. `index` numbers the revolution.
-  virtual LidarOutput scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene) = 0;
+  /// beginning; poses of B in W. `index` numbers the revolution. What was in `out` is replaced; its memory is used
+  /// again, which saves a tenth of the time.
+  virtual void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
+                    LidarOutput& out) = 0;
+  LidarOutput scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene) {
+    LidarOutput out;
+    scan(index, t, truth, scene, out);
+    return out;
+  }
   /// True distances along the middle of every beam, laser by laser in the order of firing; infinity where nothing is
   /// met within max_range_m. Neither noise nor any other model.
-  virtual std::vector<float> true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth,
-                                         const scene::SceneAt& scene) = 0;
+  virtual void true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
+                           std::vector<float>& out) = 0;
+  std::vector<float> true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene) {
+    std::vector<float> out;
+    true_ranges(index, t, truth, scene, out);
+    return out;
+  }
   virtual std::int64_t rays() const = 0;  ///< fired so far
 };
 

@@ -5,27 +5,17 @@ namespace {
 
 class SingleRay final : public EchoModel {
  public:
-  void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces,
-             EchoList& out) const override {
+  void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
     thread_local std::vector<scene::HitPacket> hits;
     hits.resize(volley.packets());
     scene.trace(volley.rays, hits);
-    out.echoes.resize(volley.shots());
-    out.first.resize(volley.shots() + 1);
-    std::uint32_t count = 0;
-    std::size_t shot = 0;
-    for (const scene::HitPacket& hit : hits) {
-      for (std::size_t lane = 0; lane < Volley::kLanes; ++lane) {
-        out.first[shot++] = count;
-        if (hit.triangle[lane] == scene::Hit::kMiss) continue;
-        out.echoes[count++] = {.range_m = hit.range_m[lane],
-                               .reflectivity = surfaces.reflectivity(hit.triangle[lane], hit.cos_incidence[lane]),
-                               .cos_incidence = hit.cos_incidence[lane],
-                               .triangle = hit.triangle[lane]};
-      }
+    const std::span<EchoPacket> echoes = out.start(volley.packets());
+    constexpr std::size_t kAhead = 2;  // packets
+    for (std::size_t p = 0; p < hits.size(); ++p) {
+      if (p + kAhead < hits.size())
+        for (const std::uint32_t triangle : hits[p + kAhead].triangle) scene.prefetch_surface(triangle);
+      for (std::size_t lane = 0; lane < Volley::kLanes; ++lane) echoes[p].set(lane, surfaces.echo(hits[p], lane));
     }
-    out.first[shot] = count;
-    out.echoes.resize(count);
   }
   std::size_t rays_per_shot() const override { return 1; }
 };

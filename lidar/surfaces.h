@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "lidar/echoes.h"
 #include "scene/scene_at.h"
 
 namespace canyon::lidar {
@@ -17,9 +18,20 @@ class Surfaces {
   Surfaces(const scene::SceneAt& scene, double wavelength_nm);
 
   float reflectivity(std::uint32_t triangle, float cos_incidence) const {
-    const Light& light = lights_[scene_->surface(triangle).material];
+    return of_material(scene_->surface(triangle).material, cos_incidence);
+  }
+  float of_material(std::uint16_t material, float cos_incidence) const {
+    const Light& light = lights_[material];
     const float diffuse = light.reflectance * cos_incidence;
     return light.plain ? diffuse : diffuse + special(light, cos_incidence);
+  }
+
+  /// What a ray met, as an echo; no echo where it met nothing.
+  Echo echo(const scene::HitPacket& hit, std::size_t lane) const {
+    if (hit.triangle[lane] == scene::Hit::kMiss) return {};
+    const scene::SceneAt::Surface met = scene_->surface(hit.triangle[lane]);
+    return {{hit.range_m[lane], hit.cos_incidence[lane], met.material, met.object},
+            of_material(met.material, hit.cos_incidence[lane])};
   }
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 
@@ -105,22 +106,37 @@ void SweepMotion::placements(double time_s, double step_s, std::size_t& hint, Pl
     for (int k = 0; k < 3; ++k) out.w_WL_L[k] = out.v_WL_W[k] = 0.0f;
     return;
   }
-  const double first = nodes_.front().time_s, last = nodes_.back().time_s;
-  const auto clamped = [&](std::size_t i) { return std::clamp(time_s + static_cast<double>(i) * step_s, first, last); };
+  constexpr std::size_t kShots = PlacementPacket::kShots;
+  const double first_s = nodes_.front().time_s, last_s = nodes_.back().time_s;
+  double times_s[kShots];
+  for (std::size_t i = 0; i < kShots; ++i)
+    times_s[i] = std::clamp(time_s + static_cast<double>(i) * step_s, first_s, last_s);
   static_assert(sizeof(Placement) == 12 * sizeof(double));
-  const std::size_t segment = before(clamped(0), hint);
-  if (time_s >= first && before(clamped(PlacementPacket::kShots - 1), hint) == segment && clamped(15) < last) {
+  std::size_t segment = before(times_s[0], hint);
+  const auto end_s = [&](std::size_t k) {  // of segment k; the last one holds its own end
+    return k + 2 < nodes_.size() ? nodes_[k + 1].time_s : std::numeric_limits<double>::infinity();
+  };
+  if (time_s >= first_s && times_s[kShots - 1] < end_s(segment) && times_s[kShots - 1] < last_s) {
     const Node &a = nodes_[segment], &b = nodes_[segment + 1];
     const double length_s = b.time_s - a.time_s;
     spread_placements(a.placement.R.data(), b.placement.R.data(), (time_s - a.time_s) / length_s, step_s / length_s,
                       out);
   } else {
-    for (std::size_t i = 0; i < PlacementPacket::kShots; ++i) {
-      const Placement placement = at(clamped(i), hint);
-      store(i, placement.R, placement.p);
+    // Segment by segment, each for the lanes that lie in it.
+    for (std::size_t lane = 0; lane < kShots; ++segment) {
+      const Node &a = nodes_[segment], &b = nodes_[segment + 1];
+      double shares[kShots] = {};
+      int among[kShots] = {};
+      bool any = false;
+      for (; lane < kShots && times_s[lane] < end_s(segment); ++lane) {
+        shares[lane] = (times_s[lane] - a.time_s) / (b.time_s - a.time_s);
+        among[lane] = 1;
+        any = true;
+      }
+      if (any) spread_some_placements(a.placement.R.data(), b.placement.R.data(), shares, among, out);
     }
   }
-  const Node& a = nodes_[before(clamped(PlacementPacket::kShots / 2), hint)];
+  const Node& a = nodes_[before(times_s[kShots / 2], hint)];
   const Node& b = nodes_[hint + 1];
   const double length_s = b.time_s - a.time_s;
   const Eigen::Matrix3d W =

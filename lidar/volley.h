@@ -48,28 +48,4 @@ struct Volley {
   }
 };
 
-/// Light that came back from one distance of one shot.
-struct Echo {
-  float range_m = 0;       ///< true
-  float reflectivity = 0;  ///< apparent: what a Lambertian surface square to the beam would need to give as much
-  float cos_incidence = 0;
-  std::uint32_t triangle = 0xffffffffu;  ///< scene::Hit::kMiss: of no surface (a droplet, another sensor's pulse)
-  float measured_m = 0;                  ///< the detector's; 0: not detected
-  float intensity = 0;                   ///< the detector's
-};
-
-/// The echoes of all shots of a volley, nearest first in each shot.
-struct EchoList {
-  std::vector<Echo> echoes;
-  std::vector<std::uint32_t> first;  ///< of each shot, and one more: the end
-
-  void clear(std::size_t shots) {
-    echoes.clear();
-    first.clear();
-    first.reserve(shots + 1);
-    first.push_back(0);
-  }
-  void end_shot() { first.push_back(static_cast<std::uint32_t>(echoes.size())); }
-};
-
 }  // namespace canyon::lidar

@@ -1,9 +1,9 @@
 #include "lidar/volley_scanner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <mutex>
+#include <span>
 
 #include "core/check.h"
 #include "core/parallel.h"
@@ -11,17 +11,12 @@
 #include "lidar/crosstalk.h"
 #include "lidar/ego_mask.h"
 #include "lidar/firing_pattern.h"
+#include "lidar/sensor_report.h"
 #include "lidar/sweep_motion.h"
 #include "lidar/weather.h"
 
 namespace canyon::lidar {
 namespace {
-
-/// Nearest whole number, halves to even, for |x| < 2^51: what nearbyint gives, without a call.
-double rounded(double x) {
-  constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52
-  return (x + kShift) - kShift;
-}
 
 class VolleyScanner final : public Scanner {
  public:
@@ -33,41 +28,75 @@ class VolleyScanner final : public Scanner {
         pattern_(std::move(table), config.rate_hz, static_cast<std::size_t>(config.azimuth_steps)),
         model_(std::move(model)),
         detector_(std::move(detector)),
-        returns_(returns),
         weather_(config, seed),
         crosstalk_(config, seed),
+        report_(config, returns, pattern_, seed),
         ego_(config.ego_min_m, config.ego_max_m, X_BL_),
-        angle_noise_(seed, "lidar.angle") {
-    const RandomStream bias(seed, "lidar.range_bias");
-    for (std::uint32_t laser = 0; laser < pattern_.lasers(); ++laser)
-      bias_m_.push_back(config.range_bias_m * bias.normal(laser, 0));
-  }
+        angle_noise_(seed, "lidar.angle") {}
 
-  LidarOutput scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene) override {
+  using Scanner::scan;
+  using Scanner::true_ranges;
+
+  void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
+            LidarOutput& out) override {
     CANYON_CHECK(index >= 0, "index = ", index);
-    LidarOutput out;
     out.scan.t = t;
     out.scan.period_s = period_s_;
-    if (config_.blinded) return out;
+    if (config_.blinded) {
+      out.scan.points.clear();
+      out.truth.clear();
+      return;
+    }
     const FiringPattern::Sweep sweep = pattern_.sweep(index);
     const SweepMotion motion = motion_of(t, truth, sweep);
     const Surfaces surfaces(scene, config_.wavelength_nm);
     const std::size_t volleys = volleys_of(sweep);
-    if (pieces_.size() < volleys) pieces_.resize(volleys);
-    // Each volley has a place of its own, so the result does not depend on the number of threads.
-    parallel_for(volleys, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) run_chain(sweep, v, motion, scene, surfaces, pieces_[v]);
+    const std::size_t most = sweep.cycles * pattern_.lasers() * report_.most_returns();
+    out.scan.points.resize(most);
+    out.truth.resize(most);
+    const auto write = [&](const VolleyReturns& returns, std::size_t first, std::size_t count) {
+      report_.write(returns, std::span(out.scan.points).subspan(first, count),
+                    std::span(out.truth).subspan(first, count));
+    };
+    // Where a volley's returns go in the output is known once those before it are counted. A volley that comes in its
+    // turn is written at once, while its returns are still in the cache; one that a second thread computes ahead waits
+    // in a place of its own. So the result does not depend on the number of threads.
+    if (returns_.size() < volleys) returns_.resize(volleys);
+    std::vector<std::size_t> count(volleys);
+    std::size_t turn = 0, written = 0;
+    std::mutex mutex;
+    parallel_for(volleys, 1, [&](std::size_t v, std::size_t) {
+      thread_local VolleyReturns returns;
+      run_chain(sweep, v, motion, scene, surfaces, returns);
+      count[v] = returns.total();
+      std::size_t first = 0;
+      {
+        const std::lock_guard lock(mutex);
+        if (turn == v && most > 0) {
+          first = written;
+          written += count[v];
+          ++turn;
+        } else {
+          std::swap(returns, returns_[v]);
+          return;
+        }
+      }
+      write(returns, first, count[v]);
     });
-    collect(volleys, out);
+    std::vector<std::size_t> first(volleys + 1, written);
+    for (std::size_t v = turn; v < volleys; ++v) first[v + 1] = first[v] + count[v];
+    out.scan.points.resize(first[volleys]);
+    out.truth.resize(first[volleys]);
+    parallel_for(volleys - turn, 1,
+                 [&](std::size_t k, std::size_t) { write(returns_[turn + k], first[turn + k], count[turn + k]); });
     rays_ += static_cast<std::int64_t>(sweep.cycles * pattern_.lasers() * model_->rays_per_shot());
-    return out;
   }
 
-  std::vector<float> true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth,
-                                 const scene::SceneAt& scene) override {
+  void true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
+                   std::vector<float>& out) override {
     const FiringPattern::Sweep sweep = pattern_.sweep(index);
     const SweepMotion motion = motion_of(t, truth, sweep);
-    std::vector<float> out(pattern_.lasers() * sweep.cycles);
+    out.resize(pattern_.lasers() * sweep.cycles);
     parallel_for(volleys_of(sweep), 1, [&](std::size_t begin, std::size_t end) {
       thread_local Volley volley;
       thread_local std::vector<scene::HitPacket> hits;
@@ -79,34 +108,20 @@ class VolleyScanner final : public Scanner {
           float* ring = out.data() + laser * sweep.cycles + volley.first_cycle;
           for (std::size_t c = 0; c < volley.cycles; c += Volley::kLanes) {
             const float* range_m = hits[Volley::shot(laser, c) / Volley::kLanes].range_m;
-            std::copy_n(range_m, std::min(Volley::kLanes, volley.cycles - c), ring + c);
+            if (c + Volley::kLanes <= volley.cycles)  // a copy of known size takes no call
+              std::copy_n(range_m, Volley::kLanes, ring + c);
+            else
+              std::copy_n(range_m, volley.cycles - c, ring + c);
           }
         }
       }
     });
     rays_ += static_cast<std::int64_t>(out.size());
-    return out;
   }
 
   std::int64_t rays() const override { return rays_; }
 
  private:
-  /// The points of one volley: the first `count` of vectors that only grow.
-  struct Piece {
-    std::vector<LidarPoint> points;
-    std::vector<LidarPointTruth> truth;
-    std::size_t count = 0;
-
-    void add(const LidarPoint& point, const LidarPointTruth& fact) {
-      if (count == points.size()) {
-        points.resize(2 * count + 256);
-        truth.resize(points.size());
-      }
-      points[count] = point;
-      truth[count++] = fact;
-    }
-  };
-
   static std::size_t volleys_of(const FiringPattern::Sweep& sweep) {
     return (sweep.cycles + Volley::kCycles - 1) / Volley::kCycles;
   }
@@ -189,81 +204,17 @@ class VolleyScanner final : public Scanner {
   }
 
   void run_chain(const FiringPattern::Sweep& sweep, std::size_t v, const SweepMotion& motion,
-                 const scene::SceneAt& scene, const Surfaces& surfaces, Piece& out) const {
+                 const scene::SceneAt& scene, const Surfaces& surfaces, VolleyReturns& out) const {
     thread_local Volley volley;
-    thread_local EchoList echoes;
+    thread_local Echoes echoes;
     // Noise may bring a surface just beyond the limit into view.
     fire(sweep, v, motion, config_.max_range_m + 8.0 * config_.range_noise_m, volley);
     model_->trace(volley, scene, surfaces, echoes);
     weather_.apply(volley, echoes);
     crosstalk_.apply(volley, echoes);
     detector_->detect(volley, echoes);
-    report(volley, scene, echoes, out);
+    report_.choose(volley, echoes, out);
   }
-
-  /// Chosen returns as points, in the order of firing.
-  void report(const Volley& volley, const scene::SceneAt& scene, const EchoList& list, Piece& out) const {
-    out.count = 0;
-    for (std::size_t c = 0; c < volley.cycles; ++c) {
-      const double cycle_s = volley.first_s + static_cast<double>(c) * volley.step_s;
-      for (const std::size_t laser : pattern_.firing_order()) {
-        const std::size_t shot = Volley::shot(laser, c);
-        const std::uint32_t begin = list.first[shot], end = list.first[shot + 1];
-        if (begin == end) continue;
-        std::array<const Echo*, kMostEchoes> chosen;
-        std::size_t count = 0;
-        for (std::uint32_t e = begin; e < end && count < kMostEchoes; ++e) {
-          if (reported(list.echoes[e], laser) > 0) chosen[count++] = &list.echoes[e];
-        }
-        count = choose_returns(returns_, chosen.data(), count);
-        if (count == 0) continue;
-        const double time_s = std::min(0.0, cycle_s + pattern_.table().beams[laser].firing_s);
-        const AimPacket& aim = volley.aims[shot / Volley::kLanes];
-        const std::size_t lane = shot % Volley::kLanes;
-        for (std::size_t k = 0; k < count; ++k) {
-          const Echo& echo = *chosen[k];
-          const float range_m = reported(echo, laser);
-          scene::SceneAt::Surface surface{.material = kNoMaterial, .object = kNoObject};
-          if (echo.triangle != scene::Hit::kMiss) surface = scene.surface(echo.triangle);
-          out.add({.x = aim.origin_x[lane] + range_m * aim.direction_x[lane],
-                   .y = aim.origin_y[lane] + range_m * aim.direction_y[lane],
-                   .z = aim.origin_z[lane] + range_m * aim.direction_z[lane],
-                   .intensity = echo.intensity,
-                   .time_s = static_cast<float>(time_s),
-                   .ring = static_cast<std::uint16_t>(laser),
-                   .return_index = static_cast<std::uint8_t>(k)},
-                  {.range_m = echo.range_m,
-                   .cos_incidence = echo.cos_incidence,
-                   .material = surface.material,
-                   .object = surface.object});
-        }
-      }
-    }
-  }
-
-  /// With bias, in whole quanta; 0 outside the limits or where nothing was detected.
-  float reported(const Echo& echo, std::size_t laser) const {
-    if (!(echo.measured_m > 0)) return 0;
-    double range_m = echo.measured_m + bias_m_[laser];
-    if (config_.range_quantum_m > 0) range_m = rounded(range_m / config_.range_quantum_m) * config_.range_quantum_m;
-    const bool within = range_m >= config_.min_range_m && range_m <= config_.max_range_m && range_m > 0;
-    return within ? static_cast<float>(range_m) : 0;
-  }
-
-  void collect(std::size_t volleys, LidarOutput& out) const {
-    std::size_t total = 0;
-    for (std::size_t v = 0; v < volleys; ++v) total += pieces_[v].count;
-    out.scan.points.reserve(total);
-    out.truth.reserve(total);
-    for (std::size_t v = 0; v < volleys; ++v) {
-      const Piece& piece = pieces_[v];
-      const auto count = static_cast<std::ptrdiff_t>(piece.count);
-      out.scan.points.insert(out.scan.points.end(), piece.points.begin(), piece.points.begin() + count);
-      out.truth.insert(out.truth.end(), piece.truth.begin(), piece.truth.begin() + count);
-    }
-  }
-
-  static constexpr std::size_t kMostEchoes = 32;
 
   LidarConfig config_;
   double period_s_;
@@ -271,13 +222,12 @@ class VolleyScanner final : public Scanner {
   FiringPattern pattern_;
   std::unique_ptr<EchoModel> model_;
   std::unique_ptr<Detector> detector_;
-  ReturnMode returns_;
   Weather weather_;
   Crosstalk crosstalk_;
+  SensorReport report_;
   EgoMask ego_;
   RandomStream angle_noise_;
-  std::vector<double> bias_m_;  // by laser
-  std::vector<Piece> pieces_;   // by volley; kept from scan to scan
+  std::vector<VolleyReturns> returns_;  // by volley; kept from scan to scan
   std::int64_t rays_ = 0;
 };
 

@@ -115,38 +115,33 @@ double Weather::false_return_probability(double range_m) const {
 
 Echo Weather::false_return(std::uint32_t laser, std::uint64_t draw, double surface_m) const {
   const double u = stream_.uniform(laser, draw, 0);
-  if (answered_.empty() || u >= answered_.back()) return {};
+  if (u >= answered_.back()) return {};
   const auto cell = std::upper_bound(answered_.begin(), answered_.end(), u) - answered_.begin();
   const double range_m =
       config_.min_range_m + config_.pulse_m * (static_cast<double>(cell) + stream_.uniform(laser, draw, 1));
   if (range_m >= surface_m) return {};
   const double signal = 1.0 - mean_signal(range_m) * std::log(1.0 - stream_.uniform(laser, draw, 2));
-  return {.range_m = static_cast<float>(range_m),
-          .reflectivity = static_cast<float>(signal / signal_gain(config_, range_m)),
-          .cos_incidence = 1.0f};
+  return {{static_cast<float>(range_m), 1.0f, kNoMaterial, kNoObject},
+          static_cast<float>(signal / signal_gain(config_, range_m))};
 }
 
-void Weather::apply(const Volley& volley, EchoList& list) const {
+void Weather::apply(const Volley& volley, Echoes& echoes) const {
   if (clear()) return;
-  thread_local EchoList out;
-  out.clear(volley.shots());
-  for (std::size_t shot = 0; shot < volley.shots(); ++shot) {
-    const std::uint32_t begin = list.first[shot], end = list.first[shot + 1];
-    const scene::RayPacket& rays = volley.rays[shot / Volley::kLanes];
-    const float reach_m = rays.max_m[shot % Volley::kLanes];
-    if (reach_m > 0 && !answered_.empty()) {
-      const Echo first = false_return(static_cast<std::uint32_t>(Volley::laser_of(shot)), volley.draw_of(shot),
-                                      begin < end ? list.echoes[begin].range_m : reach_m);
-      if (first.range_m > 0) out.echoes.push_back(first);
+  for (std::size_t k = 0; k < echoes.layers(); ++k) {
+    for (EchoPacket& packet : echoes.layer(k)) {
+      for (std::size_t i = 0; i < EchoPacket::kShots; ++i)
+        packet.reflectivity[i] *= static_cast<float>(std::exp(-2.0 * extinction_1_m_ * packet.range_m[i]));
     }
-    for (std::uint32_t e = begin; e < end; ++e) {
-      Echo echo = list.echoes[e];
-      echo.reflectivity *= static_cast<float>(std::exp(-2.0 * extinction_1_m_ * echo.range_m));
-      out.echoes.push_back(echo);
-    }
-    out.end_shot();
   }
-  std::swap(list, out);
+  if (answered_.empty()) return;
+  for (std::size_t shot = 0; shot < volley.shots(); ++shot) {
+    const std::size_t packet = shot / Volley::kLanes, lane = shot % Volley::kLanes;
+    const float reach_m = volley.rays[packet].max_m[lane];
+    if (!(reach_m > 0)) continue;
+    const float surface_m = std::min(reach_m, echoes.layer(0)[packet].range_m[lane]);
+    echoes.insert(shot,
+                  false_return(static_cast<std::uint32_t>(Volley::laser_of(shot)), volley.draw_of(shot), surface_m));
+  }
 }
 
 }  // namespace canyon::lidar

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "lidar/echoes.h"
 #include "lidar/lidar_config.h"
 #include "lidar/volley.h"
 
@@ -43,10 +44,10 @@ class Weather {
   /// Probability that the air answers before range_m, if no surface is nearer.
   double false_return_probability(double range_m) const;
 
-  void apply(const Volley& volley, EchoList& echoes) const;
+  void apply(const Volley& volley, Echoes& echoes) const;
 
  private:
-  /// A false return of the shot nearer than `surface_m`, or range 0.
+  /// A false return of the shot nearer than `surface_m`, or none.
   Echo false_return(std::uint32_t laser, std::uint64_t draw, double surface_m) const;
   double mean_signal(double range_m) const;
 

@@ -32,23 +32,17 @@ class Query {
   }
 
   const RTCRayHit16& trace(RTCScene scene, const RayPacket& rays) {
-    const int traced = lanes_to_trace(rays, valid_);
+    RTCRay16& r = packet_.ray;
+    const int traced = load_lanes(rays, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar, valid_});
     CANYON_CHECK(traced >= 0, "a packet holds a ray that is not finite");
     traced_ += traced;
-    constexpr std::size_t kBytes = kPacket * sizeof(float);
-    std::memcpy(packet_.ray.org_x, rays.origin_x, kBytes);
-    std::memcpy(packet_.ray.org_y, rays.origin_y, kBytes);
-    std::memcpy(packet_.ray.org_z, rays.origin_z, kBytes);
-    std::memcpy(packet_.ray.dir_x, rays.direction_x, kBytes);
-    std::memcpy(packet_.ray.dir_y, rays.direction_y, kBytes);
-    std::memcpy(packet_.ray.dir_z, rays.direction_z, kBytes);
-    std::memcpy(packet_.ray.tfar, rays.max_m, kBytes);
     std::fill_n(packet_.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
     std::fill_n(packet_.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
     rtcIntersect16(valid_, scene, &context_, &packet_);
     return packet_;
   }
 
+  const RTCRayHit16& found() const { return packet_; }
   std::int64_t traced() const { return traced_; }
 
  private:
@@ -103,6 +97,8 @@ struct Tracer::Embree {
     std::array<std::uint32_t, 3> first{};
     std::vector<Plane> planes;
     std::vector<std::uint32_t> triangles;  ///< index in the mesh
+    /// The last one stands for what met nothing: a plane of zeros and Hit::kMiss.
+    std::uint32_t nothing() const { return static_cast<std::uint32_t>(planes.size() - 1); }
   };
   const Surfaces& surfaces() const {
     std::call_once(surfaces_once, [this] {
@@ -110,8 +106,10 @@ struct Tracer::Embree {
         made_surfaces.first[id] = static_cast<std::uint32_t>(made_surfaces.triangles.size());
         made_surfaces.triangles.insert(made_surfaces.triangles.end(), members[id].begin(), members[id].end());
       }
-      made_surfaces.planes.reserve(made_surfaces.triangles.size());
+      made_surfaces.planes.reserve(made_surfaces.triangles.size() + 1);
       for (const std::uint32_t index : made_surfaces.triangles) made_surfaces.planes.push_back(plane(index));
+      made_surfaces.planes.emplace_back();
+      made_surfaces.triangles.push_back(Hit::kMiss);
     });
     return made_surfaces;
   }
@@ -132,7 +130,7 @@ struct Tracer::Embree {
 class Tracer::Embree::LanePlanes {
  public:
   explicit LanePlanes(const Surfaces& surfaces) : surfaces_(surfaces) {
-    held_.fill(Hit::kMiss);
+    held_.fill(surfaces.nothing());
     triangles_.fill(Hit::kMiss);
   }
 
@@ -140,29 +138,16 @@ class Tracer::Embree::LanePlanes {
   void hold(std::uint32_t* index) {
     std::uint32_t changed = 0;
     for (std::size_t lane = 0; lane < kPacket; ++lane) changed |= held_[lane] ^ index[lane];
-    if (changed != 0) renew(index);
-    std::copy(triangles_.begin(), triangles_.end(), index);
+    if (changed != 0) {
+      std::memcpy(held_.data(), index, sizeof held_);
+      gather_planes(surfaces_.planes.data(), surfaces_.triangles.data(), index, packet_, triangles_.data());
+    }
+    std::memcpy(index, triangles_.data(), sizeof triangles_);
   }
 
   const PlanePacket& packet() const { return packet_; }
 
  private:
-  void renew(const std::uint32_t* index) {
-    Plane plane;
-    std::uint32_t latest = Hit::kMiss, triangle = Hit::kMiss;
-    for (std::size_t lane = 0; lane < kPacket; ++lane) {
-      if (index[lane] != latest) {
-        latest = index[lane];
-        const bool met = latest != Hit::kMiss;
-        plane = met ? surfaces_.planes[latest] : Plane{};
-        triangle = met ? surfaces_.triangles[latest] : Hit::kMiss;
-      }
-      held_[lane] = latest;
-      triangles_[lane] = triangle;
-      packet_.set(lane, plane);
-    }
-  }
-
   const Surfaces& surfaces_;
   PlanePacket packet_{};
   std::array<std::uint32_t, kPacket> held_, triangles_;
@@ -228,28 +213,26 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
 
 std::int64_t Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
   CANYON_CHECK(rays.size() == hits.size(), "packets of rays = ", rays.size(), ", of hits = ", hits.size());
-  // Three steps, each a packet behind the one before, so that nothing waits: a packet is traced and what it met is
-  // called into the cache; its planes are laid out by lane; ranges are computed from them.
-  Query query;
+  // Steps, each a packet behind the one before, so that nothing waits: a packet is traced; what it met is called into
+  // the cache; its planes are laid out by lane; ranges are computed from them.
+  std::array<Query, 2> queries;
   const Embree::Surfaces& surfaces = embree_->surfaces();
   std::array<Embree::LanePlanes, 2> lanes{Embree::LanePlanes(surfaces), Embree::LanePlanes(surfaces)};
-  for (std::size_t p = 0; p < rays.size() + 2; ++p) {
-    if (p < rays.size()) {
-      const RTCRayHit16& found = query.trace(embree_->scene, rays[p]);
-      for (std::size_t lane = 0; lane < kPacket; ++lane) {
-        const unsigned geometry = found.hit.geomID[lane];
-        const bool met = geometry != RTC_INVALID_GEOMETRY_ID;
-        const std::uint32_t index = met ? surfaces.first[geometry] + found.hit.primID[lane] : 0;
-        __builtin_prefetch(surfaces.planes.data() + index);
-        __builtin_prefetch(surfaces.triangles.data() + index);
-        hits[p].triangle[lane] = met ? index : Hit::kMiss;
-        hits[p].range_m[lane] = met ? found.ray.tfar[lane] : std::numeric_limits<float>::infinity();
+  for (std::size_t p = 0; p < rays.size() + 3; ++p) {
+    if (p < rays.size()) queries[p % 2].trace(embree_->scene, rays[p]);
+    if (p >= 1 && p <= rays.size()) {
+      const RTCRayHit16& found = queries[(p - 1) % 2].found();
+      HitPacket& hit = hits[p - 1];
+      count_through({found.hit.geomID, found.hit.primID, found.ray.tfar}, surfaces.first, surfaces.nothing(), hit);
+      for (const std::uint32_t index : hit.triangle) {
+        __builtin_prefetch(surfaces.planes.data() + index, 0, 0);
+        __builtin_prefetch(surfaces.triangles.data() + index, 0, 0);
       }
     }
-    if (p >= 1 && p <= rays.size()) lanes[(p - 1) % 2].hold(hits[p - 1].triangle);
-    if (p >= 2) plane_ranges(rays[p - 2], lanes[p % 2].packet(), hits[p - 2]);
+    if (p >= 2 && p <= rays.size() + 1) lanes[p % 2].hold(hits[p - 2].triangle);
+    if (p >= 3) plane_ranges(rays[p - 3], lanes[(p - 1) % 2].packet(), hits[p - 3]);
   }
-  return query.traced();
+  return queries[0].traced() + queries[1].traced();
 }
 
 bool Tracer::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m,

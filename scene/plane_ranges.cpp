@@ -1,5 +1,8 @@
 #include "scene/plane_ranges.h"
 
+#include <cstring>
+#include <limits>
+
 #include "core/vector_clones.h"
 
 namespace canyon::scene {
@@ -14,8 +17,8 @@ CANYON_VECTOR_CLONES void plane_ranges(const RayPacket& rays, const PlanePacket&
   float range_m[kRays], cosine[kRays];
   for (std::size_t i = 0; i < kRays; ++i) {
     const PlaneRange found =
-        plane_range({planes.x[i], planes.y[i], planes.z[i], planes.offset[i]}, rays.origin_x[i], rays.origin_y[i],
-                    rays.origin_z[i], rays.direction_x[i], rays.direction_y[i], rays.direction_z[i], hits.range_m[i]);
+        plane_range(planes.lanes[i], rays.origin_x[i], rays.origin_y[i], rays.origin_z[i], rays.direction_x[i],
+                    rays.direction_y[i], rays.direction_z[i], hits.range_m[i]);
     const double towards = found.approach < 0.0 ? -found.approach : found.approach;
     range_m[i] = found.range_m;
     cosine[i] = static_cast<float>(towards < 1.0 ? towards : 1.0);
@@ -24,8 +27,35 @@ CANYON_VECTOR_CLONES void plane_ranges(const RayPacket& rays, const PlanePacket&
   for (std::size_t i = 0; i < kRays; ++i) hits.cos_incidence[i] = cosine[i];
 }
 
-CANYON_VECTOR_CLONES int lanes_to_trace(const RayPacket& rays, int* valid) {
+CANYON_VECTOR_CLONES void count_through(const TracedPacket& traced, const std::array<std::uint32_t, 3>& first,
+                                        std::uint32_t nothing, HitPacket& hits) {
+  const std::uint32_t first0 = first[0], first1 = first[1], first2 = first[2];
+  std::uint32_t index[kRays];
+  float range_m[kRays];
+  for (std::size_t i = 0; i < kRays; ++i) {
+    // Everything is read, met or not: what is read on a condition is not vectorised.
+    const std::uint32_t geometry = traced.geometry[i], primitive = traced.primitive[i];
+    const float far_m = traced.far_m[i];
+    const std::uint32_t start = geometry == 0 ? first0 : geometry == 1 ? first1 : first2;
+    index[i] = geometry <= 2 ? start + primitive : nothing;
+    range_m[i] = geometry <= 2 ? far_m : std::numeric_limits<float>::infinity();
+  }
+  for (std::size_t i = 0; i < kRays; ++i) hits.triangle[i] = index[i];
+  for (std::size_t i = 0; i < kRays; ++i) hits.range_m[i] = range_m[i];
+}
+
+CANYON_VECTOR_CLONES void gather_planes(const Plane* planes, const std::uint32_t* numbers, const std::uint32_t* index,
+                                        PlanePacket& out, std::uint32_t* out_numbers) {
+  for (std::size_t i = 0; i < kRays; ++i) {
+    out.lanes[i] = planes[index[i]];
+    out_numbers[i] = numbers[index[i]];
+  }
+}
+
+CANYON_VECTOR_CLONES int load_lanes(const RayPacket& rays, const TracerLanes& lanes) {
+  const auto copy = [](const float* from, float* to) { std::memcpy(to, from, kRays * sizeof(float)); };
   int count = 0, not_finite = 0;
+  int valid[kRays];
   for (std::size_t i = 0; i < kRays; ++i) {
     const float ox = rays.origin_x[i], oy = rays.origin_y[i], oz = rays.origin_z[i];
     const float dx = rays.direction_x[i], dy = rays.direction_y[i], dz = rays.direction_z[i];
@@ -36,6 +66,10 @@ CANYON_VECTOR_CLONES int lanes_to_trace(const RayPacket& rays, int* valid) {
     valid[i] = -traced;
     count += traced;
   }
+  std::memcpy(lanes.valid, valid, sizeof valid);
+  copy(rays.origin_x, lanes.origin_x), copy(rays.origin_y, lanes.origin_y), copy(rays.origin_z, lanes.origin_z);
+  copy(rays.direction_x, lanes.direction_x), copy(rays.direction_y, lanes.direction_y);
+  copy(rays.direction_z, lanes.direction_z), copy(rays.max_m, lanes.max_m);
   return not_finite == 0 ? count : -1;
 }
 

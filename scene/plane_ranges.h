@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "scene/ray_packet.h"
 
 namespace canyon::scene {
@@ -9,12 +11,9 @@ struct Plane {
   double x = 0.0, y = 0.0, z = 0.0, offset = 0.0;
 };
 
-/// Planes of the sixteen rays of a packet, as plain arrays.
+/// Planes of the sixteen rays of a packet.
 struct alignas(64) PlanePacket {
-  double x[RayPacket::kRays], y[RayPacket::kRays], z[RayPacket::kRays], offset[RayPacket::kRays];
-  void set(std::size_t lane, const Plane& plane) {
-    x[lane] = plane.x, y[lane] = plane.y, z[lane] = plane.z, offset[lane] = plane.offset;
-  }
+  Plane lanes[RayPacket::kRays];
 };
 
 /// Where a ray meets the plane of the triangle that the ray tracer found at `traced_m`: computed in double precision
@@ -36,12 +35,30 @@ struct PlaneRange {
   return {static_cast<float>(kept_m), approach};
 }
 
+/// The triangles that sixteen rays met, counted through: `first` of its geometry plus its number there, `nothing` where
+/// the geometry is unknown. Sets hits.triangle and, to what was traced or infinity, hits.range_m.
+struct TracedPacket {
+  const std::uint32_t *geometry, *primitive;
+  const float* far_m;
+};
+void count_through(const TracedPacket& traced, const std::array<std::uint32_t, 3>& first, std::uint32_t nothing,
+                   HitPacket& hits);
+
+/// Lays the planes out by lane, and the numbers that go with them.
+void gather_planes(const Plane* planes, const std::uint32_t* numbers, const std::uint32_t* index, PlanePacket& out,
+                   std::uint32_t* out_numbers);
+
 /// plane_range() of sixteen rays, to the same bits: hits.range_m, which holds what was traced, and hits.cos_incidence.
 /// Lanes that met nothing need a plane of zeros and keep their range.
 void plane_ranges(const RayPacket& rays, const PlanePacket& planes, HitPacket& hits);
 
-/// Marks the lanes that are to be traced (max_m >= 0) with -1, others with 0, and counts them; -1 if an origin or
-/// direction is infinite or NaN.
-int lanes_to_trace(const RayPacket& rays, int* valid);
+/// Where the ray tracer wants a packet's numbers.
+struct TracerLanes {
+  float *origin_x, *origin_y, *origin_z, *direction_x, *direction_y, *direction_z, *max_m;
+  int* valid;
+};
+/// Copies a packet, marks the lanes that are to be traced (max_m >= 0) with -1, others with 0, and counts them; -1 if
+/// an origin or direction is infinite or NaN.
+int load_lanes(const RayPacket& rays, const TracerLanes& lanes);
 
 }  // namespace canyon::scene

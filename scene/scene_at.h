@@ -74,6 +74,13 @@ class SceneAt {
     if (triangle < mesh.triangles.size()) return {mesh.material[triangle], mesh.object[triangle], false};
     return moving_surface(triangle);
   }
+  /// Calls what surface() needs of a triangle that lies far off in memory into the cache, for soon.
+  void prefetch_surface(std::uint32_t triangle) const {
+    const Mesh& mesh = scene_->mesh();
+    if (triangle >= mesh.triangles.size()) return;
+    __builtin_prefetch(mesh.material.data() + triangle);
+    __builtin_prefetch(mesh.object.data() + triangle);
+  }
   const SceneObject& object(std::uint32_t index) const;
 
   Hit trace(const Ray& ray) const;
