@@ -20,15 +20,17 @@ namespace canyon::inertial {
 class ErrorChain {
  public:
   virtual ~ErrorChain() = default;
-  /// Corrupts sample k. The errors depend on (seed, k) and the motion alone, not on which samples were asked for
-  /// before; samples in ascending order are the fast case.
+  /// Corrupts sample k. The errors depend on (seed, k) and the motion alone, that of the memory() samples before
+  /// included; which samples were asked for before matters only where that motion was not among them: it is then taken
+  /// to have been the present one. Samples in ascending order are the fast case.
   virtual void corrupt(std::int64_t k, ImuSample& sample) = 0;
   /// Corrupts samples first, first + 1, ...: the same bits as one by one, several times faster.
   virtual void corrupt_batch(std::int64_t first, std::span<ImuSample> samples) {
     for (ImuSample& sample : samples) corrupt(first++, sample);
   }
   /// So many samples before the first one wanted must be corrupted first (and thrown away) for a part of a run to equal
-  /// that part of the whole run: latency and losses look back at earlier motion. 0 for all other errors.
+  /// that part of the whole run: latency and losses look back at earlier motion, 0 for all other links; proof masses
+  /// remember it until it is below 1e-16, and then parts agree to rounding.
   virtual std::int64_t memory() const { return 0; }
   /// What a filter should be told of this unit.
   virtual const ImuNoise& noise() const = 0;

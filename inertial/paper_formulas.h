@@ -34,7 +34,7 @@ double quantization_as_printed(double quality_factor, double run_time_hr);
 /// The recursion sigma(t) = sigma(t-1) / tau + sigma_0, as printed, driven by two draws.
 /// 1/tau stands where exp(-dt/tau) belongs. So the process diverges for tau < 1 s; and for tau > 1 s its correlation
 /// time is dt / ln(tau): 3.5 ms at tau = 10 s and 125 Hz, in place of 10 s. The corrected form is
-/// inertial/gauss_markov.h.
+/// inertial/errors/markov_process.h.
 double recursion_as_printed(double previous, double tau_s, double sigma_0);
 /// dt / ln(tau), s; infinite at tau = 1, negative (divergence) below.
 double recursion_correlation_time_s(double tau_s, double dt_s);

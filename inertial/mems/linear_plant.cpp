@@ -85,6 +85,10 @@ Eigen::MatrixXd noise_root(const Eigen::MatrixXd& covariance) {
          eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal().toDenseMatrix();
 }
 
+double spectral_radius(const Eigen::MatrixXd& phi) {
+  return phi.size() > 0 ? phi.eigenvalues().cwiseAbs().maxCoeff() : 0.0;
+}
+
 Eigen::MatrixXd stationary_covariance(const DiscretePlant& step) {
   Eigen::MatrixXd phi = step.phi, sum = step.covariance;
   // Doubling: 2^k steps at the k-th turn.

@@ -76,6 +76,12 @@ double SensingElement::gain(double frequency_hz) const {
   return (filter_.size() > 0 ? in_series(model_.mechanics, filter_) : model_.mechanics).gain(frequency_hz);
 }
 
+double SensingElement::memory_per_step() const {
+  // The integral of the output, the last state, begins anew with every sample.
+  const Eigen::Index n = model_.mechanics.size() + filter_.size();
+  return spectral_radius(whole_.phi.topLeftCorner(n, n));
+}
+
 double SensingElement::limited(double reading) const {
   return std::clamp(reading, -model_.clip, model_.clip);
 }

@@ -38,6 +38,9 @@ class SensingElement {
   double reading() const { return (model_.mechanics.C * mechanics_state())(0); }
   /// Gain from the input to the output at a frequency, the filter's included, the averaging over the sample not.
   double gain(double frequency_hz) const;
+  /// What a sample leaves at least of any earlier state: e^(-step / longest time constant). 1 or more: the integrator
+  /// diverges at this step.
+  double memory_per_step() const;
   /// Samples gone through in short steps so far.
   std::int64_t overloads() const { return overloads_; }
 

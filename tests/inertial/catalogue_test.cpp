@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/embedded.h"
 #include "core/units.h"
 #include "inertial/allan/noise_terms.h"
 #include "inertial/errors/flicker.h"
@@ -35,11 +36,12 @@ TEST(Catalogue, HoldsTheBuiltInUnits) {
   }
 }
 
-/// Figures of the sheets in SI, worked out by hand: 0.005 deg/s/sqrt(Hz), 400 ug/sqrt(Hz), 250 deg/s, 16384 LSB/g.
+/// Figures of the sheets in SI, worked out by hand: 0.005 deg/s/sqrt(Hz) and 400 ug/sqrt(Hz), one-sided, so over
+/// sqrt(2); 250 deg/s, 16384 LSB/g.
 TEST(Catalogue, FiguresOfTheLinksAreInSi) {
   const UnitFigures mpu = load_catalogue_entry("mpu6050")->figures();
-  EXPECT_NEAR(mpu.gyro.white_per_sqrt_hz, 0.005 * kDegree, 1e-12);
-  EXPECT_NEAR(mpu.accel.white_per_sqrt_hz, 400e-6 * kStandardGravity, 1e-8);  // six digits in the file
+  EXPECT_NEAR(mpu.gyro.white_per_sqrt_hz, 0.005 * kDegree / std::sqrt(2.0), 1e-10);  // six digits in the file
+  EXPECT_NEAR(mpu.accel.white_per_sqrt_hz, 400e-6 * kStandardGravity / std::sqrt(2.0), 1e-8);
   EXPECT_NEAR(mpu.gyro.range, 250.0 * kDegree, 1e-12);
   EXPECT_NEAR(mpu.accel.resolution, kStandardGravity / 16384.0, 1e-11);
   EXPECT_NEAR(mpu.gyro.g_sensitivity, 0.1 * kDegree / kStandardGravity, 1e-15);
@@ -170,6 +172,33 @@ TEST(Catalogue, RefusesAFigureWithoutSource) {
   ASSERT_FALSE(entry.ok());
   EXPECT_THAT(entry.error().str(), ::testing::HasSubstr("gyro.arw_source"));
   EXPECT_THAT(entry.error().str(), ::testing::StartsWith("mine.toml:"));
+}
+
+// What is assumed must not look like a sheet's figure, in no file. (A figure without any source is refused on reading.)
+TEST(Catalogue, AssumptionsSayThatTheyAre) {
+  const std::regex source("(\\w*source) = \"(.*)\"");
+  int assumed = 0, read = 0;
+  for (const std::string& name : catalogue_names()) {
+    const std::string text(*embedded_file("inertial/catalogue/" + name + ".toml"));
+    for (std::sregex_iterator at(text.begin(), text.end(), source), end; at != end; ++at) {
+      const std::string words = (*at)[2];
+      EXPECT_GE(words.size(), 10U) << name << ": " << words;
+      const bool says = words.rfind("assumed", 0) == 0;
+      (says ? assumed : read) += 1;
+      if (says) continue;
+      for (const char* doubt : {"assum", "remember", "not checked", "at hand", "class value"})
+        EXPECT_EQ(words.find(doubt), std::string::npos) << name << ": " << words;
+    }
+  }
+  EXPECT_GT(assumed, 100);
+  EXPECT_GT(read, 100);
+}
+
+// ADIS16470: the sheet states the density and the random walk it makes; N is the density over sqrt(2).
+TEST(Catalogue, RandomWalkIsTheDensityOverRootTwo) {
+  const double density = 0.008 * kDegree;
+  EXPECT_NEAR(load_catalogue_entry("adis16470")->noise().gyro.white_per_sqrt_hz / (density / std::sqrt(2.0)), 1.0,
+              0.005);  // 0.34 has two digits
 }
 
 TEST(Catalogue, RefusesUnknownKeysAndValuesOutOfRange) {
