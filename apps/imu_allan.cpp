@@ -92,16 +92,25 @@ Json json_of(const std::vector<DeviationPoint>& points, const char* name) {
   return {{"tau_s", tau}, {key, value}, {key + "_low", low}, {key + "_high", high}};
 }
 
+/// What the second parameter of a process is; null where it has none.
+const char* second_name(const std::string& process) {
+  if (process == "white") return "neighbour_correlation";
+  if (process == "gauss_markov") return "correlation_time_s";
+  return process.ends_with("sinusoid") ? "frequency_hz" : nullptr;
+}
+
 Json json_of(const inertial::NoiseFit& fit) {
   Json out = Json::object();
-  for (const inertial::FittedTerm& t : fit.terms)
-    out[t.name] = {{"value", t.determined ? Json(t.value) : Json(nullptr)},
-                   {"sigma", or_null(t.sigma)},
-                   {"determined", t.determined}};
-  out["white"]["neighbour_correlation"] = fit.neighbour_correlation;
-  out["gauss_markov"]["correlation_time_s"] =
-      fit.term("gauss_markov").determined ? Json(fit.correlation_time_s) : Json(nullptr);
-  out["sinusoid"]["frequency_hz"] = fit.term("sinusoid").determined ? Json(fit.frequency_hz) : Json(nullptr);
+  for (const inertial::FittedTerm& t : fit.terms) {
+    Json& term = out[t.name];
+    term = {{"value", t.determined ? Json(t.value) : Json(nullptr)},
+            {"sigma", or_null(t.sigma)},
+            {"determined", t.determined}};
+    const char* second = second_name(t.name);
+    if (!second) continue;
+    term[second] = t.determined ? Json(t.second) : Json(nullptr);
+    term[std::string(second) + "_sigma"] = t.determined ? or_null(t.second_sigma) : Json(nullptr);
+  }
   out["chi_square_per_dof"] = fit.chi_square_per_dof;
   return out;
 }
@@ -205,6 +214,8 @@ const Spoken kSpoken[] = {
     {"ramp", kHour* kHour / kDegree, "deg/h/h", 1e3 * kHour / kMilliG, "ug/h"},
     {"gauss_markov", kHour / kDegree, "deg/h", 1e3 / kMilliG, "ug"},
     {"sinusoid", kHour / kDegree, "deg/h", 1e3 / kMilliG, "ug"},
+    {"second_sinusoid", kHour / kDegree, "deg/h", 1e3 / kMilliG, "ug"},
+    {"third_sinusoid", kHour / kDegree, "deg/h", 1e3 / kMilliG, "ug"},
 };
 
 void print_fit(const ChannelNoise& c) {
@@ -215,10 +226,10 @@ void print_fit(const ChannelNoise& c) {
     const double factor = gyro ? s.gyro : s.accel;
     std::printf("  %-3s %-17s %10.4g +- %-8.2g %-14s", kChannelNames[c.channel], s.process, t.value * factor,
                 t.sigma * factor, gyro ? s.gyro_unit : s.accel_unit);
-    if (t.name == "gauss_markov") std::printf("correlation time %.3g s", c.fit.correlation_time_s);
-    if (t.name == "sinusoid") std::printf("at %.4g Hz", c.fit.frequency_hz);
-    if (t.name == "white" && c.fit.neighbour_correlation > 0.0)
-      std::printf("below the sensor's low-pass: neighbouring samples correlate by %.2f", c.fit.neighbour_correlation);
+    if (t.name == "gauss_markov") std::printf("correlation time %.3g +- %.2g s", t.second, t.second_sigma);
+    if (t.name.ends_with("sinusoid")) std::printf("at %.4g +- %.2g Hz", t.second, t.second_sigma);
+    if (t.name == "white" && t.second > 0.0)
+      std::printf("below the sensor's low-pass: neighbouring samples correlate by %.2f", t.second);
     std::printf("\n");
   }
 }

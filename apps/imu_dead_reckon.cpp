@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "core/units.h"
 #include "fusion/dead_reckoning.h"
+#include "inertial/allan/deviation.h"
 #include "inertial/imu_log.h"
 #include "report/time_plot.h"
 
@@ -42,17 +43,18 @@ Result<bool> is_bare(const std::string& path) {
 
 struct Recording {
   std::vector<ImuSample> samples;
-  bool increments = false;  ///< the KF-GINS text format
+  bool kf_gins = false;  ///< the text format
+  std::size_t gaps = 0;
 };
 
-/// Increments over the interval that ends at each stamp, in forward-left-up; the first interval is as long as the
-/// second. Stamps are seconds of `week`.
+/// Increments over the interval that ends at each stamp, in forward-left-up; the first interval and those behind gaps
+/// are as long as usual. Stamps are seconds of `week`.
 Result<Recording> read_imu(const Options& options, int week) {
   CANYON_TRY(const bool bare, is_bare(options.imu));
   Recording out;
-  out.increments = options.columns == "kf_gins" || (options.columns.empty() && bare);
+  out.kf_gins = options.columns == "kf_gins" || (options.columns.empty() && bare);
   inertial::ImuLogFormat format;
-  format.columns = out.increments ? "kf_gins" : options.columns;
+  format.columns = out.kf_gins ? "kf_gins" : options.columns;
   auto log = inertial::read_imu_log(options.imu, format);
   if (!log) {
     // What only a dead or saturated channel speaks against can still be integrated.
@@ -66,17 +68,21 @@ Result<Recording> read_imu(const Options& options, int week) {
     if (log->channels[static_cast<std::size_t>(c)].empty())
       return Error{options.imu, 0, "", std::string("no column for ") + inertial::kChannelNames[c], "all six channels"};
   const Eigen::Vector3d sign =
-      options.axes == "frd" && !out.increments ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
-  for (std::size_t k = 0; k < log->size(); ++k) {
-    const double dt_s = k > 0 ? log->t_s[k] - log->t_s[k - 1] : log->t_s[1] - log->t_s[0];
-    const auto& c = log->channels;
-    ImuSample s;
-    s.t = GpsTime::from_week_sow(week, 0.0) + log->t_s[k];
-    s.dt_s = dt_s;
-    s.dtheta_U = dt_s * sign.cwiseProduct(Eigen::Vector3d(c[0][k], c[1][k], c[2][k]));
-    s.dv_U = dt_s * sign.cwiseProduct(Eigen::Vector3d(c[3][k], c[4][k], c[5][k]));
-    out.samples.push_back(s);
-  }
+      options.axes == "frd" && !out.kf_gins ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
+  const inertial::Sampling sampling = inertial::sampling_of(log->t_s);
+  out.gaps = sampling.segments.size() - 1;
+  for (const inertial::Segment& segment : sampling.segments)
+    for (std::size_t k = segment.begin; k < segment.end; ++k) {
+      const auto& c = log->channels;
+      ImuSample s;
+      s.t = GpsTime::from_week_sow(week, 0.0) + log->t_s[k];
+      s.dt_s = k > segment.begin ? log->t_s[k] - log->t_s[k - 1] : sampling.interval_s;
+      const double rate_s = log->increments[0] ? sampling.interval_s : s.dt_s;
+      const double force_s = log->increments[1] ? sampling.interval_s : s.dt_s;
+      s.dtheta_U = rate_s * sign.cwiseProduct(Eigen::Vector3d(c[0][k], c[1][k], c[2][k]));
+      s.dv_U = force_s * sign.cwiseProduct(Eigen::Vector3d(c[3][k], c[4][k], c[5][k]));
+      out.samples.push_back(s);
+    }
   return out;
 }
 
@@ -162,12 +168,6 @@ Status check_axes(const Options& options, const std::vector<ImuSample>& samples,
                options.axes == "frd" ? "--axes flu" : "forward-left-up axes, or --axes frd"};
 }
 
-std::size_t gaps_in(const std::vector<ImuSample>& samples) {
-  std::size_t gaps = 0;
-  for (std::size_t k = 2; k < samples.size(); ++k) gaps += samples[k].dt_s > 1.5 * samples[k - 1].dt_s ? 1 : 0;
-  return gaps;
-}
-
 struct Outcome {
   Recording recording;
   Reference reference;
@@ -189,15 +189,12 @@ Json summary_json(const Options& options, const Outcome& o) {
               {"rms_u_m", or_null(s.position_rms_enu_m.z())},
               {"velocity_rms_m_s", vector_json(s.velocity_rms_enu_m_s)},
               {"attitude_rms_deg", vector_json(s.attitude_rms_rad / kDegree)},
-              {"nees_mean", nullptr},
-              {"nis_mean", nullptr},
-              {"outage", nullptr},
               {"final_error_m", or_null(s.final_error_m)},
               {"final_horizontal_error_m", or_null(s.final_horizontal_m)},
               {"integrator", options.integrator},
               {"gravity", o.gravity},
               {"samples", o.states.size() - 1},
-              {"gaps", gaps_in(o.recording.samples)},
+              {"gaps", o.recording.gaps},
               {"compared", o.errors.empty() ? 0 : o.errors.size() - 1},
               {"start_sow_s", o.states.front().t.sow_s()},
               {"duration_s", o.states.back().t - o.states.front().t}};
@@ -359,7 +356,7 @@ Result<int> run(const Options& options) {
   CANYON_TRY_STATUS(check_axes(options, o.recording.samples, o.reference.initial));
   o.gravity = !options.gravity.empty()       ? options.gravity
               : !o.reference.gravity.empty() ? o.reference.gravity
-              : o.recording.increments       ? "grs80_series"
+              : o.recording.kf_gins          ? "grs80_series"
                                              : "wgs84";
   const auto strapdown = fusion::make_strapdown(options.integrator, gravity_by_name(o.gravity));
   o.states = fusion::dead_reckon(o.recording.samples, o.reference.initial, *strapdown);

@@ -6,12 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/gnss_setup.h"
 #include "apps/imu_log_options.h"
 #include "apps/json.h"
 #include "apps/verb.h"
+#include "core/earth.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/units.h"
+#include "inertial/allan/deviation.h"
 #include "inertial/calibration/fitted_entry.h"
 #include "inertial/calibration/resting_positions.h"
 
@@ -24,17 +27,20 @@ using inertial::TriadCalibration;
 struct Options {
   CommonOptions common;
   ImuLogOptions log;
-  std::string truth, truth_columns, name, out;
-  double gravity_m_s2 = kStandardGravity;
+  std::string truth, truth_columns, at, name, out;
+  double gravity_m_s2 = 0.0;
   bool at_rest = false, positions = false, force = false;
 };
 
-/// What one of the ways found; the entry only where noise could be fitted.
+/// What one of the ways found, and the catalogue entry made of it.
 struct Outcome {
   inertial::FittedUnit unit;
-  std::array<std::optional<TriadCalibration>, 2> calibration{};
   std::string toml;
 };
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
 
 Status need_all_channels(const inertial::ImuLog& log, const std::string& path) {
   for (int c = 0; c < 6; ++c)
@@ -43,38 +49,76 @@ Status need_all_channels(const inertial::ImuLog& log, const std::string& path) {
   return Ok{};
 }
 
+/// What the accelerometer is compared with, and how that is known.
+struct LocalGravity {
+  double m_s2 = kStandardGravity;
+  std::string source;
+};
+Result<LocalGravity> gravity_of(const Options& options) {
+  char text[80];
+  if (options.gravity_m_s2 > 0.0) {
+    std::snprintf(text, sizeof text, "gravity given as %.6g m/s^2", options.gravity_m_s2);
+    return LocalGravity{options.gravity_m_s2, text};
+  }
+  if (options.at.empty()) {
+    std::fprintf(stderr,
+                 "note: gravity is taken as 9.80665 m/s^2; it differs by up to 0.03 from place to place: --at or "
+                 "--gravity\n");
+    return LocalGravity{kStandardGravity, "standard gravity, 9.80665 m/s^2"};
+  }
+  CANYON_TRY(const Geodetic at, parse_place(options.at, "--at"));
+  const double g = gravity_E(ecef_from_geodetic(at)).norm();
+  std::snprintf(text, sizeof text, "WGS84 normal gravity there, %.6g m/s^2", g);
+  return LocalGravity{g, text};
+}
+
+/// A unit whose log's noise is that of `sampling`'s segments.
+Result<inertial::FittedUnit> unit_of(const Options& options, const inertial::ImuLog& log,
+                                     const inertial::Sampling& sampling) {
+  inertial::FittedUnit unit;
+  CANYON_TRY(unit.noise, inertial::log_noise(log, sampling, {}));
+  unit.log = file_name(options.log.log);
+  unit.name = options.name.empty() ? std::filesystem::path(options.log.log).stem().string() : options.name;
+  unit.rate_hz = 1.0 / sampling.interval_s;
+  for (const inertial::Segment& s : sampling.segments)
+    unit.duration_s += static_cast<double>(s.end - s.begin) * sampling.interval_s;
+  return unit;
+}
+
 Result<Outcome> fit_at_rest(const Options& options, const inertial::ImuLog& log) {
   if (log.channels[3].empty())
     return Error{options.log.log, 0, "", "no accelerometer",
                  "its three channels, and those of the gyroscope if there is one"};
+  CANYON_TRY(const LocalGravity gravity, gravity_of(options));
   Outcome out;
-  const auto sampling = inertial::sampling_of(log.t_s);
-  CANYON_TRY(out.unit.noise, inertial::log_noise(log, sampling, {}));
-  out.unit.log = std::filesystem::path(options.log.log).filename().string();
-  out.unit.name = options.name.empty() ? std::filesystem::path(options.log.log).stem().string() : options.name;
-  out.unit.duration_s = log.t_s.back() - log.t_s.front();
-  out.unit.rate_hz = 1.0 / sampling.interval_s;
+  CANYON_TRY(out.unit, unit_of(options, log, inertial::sampling_of(log.t_s)));
   if (!log.channels[0].empty()) out.unit.bias[0] = inertial::resting_rate(log) / std::sqrt(3.0);
-  out.unit.bias[1] = inertial::resting_force_error(log, options.gravity_m_s2);
-  out.unit.bias_source = {"mean rate of " + out.unit.log + ", the Earth's in it, root mean square of the axes",
-                          "mean specific force of " + out.unit.log + " against gravity: along the vertical"};
-  CANYON_TRY(out.toml, inertial::catalogue_toml(out.unit));
+  out.unit.bias[1] = inertial::resting_force_error(log, gravity.m_s2);
+  out.unit.bias_source = {
+      "mean rate of " + out.unit.log + ", the Earth's in it, root mean square of the axes",
+      "mean specific force of " + out.unit.log + " against " + gravity.source + ": along the vertical"};
   return out;
 }
 
-/// Samples of the log at whose times the reference has one too, to a tenth of the interval; a reference at another rate
-/// is interpolated.
+/// Samples of the log and what the reference says at their times. Both hold means over the interval that ends at the
+/// stamp, so a reference at another rate belongs to other middles; it is interpolated there, but not across its gaps.
 struct Pairs {
   std::array<std::vector<Eigen::Vector3d>, 2> measured, truth;
+  std::vector<double> t_s;
 };
 Pairs pairs_of(const inertial::ImuLog& log, const inertial::ImuLog& truth) {
+  const double log_s = inertial::sampling_of(log.t_s).interval_s, truth_s = inertial::sampling_of(truth.t_s).interval_s;
+  const double later_s = 0.5 * (truth_s - log_s);
   Pairs out;
   std::size_t j = 0;
   for (std::size_t k = 0; k < log.size(); ++k) {
-    const double t = log.t_s[k];
+    const double t = log.t_s[k] + later_s;
     if (t < truth.t_s.front() || t > truth.t_s.back()) continue;
     while (j + 2 < truth.size() && truth.t_s[j + 1] <= t) ++j;
-    const double share = (t - truth.t_s[j]) / (truth.t_s[j + 1] - truth.t_s[j]);
+    const double width_s = truth.t_s[j + 1] - truth.t_s[j];
+    if (width_s > 1.5 * truth_s) continue;
+    const double share = (t - truth.t_s[j]) / width_s;
+    out.t_s.push_back(log.t_s[k]);
     for (std::size_t triad = 0; triad < 2; ++triad) {
       Eigen::Vector3d measured, expected;
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -97,30 +141,34 @@ Result<Outcome> fit_to_truth(const Options& options, const inertial::ImuLog& log
                                     {.columns = options.truth_columns, .rate_hz = options.log.rate_hz, .live = false}));
   CANYON_TRY_STATUS(need_all_channels(truth, options.truth));
   const Pairs pairs = pairs_of(log, truth);
-  Outcome out;
+  std::array<TriadCalibration, 2> found;
+  inertial::ImuLog rest;  // what the calibration leaves: the unit's noise, and the reference's
+  rest.t_s = pairs.t_s;
   for (std::size_t triad = 0; triad < 2; ++triad) {
-    const auto found = inertial::fit_to_reference(pairs.measured[triad], pairs.truth[triad]);
-    if (!found) {
-      Error error = found.error();
+    const auto calibration = inertial::fit_to_reference(pairs.measured[triad], pairs.truth[triad]);
+    if (!calibration) {
+      Error error = calibration.error();
       error.file = options.truth;
       error.key = triad == 0 ? "gyroscope" : "accelerometer";
       return error;
     }
-    out.calibration[triad] = *found;
+    found[triad] = *calibration;
+    for (std::size_t k = 0; k < pairs.t_s.size(); ++k) {
+      const Eigen::Vector3d left = found[triad].corrected(pairs.measured[triad][k]) - pairs.truth[triad][k];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        rest.channels[3 * triad + axis].push_back(left[static_cast<Eigen::Index>(axis)]);
+    }
   }
+  Outcome out;
+  CANYON_TRY(out.unit, unit_of(options, rest, inertial::sampling_of(rest.t_s)));
+  for (std::size_t triad = 0; triad < 2; ++triad)
+    inertial::take_calibration(out.unit, triad, found[triad],
+                               "found in " + out.unit.log + " against the reference " + file_name(options.truth));
   return out;
 }
 
-Result<Outcome> fit_to_positions(const Options& options, const inertial::ImuLog& log) {
-  CANYON_TRY_STATUS(need_all_channels(log, options.log.log));
-  const auto positions = inertial::resting_positions(log);
-  std::vector<Eigen::Vector3d> forces;
-  TriadCalibration gyro;
-  for (const auto& p : positions) {
-    forces.push_back(p.force);
-    gyro.bias += p.rate / static_cast<double>(positions.size());
-  }
-  // How well a mean is known shows where one position is halved.
+/// How well a position's mean is known shows where it is halved.
+double sigma_of_means(const inertial::ImuLog& log, const std::vector<inertial::RestingPosition>& positions) {
   double square = 0.0;
   for (const auto& p : positions) {
     Eigen::Vector3d difference = Eigen::Vector3d::Zero();
@@ -132,24 +180,47 @@ Result<Outcome> fit_to_positions(const Options& options, const inertial::ImuLog&
             static_cast<double>(half);
     square += difference.squaredNorm() / 3.0 / 4.0;
   }
-  const double sigma = positions.empty() ? 1.0 : std::sqrt(square / static_cast<double>(positions.size()));
-  const auto accel = inertial::fit_to_gravity(forces, std::max(sigma, 1e-9), options.gravity_m_s2);
+  return positions.empty() ? 1.0 : std::sqrt(square / static_cast<double>(positions.size()));
+}
+
+/// The gyroscope's bias from the same positions.
+TriadCalibration resting_gyroscope(const std::vector<inertial::RestingPosition>& positions) {
+  TriadCalibration gyro;
+  const auto n = static_cast<double>(positions.size());
+  for (const auto& p : positions) gyro.bias += p.rate / n;
+  for (const auto& p : positions) {
+    gyro.uncalibrated_rms += p.rate.squaredNorm() / (3.0 * n);
+    gyro.residual_rms += (p.rate - gyro.bias).squaredNorm() / (3.0 * n);
+  }
+  gyro.uncalibrated_rms = std::sqrt(gyro.uncalibrated_rms);
+  gyro.residual_rms = std::sqrt(gyro.residual_rms);
+  // The Earth's rate turns with the positions and averages out of them only roughly: it is what is not known.
+  gyro.bias_sigma.setConstant(gyro.residual_rms / std::sqrt(n));
+  gyro.used = positions.size();
+  return gyro;
+}
+
+Result<Outcome> fit_to_positions(const Options& options, const inertial::ImuLog& log) {
+  CANYON_TRY_STATUS(need_all_channels(log, options.log.log));
+  CANYON_TRY(const LocalGravity gravity, gravity_of(options));
+  const auto positions = inertial::resting_positions(log);
+  std::vector<Eigen::Vector3d> forces;
+  for (const auto& p : positions) forces.push_back(p.force);
+  const auto accel = inertial::fit_to_gravity(forces, std::max(sigma_of_means(log, positions), 1e-9), gravity.m_s2);
   if (!accel) {
     Error error = accel.error();
     error.file = options.log.log;
     return error;
   }
-  for (const auto& p : positions) {
-    gyro.uncalibrated_rms += p.rate.squaredNorm() / (3.0 * static_cast<double>(positions.size()));
-    gyro.residual_rms += (p.rate - gyro.bias).squaredNorm() / (3.0 * static_cast<double>(positions.size()));
-  }
-  gyro.uncalibrated_rms = std::sqrt(gyro.uncalibrated_rms);
-  gyro.residual_rms = std::sqrt(gyro.residual_rms);
-  // The Earth's rate turns with the positions and averages out of them only roughly: it is what is not known.
-  gyro.bias_sigma.setConstant(gyro.residual_rms / std::sqrt(static_cast<double>(positions.size())));
-  gyro.used = positions.size();
+  // The noise is that of the rests.
+  inertial::Sampling rests = inertial::sampling_of(log.t_s);
+  rests.segments.clear();
+  for (const auto& p : positions) rests.segments.push_back({p.begin, p.end});
   Outcome out;
-  out.calibration = {gyro, *accel};
+  CANYON_TRY(out.unit, unit_of(options, log, rests));
+  const std::string where = "found from " + std::to_string(positions.size()) + " resting positions in " + out.unit.log;
+  inertial::take_calibration(out.unit, 0, resting_gyroscope(positions), where);
+  inertial::take_calibration(out.unit, 1, *accel, where + " against " + gravity.source);
   return out;
 }
 
@@ -196,25 +267,26 @@ Status write_entry(const std::string& path, const std::string& toml, bool force)
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
-  if (!options.out.empty() && !options.at_rest)
-    return Error{"--out", 0, "", "there is an entry to write only with --static", "--static"};
   CANYON_TRY(const inertial::ImuLog log, read_log(options.log, options.at_rest));
-  CANYON_TRY(const Outcome found, options.at_rest     ? fit_at_rest(options, log)
-                                  : options.positions ? fit_to_positions(options, log)
-                                                      : fit_to_truth(options, log));
+  CANYON_TRY(Outcome found, options.at_rest     ? fit_at_rest(options, log)
+                            : options.positions ? fit_to_positions(options, log)
+                                                : fit_to_truth(options, log));
+  CANYON_TRY(found.toml, inertial::catalogue_toml(found.unit));
+  const auto& [gyro, accel] = found.unit.calibration;
   if (!options.out.empty()) CANYON_TRY_STATUS(write_entry(options.out, found.toml, options.force));
   if (options.common.json) {
-    Json out = Json::object();
-    if (options.at_rest) out["entry"] = found.toml;
-    if (found.calibration[0]) out["gyro"] = json_of(*found.calibration[0]);
-    if (found.calibration[1]) out["accel"] = json_of(*found.calibration[1]);
+    Json out = {{"entry", found.toml}};
+    if (gyro) out["gyro"] = json_of(*gyro);
+    if (accel) out["accel"] = json_of(*accel);
     std::printf("%s\n", out.dump().c_str());
     return 0;
   }
-  if (options.at_rest && options.out.empty()) std::printf("%s", found.toml.c_str());
-  if (!options.out.empty()) std::printf("Entry: %s\n", options.out.c_str());
-  if (found.calibration[0]) print_triad("Gyroscope", *found.calibration[0], kDegree / kHour, "deg/h");
-  if (found.calibration[1]) print_triad("Accelerometer", *found.calibration[1], kMilliG, "mg");
+  if (gyro) print_triad("Gyroscope", *gyro, kDegree / kHour, "deg/h");
+  if (accel) print_triad("Accelerometer", *accel, kMilliG, "mg");
+  if (options.out.empty())
+    std::printf("%s", found.toml.c_str());
+  else
+    std::printf("Entry: %s\n", options.out.c_str());
   return 0;
 }
 
@@ -223,14 +295,18 @@ VerbAction declare(Arguments& arguments) {
   declare_common(arguments, options->common);
   declare_imu_log(arguments, options->log);
   Arguments ways = arguments.one_of("way");
-  ways.flag("--static", options->at_rest, "the unit rests: noise and bias, as a catalogue entry");
+  ways.flag("--static", options->at_rest, "the unit rests: noise and bias");
   ways.flag("--positions", options->positions,
             "the unit rests in nine or more positions: bias, scale and misalignment of the accelerometer against "
             "gravity, bias of the gyroscope");
   ways.option("--truth", options->truth,
               "log of a reference beside it, true rates or increments at the same times: bias, scale, misalignment");
   arguments.option("--truth-columns", options->truth_columns, "as --columns, of the reference");
-  arguments.option("--gravity", options->gravity_m_s2, "local gravity, m/s^2").within(9.7, 9.9).default_shown();
+  const auto at = arguments.option("--at", options->at,
+                                   "LAT,LON,H of the log: normal gravity there; degrees, ellipsoidal metres");
+  arguments.option("--gravity", options->gravity_m_s2, "local gravity, m/s^2; without it and --at standard gravity")
+      .within(9.7, 9.9)
+      .excludes(at);
   arguments.option("--name", options->name, "of the entry; default: the log's");
   arguments.option("--out", options->out, "file for the entry, which [imu] sensor and --sensor take: mine.toml");
   arguments.flag("--force", options->force, "replace an existing --out");

@@ -43,7 +43,8 @@ void visit(FieldVisitor& f, LogConfig& c) {
 }
 
 constexpr double kUsualDuration_s = 600.0;
-constexpr std::size_t kChunk = 256;  // samples
+constexpr std::size_t kChunk = 256;               // samples
+constexpr std::size_t kMostSamples = 10'000'000;  // 14 h at 200 Hz; truth, log and text are held in memory, 6 GB
 
 /// A TOML file (--path), then the other options, then each --set KEY=VALUE.
 Result<LogConfig> log_config(const Options& options) {
@@ -116,6 +117,9 @@ Result<Simulation> simulate(const Options& options) {
   CANYON_TRY(const auto chain, inertial::make_error_chain(config.imu, seed));
 
   const auto samples = static_cast<std::size_t>(std::floor(s.duration_s * s.rate_hz * (1.0 + 1e-12)));
+  if (samples > kMostSamples)
+    return Error{"--duration", 0, "", std::to_string(samples) + " samples",
+                 "at most " + std::to_string(kMostSamples) + ": a shorter duration or a lower --rate"};
   if (samples == 0) return Error{"--duration", 0, "", "shorter than one sample", "at least 1 / --rate"};
   s.truth.resize(samples);
   Progress progress("imu simulate", static_cast<double>(samples), !options.common.json);
@@ -159,12 +163,13 @@ void append_six(std::string& out, const Eigen::Vector3d& a, const Eigen::Vector3
 
 constexpr const char* kRatesHeader = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n";
 
-/// Mean rates over the intervals, forward-left-up.
+/// Mean rates over the true intervals, forward-left-up: an error of the clock is in the stamps alone.
 std::string rates_csv(const Simulation& s) {
   std::string out = kRatesHeader;
-  for (const ImuSample& m : s.measured) {
+  for (std::size_t k = 0; k < s.truth.size(); ++k) {
+    const ImuSample& m = s.measured[k];
     append_time(out, s, m.t);
-    append_six(out, m.dtheta_U / m.dt_s, m.dv_U / m.dt_s, ',');
+    append_six(out, m.dtheta_U / s.truth[k].dt_s, m.dv_U / s.truth[k].dt_s, ',');
   }
   return out;
 }
@@ -186,7 +191,7 @@ std::string errors_csv(const Simulation& s) {
   for (std::size_t k = 0; k < s.truth.size(); ++k) {
     const ImuSample &m = s.measured[k], &t = s.truth[k];
     append_time(out, s, t.t);
-    append_six(out, m.dtheta_U / m.dt_s - t.dtheta_U / t.dt_s, m.dv_U / m.dt_s - t.dv_U / t.dt_s, ',');
+    append_six(out, (m.dtheta_U - t.dtheta_U) / t.dt_s, (m.dv_U - t.dv_U) / t.dt_s, ',');
   }
   return out;
 }
@@ -295,7 +300,7 @@ VerbAction declare(Arguments& arguments) {
   points.excludes(trajectory);
   arguments.option("--set", options->settings,
                    "KEY=VALUE of the motion, as radius_m=50 or smoothing_s=0.5, or of the sensor, as "
-                   "imu.lever_arm_m=[0.3,0,0.5] or 'imu.leave_out=[\"white\"]'; may be repeated");
+                   "imu.lever_arm_m=[0.3,0,0.5] or 'imu.leave_out=[\"white_noise\"]'; may be repeated");
   arguments.option("--at", options->at, "LAT,LON,H: where it stands, or W's origin; degrees, ellipsoidal metres");
   arguments.option("--start", options->start,
                    "first instant: ISO date or WEEK:SOW; default: the trajectory's, else 0:0");

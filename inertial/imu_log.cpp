@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "core/line_reader.h"
 #include "core/units.h"
+#include "inertial/allan/deviation.h"
 
 namespace canyon::inertial {
 namespace {
@@ -138,6 +139,16 @@ Status check_columns(const std::vector<Column>& columns, double rate_hz, const E
     error.what = std::string("no column for ") + kChannelNames[target - 1];
     return error;
   }
+  for (const int first : {1, 4}) {
+    const auto of_triad = [&](bool increment) {
+      return count(
+          [&](const Column& c) { return c.target >= first && c.target < first + 3 && c.increment == increment; });
+    };
+    if (of_triad(true) == 0 || of_triad(false) == 0) continue;
+    error.what = first == 1 ? "rates and increments in one gyroscope" : "rates and increments in one accelerometer";
+    error.expected = "one of the two";
+    return error;
+  }
   for (int target = 0; target <= 6; ++target)
     if (count([&](const Column& c) { return c.target == target; }) > 1) {
       error.what = std::string("two columns for ") + (target == 0 ? "t" : kChannelNames[target - 1]);
@@ -244,34 +255,35 @@ Status check_rates(const ImuLog& log, double interval_s, bool as_increments, con
                             text("%s = %.4g rad/s: no gyroscope goes so far; these are %s", kChannelNames[c],
                                  log.channels[c][k], as_increments ? "rates, where increments are said" : "deg/s"),
                             as_increments ? "names in _rad_s" : "names in _deg_s");
-  // Only the Earth's rate itself betrays increments: a MEMS bias may have any size, but hardly one so small.
-  if (as_increments || !log.channels[3].empty() || log.channels[0].empty() || log.channels[1].empty() ||
-      log.channels[2].empty())
-    return Ok{};
+  // Only the Earth's rate itself tells rates from increments: a MEMS bias may have any size, but hardly just that.
+  // Where the accelerometer is of the same kind, gravity has spoken for both.
+  const bool witness = !log.channels[3].empty() && log.increments[1] == as_increments;
+  if (witness || log.channels[0].empty()) return Ok{};
   const double rate = std::hypot(mean_of(log.channels[0]), mean_of(log.channels[1]), mean_of(log.channels[2]));
-  if (std::abs(rate / (Wgs84::rate_rad_s * interval_s) - 1.0) < 0.1)
-    return places.error(0,
-                        text("mean rate %.4g rad/s is the Earth's times the interval: these are angle increments, "
-                             "not rates",
-                             rate),
-                        "names in _rad");
-  return Ok{};
+  const double mistaken = as_increments ? Wgs84::rate_rad_s / interval_s : Wgs84::rate_rad_s * interval_s;
+  if (std::abs(rate / mistaken - 1.0) >= 0.1) return Ok{};
+  return places.error(0,
+                      as_increments
+                          ? text("mean rate %.4g rad/s is the Earth's by the interval: these are rates, where "
+                                 "increments are said",
+                                 rate)
+                          : text("mean rate %.4g rad/s is the Earth's times the interval: these are angle increments, "
+                                 "not rates",
+                                 rate),
+                      as_increments ? "names in _rad_s" : "names in _rad");
 }
 
-Status check_magnitudes(const ImuLog& log, bool as_increments, const Places& places) {
-  const double interval_s = (log.t_s.back() - log.t_s.front()) / static_cast<double>(log.size() - 1);
-  if (!log.channels[3].empty() && !log.channels[4].empty() && !log.channels[5].empty())
-    CANYON_TRY_STATUS(check_force(log, interval_s, as_increments, places));
-  return check_rates(log, interval_s, as_increments, places);
+/// Each triad by itself: a file may hold rates of one and increments of the other.
+Status check_magnitudes(const ImuLog& log, double interval_s, const Places& places) {
+  if (!log.channels[3].empty()) CANYON_TRY_STATUS(check_force(log, interval_s, log.increments[1], places));
+  return check_rates(log, interval_s, log.increments[0], places);
 }
 
-/// Increments divided by the interval that they end; the first by the second's.
-void to_rates(const std::vector<Column>& columns, ImuLog& log) {
-  for (const Column& column : columns) {
-    if (!column.increment) continue;
-    auto& x = log.channels[static_cast<std::size_t>(column.target - 1)];
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] /= k > 0 ? log.t_s[k] - log.t_s[k - 1] : log.t_s[1] - log.t_s[0];
-  }
+/// A sensor's increment covers its own sample interval: what a host stamps late, and what a gap has lost, is not in it.
+void to_rates(double interval_s, ImuLog& log) {
+  for (std::size_t c = 0; c < 6; ++c)
+    if (log.increments[c / 3])
+      for (double& x : log.channels[c]) x /= interval_s;
 }
 
 std::string layout_names() {
@@ -336,9 +348,11 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
     places.lines.push_back(in.error("", "").line);
   }
   if (log.size() < 2) return in.empty_file(log.size() == 1 ? "second sample" : "samples");
-  to_rates(columns, log);
-  const bool as_increments = std::any_of(columns.begin(), columns.end(), [](const Column& c) { return c.increment; });
-  CANYON_TRY_STATUS(check_magnitudes(log, as_increments, places));
+  for (const Column& column : columns)
+    if (column.increment) log.increments[static_cast<std::size_t>(column.target - 1) / 3] = true;
+  const double interval_s = sampling_of(log.t_s).interval_s;
+  to_rates(interval_s, log);
+  CANYON_TRY_STATUS(check_magnitudes(log, interval_s, places));
   if (format.live) CANYON_TRY_STATUS(check_live(log, places));
   return log;
 }

@@ -14,6 +14,9 @@ namespace canyon::inertial {
 struct ImuLog {
   std::vector<double> t_s;
   std::array<std::vector<double>, 6> channels;  ///< gx gy gz in rad/s, ax ay az in m/s^2
+  /// Whether the file holds increments of the gyroscope, of the accelerometer. They became rates by the usual interval
+  /// (sampling_of), which every increment covers, whatever stamps and gaps say; times that interval they come back.
+  std::array<bool, 2> increments{};
 
   std::size_t size() const { return t_s.size(); }
 };
@@ -23,8 +26,8 @@ struct ImuLogFormat {
   /// Column names for a file without header, or instead of its own, separated by commas; or the name of a row of
   /// imu_log_layouts(). A name is a channel and a unit (`gx_rad_s`, `gy_deg_s` or `gy_dps`, `gz_deg_h`, `az_m_s2`,
   /// `ax_g`, `ax_mg`; `t_s`, `t_ms`, `t_us`, `t_ns`), with a factor if the file has counts or the axis points the other
-  /// way: `gx_deg_s*0.05`, `gy_rad_s*-1`. Increments over the interval that ends at the time (`gx_rad`, `gx_deg`,
-  /// `ax_m_s`) become rates. Other names are passed over.
+  /// way: `gx_deg_s*0.05`, `gy_rad_s*-1`. Increments over a sample interval (`gx_rad`, `gx_deg`, `ax_m_s`) become
+  /// rates; a triad's channels are all rates or all increments. Other names are passed over.
   std::string columns{};
   /// Sample rate of a file without a time column, or to be taken instead of its times; 0 = the file's times.
   double rate_hz = 0.0;
@@ -43,8 +46,9 @@ std::span<const ImuLogLayout> imu_log_layouts();
 /// Reads CSV, or columns apart by blanks, plain or gzip. Errors name the line: missing columns, fields that are not
 /// numbers, time that does not increase, channels stuck at one value or saturated, and magnitudes that betray the unit:
 /// an accelerometer shows gravity on average, so a specific force of some 1 or 980 means g or cm/s^2 where m/s^2 is
-/// said, and one of gravity times the interval means increments; a log of gyroscopes alone at rest shows the Earth's
-/// rate or more.
+/// said, and one of gravity times the interval means increments, and the other way round; a gyroscope that the
+/// accelerometer does not bear witness for (none there, or the one said to be increments and the other not) betrays
+/// itself where its mean is the Earth's rate times the interval or divided by it.
 Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format);
 
 }  // namespace canyon::inertial

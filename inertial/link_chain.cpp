@@ -93,7 +93,8 @@ double rss(double a, double b) {
 double further_bias(const TriadFigures& f, const UnitFigures& unit, const Environment& e) {
   double above_k = 0.0;
   for (const double t_c : e.temperatures_c) above_k = std::max(above_k, std::abs(t_c - unit.reference_temperature_c));
-  const double vibration = f.vibration_rectification * e.vibration_rms_m_s2.squaredNorm();
+  // Each axis rectifies its own vibration; the filter is told one figure for the three.
+  const double vibration = f.vibration_rectification * e.vibration_rms_m_s2.cwiseAbs2().maxCoeff();
   return rss(rss(f.bias_temperature * above_k, f.g_sensitivity * kStandardGravity), vibration);
 }
 

@@ -13,7 +13,8 @@ void visit(FieldVisitor& f, BarometerConfig& c) {
   f.number("turn_on_bias_pa", c.turn_on_bias_pa, {0, 1e5}, "constant over a run, 1-sigma");
   f.number("drift_pa", c.drift_pa, {0, 1e5}, "weather and sensor, stationary 1-sigma");
   f.number("drift_tau_s", c.drift_tau_s, {1e-3, 1e9}, "correlation time of the drift");
-  f.number("noise_pa_per_sqrt_hz", c.noise_pa_per_sqrt_hz, {0, 1e4}, "white noise: N of IEEE Std 952, a sheet's one-sided density over sqrt(2)");
+  f.number("noise_pa_per_sqrt_hz", c.noise_pa_per_sqrt_hz, {0, 1e4},
+           "white noise: N of IEEE Std 952, a sheet's one-sided density over sqrt(2)");
   f.number("lag_s", c.lag_s, {0, 1e3}, "time constant of sensor and tubing; 0 = none");
   f.number("resolution_pa", c.resolution_pa, {0, 1e4}, "step of the output; 0 = none");
 }

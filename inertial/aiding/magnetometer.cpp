@@ -28,7 +28,8 @@ void visit(FieldVisitor& f, MagnetometerConfig& c) {
   f.number("strength_ut", c.strength_ut, {0, 100}, "of the Earth's field, microtesla");
   f.number("hard_iron_ut", c.hard_iron_ut, {0, 1000}, "field of the vehicle, each axis, 1-sigma");
   f.number("soft_iron_percent", c.soft_iron_percent, {0, 50}, "distortion, each term, 1-sigma");
-  f.number("noise_ut_per_sqrt_hz", c.noise_ut_per_sqrt_hz, {0, 100}, "white noise: N of IEEE Std 952, a sheet's one-sided density over sqrt(2)");
+  f.number("noise_ut_per_sqrt_hz", c.noise_ut_per_sqrt_hz, {0, 100},
+           "white noise: N of IEEE Std 952, a sheet's one-sided density over sqrt(2)");
   f.number("resolution_ut", c.resolution_ut, {0, 100}, "step of the output; 0 = none");
 }
 

@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "core/chi_square.h"
 #include "core/parallel.h"
+#include "inertial/allan/degrees_of_freedom.h"
 
 namespace canyon::inertial {
 namespace {
@@ -88,9 +89,13 @@ struct Row {
   const char* name;
   Kernel* kernel;
   std::int64_t reach;  ///< averages that a difference spans
+  DegreesOfFreedom* degrees_of_freedom;
+  double (*bias)(NoiseType, double samples, double m) = nullptr;  ///< of the variance, as a factor; none: 1
 };
-constexpr Row kRows[] = {
-    {"overlapping", overlapping, 2}, {"modified", modified, 3}, {"hadamard", hadamard, 3}, {"total", total, 2}};
+constexpr Row kRows[] = {{"overlapping", overlapping, 2, overlapping_degrees},
+                         {"modified", modified, 3, modified_degrees},
+                         {"hadamard", hadamard, 3, hadamard_degrees},
+                         {"total", total, 2, total_degrees, total_bias}};
 
 const Row& row_of(const std::string& kind) {
   for (const Row& row : kRows)
@@ -114,22 +119,11 @@ std::vector<std::vector<double>> phases(std::span<const double> rate, const std:
   return out;
 }
 
-/// Equivalent degrees of freedom of overlapping estimates (Howe, Allan & Barnes 1981), by the local slope of the
-/// deviation on a log-log plot: -1 white phase (quantization), -1/2 white rate, 0 flicker, +1/2 random walk.
-double equivalent_degrees(double slope, double samples, double m) {
-  const double n = samples;
-  if (slope < -0.75) return std::max(1.0, (n + 1.0) * (n - 2.0 * m) / (2.0 * (n - m)));
-  if (slope < -0.25)
-    return std::max(1.0, (3.0 * (n - 1.0) / (2.0 * m) - 2.0 * (n - 2.0) / n) * 4.0 * m * m / (4.0 * m * m + 5.0));
-  if (slope < 0.25)
-    return std::max(1.0,
-                    m == 1.0 ? 2.0 * (n - 2.0) * (n - 2.0) / (2.3 * n - 4.9) : 5.0 * n * n / (4.0 * m * (n + 3.0 * m)));
-  const double q = (n - 1.0) * (n - 1.0) - 3.0 * m * (n - 1.0) + 4.0 * m * m;
-  return std::max(1.0, (n - 2.0) / m * q / ((n - 3.0) * (n - 3.0)));
-}
-
-void add_intervals(std::vector<DeviationPoint>& points, double samples, double confidence) {
+/// Each segment estimates by itself: degrees of freedom add up.
+void add_intervals(std::vector<DeviationPoint>& points, const Row& row, const std::vector<Segment>& segments,
+                   double confidence) {
   const double outside_each_side = 0.5 * (1.0 - confidence);
+  bool still_quantized = true;  // it falls fastest, so once another noise rules it does not come back
   for (std::size_t i = 0; i < points.size(); ++i) {
     DeviationPoint& p = points[i];
     // Slope over about a factor of two to each side, where the curve has that much.
@@ -139,9 +133,22 @@ void add_intervals(std::vector<DeviationPoint>& points, double samples, double c
     double slope = -0.5;
     if (a != b && points[a].deviation > 0.0 && points[b].deviation > 0.0)
       slope = std::log(points[b].deviation / points[a].deviation) / std::log(points[b].tau_s / points[a].tau_s);
-    p.edf = equivalent_degrees(slope, samples, static_cast<double>(p.m));
-    p.low = p.deviation * std::sqrt(p.edf / chi_square_threshold(outside_each_side, p.edf));
-    p.high = p.deviation * std::sqrt(p.edf / chi_square_threshold(1.0 - outside_each_side, p.edf));
+    NoiseType noise = noise_of_slope(slope);
+    still_quantized = still_quantized && noise == NoiseType::kQuantization;
+    if (noise == NoiseType::kQuantization && !still_quantized) noise = NoiseType::kWhite;
+    const auto m = static_cast<double>(p.m);
+    double bias = 0.0, weight = 0.0;
+    p.edf = 0.0;
+    for (const Segment& s : segments) {
+      const auto samples = static_cast<double>(s.end - s.begin);
+      if (samples < static_cast<double>(row.reach) * m) continue;
+      p.edf += row.degrees_of_freedom(noise, samples, m);
+      bias += samples * (row.bias ? row.bias(noise, samples, m) : 1.0);
+      weight += samples;
+    }
+    const double centre = p.deviation / std::sqrt(bias / weight);
+    p.low = centre * std::sqrt(p.edf / chi_square_threshold(outside_each_side, p.edf));
+    p.high = centre * std::sqrt(p.edf / chi_square_threshold(1.0 - outside_each_side, p.edf));
   }
 }
 
@@ -233,9 +240,7 @@ std::vector<DeviationPoint> deviation(const std::string& kind, std::span<const d
   std::vector<DeviationPoint> points;
   for (const DeviationPoint& p : all)
     if (p.edf > 0.0) points.push_back(p);
-  std::size_t samples = 0;
-  for (const Segment& s : sampling.segments) samples += s.end - s.begin;
-  add_intervals(points, static_cast<double>(samples), confidence);
+  add_intervals(points, row, sampling.segments, confidence);
   return points;
 }
 

@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/check.h"
+#include "core/chi_square.h"
 #include "inertial/allan/noise_terms.h"
 
 #ifdef CANYON_WITH_CERES
 #include <ceres/ceres.h>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include "inertial/allan/degrees_of_freedom.h"
 #endif
 
 namespace canyon::inertial {
@@ -29,16 +35,18 @@ const FittedTerm& NoiseFit::term(const std::string& name) const {
 double NoiseFit::deviation_at(double tau_s) const {
   double variance = 0.0;
   for (int k = 0; k < kNoiseTerms; ++k) {
-    const double value = terms.at(static_cast<std::size_t>(k)).value;
-    const double second = k == kWhite      ? neighbour_correlation / (1.0 + 2.0 * neighbour_correlation)
-                          : k == kSinusoid ? frequency_hz
-                                           : correlation_time_s;
-    if (value > 0.0) variance += allan_variance(k, value, second, tau_s, interval_s);
+    const FittedTerm& t = terms.at(static_cast<std::size_t>(k));
+    const double second = k == kWhite ? t.second / (1.0 + 2.0 * t.second) : t.second;
+    if (t.value > 0.0) variance += allan_variance(k, t.value, second, tau_s, interval_s);
   }
   return std::sqrt(variance);
 }
 
 #ifndef CANYON_WITH_CERES
+
+bool can_fit_noise() {
+  return false;
+}
 
 Result<NoiseFit> fit_noise(std::span<const DeviationPoint>, int, const std::vector<std::string>&) {
   return Error{"", 0, "", "this build has no noise fit", "a build with CANYON_WITH_CERES=ON"};
@@ -51,8 +59,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Real sensors are not exactly a sum of these processes: filters and rounding bend the curve by some per cent where
 // long logs would tell it to a tenth of one. 1-sigma of a point's deviation beyond statistics: the smallest of these
-// with which the misfit is what statistics and it explain.
-constexpr double kModelTolerances[] = {0.001, 0.005, 0.02};
+// with which statistics and it explain the misfit.
+constexpr double kModelTolerances[] = {0.001, 0.002, 0.005, 0.01, 0.02};
+constexpr double kMisfitByChance = 0.05;  // that a right model misfits more
 constexpr double kDeterminedSigmas = 2.0;
 // A process that forgets within a hundred samples is white noise as the sensor's bandwidth shapes it, not a bias.
 constexpr double kLeastCorrelationSamples = 100.0;
@@ -65,8 +74,9 @@ struct Combination {
   bool band_limited = false;
 
   bool has_second(int term) const {
-    return term == kGaussMarkov || term == kSinusoid || (term == kWhite && band_limited);
+    return term == kGaussMarkov || term >= kSinusoid || (term == kWhite && band_limited);
   }
+  bool has(int term) const { return std::find(terms.begin(), terms.end(), term) != terms.end(); }
   std::size_t parameters() const {
     std::size_t n = terms.size();
     for (const int term : terms) n += has_second(term) ? 1 : 0;
@@ -101,15 +111,38 @@ class LogVariance {
     return true;
   }
 
+  double weight() const { return weight_; }
+
  private:
   const Combination& model_;
   double tau_s_, interval_s_, measured_, weight_;
 };
 
+/// What is not one of the standard's slopes.
+constexpr int kLines[] = {kSinusoid, kSecondSinusoid, kThirdSinusoid};
+
 struct Solution {
   Combination model;
-  std::vector<double> logs, sigmas;
+  std::vector<double> logs;
   double chi_square = kInfinity;
+
+  /// Where a term's logarithms begin; the number of parameters where it is not there.
+  std::size_t place_of(int wanted) const {
+    std::size_t i = 0;
+    for (const int term : model.terms) {
+      if (term == wanted) break;
+      i += model.has_second(term) ? 2 : 1;
+    }
+    return i;
+  }
+  /// The second parameter of a term; 0 if there is none.
+  double second_of(int term) const {
+    return model.has(term) && model.has_second(term) ? std::exp(logs[place_of(term) + 1]) : 0.0;
+  }
+  double degrees_of_freedom(double effective_points) const {
+    return std::max(1.0, effective_points - static_cast<double>(logs.size()));
+  }
+  double chi_square_per_dof(double effective_points) const { return chi_square / degrees_of_freedom(effective_points); }
 };
 
 /// Where the search begins: each process alone explains the curve where it usually shows.
@@ -137,10 +170,15 @@ double first_guess(int term, std::span<const DeviationPoint> points) {
   }
 }
 
-/// Start values and limits of the second parameters.
+/// Start values of the second parameters.
 struct Seconds {
   double correlation_s = 0.0;
-  double frequency_hz = 0.0;
+  double frequencies_hz[3] = {0.0, 0.0, 0.0};
+
+  double of(int term) const {
+    if (term == kWhite) return 0.1;
+    return term >= kSinusoid ? frequencies_hz[term - kSinusoid] : correlation_s;
+  }
 };
 struct Limits {
   double low, high;
@@ -149,28 +187,14 @@ Limits second_limits(int term, std::span<const DeviationPoint> points) {
   const double interval_s = points.front().tau_s / static_cast<double>(points.front().m), last_s = points.back().tau_s;
   if (term == kWhite) return {1e-3, kLargestBandLimit};
   // A wave must turn once within the longest average and twice between samples.
-  if (term == kSinusoid) return {0.5 / last_s, 0.45 / interval_s};
+  if (term >= kSinusoid) return {0.5 / last_s, 0.45 / interval_s};
   const double least_s = kLeastCorrelationSamples * interval_s;
   return {least_s, 3.0 * std::max(last_s, 2.0 * least_s)};
 }
 
-std::vector<double> standard_deviations(ceres::Problem& problem, const std::vector<double>& logs) {
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
-  options.null_space_rank = -1;
-  options.num_threads = 1;
-  ceres::Covariance covariance(options);
-  const std::size_t n = logs.size();
-  std::vector<double> sigmas(n, kInfinity), matrix(n * n);
-  const std::vector<std::pair<const double*, const double*> > blocks = {{logs.data(), logs.data()}};
-  if (covariance.Compute(blocks, &problem) && covariance.GetCovarianceBlock(logs.data(), logs.data(), matrix.data()))
-    for (std::size_t i = 0; i < n; ++i) sigmas[i] = std::sqrt(std::max(0.0, matrix[i * n + i]));
-  return sigmas;
-}
-
 Solution solve(const Combination& model, std::span<const DeviationPoint> points, int per_octave, double tolerance,
-               Seconds start) {
-  Solution out{model, {}, {}, kInfinity};
+               const Seconds& start) {
+  Solution out{model, {}, kInfinity};
   std::vector<Limits> limits;
   for (const int term : model.terms) {
     const double guess = first_guess(term, points);
@@ -179,8 +203,7 @@ Solution solve(const Combination& model, std::span<const DeviationPoint> points,
     limits.push_back({guess * std::exp(-20.0), guess * std::exp(5.0)});
     if (!model.has_second(term)) continue;
     limits.push_back(second_limits(term, points));
-    const double second = term == kWhite ? 0.1 : term == kSinusoid ? start.frequency_hz : start.correlation_s;
-    out.logs.push_back(std::log(std::clamp(second, limits.back().low, limits.back().high)));
+    out.logs.push_back(std::log(std::clamp(start.of(term), limits.back().low, limits.back().high)));
   }
   ceres::Problem problem;
   for (const DeviationPoint& point : points) {
@@ -202,7 +225,6 @@ Solution solve(const Combination& model, std::span<const DeviationPoint> points,
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   out.chi_square = 2.0 * summary.final_cost;
-  out.sigmas = standard_deviations(problem, out.logs);
   return out;
 }
 
@@ -213,32 +235,36 @@ class Search {
          const std::vector<std::string>& allowed)
       : points_(points), per_octave_(per_octave), tolerance_(tolerance), allowed_(allowed) {}
 
-  double chi_square_per_dof() const {
-    return best_.chi_square / std::max(1.0, effective_points() - static_cast<double>(best_.logs.size()));
-  }
   double effective_points() const { return std::max(2.0, static_cast<double>(points_.size()) / per_octave_); }
 
+  /// Lines are looked for one after the other beside the best of the slopes, which are then weighed again.
   Solution best() {
-    try_all(0.0);
-    if (!may_use("sinusoid")) return best_;
-    // A line is looked for beside the best of the others; then all combinations are weighed with it.
-    const Solution without = best_;
-    Combination with = without.model;
-    with.terms.push_back(kSinusoid);
-    const Limits range = second_limits(kSinusoid, points_);
-    const double before = least_;
-    double frequency_hz = 0.0;
-    for (double start = range.low; start < range.high; start *= std::sqrt(2.0)) {
-      const double criterion = weigh(solve(with, points_, per_octave_, tolerance_, {seconds_of(without), start}));
-      if (criterion < before && criterion == least_) frequency_hz = best_frequency();
+    try_all();
+    for (const int line : kLines) {
+      if (!may_use(std::string(kNoiseTermNames[line])) || !find_line(line)) break;
+      try_neighbours();
     }
-    if (frequency_hz > 0.0) try_all(frequency_hz);
     return best_;
+  }
+
+  /// The best without a term, begun where it stands.
+  Solution without(int term, const Solution& all) const {
+    Combination fewer = all.model;
+    fewer.terms.erase(std::remove(fewer.terms.begin(), fewer.terms.end(), term), fewer.terms.end());
+    if (term == kWhite) fewer.band_limited = false;
+    return solve(fewer, points_, per_octave_, tolerance_, seconds_of(all));
   }
 
  private:
   bool may_use(const std::string& name) const {
     return allowed_.empty() || std::find(allowed_.begin(), allowed_.end(), name) != allowed_.end();
+  }
+  bool may_use(const Combination& model) const {
+    if (model.terms.empty()) return false;
+    for (const int term : model.terms)
+      if (!may_use(std::string(kNoiseTermNames[term]))) return false;
+    // Quantization has the same shape as the band limit, with the other sign.
+    return !model.band_limited || (model.has(kWhite) && !model.has(kQuantization) && may_use("band_limit"));
   }
 
   double weigh(Solution s) {
@@ -250,49 +276,69 @@ class Search {
     return criterion;
   }
 
-  /// The second parameter of a term in a solution; 0 if it is not there.
-  static double second_of(const Solution& s, int wanted) {
-    std::size_t i = 0;
-    for (const int term : s.model.terms) {
-      if (term == wanted && s.model.has_second(term)) return std::exp(s.logs[i + 1]);
-      i += s.model.has_second(term) ? 2 : 1;
-    }
-    return 0.0;
+  static Seconds seconds_of(const Solution& s) {
+    return {s.second_of(kGaussMarkov),
+            {s.second_of(kSinusoid), s.second_of(kSecondSinusoid), s.second_of(kThirdSinusoid)}};
   }
-  static double seconds_of(const Solution& s) { return second_of(s, kGaussMarkov); }
-  double best_frequency() const { return second_of(best_, kSinusoid); }
 
-  /// Every combination; those with a sinusoid only if its frequency is known.
-  void try_all(double frequency_hz) {
+  /// Adds a line to the best solution if that lowers the criterion at some frequency.
+  bool find_line(int line) {
+    Combination with = best_.model;
+    with.terms.push_back(line);
+    Seconds start = seconds_of(best_);
+    const double before = least_;
+    const Limits range = second_limits(line, points_);
+    for (double f = range.low; f < range.high; f *= std::sqrt(2.0)) {
+      start.frequencies_hz[line - kSinusoid] = f;
+      weigh(solve(with, points_, per_octave_, tolerance_, start));
+    }
+    return least_ < before;
+  }
+
+  /// Every combination of the standard's slopes, without lines.
+  void try_all() {
     for (int subset = 1; subset < 1 << kSinusoid; ++subset) {
       Combination model;
-      bool allowed = true;
-      for (int term = 0; term < kSinusoid; ++term) {
-        if (!(subset & 1 << term)) continue;
-        model.terms.push_back(term);
-        allowed = allowed && may_use(kNoiseTermNames[term]);
+      for (int term = 0; term < kSinusoid; ++term)
+        if (subset & 1 << term) model.terms.push_back(term);
+      for (const bool band_limited : {false, true}) {
+        model.band_limited = band_limited;
+        if (may_use(model)) try_starts(model, {});
       }
-      if (!allowed) continue;
-      if (frequency_hz > 0.0) model.terms.push_back(kSinusoid);
-      try_starts(model, frequency_hz);
-      // Quantization has the same shape with the other sign.
-      if ((subset & 1 << kWhite) == 0 || (subset & 1 << kQuantization) != 0 || !may_use("band_limit")) continue;
-      model.band_limited = true;
-      try_starts(model, frequency_hz);
+    }
+  }
+
+  /// From the best on: each of the slopes put in or left out, as long as that lowers the criterion.
+  void try_neighbours() {
+    for (double before = kInfinity; least_ < before;) {
+      before = least_;
+      const Combination centre = best_.model;
+      const Seconds start = seconds_of(best_);
+      for (int term = 0; term < kSinusoid; ++term)
+        for (const bool band_limited : {false, true}) {
+          Combination model = centre;
+          if (model.has(term))
+            model.terms.erase(std::remove(model.terms.begin(), model.terms.end(), term), model.terms.end());
+          else
+            model.terms.insert(std::lower_bound(model.terms.begin(), model.terms.end(), term), term);
+          model.band_limited = band_limited;
+          if (may_use(model)) try_starts(model, start);
+        }
     }
   }
 
   /// A correlation time has several local minima: begin in each decade.
-  void try_starts(const Combination& model, double frequency_hz) {
+  void try_starts(const Combination& model, Seconds start) {
     if (static_cast<double>(model.parameters()) > effective_points()) return;
-    const bool markov = std::find(model.terms.begin(), model.terms.end(), kGaussMarkov) != model.terms.end();
-    if (!markov) {
-      weigh(solve(model, points_, per_octave_, tolerance_, {0.0, frequency_hz}));
+    if (!model.has(kGaussMarkov)) {
+      weigh(solve(model, points_, per_octave_, tolerance_, start));
       return;
     }
     const Limits range = second_limits(kGaussMarkov, points_);
-    for (double start = 1.5 * range.low; start <= std::max(points_.back().tau_s, 1.5 * range.low); start *= 10.0)
-      weigh(solve(model, points_, per_octave_, tolerance_, {start, frequency_hz}));
+    for (double t = 1.5 * range.low; t <= std::max(points_.back().tau_s, 1.5 * range.low); t *= 10.0) {
+      start.correlation_s = t;
+      weigh(solve(model, points_, per_octave_, tolerance_, start));
+    }
   }
 
   std::span<const DeviationPoint> points_;
@@ -303,7 +349,75 @@ class Search {
   double least_ = kInfinity;
 };
 
+/// 1-sigma of a solution's logarithms. The weights of the fit count the points of an octave as one and octaves as
+/// independent; here it is their true covariance that goes through the same weights (the sandwich of Huber 1967).
+/// Infinite for what the curve does not depend on.
+std::vector<double> standard_deviations(const Solution& s, std::span<const DeviationPoint> points, int per_octave,
+                                        double tolerance) {
+  const auto n = static_cast<Eigen::Index>(points.size()), p = static_cast<Eigen::Index>(s.logs.size());
+  Eigen::MatrixXd jacobian(n, p), covariance(n, n);
+  constexpr double kStep = 1e-5;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const DeviationPoint& point = points[static_cast<std::size_t>(i)];
+    const LogVariance residual(s.model, point, per_octave, tolerance);
+    for (Eigen::Index k = 0; k < p; ++k) {
+      std::vector<double> logs = s.logs;
+      double ahead = 0.0, behind = 0.0;
+      const double* at = logs.data();
+      logs[static_cast<std::size_t>(k)] += kStep;
+      residual(&at, &ahead);
+      logs[static_cast<std::size_t>(k)] -= 2.0 * kStep;
+      residual(&at, &behind);
+      jacobian(i, k) = (ahead - behind) / (2.0 * kStep);
+    }
+    for (Eigen::Index j = 0; j <= i; ++j) {
+      const DeviationPoint& other = points[static_cast<std::size_t>(j)];
+      const double together = 2.0 / std::sqrt(point.edf * other.edf) *
+                              overlapping_correlation(static_cast<double>(point.m), static_cast<double>(other.m));
+      covariance(i, j) = covariance(j, i) = residual.weight() *
+                                            LogVariance(s.model, other, per_octave, tolerance).weight() *
+                                            (together + (i == j ? 4.0 * tolerance * tolerance : 0.0));
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(jacobian.transpose() * jacobian);
+  const double least = 1e-12 * eigen.eigenvalues().maxCoeff();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(p, p);
+  Eigen::VectorXd open = Eigen::VectorXd::Zero(p);
+  for (Eigen::Index k = 0; k < p; ++k) {
+    const Eigen::VectorXd v = eigen.eigenvectors().col(k);
+    if (eigen.eigenvalues()(k) > least)
+      inverse += v * v.transpose() / eigen.eigenvalues()(k);
+    else
+      open += v.cwiseAbs2();
+  }
+  const Eigen::MatrixXd of_logs = inverse * jacobian.transpose() * covariance * jacobian * inverse;
+  std::vector<double> sigmas;
+  for (Eigen::Index k = 0; k < p; ++k)
+    sigmas.push_back(open(k) > 1e-6 ? kInfinity : std::sqrt(std::max(0.0, of_logs(k, k))));
+  return sigmas;
+}
+
+/// The term furthest below what counts as determined, if there is one beside others. Where the processes describe the
+/// curve worse than its statistics, the sigmas grow with the misfit.
+std::optional<int> least_determined(const Solution& s, const std::vector<double>& sigmas, double effective_points) {
+  const double inflation = std::sqrt(std::max(1.0, s.chi_square_per_dof(effective_points)));
+  std::optional<int> out;
+  double widest = 1.0 / kDeterminedSigmas;
+  if (s.model.terms.size() < 2) return out;
+  for (const int term : s.model.terms) {
+    const double relative = sigmas[s.place_of(term)] * inflation;
+    if (relative < widest) continue;
+    widest = relative;
+    out = term;
+  }
+  return out;
+}
+
 }  // namespace
+
+bool can_fit_noise() {
+  return true;
+}
 
 Result<NoiseFit> fit_noise(std::span<const DeviationPoint> points, int points_per_octave,
                            const std::vector<std::string>& allowed) {
@@ -315,29 +429,36 @@ Result<NoiseFit> fit_noise(std::span<const DeviationPoint> points, int points_pe
     return Error{"", 0, "", std::to_string(used.size()) + " points of deviation above zero",
                  "three or more: a longer log"};
   NoiseFit fit;
+  fit.interval_s = used.front().tau_s / static_cast<double>(used.front().m);
+  for (const char* name : kNoiseTermNames) fit.terms.push_back({name, 0.0, kInfinity, false});
   Solution best;
+  std::vector<double> sigmas;
   for (const double tolerance : kModelTolerances) {
     Search search(used, points_per_octave, tolerance, allowed);
     best = search.best();
-    fit.chi_square_per_dof = search.chi_square_per_dof();
-    if (fit.chi_square_per_dof <= 1.0) break;
-  }
-  fit.interval_s = used.front().tau_s / static_cast<double>(used.front().m);
-  // Where the processes describe the curve worse than its statistics, the sigmas grow with the misfit.
-  const double inflation = std::sqrt(std::max(1.0, fit.chi_square_per_dof));
-  for (const char* name : kNoiseTermNames) fit.terms.push_back({name, 0.0, kInfinity, false});
-  std::size_t i = 0;
-  for (const int term : best.model.terms) {
-    const double value = std::exp(best.logs[i]), sigma = value * best.sigmas[i] * inflation;
-    const bool has_second = best.model.has_second(term);
-    if (value > kDeterminedSigmas * sigma) {
-      fit.terms[static_cast<std::size_t>(term)] = {kNoiseTermNames[term], value, sigma, true};
-      const double second = has_second ? std::exp(best.logs[i + 1]) : 0.0;
-      if (term == kGaussMarkov) fit.correlation_time_s = second;
-      if (term == kSinusoid) fit.frequency_hz = second;
-      if (term == kWhite) fit.neighbour_correlation = second / (1.0 - 2.0 * second);
+    sigmas = standard_deviations(best, used, points_per_octave, tolerance);
+    while (const auto open = least_determined(best, sigmas, search.effective_points())) {
+      best = search.without(*open, best);
+      sigmas = standard_deviations(best, used, points_per_octave, tolerance);
     }
-    i += has_second ? 2 : 1;
+    fit.chi_square_per_dof = best.chi_square_per_dof(search.effective_points());
+    if (best.chi_square <= chi_square_threshold(kMisfitByChance, best.degrees_of_freedom(search.effective_points())))
+      break;
+  }
+  const double inflation = std::sqrt(std::max(1.0, fit.chi_square_per_dof));
+  for (const int term : best.model.terms) {
+    const std::size_t i = best.place_of(term);
+    const double value = std::exp(best.logs[i]), sigma = value * sigmas[i] * inflation;
+    if (value <= kDeterminedSigmas * sigma) continue;
+    FittedTerm& t = fit.terms[static_cast<std::size_t>(term)];
+    t = {kNoiseTermNames[term], value, sigma, true};
+    if (!best.model.has_second(term)) continue;
+    t.second = std::exp(best.logs[i + 1]);
+    t.second_sigma = t.second * sigmas[i + 1] * inflation;
+    if (term != kWhite) continue;
+    const double shortened = 1.0 - 2.0 * t.second;  // rho = b / (1 - 2 b)
+    t.second /= shortened;
+    t.second_sigma /= shortened * shortened;
   }
   return fit;
 }

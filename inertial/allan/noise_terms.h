@@ -16,12 +16,15 @@ enum NoiseTerm {
   kRamp,
   kGaussMarkov,
   kSinusoid,
+  kSecondSinusoid,
+  kThirdSinusoid,
   kNoiseTerms
 };
 inline constexpr const char* kNoiseTermNames[kNoiseTerms] = {
-    "quantization", "white", "bias_instability", "rate_random_walk", "ramp", "gauss_markov", "sinusoid"};
+    "quantization", "white",    "bias_instability", "rate_random_walk", "ramp",
+    "gauss_markov", "sinusoid", "second_sinusoid",  "third_sinusoid"};
 
-/// The second parameter of a term: correlation time of Gauss-Markov, s; frequency of the sinusoid, Hz; band limit of
+/// The second parameter of a term: correlation time of Gauss-Markov, s; frequency of a sinusoid, Hz; band limit of
 /// the white noise, in sample intervals (noise_fit.h). The others have none.
 template <class T>
 T allan_variance(int term, const T& c, const T& second, double tau_s, double interval_s) {
@@ -38,7 +41,9 @@ T allan_variance(int term, const T& c, const T& second, double tau_s, double int
       return c * c * tau_s / 3.0;
     case kRamp:
       return c * c * tau_s * tau_s / 2.0;
-    case kSinusoid: {
+    case kSinusoid:
+    case kSecondSinusoid:
+    case kThirdSinusoid: {
       const T wave = sin(kPi * tau_s * second);
       const T ratio = wave * wave * (interval_s / tau_s) / sin(kPi * interval_s * second);
       return c * c * ratio * ratio;

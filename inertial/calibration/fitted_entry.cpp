@@ -81,7 +81,7 @@ class TriadWriter {
   std::string write() {
     out_ = std::string("\n[") + keys_.table + "]\n";
     process("white", keys_.white, keys_.white_source, keys_.white_unit, true);
-    const double correlation = fit_.neighbour_correlation;
+    const double correlation = fit_.term("white").second;
     if (correlation > 0.0) figure("neighbour_correlation", "neighbour_correlation_source", correlation, of_log());
     figure(keys_.turn_on, "turn_on_bias_source", unit_.bias[triad_] / keys_.bias_unit, unit_.bias_source[triad_]);
     in_run();
@@ -119,7 +119,7 @@ class TriadWriter {
     const double sigma = coefficient("gauss_markov");
     if (!(sigma > 0.0)) return figure(keys_.in_run, "in_run_bias_source", 0.0, "no such process in " + unit_.log);
     figure(keys_.in_run, "in_run_bias_source", sigma / keys_.bias_unit, of_log());
-    figure("in_run_bias_tau_s", "in_run_bias_tau_source", fit_.correlation_time_s, of_log());
+    figure("in_run_bias_tau_s", "in_run_bias_tau_source", fit_.term("gauss_markov").second, of_log());
   }
 
   /// The floor is 0.664 B. Flicker noise acts from a tenth of what the log could show up to a hundred times the
@@ -148,8 +148,9 @@ class TriadWriter {
         sum += found->gain(row, column) * found->gain(row, column);
         ++count;
       }
-    figure(key, source_key, std::sqrt(sum / std::max(1, count)) / si,
-           "found by calibration, root mean square of the axes");
+    if (count == 0) return figure(key, source_key, 0.0, "the log does not show it");
+    figure(key, source_key, std::sqrt(sum / count) / si,
+           unit_.calibration_source[triad_] + ", root mean square of the " + (diagonal ? "axes" : "terms"));
   }
 
   const FittedUnit& unit_;
@@ -191,6 +192,17 @@ Eigen::Vector3d mean_of_triad(const ImuLog& log, std::size_t first) {
 
 }  // namespace
 
+Result<NoiseFit> fit_triad(const FittedUnit& unit, std::size_t triad) {
+  return fit_noise(root_mean_square(unit, triad), unit.per_octave);
+}
+
+void take_calibration(FittedUnit& unit, std::size_t triad, const TriadCalibration& found, const std::string& source) {
+  unit.calibration[triad] = found;
+  unit.calibration_source[triad] = source;
+  unit.bias[triad] = found.bias.norm() / std::sqrt(3.0);
+  unit.bias_source[triad] = source + ", root mean square of the axes";
+}
+
 Result<std::string> catalogue_toml(const FittedUnit& unit) {
   const bool has_gyroscope =
       std::any_of(unit.noise.begin(), unit.noise.end(), [](const auto& n) { return n.channel < 3; });
@@ -199,7 +211,7 @@ Result<std::string> catalogue_toml(const FittedUnit& unit) {
   out += "in_run_bias_is_instability = false\n";
   for (const std::size_t triad : {std::size_t{0}, std::size_t{1}}) {
     if (triad == 0 && !has_gyroscope) continue;
-    CANYON_TRY(const NoiseFit fit, fit_noise(root_mean_square(unit, triad), unit.per_octave));
+    CANYON_TRY(const NoiseFit fit, fit_triad(unit, triad));
     out += TriadWriter(unit, triad, triad == 0 ? kGyroKeys : kAccelKeys, fit).write();
   }
   return out;

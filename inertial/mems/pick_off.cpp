@@ -16,7 +16,8 @@ constexpr PickOffRow kRows[] = {
 void visit(FieldVisitor& f, PickOffFigures& c) {
   f.number("gap_m", c.gap_m, {1e-9, 1e-3}, "gap between electrodes, or full travel");
   f.number("bias_v", c.bias_v, {1e-3, 100}, "voltage across electrodes or bridge");
-  f.number("capacitance_f", c.capacitance_f, {1e-16, 1e-9}, "capacitive: of one side at rest; piezoelectric: of crystal and amplifier");
+  f.number("capacitance_f", c.capacitance_f, {1e-16, 1e-9},
+           "capacitive: of one side at rest; piezoelectric: of crystal and amplifier");
   f.number("parasitic_f", c.parasitic_f, {0, 1e-9}, "capacitive: at the amplifier's input");
   f.number("amplifier_v_sqrt_hz", c.amplifier_v_sqrt_hz, {0, 1e-6}, "capacitive: voltage noise of the amplifier");
   f.number("bridge_ohm", c.bridge_ohm, {1, 1e7}, "piezoresistive: of the bridge");

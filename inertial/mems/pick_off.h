@@ -11,8 +11,8 @@ namespace canyon::inertial {
 
 /// Figures of all pick-offs; each model takes its own.
 struct PickOffFigures {
-  double gap_m = 2e-6;  ///< between electrodes, or the travel that full strain belongs to
-  double bias_v = 0.5;  ///< across electrodes or bridge
+  double gap_m = 2e-6;           ///< between electrodes, or the travel that full strain belongs to
+  double bias_v = 0.5;           ///< across electrodes or bridge
   double capacitance_f = 1e-13;  ///< capacitive: of one side at rest; piezoelectric: of crystal and amplifier's input
   // capacitive
   double parasitic_f = 2e-12;         ///< at the amplifier's input

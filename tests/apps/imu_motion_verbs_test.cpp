@@ -54,8 +54,7 @@ TEST_F(ImuMotionVerbsTest, WhatIsSimulatedWithoutErrorsIsFoundAgain) {
     EXPECT_EQ(drift["gravity"], "wgs84") << log;
     EXPECT_LT(drift["final_error_m"].get<double>(), 1e-3) << log;
     EXPECT_LT(drift["rms_3d_m"].get<double>(), 1e-3) << log;
-    EXPECT_TRUE(drift["nees_mean"].is_null());
-    EXPECT_TRUE(drift["outage"].is_null());
+    EXPECT_FALSE(drift.contains("nees_mean"));  // of a filter
     std::printf("%s, free for 600 s: %.2e m at the end\n", log, drift["final_error_m"].get<double>());
   }
 }

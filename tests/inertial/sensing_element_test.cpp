@@ -166,8 +166,8 @@ TEST(SensingElement, ReadsAConstantInput) {
   EXPECT_NEAR(capacitive.advance(0, 100.0), 1.0 / (1.0 - part * part), 1e-4);  // 6 sigma of the amplifier
 }
 
-// A piezoelectric pick-off forgets a constant, exp(-2 pi leak t), through a mass that is late by 1 / (w0 Q) and a filter
-// that is by sqrt(2) / (2 pi corner). A corner wrong by half a percent shows at 3 s, where the exponent is 1.9.
+// A piezoelectric pick-off forgets a constant, exp(-2 pi leak t), through a mass that is late by 1 / (w0 Q) and a
+// filter that is by sqrt(2) / (2 pi corner). A corner wrong by half a percent shows at 3 s, where the exponent is 1.9.
 TEST(SensingElement, PiezoelectricForgetsGravity) {
   ElementFigures f = quiet(1.0);
   f.mass_kg = 1e-3;
@@ -175,7 +175,8 @@ TEST(SensingElement, PiezoelectricForgetsGravity) {
   f.pick_off_figures = {};
   f.pick_off_figures.loss_tangent = 0.0;
   f.pick_off_figures.charge_c_per_m = 1e-3;
-  const double leak = 2.0 * kPi * f.pick_off_figures.leak_hz, late_s = std::sqrt(2.0) / (2.0 * kPi * f.bandwidth_hz) + 1.0 / (2.0 * kPi * f.resonance_hz);
+  const double leak = 2.0 * kPi * f.pick_off_figures.leak_hz,
+               late_s = std::sqrt(2.0) / (2.0 * kPi * f.bandwidth_hz) + 1.0 / (2.0 * kPi * f.resonance_hz);
   const double step_s = 0.01, noise_n = accelerometer_model(f, kTemperature_k)->pick_off_n;
   SensingElement crystal = element(f, step_s);
   for (int k = 0; k < 500; ++k) {
