@@ -60,12 +60,7 @@ Result<LocalGravity> gravity_of(const Options& options) {
     std::snprintf(text, sizeof text, "gravity given as %.6g m/s^2", options.gravity_m_s2);
     return LocalGravity{options.gravity_m_s2, text};
   }
-  if (options.at.empty()) {
-    std::fprintf(stderr,
-                 "note: gravity is taken as 9.80665 m/s^2; it differs by up to 0.03 from place to place: --at or "
-                 "--gravity\n");
-    return LocalGravity{kStandardGravity, "standard gravity, 9.80665 m/s^2"};
-  }
+  if (options.at.empty()) return LocalGravity{kStandardGravity, "standard gravity, 9.80665 m/s^2"};
   CANYON_TRY(const Geodetic at, parse_place(options.at, "--at"));
   const double g = gravity_E(ecef_from_geodetic(at)).norm();
   std::snprintf(text, sizeof text, "WGS84 normal gravity there, %.6g m/s^2", g);
@@ -273,6 +268,10 @@ Result<int> run(const Options& options) {
                                                 : fit_to_truth(options, log));
   CANYON_TRY(found.toml, inertial::catalogue_toml(found.unit));
   const auto& [gyro, accel] = found.unit.calibration;
+  if (options.truth.empty() && options.at.empty() && options.gravity_m_s2 == 0.0)
+    std::fprintf(stderr,
+                 "note: gravity is taken as 9.80665 m/s^2; it differs by up to 0.03 from place to place: --at or "
+                 "--gravity\n");
   if (!options.out.empty()) CANYON_TRY_STATUS(write_entry(options.out, found.toml, options.force));
   if (options.common.json) {
     Json out = {{"entry", found.toml}};
@@ -302,8 +301,8 @@ VerbAction declare(Arguments& arguments) {
   ways.option("--truth", options->truth,
               "log of a reference beside it, true rates or increments at the same times: bias, scale, misalignment");
   arguments.option("--truth-columns", options->truth_columns, "as --columns, of the reference");
-  const auto at = arguments.option("--at", options->at,
-                                   "LAT,LON,H of the log: normal gravity there; degrees, ellipsoidal metres");
+  const auto at =
+      arguments.option("--at", options->at, "LAT,LON,H of the log: normal gravity there; degrees, ellipsoidal metres");
   arguments.option("--gravity", options->gravity_m_s2, "local gravity, m/s^2; without it and --at standard gravity")
       .within(9.7, 9.9)
       .excludes(at);

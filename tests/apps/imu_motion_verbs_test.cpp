@@ -110,6 +110,8 @@ TEST_F(ImuMotionVerbsTest, SameSeedSameBitsForAnyNumberOfThreads) {
 TEST_F(ImuMotionVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("imu simulate --errors none",
                  "command line: no motion given, expected --at LAT,LON,H, --path NAME, --points or --trajectory FILE");
+  expect_mistake("imu simulate --path circle --duration 1e7 --rate 5000",
+                 "--duration: 50000000000 samples, expected at most 10000000: a shorter duration or a lower --rate");
   expect_mistake("imu simulate --path circel",
                  "--path: path: unknown name \"circel\", expected one of \"stationary\", \"straight\", \"circle\", ");
   expect_mistake("imu simulate --path circle --set radius=5",
@@ -132,6 +134,95 @@ TEST_F(ImuMotionVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("imu dead-reckon --imu given.csv --static 45,7,200,0 --integrator rk",
                  "--integrator: \"rk\", expected one of euler, trapezoid, constant_rate, two_sample, three_sample");
   expect_mistake("imu dead-reckon --imu nowhere.csv --static 45,7,200,0", "nowhere.csv");
+}
+
+/// Rows of a log, with those from `begin` to `end` left out.
+std::string without_rows(const std::string& text, std::size_t begin, std::size_t end) {
+  std::string out;
+  std::size_t row = 0;
+  for (std::size_t at = 0, next; at < text.size(); at = next + 1, ++row) {
+    next = text.find('\n', at);
+    if (row < begin || row >= end) out += text.substr(at, next + 1 - at);
+  }
+  return out;
+}
+
+// 2026-11-21: at rest with a second missing, the log of increments fell for the time of the gap.
+TEST_F(ImuMotionVerbsTest, AGapIsBridgedInRatesAndInIncrements) {
+  ASSERT_EQ(canyon("imu simulate --at 45,7,200 --errors none --duration 20 --rate 50 --out still"), 0);
+  for (const char* log : {"imu.csv", "imu_kf_gins.txt"}) {
+    write("given.csv", without_rows(read(std::string("still/") + log), 500, 550));
+    const auto drift = json_of("imu dead-reckon --imu given.csv --truth still/truth.nav");
+    EXPECT_EQ(drift["gaps"], 1) << log;
+    EXPECT_LT(drift["final_error_m"].get<double>(), 1e-3) << log;
+  }
+}
+
+TEST_F(ImuMotionVerbsTest, DeadAndSaturatedChannelsAreWarnedOf) {
+  ASSERT_EQ(canyon("imu simulate --at 45,7,200 --errors white_only --duration 4 --rate 50 --out still"), 0);
+  const std::string log = read("still/imu.csv");
+  const auto with_gx = [&](auto value_of) {
+    std::string out;
+    std::size_t row = 0;
+    for (std::size_t at = 0, next; at < log.size(); at = next + 1, ++row) {
+      next = log.find('\n', at);
+      const std::string line = log.substr(at, next - at);
+      const std::size_t first = line.find(','), second = line.find(',', first + 1);
+      out += row == 0 ? line
+                      : line.substr(0, first + 1) + value_of(row, line.substr(first + 1, second - first - 1)) +
+                            line.substr(second);
+      out += '\n';
+    }
+    return out;
+  };
+  write("given.csv", with_gx([](std::size_t, const std::string&) { return std::string("0.001"); }));
+  json_of("imu dead-reckon --imu given.csv --truth still/truth.nav");
+  EXPECT_THAT(read("stderr"), HasSubstr("given.csv:2: gx never changes, expected a channel that is alive"));
+  EXPECT_THAT(read("stderr"), StartsWith("warning: "));
+  write("given.csv",
+        with_gx([](std::size_t row, const std::string& was) { return row > 50 && row < 80 ? "0.01" : was; }));
+  json_of("imu dead-reckon --imu given.csv --truth still/truth.nav");
+  EXPECT_THAT(read("stderr"),
+              HasSubstr("given.csv:52: gx stays at its extreme value 0.01 rad/s for 29 samples: saturated"));
+}
+
+// 2026-11-21: an interval lengthened by jitter divided the increment of a true one.
+TEST_F(ImuMotionVerbsTest, JitterOfTheClockIsInTheStampsAlone) {
+  write("jitter.toml", std::string("name = \"jitter\"\n[gyro]\narw_deg_per_sqrt_hr = 0.0\nturn_on_bias_deg_per_hr = "
+                                   "0.0\nin_run_bias_deg_per_hr = 0.0\nscale_ppm = 0.0\nmisalignment_mrad = 0.0\n"
+                                   "[accel]\nvrw_m_s_per_sqrt_hr = 0.0\nturn_on_bias_mg = 0.0\nin_run_bias_mg = 0.0\n"
+                                   "scale_ppm = 0.0\nmisalignment_mrad = 0.0\n[unit]\nclock_jitter_us = 500\n"
+                                   "clock_jitter_source = \"test\"\n"));
+  ASSERT_EQ(canyon("imu simulate --at 45,7,200 --sensor jitter.toml --errors full --duration 2 --rate 50 --out still"),
+            0)
+      << read("stderr");
+  const std::string log = read("still/imu.csv");
+  double least_s = 1.0, most_s = 0.0, before = 0.0, t, v[6];
+  std::size_t row = 0;
+  for (std::size_t at = log.find('\n') + 1; at < log.size(); at = log.find('\n', at) + 1, ++row) {
+    ASSERT_EQ(std::sscanf(log.c_str() + at, "%lf,%lf,%lf,%lf,%lf,%lf,%lf", &t, v, v + 1, v + 2, v + 3, v + 4, v + 5),
+              7);
+    EXPECT_NEAR(v[5], 9.8057, 1e-3) << row;
+    if (row > 0) least_s = std::min(least_s, t - before), most_s = std::max(most_s, t - before);
+    before = t;
+  }
+  EXPECT_LT(least_s, 0.0195);
+  EXPECT_GT(most_s, 0.0205);
+}
+
+TEST_F(ImuMotionVerbsTest, PaperFiguresAreWritten) {
+  const auto json = json_of("imu paper --out figures");
+  ASSERT_EQ(json["figures"].size(), 6U);
+  for (const char* name : {"figures_2_and_3", "figure_7", "figure_7_text_parameters"})
+    for (const char* form : {"as_printed", "corrected"}) {
+      const std::string file = std::string("figures/") + name + "_" + form;
+      EXPECT_THAT(read(file + ".csv"), StartsWith("t_s,rate_x_deg_s,rate_y_deg_s,rate_z_deg_s,angle_x_deg,"));
+      EXPECT_THAT(read(file + ".svg"), HasSubstr("Integral of each gyroscope (heading), deg"));
+    }
+  for (const auto& figure : json["figures"])
+    if (figure["figure"] == "figures_2_and_3" && figure["form"] == "as corrected") {
+      EXPECT_NEAR(figure["drift_deg_per_hr"][0].get<double>(), 3.0, 2.0);
+    }
 }
 
 TEST_F(ImuMotionVerbsTest, MistakenLogsAreRecognized) {

@@ -226,6 +226,107 @@ TEST_F(ClosedLoopRealTest, OfAnMpu6050) {
   EXPECT_GE(shares[1].share(), 0.9);
 }
 
+/// The motion of a rate table and a shaker, about and along all axes.
+void move(std::size_t k, Eigen::Vector3d& rate, Eigen::Vector3d& force) {
+  const double t = 0.01 * static_cast<double>(k);
+  rate = {std::sin(0.9 * t), std::cos(0.7 * t), 0.8 * std::sin(1.9 * t)};
+  force = {3.0 * std::sin(1.3 * t), 4.0 * std::cos(0.4 * t), kStandardGravity + 2.0 * std::sin(2.7 * t)};
+}
+
+/// What a unit of the entry measures of that motion; the seed draws its constants.
+std::array<std::vector<Eigen::Vector3d>, 2> measured_motion(const CatalogueEntry& entry, std::uint64_t seed,
+                                                            std::size_t samples) {
+  auto chain = *make_full_chain({.entry = entry, .seed = seed, .rate_hz = 100.0});
+  std::array<std::vector<Eigen::Vector3d>, 2> out;
+  for (std::size_t k = 0; k < samples; ++k) {
+    ImuSample s;
+    Eigen::Vector3d rate, force;
+    move(k, rate, force);
+    s.dt_s = 0.01;
+    s.dtheta_U = 0.01 * rate;
+    s.dv_U = 0.01 * force;
+    chain->corrupt(static_cast<std::int64_t>(k), s);
+    out[0].push_back(s.dtheta_U / 0.01);
+    out[1].push_back(s.dv_U / 0.01);
+  }
+  return out;
+}
+
+/// Calibrated against the motion itself.
+std::array<TriadCalibration, 2> calibrated(const CatalogueEntry& entry, std::uint64_t seed, std::size_t samples) {
+  const auto measured = measured_motion(entry, seed, samples);
+  std::array<std::vector<Eigen::Vector3d>, 2> truth;
+  for (std::size_t k = 0; k < samples; ++k) {
+    Eigen::Vector3d rate, force;
+    move(k, rate, force);
+    truth[0].push_back(rate);
+    truth[1].push_back(force);
+  }
+  return {*fit_to_reference(measured[0], truth[0]), *fit_to_reference(measured[1], truth[1])};
+}
+
+double root_mean_square_of(const Eigen::Matrix3d& m, bool diagonal) {
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum += (i == j) == diagonal ? m(i, j) * m(i, j) : 0.0;
+  return std::sqrt(sum / (diagonal ? 3.0 : 6.0));
+}
+
+// A unit of known scale factors, misalignments and biases, calibrated and written as an entry: the entry's figures are
+// the root mean squares of what the unit had, and units simulated from the entry have such again: over 60 of them the
+// root mean square of 3 (6) terms each is the entry's within four standard deviations, 1 / sqrt(2 * 180) each.
+TEST_F(ClosedLoopTest, ACalibratedEntryHoldsScaleMisalignmentAndBias) {
+  CatalogueEntry unit = *load_catalogue_entry("mpu6050");
+  unit.gyro.nonlinearity_percent.value = unit.accel.nonlinearity_percent.value = 0.0;
+  unit.gyro.g_sensitivity_deg_per_hr_per_g.value = 0.0;
+  unit.gyro.resolution_deg_per_s.value = unit.accel.resolution_mg.value = 0.0;
+  const std::size_t samples = 20000;
+  const auto found = calibrated(unit, 11, samples);
+  FittedUnit fitted;
+  fitted.name = "mine";
+  fitted.log = "log.csv";
+  fitted.rate_hz = 100.0;
+  fitted.duration_s = 200.0;
+  const ImuLog rest = simulated(unit, samples, 100.0, 11);
+  fitted.noise = *log_noise(rest, {0.01, {{0, samples}}, 0.0}, {});
+  for (std::size_t triad = 0; triad < 2; ++triad)
+    take_calibration(fitted, triad, found[triad], "found in log.csv against the reference truth.csv");
+  const std::string toml = *catalogue_toml(fitted);
+  EXPECT_NE(
+      toml.find("scale_source = \"found in log.csv against the reference truth.csv, root mean square of the axes\""),
+      std::string::npos)
+      << toml;
+  const auto entry = parse_catalogue_entry(toml, "mine.toml");
+  ASSERT_TRUE(entry.ok()) << entry.error().str();
+  const UnitFigures figures = entry->figures();
+  const TriadFigures* triads[2] = {&figures.gyro, &figures.accel};
+  for (std::size_t triad = 0; triad < 2; ++triad) {
+    const double scale = root_mean_square_of(found[triad].gain, true);
+    const double tilt = root_mean_square_of(found[triad].gain, false);
+    EXPECT_GT(scale, 1e-3);
+    EXPECT_NEAR(triads[triad]->scale / scale, 1.0, 1e-5);
+    EXPECT_NEAR(triads[triad]->misalignment_rad / tilt, 1.0, 1e-5);
+    EXPECT_NEAR(triads[triad]->turn_on_bias / (found[triad].bias.norm() / std::sqrt(3.0)), 1.0, 1e-5);
+  }
+  // What the unit had, from its own entry: 1 % and 20 mrad are the sigmas that the seed draws from.
+  EXPECT_LT(triads[0]->scale, 4.0 * 0.01);
+  double scale2[2] = {}, tilt2[2] = {}, bias2[2] = {};
+  constexpr int kUnits = 60;
+  for (std::uint64_t seed = 0; seed < kUnits; ++seed) {
+    const auto again = calibrated(*entry, 100 + seed, 2000);
+    for (std::size_t triad = 0; triad < 2; ++triad) {
+      scale2[triad] += std::pow(root_mean_square_of(again[triad].gain, true), 2) / kUnits;
+      tilt2[triad] += std::pow(root_mean_square_of(again[triad].gain, false), 2) / kUnits;
+      bias2[triad] += again[triad].bias.squaredNorm() / 3.0 / kUnits;
+    }
+  }
+  for (std::size_t triad = 0; triad < 2; ++triad) {
+    EXPECT_NEAR(std::sqrt(scale2[triad]) / triads[triad]->scale, 1.0, 4.0 / std::sqrt(2.0 * 180.0)) << triad;
+    EXPECT_NEAR(std::sqrt(tilt2[triad]) / triads[triad]->misalignment_rad, 1.0, 4.0 / std::sqrt(2.0 * 360.0)) << triad;
+    EXPECT_NEAR(std::sqrt(bias2[triad]) / triads[triad]->turn_on_bias, 1.0, 4.0 / std::sqrt(2.0 * 180.0)) << triad;
+  }
+}
+
 TEST_F(ClosedLoopTest, TheEntrySaysWhereItsFiguresAreFrom) {
   const ImuLog log = simulated(*load_catalogue_entry("stim300"), 20000, 100.0, 5);
   FittedUnit unit;

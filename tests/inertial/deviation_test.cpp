@@ -131,13 +131,12 @@ TEST(Deviation, WhiteNoiseAndRandomWalk) {
     for (const auto& p : deviation(kind, y, uniform(y.size(), 1.0), factors)) {
       const auto m = static_cast<double>(p.m);
       const double factor = kind == "modified" ? std::sqrt((m * m + 1.0) / (2.0 * m * m)) : 1.0;
-      EXPECT_NEAR(p.deviation * std::sqrt(m) / factor, 1.0, 5.0 / std::sqrt(2.0 * p.edf) + 0.01) << kind << " " << p.m;
+      EXPECT_NEAR(p.deviation * std::sqrt(m) / factor, 1.0, 5.0 / std::sqrt(2.0 * p.edf)) << kind << " " << p.m;
     }
   }
   for (const auto& p : deviation("overlapping", walk, uniform(y.size(), 1.0), factors)) {
-    if (p.m < 16) continue;  // the sampled walk has steps
-    EXPECT_NEAR(p.deviation / std::sqrt(static_cast<double>(p.m) / 3.0), 1.0, 5.0 / std::sqrt(2.0 * p.edf) + 0.01)
-        << p.m;
+    const auto m = static_cast<double>(p.m);  // the sampled walk has steps: m / 3 + 1 / (6 m)
+    EXPECT_NEAR(p.deviation / std::sqrt((2.0 * m * m + 1.0) / (6.0 * m)), 1.0, 5.0 / std::sqrt(2.0 * p.edf)) << p.m;
   }
 }
 

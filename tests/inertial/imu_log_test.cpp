@@ -146,6 +146,46 @@ TEST_F(ImuLogTest, UnitMixUpsAreNamed) {
             "log.csv:9: gy = 180 rad/s: no gyroscope goes so far; these are deg/s, expected names in _deg_s");
 }
 
+// Each triad is judged by itself. The Earth's rate by the interval: rates where increments are said.
+TEST_F(ImuLogTest, UnitMixUpsOfOneTriadAreNamed) {
+  const auto earth = [](double factor) {
+    return [factor](int k, double* v) {
+      for (int c = 0; c < 3; ++c) v[c] = Wgs84::rate_rad_s * factor / std::sqrt(3.0) * (k % 2 ? 1.01 : 0.99);
+    };
+  };
+  EXPECT_EQ(mistake(resting("t_s,gx_rad,gy_rad,gz_rad", 1.0, 1.0, 200, earth(1.0))),
+            "log.csv:2: mean rate 0.007292 rad/s is the Earth's by the interval: these are rates, where increments are "
+            "said, expected names in _rad_s");
+  EXPECT_EQ(mistake(resting("t_s,gx_rad,gy_rad,gz_rad,ax_m_s2,ay_m_s2,az_m_s2", 1.0, 1.0, 200, earth(1.0))),
+            "log.csv:2: mean rate 0.007292 rad/s is the Earth's by the interval: these are rates, where increments are "
+            "said, expected names in _rad_s");
+  EXPECT_EQ(mistake(resting("t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s,ay_m_s,az_m_s", 1.0, 0.01, 200, earth(0.01))),
+            "log.csv:2: mean rate 7.292e-07 rad/s is the Earth's times the interval: these are angle increments, not "
+            "rates, expected names in _rad");
+  // Rates of the one and increments of the other, both right.
+  EXPECT_TRUE(read(resting("t_s,gx_rad,gy_rad,gz_rad,ax_m_s2,ay_m_s2,az_m_s2", 0.01, 1.0)).ok());
+  EXPECT_EQ(mistake("t_s,gx_rad,gy_rad_s,gz_rad\n0,1,2,3\n"),
+            "log.csv:1: rates and increments in one gyroscope, expected one of the two");
+}
+
+// 2026-11-21: the increment behind a gap was divided by the whole gap, and showed a ninth of gravity there; the jitter
+// of a host's stamps became noise of the accelerometer.
+TEST_F(ImuLogTest, IncrementsCoverOneSampleIntervalWhateverTheStampsSay) {
+  std::string text = "t_s,gx_rad,gy_rad,gz_rad,ax_m_s,ay_m_s,az_m_s\n";
+  for (int k = 0; k < 400; ++k) {
+    const double t = 0.01 * k + (k >= 200 ? 1.0 : 0.0) + 1e-3 * std::sin(2.1 * k);
+    char row[120];
+    std::snprintf(row, sizeof row, "%.6f,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", t, 1e-5 * (k % 3), -1e-5 * (k % 5),
+                  1e-5 * (k % 7), 1e-4 * (k % 3), -1e-4 * (k % 5), 0.0980665 + 1e-5 * (k % 11));
+    text += row;
+  }
+  const auto log = read(text);
+  ASSERT_TRUE(log.ok()) << log.error().str();
+  EXPECT_TRUE(log->increments[0] && log->increments[1]);
+  for (std::size_t k = 0; k < log->size(); ++k)
+    EXPECT_NEAR(log->channels[5][k], 9.80665 + 1e-3 * static_cast<double>(k % 11), 0.02) << k;  // interval: 0.1 %
+}
+
 TEST_F(ImuLogTest, StuckAndSaturatedChannelsAreNamed) {
   const std::string stuck = resting(kSi, 1.0, 1.0, 200, [](int, double* v) { v[2] = 0.25; });
   EXPECT_EQ(mistake(stuck), "log.csv:2: gz never changes, expected a channel that is alive");
