@@ -122,8 +122,8 @@ double total_degrees(NoiseType noise, double samples, double m) {
     case NoiseType::kQuantization:
       return overlapping_degrees(noise, samples, m);
     case NoiseType::kWhite:
-      // At small m neighbouring samples no longer overlap: as the overlapping deviation.
-      return std::max(1.0, std::min(1.5 * ratio, m < 4.0 ? overlapping_degrees(noise, samples, m) : 1.5 * ratio));
+      // The law is for many samples to an average; below, reflection adds next to nothing to the overlapping deviation.
+      return m < 4.0 ? overlapping_degrees(noise, samples, m) : std::max(1.0, 1.5 * ratio);
     case NoiseType::kFlicker:
       return std::max(1.0, std::min(1.17 * ratio - 0.22, samples - 1.0));
     case NoiseType::kRandomWalk:
