@@ -42,7 +42,7 @@ Grid heights_from_above(const scene::Scene& scene, double cell_m) {
       for (int column = 0; column < grid.columns; ++column) {
         const double x = grid.west_m + (column + 0.5) * grid.cell_m,
                      y = grid.south_m + (static_cast<double>(row) + 0.5) * grid.cell_m;
-        const auto hit = at.trace({Eigen::Vector3d(x, y, top_m).cast<float>(), {0, 0, -1}});
+        const auto hit = at.trace({Eigen::Vector3d(x, y, top_m), {0, 0, -1}});
         if (!hit.hit()) continue;
         const auto ground = scene.ground(x, y);
         grid.at(column, static_cast<int>(row)) = top_m - hit.range_m - (ground ? ground->height_m : extent.min.z());

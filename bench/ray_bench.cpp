@@ -22,7 +22,7 @@ const canyon::scene::Scene& city() {
 std::vector<Ray> revolution() {
   const Eigen::Vector2d crossing = city().streets().nodes_W[city().streets().nodes_W.size() / 2];
   const double ground_m = city().ground(crossing.x(), crossing.y())->height_m;
-  const Eigen::Vector3f origin = Eigen::Vector3d(crossing.x(), crossing.y(), ground_m + 1.8).cast<float>();
+  const Eigen::Vector3d origin(crossing.x(), crossing.y(), ground_m + 1.8);
   std::vector<Ray> rays;
   for (int step = 0; step < 1800; ++step)
     for (int beam = 0; beam < 16; ++beam) {

@@ -36,7 +36,7 @@ class Footprint final : public EchoModel {
         const float up[3] = {placements.R[2][lane], placements.R[5][lane], placements.R[8][lane]};
         spread_beam(volley.rays[Volley::shot(laser, c) / Volley::kLanes], lane, up, offsets_, rays[c]);
       }
-      scene.trace(rays, hits);
+      scene.trace(rays, hits, volley.origin_W);
       for (std::size_t c = 0; c < Volley::kCycles; ++c) {
         const std::size_t shot = Volley::shot(laser, c);
         EchoPacket& packet = first[shot / Volley::kLanes];

@@ -8,7 +8,7 @@ class SingleRay final : public EchoModel {
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
     thread_local std::vector<scene::HitPacket> hits;
     hits.resize(volley.packets());
-    scene.trace(volley.rays, hits);
+    scene.trace(volley.rays, hits, volley.origin_W);
     const std::span<EchoPacket> echoes = out.start(volley.packets());
     constexpr std::size_t kAhead = 2;  // packets
     for (std::size_t p = 0; p < hits.size(); ++p) {

@@ -29,6 +29,7 @@ struct Volley {
   PlacementPacket placements[kPacketsPerLaser];
   std::vector<AimPacket> aims;  ///< nominal: where the sensor believes it points
   std::vector<scene::RayPacket> rays;
+  Eigen::Vector3d origin_W = Eigen::Vector3d::Zero();  ///< what the rays' origins are relative to
 
   std::size_t packets() const { return lasers * kPacketsPerLaser; }
   std::size_t shots() const { return packets() * kLanes; }

@@ -48,7 +48,8 @@ class VolleyScanner final : public Scanner {
       return;
     }
     const FiringPattern::Sweep sweep = pattern_.sweep(index);
-    const SweepMotion motion = motion_of(t, truth, sweep);
+    const Eigen::Vector3d origin_W = ray_origin(truth, scene);
+    const SweepMotion motion = motion_of(t, truth, sweep, origin_W);
     const Surfaces surfaces(scene, config_.wavelength_nm);
     const std::size_t volleys = volleys_of(sweep);
     const std::size_t most = sweep.cycles * pattern_.lasers() * report_.most_returns();
@@ -67,7 +68,7 @@ class VolleyScanner final : public Scanner {
     std::mutex mutex;
     parallel_for(volleys, 1, [&](std::size_t v, std::size_t) {
       thread_local VolleyReturns returns;
-      run_chain(sweep, v, motion, scene, surfaces, returns);
+      run_chain(sweep, v, motion, origin_W, scene, surfaces, returns);
       count[v] = returns.total();
       std::size_t first = 0;
       {
@@ -95,7 +96,8 @@ class VolleyScanner final : public Scanner {
   void true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
                    std::vector<float>& out) override {
     const FiringPattern::Sweep sweep = pattern_.sweep(index);
-    const SweepMotion motion = motion_of(t, truth, sweep);
+    const Eigen::Vector3d origin_W = ray_origin(truth, scene);
+    const SweepMotion motion = motion_of(t, truth, sweep, origin_W);
     out.resize(pattern_.lasers() * sweep.cycles);
     parallel_for(volleys_of(sweep), 1, [&](std::size_t begin, std::size_t end) {
       thread_local Volley volley;
@@ -103,7 +105,7 @@ class VolleyScanner final : public Scanner {
       for (std::size_t v = begin; v < end; ++v) {
         fire(sweep, v, motion, config_.max_range_m, volley);
         hits.resize(volley.packets());
-        scene.trace(volley.rays, hits);
+        scene.trace(volley.rays, hits, origin_W);
         for (std::size_t laser = 0; laser < volley.lasers; ++laser) {
           float* ring = out.data() + laser * sweep.cycles + volley.first_cycle;
           for (std::size_t c = 0; c < volley.cycles; c += Volley::kLanes) {
@@ -126,9 +128,16 @@ class VolleyScanner final : public Scanner {
     return (sweep.cycles + Volley::kCycles - 1) / Volley::kCycles;
   }
 
-  SweepMotion motion_of(GpsTime t, const Trajectory& truth, const FiringPattern::Sweep& sweep) const {
+  static Eigen::Vector3d ray_origin(const Trajectory& truth, const scene::SceneAt& scene) {
+    return truth.empty() ? Eigen::Vector3d::Zero() : scene.packet_origin(truth.poses().back().X_WB.p);
+  }
+
+  /// The sensor's motion in W moved to origin_W.
+  SweepMotion motion_of(GpsTime t, const Trajectory& truth, const FiringPattern::Sweep& sweep,
+                        const Eigen::Vector3d& origin_W) const {
     const double first_s = std::min(-period_s_, sweep.start_s);
-    SweepMotion motion(truth, t - config_.latency_s, first_s, 0.0, Pose{}, X_BL_);
+    const Pose X_RW{Eigen::Quaterniond::Identity(), -origin_W};
+    SweepMotion motion(truth, t - config_.latency_s, first_s, 0.0, X_RW, X_BL_);
     CANYON_CHECK(motion.covers(first_s) && motion.covers(0.0), "the true motion does not cover the sweep that ends at ",
                  (t - config_.latency_s).iso());
     return motion;
@@ -204,8 +213,10 @@ class VolleyScanner final : public Scanner {
   }
 
   void run_chain(const FiringPattern::Sweep& sweep, std::size_t v, const SweepMotion& motion,
-                 const scene::SceneAt& scene, const Surfaces& surfaces, VolleyReturns& out) const {
+                 const Eigen::Vector3d& origin_W, const scene::SceneAt& scene, const Surfaces& surfaces,
+                 VolleyReturns& out) const {
     thread_local Volley volley;
+    volley.origin_W = origin_W;
     thread_local Echoes echoes;
     // Noise may bring a surface just beyond the limit into view.
     fire(sweep, v, motion, config_.max_range_m + 8.0 * config_.range_noise_m, volley);

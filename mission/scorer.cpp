@@ -53,8 +53,7 @@ std::string Scorer::collides(const KinematicState& truth) const {
     const auto touched = [&](double x0, double y0, double x1, double y1) -> std::string {
       const Eigen::Vector3d a = truth.X_WB * Eigen::Vector3d(x0, y0, z), b = truth.X_WB * Eigen::Vector3d(x1, y1, z);
       const Eigen::Vector3d d = b - a;
-      const scene::Hit hit =
-          scene_.trace({a.cast<float>(), d.normalized().cast<float>(), static_cast<float>(d.norm())});
+      const scene::Hit hit = scene_.trace({a, d.normalized().cast<float>(), static_cast<float>(d.norm())});
       if (!hit.hit()) return {};
       return scene_.object(scene_.surface(hit.triangle).object).name;
     };

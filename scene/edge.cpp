@@ -15,6 +15,7 @@ namespace canyon::scene {
 namespace {
 
 constexpr double kBlock_m = 50.0;
+constexpr double kTile_m = 2000.0;
 const double kFlat = std::cos(15.0 * kDegree);
 
 using Place = std::tuple<float, float, float>;
@@ -84,20 +85,38 @@ std::vector<Edge> convex_edges(const Scene& scene, double min_length_m) {
   return edges;
 }
 
+void EdgeIndex::Square::add(const Edge& e) {
+  for (const Eigen::Vector3d& p : {e.a_W, e.b_W}) {
+    reach_m = std::max(reach_m, std::hypot(p.x() - x_m, p.y() - y_m));
+    top_m = std::max(top_m, p.z());
+  }
+}
+
 EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
-  std::map<std::pair<int, int>, std::size_t> block_of;
+  if (edges_.empty()) return;
+  Eigen::Vector3d low = edges_[0].a_W;
+  for (const Edge& e : edges_) low = low.cwiseMin(0.5 * (e.a_W + e.b_W));
+  using Place = std::pair<int, int>;
+  std::map<Place, std::size_t> tile_of;
+  std::map<std::pair<Place, Place>, std::size_t> block_of;  // by tile and place
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
     const Edge& e = edges_[i];
     const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W);
-    const int column = static_cast<int>(std::floor(middle.x() / kBlock_m));
-    const int row = static_cast<int>(std::floor(middle.y() / kBlock_m));
-    const auto [at, fresh] = block_of.emplace(std::pair{row, column}, blocks_.size());
-    if (fresh) blocks_.push_back({.x_m = (column + 0.5) * kBlock_m, .y_m = (row + 0.5) * kBlock_m, .edges = {}});
-    Block& block = blocks_[at->second];
-    for (const Eigen::Vector3d& p : {e.a_W, e.b_W}) {
-      block.reach_m = std::max(block.reach_m, std::hypot(p.x() - block.x_m, p.y() - block.y_m));
-      block.top_m = std::max(block.top_m, p.z());
-    }
+    const Place wide(static_cast<int>((middle.y() - low.y()) / kTile_m),
+                     static_cast<int>((middle.x() - low.x()) / kTile_m));
+    const auto [tile_at, new_tile] = tile_of.emplace(wide, tiles_.size());
+    if (new_tile)
+      tiles_.push_back(
+          {{.x_m = low.x() + (wide.second + 0.5) * kTile_m, .y_m = low.y() + (wide.first + 0.5) * kTile_m}, {}});
+    Tile& tile = tiles_[tile_at->second];
+    const Place place(static_cast<int>(std::floor(middle.y() / kBlock_m)),
+                      static_cast<int>(std::floor(middle.x() / kBlock_m)));
+    const auto [at, fresh] = block_of.emplace(std::pair{wide, place}, tile.blocks.size());
+    if (fresh)
+      tile.blocks.push_back({{.x_m = (place.second + 0.5) * kBlock_m, .y_m = (place.first + 0.5) * kBlock_m}, {}});
+    Block& block = tile.blocks[at->second];
+    tile.add(e);
+    block.add(e);
     block.edges.push_back(i);
   }
 }
@@ -106,20 +125,27 @@ void EdgeIndex::shading(const Eigen::Vector3d& p_W, double elevation_rad, double
                         std::vector<std::uint32_t>& out) const {
   out.clear();
   const double rise = std::tan(std::min(elevation_rad, 0.4999 * kPi)), cosine = std::cos(elevation_rad);
-  const auto stands_out = [&](double top_m, double distance_m) {
+  const auto stands_out = [&](double top_m, double nearest_m, double farthest_m) {
     // The way there is longer than its horizontal part; the widest bend is across it.
-    const double bend_m = std::sqrt(2.0 * detour_m * (distance_m / cosine + std::abs(top_m)));
-    return top_m + bend_m / cosine >= distance_m * rise;
+    const double bend_m = std::sqrt(2.0 * detour_m * (farthest_m / cosine + std::abs(top_m)));
+    return top_m + bend_m / cosine >= nearest_m * rise;
   };
-  for (const Block& block : blocks_) {
-    const double distance_m = std::max(std::hypot(block.x_m - p_W.x(), block.y_m - p_W.y()) - block.reach_m, 0.0);
-    if (!stands_out(block.top_m - p_W.z(), distance_m)) continue;
-    for (const std::uint32_t i : block.edges) {
-      const Edge& e = edges_[i];
-      const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W) - p_W;
-      const double half_m = 0.5 * (e.b_W - e.a_W).head<2>().norm();
-      const double top_m = std::max(e.a_W.z(), e.b_W.z()) - p_W.z();
-      if (stands_out(top_m, std::max(middle.head<2>().norm() - half_m, 0.0))) out.push_back(i);
+  const auto within = [&](const Square& square) {
+    const double distance_m = std::hypot(square.x_m - p_W.x(), square.y_m - p_W.y());
+    return stands_out(square.top_m - p_W.z(), std::max(distance_m - square.reach_m, 0.0), distance_m + square.reach_m);
+  };
+  for (const Tile& tile : tiles_) {
+    if (!within(tile)) continue;
+    for (const Block& block : tile.blocks) {
+      if (!within(block)) continue;
+      for (const std::uint32_t i : block.edges) {
+        const Edge& e = edges_[i];
+        const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W) - p_W;
+        const double half_m = 0.5 * (e.b_W - e.a_W).head<2>().norm();
+        const double top_m = std::max(e.a_W.z(), e.b_W.z()) - p_W.z();
+        const double distance_m = std::max(middle.head<2>().norm() - half_m, 0.0);
+        if (stands_out(top_m, distance_m, distance_m)) out.push_back(i);
+      }
     }
   }
 }

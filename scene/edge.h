@@ -29,15 +29,22 @@ class EdgeIndex {
                std::vector<std::uint32_t>& out) const;
 
  private:
-  /// A square of the ground and the edges whose middles lie in it.
-  struct Block {
+  /// A square of the ground and how far what lies in it reaches.
+  struct Square {
     double x_m, y_m;
     double reach_m = 0.0;  ///< no edge of it comes farther from the center, horizontally
     double top_m = -1e300;
-    std::vector<std::uint32_t> edges;
+    void add(const Edge& edge);
+  };
+  struct Block : Square {
+    std::vector<std::uint32_t> edges;  ///< whose middles lie in it
+  };
+  /// Blocks of a large square, so that of a wide scene only what is near or high is looked at closely.
+  struct Tile : Square {
+    std::vector<Block> blocks;
   };
   std::vector<Edge> edges_;
-  std::vector<Block> blocks_;
+  std::vector<Tile> tiles_;
 };
 
 class Scene;

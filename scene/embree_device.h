@@ -32,9 +32,11 @@ inline Plane plane_of(const Triangle& t) {
   return {n.x(), n.y(), n.z(), n.x() * t.a.x() + n.y() * t.a.y() + n.z() * t.a.z()};
 }
 
-/// Range and normal of a hit in double precision, from the plane of the triangle that Embree found at `traced_m`.
-inline void refine(const Ray& ray, const Plane& plane, float traced_m, Hit& hit) {
-  const Eigen::Vector3d o = ray.origin.cast<double>(), d = ray.direction.cast<double>();
+/// Range and normal of a hit in double precision, from the plane of the triangle that Embree found at `traced_m`. Plane
+/// and origin are in the same frame.
+inline void refine(const Eigen::Vector3d& o, const Eigen::Vector3f& direction, const Plane& plane, float traced_m,
+                   Hit& hit) {
+  const Eigen::Vector3d d = direction.cast<double>();
   const PlaneRange found = plane_range(plane, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), traced_m);
   hit.range_m = found.range_m;
   const double towards = found.approach > 0.0 ? -1.0 : 1.0;

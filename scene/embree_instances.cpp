@@ -51,15 +51,15 @@ struct InstanceSet::Embree {
   }
 };
 
-InstanceSet::InstanceSet(std::vector<Instance> instances)
-    : instances_(std::move(instances)), embree_(std::make_unique<Embree>()) {
+InstanceSet::InstanceSet(std::vector<Instance> instances, const Eigen::Vector3d& center_W)
+    : instances_(std::move(instances)), center_W_(center_W), embree_(std::make_unique<Embree>()) {
   embree_->scene = rtcNewScene(device());
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
   first_.push_back(0);
   for (std::uint32_t i = 0; i < instances_.size(); ++i) {
-    const Pose& X_WS = instances_[i].X_WS;
-    CANYON_CHECK(X_WS.p.allFinite() && X_WS.R.coeffs().allFinite(), "instance ", instances_[i].name);
-    const Eigen::Matrix<float, 3, 4> transform = X_WS.matrix().topRows<3>().cast<float>();  // by columns
+    const Pose X_CS{instances_[i].X_WS.R, instances_[i].X_WS.p - center_W_};
+    CANYON_CHECK(X_CS.p.allFinite() && X_CS.R.coeffs().allFinite(), "instance ", instances_[i].name);
+    const Eigen::Matrix<float, 3, 4> transform = X_CS.matrix().topRows<3>().cast<float>();  // by columns
     RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, instances_[i].shape->embree_->scene);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
@@ -83,8 +83,8 @@ InstanceSet::Member InstanceSet::member(std::uint32_t triangle) const {
 Plane InstanceSet::plane(const Member& member) const {
   const Instance& instance = instances_[member.instance];
   const Triangle in_S = Triangle::of(instance.shape->mesh(), member.triangle);
-  const Pose& X_WS = instance.X_WS;
-  return embree::plane_of({X_WS * in_S.a, X_WS * in_S.b, X_WS * in_S.c});
+  const Pose X_CS{instance.X_WS.R, instance.X_WS.p - center_W_};
+  return embree::plane_of({X_CS * in_S.a, X_CS * in_S.b, X_CS * in_S.c});
 }
 
 namespace {
@@ -134,7 +134,7 @@ void InstanceSet::trace(std::span<const Ray> rays, std::uint32_t first_triangle,
     const std::size_t count = std::min(RayPacket::kRays, rays.size() - begin);
     for (std::size_t lane = 0; lane < RayPacket::kRays; ++lane) {
       const std::size_t k = begin + std::min(lane, count - 1);
-      const Eigen::Vector3f &o = rays[k].origin, &d = rays[k].direction;
+      const Eigen::Vector3f o = (rays[k].origin - center_W_).cast<float>(), d = rays[k].direction;
       const float reach_m = hits[k].hit() ? hits[k].range_m : rays[k].max_m;
       query.set(lane, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), lane < count ? reach_m : -1.0f);
     }
@@ -144,26 +144,30 @@ void InstanceSet::trace(std::span<const Ray> rays, std::uint32_t first_triangle,
       const Member member = query.member(lane);
       Hit& hit = hits[begin + lane];
       hit.triangle = first_triangle + first_[member.instance] + member.triangle;
-      embree::refine(rays[begin + lane], plane(member), query.range_m(lane), hit);
+      const Ray& ray = rays[begin + lane];
+      embree::refine(ray.origin - center_W_, ray.direction, plane(member), query.range_m(lane), hit);
     }
   }
 }
 
-void InstanceSet::trace(std::span<const RayPacket> rays, std::uint32_t first_triangle,
+void InstanceSet::trace(std::span<const RayPacket> rays, const Eigen::Vector3d& origin_W, std::uint32_t first_triangle,
                         std::span<HitPacket> hits) const {
+  const Eigen::Vector3d shift = origin_W - center_W_;
+  const auto sx = static_cast<float>(shift.x()), sy = static_cast<float>(shift.y()), sz = static_cast<float>(shift.z());
   Query query;
   for (std::size_t p = 0; p < rays.size(); ++p) {
     const RayPacket& r = rays[p];
     HitPacket& h = hits[p];
     for (std::size_t i = 0; i < RayPacket::kRays; ++i)
-      query.set(i, r.origin_x[i], r.origin_y[i], r.origin_z[i], r.direction_x[i], r.direction_y[i], r.direction_z[i],
-                std::min(h.range_m[i], r.max_m[i]));
+      query.set(i, r.origin_x[i] + sx, r.origin_y[i] + sy, r.origin_z[i] + sz, r.direction_x[i], r.direction_y[i],
+                r.direction_z[i], std::min(h.range_m[i], r.max_m[i]));
     query.trace(embree_->scene);
     for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
       if (!query.met(i)) continue;
       const Member member = query.member(i);
-      const PlaneRange found = plane_range(plane(member), r.origin_x[i], r.origin_y[i], r.origin_z[i], r.direction_x[i],
-                                           r.direction_y[i], r.direction_z[i], query.range_m(i));
+      const PlaneRange found =
+          plane_range(plane(member), r.origin_x[i] + shift.x(), r.origin_y[i] + shift.y(), r.origin_z[i] + shift.z(),
+                      r.direction_x[i], r.direction_y[i], r.direction_z[i], query.range_m(i));
       h.triangle[i] = first_triangle + first_[member.instance] + member.triangle;
       h.range_m[i] = found.range_m;
       h.cos_incidence[i] = static_cast<float>(std::min(std::abs(found.approach), 1.0));
@@ -171,8 +175,9 @@ void InstanceSet::trace(std::span<const RayPacket> rays, std::uint32_t first_tri
   }
 }
 
-bool InstanceSet::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m,
+bool InstanceSet::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, float min_m,
                            float max_m) const {
+  const Eigen::Vector3f origin = (origin_W - center_W_).cast<float>();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay query{};

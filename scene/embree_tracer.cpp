@@ -57,28 +57,50 @@ class Query {
 struct Tracer::Embree {
   class LanePlanes;
 
-  explicit Embree(const Mesh& the_mesh) : mesh(the_mesh) {}
+  Embree(const Mesh& the_mesh, const Eigen::Vector3d& center) : mesh(the_mesh), center_W(center) {}
   ~Embree() {
     if (scene != nullptr) rtcReleaseScene(scene);
   }
 
   const Mesh& mesh;
+  Eigen::Vector3d center_W;
   RTCScene scene = nullptr;
   /// Terrain, solids and trees are separate geometries, told apart by their masks; here: their triangles' indices in
   /// the mesh.
   std::array<std::vector<std::uint32_t>, 3> members;
 
-  void add_geometry(unsigned geometry_id, RTCBuffer vertices) {
+  /// The vertices that are in use, about the center (exactly), and where each of the mesh's went.
+  struct Vertices {
+    RTCBuffer buffer;
+    std::size_t count = 0;
+    std::vector<std::uint32_t> place;
+  };
+  Vertices vertices_in_use() const {
+    Vertices out;
+    out.place.assign(mesh.vertices.size(), Hit::kMiss);
+    for (const auto& geometry : members)
+      for (const std::uint32_t i : geometry)
+        for (const std::uint32_t v : mesh.triangles[i]) out.place[v] = 0;
+    for (std::uint32_t& place : out.place)
+      if (place == 0) place = static_cast<std::uint32_t>(out.count++);
+    // Embree reads each vertex as four floats, so one float beyond the last must be readable.
+    out.buffer = rtcNewBuffer(device(), out.count * sizeof(Eigen::Vector3f) + 16);
+    auto* p = static_cast<Eigen::Vector3f*>(rtcGetBufferData(out.buffer));
+    for (std::size_t v = 0; v < out.place.size(); ++v)
+      if (out.place[v] != Hit::kMiss) *p++ = (mesh.vertices[v].cast<double>() - center_W).cast<float>();
+    return out;
+  }
+
+  void add_geometry(unsigned geometry_id, const Vertices& vertices) {
     const std::vector<std::uint32_t>& triangles = members[geometry_id];
     if (triangles.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices, 0, sizeof(Eigen::Vector3f),
-                         mesh.vertices.size());
-    auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+    rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.buffer, 0,
+                         sizeof(Eigen::Vector3f), vertices.count);
+    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      std::copy(mesh.triangles[triangles[i]].begin(), mesh.triangles[triangles[i]].end(), indices + 3 * i);
-    }
+    for (const std::uint32_t i : triangles)
+      for (const std::uint32_t v : mesh.triangles[i]) *index++ = vertices.place[v];
     rtcSetGeometryMask(geometry, 1u << geometry_id);
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, geometry_id);
@@ -89,7 +111,25 @@ struct Tracer::Embree {
     return members[geometry_id][primitive_id];
   }
 
-  Plane plane(std::uint32_t index) const { return embree::plane_of(Triangle::of(mesh, index)); }
+  /// About the center, as rays are traced.
+  Plane plane(std::uint32_t index) const {
+    const Triangle t = Triangle::of(mesh, index);
+    return embree::plane_of({t.a - center_W, t.b - center_W, t.c - center_W});
+  }
+  Eigen::Vector3d local(const Eigen::Vector3d& p_W) const { return p_W - center_W; }
+
+  /// Embree's ray.
+  RTCRay ray(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, const RaySpan& span,
+             std::uint32_t mask) const {
+    const Eigen::Vector3f p = (local(origin_W) + span.start_m * direction.cast<double>()).cast<float>();
+    RTCRay out{};
+    out.org_x = p.x(), out.org_y = p.y(), out.org_z = p.z();
+    out.dir_x = direction.x(), out.dir_y = direction.y(), out.dir_z = direction.z();
+    out.tnear = static_cast<float>(span.from_m - span.start_m);
+    out.tfar = static_cast<float>(span.to_m - span.start_m);
+    out.mask = mask;
+    return out;
+  }
 
   /// What packets need of the triangles, geometry after geometry (`first` is where each begins): 36 bytes each, made
   /// when the first packet is traced, so that scenes whose sensors send none do not pay.
@@ -121,7 +161,7 @@ struct Tracer::Embree {
     Hit result;
     if (geometry_id == RTC_INVALID_GEOMETRY_ID) return result;
     result.triangle = triangle(geometry_id, primitive_id);
-    embree::refine(ray, plane(result.triangle), embree_range_m, result);
+    embree::refine(local(ray.origin), ray.direction, plane(result.triangle), embree_range_m, result);
     return result;
   }
 };
@@ -153,39 +193,32 @@ class Tracer::Embree::LanePlanes {
   std::array<std::uint32_t, kPacket> held_, triangles_;
 };
 
-Tracer::Tracer(const SceneParts& parts) : embree_(std::make_unique<Embree>(parts.mesh)) {
-  const Mesh& mesh = parts.mesh;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const ObjectKind kind = parts.objects[mesh.object[i]].kind;
+Tracer::Tracer(const SceneParts& parts, std::span<const std::uint32_t> triangles, const Eigen::Vector3d& center_W)
+    : embree_(std::make_unique<Embree>(parts.mesh, center_W)) {
+  for (const std::uint32_t i : triangles) {
+    const ObjectKind kind = parts.objects[parts.mesh.object[i]].kind;
     embree_->members[kind == ObjectKind::kTerrain ? 0 : kind == ObjectKind::kTree ? 2 : 1].push_back(i);
   }
-
   embree_->scene = rtcNewScene(device());
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
-  // Embree reads each vertex as four floats, so one float beyond the last must be readable.
-  const std::size_t bytes = mesh.vertices.size() * sizeof(Eigen::Vector3f);
-  RTCBuffer vertices = rtcNewBuffer(device(), bytes + 16);
-  if (bytes > 0) std::memcpy(rtcGetBufferData(vertices), mesh.vertices.data(), bytes);
+  const Embree::Vertices vertices = embree_->vertices_in_use();
   for (unsigned id = 0; id < 3; ++id) embree_->add_geometry(id, vertices);
-  rtcReleaseBuffer(vertices);
+  rtcReleaseBuffer(vertices.buffer);
   embree::build(embree_->scene);
 }
 
 Tracer::~Tracer() = default;
 
-Hit Tracer::trace(const Ray& ray) const {
+Hit Tracer::trace(const Ray& ray, const RaySpan& span) const {
   embree::check_finite(ray);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};
-  query.ray.org_x = ray.origin.x(), query.ray.org_y = ray.origin.y(), query.ray.org_z = ray.origin.z();
-  query.ray.dir_x = ray.direction.x(), query.ray.dir_y = ray.direction.y(), query.ray.dir_z = ray.direction.z();
-  query.ray.tnear = 0.0f;
-  query.ray.tfar = ray.max_m;
-  query.ray.mask = kTraceAll;
+  query.ray = embree_->ray(ray.origin, ray.direction, span, kTraceAll);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(embree_->scene, &context, &query);
-  return embree_->hit(ray, query.hit.geomID, query.hit.primID, query.ray.tfar);
+  const float range_m = query.ray.tfar + static_cast<float>(span.start_m);
+  return embree_->hit(ray, query.hit.geomID, query.hit.primID, range_m);
 }
 
 void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -197,8 +230,8 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
     for (std::size_t lane = 0; lane < kPacket; ++lane) {
       const Ray& ray = rays[begin + std::min(lane, count - 1)];
       embree::check_finite(ray);
-      packet.origin_x[lane] = ray.origin.x(), packet.origin_y[lane] = ray.origin.y();
-      packet.origin_z[lane] = ray.origin.z();
+      const Eigen::Vector3f origin = embree_->local(ray.origin).cast<float>();
+      packet.origin_x[lane] = origin.x(), packet.origin_y[lane] = origin.y(), packet.origin_z[lane] = origin.z();
       packet.direction_x[lane] = ray.direction.x(), packet.direction_y[lane] = ray.direction.y();
       packet.direction_z[lane] = ray.direction.z();
       packet.max_m[lane] = lane < count ? ray.max_m : -1.0f;
@@ -235,18 +268,13 @@ std::int64_t Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket>
   return queries[0].traced() + queries[1].traced();
 }
 
-bool Tracer::occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m,
+bool Tracer::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, const RaySpan& span,
                       std::uint32_t mask) const {
-  CANYON_CHECK(origin.allFinite() && direction.allFinite(), "origin ", origin.transpose(), " direction ",
+  CANYON_CHECK(origin_W.allFinite() && direction.allFinite(), "origin ", origin_W.transpose(), " direction ",
                direction.transpose());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay query{};
-  query.org_x = origin.x(), query.org_y = origin.y(), query.org_z = origin.z();
-  query.dir_x = direction.x(), query.dir_y = direction.y(), query.dir_z = direction.z();
-  query.tnear = min_m;
-  query.tfar = max_m;
-  query.mask = mask;
+  RTCRay query = embree_->ray(origin_W, direction, span, mask);
   rtcOccluded1(embree_->scene, &context, &query);
   return query.tfar < 0.0f;  // Embree sets -infinity
 }
@@ -256,7 +284,8 @@ std::uint32_t Tracer::terrain_triangle(double x, double y) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};
-  query.ray.org_x = static_cast<float>(x), query.ray.org_y = static_cast<float>(y), query.ray.org_z = 1e4f;
+  const Eigen::Vector3f p = embree_->local({x, y, 0.0}).cast<float>();
+  query.ray.org_x = p.x(), query.ray.org_y = p.y(), query.ray.org_z = 1e4f;
   query.ray.dir_z = -1.0f;
   query.ray.tfar = std::numeric_limits<float>::infinity();
   query.ray.mask = kTraceTerrain;
@@ -296,13 +325,14 @@ bool visit_candidate(RTCPointQueryFunctionArguments* arguments) {
 NearestSurface Tracer::nearest(const Eigen::Vector3d& p_W, double max_m) const {
   CANYON_CHECK(p_W.allFinite() && max_m >= 0.0, "p = ", p_W.transpose(), ", max_m = ", max_m);
   // The tree is searched around the point rounded to single precision; the slack covers that rounding.
-  const double slack_m = 1e-6 * (1.0 + p_W.cwiseAbs().maxCoeff() + std::min(max_m, 1e6));
+  const Eigen::Vector3d p = embree_->local(p_W);
+  const double slack_m = 1e-6 * (1.0 + p.cwiseAbs().maxCoeff() + std::min(max_m, 1e6));
   NearestQuery search{&embree_->mesh, &embree_->members, p_W, slack_m, {}};
   search.best.distance_m = max_m;
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   RTCPointQuery query{};
-  query.x = static_cast<float>(p_W.x()), query.y = static_cast<float>(p_W.y()), query.z = static_cast<float>(p_W.z());
+  query.x = static_cast<float>(p.x()), query.y = static_cast<float>(p.y()), query.z = static_cast<float>(p.z());
   query.radius = static_cast<float>(std::min(max_m, 1e6) + slack_m);
   rtcPointQuery(embree_->scene, &query, &context, visit_candidate, &search);
   return search.best.triangle == Hit::kMiss ? NearestSurface{} : search.best;

@@ -61,12 +61,16 @@ class FacetIndex {
     float x_m, y_m, radius_m, bottom_m, top_m, area_m2;
     std::uint32_t facet;
   };
-  /// A square of the ground and the facets whose centers lie in it, sorted into classes of lean.
-  struct Block {
+  /// A square of the ground and what may be asked of all facets whose centers lie in it at once.
+  struct Square {
     double x_m, y_m;                ///< center
     double reach_m = 0.0;           ///< no facet of it comes farther from the center, horizontally
     double area_m2 = 0.0;           ///< largest
     double upright_top_m = -1e300;  ///< of what does not lean back
+    void add(const Facet& facet, bool leans_back);
+  };
+  /// Facets of a small square, sorted into classes of lean.
+  struct Block : Square {
     struct Class {
       std::size_t lean = 0;
       double bottom_m = 1e300, top_m = -1e300;
@@ -75,10 +79,14 @@ class FacetIndex {
     };
     std::vector<Class> classes;
   };
-  void build_blocks();
+  /// Blocks of a large square, so that of a wide scene only what is near or high is looked at closely.
+  struct Tile : Square {
+    std::vector<Block> blocks;
+  };
+  void build_tiles();
 
   std::vector<Facet> facets_;
-  std::vector<Block> blocks_;
+  std::vector<Tile> tiles_;
   // Uniform 2-D grid over x, y; each cell lists the facets whose bounding square overlaps it, in ascending order.
   double cell_m_ = 0.0;
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();

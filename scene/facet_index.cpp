@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "core/check.h"
 #include "core/units.h"
@@ -12,6 +14,7 @@ namespace {
 constexpr double kCell_m = 25.0;
 constexpr int kMaxCells = 400;  // per side; larger scenes get larger cells
 constexpr double kBlock_m = 50.0;
+constexpr double kTile_m = 2000.0;
 
 // Classes of lean: upright; leaning over (its upper edge hangs forward); so far over that it faces nearly straight
 // down; and leaning back, by the degree.
@@ -45,12 +48,12 @@ class Arrivals {
   /// points could, the answer is yes.
   bool meet(double bottom_m, double top_m, double distance_m) const {
     constexpr double kSlack_m = 1e-3;  // rounding
-    return !never_ && top_m + kSlack_m >= distance_m * rise_ && bottom_m - kSlack_m <= -distance_m * fall_;
+    return !never_ && (!rise_ || top_m + kSlack_m >= distance_m * *rise_) &&
+           (!fall_ || bottom_m - kSlack_m <= -distance_m * *fall_);
   }
 
  private:
-  // Least tangents upward and downward; far below any real one where nothing is asked.
-  double rise_ = -1e9, fall_ = -1e9;
+  std::optional<double> rise_, fall_;  // least tangents upward and downward, where such are asked for
   bool never_ = false;
 };
 
@@ -75,37 +78,34 @@ FacetIndex::FacetIndex(std::vector<Facet> facets) : facets_(std::move(facets)) {
       for (int column = range.column0; column <= range.column1; ++column) cells_[cell(column, row)].push_back(i);
     }
   }
-  build_blocks();
+  build_tiles();
 }
 
-void FacetIndex::build_blocks() {
+void FacetIndex::Square::add(const Facet& f, bool leans_back) {
+  reach_m = std::max(reach_m, std::hypot(f.center_W.x() - x_m, f.center_W.y() - y_m) + f.radius_m);
+  area_m2 = std::max(area_m2, f.area_m2);
+  if (!leans_back) upright_top_m = std::max(upright_top_m, f.top_m);
+}
+
+void FacetIndex::build_tiles() {
   const double block_m = std::max(kBlock_m, cell_m_);
-  const int columns = static_cast<int>(columns_ * cell_m_ / block_m) + 1;
-  std::map<int, std::size_t> block_of;  // by row and column; ordered, so that the blocks are
-  std::vector<int> keys(facets_.size());
-  for (std::size_t i = 0; i < facets_.size(); ++i) {
-    const int column = static_cast<int>((facets_[i].center_W.x() - origin_.x()) / block_m);
-    const int row = static_cast<int>((facets_[i].center_W.y() - origin_.y()) / block_m);
-    keys[i] = row * columns + column;
-    block_of.emplace(keys[i], 0);
-  }
-  for (auto& [key, index] : block_of) {
-    index = blocks_.size();
-    blocks_.push_back({.x_m = origin_.x() + (key % columns + 0.5) * block_m,
-                       .y_m = origin_.y() + (key / columns + 0.5) * block_m,
-                       .reach_m = 0.0,
-                       .area_m2 = 0.0,
-                       .upright_top_m = -1e300,
-                       .classes = {}});
-  }
+  using Place = std::pair<int, int>;  // row, column
+  const auto place_in = [&](const Facet& f, double edge_m) {
+    return Place(static_cast<int>((f.center_W.y() - origin_.y()) / edge_m),
+                 static_cast<int>((f.center_W.x() - origin_.x()) / edge_m));
+  };
+  const auto square = [&](const Place& place, double edge_m) {
+    return Square{.x_m = origin_.x() + (place.second + 0.5) * edge_m,
+                  .y_m = origin_.y() + (place.first + 0.5) * edge_m};
+  };
+  std::map<Place, std::map<Place, Block>> blocks;  // ordered by tile, then by block
   for (std::uint32_t i = 0; i < facets_.size(); ++i) {
     const Facet& f = facets_[i];
-    Block& block = blocks_[block_of[keys[i]]];
-    block.reach_m =
-        std::max(block.reach_m, std::hypot(f.center_W.x() - block.x_m, f.center_W.y() - block.y_m) + f.radius_m);
-    block.area_m2 = std::max(block.area_m2, f.area_m2);
+    const Place place = place_in(f, block_m);
+    auto& of_tile = blocks[place_in(f, kTile_m)];
+    Block& block = of_tile.try_emplace(place, Block{square(place, block_m), {}}).first->second;
     const std::size_t lean = lean_class(f.normal_W.z());
-    if (lean < kLeansBack) block.upright_top_m = std::max(block.upright_top_m, f.top_m);
+    block.add(f, lean >= kLeansBack);
     auto c = std::find_if(block.classes.begin(), block.classes.end(), [&](const auto& x) { return x.lean == lean; });
     if (c == block.classes.end()) c = block.classes.insert(c, Block::Class{.lean = lean, .facets = {}});
     c->bottom_m = std::min(c->bottom_m, f.bottom_m);
@@ -114,6 +114,15 @@ void FacetIndex::build_blocks() {
     c->facets.push_back({static_cast<float>(f.center_W.x()), static_cast<float>(f.center_W.y()),
                          static_cast<float>(f.radius_m), static_cast<float>(f.bottom_m), static_cast<float>(f.top_m),
                          static_cast<float>(f.area_m2), i});
+  }
+  for (auto& [place, of_tile] : blocks) {
+    Tile tile{square(place, kTile_m), {}};
+    for (auto& [_, block] : of_tile) {
+      for (const auto& c : block.classes)
+        for (const Brief& f : c.facets) tile.add(facets_[f.facet], c.lean >= kLeansBack);
+      tile.blocks.push_back(std::move(block));
+    }
+    tiles_.push_back(std::move(tile));
   }
 }
 
@@ -152,15 +161,19 @@ void FacetIndex::mirrors(const Eigen::Vector3d& p_W, double elevation_rad, doubl
   out.clear();
   std::vector<Arrivals> arrivals;
   for (std::size_t k = 0; k < kLeanClasses; ++k) arrivals.emplace_back(elevation_rad, k);
-  for (const Block& block : blocks_) {
+  // How far away a square's facets are at least; none if nothing of it can mirror.
+  const auto within = [&](const Square& square) -> std::optional<double> {
     const double distance_m =
-        std::max(Eigen::Vector2d(block.x_m - p_W.x(), block.y_m - p_W.y()).norm() - block.reach_m, 0.0);
-    if (distance_m > reach_per_area_1_m * block.area_m2) continue;
-    const bool leaning = distance_m <= leaning_reach_m;
-    if (!leaning && !arrivals[0].meet(-1e9, block.upright_top_m - p_W.z(), distance_m)) continue;
+        std::max(Eigen::Vector2d(square.x_m - p_W.x(), square.y_m - p_W.y()).norm() - square.reach_m, 0.0);
+    const bool stands_out =
+        distance_m <= leaning_reach_m || arrivals[0].meet(-1e9, square.upright_top_m - p_W.z(), distance_m);
+    return stands_out && distance_m <= reach_per_area_1_m * square.area_m2 ? std::optional(distance_m) : std::nullopt;
+  };
+  const auto add = [&](const Block& block, double distance_m) {
     for (const Block::Class& c : block.classes) {
       const Arrivals& a = arrivals[c.lean];
-      if ((c.lean >= kLeansBack && !leaning) || distance_m > reach_per_area_1_m * c.area_m2) continue;
+      if ((c.lean >= kLeansBack && distance_m > leaning_reach_m) || distance_m > reach_per_area_1_m * c.area_m2)
+        continue;
       if (!a.meet(c.bottom_m - p_W.z(), c.top_m - p_W.z(), distance_m)) continue;
       for (const Brief& f : c.facets) {
         const double dx = f.x_m - p_W.x(), dy = f.y_m - p_W.y();
@@ -169,6 +182,11 @@ void FacetIndex::mirrors(const Eigen::Vector3d& p_W, double elevation_rad, doubl
           out.push_back(f.facet);
       }
     }
+  };
+  for (const Tile& tile : tiles_) {
+    if (!within(tile)) continue;
+    for (const Block& block : tile.blocks)
+      if (const auto distance_m = within(block)) add(block, *distance_m);
   }
 }
 

@@ -54,7 +54,8 @@ struct Instance {
 /// those of the first instance, then those of the second.
 class InstanceSet {
  public:
-  explicit InstanceSet(std::vector<Instance> instances);
+  /// Works in W moved to `center_W`, which should be near.
+  explicit InstanceSet(std::vector<Instance> instances, const Eigen::Vector3d& center_W = Eigen::Vector3d::Zero());
   ~InstanceSet();
   InstanceSet(const InstanceSet&) = delete;
   InstanceSet& operator=(const InstanceSet&) = delete;
@@ -70,14 +71,17 @@ class InstanceSet {
   /// through.
   void trace(const Ray& ray, std::uint32_t first_triangle, Hit& hit) const;
   void trace(std::span<const Ray> rays, std::uint32_t first_triangle, std::span<Hit> hits) const;
-  void trace(std::span<const RayPacket> rays, std::uint32_t first_triangle, std::span<HitPacket> hits) const;
-  bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m) const;
+  /// Origins of packets are relative to `origin_W`.
+  void trace(std::span<const RayPacket> rays, const Eigen::Vector3d& origin_W, std::uint32_t first_triangle,
+             std::span<HitPacket> hits) const;
+  bool occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, float min_m, float max_m) const;
 
  private:
   struct Embree;
-  /// The plane in W of a triangle of an instance's shape.
+  /// The plane of a triangle of an instance's shape, about the center.
   Plane plane(const Member& member) const;
   std::vector<Instance> instances_;
+  Eigen::Vector3d center_W_;
   std::vector<std::uint32_t> first_;  ///< of each instance, its first triangle; at the end the number of all
   std::unique_ptr<Embree> embree_;
 };

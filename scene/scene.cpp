@@ -5,7 +5,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
-#include "scene/tracer.h"
+#include "scene/tiled_tracer.h"
 #include "scene/triangle.h"
 
 namespace canyon::scene {
@@ -62,7 +62,7 @@ Scene::Scene(SceneParts parts) : parts_(std::move(parts)) {
   check_indices(parts_);
   dropped_triangles_ = drop_unusable_triangles(parts_.mesh);
   extent_ = extent_of(parts_.mesh);
-  tracer_ = std::make_unique<Tracer>(parts_);
+  tracer_ = std::make_unique<TiledTracer>(parts_, extent_);
   crowns_ = FoliageIndex(parts_.foliage);
 }
 

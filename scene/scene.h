@@ -64,7 +64,7 @@ struct Extent {
   Eigen::Vector3d max = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
 };
 
-class Tracer;
+class TiledTracer;
 
 /// A static scene: immutable and shared by all runs and threads.
 class Scene {
@@ -116,7 +116,7 @@ class Scene {
   SceneParts parts_;
   Extent extent_;
   std::size_t dropped_triangles_ = 0;
-  std::unique_ptr<Tracer> tracer_;
+  std::unique_ptr<TiledTracer> tracer_;
   FoliageIndex crowns_;
   mutable std::once_flag facets_once_;
   mutable std::atomic<bool> facets_built_{false};

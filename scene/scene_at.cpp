@@ -1,7 +1,7 @@
 #include "scene/scene_at.h"
 
 #include "core/check.h"
-#include "scene/tracer.h"
+#include "scene/tiled_tracer.h"
 
 namespace canyon::scene {
 namespace {
@@ -18,7 +18,10 @@ void SceneAt::set_instances(std::vector<Instance> instances) {
       CANYON_CHECK(m < scene_->materials().size(), "instance ", i.name, " material ", m);
     moving_objects_.push_back({i.name, i.shape->kind()});
   }
-  instances_ = instances.empty() ? nullptr : std::make_shared<const InstanceSet>(std::move(instances));
+  instances_ = nullptr;
+  if (instances.empty()) return;
+  const Eigen::Vector3d center_W = packet_origin(instances.front().X_WS.p);
+  instances_ = std::make_shared<const InstanceSet>(std::move(instances), center_W);
 }
 
 const std::vector<Instance>& SceneAt::instances() const {
@@ -53,9 +56,13 @@ void SceneAt::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   if (instances_) instances_->trace(rays, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
 }
 
-void SceneAt::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
-  traced_rays_.add(scene_->tracer_->trace(rays, hits));
-  if (instances_) instances_->trace(rays, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
+void SceneAt::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, const Eigen::Vector3d& origin_W) const {
+  traced_rays_.add(scene_->tracer_->trace(rays, hits, origin_W));
+  if (instances_) instances_->trace(rays, origin_W, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
+}
+
+Eigen::Vector3d SceneAt::packet_origin(const Eigen::Vector3d& p_W) const {
+  return scene_->tracer_->center(p_W);
 }
 
 bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) const {
@@ -63,21 +70,21 @@ bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) co
   const double length_m = way.norm();
   if (length_m <= 2.0 * kClearance_m) return false;
   occlusion_rays_.add(1);
-  const Eigen::Vector3f origin = a_W.cast<float>(), direction = (way / length_m).cast<float>();
+  const Eigen::Vector3f direction = (way / length_m).cast<float>();
   const auto max_m = static_cast<float>(length_m - kClearance_m);
-  return scene_->tracer_->occluded(origin, direction, kClearance_m, max_m, kTraceAll) ||
-         (instances_ && instances_->occluded(origin, direction, kClearance_m, max_m));
+  return scene_->tracer_->occluded(a_W, direction, kClearance_m, max_m, kTraceAll) ||
+         (instances_ && instances_->occluded(a_W, direction, kClearance_m, max_m));
 }
 
 bool SceneAt::blocked_towards(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
                               bool ignore_foliage) const {
   if (max_m <= kClearance_m) return false;
   occlusion_rays_.add(1);
-  const Eigen::Vector3f origin = p_W.cast<float>(), direction = direction_W.cast<float>();
+  const Eigen::Vector3f direction = direction_W.cast<float>();
   const auto end_m = static_cast<float>(max_m);
   const std::uint32_t mask = ignore_foliage ? kTraceTerrain | kTraceSolid : kTraceAll;
-  return scene_->tracer_->occluded(origin, direction, kClearance_m, end_m, mask) ||
-         (instances_ && instances_->occluded(origin, direction, kClearance_m, end_m));
+  return scene_->tracer_->occluded(p_W, direction, kClearance_m, end_m, mask) ||
+         (instances_ && instances_->occluded(p_W, direction, kClearance_m, end_m));
 }
 
 double SceneAt::foliage_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m) const {

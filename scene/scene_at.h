@@ -16,7 +16,7 @@
 namespace canyon::scene {
 
 struct Ray {
-  Eigen::Vector3f origin;     ///< in W
+  Eigen::Vector3d origin;     ///< in W
   Eigen::Vector3f direction;  ///< unit
   float max_m = std::numeric_limits<float>::infinity();
 };
@@ -45,7 +45,8 @@ struct TraceCounters {
 
 /// The scene at one time as sensors receive it; one per run. Cheap to make and to copy; a copy keeps the instances it
 /// was made with. All queries are const and thread-safe. Counts its rays, for cost reports. Ray origins, directions and
-/// points must be finite; single precision resolves 0.06 mm at 1 km from W's origin.
+/// points must be finite. Scenes wider than 2 km are traced in tiles, each about a center of its own, so that rays are
+/// as exact everywhere as near W's origin (scene/tiled_tracer.h).
 ///
 /// Moving things have an acceleration structure of their own over their shapes', made anew at each step; the static
 /// scene's is never touched, and a scene without moving things pays nothing for them. Triangles from
@@ -89,8 +90,12 @@ class SceneAt {
   /// beam). Every hit is the same as that of trace(ray), except that a ray exactly through an edge may report either
   /// neighbour.
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// The same for rays that are already packed; nothing but range, incidence and triangle comes back.
-  void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const;
+  /// The same for rays that are already packed, their origins relative to `origin_W`; nothing but range, incidence and
+  /// triangle comes back. Fast and exact where origin_W is the packet_origin() of the sensor's place.
+  void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits,
+             const Eigen::Vector3d& origin_W = Eigen::Vector3d::Zero()) const;
+  /// What the origins of packets should be relative to near p: W's origin, or the center of the tile there.
+  Eigen::Vector3d packet_origin(const Eigen::Vector3d& p_W) const;
   /// True if anything, trees included, lies on the open segment between a and b (both ends kept clear by 1 mm).
   bool blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) const;
   /// True if anything lies on the ray from p (kept clear by 1 mm) towards the unit direction, up to max_m, except trees

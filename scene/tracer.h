@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,7 +14,17 @@ namespace canyon::scene {
 /// What a ray may meet, as bits.
 enum TraceMask : std::uint32_t { kTraceTerrain = 1, kTraceSolid = 2, kTraceTree = 4, kTraceAll = 7 };
 
-/// Ray tracing and nearest-surface queries over a static mesh. All that Canyon knows of Embree is in embree_tracer.cpp.
+/// The part of a ray that is traced, and how far along it the tracer sets off, so that its coordinates stay small.
+struct RaySpan {
+  double from_m = 0.0;
+  double to_m = std::numeric_limits<double>::infinity();
+  double start_m = 0.0;  ///< <= from_m
+};
+
+/// Ray tracing and nearest-surface queries over some triangles of a static mesh. All that Canyon knows of Embree is in
+/// embree_tracer.cpp.
+///
+/// It works in W moved to a center of whole metres, by which no vertex is rounded: there single precision is finest.
 ///
 /// The ray tracer finds the triangle in single precision (watertight); the range is then computed in double precision
 /// from the ray and that triangle, so that it is the same on every CPU and for single rays and packets alike.
@@ -21,18 +32,18 @@ enum TraceMask : std::uint32_t { kTraceTerrain = 1, kTraceSolid = 2, kTraceTree 
 /// would change the arithmetic of everything else there.
 class Tracer {
  public:
-  explicit Tracer(const SceneParts& parts);
+  Tracer(const SceneParts& parts, std::span<const std::uint32_t> triangles, const Eigen::Vector3d& center_W);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  /// As SceneAt's; origins, directions and points must be finite.
-  Hit trace(const Ray& ray) const;
+  /// As SceneAt's; origins, directions and points must be finite. Of the ray only the span is looked at.
+  Hit trace(const Ray& ray, const RaySpan& span) const;
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// Returns how many rays were traced.
+  /// Origins of packets are relative to the center. Returns how many rays were traced.
   std::int64_t trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const;
-  /// Anything of `mask` at ranges (min_m, max_m)?
-  bool occluded(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float min_m, float max_m,
+  /// Anything of `mask` on the span?
+  bool occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, const RaySpan& span,
                 std::uint32_t mask) const;
   NearestSurface nearest(const Eigen::Vector3d& p_W, double max_m) const;
   /// Highest terrain triangle at (x, y), or Hit::kMiss.

@@ -71,7 +71,7 @@ class Launching final : public PathModel {
     range_m = 0.0;
     for (int trees = 0; trees < 64; ++trees) {
       const Eigen::Vector3d start_W = from_W + range_m * towards_W;
-      const scene::Hit hit = scene.trace({start_W.cast<float>(), towards_W.cast<float>()});
+      const scene::Hit hit = scene.trace({start_W, towards_W.cast<float>()});
       ++counters.occlusion_rays;
       if (!hit.hit()) return hit;
       range_m += hit.range_m;

@@ -46,7 +46,7 @@ TEST(Degenerate, TrianglesThatNoRayCanMeetAreDroppedAndCountedFromFiles) {
   EXPECT_EQ(scene.dropped_triangles(), 3u);
   EXPECT_TRUE(scene.extent().max.allFinite());
   EXPECT_EQ(soundness(scene).repeated_triangles, 1u);  // by place, not by index
-  EXPECT_NEAR(SceneAt(scene).trace({{0.2f, 0.2f, 1}, {0, 0, -1}}).range_m, 1.0, 1e-6);
+  EXPECT_NEAR(SceneAt(scene).trace({{0.2, 0.2, 1}, {0, 0, -1}}).range_m, 1.0, 1e-6);
 }
 
 TEST(Degenerate, InvertedNormalsStopRaysJustTheSame) {
@@ -69,9 +69,9 @@ TEST(Degenerate, ASensorInsideAWallMeetsItsOtherSide) {
   add_building(parts, rectangle(10, -5, 10.4, 5), 0.0, 12.0);
   const Scene scene(std::move(parts));
   const SceneAt at(scene);
-  EXPECT_NEAR(at.trace({{10.2f, 0, 5}, {1, 0, 0}}).range_m, 0.2, 1e-6);
+  EXPECT_NEAR(at.trace({{10.2, 0, 5}, {1, 0, 0}}).range_m, 0.2, 1e-6);
   // On the surface itself: at once, or past it to the other side.
-  const Hit on = at.trace({{10.0f, 0, 5}, {1, 0, 0}});
+  const Hit on = at.trace({{10.0, 0, 5}, {1, 0, 0}});
   EXPECT_TRUE(on.range_m == 0.0f || std::abs(on.range_m - 0.4f) < 1e-6f) << on.range_m;
   EXPECT_TRUE(at.blocked_towards({10.2, 0, 5}, {0, 1, 0}));
 }
@@ -93,7 +93,7 @@ TEST(Degenerate, FiveKilometresFromTheOrigin) {
     mesh.quad(foot - 20 * left, foot + 20 * left, foot + 20 * left + Eigen::Vector3d(0, 0, 10),
               foot - 20 * left + Eigen::Vector3d(0, 0, 10), 0);
     const Scene scene(std::move(parts));
-    const Hit hit = SceneAt(scene).trace({(place + Eigen::Vector3d(0, 0, 2)).cast<float>(), ahead.cast<float>()});
+    const Hit hit = SceneAt(scene).trace({place + Eigen::Vector3d(0, 0, 2), ahead.cast<float>()});
     ASSERT_TRUE(hit.hit()) << i;
     worst_m = std::max(worst_m, std::abs(hit.range_m - range_m));
   }
@@ -151,7 +151,7 @@ TEST(Degenerate, TenMillionTrianglesNightly) {
   const RandomStream random(8, "test.many");
   for (std::uint64_t i = 0; i < 10000; ++i) {
     const double x = random.uniform(-1100, 1100, 0, i), y = random.uniform(-1100, 1100, 1, i);
-    const Hit hit = scene_at.trace({{static_cast<float>(x), static_cast<float>(y), 100.0f}, {0, 0, -1}});
+    const Hit hit = scene_at.trace({{x, y, 100.0}, {0, 0, -1}});
     ASSERT_TRUE(hit.hit());
     // Chords of 1 m lie off the curve by at most second derivative / 8 = (0.01^2 + 0.013^2 + 2 x 0.01 x 0.013) x 5 / 8.
     EXPECT_NEAR(100.0 - hit.range_m, height(x, y), 5 * 5.3e-4 / 8 + 2e-5);

@@ -67,7 +67,7 @@ TEST(Facets, ContainsAgreesWithRaysOnEveryFacetOfACity) {
     Eigen::Vector3d p = f.center_W + f.radius_m * stream.uniform(0.0, 1.2, 1, i) * stream.direction(0, i);
     p -= (f.normal_W.dot(p) - f.offset_m) * f.normal_W;
     // A short ray through p along the normal meets one of the facet's triangles exactly if the facet contains p.
-    const Ray through{(p + 5e-3 * f.normal_W).cast<float>(), (-f.normal_W).cast<float>(), 1e-2f};
+    const Ray through{p + 5e-3 * f.normal_W, (-f.normal_W).cast<float>(), 1e-2f};
     const Hit hit = at.trace(through);
     const bool met = hit.hit() && std::binary_search(f.triangles.begin(), f.triangles.end(), hit.triangle);
     double edge_m = 1e300;

@@ -219,9 +219,7 @@ TEST_F(Import, OsmHeightsRoofsAndStreets) {
   for (const auto& p : b.footprint_W) middle += 0.25 * p;
   const double half_m = 0.5 * (b.footprint_W[1] - b.footprint_W[0]).norm();
   for (const double s : {0.0, 0.5, 0.99}) {
-    const auto hit =
-        at.trace({Eigen::Vector3f(static_cast<float>(middle.x() + s * half_m), static_cast<float>(middle.y()), 50.0f),
-                  {0, 0, -1}});
+    const auto hit = at.trace({{middle.x() + s * half_m, middle.y(), 50.0}, {0, 0, -1}});
     EXPECT_NEAR(50.0 - hit.range_m, b.base_m + 10.0 - 4.0 * s, 0.02) << s;
   }
   EXPECT_NEAR(area_m2(made, "brick"), 2 * (2 * half_m + 22.2264) * 6.5 + 2 * half_m * 4.0, 1.0);

@@ -96,8 +96,8 @@ TEST(Instances, AgreeWithABakedScene) {
   constexpr std::size_t kRays = 20000;
   std::vector<Ray> rays;
   for (std::uint64_t i = 0; i < kRays; ++i) {
-    rays.push_back({{static_cast<float>(stream.uniform(-45, 45, 100, i)),
-                     static_cast<float>(stream.uniform(-45, 45, 101, i)), 1.7f},
+    const Eigen::Vector3d origin(stream.uniform(-45, 45, 100, i), stream.uniform(-45, 45, 101, i), 1.7);
+    rays.push_back({in_single_precision(origin),  // as a packet holds it
                     stream.direction(102, i).cast<float>().normalized()});
   }
   std::vector<Hit> hits(kRays);
@@ -107,8 +107,8 @@ TEST(Instances, AgreeWithABakedScene) {
   for (std::size_t i = 0; i < packets.size() * RayPacket::kRays; ++i) {
     RayPacket& p = packets[i / RayPacket::kRays];
     const std::size_t lane = i % RayPacket::kRays;
-    p.origin_x[lane] = rays[i].origin.x(), p.origin_y[lane] = rays[i].origin.y();
-    p.origin_z[lane] = rays[i].origin.z();
+    const Eigen::Vector3f origin = rays[i].origin.cast<float>();
+    p.origin_x[lane] = origin.x(), p.origin_y[lane] = origin.y(), p.origin_z[lane] = origin.z();
     p.direction_x[lane] = rays[i].direction.x(), p.direction_y[lane] = rays[i].direction.y();
     p.direction_z[lane] = rays[i].direction.z();
     p.max_m[lane] = rays[i].max_m;

@@ -63,6 +63,16 @@ inline std::optional<double> intersect(const Triangle& t, const Eigen::Vector3d&
   return range_m >= 0.0 ? std::optional<double>(range_m) : std::nullopt;
 }
 
+/// Rounded to what a packet of rays can hold.
+inline Eigen::Vector3d in_single_precision(const Eigen::Vector3d& p) {
+  Eigen::Vector3d out;
+  for (int k = 0; k < 3; ++k) {
+    const volatile float rounded = static_cast<float>(p[k]);  // GCC 12 leaves out what is converted back at once
+    out[k] = rounded;
+  }
+  return out;
+}
+
 struct OracleHit {
   double range_m = std::numeric_limits<double>::infinity();
   std::uint32_t triangle = Hit::kMiss;
@@ -71,9 +81,9 @@ struct OracleHit {
 /// Tries every triangle.
 inline OracleHit trace_all(const Mesh& mesh, const Ray& ray) {
   OracleHit best;
-  const Eigen::Vector3d origin = ray.origin.cast<double>(), direction = ray.direction.cast<double>();
+  const Eigen::Vector3d direction = ray.direction.cast<double>();
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto range_m = intersect(Triangle::of(mesh, i), origin, direction);
+    const auto range_m = intersect(Triangle::of(mesh, i), ray.origin, direction);
     if (range_m && *range_m < best.range_m && *range_m <= ray.max_m) best = {*range_m, i};
   }
   return best;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kFloatEps = 1.0 / (1 << 23);
 
 Ray ray(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  return {origin.cast<float>(), direction.normalized().cast<float>()};
+  return {in_single_precision(origin), direction.normalized().cast<float>()};
 }
 
 /// Rays from points above the streets of a city, mostly level and a little down.
@@ -92,7 +92,7 @@ TEST(Trace, SharedEdgesAreWatertight) {
   const SceneAt at(scene);
   for (int i = -48; i < 48; ++i) {
     for (int j = -48; j < 48; ++j) {
-      const Ray down{{10.0f * static_cast<float>(i), 10.0f * static_cast<float>(j), 300.0f}, {0.0f, 0.0f, -1.0f}};
+      const Ray down{{10.0 * i, 10.0 * j, 300.0}, {0.0f, 0.0f, -1.0f}};
       ASSERT_TRUE(at.trace(down).hit()) << i << " " << j;
     }
   }
@@ -117,7 +117,7 @@ TEST(Trace, AgreesWithTheDoublePrecisionOracle) {
     const bool embree_nearer = hit.hit() && !(oracle.range_m < hit.range_m);
     const std::uint32_t nearer = embree_nearer ? hit.triangle : oracle.triangle;
     const double range_m = embree_nearer ? hit.range_m : oracle.range_m;
-    const Eigen::Vector3d point = r.origin.cast<double>() + range_m * r.direction.cast<double>();
+    const Eigen::Vector3d point = r.origin + range_m * r.direction.cast<double>();
     EXPECT_LE(edge_distance(Triangle::of(scene.mesh(), nearer), point), 1e-3);
     ++at_edges;
   }
@@ -155,7 +155,8 @@ TEST(Trace, PackedRaysMeetWhatSingleRaysMeet) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     RayPacket& p = packed[i / RayPacket::kRays];
     const std::size_t lane = i % RayPacket::kRays;
-    p.origin_x[lane] = rays[i].origin.x(), p.origin_y[lane] = rays[i].origin.y(), p.origin_z[lane] = rays[i].origin.z();
+    const Eigen::Vector3f origin = rays[i].origin.cast<float>();
+    p.origin_x[lane] = origin.x(), p.origin_y[lane] = origin.y(), p.origin_z[lane] = origin.z();
     p.direction_x[lane] = rays[i].direction.x(), p.direction_y[lane] = rays[i].direction.y();
     p.direction_z[lane] = rays[i].direction.z();
     p.max_m[lane] = i % 7 == 0 ? -1.0f : 200.0f;  // every seventh is not traced
