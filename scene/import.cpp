@@ -136,13 +136,14 @@ class Import {
         high = high.cwiseMax(Eigen::Vector2d(g->lat_rad, g->lon_rad));
       });
     }
-    if (low.x() > high.x()) {  // all in local metres
+    const bool local = low.x() > high.x();  // all in metres about the origin that is stated
+    if (local && config_.terrain.empty()) {
       out_.parts.frame = LocalFrame(origin_);
       out_.report.undulation_source = "none";
       return Ok{};
     }
-    Geodetic middle{0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), 0.0};
-    if (config_.center_deg.size() == 2)
+    Geodetic middle = local ? origin_ : Geodetic{0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), 0.0};
+    if (!local && config_.center_deg.size() == 2)
       middle = {config_.center_deg[0] * kDegree, config_.center_deg[1] * kDegree, 0.0};
     ellipsoidal_ =
         config_.heights == "ellipsoidal" || (config_.heights == "auto" && out_.report.vertical == "ellipsoid");
@@ -162,6 +163,11 @@ class Import {
             "for ellipsoidal ones");
       }
     }
+    out_.parts.undulation_m = undulation_m_;
+    if (local) {
+      out_.parts.frame = LocalFrame(origin_);
+      return Ok{};
+    }
     double ground_m = 0.0;
     if (!config_.terrain.empty()) {
       CANYON_TRY_STATUS(read_terrain());
@@ -173,7 +179,6 @@ class Import {
     }
     middle.h_m = std::round(ground_m) + undulation_m_;
     out_.parts.frame = LocalFrame(middle);
-    out_.parts.undulation_m = undulation_m_;
     return Ok{};
   }
 
@@ -226,6 +231,7 @@ class Import {
     }
     for (RawStreet& street : scene.streets)
       for (Eigen::Vector2d& p : street.points) p = to_W({p.x(), p.y(), level_m}).head<2>();
+    for (RawTree& tree : scene.trees) tree.place = to_W({tree.place.x(), tree.place.y(), level_m}).head<2>();
     const auto lost = [](const auto& ring) {
       return std::any_of(ring.begin(), ring.end(), [](const auto& p) { return !p.allFinite(); });
     };
@@ -235,6 +241,7 @@ class Import {
     std::erase_if(scene.footprints,
                   [&](const RawFootprint& f) { return std::any_of(f.rings.begin(), f.rings.end(), lost); });
     std::erase_if(scene.streets, [&](const RawStreet& s) { return lost(s.points); });
+    std::erase_if(scene.trees, [&](const RawTree& t) { return !t.place.allFinite(); });
   }
 
   /// Leaves out what begins farther from the origin than the radius.
@@ -245,6 +252,7 @@ class Import {
       std::erase_if(scene.polygons, [&](const RawPolygon& p) { return all_far(p.rings[0]); });
       std::erase_if(scene.footprints, [&](const RawFootprint& f) { return all_far(f.rings[0]); });
       std::erase_if(scene.streets, [&](const RawStreet& s) { return all_far(s.points); });
+      std::erase_if(scene.trees, [&](const RawTree& t) { return far(t.place); });
       for (RawMesh& mesh : scene.meshes) {
         std::size_t kept = 0;
         for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "scene/triangle.h"
@@ -42,9 +43,10 @@ class ObjectEdges {
 
   void sum_up(Soundness& out) const {
     std::size_t open = 0, crowded = 0, flipped = 0;
+    const double lowest_ground_m = lowest_ground();
     for (const auto& [ends, count] : edges_) {
       const int n = count.forward + count.backward;
-      if (n == 1 && !buried(places_[ends.first], places_[ends.second])) ++open;
+      if (n == 1 && !buried(places_[ends.first], places_[ends.second], lowest_ground_m)) ++open;
       if (n == 2 && count.forward != count.backward) ++flipped;
       if (n > 2) ++crowded;
     }
@@ -64,10 +66,19 @@ class ObjectEdges {
     int forward = 0, backward = 0;
   };
 
-  bool buried(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+  /// The lowest terrain beside the object's corners; far down if there is none.
+  double lowest_ground() const {
+    std::optional<double> lowest_m;
+    for (const Eigen::Vector3d& p : places_)
+      if (const auto ground_m = scene_.ground_beside(p.x(), p.y()))
+        lowest_m = std::min(lowest_m.value_or(*ground_m), *ground_m);
+    return lowest_m.value_or(-1e300);
+  }
+  /// Between two buildings there may be no terrain: what lies below all that is near is buried too.
+  bool buried(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double lowest_ground_m) const {
     const auto below = [&](const Eigen::Vector3d& p) {
       const auto ground = scene_.ground(p.x(), p.y());
-      return ground && p.z() <= ground->height_m;
+      return p.z() <= (ground ? ground->height_m : lowest_ground_m);
     };
     return below(a) && below(b);
   }

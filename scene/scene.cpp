@@ -7,6 +7,7 @@
 #include "core/files.h"
 #include "scene/tiled_tracer.h"
 #include "scene/triangle.h"
+#include "scene/triangulate.h"
 
 namespace canyon::scene {
 namespace {
@@ -36,17 +37,6 @@ Extent extent_of(const Mesh& mesh) {
     }
   }
   return extent;
-}
-
-bool polygon_contains(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y())) {
-      inside = !inside;
-    }
-  }
-  return inside;
 }
 
 template <class T>
@@ -94,6 +84,16 @@ std::optional<Scene::Ground> Scene::ground(double x, double y) const {
   const double height_m =
       triangle.a.z() - (normal.x() * (x - triangle.a.x()) + normal.y() * (y - triangle.a.y())) / normal.z();
   return Ground{height_m, normal, parts_.mesh.material[index]};
+}
+
+std::optional<double> Scene::ground_beside(double x, double y) const {
+  constexpr double kBeside_m = 0.05;
+  constexpr double kPlaces[][2] = {{0, 0}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  std::optional<double> lowest_m;
+  for (const auto& place : kPlaces)
+    if (const auto found = ground(x + kBeside_m * place[0], y + kBeside_m * place[1]))
+      lowest_m = std::min(lowest_m.value_or(found->height_m), found->height_m);
+  return lowest_m;
 }
 
 const Building* Scene::building_at(const Eigen::Vector2d& xy) const {

@@ -104,6 +104,9 @@ class Scene {
     std::uint16_t material = 0;  ///< index into materials()
   };
   std::optional<Ground> ground(double x, double y) const;
+  /// Height of the terrain within 5 cm of x, y, the lowest that is found there: for the borders of the holes that
+  /// terrain may have where buildings stand.
+  std::optional<double> ground_beside(double x, double y) const;
 
   /// The building whose footprint, courtyards left out, contains (x, y); nullptr if none.
   const Building* building_at(const Eigen::Vector2d& xy) const;

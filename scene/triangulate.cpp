@@ -114,6 +114,17 @@ double twice_area(const std::vector<Eigen::Vector2d>& ring) {
   return sum;
 }
 
+bool polygon_contains(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p) {
+  bool inside = false;
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const Eigen::Vector2d &a = ring[i], &b = ring[j];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y())) {
+      inside = !inside;
+    }
+  }
+  return inside;
+}
+
 std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<std::vector<Eigen::Vector2d>>& rings) {
   if (rings.empty() || rings[0].size() < 3) return {};
   Points points;

@@ -10,6 +10,8 @@ namespace canyon::scene {
 
 /// Twice the signed area of a ring, positive if counter-clockwise.
 double twice_area(const std::vector<Eigen::Vector2d>& ring);
+/// True if p lies inside the ring, which may run in any sense; on the border either may come out.
+bool polygon_contains(const std::vector<Eigen::Vector2d>& ring, const Eigen::Vector2d& p);
 
 /// Triangles of a polygon with holes by ear clipping (holes joined to the outline by bridges; Eberly, Triangulation by
 /// Ear Clipping, 2002). Rings may run in any sense, and are counted through: the corners of the first, then those of

@@ -1,57 +1,15 @@
 #include "scene/city/furniture.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "core/random.h"
 #include "scene/city/draws.h"
 #include "scene/city/kerb.h"
+#include "scene/tree.h"
 
 namespace canyon::scene::city {
 namespace {
-
-struct TreeShape {
-  double crown_center_m;  ///< above ground
-  Eigen::Vector3d radii_m;
-};
-
-void add_tree(const Eigen::Vector2d& xy, const TreeShape& shape, const Terrain& terrain, const RandomStream& leaves,
-              std::size_t number, MeshBuilder& mesh, SceneParts& parts) {
-  constexpr int kLeaves = 48;
-  mesh.begin_object("tree " + std::to_string(number + 1), ObjectKind::kTree);
-  const double ground_m = terrain.height(xy.x(), xy.y());
-  const std::uint16_t bark = mesh.material("bark"), leaf = mesh.material("foliage");
-
-  const double r = 0.08 * shape.radii_m.x();
-  const std::vector<Eigen::Vector2d> trunk{xy + Eigen::Vector2d(r, 0.0),
-                                           xy + Eigen::Vector2d(0.5 * r, 0.866 * r),
-                                           xy + Eigen::Vector2d(-0.5 * r, 0.866 * r),
-                                           xy + Eigen::Vector2d(-r, 0.0),
-                                           xy + Eigen::Vector2d(-0.5 * r, -0.866 * r),
-                                           xy + Eigen::Vector2d(0.5 * r, -0.866 * r)};
-  mesh.walls(trunk, std::vector<double>(6, ground_m - 0.3), std::vector<double>(6, ground_m + shape.crown_center_m),
-             bark);
-
-  const Foliage crown{{xy.x(), xy.y(), ground_m + shape.crown_center_m}, shape.radii_m};
-  parts.foliage.push_back(crown);
-  // Clumps of leaves as free triangles: uniform in the crown, turned at random, together hiding about half of what is
-  // behind.
-  const auto entity = static_cast<std::uint32_t>(number);
-  const double size_m = 0.30 * shape.radii_m.x();
-  for (std::uint64_t i = 0; i < kLeaves; ++i) {
-    // The largest of three uniform numbers is distributed as a radius in a ball.
-    const double radius =
-        0.85 * std::max({leaves.uniform(entity, i, 10), leaves.uniform(entity, i, 11), leaves.uniform(entity, i, 12)});
-    const Eigen::Vector3d center =
-        crown.center_W + radius * leaves.direction(entity, 2 * i).cwiseProduct(crown.radii_m);
-    const Eigen::Vector3d normal = leaves.direction(entity, 2 * i + 1);
-    const Eigen::Vector3d other = std::abs(normal.z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d u = normal.cross(other).normalized(), v = normal.cross(u);
-    mesh.triangle(center + size_m * u, center + size_m * (-0.5 * u + 0.866 * v),
-                  center + size_m * (-0.5 * u - 0.866 * v), leaf);
-  }
-}
 
 bool clear_of_buildings(const Eigen::Vector2d& xy, double clearance_m, const std::vector<Building>& buildings) {
   for (const Building& b : buildings) {
@@ -75,6 +33,10 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
       leaves(seed, "scene.city.leaves");
   MeshBuilder mesh(parts);
   std::size_t number = 0;
+  const auto plant = [&](const Eigen::Vector2d& xy, const TreeShape& shape) {
+    mesh.begin_object("tree " + std::to_string(number + 1), ObjectKind::kTree);
+    add_tree({xy.x(), xy.y(), terrain.height(xy.x(), xy.y())}, shape, leaves, number++, mesh, parts);
+  };
 
   const std::vector<Kerb> all = kerbs(plan);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -89,7 +51,7 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
       if (!grown) continue;
       const Eigen::Vector2d xy = kerb.at(kCorner_m + (static_cast<double>(slot) + 0.5) * kSpacing_m,
                                          0.5 * config.street_width_m + kBeyondKerb_m);
-      add_tree(xy, {center_m, {radius_m, radius_m, tall_m}}, terrain, leaves, number++, mesh, parts);
+      plant(xy, {center_m, {radius_m, radius_m, tall_m}});
     }
   }
 
@@ -105,7 +67,7 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
       const double radius_m = draws.between(1.8, 3.5), tall_m = draws.between(2.0, 3.2),
                    center_m = draws.between(5.5, 7.0);
       if (!clear_of_buildings(xy, radius_m + 0.5, parts.buildings)) continue;
-      add_tree(xy, {center_m, {radius_m, radius_m, tall_m}}, terrain, leaves, number++, mesh, parts);
+      plant(xy, {center_m, {radius_m, radius_m, tall_m}});
     }
   }
 }

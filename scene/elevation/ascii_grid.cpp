@@ -5,19 +5,10 @@
 
 #include "core/files.h"
 #include "core/line_reader.h"
+#include "core/lower_case.h"
 #include "scene/elevation/elevation.h"
 
 namespace canyon::scene {
-namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
-}  // namespace
-
 /// ESRI ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize, NODATA_value,
 /// then rows from the north. Its coordinate system stands in a .prj beside it, if anywhere.
 Result<Elevation> read_ascii_grid(const std::string& path) {
@@ -31,15 +22,19 @@ Result<Elevation> read_ascii_grid(const std::string& path) {
     const auto words = split(line, " \t", true);
     if (words.empty()) continue;
     if (out.height_m.empty() && std::isalpha(static_cast<unsigned char>(words[0][0])) && words.size() == 2 &&
-        lower(words[0]) != "nan") {
-      CANYON_TRY(header[lower(words[0])], parse_number(in, words[1]));
+        lower_case(words[0]) != "nan") {
+      CANYON_TRY(header[lower_case(words[0])], parse_number(in, words[1]));
       continue;
     }
     if (out.columns == 0) {
       for (const char* key : {"ncols", "nrows", "cellsize"})
         if (!(header[key] > 0.0))
           return in.error("the header has no " + std::string(key), "ncols, nrows, xllcorner, yllcorner, cellsize");
-      if (!(header["ncols"] <= 1e5 && header["nrows"] <= 1e5 && header["ncols"] * header["nrows"] <= 4e8))
+      for (const char axis : {'x', 'y'})
+        if (!header.contains(axis + std::string("llcorner")) && !header.contains(axis + std::string("llcenter")))
+          return in.error("the header has no " + std::string(1, axis) + "llcorner",
+                          "ncols, nrows, xllcorner, yllcorner, cellsize");
+      if (!(header["ncols"] <= 1e5 && header["nrows"] <= 1e5 && header["ncols"] * header["nrows"] <= kLargestGrid))
         return in.error("a grid that large", "at most 400 million cells");
       out.columns = static_cast<int>(header["ncols"]);
       out.rows = static_cast<int>(header["nrows"]);

@@ -1,8 +1,9 @@
 #include "scene/elevation/elevation.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+
+#include "core/lower_case.h"
 
 namespace canyon::scene {
 
@@ -26,9 +27,7 @@ Result<Elevation> read_elevation(const std::string& path) {
   constexpr Format kFormats[] = {{".tif", read_geotiff},      {".tiff", read_geotiff}, {".hgt", read_srtm},
                                  {".hgt.zip", read_srtm},     {".hgt.gz", read_srtm},  {".asc", read_ascii_grid},
                                  {".asc.gz", read_ascii_grid}};
-  std::string name = path;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string name = lower_case(path);
   for (const Format& format : kFormats)
     if (name.ends_with(format.ending)) return format.read(path);
   return Error{path, 0, "", "a terrain format that is not known",

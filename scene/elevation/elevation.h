@@ -27,6 +27,9 @@ struct Elevation {
   std::optional<double> height(const Eigen::Vector2d& p) const;
 };
 
+/// Samples that one file may hold.
+inline constexpr double kLargestGrid = 4e8;
+
 /// GeoTIFF (.tif, .tiff), SRTM (.hgt, also zipped or gzipped), ESRI ASCII grid (.asc).
 Result<Elevation> read_elevation(const std::string& path);
 

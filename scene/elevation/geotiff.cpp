@@ -112,7 +112,10 @@ Result<Elevation> read_geotiff(const std::string& path) {
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_BITSPERSAMPLE, &type.bits);
   TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLEFORMAT, &type.format);
-  if (samples != 1 || !type.known() || columns == 0 || rows == 0 || columns > 100000 || rows > 100000)
+  if (static_cast<double>(columns) * rows > kLargestGrid)
+    return Error{path, 0, "", std::to_string(columns) + " x " + std::to_string(rows) + " pixels",
+                 "at most 400 million"};
+  if (samples != 1 || !type.known() || columns == 0 || rows == 0)
     return Error{
         path, 0, "",
         std::to_string(columns) + " x " + std::to_string(rows) + " pixels of " + std::to_string(samples) + " samples",
@@ -138,10 +141,9 @@ Result<Elevation> read_geotiff(const std::string& path) {
   if (geo_key(keys, kRasterType) != kPixelIsPoint) out.west += 0.5 * out.step_x, out.north -= 0.5 * out.step_y;
   const std::uint16_t projected = geo_key(keys, kProjectedCrs), geodetic = geo_key(keys, kGeodeticCrs),
                       vertical = geo_key(keys, kVerticalCrs);
-  const std::uint16_t code = projected != 0 && projected != kUserDefined ? projected
-                             : geodetic != kUserDefined                  ? geodetic
-                                                                         : 0;
-  if (code != 0)
+  // A projection of the file's own making has no code: the user must state it.
+  const std::uint16_t code = projected != 0 ? projected : geodetic;
+  if (code != 0 && code != kUserDefined)
     out.frame.crs = "EPSG:" + std::to_string(code) +
                     (vertical != 0 && vertical != kUserDefined ? "+" + std::to_string(vertical) : "");
 

@@ -1,14 +1,15 @@
 #include "scene/importers/assemble.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "core/lower_case.h"
 #include "scene/importers/footprint.h"
 #include "scene/importers/outline.h"
 #include "scene/mesh_builder.h"
+#include "scene/tree.h"
 #include "scene/triangulate.h"
 
 namespace canyon::scene {
@@ -21,10 +22,9 @@ struct Alias {
   const char* theirs;
   const char* ours;
 };
-constexpr Alias kAliases[] = {{"very_dry_ground", "ground"},
-                              {"medium_dry_ground", "grass"},
-                              {"ceiling_board", "plasterboard"},
-                              {"floorboard", "chipboard"}};
+constexpr Alias kAliases[] = {{"very_dry_ground", "ground"}, {"medium_dry_ground", "grass"}};
+/// Crowns of imported trees take the upper part of their height.
+constexpr double kCrownFrom = 0.3;
 
 class Assembler {
  public:
@@ -83,8 +83,8 @@ class Assembler {
       const int steps = std::clamp(static_cast<int>((b - a).norm() / 2.0), 1, 100);
       for (int k = 0; k < steps; ++k) {
         const Eigen::Vector2d p = a + (b - a) * k / steps;
-        if (const auto ground = terrain_->ground(p.x(), p.y()))
-          low_m = std::min(low_m.value_or(ground->height_m), ground->height_m);
+        if (const auto ground_m = terrain_->ground_beside(p.x(), p.y()))
+          low_m = std::min(low_m.value_or(*ground_m), *ground_m);
       }
     }
     return low_m;
@@ -92,9 +92,7 @@ class Assembler {
 
   std::uint16_t material(const std::string& name, const std::string& otherwise) {
     if (name.empty()) return mesh_.material(otherwise);
-    std::string plain = name;
-    std::transform(plain.begin(), plain.end(), plain.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::string plain = lower_case(name);
     for (const char* prefix : {"mat-", "itu_", "itu-"})
       if (plain.starts_with(prefix)) plain.erase(0, std::char_traits<char>::length(prefix));
     for (const std::string& known : {name, plain}) {
@@ -124,29 +122,42 @@ class Assembler {
     for (const RawPolygon& polygon : scene.polygons) add_polygon(scene, polygon, first);
     for (const RawMesh& mesh : scene.meshes) add_mesh(scene, mesh, first);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
-      if (scene.objects[i].kind == ObjectKind::kBuilding) finish_building(first + i, solids_[i]);
+      if (scene.objects[i].kind == ObjectKind::kBuilding)
+        finish_building(first + i, solids_[i]);
+      else if (scene.objects[i].kind == ObjectKind::kTree)
+        add_crown(solids_[i]);
+    for (const RawTree& tree : scene.trees) plant(tree, first);
     for (const RawStreet& street : scene.streets) add_street(street);
   }
 
-  /// What belongs to one building.
+  /// What belongs to one building or tree.
   struct Solid {
-    std::vector<std::array<Eigen::Vector3d, 3>> down, marked;  ///< faces that look down; said to be the bottom
-    std::vector<Eigen::Vector2d> corners;
+    std::vector<std::array<Eigen::Vector3d, 3>> faces, marked;  ///< all; those that are said to be the bottom
     double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
     std::vector<std::vector<Eigen::Vector2d>> footprint;  ///< the largest, with its courtyards
+    bool of_parts = false;                                ///< an outline came first, parts follow
     double base_m = 0.0, height_m = 0.0;
   };
 
   void add_outlined(const RawScene& scene, const RawFootprint& f, std::uint32_t first) {
     mesh_.resume_object(first + f.object);
+    Solid& solid = solids_[f.object];
     const std::optional<double> low_m = lowest_ground(f.rings[0]);
-    const double base_m = std::isfinite(f.ground_m) ? f.ground_m : low_m.value_or(0.0);
+    const double base_m = solid.of_parts              ? solid.base_m  // all from the same ground
+                          : std::isfinite(f.ground_m) ? f.ground_m
+                                                      : low_m.value_or(0.0);
+    if (f.only_outline) {
+      if (solid.of_parts) return;  // another piece of the same outline
+      solid.of_parts = true;
+      solid.footprint = f.rings;
+      solid.base_m = base_m;
+      return;
+    }
     const double bottom_m = std::min(low_m.value_or(base_m), base_m) - kSunk_m;
     flattened_ += add_footprint(f, bottom_m, base_m, material(f.wall_material, config_.wall_material),
                                 material(f.roof_material, config_.roof_material), mesh_)
                       ? 0
                       : 1;
-    Solid& solid = solids_[f.object];
     if (solid.footprint.empty() || std::abs(twice_area(f.rings[0])) > std::abs(twice_area(solid.footprint[0]))) {
       solid.footprint = f.rings;
       solid.base_m = base_m;
@@ -163,7 +174,7 @@ class Assembler {
       const Eigen::Vector3d normal = (b - a).cross(c - a);
       if (!index) index = material(scene.materials[polygon.material], default_material(kind, normal));
       mesh_.triangle(a, b, c, *index);
-      if (kind == ObjectKind::kBuilding) note({a, b, c}, polygon.ground_surface, solids_[polygon.object]);
+      if (has_solid(kind)) note({a, b, c}, polygon.ground_surface, solids_[polygon.object]);
     });
     no_area_ += count == 0 ? 1 : 0;
   }
@@ -184,20 +195,62 @@ class Assembler {
       mesh.triangles.push_back({offset + t[0], offset + t[1], offset + t[2]});
       mesh.material.push_back(entry->second);
       mesh.object.push_back(first + raw.object[i]);
-      if (kind == ObjectKind::kBuilding) note(corners, false, solids_[raw.object[i]]);
+      if (has_solid(kind)) note(corners, false, solids_[raw.object[i]]);
     }
   }
 
+  static bool has_solid(ObjectKind kind) { return kind == ObjectKind::kBuilding || kind == ObjectKind::kTree; }
+
+  /// The crown of a tree that came as triangles: what GNSS signals pass.
+  void add_crown(const Solid& solid) {
+    if (solid.faces.empty()) return;
+    Eigen::Vector2d low = solid.faces[0][0].head<2>(), high = low;
+    for (const auto& face : solid.faces)
+      for (const Eigen::Vector3d& p : face) low = low.cwiseMin(p.head<2>()), high = high.cwiseMax(p.head<2>());
+    const Eigen::Vector2d middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    const double height_m = solid.high_m - solid.low_m;
+    if (!(half.minCoeff() > 0.0 && height_m > 0.0)) return;
+    parts_.foliage.push_back({{middle.x(), middle.y(), solid.low_m + 0.5 * (1.0 + kCrownFrom) * height_m},
+                              {half.x(), half.y(), 0.5 * (1.0 - kCrownFrom) * height_m}});
+  }
+
+  void plant(const RawTree& tree, std::uint32_t first) {
+    const auto ground = terrain_->ground(tree.place.x(), tree.place.y());
+    mesh_.resume_object(first + tree.object);
+    const double radius_m = 0.5 * tree.crown_m;
+    add_tree({tree.place.x(), tree.place.y(), ground ? ground->height_m : 0.0},
+             {0.5 * (1.0 + kCrownFrom) * tree.height_m, {radius_m, radius_m, 0.5 * (1.0 - kCrownFrom) * tree.height_m}},
+             leaves_, planted_++, mesh_, parts_);
+  }
+
   static void note(const std::array<Eigen::Vector3d, 3>& corners, bool bottom, Solid& solid) {
-    const Eigen::Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!corners[0].allFinite() || !corners[1].allFinite() || !corners[2].allFinite()) return;
     if (bottom) solid.marked.push_back(corners);
-    if (normal.z() < -0.5 * normal.norm()) solid.down.push_back(corners);
+    solid.faces.push_back(corners);
     for (const Eigen::Vector3d& p : corners) {
-      if (!p.allFinite()) continue;
-      solid.corners.emplace_back(p.head<2>());
       solid.low_m = std::min(solid.low_m, p.z());
       solid.high_m = std::max(solid.high_m, p.z());
     }
+  }
+
+  /// The border of a building's bottom, clockwise seen from above: of what is said to be the bottom, else of the faces
+  /// that look down, else, where a shell is open below, of the shell.
+  static std::vector<std::vector<Eigen::Vector3d>> bottom_rings(const Solid& solid) {
+    if (!solid.marked.empty()) return border_rings(solid.marked);
+    std::vector<std::array<Eigen::Vector3d, 3>> down;
+    for (const auto& face : solid.faces) {
+      const Eigen::Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]);
+      if (normal.z() < -0.5 * normal.norm()) down.push_back(face);
+    }
+    if (!down.empty()) return border_rings(down);
+    auto rings = border_rings(solid.faces);
+    std::erase_if(rings, [&](const auto& ring) {
+      double mean_m = 0.0;
+      for (const Eigen::Vector3d& p : ring) mean_m += p.z() / static_cast<double>(ring.size());
+      return mean_m > 0.5 * (solid.low_m + solid.high_m);
+    });
+    for (auto& ring : rings) std::reverse(ring.begin(), ring.end());
+    return rings;
   }
 
   void finish_building(std::uint32_t object, Solid& solid) {
@@ -207,8 +260,8 @@ class Assembler {
     if (!solid.footprint.empty()) {
       building.base_m = solid.base_m;
       building.height_m = solid.height_m;
-    } else if (!solid.corners.empty()) {
-      const auto rings = border_rings(solid.marked.empty() ? solid.down : solid.marked);
+    } else if (!solid.faces.empty()) {
+      const auto rings = bottom_rings(solid);
       for (const auto& ring : rings) add_skirt(object, ring);
       for (const auto& ring : rings) {
         std::vector<Eigen::Vector2d> flat;
@@ -220,7 +273,12 @@ class Assembler {
           solid.footprint.begin(), solid.footprint.end(),
           [](const auto& a, const auto& b) { return std::abs(twice_area(a)) < std::abs(twice_area(b)); });
       if (largest != solid.footprint.end()) std::iter_swap(solid.footprint.begin(), largest);
-      if (solid.footprint.empty()) solid.footprint = {convex_hull(solid.corners)};
+      if (solid.footprint.empty()) {
+        std::vector<Eigen::Vector2d> corners;
+        for (const auto& face : solid.faces)
+          for (const Eigen::Vector3d& p : face) corners.emplace_back(p.head<2>());
+        solid.footprint = {convex_hull(std::move(corners))};
+      }
       const bool outline_positive = twice_area(solid.footprint[0]) > 0.0;
       std::erase_if(solid.footprint, [&](const auto& ring) {
         return &ring != &solid.footprint[0] && (twice_area(ring) > 0.0) == outline_positive;
@@ -280,6 +338,8 @@ class Assembler {
   std::map<std::string, int> names_;
   std::map<std::string, int> unknown_materials_;
   std::map<std::pair<long long, long long>, std::uint32_t> nodes_;
+  const RandomStream leaves_{0, "scene.import.leaves"};
+  std::size_t planted_ = 0;
   int flattened_ = 0, no_area_ = 0;
 };
 

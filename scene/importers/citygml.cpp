@@ -20,7 +20,7 @@ constexpr Row kMembers[] = {{"Building", ObjectKind::kBuilding, ""},
                             {"ReliefFeature", ObjectKind::kTerrain, "ground"},
                             {"LandUse", ObjectKind::kTerrain, "ground"},
                             {"PlantCover", ObjectKind::kTerrain, "grass"},
-                            {"WaterBody", ObjectKind::kTerrain, "wet_ground"},
+                            {"WaterBody", ObjectKind::kTerrain, "water"},
                             {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
                             {"CityFurniture", ObjectKind::kOther, ""}};
 
@@ -44,6 +44,7 @@ class CityGmlReader {
     }
     if (scene_.polygons.empty())
       return Error{path_, 0, "", "holds no surface", "city objects of level of detail 1 or more"};
+    if (templates_ > 0) scene_.warnings.push_back(std::to_string(templates_) + " geometry templates are left out");
     if (flat_ > 0) scene_.warnings.push_back(std::to_string(flat_) + " buildings of level of detail 0 are left out");
     return std::move(scene_);
   }
@@ -98,6 +99,10 @@ class CityGmlReader {
         CANYON_TRY_STATUS(polygon(e, level, material, ground));
         continue;
       }
+      if (name == "ImplicitGeometry") {  // a prototype in coordinates of its own, to be set in many places
+        ++templates_;
+        continue;
+      }
       const int own = level_of_detail(name);
       const std::string inner = name == "Window" ? "glass" : name == "Door" ? "wood" : material;
       CANYON_TRY_STATUS(collect(e, own >= 0 ? own : level, inner, ground || name == "GroundSurface"));
@@ -127,6 +132,8 @@ class CityGmlReader {
     std::vector<double> numbers;
     for (XmlElement e = ring.first_child(); e; e = e.next()) {
       if (e.name() != "posList" && e.name() != "pos") continue;
+      if (const auto dimension = e.attribute("srsDimension"); dimension && *dimension != "3")
+        return Error{path_, e.line(), "srsDimension", "\"" + *dimension + "\"", "3: points with a height"};
       const std::string text = e.text();
       for (const std::string_view word : split(text, " \t\r\n", true)) {
         double value = 0.0;
@@ -146,7 +153,7 @@ class CityGmlReader {
   std::string path_;
   RawScene scene_;
   std::vector<Found> found_;
-  int flat_ = 0;
+  int flat_ = 0, templates_ = 0;
 };
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr Row kTypes[] = {{"Building", ObjectKind::kBuilding, ""},
                           {"TransportSquare", ObjectKind::kTerrain, "asphalt"},
                           {"LandUse", ObjectKind::kTerrain, "ground"},
                           {"PlantCover", ObjectKind::kTerrain, "grass"},
-                          {"WaterBody", ObjectKind::kTerrain, "wet_ground"},
+                          {"WaterBody", ObjectKind::kTerrain, "water"},
                           {"TINRelief", ObjectKind::kTerrain, "ground"},
                           {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
                           {"Bridge", ObjectKind::kOther, "concrete"}};
@@ -43,7 +43,7 @@ struct Surface {
   const char* type;
   const char* material;
 };
-constexpr Surface kSurfaces[] = {{"Window", "glass"}, {"Door", "wood"}, {"WaterSurface", "wet_ground"}};
+constexpr Surface kSurfaces[] = {{"Window", "glass"}, {"Door", "wood"}, {"WaterSurface", "water"}};
 
 class CityJsonReader {
  public:
@@ -75,6 +75,7 @@ class CityJsonReader {
       ++line;
     }
     if (scene_.polygons.empty()) return Error{path_, 0, "CityObjects", "no surface", "city objects with geometry"};
+    if (flat_ > 0) scene_.warnings.push_back(std::to_string(flat_) + " buildings of level of detail 0 are left out");
     if (templates_ > 0) scene_.warnings.push_back(std::to_string(templates_) + " geometry templates are left out");
     if (dangling_ > 0)
       scene_.warnings.push_back(std::to_string(dangling_) + " rings with vertices that do not exist are left out");
@@ -83,10 +84,9 @@ class CityJsonReader {
 
  private:
   Status header(const Json& document) {
-    if (!document.is_object() || document.value("type", "") != "CityJSON")
+    if (!document.is_object() || text_of(document, "type") != "CityJSON")
       return Error{path_, 0, "type", "not a CityJSON file", "\"type\": \"CityJSON\""};
-    const std::string version =
-        document.contains("version") && document["version"].is_string() ? document["version"].get<std::string>() : "";
+    const std::string version = text_of(document, "version");
     if (version.rfind("1.", 0) != 0 && version.rfind("2.", 0) != 0)
       return Error{path_, 0, "version", "\"" + version + "\" is not known", "1.0, 1.1 or 2.0"};
     if (const auto transform = document.find("transform"); transform != document.end()) {
@@ -123,13 +123,38 @@ class CityJsonReader {
       const Eigen::Vector3d raw(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
       vertices_.push_back(raw.cwiseProduct(scale_) + translate_);
     }
+    // The finest level of detail of each object with all its parts: a building whose parts are of level 2 is not built
+    // again at its own level 1.
+    std::map<std::string, double> finest;
     for (const auto& [id, object] : objects->items()) {
       if (!object.is_object()) return Error{path_, line, "CityObjects." + id, "not an object", "a city object"};
-      const auto geometry = object.find("geometry");
-      if (geometry == object.end() || !geometry->is_array() || geometry->empty()) continue;
-      CANYON_TRY_STATUS(add(*objects, id, object, *geometry, line));
+      for (const Json* g : geometries_of(object)) {
+        double& level = finest.try_emplace(root_of(*objects, id), -1.0).first->second;
+        level = std::max(level, level_of_detail(*g));
+      }
+    }
+    for (const auto& [id, object] : objects->items()) {
+      if (const auto list = object.find("geometry"); list != object.end() && list->is_array())
+        templates_ += static_cast<int>(std::count_if(
+            list->begin(), list->end(), [](const Json& g) { return text_of(g, "type") == "GeometryInstance"; }));
+      const std::string root = root_of(*objects, id);
+      for (const Json* g : geometries_of(object))
+        if (level_of_detail(*g) == finest[root]) {
+          CANYON_TRY_STATUS(add(root, id, text_of(object, "type"), *g, line));
+          break;
+        }
     }
     return Ok{};
+  }
+
+  /// Of what an object's geometry holds, that which has boundaries.
+  static std::vector<const Json*> geometries_of(const Json& object) {
+    std::vector<const Json*> out;
+    const auto geometry = object.find("geometry");
+    if (geometry == object.end() || !geometry->is_array()) return out;
+    for (const Json& g : *geometry)
+      if (g.is_object() && g.contains("boundaries") && text_of(g, "type") != "GeometryInstance") out.push_back(&g);
+    return out;
   }
 
   /// The object that a part belongs to in the end.
@@ -150,32 +175,26 @@ class CityJsonReader {
     return lod->is_number() ? lod->get<double>() : lod->is_string() ? std::atof(lod->get<std::string>().c_str()) : 0.0;
   }
 
-  Status add(const Json& objects, const std::string& id, const Json& object, const Json& geometries, int line) {
-    const Json* best = nullptr;
-    for (const Json& g : geometries) {
-      if (!g.is_object() || !g.contains("boundaries")) continue;
-      if (g.value("type", "") == "GeometryInstance") {
-        ++templates_;
-        continue;
-      }
-      if (best == nullptr || level_of_detail(g) > level_of_detail(*best)) best = &g;
+  Status add(const std::string& root, const std::string& id, const std::string& object_type, const Json& geometry,
+             int line) {
+    const Row row = row_of(object_type);
+    if (row.kind == ObjectKind::kBuilding && level_of_detail(geometry) < 1.0 && geometry.contains("lod")) {
+      ++flat_;  // an outline
+      return Ok{};
     }
-    if (best == nullptr) return Ok{};
-    const std::string root = root_of(objects, id);
-    const Row row = row_of(object.value("type", ""));
     const auto [entry, fresh] = by_id_.try_emplace(root, 0u);
     if (fresh) entry->second = scene_.add_object(root, row.kind);
     object_ = entry->second;
     material_ = scene_.material(row.material);
     const Json none;
     const Json::json_pointer values("/semantics/values"), surfaces("/semantics/surfaces");
-    surfaces_ = best->contains(surfaces) ? &(*best)[surfaces] : nullptr;
-    const std::string type = best->value("type", "");
+    surfaces_ = geometry.contains(surfaces) ? &geometry[surfaces] : nullptr;
+    const std::string type = text_of(geometry, "type");
     const int depth = type == "Solid" ? 1 : type == "MultiSolid" || type == "CompositeSolid" ? 2 : 0;
     if (type != "Solid" && type != "MultiSolid" && type != "CompositeSolid" && type != "MultiSurface" &&
         type != "CompositeSurface")
       return Ok{};  // points and lines
-    if (!faces((*best)["boundaries"], best->contains(values) ? (*best)[values] : none, depth))
+    if (!faces(geometry["boundaries"], geometry.contains(values) ? geometry[values] : none, depth))
       return Error{path_, line, "CityObjects." + id + ".geometry", "boundaries are not understood", "a " + type};
     return Ok{};
   }
@@ -199,7 +218,7 @@ class CityJsonReader {
     RawPolygon polygon{.object = object_, .material = material_};
     if (surfaces_ != nullptr && surfaces_->is_array() && value.is_number_unsigned() &&
         value.get<std::size_t>() < surfaces_->size()) {
-      const std::string type = (*surfaces_)[value.get<std::size_t>()].value("type", "");
+      const std::string type = text_of((*surfaces_)[value.get<std::size_t>()], "type");
       polygon.ground_surface = type == "GroundSurface";
       for (const Surface& s : kSurfaces)
         if (type == s.type) polygon.material = scene_.material(s.material);
@@ -231,7 +250,7 @@ class CityJsonReader {
   std::map<std::string, std::uint32_t> by_id_;
   std::uint32_t object_ = 0, material_ = 0;
   const Json* surfaces_ = nullptr;
-  int templates_ = 0, dangling_ = 0;
+  int templates_ = 0, dangling_ = 0, flat_ = 0;
 };
 
 }  // namespace

@@ -76,7 +76,8 @@ double number_of(const Json& properties, const std::string& key) {
   return end != text.c_str() ? number : kUnknown;
 }
 
-std::string text_of(const Json& properties, const std::string& key) {
+/// A text or a number as text.
+std::string words_of(const Json& properties, const std::string& key) {
   const auto value = key.empty() ? properties.end() : properties.find(key);
   if (value == properties.end()) return "";
   return value->is_string() ? value->get<std::string>() : value->is_number() ? value->dump() : "";
@@ -89,7 +90,7 @@ class GeoJsonReader {
   Result<RawScene> read() {
     CANYON_TRY(const std::string text, read_text_or_gzip_file(path_));
     CANYON_TRY(const Json document, parse_json(text, path_));
-    if (!document.is_object() || document.value("type", "") != "FeatureCollection" || !document.contains("features") ||
+    if (!document.is_object() || text_of(document, "type") != "FeatureCollection" || !document.contains("features") ||
         !document["features"].is_array())
       return Error{path_, 0, "type", "not a collection of features", "\"type\": \"FeatureCollection\""};
     const Json::json_pointer crs("/crs/properties/name");
@@ -119,7 +120,7 @@ class GeoJsonReader {
     const Json none = Json::object();
     const auto found = feature.find("properties");
     const Json& properties = found != feature.end() && found->is_object() ? *found : none;
-    const std::string type = geometry.is_object() ? geometry.value("type", "") : "";
+    const std::string type = text_of(geometry, "type");
     if (!geometry.is_object() || !geometry.contains("coordinates") || !geometry["coordinates"].is_array())
       return mistake("geometry", "no coordinates", "a list");
     const Json& coordinates = geometry["coordinates"];
@@ -166,7 +167,7 @@ class GeoJsonReader {
   Status surfaces(const Json& polygons, const Json& properties) {
     const Layout layout = layout_of(properties);
     const std::string height_key = options_.height_property.empty() ? layout.height : options_.height_property;
-    std::string name = text_of(properties, layout.id);
+    std::string name = words_of(properties, layout.id);
     std::vector<std::vector<std::vector<Eigen::Vector3d>>> rings;
     double low_m = 1e300, high_m = -1e300;
     for (const Json& polygon : polygons) {
@@ -191,7 +192,7 @@ class GeoJsonReader {
     const double height_m =
         missing_.resolve(number_of(properties, height_key), number_of(properties, storeys_key), options_);
     if (!std::isfinite(height_m)) return Ok{};
-    const std::string walls = text_of(properties, layout.walls), roof = text_of(properties, layout.roof);
+    const std::string walls = words_of(properties, layout.walls), roof = words_of(properties, layout.roof);
     const std::uint32_t object = scene_.add_object(unique(name.empty() ? "building" : name), ObjectKind::kBuilding);
     for (const auto& polygon : rings) {
       RawFootprint footprint{.object = object, .height_m = height_m};

@@ -1,20 +1,13 @@
 #include "scene/importers/importer.h"
 
-#include <algorithm>
 #include <cctype>
 
 #include "core/config_text.h"
 #include "core/files.h"
+#include "core/lower_case.h"
 
 namespace canyon::scene {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 bool holds(std::string_view text, const char* word) {
   return text.find(word) != std::string_view::npos;
@@ -40,7 +33,7 @@ bool is_mitsuba(std::string_view text) {
 
 const std::vector<SceneFormat>& scene_formats() {
   static const std::vector<SceneFormat> formats = {
-      {"OBJ", {".obj"}, read_obj, "Wavefront OBJ with MTL; groups and objects become objects"},
+      {"OBJ", {".obj"}, read_obj, "Wavefront OBJ; groups and objects become objects, usemtl names materials"},
       {"PLY", {".ply"}, read_ply, "Stanford PLY, ascii and both binary forms"},
       {"CityJSON",
        {".city.json", ".city.jsonl", ".jsonl", ".json"},
@@ -72,7 +65,7 @@ const std::vector<SceneFormat>& scene_formats() {
 }
 
 Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& options) {
-  std::string name = lower(path);
+  std::string name = lower_case(path);
   if (name.ends_with(".gz")) name.resize(name.size() - 3);
   std::vector<const SceneFormat*> candidates;
   std::string endings;
@@ -163,7 +156,7 @@ ObjectKind kind_by_name(std::string_view name, ObjectKind otherwise) {
       {"vehicle", ObjectKind::kVehicle},   {"car", ObjectKind::kVehicle},    {"tree", ObjectKind::kTree},
       {"wall", ObjectKind::kWall},         {"pole", ObjectKind::kPole},      {"person", ObjectKind::kPerson},
   };
-  const std::string text = lower(name);
+  const std::string text = lower_case(name);
   // Whole words only: "car_2" is a vehicle, "Oscar" is not.
   for (const Row& row : kRows) {
     const std::size_t length = std::char_traits<char>::length(row.word);

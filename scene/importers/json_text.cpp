@@ -19,4 +19,9 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& path
   }
 }
 
+std::string text_of(const nlohmann::json& object, const char* key) {
+  const auto member = object.is_object() ? object.find(key) : object.end();
+  return member != object.end() && member->is_string() ? member->get<std::string>() : std::string();
+}
+
 }  // namespace canyon::scene

@@ -15,13 +15,6 @@ std::string value_of(const XmlElement& parent, std::string_view name) {
   return "";
 }
 
-/// Sionna names ITU materials "itu_concrete", "itu-concrete" or gives an itu-radio-material its type.
-std::string plain_material(std::string name) {
-  for (const char* prefix : {"mat-", "itu_", "itu-"})
-    if (name.starts_with(prefix)) name.erase(0, std::char_traits<char>::length(prefix));
-  return name;
-}
-
 /// Materials by id, of <bsdf> at any depth (Mitsuba wraps them: twosided).
 std::map<std::string, std::string> materials_of(const XmlElement& root) {
   std::map<std::string, std::string> out;
@@ -29,7 +22,7 @@ std::map<std::string, std::string> materials_of(const XmlElement& root) {
     if (e.name() != "bsdf") return true;
     const std::string id = e.attribute("id").value_or("");
     const bool radio = e.attribute("type") == "itu-radio-material";
-    if (!id.empty()) out[id] = plain_material(radio && !value_of(e, "type").empty() ? value_of(e, "type") : id);
+    if (!id.empty()) out[id] = radio && !value_of(e, "type").empty() ? value_of(e, "type") : id;
     return true;
   });
   return out;

@@ -33,6 +33,7 @@ class ObjReader {
       CANYON_TRY_STATUS(statement(line));
     }
     if (scene_.meshes[0].vertices.empty()) return in_.empty_file("vertex");
+    if (scene_.meshes[0].triangles.empty() && scene_.polygons.empty()) return in_.empty_file("face");
     return std::move(scene_);
   }
 

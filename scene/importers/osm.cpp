@@ -7,6 +7,7 @@
 
 #include "scene/importers/importer.h"
 #include "scene/importers/xml_file.h"
+#include "scene/triangulate.h"
 
 namespace canyon::scene {
 namespace {
@@ -57,10 +58,38 @@ double or_zero(double value) {
   return std::isfinite(value) ? value : 0.0;
 }
 
-bool is_building(const Tags& tags) {
-  const auto tag = tags.find("building");
+bool is(const Tags& tags, const char* key) {
+  const auto tag = tags.find(key);
   return tag != tags.end() && tag->second != "no";
 }
+
+using Ring = std::vector<Eigen::Vector2d>;
+
+/// A building, or a part of one, as the file has it.
+struct Shape {
+  std::string name;  ///< "way 12"
+  Tags tags;
+  std::vector<std::vector<Ring>> outlines;  ///< each with its holes
+
+  bool contains(const Eigen::Vector2d& p) const {
+    return std::any_of(outlines.begin(), outlines.end(),
+                       [&](const auto& rings) { return polygon_contains(rings[0], p); });
+  }
+  /// A point that lies inside, away from the border.
+  Eigen::Vector2d inner_point() const {
+    const std::vector<Ring>& rings = outlines[0];
+    Ring points;
+    for (const Ring& ring : rings) points.insert(points.end(), ring.begin(), ring.end());
+    Eigen::Vector2d best = points[0];
+    double largest = 0.0;
+    for (const auto& t : triangulate(rings)) {
+      const Eigen::Vector2d &a = points[t[0]], &b = points[t[1]], &c = points[t[2]];
+      const double area = twice_area({a, b, c});
+      if (area > largest) largest = area, best = (a + b + c) / 3.0;
+    }
+    return best;
+  }
+};
 
 class OsmReader {
  public:
@@ -77,6 +106,7 @@ class OsmReader {
     }
     for (XmlElement e = file.root().first_child(); e; e = e.next())
       if (e.name() == "relation") relation(e);
+    set_up();
     missing_.tell(scene_, options_);
     if (open_ > 0)
       scene_.warnings.push_back(std::to_string(open_) +
@@ -113,6 +143,9 @@ class OsmReader {
     if (!read(lon, p.x()) || !read(lat, p.y()) || std::abs(p.y()) > 90.0 || std::abs(p.x()) > 180.0)
       return Error{path_, e.line(), "node", "lat=\"" + lat + "\" lon=\"" + lon + "\"", "degrees"};
     nodes_[id] = p;
+    if (!e.first_child()) return Ok{};
+    const Tags tags = tags_of(e);
+    if (const auto kind = tags.find("natural"); kind != tags.end() && kind->second == "tree") tree(id, p, tags);
     return Ok{};
   }
 
@@ -125,7 +158,7 @@ class OsmReader {
       refs.push_back(ref);
     }
     const Tags tags = tags_of(e);
-    if (is_building(tags)) building("way " + std::to_string(id), tags, {refs}, {});
+    if (is(tags, "building") || is(tags, "building:part")) note("way " + std::to_string(id), tags, {refs}, {});
     if (tags.contains("highway")) street(tags, refs);
     ways_[id] = std::move(refs);
     return Ok{};
@@ -134,7 +167,9 @@ class OsmReader {
   void relation(const XmlElement& e) {
     const Tags tags = tags_of(e);
     const auto type = tags.find("type");
-    if (type == tags.end() || type->second != "multipolygon" || !is_building(tags)) return;
+    if (type == tags.end()) return;
+    if (type->second == "building") return group(e);
+    if (type->second != "multipolygon" || !(is(tags, "building") || is(tags, "building:part"))) return;
     std::vector<std::vector<long long>> outer, inner;
     for (XmlElement member = e.first_child(); member; member = member.next()) {
       if (member.name() != "member" || member.attribute("type") != "way") continue;
@@ -142,7 +177,20 @@ class OsmReader {
       if (found == ways_.end()) continue;
       (member.attribute("role") == "inner" ? inner : outer).push_back(found->second);
     }
-    building("relation " + e.attribute("id").value_or("?"), tags, joined(std::move(outer)), joined(std::move(inner)));
+    note("relation " + e.attribute("id").value_or("?"), tags, joined(std::move(outer)), joined(std::move(inner)));
+  }
+
+  /// A relation of type building says which parts belong to which outline.
+  void group(const XmlElement& e) {
+    std::string outline;
+    std::vector<std::string> parts;
+    for (XmlElement member = e.first_child(); member; member = member.next()) {
+      if (member.name() != "member") continue;
+      const std::string name = member.attribute("type").value_or("") + " " + member.attribute("ref").value_or("");
+      if (member.attribute("role") == "outline") outline = name;
+      if (member.attribute("role") == "part") parts.push_back(name);
+    }
+    for (const std::string& part : parts) outline_of_[part] = outline;
   }
 
   /// Ways put together at their ends.
@@ -175,17 +223,85 @@ class OsmReader {
     return out;
   }
 
-  void building(const std::string& name, const Tags& tags, const std::vector<std::vector<long long>>& outer,
-                const std::vector<std::vector<long long>>& inner) {
-    std::vector<std::vector<Eigen::Vector2d>> outlines, holes;
+  /// Keeps a building or a part for set_up(), when all are known.
+  void note(const std::string& name, const Tags& tags, const std::vector<std::vector<long long>>& outer,
+            const std::vector<std::vector<long long>>& inner) {
+    Shape shape{name, tags, {}};
     for (const auto& refs : outer)
-      if (auto points = ring(refs); !points.empty()) outlines.push_back(std::move(points));
-    for (const auto& refs : inner)
-      if (auto points = ring(refs); !points.empty()) holes.push_back(std::move(points));
-    if (outlines.empty()) {
-      ++open_;
-      return;
+      if (auto points = ring(refs); !points.empty()) shape.outlines.push_back({std::move(points)});
+    for (const auto& refs : inner) {
+      const Ring hole = ring(refs);
+      if (hole.empty()) continue;
+      const Eigen::Vector2d within = Shape{"", {}, {{hole}}}.inner_point();
+      for (auto& rings : shape.outlines) {
+        if (!polygon_contains(rings[0], within)) continue;
+        rings.push_back(hole);
+        break;
+      }
     }
+    if (shape.outlines.empty())
+      ++open_;
+    else
+      (is(tags, "building") ? buildings_ : parts_).push_back(std::move(shape));
+  }
+
+  /// Of a building with parts only these are built, and the outline is its footprint (Simple 3D Buildings). A part of
+  /// no building stands for itself.
+  void set_up() {
+    std::map<std::string, std::size_t> number_of;
+    for (std::size_t b = 0; b < buildings_.size(); ++b) number_of[buildings_[b].name] = b;
+    std::vector<std::vector<const Shape*>> parts_of(buildings_.size());
+    std::vector<const Shape*> alone;
+    for (const Shape& part : parts_) {
+      const auto stated = outline_of_.find(part.name);
+      const auto known = stated == outline_of_.end() ? number_of.end() : number_of.find(stated->second);
+      std::size_t b = known == number_of.end() ? 0 : known->second;
+      if (known == number_of.end()) {
+        const Eigen::Vector2d within = part.inner_point();
+        while (b < buildings_.size() && !buildings_[b].contains(within)) ++b;
+      }
+      if (b < buildings_.size())
+        parts_of[b].push_back(&part);
+      else
+        alone.push_back(&part);
+    }
+    for (std::size_t b = 0; b < buildings_.size(); ++b) add_building(buildings_[b], parts_of[b]);
+    for (const Shape* part : alone) add_building(*part, {});
+  }
+
+  void add_building(const Shape& outline, const std::vector<const Shape*>& parts) {
+    std::vector<RawFootprint> made;
+    if (parts.empty()) {
+      add_footprints(outline, outline.tags, made);
+    } else {
+      for (const auto& rings : outline.outlines) {
+        RawFootprint footprint{.rings = rings};
+        footprint.only_outline = true;
+        made.push_back(std::move(footprint));
+      }
+      const std::size_t outlines = made.size();
+      for (const Shape* part : parts) {
+        // What a part does not say of itself, the building says.
+        Tags tags = part->tags;
+        const auto inherit = [&](const char* key) {
+          if (const auto tag = outline.tags.find(key); tag != outline.tags.end()) tags.insert(*tag);
+        };
+        const bool tall = tags.contains("height") || tags.contains("building:levels");
+        if (!tall) inherit("height"), inherit("building:levels");
+        inherit("building:material"), inherit("roof:material");
+        add_footprints(*part, tags, made);
+      }
+      if (made.size() == outlines) return;
+    }
+    if (made.empty()) return;
+    const std::uint32_t object = scene_.add_object(outline.name, ObjectKind::kBuilding);
+    for (RawFootprint& footprint : made) {
+      footprint.object = object;
+      scene_.footprints.push_back(std::move(footprint));
+    }
+  }
+
+  void add_footprints(const Shape& source, const Tags& tags, std::vector<RawFootprint>& out) {
     RawFootprint shape;
     const double roof_levels = or_zero(metres(tags, "roof:levels"));
     const double height = metres(tags, "height");
@@ -210,13 +326,19 @@ class OsmReader {
     shape.ridge_across = orientation != tags.end() && orientation->second == "across";
     shape.wall_material = material_of(tags, "building:material");
     shape.roof_material = material_of(tags, "roof:material");
-    shape.object = scene_.add_object(name, ObjectKind::kBuilding);
-    for (std::size_t i = 0; i < outlines.size(); ++i) {
-      RawFootprint one = shape;
-      one.rings = {outlines[i]};
-      if (i == 0) one.rings.insert(one.rings.end(), holes.begin(), holes.end());
-      scene_.footprints.push_back(std::move(one));
+    for (const auto& rings : source.outlines) {
+      out.push_back(shape);
+      out.back().rings = rings;
     }
+  }
+
+  /// Without figures a street tree of middle age: 10 m high, its crown half as wide.
+  void tree(long long id, const Eigen::Vector2d& p, const Tags& tags) {
+    const double height_m = metres(tags, "height"), crown_m = metres(tags, "diameter_crown");
+    RawTree tree{.object = scene_.add_object("node " + std::to_string(id), ObjectKind::kTree), .place = p};
+    tree.height_m = height_m > 1.0 && height_m < 120.0 ? height_m : 10.0;
+    tree.crown_m = crown_m > 0.5 && crown_m < 60.0 ? crown_m : 0.5 * tree.height_m;
+    scene_.trees.push_back(tree);
   }
 
   void street(const Tags& tags, const std::vector<long long>& refs) {
@@ -239,6 +361,8 @@ class OsmReader {
   RawScene scene_;
   std::unordered_map<long long, Eigen::Vector2d> nodes_;
   std::map<long long, std::vector<long long>> ways_;
+  std::vector<Shape> buildings_, parts_;
+  std::map<std::string, std::string> outline_of_;  ///< of parts, where a relation says so
   MissingHeights missing_;
   int open_ = 0;
 };

@@ -53,6 +53,9 @@ class PlyReader {
     object_ = scene.add_object(name, kind_by_name(name, ObjectKind::kOther));
     scene.meshes.emplace_back();
     for (const Element& element : elements_) {
+      if (element.count > 0 && (element.properties.empty() || element.count > text_.size()))
+        return mistake(std::to_string(element.count) + " of element \"" + element.name + "\"",
+                       "properties, and no more than the file holds");
       for (std::size_t i = 0; i < element.count; ++i) {
         if (element.name == "vertex") {
           CANYON_TRY_STATUS(vertex(element, scene.meshes[0]));
@@ -64,6 +67,8 @@ class PlyReader {
       }
     }
     if (scene.meshes[0].vertices.empty()) return Error{path_, 0, "", "holds no vertex", "a PLY mesh"};
+    if (scene.meshes[0].triangles.empty() && scene.polygons.empty())
+      return Error{path_, 0, "", "holds no face: a cloud of points", "a PLY mesh"};
     return scene;
   }
 

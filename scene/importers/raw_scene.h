@@ -49,6 +49,15 @@ struct RawFootprint {
   double roof_height_m = 0.0;  ///< of a pitched roof, part of height_m
   bool ridge_across = false;   ///< the ridge runs along the shorter side
   std::string wall_material{}, roof_material{};
+  bool only_outline = false;  ///< of a building whose parts follow: they are built, this is its outline
+};
+
+/// A tree of which only place and size are known.
+struct RawTree {
+  std::uint32_t object = 0;
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  double height_m = 10.0;
+  double crown_m = 5.0;  ///< diameter
 };
 
 struct RawStreet {
@@ -66,6 +75,7 @@ struct RawScene {
   std::vector<RawMesh> meshes;
   std::vector<RawFootprint> footprints;
   std::vector<RawStreet> streets;
+  std::vector<RawTree> trees;
   std::vector<std::string> warnings;  ///< counted: "5 buildings without a height are left out"
 
   /// Index of a material's name, which is added if it is new.

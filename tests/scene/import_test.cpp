@@ -1,74 +1,15 @@
 #include "scene/import.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <cstdio>
-#include <fstream>
 
-#include "core/units.h"
-#include "scene/scene.h"
 #include "scene/scene_at.h"
-#include "tests/support/outside_program.h"
+#include "tests/scene/import_fixture.h"
 
-/// Synthetic twins of the real scenes: small files of every format, whose content is known.
-namespace canyon::scene {
+namespace canyon::scene::testing {
 namespace {
-
-class Import : public ::testing::Test {
- protected:
-  std::string write(const std::string& name, const std::string& text) {
-    std::ofstream(scratch_.file(name), std::ios::binary) << text;
-    return scratch_.file(name);
-  }
-
-  Result<ImportedScene> import(const std::string& path) {
-    config_.file = path;
-    if (config_.undulation_m == ImportConfig::kUndulationUnknown) config_.undulation_m = 40.0;
-    return import_scene(config_, {45.0 * kDegree, 5.0 * kDegree, 100.0});
-  }
-
-  SceneParts parts(const std::string& name, const std::string& text) {
-    auto made = import(write(name, text));
-    EXPECT_TRUE(made.ok()) << (made.ok() ? "" : made.error().str());
-    if (!made.ok()) return {};
-    warnings_ = made->report.warnings;
-    return std::move(made->parts);
-  }
-
-  /// The error's text without the folder.
-  std::string message(const std::string& name, const std::string& text) {
-    const auto made = import(write(name, text));
-    EXPECT_FALSE(made.ok());
-    if (made.ok()) return "";
-    std::string out = made.error().str();
-    const std::string folder = scratch_.file("");
-    for (std::size_t at; (at = out.find(folder)) != std::string::npos;) out.erase(at, folder.size());
-    return out;
-  }
-
-  canyon::testing::ScratchDirectory scratch_;
-  ImportConfig config_;
-  std::vector<std::string> warnings_;
-};
-
-double area_m2(const SceneParts& parts, const std::string& material, double up_at_least = -2.0) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < parts.mesh.triangles.size(); ++i) {
-    const auto& t = parts.mesh.triangles[i];
-    const auto at = [&](std::size_t k) { return parts.mesh.vertices[t[k]].cast<double>(); };
-    const Eigen::Vector3d n = 0.5 * (at(1) - at(0)).cross(at(2) - at(0));
-    if (parts.materials[parts.mesh.material[i]].name == material && n.z() >= up_at_least * n.norm()) sum += n.norm();
-  }
-  return sum;
-}
-
-// A footprint of about 20 x 20 m with a yard of 10 x 10 m, 12 m high, on ground at 200 m: 1e-4 deg of latitude are 11.1
-// m.
-constexpr const char* kFootprint = R"({"type":"FeatureCollection","features":[{"type":"Feature",
-"properties":{"id":"town hall","height":12.0,"ground_height":200.0},"geometry":{"type":"Polygon","coordinates":[
-[[5.0,45.0],[5.0003,45.0],[5.0003,45.0002],[5.0,45.0002],[5.0,45.0]],
-[[5.0001,45.00005],[5.0002,45.00005],[5.0002,45.00015],[5.0001,45.00015],[5.0001,45.00005]]]}}]})";
 
 TEST_F(Import, GeoJsonFootprintWithAYard) {
   SceneParts made = parts("town.geojson", kFootprint);
@@ -176,55 +117,6 @@ TEST_F(Import, CityGmlReadsLatitudeFirst) {
   EXPECT_NEAR(area_m2(made, "roofing"), 11.095 * 9.064, 0.5);  // level 1 only: 1e-4 deg at 35.54 degrees north
 }
 
-TEST_F(Import, OsmHeightsRoofsAndStreets) {
-  std::string osm = "<osm version=\"0.6\">";
-  const auto node = [&](int id, double lat, double lon) {
-    char text[120];
-    std::snprintf(text, sizeof text, "<node id=\"%d\" lat=\"%.7f\" lon=\"%.7f\"/>", id, lat, lon);
-    osm += text;
-  };
-  // Two houses of about 22 x 16 m, 40 m apart, and a street with a bend.
-  for (int h = 0; h < 2; ++h) {
-    const double lon = 5.0 + 0.0005 * h;
-    node(10 * h + 1, 45.0, lon), node(10 * h + 2, 45.0, lon + 0.0002);
-    node(10 * h + 3, 45.0002, lon + 0.0002), node(10 * h + 4, 45.0002, lon);
-  }
-  node(31, 44.9999, 4.9999), node(32, 44.9999, 5.0003), node(33, 45.0004, 5.0003);
-  const auto way = [&](int id, std::initializer_list<int> refs, const std::string& tags) {
-    osm += "<way id=\"" + std::to_string(id) + "\">";
-    for (const int ref : refs) osm += "<nd ref=\"" + std::to_string(ref) + "\"/>";
-    osm += tags + "</way>";
-  };
-  way(1, {1, 2, 3, 4, 1},
-      "<tag k=\"building\" v=\"yes\"/><tag k=\"height\" v=\"10 m\"/><tag k=\"roof:shape\" v=\"gabled\"/>"
-      "<tag k=\"roof:height\" v=\"4\"/><tag k=\"building:material\" v=\"brick\"/>");
-  way(2, {11, 12, 13, 14, 11}, "<tag k=\"building\" v=\"house\"/><tag k=\"building:levels\" v=\"2\"/>");
-  way(3, {31, 32, 33}, "<tag k=\"highway\" v=\"residential\"/>");
-  way(4, {31, 33}, "<tag k=\"highway\" v=\"footway\"/>");
-  way(5, {11, 12, 13}, "<tag k=\"building\" v=\"yes\"/>");  // not closed
-  const SceneParts made = parts("map.osm", osm + "</osm>");
-  ASSERT_EQ(made.buildings.size(), 2u);
-  EXPECT_DOUBLE_EQ(made.buildings[0].height_m, 10.0);
-  EXPECT_DOUBLE_EQ(made.buildings[1].height_m, 6.0);
-  EXPECT_EQ(made.streets.edges.size(), 2u);
-  EXPECT_EQ(made.streets.nodes_W.size(), 3u);
-  ASSERT_EQ(warnings_.size(), 2u);
-  EXPECT_EQ(warnings_[0], "1 buildings without a height: storeys of 3 m");
-  EXPECT_EQ(warnings_[1], "1 buildings whose outline is cut off or not closed are left out");
-  const Scene scene(made);
-  const SceneAt at(scene);
-  // The gable: 10 m at the ridge, 6 m at the eaves, 8 m half-way. The ridge runs north, along the longer side.
-  const Building& b = made.buildings[0];
-  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
-  for (const auto& p : b.footprint_W) middle += 0.25 * p;
-  const double half_m = 0.5 * (b.footprint_W[1] - b.footprint_W[0]).norm();
-  for (const double s : {0.0, 0.5, 0.99}) {
-    const auto hit = at.trace({{middle.x() + s * half_m, middle.y(), 50.0}, {0, 0, -1}});
-    EXPECT_NEAR(50.0 - hit.range_m, b.base_m + 10.0 - 4.0 * s, 0.02) << s;
-  }
-  EXPECT_NEAR(area_m2(made, "brick"), 2 * (2 * half_m + 22.2264) * 6.5 + 2 * half_m * 4.0, 1.0);
-}
-
 TEST_F(Import, ObjPlyAndGltfWithTheirMaterials) {
   const SceneParts obj = parts("room.obj",
                                "# comment\nmtllib room.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2\n"
@@ -253,18 +145,119 @@ TEST_F(Import, ObjPlyAndGltfWithTheirMaterials) {
 "bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":6,"target":34963},{"buffer":0,"byteOffset":8,"byteLength":36,"target":34962}],
 "accessors":[{"bufferView":0,"byteOffset":0,"componentType":5123,"count":3,"type":"SCALAR","max":[2],"min":[0]},
 {"bufferView":1,"byteOffset":0,"componentType":5126,"count":3,"type":"VEC3","max":[1.0,1.0,0.0],"min":[0.0,0.0,0.0]}]})");
-  ASSERT_EQ(gltf.mesh.triangles.size(), 1u);
+  // The level ground that scenes without one get comes first.
   EXPECT_NEAR(area_m2(gltf, "brick"), 0.5, 1e-6);
-  const auto& t = gltf.mesh.triangles[0];
+  const auto& t = gltf.mesh.triangles.back();
   const auto at = [&](std::size_t k) { return gltf.mesh.vertices[t[k]]; };
   EXPECT_LT(((at(1) - at(0)).cross(at(2) - at(0)) - Eigen::Vector3f(0, -1, 0)).norm(), 1e-6f);
 #endif
+}
+
+#ifdef CANYON_WITH_ASSIMP
+/// One triangle (0,0,0) (1,0,0) (0,1,0) on a node that is moved, as .gltf whose buffer is `uri`.
+std::string gltf_text(const std::string& uri) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"children":[1],"translation":[10,20,30]},{"mesh":0,"name":"wall 1","scale":[2,2,2]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":1},"indices":0,"material":0}]}],"materials":[{"name":"brick"}],
+"buffers":[{)" +
+         uri + R"("byteLength":44}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":6,"target":34963},{"buffer":0,"byteOffset":8,"byteLength":36,"target":34962}],
+"accessors":[{"bufferView":0,"byteOffset":0,"componentType":5123,"count":3,"type":"SCALAR","max":[2],"min":[0]},
+{"bufferView":1,"byteOffset":0,"componentType":5126,"count":3,"type":"VEC3","max":[1.0,1.0,0.0],"min":[0.0,0.0,0.0]}]})";
+}
+
+std::string bytes_of(std::uint32_t value) {
+  return {static_cast<char>(value), static_cast<char>(value >> 8), static_cast<char>(value >> 16),
+          static_cast<char>(value >> 24)};
+}
+
+std::string glb() {
+  std::string json = gltf_text(""), data("\0\0\1\0\2\0\0\0", 8);
+  for (const float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) data += bytes_of(std::bit_cast<std::uint32_t>(v));
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const auto chunk = [](const char* kind, const std::string& body) {
+    return bytes_of(static_cast<std::uint32_t>(body.size())) + std::string(kind, 4) + body;
+  };
+  const std::string chunks = chunk("JSON", json) + chunk("BIN\0", data);
+  return "glTF" + bytes_of(2) + bytes_of(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
+}
+
+TEST_F(Import, GltfNodesAreMovedAndScaled) {
+  const std::string text = gltf_text(
+      R"("uri":"data:application/octet-stream;base64,AAABAAIAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPwAAAAA=",)");
+  for (const SceneParts& made : {parts("t.gltf", text), parts("t.glb", glb())}) {
+    ASSERT_EQ(made.objects.size(), 2u);  // with the level ground that scenes without one get
+    EXPECT_EQ(made.objects[1].kind, ObjectKind::kWall);
+    const auto at = [&](std::size_t k) { return made.mesh.vertices[made.mesh.triangles.back()[k]]; };
+    // y is up and z towards the south: (10, 20, 30) of the file lies 10 m east, 30 m south, 20 m high.
+    EXPECT_LT((at(0) - Eigen::Vector3f(10, -30, 20)).norm(), 1e-5f);
+    EXPECT_LT((at(1) - Eigen::Vector3f(12, -30, 20)).norm(), 1e-5f);
+    EXPECT_LT((at(2) - Eigen::Vector3f(10, -30, 22)).norm(), 1e-5f);
+  }
+}
+
+TEST_F(Import, DamagedGltfIsTold) {
+  const auto begins = [&](const std::string& name, const std::string& text, const std::string& with) {
+    const std::string told = message(name, text);
+    EXPECT_EQ(told.substr(0, with.size()), with) << told;
+    EXPECT_EQ(std::count(told.begin(), told.end(), '\n'), 0) << told;
+  };
+  const std::string whole = glb();
+  for (const std::size_t length : {std::size_t{0}, std::size_t{11}, std::size_t{200}, whole.size() - 20})
+    begins("t.glb", whole.substr(0, length), "t.glb: cannot be read (");
+  begins("t.gltf", gltf_text("").substr(0, 300), "t.gltf: cannot be read (");
+  begins("t.gltf", gltf_text("\"uri\":\"none.bin\","), "t.gltf: cannot be read (");
+  begins("t.glb", "solid cube", "t.glb: cannot be read (");
+}
+#else
+TEST_F(Import, WithoutAssimpGltfIsToldToBeMissing) {
+  for (const char* name : {"t.gltf", "t.glb"})
+    EXPECT_EQ(message(name, "x"), std::string(name) +
+                                      ": this canyon was built without glTF, expected a build with "
+                                      "CANYON_WITH_ASSIMP=ON");
+}
+#endif
+
+TEST_F(Import, PartsOfABuildingStandForItAtTheirFinestLevel) {
+  // A building of level 1 and its part of level 2: built once, 6 m high. An outline of level 0 is left out.
+  const std::string text =
+      R"({"type":"CityJSON","version":"1.1","transform":{"scale":[1,1,1],"translate":[0,0,0]},"CityObjects":{
+"house":{"type":"Building","children":["part"],"geometry":[{"type":"MultiSurface","lod":"1.2","boundaries":[[[4,5,6,7]]]}]},
+"part":{"type":"BuildingPart","parents":["house"],"geometry":[{"type":"MultiSurface","lod":"0","boundaries":[[[0,1,2,3]]]},
+{"type":"MultiSurface","lod":"2.2","boundaries":[[[0,1,5,4]],[[1,2,6,5]]]}]},
+"plan":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"0","boundaries":[[[0,1,2,3]]]}]}},
+"vertices":[[0,0,1],[10,0,1],[10,8,1],[0,8,1],[0,0,7],[10,0,7],[10,8,7],[0,8,7]]})";
+  const SceneParts made = parts("house.city.json", text);
+  ASSERT_EQ(made.buildings.size(), 1u);
+  EXPECT_EQ(made.buildings[0].name, "house");
+  EXPECT_NEAR(made.buildings[0].height_m, 6.0, 1e-6);
+  EXPECT_NEAR(area_m2(made, "concrete"), 10 * 6 + 8 * 6, 1e-4);
+  EXPECT_EQ(area_m2(made, "roofing"), 0.0);
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_EQ(warnings_[0], "1 buildings of level of detail 0 are left out");
+}
+
+TEST_F(Import, PrototypesOfCityGmlAreLeftOutAndCounted) {
+  const std::string polygon =
+      "<Polygon><exterior><LinearRing><posList>0 0 3 1 0 3 1 1 9</posList></LinearRing></exterior></Polygon>";
+  const SceneParts made = parts(
+      "one.gml", "<CityModel><cityObjectMember><Building><lod1Solid>" + polygon +
+                     "</lod1Solid></Building></cityObjectMember><cityObjectMember><CityFurniture>"
+                     "<lod2ImplicitRepresentation><ImplicitGeometry>" +
+                     polygon +
+                     "</ImplicitGeometry></lod2ImplicitRepresentation></CityFurniture></cityObjectMember></CityModel>");
+  EXPECT_EQ(made.buildings.size(), 1u);  // without a coordinate system: local metres
+  EXPECT_EQ(made.frame.origin().h_m, 100.0);
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_EQ(warnings_[0], "1 geometry templates are left out");
 }
 
 TEST_F(Import, MistakesAreTold) {
   EXPECT_EQ(message("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 3\n"),
             "a.obj:3: vertex \"3\" of 2, expected f and at least three vertices that exist, as 1, 1/2, 1/2/3 or -1");
   EXPECT_EQ(message("a.obj", "v 0 0 zero\n"), "a.obj:1: \"zero\" is not a number, expected v x y z");
+  EXPECT_EQ(message("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"),
+            "a.obj: holds no face, expected at least one line of numbers");
   EXPECT_EQ(message("a.obj", ""), "a.obj: holds no vertex, expected at least one line of numbers");
   EXPECT_EQ(message("a.ply", "solid\n"), "a.ply:1: does not begin with \"ply\", expected a PLY file");
   EXPECT_EQ(
@@ -323,4 +316,4 @@ TEST_F(Import, UsersMaterialsAndUnknownOnes) {
 }
 
 }  // namespace
-}  // namespace canyon::scene
+}  // namespace canyon::scene::testing
