@@ -97,26 +97,40 @@ class ObjectEdges {
   double six_volumes_m3_ = 0.0;
 };
 
-/// Cells of the plan that lie within reach of a street; all if there are no streets.
+/// Squares of the plan whose middles lie within reach of a street; all if there are no streets.
 class NearStreets {
  public:
-  NearStreets(const Scene& scene, double reach_m) : streets_(scene.streets()), reach_m_(reach_m) {}
-
-  bool operator()(const Eigen::Vector2d& p) {
-    if (streets_.edges.empty()) return true;
-    const std::pair<long long, long long> cell{std::llround(p.x() / kCell_m), std::llround(p.y() / kCell_m)};
-    const auto [entry, fresh] = known_.try_emplace(cell, false);
-    if (fresh)
-      entry->second = streets_.distance_to({static_cast<double>(cell.first) * kCell_m,
-                                            static_cast<double>(cell.second) * kCell_m}) <= reach_m_;
-    return entry->second;
+  NearStreets(const Scene& scene, double reach_m) : low_(scene.extent().min.head<2>()) {
+    const StreetGraph& streets = scene.streets();
+    if (streets.edges.empty() || scene.mesh().triangles.empty()) return;
+    const Eigen::Vector2d size = scene.extent().max.head<2>() - low_;
+    columns_ = static_cast<int>(size.x() / kCell_m) + 1;
+    rows_ = static_cast<int>(size.y() / kCell_m) + 1;
+    near_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
+    for (const StreetGraph::Edge& edge : streets.edges) {
+      const Eigen::Vector2d &a = streets.nodes_W[edge.a], &b = streets.nodes_W[edge.b], way = b - a;
+      const Eigen::Vector2d low = a.cwiseMin(b).array() - reach_m, high = a.cwiseMax(b).array() + reach_m;
+      for (int r = row(low.y()); r <= row(high.y()); ++r)
+        for (int c = column(low.x()); c <= column(high.x()); ++c) {
+          const Eigen::Vector2d p = low_ + kCell_m * Eigen::Vector2d(c + 0.5, r + 0.5) - a;
+          const double share = std::clamp(p.dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+          if ((p - share * way).norm() <= reach_m) near_[index(c, r)] = true;
+        }
+    }
   }
+
+  bool operator()(const Eigen::Vector2d& p) const { return near_.empty() || near_[index(column(p.x()), row(p.y()))]; }
 
  private:
   static constexpr double kCell_m = 10.0;
-  const StreetGraph& streets_;
-  double reach_m_;
-  std::map<std::pair<long long, long long>, bool> known_;
+  int column(double x) const { return std::clamp(static_cast<int>((x - low_.x()) / kCell_m), 0, columns_ - 1); }
+  int row(double y) const { return std::clamp(static_cast<int>((y - low_.y()) / kCell_m), 0, rows_ - 1); }
+  std::size_t index(int c, int r) const {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+  }
+  Eigen::Vector2d low_;
+  int columns_ = 1, rows_ = 1;
+  std::vector<bool> near_;
 };
 
 }  // namespace
