@@ -69,8 +69,8 @@ TEST(Materials, PermittivityAtL1) {
   expect("metal", 1.000, 114128295.946, 0.5e-3);
 }
 
-// Debye's relaxation from 80.2 to 5.2 at 9.3 ps (pure water at 20 C), worked out here at GPS L1: 79.6 - 6.9j; the table's
-// power laws are rounded to 1 and to 0.1.
+// Debye's relaxation from 80.2 to 5.2 at 9.3 ps (pure water at 20 C), worked out here at GPS L1: 79.6 - 6.9j; the
+// table's power laws are rounded to 1 and to 0.1.
 TEST(Materials, WaterRelaxes) {
   const std::complex<double> turning(1.0, 2.0 * std::acos(-1.0) * kL1_hz * 9.3e-12);
   const std::complex<double> debye = 5.2 + (80.2 - 5.2) / turning, table = material("water").permittivity(kL1_hz);
