@@ -49,7 +49,7 @@ std::string picture_of(const inertial::PaperFigure& figure, const Form& form, co
     return report::TimePanel{title, unit, {{"x", d.t_s, y[0]}, {"y", d.t_s, y[1]}, {"z", d.t_s, y[2]}}};
   };
   return report::time_plot_svg(
-      std::string(figure.doc) + "; " + form.words,
+      std::string(figure.doc) + ", " + form.words,
       {panel("Angular rate", "deg/s", d.rate_deg_s), panel("Integral of each gyroscope (heading)", "deg", d.angle_deg),
        panel("Position", "m", d.position_m)});
 }

@@ -35,10 +35,9 @@ CatalogueEntry hobby_in_the_text() {
 }
 
 constexpr PaperFigure kFigures[] = {
-    {"figures_2_and_3", "high-grade unit, 20 minutes: rates (figure 2) and headings (figure 3), about 3 deg/h", 1200.0,
-     high_grade},
-    {"figure_7", "hobby unit, 10 minutes: headings and positions; Q 0.2, 10 s, 0.15 deg/s, 0.12 m/s^2", 600.0, hobby},
-    {"figure_7_text_parameters", "the same with the text's parameters; Q 0.15, 10 s, 0.30 deg/s, 0.15 m/s^2", 600.0,
+    {"figures_2_and_3", "high-grade unit, 20 minutes, about 3 deg/h", 1200.0, high_grade},
+    {"figure_7", "hobby unit: Q 0.2, 10 s, 0.15 deg/s, 0.12 m/s^2", 600.0, hobby},
+    {"figure_7_text_parameters", "hobby unit of the text: Q 0.15, 10 s, 0.30 deg/s, 0.15 m/s^2", 600.0,
      hobby_in_the_text},
 };
 
