@@ -1,6 +1,6 @@
 #include "mission/scorer.h"
 
-#include "mission/facade.h"
+#include "tests/mission/screened_house.h"
 #include "tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
@@ -77,21 +77,70 @@ TEST_F(ScorerTest, NotBeingDoneIsATimeout) {
   EXPECT_EQ(scorer_.outcome(), "timeout");
 }
 
-TEST(Facade, IsTheWallThatFacesTheViewer) {
-  scene::Building building;
-  building.footprint_W = {{0, 0}, {10, 0}, {10, 20}, {0, 20}};
-  building.base_m = 5;
-  building.height_m = 10;
-  const auto points = facade_points(building, {30, 10});
-  ASSERT_EQ(points.size(), 25U);
-  for (const auto& p : points) {
-    EXPECT_NEAR(p.x(), 10.05, 1e-12);
-    EXPECT_GT(p.y(), 0);
-    EXPECT_LT(p.y(), 20);
-    EXPECT_GT(p.z(), 5);
-    EXPECT_LT(p.z(), 15);
+/// A stop of 6 s at W's origin, before a house behind a screen of that height.
+struct ScreenedStop {
+  explicit ScreenedStop(double screen_m, double facade_share = 0.5) {
+    config.success.facade_share = facade_share;
+    config.autonomy.waypoints = {{"stop", {0.0, 0.0}, "house"}};
+    mission.scene = screened_house(screen_m);
+    mission.time_limit_s = 60.0;
+    const scene::SceneAt scene(*mission.scene);
+    Scorer scorer(config, mission, scene);
+    KinematicState standing;
+    for (int k = 1; k <= 12; ++k) {
+      standing.t = mission.start + 0.5 * k;
+      scorer.step(standing, 0.0, true, true);
+    }
+    scorer.finish(standing, true);
+    outcome = scorer.outcome();
+    detail = scorer.failure() ? scorer.failure()->detail : "";
+    seen_share = scorer.waypoints()[0].facade_seen_share;
   }
-  EXPECT_TRUE(facade_points(building, {5, 10}).empty());  // from inside
+  MissionConfig config;
+  PreparedMission mission;
+  std::string outcome, detail;
+  double seen_share = 0.0;
+};
+
+TEST(ScorerSight, AStopThatSeesJustOverHalfOfTheFacadeSucceeds) {
+  const ScreenedStop stop(kHides12);
+  EXPECT_EQ(stop.seen_share, 13.0 / 25);
+  EXPECT_EQ(stop.outcome, "success") << stop.detail;
+  EXPECT_EQ(ScreenedStop(kHides12, 13.0 / 25).outcome, "success") << "the share asked for is enough";
+}
+
+TEST(ScorerSight, AStopThatSeesJustUnderHalfOfTheFacadeHasNoLineOfSight) {
+  const ScreenedStop stop(kHides13);
+  EXPECT_EQ(stop.seen_share, 12.0 / 25);
+  EXPECT_EQ(stop.outcome, "no_line_of_sight");
+  EXPECT_EQ(stop.detail, "stop: 48.0 % of the facade in sight");
+}
+
+TEST(ScorerScene, DrivingOverTheTerrainsEdgeLeavesTheScene) {
+  MissionConfig config;
+  config.vehicle.roughness = "none";
+  config.autonomy.waypoints = {{"beyond", {0.0, 40.0}, ""}};
+  PreparedMission mission;
+  mission.scene = screened_house(0);
+  mission.time_limit_s = 60.0;
+  const scene::SceneAt scene(*mission.scene);
+  Scorer scorer(config, mission, scene);
+  Vehicle vehicle(config.vehicle, *mission.scene, 1, mission.start);  // heads north, the edge is at y = 30 m
+  constexpr double kStep = 0.01, kSpeed = 5.0;
+  bool go_on = true;
+  for (int k = 1; k <= 1500 && go_on; ++k) {
+    vehicle.advance({kSpeed, 0.0}, mission.start + kStep * k);
+    go_on = scorer.step(vehicle.state(), vehicle.speed_m_s(), vehicle.on_terrain(), false);
+  }
+  EXPECT_FALSE(go_on);
+  scorer.finish(vehicle.state(), false);
+  EXPECT_EQ(scorer.outcome(), "left_scene");
+  ASSERT_TRUE(scorer.failure());
+  EXPECT_EQ(scorer.failure()->detail, "a wheel left the terrain");
+  // The front axle passed the edge within the last step.
+  const double front_m = scorer.failure()->p_W.y() + config.vehicle.wheelbase_m;
+  EXPECT_GT(front_m, 30.0);
+  EXPECT_LE(front_m, 30.0 + kStep * kSpeed);
 }
 
 }  // namespace
