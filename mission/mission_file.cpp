@@ -219,8 +219,21 @@ Result<MissionConfig> MissionFile::resolve_mixed(const std::string& gnss, const 
   return config;
 }
 
+std::string MissionFile::told_key(const std::string& keys) const {
+  std::vector<std::string> listed;
+  for (std::size_t from = 0, comma = 0; comma != std::string::npos; from = comma + 2) {
+    comma = keys.find(", ", from);
+    listed.push_back(keys.substr(from, comma == std::string::npos ? comma : comma - from));
+  }
+  for (const ConfigNode* tree : {&options_, &user_, &base_})
+    for (const std::string& key : listed)
+      if (tree->find(key) != nullptr) return key;
+  return listed.front();
+}
+
 Error MissionFile::locate(Error error) const {
   if (!error.file.empty()) return error;
+  error.key = told_key(error.key);
   // Where was the key (or its nearest parent) set last?
   const auto find_in = [&](const ConfigNode& tree) {
     std::string key = error.key;

@@ -40,7 +40,8 @@ class MissionFile {
   /// Sensors of two fidelities mixed: GNSS (and all else) of `gnss`, IMU and initial alignment of `imu`.
   Result<MissionConfig> resolve_mixed(const std::string& gnss, const std::string& imu) const;
 
-  /// Points an Error without a place at the line where its key was set, or at the file.
+  /// Points an Error without a place at the line where its key was set, or at the file. Of several keys that contradict
+  /// one another ("gnss.rate_hz, imu.rate_hz") it becomes that of the one that the user wrote, else of the first.
   Error locate(Error error) const;
 
  private:
@@ -48,6 +49,7 @@ class MissionFile {
   Status check_user_fidelities() const;
   /// The fidelities that one is made of, from the built-in one it starts from to itself.
   Result<std::vector<std::string>> ancestry(const std::string& fidelity) const;
+  std::string told_key(const std::string& keys) const;
   Result<ConfigNode> resolved_tree(const std::string& fidelity) const;
 
   std::string file_;
@@ -82,8 +84,8 @@ class SceneCache {
 };
 
 /// Reads every file that is named, builds the scene and checks what needs it: start and waypoints inside the scene and
-/// outside buildings, observed buildings known, rates that divide the IMU's. Errors name the key; MissionFile::locate
-/// adds file and line.
+/// outside buildings, observed buildings known, rates that divide the IMU's, stops as long as asked for. Errors name
+/// the key; MissionFile::locate adds file and line.
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes);
 
 /// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry

@@ -32,12 +32,26 @@ Status check_standing_place(const scene::Scene& scene, const Eigen::Vector2d& p,
   return Ok{};
 }
 
-Status check_rate(double imu_hz, double rate_hz, const std::string& key) {
+/// `sensor` is the section whose rate the IMU's has to be a multiple of.
+Status check_rate(double imu_hz, double rate_hz, const std::string& sensor) {
   const double ratio = imu_hz / rate_hz;
   if (std::abs(ratio - std::round(ratio)) > 1e-9)
-    return Error{.key = key,
-                 .what = number_text(rate_hz) + " Hz does not divide the IMU's " + number_text(imu_hz) + " Hz",
-                 .expected = "imu.rate_hz divided by a whole number"};
+    return Error{
+        .key = sensor + ".rate_hz, imu.rate_hz",
+        .what = "the IMU's " + number_text(imu_hz) + " Hz are not a multiple of " + number_text(rate_hz) + " Hz",
+        .expected = "imu.rate_hz to be a whole number times " + sensor + ".rate_hz"};
+  return Ok{};
+}
+
+/// A stop that the autonomy does not make cannot be scored.
+Status check_stop(double stop_s, const AutonomyConfig& autonomy) {
+  const bool stops = std::any_of(autonomy.waypoints.begin(), autonomy.waypoints.end(),
+                                 [](const Waypoint& waypoint) { return waypoint.is_mission(); });
+  if (stops && stop_s > autonomy.hold_s)
+    return Error{.key = "success.stop_s, autonomy.hold_s",
+                 .what = "a stop of " + number_text(stop_s) + " s is asked for, but the autonomy stops for " +
+                         number_text(autonomy.hold_s) + " s",
+                 .expected = "success.stop_s not above autonomy.hold_s"};
   return Ok{};
 }
 
@@ -77,8 +91,9 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
     return error;
   }
   mission.start = *start;
-  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.gnss.rate_hz, "gnss.rate_hz"));
-  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.lidar.rate_hz, "lidar.rate_hz"));
+  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.gnss.rate_hz, "gnss"));
+  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.lidar.rate_hz, "lidar"));
+  CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
   if (config.autonomy.waypoints.empty())
     return Error{.key = "autonomy.waypoint", .what = "no waypoints", .expected = "at least one [[autonomy.waypoint]]"};
 

@@ -142,14 +142,38 @@ TEST(MissionFileMessages, UnknownBuilding) {
 TEST(MissionFileMessages, RatesMustDivide) {
   EXPECT_EQ(
       message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.0\n"),
-      "my.toml:5: gnss.rate_hz: 3 Hz does not divide the IMU's 100 Hz, expected imu.rate_hz divided by a whole number");
+      "my.toml:5: gnss.rate_hz: the IMU's 100 Hz are not a multiple of 3 Hz, expected imu.rate_hz to be a whole number "
+      "times gnss.rate_hz");
+}
+
+// 2026-11-21: told of gnss.rate_hz, which the user had not written.
+TEST(MissionFileMessages, OfTwoKeysThatContradictTheOneThatTheUserWroteIsNamed) {
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[imu]\nrate_hz = 33.3\n"),
+            "my.toml:5: imu.rate_hz: the IMU's 33.3 Hz are not a multiple of 2 Hz, expected imu.rate_hz to be a whole "
+            "number times gnss.rate_hz");
+  EXPECT_EQ(
+      message(std::string(kEmptyScene) + "[lidar]\nrate_hz = 30.0\n"),
+      "my.toml:5: lidar.rate_hz: the IMU's 100 Hz are not a multiple of 30 Hz, expected imu.rate_hz to be a whole "
+      "number times lidar.rate_hz");
+}
+
+// 2026-11-21: accepted, though the vehicle then drives on before the stop counts.
+TEST(MissionFileMessages, AStopThatTheAutonomyDoesNotMake) {
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[success]\nstop_s = 6.5\n"),
+            "my.toml:5: success.stop_s: a stop of 6.5 s is asked for, but the autonomy stops for 6 s, expected "
+            "success.stop_s not above autonomy.hold_s");
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[autonomy]\nhold_s = 4.0\n"),
+            "my.toml:5: autonomy.hold_s: a stop of 5 s is asked for, but the autonomy stops for 4 s, expected "
+            "success.stop_s not above autonomy.hold_s");
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[success]\nstop_s = 6.0\n"), "no mistake");
 }
 
 // 2026-11-21: "3.2999999999999998 Hz".
 TEST(MissionFileMessages, NumbersAreShownAsTheyWereWritten) {
-  EXPECT_EQ(message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.3\n"),
-            "my.toml:5: gnss.rate_hz: 3.3 Hz does not divide the IMU's 100 Hz, expected imu.rate_hz divided by a whole "
-            "number");
+  EXPECT_EQ(
+      message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.3\n"),
+      "my.toml:5: gnss.rate_hz: the IMU's 100 Hz are not a multiple of 3.3 Hz, expected imu.rate_hz to be a whole "
+      "number times gnss.rate_hz");
 }
 
 TEST(MissionFileMessages, BadStart) {
