@@ -90,6 +90,7 @@ class ChartWriter {
     for (const Tick& tick : chart_.x.ticks())
       path += "M" + fixed(x_px(tick.value), 2) + " 0V" + std::to_string(height_px);
     out_ += "<path class=\"grid\" d=\"" + path + "\"/>\n";
+    if (panel.limit) out_ += "<path class=\"limit\" d=\"M0 " + fixed(y_px(panel, *panel.limit), 2) + "H1000\"/>\n";
     if (panel.zero_line) out_ += "<path class=\"zero\" d=\"M0 " + fixed(y_px(panel, 0), 2) + "H1000\"/>\n";
   }
 

@@ -45,6 +45,7 @@ struct Panel {
   Axis y = Axis::linear(0, 1);
   int height_px = 120;
   bool zero_line = false;
+  std::optional<double> limit = {};  ///< a level line across the panel
   std::vector<Band> bands = {};
   std::vector<Line> lines = {};
   std::vector<Lane> lanes = {};

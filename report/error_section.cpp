@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/chi_square.h"
 #include "report/format.h"
 #include "report/html.h"
 #include "report/run_story.h"
@@ -63,6 +64,49 @@ Panel axis_panel(const Results& results, const std::vector<std::size_t>& drawn, 
   return panel;
 }
 
+/// What a consistent filter's NIS of a fix, chi-square distributed with three degrees of freedom, exceeds once in a
+/// thousand.
+constexpr double kNisFalseAlarm = 1e-3;
+double nis_limit() {
+  return chi_square_threshold(kNisFalseAlarm, 3);
+}
+
+/// The error of the fixes, and how far each was from where the filter believed the antenna: what it corrects itself by.
+std::vector<Panel> fix_panels(const Results& results, const std::vector<std::size_t>& drawn) {
+  Panel error{.title = "Error of the fix, 3-D (logarithmic)", .unit = "m"};
+  Panel nis{.title = "Squared innovation of the fix over what the filter expects, NIS (logarithmic)"};
+  for (const std::size_t i : drawn) {
+    if (!results.runs[i].gnss_epochs) continue;  // the section on satellites says so
+    const EpochTable& gnss = *results.runs[i].gnss_epochs;
+    Line line{.run = i, .name = results.runs[i].fidelity, .x = gnss["t_s"]};
+    for (std::size_t k = 0; k < gnss.rows; ++k) line.y.push_back(error_norm_m(gnss, k));
+    error.lines.push_back(std::move(line));
+    nis.lines.push_back(column_line(results, i, gnss, "nis"));
+  }
+  if (error.lines.empty()) return {};
+  error.y = error_axis(error.lines);
+  error.height_px = nis.height_px = 110;
+  constexpr double kLowest = 0.1;  // one in 120 of a consistent filter's lies below
+  nis.y = Axis::logarithmic(kLowest, std::max(2 * nis_limit(), extremes_of(nis.lines).max));
+  nis.limit = nis_limit();
+  nis.notes.push_back("Dashed: " + show_number(nis_limit()) +
+                      ", which an honest filter\xE2\x80\x99s NIS exceeds once in a thousand fixes.");
+  return {std::move(error), std::move(nis)};
+}
+
+/// "7 of 209 fixes have a NIS above 16.3"; empty without fixes that reached the filter.
+std::string surprises(const EpochTable& gnss) {
+  std::size_t fixes = 0, above = 0;
+  for (const double nis : gnss["nis"]) {
+    if (!std::isfinite(nis)) continue;
+    ++fixes;
+    above += nis > nis_limit() ? 1 : 0;
+  }
+  if (fixes == 0) return {};
+  return show_count(static_cast<double>(above)) + " of " + count_of(static_cast<double>(fixes), "fix", "fixes") +
+         (above == 1 ? " has" : " have") + " a NIS above " + show_number(nis_limit());
+}
+
 /// "low: RMS 0.21 m, inside its own ±1σ 66 % of the time (68 % expected), ±3σ 99 % (99.7 %)".
 std::string consistency(const Results& results, std::size_t i) {
   const Run& run = results.runs[i];
@@ -84,6 +128,8 @@ std::string consistency(const Results& results, std::size_t i) {
         "3\xCF\x83 in " +
         show_share(three) + " of cases";
   }
+  const std::string surprised = run.gnss_epochs ? surprises(*run.gnss_epochs) : std::string();
+  if (!surprised.empty()) text += "; " + surprised;
   return text + ".";
 }
 
@@ -106,7 +152,8 @@ std::string error_section(const Results& results) {
       "errors "
       "within \xC2\xB1"
       "1\xCF\x83 and 99.7 % within \xC2\xB1"
-      "3\xCF\x83.";
+      "3\xCF\x83. The fixes are what it corrects itself by; a fix far from where it believed the antenna, by its own "
+      "covariance and the receiver\xE2\x80\x99s, has a large NIS.";
   if (drawn.empty()) return section("errors", "Position error against time", {}, missing);
 
   Chart chart = time_chart(results, "error-chart", "Position error against time");
@@ -119,6 +166,7 @@ std::string error_section(const Results& results) {
     if (e.drawn) chart.description += results.runs[i].fidelity + ": up to " + show_quantity(e.max, "m") + ". ";
   }
   chart.panels.push_back(norm_panel(norms));
+  for (Panel& panel : fix_panels(results, drawn)) chart.panels.push_back(std::move(panel));
   for (const AxisColumns& columns : kAxes) chart.panels.push_back(axis_panel(results, drawn, columns));
   return section("errors", "Position error against time", intro,
                  run_legend(results.runs, drawn) + figure(draw(chart), caption) + missing);

@@ -31,17 +31,18 @@ std::string run_boxes(const Results& results) {
   return boxes + "<div class=\"runbar\"><span class=\"runbar-title\">Show</span>\n" + labels + "</div>\n";
 }
 
-std::string contents() {
+std::string contents(bool two_by_two) {
   return "<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> <a href=\"#figures\">Figures</a> <a "
          "href=\"#scene-section\">From above</a> <a "
          "href=\"#errors\">Error</a> <a href=\"#satellites\">Satellites</a> <a href=\"#multipath\">Multipath</a> <a "
          "href=\"#maps\">Maps</a> <a "
-         "href=\"#registration\">Registration</a> <a href=\"#two-by-two\">GNSS or IMU?</a> <a href=\"#cost\">Cost</a> "
-         "<a href=\"#made\">How it was "
-         "made</a></nav>\n";
+         "href=\"#registration\">Registration</a> " +
+         std::string(two_by_two ? "<a href=\"#two-by-two\">GNSS or IMU?</a> " : "") +
+         "<a href=\"#cost\">Cost</a> <a href=\"#made\">How it was made</a></nav>\n";
 }
 
 std::string page(const Results& results) {
+  const std::string two_by_two = two_by_two_section(results);
   std::string out =
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
@@ -51,7 +52,7 @@ std::string page(const Results& results) {
          asset("report/assets/report.css") + "</style>\n</head>\n<body>\n" + run_boxes(results) +
          "<main>\n<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
          (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) + "</p>\n<h1>" +
-         escape_html(headline(results)) + "</h1>\n" + contents() + "</header>\n";
+         escape_html(headline(results)) + "</h1>\n" + contents(!two_by_two.empty()) + "</header>\n";
   out += verdict_section(results);
   out += figures_section(results);
   out += scene_section(results);
@@ -60,7 +61,7 @@ std::string page(const Results& results) {
   out += multipath_section(results);
   out += maps_section(results);
   out += registration_section(results);
-  out += two_by_two_section(results);
+  out += two_by_two;
   out += cost_section(results);
   out += provenance_section(results);
   return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";

@@ -20,7 +20,7 @@ const EpochColumns kNavColumns{{"t_s", "true_x_m", "true_y_m", "est_x_m", "est_y
                                 "sigma_u_m", "error_e_m", "error_n_m", "error_u_m", "waypoint"},
                                {"state"}};
 const EpochColumns kGnssColumns{{"t_s", "satellites", "tracked", "nlos", "gdop", "error_e_m", "error_n_m", "error_u_m",
-                                 "multipath_max_m", "accepted"},
+                                 "multipath_max_m", "accepted", "nis"},
                                 {"status", "reason"}};
 const EpochColumns kSatelliteColumns{{"t_s", "elevation_deg", "line_of_sight", "tracked", "multipath_m"},
                                      {"satellite"}};

@@ -95,6 +95,7 @@ std::string error_chart(const Results& results, const TwoByTwo& table) {
 }  // namespace
 
 std::string two_by_two_section(const Results& results) {
+  if (results.runs.size() < 2) return {};
   const std::string title = "GNSS or IMU?";
   if (!results.two_by_two) {
     return section("two-by-two", title, {},

@@ -199,11 +199,36 @@ TEST_F(HtmlReport, TellsThatALowGnssHasNoSatellites) {
   EXPECT_THAT(section(page(), "multipath"), HasSubstr("Run low has no satellites to show"));
 }
 
+// 2026-11-21: the page said that all fixes were accepted, and nowhere that some were far outside what the filter
+// expected.
+TEST_F(DamagedResults, FixesThatSurpriseTheFilterAreCountedAndDrawn) {
+  std::string csv = load(file("epochs/high_gnss.csv"));
+  // Of the columns nis is the last but one.
+  const auto with_nis = [](const std::string& table, const std::string& nis) {
+    return std::regex_replace(table, std::regex("(,differential,.*,)[^,\n]*(,[^,\n]*)"), "$01" + nis + "$2");
+  };
+  csv = with_nis(csv, "2.5");
+  const std::size_t row = csv.find(",differential,"), end = csv.find('\n', row);
+  csv = csv.substr(0, row) + with_nis(csv.substr(row, end - row), "72") + csv.substr(end);
+  store(file("epochs/high_gnss.csv"), csv);
+  const std::string errors = section(page(), "errors");
+  EXPECT_TRUE(std::regex_search(errors, std::regex("; 1 of [0-9]+\xC2\xA0"
+                                                   "fixes has a NIS above 16\\.3")));
+  EXPECT_THAT(errors, HasSubstr("Error of the fix, 3-D (logarithmic)"));
+  EXPECT_THAT(errors, HasSubstr("Dashed: 16.3, which an honest filter"));
+  EXPECT_THAT(errors, HasSubstr("<path class=\"limit\""));
+  // Without GNSS epochs the two panels are left out.
+  std::filesystem::remove(file("epochs/high_gnss.csv"));
+  std::filesystem::remove(file("epochs/low_gnss.csv"));
+  EXPECT_THAT(section(page(), "errors"), Not(HasSubstr("Error of the fix")));
+}
+
 TEST_F(DamagedResults, ASingleRunHasNoRatio) {
   edit_json(file("summary.json"), [](auto& json) { json["runs"].erase(0); });
   const std::string html = page();
   EXPECT_THAT(html, HasSubstr("<h1>The high-fidelity run fails after "));
   EXPECT_THAT(html, Not(HasSubstr("class=\"ratio")));
+  EXPECT_THAT(html, Not(HasSubstr("GNSS or IMU?"))) << "nothing stands beside it";
 }
 
 TEST_F(DamagedResults, TwoEqualOutcomesAreComparedByTheirErrors) {
