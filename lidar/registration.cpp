@@ -40,6 +40,11 @@ void visit(FieldVisitor& f, RegistrationConfig& c) {
   f.integer("submap_keyframes", c.submap_keyframes, {1, 1000}, "keyframes that form the target");
   f.number("keyframe_distance_m", c.keyframe_distance_m, {0, 1e4}, "a new keyframe after this way");
   f.number("keyframe_angle_deg", c.keyframe_angle_deg, {0, 360}, "or after this turn");
+  f.number("alignment_floor_m", c.alignment_floor_m, {1e-6, 10},
+           "1-sigma of an alignment's position, per axis, beyond what its covariance says");
+  f.number("alignment_floor_deg", c.alignment_floor_deg, {1e-6, 10}, "likewise of its attitude");
+  f.number("prior_correlation_s", c.prior_correlation_s, {0, 1e6},
+           "how long the error of the filter's pose stays alike: so long it counts as one piece of knowledge");
 }
 
 Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config) {

@@ -24,6 +24,18 @@ void visit(FieldVisitor& f, Waypoint& w) {
   f.text("observe", w.observe, "building to stop and look at; makes it a mission waypoint");
 }
 
+void visit(FieldVisitor& f, PathChoiceConfig& c) {
+  f.number("horizon_m", c.horizon_m, {5, 100}, "how far ahead each path is checked");
+  f.number("stop_margin_m", c.stop_margin_m, {0, 20},
+           "kept free ahead of the rear axle when halting before an obstacle");
+  f.number("comfort_clearance_m", c.comfort_clearance_m, {0, 10}, "closer to an obstacle than this costs");
+  f.number("blocked_cost_1_m", c.blocked_cost_1_m, {0, 1e3}, "cost of every metre of the horizon behind an obstacle");
+  f.number("closeness_cost_1_m2", c.closeness_cost_1_m2, {0, 1e3},
+           "cost of every metre driven one metre closer to an obstacle than comfortable");
+  f.number("offset_cost_1_m", c.offset_cost_1_m, {0, 1e3}, "cost of every metre beside the centre line");
+  f.number("change_cost_1_m", c.change_cost_1_m, {0, 1e3}, "cost of every metre beside the path chosen last");
+}
+
 void visit(FieldVisitor& f, AutonomyConfig& c) {
   f.choice("model", c.model, autonomy_models(), "which autonomy drives");
   f.choice("map", c.map, {"prior", "registered"},
@@ -36,6 +48,8 @@ void visit(FieldVisitor& f, AutonomyConfig& c) {
   f.number("max_offset_m", c.max_offset_m, {0, 20}, "how far it may leave the centre line of the street");
   f.number("clearance_m", c.clearance_m, {0.1, 5}, "from its axis to an obstacle");
   f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
+  f.group("grid", c.grid, "its picture of the surroundings: a rolling height grid");
+  f.group("choice", c.choice, "how it chooses among paths beside the centre line");
   f.list("waypoint", c.waypoints, "places to drive through, in order");
 }
 

@@ -9,6 +9,7 @@
 #include "core/config.h"
 #include "core/messages.h"
 #include "core/result.h"
+#include "mission/local_grid.h"
 #include "mission/path.h"
 #include "scene/street_graph.h"
 
@@ -23,6 +24,19 @@ struct Waypoint {
 };
 void visit(FieldVisitor& f, Waypoint& w);
 
+/// [autonomy.choice] of a mission file: how the reference autonomy chooses among paths beside the centre line. The one
+/// of least cost is driven; it halts where none is free.
+struct PathChoiceConfig {
+  double horizon_m = 18.0;           ///< how far ahead each is checked
+  double stop_margin_m = 3.0;        ///< kept free ahead of the rear axle when halting before an obstacle
+  double comfort_clearance_m = 2.0;  ///< closer to an obstacle than this costs
+  double blocked_cost_1_m = 4.0;     ///< for every metre of the horizon behind the first obstacle
+  double closeness_cost_1_m2 = 1.0;  ///< for every metre driven a metre closer than the comfortable clearance
+  double offset_cost_1_m = 0.6;      ///< for every metre beside the centre line
+  double change_cost_1_m = 0.8;      ///< for every metre away from the path chosen last
+};
+void visit(FieldVisitor& f, PathChoiceConfig& c);
+
 /// [autonomy] of a mission file.
 struct AutonomyConfig {
   std::string model = "reference";
@@ -36,6 +50,8 @@ struct AutonomyConfig {
   double max_offset_m = 3.5;   ///< how far it may leave the street's centre line
   double clearance_m = 1.0;    ///< from its axis to an obstacle
   double blind_after_s = 0.5;  ///< stops when no scan with returns came for this long
+  LocalGridConfig grid;
+  PathChoiceConfig choice;
   std::vector<Waypoint> waypoints;
 };
 void visit(FieldVisitor& f, AutonomyConfig& c);

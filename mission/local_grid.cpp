@@ -46,6 +46,19 @@ void distance_pass(const float* f, float* out, int n, std::vector<int>& v, std::
 
 }  // namespace
 
+void visit(FieldVisitor& f, LocalGridConfig& c) {
+  f.number("cell_m", c.cell_m, {0.1, 2}, "edge of a cell");
+  f.number("half_size_m", c.half_size_m, {5, 60},
+           "how far it reaches to every side; what lies farther off counts as free");
+  f.number("memory_s", c.memory_s, {0.2, 600}, "a surface not seen again for this long is forgotten");
+  f.number("obstacle_step_m", c.obstacle_step_m, {0.05, 5},
+           "height difference within a cell that makes it an obstacle");
+  f.number("max_obstacle_height_m", c.max_obstacle_height_m, {0.1, 20},
+           "above the vehicle's own ground plane; higher things are driven under");
+  f.number("min_depth_m", c.min_depth_m, {-20, 0}, "below that plane; lower points are not of this street");
+  f.integer("min_hits", c.min_hits, {1, 1000}, "points in a cell before it is judged");
+}
+
 LocalGrid::LocalGrid(const LocalGridConfig& config)
     : config_(config), n_(2 * static_cast<int>(std::ceil(config.half_size_m / config.cell_m))) {
   const auto count = static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);

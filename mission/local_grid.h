@@ -5,19 +5,22 @@
 
 #include <Eigen/Core>
 
+#include "core/config.h"
 #include "core/rotation.h"
 
 namespace canyon::mission {
 
+/// [autonomy.grid] of a mission file.
 struct LocalGridConfig {
   double cell_m = 0.25;
-  double half_size_m = 25.0;
+  double half_size_m = 25.0;           ///< what lies farther off counts as free
   double memory_s = 6.0;               ///< a surface not seen again for this long is forgotten
   double obstacle_step_m = 0.4;        ///< height difference within a cell that no wheel climbs
   double max_obstacle_height_m = 2.2;  ///< above the vehicle's own ground plane; higher things are driven under
   double min_depth_m = -2.5;           ///< below that plane; lower points are not of this street
   std::int64_t min_hits = 3;           ///< points in a cell before it is judged
 };
+void visit(FieldVisitor& f, LocalGridConfig& c);
 
 /// The autonomy's own picture of its surroundings: a rolling height grid in the frame of the estimate (W as the vehicle
 /// believes it). A cell whose points differ in height by more than a wheel climbs is an obstacle. Because points are

@@ -11,10 +11,6 @@ namespace canyon::mission {
 
 namespace {
 
-constexpr double kPriorCorrelation = 10.0;         // s, how long the error of a fix stays alike in a street
-constexpr double kFloorRotation = 0.05 * kDegree;  // rad, 1-sigma per alignment beyond what its covariance says
-constexpr double kFloorTranslation = 0.02;         // m, likewise
-
 /// Covariance of a pose error moved from frame B to a frame L rigidly attached to it: xi_L = Ad(X_LB) xi_B.
 Matrix6d moved(const Matrix6d& covariance_B, const Pose& X_BL) {
   const Pose X_LB = X_BL.inverse();
@@ -66,12 +62,13 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
     keyframe.rms_m = result.rms_m;
     if (result.status == lidar::RegistrationStatus::kConverged) {
       const Pose registered = last_.X_WL_registered * result.X_TS;
+      const double floor_rad = config_.alignment_floor_deg * kDegree, floor_m = config_.alignment_floor_m;
       Matrix6d floor = Matrix6d::Zero();
-      floor.diagonal() << Eigen::Vector3d::Constant(kFloorRotation * kFloorRotation),
-          Eigen::Vector3d::Constant(kFloorTranslation * kFloorTranslation);
+      floor.diagonal() << Eigen::Vector3d::Constant(floor_rad * floor_rad),
+          Eigen::Vector3d::Constant(floor_m * floor_m);
       const Matrix6d P_Z = moved(last_covariance_, result.X_TS) + result.covariance + floor;
       const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
-      const Matrix6d P_Y = prior_covariance * std::max(1.0, kPriorCorrelation / elapsed_s);
+      const Matrix6d P_Y = prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s);
       const Matrix6d K = (P_Z + P_Y).transpose().partialPivLu().solve(P_Z.transpose()).transpose();
       const Vector6d xi = (registered.inverse() * prior).log();
       keyframe.X_WL_registered = registered * Pose::exp(K * xi);

@@ -27,11 +27,20 @@ struct Keyframe {
 /// Chooses keyframes, registers each onto the ones before it, and fuses the result with the filter's pose.
 ///
 /// Registration alone would drift, the prior alone jumps with the fixes. Each keyframe's pose Z from registration has
-/// the covariance of the keyframe before it, plus that of the alignment, plus a floor for the submap's own stiffness;
-/// the prior Y has the filter's covariance, enlarged by (correlation time of the fixes' error) / (time since the last
-/// keyframe), because that error hardly changes between keyframes and must not count as new knowledge each time. With
-/// xi = log(Z^-1 Y) the fused pose is Z Exp(K xi), K = P_Z (P_Z + P_Y)^-1. Where registration does not converge the
-/// prior stands.
+/// the covariance of the keyframe before it, plus that of the alignment, plus a floor; the prior Y has the filter's
+/// covariance, enlarged by prior_correlation_s / (time since the last keyframe), because the filter's error hardly
+/// changes between keyframes and must not count as new knowledge each time. With xi = log(Z^-1 Y) the fused pose is
+/// Z Exp(K xi), K = P_Z (P_Z + P_Y)^-1. Where registration does not converge the prior stands.
+///
+/// Where the three constants of [registration] come from. alignment_floor_m and _deg: the covariance of an alignment
+/// knows its residuals, not what biases it (correspondences, the sensor: Brossard, Bonnabel and Barrau 2020, "A new
+/// approach to 3D ICP covariance estimation"). 0.02 m is the range noise of the built-in LIDAR; 0.05 degrees are as
+/// much at 23 m, the root mean square distance of the returns in the built-in streets (22 to 28 m). Measured, with the
+/// true pose as guess and the prior left out (truth_as_pose = true, prior_correlation_s = 1e6, the first 430 m of the
+/// built-in mission): 215 alignments tilt the map by 1.1 degrees, which is 0.08 degrees each if they are independent,
+/// and its height jitters by 7 mm from one to the next. prior_correlation_s: the error of the filter's position falls
+/// to 1/e of its autocorrelation after 7, 8 and 11 s (east, north, up) in the built-in mission's high run, after 5, 7
+/// and 11 s in its low one.
 class Mapper {
  public:
   Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration, const Pose& X_BL);

@@ -28,6 +28,8 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
   f.number("withhold_fixes_after_s", c.withhold_fixes_after_s, {-1, 1e5},
            "no fix reaches the filter from then on; -1 = never");
+  f.number("withhold_scans_after_s", c.withhold_scans_after_s, {-1, 1e5},
+           "no scan reaches map and autonomy from then on; -1 = never");
 }
 
 void visit(FieldVisitor& f, MissionConfig& c) {

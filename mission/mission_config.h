@@ -47,6 +47,7 @@ struct RunConfig {
   bool truth_as_pose = false;            ///< hands the true pose on instead of the filter's
   double estimate_up_offset_m = 0.0;     ///< added to the estimate's height
   double withhold_fixes_after_s = -1.0;  ///< if >= 0: no fix reaches the filter from then on
+  double withhold_scans_after_s = -1.0;  ///< if >= 0: no scan reaches map and autonomy from then on
 };
 void visit(FieldVisitor& f, RunConfig& c);
 

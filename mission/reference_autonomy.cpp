@@ -9,15 +9,12 @@ namespace canyon::mission {
 
 namespace {
 
-constexpr double kHorizon = 18.0;        // m, how far a candidate path is checked
-constexpr double kSample = 0.5;          // m, between its checked points
-constexpr double kOffsetStep = 0.5;      // m, between candidates
-constexpr double kStopMargin = 3.0;      // m, kept free ahead of the rear axle when halting before an obstacle
-constexpr double kComfortClearance = 2;  // m; closer than this costs
-constexpr double kStopTolerance = 0.4;   // m, along the route
-constexpr double kPassTolerance = 1.0;   // m, along the route
-constexpr double kTurnAround = 1.0;      // 1/m; full lock when the path lies behind
-constexpr int kEnoughReturns = 100;      // fewer count as blind
+constexpr double kSample = 0.5;         // m, between its checked points
+constexpr double kOffsetStep = 0.5;     // m, between candidates
+constexpr double kStopTolerance = 0.4;  // m, along the route
+constexpr double kPassTolerance = 1.0;  // m, along the route
+constexpr double kTurnAround = 1.0;     // 1/m; full lock when the path lies behind
+constexpr int kEnoughReturns = 100;     // fewer count as blind
 
 /// The path from arc length s0 on, moving sideways from offset d0 to d1 over `blend` metres.
 struct Candidate {
@@ -34,7 +31,7 @@ struct Candidate {
 class ReferenceAutonomy final : public Autonomy {
  public:
   ReferenceAutonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start)
-      : config_(config), prior_(prior), start_(start), grid_(LocalGridConfig{}), last_seen_(start) {}
+      : config_(config), prior_(prior), start_(start), grid_(config.grid), last_seen_(start) {}
 
   void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
     if (static_cast<int>(scan.points.size()) < kEnoughReturns) return;
@@ -100,21 +97,23 @@ class ReferenceAutonomy final : public Autonomy {
     const double here = prior_.route.offset(p, s_);
     const double speed = estimate.v_WB_W.head<2>().norm();
     const int steps = static_cast<int>(std::floor(config_.max_offset_m / kOffsetStep));
+    const PathChoiceConfig& choice = config_.choice;
     double best_cost = 1e300;
     Candidate best = chosen_;
     for (int k = -steps; k <= steps; ++k) {
       const Candidate candidate{s_, here, k * kOffsetStep, std::max(5.0, 1.6 * speed)};
-      double free_m = kHorizon, closeness = 0.0;
-      for (double x = 0.0; x <= kHorizon; x += kSample) {
+      double free_m = choice.horizon_m, closeness = 0.0;
+      for (double x = 0.0; x <= choice.horizon_m; x += kSample) {
         const double distance = grid_.distance_m(candidate.at(prior_.route, s_ + x));
         if (distance < config_.clearance_m) {
           free_m = x;
           break;
         }
-        closeness += kSample * std::max(0.0, kComfortClearance - distance);
+        closeness += kSample * std::max(0.0, choice.comfort_clearance_m - distance);
       }
-      const double cost = 4.0 * (kHorizon - free_m) + 1.0 * closeness + 0.6 * std::abs(candidate.d1) +
-                          0.8 * std::abs(candidate.d1 - chosen_.d1);
+      const double cost = choice.blocked_cost_1_m * (choice.horizon_m - free_m) +
+                          choice.closeness_cost_1_m2 * closeness + choice.offset_cost_1_m * std::abs(candidate.d1) +
+                          choice.change_cost_1_m * std::abs(candidate.d1 - chosen_.d1);
       if (cost < best_cost) {
         best_cost = cost;
         best = candidate;
@@ -151,9 +150,10 @@ class ReferenceAutonomy final : public Autonomy {
       v = std::min(v, std::sqrt(in_corner * in_corner + 2.0 * config_.braking_m_s2 * std::max(0.0, x - 1.0)));
     }
     const double free_m = free_m_ - (s_ - free_from_s_);
-    if (free_m_ < kHorizon) {
-      if (free_m < kStopMargin + 0.3) return 0.0;
-      v = std::min(v, braking_to(free_m - kStopMargin));
+    if (free_m_ < config_.choice.horizon_m) {
+      const double margin_m = config_.choice.stop_margin_m;
+      if (free_m < margin_m + 0.3) return 0.0;
+      v = std::min(v, braking_to(free_m - margin_m));
     }
     for (std::size_t i = static_cast<std::size_t>(next_); i < config_.waypoints.size(); ++i) {
       if (!config_.waypoints[i].is_mission() && i + 1 != config_.waypoints.size()) continue;

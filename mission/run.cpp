@@ -172,6 +172,8 @@ void MissionRun::take_scan() {
   const double period = 1.0 / config_.lidar.rate_hz;
   true_motion_.forget_before(t - period);
   estimated_motion_.forget_before(t - period);
+  const double withhold = config_.run.withhold_scans_after_s;
+  if (withhold >= 0.0 && t - mission_.start >= withhold) return;
   const NavEstimate now = estimate();
 
   const lidar::LidarOutput output =
