@@ -11,6 +11,7 @@
 #include "apps/gnss_setup.h"
 #include "apps/json.h"
 #include "core/files.h"
+#include "core/fix_status.h"
 #include "core/median.h"
 #include "core/parallel.h"
 #include "core/place_files.h"
@@ -115,11 +116,7 @@ class Recorder {
     const GnssFix& fix = output.fix;
     const Eigen::Vector3d& truth = output.truth.p_A_E;
     const Eigen::Vector3d error = rotation_E_from_enu(geodetic_from_ecef(truth)).transpose() * (fix.p_A_E - truth);
-    fixes_ += text("%d,%.9f,%s,%d", fix.t.week(), fix.t.sow_s(),
-                   fix.status == FixStatus::kNone     ? "none"
-                   : fix.status == FixStatus::kSingle ? "single"
-                                                      : "differential",
-                   fix.satellites);
+    fixes_ += text("%d,%.9f,%s,%d", fix.t.week(), fix.t.sow_s(), fix_status_name(fix.status), fix.satellites);
     for (const double dop : {fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop}) fixes_ += "," + field(dop, 3);
     for (const Eigen::Vector3d& v : {fix.p_A_E, truth, error})
       for (int i = 0; i < 3; ++i) fixes_ += "," + field(v[i], 4);

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/config.h"
+#include "core/config_text.h"
 
 namespace canyon::apps {
 
@@ -16,12 +17,6 @@ std::vector<std::string> verbs_of(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(sub->get_name());
   return names;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
 }
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& known) {
@@ -94,11 +89,11 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error, const std::
   const std::vector<std::string> verbs = verbs_of(*place.app);
   if (!verbs.empty()) {
     const bool named = place.words < arguments.size() && arguments[place.words].rfind('-', 0) != 0;
-    if (!named) return {.file = verb, .what = "no verb given", .expected = "one of " + joined(verbs)};
+    if (!named) return {.file = verb, .what = "no verb given", .expected = "one of " + plain_list(verbs)};
     const std::string& word = arguments[place.words];
     return {.file = verb,
             .what = "\"" + word + "\" is not a verb",
-            .expected = "one of " + joined(verbs) + nearest_hint(word, verbs)};
+            .expected = "one of " + plain_list(verbs) + nearest_hint(word, verbs)};
   }
 
   const std::string message = error.what();

@@ -12,6 +12,8 @@ std::string number_text(double value);
 /// What a range demands, for messages and documentation: "a number from 0.1 to 20", "a positive whole number".
 std::string range_text(Range range, bool whole);
 
+/// a, b, c
+std::string plain_list(const std::vector<std::string>& words);
 /// "a", "b", "c".
 std::string quoted_list(const std::vector<std::string>& words);
 

@@ -1,5 +1,6 @@
 #include "lidar/registration.h"
 
+#include "core/config_text.h"
 #include "lidar/registration_methods.h"
 
 namespace canyon::lidar {
@@ -20,12 +21,6 @@ constexpr Row kMethods[] = {
     {"gicp", nullptr, "CANYON_WITH_PCL", "generalized ICP, plane to plane (PCL)"},
 #endif
 };
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
-}
 
 }  // namespace
 
@@ -52,10 +47,10 @@ Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig
     if (config.method != row.name) continue;
     if (row.make) return row.make(config);
     return Error{"", 0, "registration.method", '"' + config.method + "\" was not compiled in",
-                 "one of " + joined(registration_methods()) + " (build with " + row.needs + "=ON)"};
+                 "one of " + plain_list(registration_methods()) + " (build with " + row.needs + "=ON)"};
   }
   return Error{"", 0, "registration.method", "unknown method \"" + config.method + '"',
-               "one of " + joined(registration_methods())};
+               "one of " + plain_list(registration_methods())};
 }
 
 std::vector<std::string> registration_methods() {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/files.h"
+#include "core/fix_status.h"
 #include "core/units.h"
 #include "mission/csv_writer.h"
 #include "mission/results.h"
@@ -8,18 +9,6 @@
 namespace canyon::mission {
 
 namespace {
-
-const char* word(FixStatus status) {
-  switch (status) {
-    case FixStatus::kNone:
-      return "none";
-    case FixStatus::kSingle:
-      return "single";
-    case FixStatus::kDifferential:
-      return "differential";
-  }
-  return "";
-}
 
 const char* word(std::optional<lidar::RegistrationStatus> status) {
   if (!status) return "not_registered";
@@ -53,7 +42,7 @@ std::string nav_csv(const RunRecord& record) {
     const Eigen::Matrix3d R = row.estimate.X_WB.R.toRotationMatrix();
     const Eigen::Matrix3d position_W = R * row.estimate.pose_covariance.bottomRightCorner<3, 3>() * R.transpose();
     const Eigen::Matrix3d attitude_W = R * row.estimate.pose_covariance.topLeftCorner<3, 3>() * R.transpose();
-    const NavError error = nav_error(row);
+    const EstimateError error = estimate_error(row);
     const auto& p = row.X_WB_true.p;
     const auto& q = row.estimate.X_WB.p;
     csv.numbers(4, p.x(), p.y(), p.z(), truth.yaw_rad / kDegree, truth.pitch_rad / kDegree, truth.roll_rad / kDegree,
@@ -86,7 +75,7 @@ std::string gnss_csv(const RunRecord& record) {
       reflected += satellite.line_of_sight && satellite.reflections > 0 ? 1 : 0;
       if (std::abs(satellite.multipath_m) > std::abs(multipath)) multipath = satellite.multipath_m;
     }
-    csv.word(word(row.fix.status));
+    csv.word(fix_status_name(row.fix.status));
     for (const int count :
          {row.fix.satellites, static_cast<int>(row.truth.satellites.size()), tracked, nlos, reflected})
       csv.number(has_satellites ? count : kNaN, 0);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/config_text.h"
 #include "core/embedded.h"
 #include "core/units.h"
 
@@ -26,12 +27,6 @@ std::vector<std::string> builtin_missions() {
     names.push_back(name.substr(0, name.size() - std::string(".toml").size()));
   }
   return names;
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
-  return out;
 }
 
 Result<ConfigNode> load_builtin(const std::string& key) {
@@ -97,7 +92,7 @@ Result<MissionFile> MissionFile::from_tree(ConfigNode tree, const std::string& f
     const auto* name = std::get_if<std::string>(&base->value_);
     const auto known = builtin_missions();
     if (name == nullptr || std::find(known.begin(), known.end(), *name) == known.end())
-      return base->error("base", base->describe() + " is not a built-in mission", "one of " + joined(known));
+      return base->error("base", base->describe() + " is not a built-in mission", "one of " + plain_list(known));
     CANYON_TRY(mission.base_, load_builtin(mission_key(*name)));
     mission.user_.erase("base");
   }
@@ -145,7 +140,7 @@ Result<std::vector<std::string>> MissionFile::ancestry(const std::string& fideli
     }
     const auto* name = std::get_if<std::string>(&node->value_);
     if (name == nullptr || std::find(known.begin(), known.end(), *name) == known.end())
-      return node->error(key, node->describe() + " is not a fidelity", "one of " + joined(known));
+      return node->error(key, node->describe() + " is not a fidelity", "one of " + plain_list(known));
     if (std::find(names.begin(), names.end(), *name) != names.end())
       return node->error(key, "\"" + *name + "\" is based on this fidelity in turn", "another one");
     names.insert(names.begin(), *name);
@@ -170,9 +165,10 @@ Status MissionFile::check_fidelities(const std::vector<std::string>& names, cons
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (std::find(known.begin(), known.end(), names[i]) == known.end()) {
       const std::string nearest = nearest_word(names[i], known);
-      return Error{.file = option,
-                   .what = "\"" + names[i] + "\" is unknown",
-                   .expected = "one of " + joined(known) + (nearest.empty() ? "" : "; nearest is \"" + nearest + "\"")};
+      return Error{
+          .file = option,
+          .what = "\"" + names[i] + "\" is unknown",
+          .expected = "one of " + plain_list(known) + (nearest.empty() ? "" : "; nearest is \"" + nearest + "\"")};
     }
     if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
         names.begin() + static_cast<std::ptrdiff_t>(i))
@@ -187,7 +183,7 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
     return Error{.file = file_,
                  .key = "fidelity." + fidelity,
                  .what = "unknown fidelity",
-                 .expected = "one of " + joined(known)};
+                 .expected = "one of " + plain_list(known)};
   CANYON_TRY(const std::vector<std::string> lineage, ancestry(fidelity));
   ConfigNode tree = base_;
   const auto lay_fidelity = [&](const ConfigNode& from) {

@@ -53,9 +53,8 @@ Json two_by_two(const std::vector<RunSummary>& summaries) {
     for (const auto& gnss : levels) {
       Json row = Json::array();
       for (const auto& imu : levels) {
-        const auto found = std::find_if(summaries.begin(), summaries.end(),
-                                        [&](const RunSummary& s) { return s.gnss == gnss && s.imu == imu; });
-        if (found == summaries.end()) return nullptr;
+        const RunSummary* found = find_run(summaries, gnss, imu);
+        if (found == nullptr) return nullptr;
         row.push_back(run_json(*found)[key]);
       }
       rows.push_back(row);

@@ -24,7 +24,7 @@ ErrorStatistics error_statistics(std::vector<double> x) {
   return out;
 }
 
-NavError nav_error(const NavRow& row) {
+EstimateError estimate_error(const NavRow& row) {
   return {row.estimate.X_WB.p - row.X_WB_true.p, so3_log(row.X_WB_true.R.conjugate() * row.estimate.X_WB.R) / kDegree};
 }
 
@@ -33,7 +33,7 @@ namespace {
 void summarize_navigation(const RunRecord& record, RunSummary& out) {
   std::vector<double> total, east, north, up, roll, pitch, yaw;
   for (const NavRow& row : record.nav) {
-    const NavError error = nav_error(row);
+    const EstimateError error = estimate_error(row);
     total.push_back(error.position_W_m.norm());
     east.push_back(error.position_W_m.x());
     north.push_back(error.position_W_m.y());
@@ -118,6 +118,12 @@ void summarize_registration(const RunRecord& record, RunSummary& out) {
 }
 
 }  // namespace
+
+const RunSummary* find_run(const std::vector<RunSummary>& runs, std::string_view gnss, std::string_view imu) {
+  const auto found =
+      std::find_if(runs.begin(), runs.end(), [&](const RunSummary& run) { return run.gnss == gnss && run.imu == imu; });
+  return found == runs.end() ? nullptr : &*found;
+}
 
 RunSummary summarize(const RunRecord& record) {
   RunSummary out;

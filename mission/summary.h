@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mission/run_record.h"
@@ -49,11 +50,14 @@ inline constexpr double kDopJump = 2.0;
 
 RunSummary summarize(const RunRecord& record);
 
+/// The run with those sensors; null if there is none.
+const RunSummary* find_run(const std::vector<RunSummary>& runs, std::string_view gnss, std::string_view imu);
+
 /// Error of a pose in W: east, north, up and, as a rotation vector in the true body, roll, pitch, yaw in degrees.
-struct NavError {
+struct EstimateError {
   Eigen::Vector3d position_W_m;
   Eigen::Vector3d attitude_deg;
 };
-NavError nav_error(const NavRow& row);
+EstimateError estimate_error(const NavRow& row);
 
 }  // namespace canyon::mission

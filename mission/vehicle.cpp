@@ -26,6 +26,19 @@ void visit(FieldVisitor& f, VehicleConfig& c) {
   f.choice("roughness", c.roughness, RoadRoughness::classes(), "ISO 8608 road class");
 }
 
+/// Over one step, tau from its beginning: v(tau) = v0 + a tau, kappa(tau) = kappa0 + k' tau, yaw' = v kappa.
+struct Vehicle::PlanMotion {
+  double yaw_0, speed_0, curvature_0, acceleration, curvature_rate;
+
+  double speed(double tau) const { return speed_0 + acceleration * tau; }
+  double curvature(double tau) const { return curvature_0 + curvature_rate * tau; }
+  double yaw(double tau) const {
+    return yaw_0 + speed_0 * curvature_0 * tau +
+           0.5 * (acceleration * curvature_0 + speed_0 * curvature_rate) * tau * tau +
+           acceleration * curvature_rate * tau * tau * tau / 3.0;
+  }
+};
+
 Vehicle::Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start)
     : config_(config),
       scene_(scene),
@@ -36,7 +49,7 @@ Vehicle::Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::ui
   heave_.x = last_inputs_.heave_m;
   pitch_.x = last_inputs_.pitch_rad;
   roll_.x = last_inputs_.roll_rad;
-  step_.fill(node_state(start, 0.0, 1.0, 0.0, 0.0, p_));
+  step_.fill(node_state(start, 0.0, 1.0, {yaw_, 0.0, 0.0, 0.0, 0.0}, p_));
 }
 
 Vehicle::Inputs Vehicle::terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw) {
@@ -59,14 +72,10 @@ Vehicle::Inputs Vehicle::terrain_inputs(const Eigen::Vector2d& rear_axle, double
   return {rear, std::atan2(rear - front, config_.wheelbase_m), std::atan2(left_side - right_side, config_.track_m)};
 }
 
-KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, double acceleration, double curvature_rate,
+KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, const PlanMotion& plan,
                                    const Eigen::Vector2d& p) const {
-  // Plan motion: v(tau) = v0 + a tau, kappa(tau) = kappa0 + k' tau, yaw' = v kappa.
-  const double v = speed_ + acceleration * tau, kappa = curvature_ + curvature_rate * tau;
-  const double yaw = yaw_ + speed_ * curvature_ * tau +
-                     0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * tau * tau +
-                     acceleration * curvature_rate * tau * tau * tau / 3.0;
-  const double yaw_rate = v * kappa, yaw_acceleration = acceleration * kappa + v * curvature_rate;
+  const double v = plan.speed(tau), kappa = plan.curvature(tau), yaw = plan.yaw(tau), acceleration = plan.acceleration;
+  const double yaw_rate = v * kappa, yaw_acceleration = acceleration * kappa + v * plan.curvature_rate;
 
   // Sprung motion: acceleration linear over the step.
   struct Value {
@@ -113,6 +122,7 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   const double wanted = std::clamp(std::atan(command.curvature_1_m * config_.wheelbase_m), -max_steering, max_steering);
   const double next_steering = steering + std::clamp(wanted - steering, -max_rate * dt, max_rate * dt);
   const double curvature_rate = (std::tan(next_steering) / config_.wheelbase_m - curvature_) / dt;
+  const PlanMotion plan{yaw_, speed_, curvature_, acceleration, curvature_rate};
 
   // Plan position at the nodes by Gauss-Legendre quadrature (5 points: error below 1e-15 m at these rates).
   constexpr double kAbscissa[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
@@ -120,10 +130,8 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   constexpr double kWeight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                  0.2369268850561891};
   const auto plan_velocity = [&](double tau) {
-    const double yaw = yaw_ + speed_ * curvature_ * tau +
-                       0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * tau * tau +
-                       acceleration * curvature_rate * tau * tau * tau / 3.0;
-    return Eigen::Vector2d((speed_ + acceleration * tau) * Eigen::Vector2d(std::cos(yaw), std::sin(yaw)));
+    const double yaw = plan.yaw(tau);
+    return Eigen::Vector2d(plan.speed(tau) * Eigen::Vector2d(std::cos(yaw), std::sin(yaw)));
   };
   std::array<Eigen::Vector2d, kNodes> p;
   p[0] = p_;
@@ -135,9 +143,7 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   }
 
   // Sprung accelerations at the end of the step: springs towards the terrain there, from the predicted state.
-  const double end_yaw = yaw_ + speed_ * curvature_ * dt +
-                         0.5 * (acceleration * curvature_ + speed_ * curvature_rate) * dt * dt +
-                         acceleration * curvature_rate * dt * dt * dt / 3.0;
+  const double end_yaw = plan.yaw(dt);
   const Inputs inputs = terrain_inputs(p.back(), end_yaw);
   const double w = 2.0 * kPi * config_.suspension_hz, zeta = config_.suspension_damping;
   const auto spring = [&](Sprung& s, double input, double previous_input) {
@@ -154,8 +160,7 @@ const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end
   for (int i = 0; i < kNodes; ++i) {
     const double tau = i * h;
     const GpsTime t = i == kNodes - 1 ? t_end : t_start + tau;
-    step_[static_cast<std::size_t>(i)] =
-        node_state(t, tau, dt, acceleration, curvature_rate, p[static_cast<std::size_t>(i)]);
+    step_[static_cast<std::size_t>(i)] = node_state(t, tau, dt, plan, p[static_cast<std::size_t>(i)]);
   }
 
   distance_ += speed_ * dt + 0.5 * acceleration * dt * dt;

@@ -63,9 +63,9 @@ class Vehicle {
   struct Inputs {
     double heave_m, pitch_rad, roll_rad;
   };
+  struct PlanMotion;
   Inputs terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw);
-  KinematicState node_state(GpsTime t, double tau, double dt, double acceleration, double curvature_rate,
-                            const Eigen::Vector2d& p) const;
+  KinematicState node_state(GpsTime t, double tau, double dt, const PlanMotion& plan, const Eigen::Vector2d& p) const;
 
   VehicleConfig config_;
   const scene::Scene& scene_;

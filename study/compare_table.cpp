@@ -106,9 +106,7 @@ std::string two_by_two(const std::vector<RunSummary>& runs) {
   for (const char* gnss : {"low", "high"}) {
     std::string row;
     for (const char* imu : {"low", "high"}) {
-      const RunSummary* found = nullptr;
-      for (const RunSummary& run : runs)
-        if (run.gnss == gnss && run.imu == imu) found = &run;
+      const RunSummary* found = mission::find_run(runs, gnss, imu);
       if (found == nullptr) return "";
       row += "  " + padded(cell(found->outcome, found->position_m.rms, 2, " m"), 26, true);
     }

@@ -61,7 +61,7 @@ TEST(Couplings, WithFixesWithheldTheDriftIsThatOfAnUnaidedStrapdown) {
   const double sigma = std::hypot(noise.accel.white_per_sqrt_hz * std::pow(t, 1.5) / std::sqrt(3.0),
                                   kGravity * noise.gyro.white_per_sqrt_hz * std::pow(t, 2.5) / std::sqrt(20.0));
   EXPECT_GT(drift.head<2>().norm(), 4.5 * sigma) << "the tilt must be what is seen";
-  const Eigen::Vector3d error = nav_error(last).position_W_m;
+  const Eigen::Vector3d error = estimate_error(last).position_W_m;
   EXPECT_NEAR(error.x(), drift.x(), 4.5 * sigma);
   EXPECT_NEAR(error.y(), drift.y(), 4.5 * sigma);
 }

@@ -61,7 +61,7 @@ inline RunRecord drive(const MissionConfig& config) {
 }
 
 inline double position_error_m(const NavRow& row) {
-  return nav_error(row).position_W_m.norm();
+  return estimate_error(row).position_W_m.norm();
 }
 
 }  // namespace canyon::mission::testing
