@@ -73,7 +73,8 @@ Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& opt
     bool fits = false;
     for (const char* ending : format.endings) {
       fits = fits || name.ends_with(ending);
-      if (endings.find(std::string(ending) + " ") == std::string::npos) endings += std::string(ending) + " ";
+      if ((" " + endings).find(" " + std::string(ending) + " ") == std::string::npos)
+        endings += std::string(ending) + " ";
     }
     if (fits) candidates.push_back(&format);
   }
