@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -7,6 +8,7 @@
 
 #include "apps/gnss_setup.h"
 #include "apps/json.h"
+#include "apps/scene_options.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -25,12 +27,14 @@ namespace {
 
 struct Options {
   CommonOptions common;
-  std::string scene = mission::kDefaultMission, fidelity = "high";
-  std::string at, trajectory, beams, model, detector, returns, format = "pcd", frame = "sensor", start, out, pcap, udp;
+  SceneOptions scene{.scene = mission::kDefaultMission, .from = {}};
+  std::string fidelity = "high";
+  std::string at, trajectory, beams, model, detector, returns, see_through;
+  std::string format = "pcd", frame = "sensor", start, out, pcap, udp;
   std::optional<double> rate_hz;
   std::optional<std::int64_t> azimuth_steps;
   std::int64_t seed = 1, scans = 1;
-  bool force = false;
+  bool force = false, udp_fast = false;
 };
 
 std::string text(const char* format, auto... values) {
@@ -43,6 +47,8 @@ std::string text(const char* format, auto... values) {
 struct Setup {
   lidar::LidarConfig lidar;
   std::shared_ptr<const scene::Scene> scene;
+  scene::Traffic traffic;
+  GpsTime traffic_start;
   GpsTime start;  ///< stamp of the first scan
   Trajectory motion;
   std::int64_t scans = 1;
@@ -63,8 +69,9 @@ Result<Trajectory> read_trajectory(const std::string& path) {
 }
 
 Result<Setup> setup_of(const Options& options) {
-  const bool built_in = options.scene == mission::kDefaultMission;
-  CANYON_TRY(auto file, mission::MissionFile::load(built_in ? "" : options.scene));
+  // A scene by itself is scanned with the built-in mission's LIDAR.
+  const bool mission_file = options.scene.scene.ends_with(".toml");
+  CANYON_TRY(auto file, mission::MissionFile::load(mission_file ? options.scene.scene : ""));
   const auto set = [&file](const char* key, const std::string& value, const char* option) {
     if (!value.empty()) file.set_option(key, ConfigNode::of(value), option);
   };
@@ -72,6 +79,7 @@ Result<Setup> setup_of(const Options& options) {
   set("lidar.model", options.model, "--model");
   set("lidar.detector", options.detector, "--detector");
   set("lidar.returns", options.returns, "--returns");
+  set("lidar.see_through", options.see_through, "--see-through");
   set("time.start", options.start, "--start");
   if (options.rate_hz) file.set_option("lidar.rate_hz", ConfigNode::of(*options.rate_hz), "--rate");
   if (options.azimuth_steps)
@@ -84,7 +92,10 @@ Result<Setup> setup_of(const Options& options) {
   if (!start) return file.locate(start.error());
   if (const auto scanner = lidar::make_scanner(out.lidar, 1); !scanner) return file.locate(scanner.error());
   mission::SceneCache scenes;
-  CANYON_TRY(out.scene, scenes.get(config.scene));
+  CANYON_TRY(const scene::SceneConfig scene, scene_config(options.scene));
+  CANYON_TRY(out.scene, scenes.get(scene));
+  CANYON_TRY(out.traffic, scene::Traffic::make(scene.moving, *out.scene));
+  out.traffic_start = *start;
   const double period_s = 1.0 / out.lidar.rate_hz;
   // Lasers that run free begin a scan up to one cycle, below 1 ms, before its period.
   const double before_s = period_s + out.lidar.latency_s + 1e-3;
@@ -109,19 +120,22 @@ Result<Setup> setup_of(const Options& options) {
 struct PacketOutput {
   std::optional<lidar::velodyne::PacketWriter> writer;
   std::optional<lidar::velodyne::UdpSender> udp;
-  std::vector<lidar::velodyne::Datagram> capture;
+  std::optional<lidar::velodyne::PcapWriter> capture;
+  bool fast = false;  ///< as fast as possible, not at the sensor's pace
+  std::optional<GpsTime> first;
   std::int64_t packets = 0;
 
-  Status add(std::int64_t index, const LidarScan& scan, bool keep) {
+  Status add(std::int64_t index, const LidarScan& scan) {
     if (!writer) return Ok{};
     for (const auto& p : writer->add(index, scan)) {
       const std::string bytes = p.packet.bytes();
       ++packets;
-      if (udp) CANYON_TRY_STATUS(udp->send(bytes));
-      if (!keep) continue;
+      if (!first) first = p.t;
+      if (udp) CANYON_TRY_STATUS(fast ? udp->send(bytes) : udp->send_at(bytes, p.t - *first));
+      if (!capture) continue;
       constexpr std::int64_t kGpsEpochInUnix_us = 315'964'800'000'000;
       const std::int64_t unix_us = p.t.ns / 1000 - p.t.leap_seconds() * 1'000'000 + kGpsEpochInUnix_us;
-      capture.push_back({unix_us, lidar::velodyne::Packet::kPort, bytes});
+      CANYON_TRY_STATUS(capture->add({unix_us, lidar::velodyne::Packet::kPort, bytes}));
     }
     return Ok{};
   }
@@ -129,17 +143,23 @@ struct PacketOutput {
 
 Result<PacketOutput> packet_output(const Options& options, const lidar::LidarConfig& config) {
   PacketOutput out;
+  out.fast = options.udp_fast;
   if (options.pcap.empty() && options.udp.empty()) return out;
   CANYON_TRY(out.writer, lidar::velodyne::PacketWriter::create(config));
-  if (options.udp.empty()) return out;
-  const auto colon = options.udp.find(':');
-  CANYON_TRY(const auto port, parse_numbers(colon == std::string::npos ? "2368" : options.udp.substr(colon + 1), 1,
-                                            "--udp", "ADDRESS or ADDRESS:PORT"));
-  if (!(port[0] >= 1 && port[0] <= 65535))
-    return Error{"--udp", 0, "", '"' + options.udp + '"', "a port from 1 to 65535"};
-  CANYON_TRY(auto sender,
-             lidar::velodyne::UdpSender::open(options.udp.substr(0, colon), static_cast<std::uint16_t>(port[0])));
-  out.udp.emplace(std::move(sender));
+  if (!options.udp.empty()) {
+    const auto colon = options.udp.find(':');
+    CANYON_TRY(const auto port, parse_numbers(colon == std::string::npos ? "2368" : options.udp.substr(colon + 1), 1,
+                                              "--udp", "ADDRESS or ADDRESS:PORT"));
+    if (!(port[0] >= 1 && port[0] <= 65535))
+      return Error{"--udp", 0, "", '"' + options.udp + '"', "a port from 1 to 65535"};
+    CANYON_TRY(auto sender,
+               lidar::velodyne::UdpSender::open(options.udp.substr(0, colon), static_cast<std::uint16_t>(port[0])));
+    out.udp.emplace(std::move(sender));
+  }
+  if (!options.pcap.empty()) {
+    CANYON_TRY(auto capture, lidar::velodyne::PcapWriter::create(options.pcap, options.force));
+    out.capture.emplace(std::move(capture));
+  }
   return out;
 }
 
@@ -167,15 +187,25 @@ Result<int> run(const Options& options) {
     CANYON_TRY(auto directory, StagedDirectory::create(options.out, options.force));
     staged = std::make_unique<StagedDirectory>(std::move(directory));
   }
-  const scene::SceneAt scene(*setup.scene);
+  scene::SceneAt scene(*setup.scene);
   std::int64_t points = 0;
+  double scanning_s = 0.0;
+  lidar::LidarOutput output;
   Progress progress("scans", static_cast<double>(setup.scans), !options.common.json);
   for (std::int64_t k = 0; k < setup.scans; ++k) {
     throw_if_cancelled();
     const GpsTime t = setup.start + static_cast<double>(k) / setup.lidar.rate_hz;
-    const lidar::LidarOutput output = scanner->scan(k, t, setup.motion, scene);
+    const double traffic_s = t - setup.traffic_start;
+    lidar::Scanner::InstancesAt moving;
+    if (!setup.traffic.empty()) {
+      scene.set_instances(setup.traffic.at(traffic_s));
+      moving = [&](double after_s) { return setup.traffic.at(traffic_s + after_s); };
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    scanner->scan(k, t, setup.motion, scene, moving, output);
+    scanning_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     points += static_cast<std::int64_t>(output.scan.points.size());
-    CANYON_TRY_STATUS(packets.add(k, output.scan, !options.pcap.empty()));
+    CANYON_TRY_STATUS(packets.add(k, output.scan));
     if (staged) {
       const std::string stem = staged->staging_path() + text("/scan_%06lld", static_cast<long long>(k));
       CANYON_TRY_STATUS(
@@ -184,22 +214,33 @@ Result<int> run(const Options& options) {
     }
     progress.advance(1);
   }
-  if (!options.pcap.empty())
-    CANYON_TRY_STATUS(write_text_file(options.pcap, lidar::velodyne::pcap_text(packets.capture)));
+  if (packets.capture) CANYON_TRY_STATUS(packets.capture->commit());
   if (staged) {
     CANYON_TRY_STATUS(write_tum(staged->staging_path() + "/trajectory.tum", setup.motion));
     CANYON_TRY_STATUS(staged->commit());
   }
   if (options.common.json) {
-    const Json out{{"scans", setup.scans},       {"rays", scanner->rays()},     {"points", points},
-                   {"packets", packets.packets}, {"start", setup.start.iso(9)}, {"rate_hz", setup.lidar.rate_hz},
-                   {"beams", setup.lidar.beams}, {"model", setup.lidar.model}};
+    const Json out{{"scans", setup.scans},
+                   {"rays", scanner->rays()},
+                   {"points", points},
+                   {"packets", packets.packets},
+                   {"start", setup.start.iso(9)},
+                   {"rate_hz", setup.lidar.rate_hz},
+                   {"beams", setup.lidar.beams},
+                   {"model", setup.lidar.model},
+                   {"timing",
+                    {{"scanning_s", scanning_s},
+                     {"ms_per_scan", 1e3 * scanning_s / static_cast<double>(setup.scans)},
+                     {"million_rays_per_s", 1e-6 * static_cast<double>(scanner->rays()) / scanning_s}}}};
     std::printf("%s\n", out.dump().c_str());
     return 0;
   }
   std::printf("%lld scans with %s, %s: %lld rays, %lld points\n", static_cast<long long>(setup.scans),
               setup.lidar.beams.c_str(), setup.lidar.model.c_str(), static_cast<long long>(scanner->rays()),
               static_cast<long long>(points));
+  std::printf("Scanned in %.3f s: %.2f ms per scan, %.1f million rays per second\n", scanning_s,
+              1e3 * scanning_s / static_cast<double>(setup.scans),
+              1e-6 * static_cast<double>(scanner->rays()) / scanning_s);
   if (packets.packets > 0) std::printf("%lld packets\n", static_cast<long long>(packets.packets));
   if (staged)
     std::printf("Files: %s/{scan_NNNNNN.%s, scan_NNNNNN_truth.csv, trajectory.tum}\n", staged->final_path().c_str(),
@@ -210,8 +251,11 @@ Result<int> run(const Options& options) {
 VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_common(arguments, options->common);
-  arguments.option("--scene", options->scene, "a mission file's scene and LIDAR, or \"vicksburg\" (built in)")
+  arguments
+      .option("--scene", options->scene.scene,
+              "a mission file's scene and LIDAR, a scene file, or \"vicksburg\" (built in)")
       .default_shown();
+  declare_import_options(arguments, options->scene.from);
   arguments.option("--fidelity", options->fidelity, "whose LIDAR: low, paper, high, or one of the mission file's own")
       .default_shown();
   const auto at = arguments.option("--at", options->at,
@@ -226,6 +270,7 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--model", options->model, "single_ray or footprint");
   arguments.option("--detector", options->detector, "ideal or radiometric");
   arguments.option("--returns", options->returns, "strongest, first, last, dual or all");
+  arguments.option("--see-through", options->see_through, "what light goes on behind: nothing, glass, leaves or both");
   arguments.option("--rate", options->rate_hz, "revolutions per second");
   arguments.option("--azimuth-steps", options->azimuth_steps, "firings per revolution; 0 = as fast as the lasers can");
   arguments.option("--start", options->start, "stamp of the first scan, with --at");
@@ -238,10 +283,10 @@ VerbAction declare(Arguments& arguments) {
       .default_shown()
       .among({"sensor", "scene"});
   arguments.option("--pcap", options->pcap, "write the sensor's packets as a capture (vlp16, hdl32e)");
-  arguments.option("--udp", options->udp, "send the sensor's packets to ADDRESS[:PORT]");
+  arguments.option("--udp", options->udp, "send the sensor's packets to ADDRESS[:PORT], at the sensor's own pace");
+  arguments.flag("--udp-fast", options->udp_fast, "send them as fast as they are made");
   arguments.option("--out", options->out, "directory for clouds and truth; without it only the summary is printed");
-  arguments.flag("--force", options->force,
-                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
+  arguments.flag("--force", options->force, "replace the capture, and the directory if canyon wrote it or it is empty");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->trajectory.empty())
       return Error{"", 0, "command line", "no place given", "--at X,Y,H,YAW or --trajectory FILE"};

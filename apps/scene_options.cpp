@@ -5,8 +5,11 @@
 namespace canyon::apps {
 
 void declare_scene_options(Arguments& arguments, SceneOptions& options, const char* scenes) {
-  scene::ImportConfig& from = options.from;
   arguments.option("scene", options.scene, scenes).required().type("FILE");
+  declare_import_options(arguments, options.from);
+}
+
+void declare_import_options(Arguments& arguments, scene::ImportConfig& from) {
   arguments.option("--more", from.more_files, "further files of the same place");
   arguments.option("--terrain", from.terrain, "elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII grid");
   arguments.option("--crs", from.crs, "coordinate system in place of the file's own, as PROJ knows it");

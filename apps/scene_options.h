@@ -12,6 +12,8 @@ struct SceneOptions {
   std::string scene;  ///< a scene file, a mission file, "vicksburg" or "city"
   scene::ImportConfig from;
 };
+/// The options beside it, for verbs that name the scene in their own way.
+void declare_import_options(Arguments& arguments, scene::ImportConfig& from);
 /// `scenes`: what the argument may be, for --help.
 void declare_scene_options(Arguments& arguments, SceneOptions& options, const char* scenes);
 

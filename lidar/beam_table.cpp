@@ -96,6 +96,8 @@ Result<BeamTable> parse_rosette(const std::vector<Line>& lines, const std::strin
   if (!(values[4] < values[5]))
     return Error{file_name, lines[5].number, "elevation_min_deg", number_text(values[4]),
                  "less than elevation_max_deg, " + number_text(values[5])};
+  if (values[0] != std::floor(values[0]))
+    return Error{file_name, lines[1].number, "lasers", number_text(values[0]), "a whole number"};
   BeamTable table;
   const auto lasers = static_cast<std::size_t>(values[0]);
   table.cycle_s = static_cast<double>(lasers) / values[1];

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "lidar/scanner.h"
 #include "lidar/sweep_motion.h"
 
@@ -8,7 +10,9 @@ LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_
   const auto X_WB = motion.at(scan.t);
   if (!X_WB) return out;
   const Pose X_LW = (*X_WB * X_BL).inverse();
-  const SweepMotion sweep(motion, scan.t, -scan.period_s, 0.0, X_LW, X_BL);
+  // Lasers that run free may begin their first cycle a little before the period.
+  const double first_s = scan.points.empty() ? 0.0 : double{scan.points.front().time_s};
+  const SweepMotion sweep(motion, scan.t, std::min(-scan.period_s, first_s), 0.0, X_LW, X_BL);
   out.points.reserve(scan.points.size());
   std::size_t hint = 0;
   for (LidarPoint point : scan.points) {

@@ -29,7 +29,7 @@ std::unique_ptr<Detector> make_radiometric_detector(const LidarConfig& config, s
 
 /// Energy received from a surface of apparent reflectivity 1 at range_m, in units of the detection threshold:
 /// 10 (range_at_10_percent / range)^2. Nearer than full_overlap_m emitter and receiver look past each other in part,
-/// which takes as much as nearness brings: the value there.
+/// which takes as much as nearness brings: the value there. That this is at 5 m is an assumption: makers do not tell.
 double signal_gain(const LidarConfig& config, double range_m);
 
 /// Standard normal draws of each shot's echo in a layer: entity = laser, index = firing cycle, n = layer.

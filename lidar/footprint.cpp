@@ -7,6 +7,7 @@
 #include "core/units.h"
 #include "lidar/echo_model.h"
 #include "lidar/footprint_rays.h"
+#include "lidar/see_through.h"
 
 namespace canyon::lidar {
 namespace {
@@ -18,16 +19,20 @@ constexpr std::size_t kSubRays = FootprintOffsets::kRays;
 ///
 /// Light that comes back within a pulse's length merges, link by link, into one echo at the energy-weighted mean range:
 /// on a tilted plane that is the footprint's middle, at an edge it lies between the two surfaces (a mixed pixel). Light
-/// farther apart makes echoes of its own. What a sub-ray sends back falls off with its own range and incidence.
+/// farther apart makes echoes of its own. What a sub-ray sends back falls off with its own range and incidence. Behind
+/// panes and leaves (`see_through`) a sub-ray goes on by itself.
 class Footprint final : public EchoModel {
  public:
-  explicit Footprint(const LidarConfig& config)
+  Footprint(const LidarConfig& config, std::uint64_t seed)
       : pulse_m_(static_cast<float>(config.pulse_m)),
+        overlap_m2_(full_overlap_m2(config)),
+        see_through_(config, seed),
         offsets_(footprint_offsets(1e-3 * config.divergence_mrad[0] / 4.0, 1e-3 * config.divergence_mrad[1] / 4.0)) {}
 
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
     std::array<scene::RayPacket, Volley::kCycles> rays;
     std::array<scene::HitPacket, Volley::kCycles> hits;
+    std::vector<Echo> glints, met;
     const std::span<EchoPacket> first = out.start(volley.packets());
     for (std::size_t laser = 0; laser < volley.lasers; ++laser) {
       for (std::size_t c = 0; c < Volley::kCycles; ++c) {
@@ -40,29 +45,34 @@ class Footprint final : public EchoModel {
       for (std::size_t c = 0; c < Volley::kCycles; ++c) {
         const std::size_t shot = Volley::shot(laser, c);
         EchoPacket& packet = first[shot / Volley::kLanes];
-        if (const auto whole = one_echo(hits[c], scene, surfaces)) {
-          packet.set(shot % Volley::kLanes, *whole);
-          continue;
+        const auto whole = see_through_.any() ? std::nullopt : one_echo(hits[c], scene, surfaces);
+        packet.set(shot % Volley::kLanes, whole.value_or(Echo{}));
+        if (whole) continue;
+        glints.clear();
+        for (std::size_t i = 0; i < kSubRays; ++i) {
+          if (!see_through_.any()) {
+            if (hits[c].triangle[i] != scene::Hit::kMiss) glints.push_back(surfaces.echo(hits[c], i));
+          } else if (rays[c].max_m[i] >= 0) {
+            see_through_.follow({ray_of(rays[c], i, volley.origin_W), static_cast<std::uint32_t>(laser),
+                                 volley.draw_of(shot), static_cast<std::uint32_t>(i)},
+                                hits[c], i, scene, surfaces, met);
+            glints.insert(glints.end(), met.begin(), met.end());
+          }
         }
-        std::array<Echo, kSubRays> glints;
-        std::size_t count = 0;
-        for (std::size_t i = 0; i < kSubRays; ++i)
-          if (hits[c].triangle[i] != scene::Hit::kMiss) glints[count++] = surfaces.echo(hits[c], i);
-        packet.set(shot % Volley::kLanes, {});
-        gather({glints.data(), count}, shot, out);
+        gather(glints, shot, out);
       }
     }
   }
   std::size_t rays_per_shot() const override { return kSubRays; }
 
  private:
-  /// A sum of glints, each of a sixteenth of the beam's energy.
+  /// A sum of glints, each of a sixteenth of the beam's energy, weighted by what the receiver gets of them.
   struct Sum {
-    float first_m = 0.0f, power = 0.0f, beyond = 0.0f, cosine = 0.0f, most = -1.0f;
+    float overlap_m2, first_m, power = 0.0f, beyond = 0.0f, cosine = 0.0f, most = -1.0f;
 
     /// True if this is the brightest so far.
     bool add(float range_m, float reflectivity, float cos_incidence) {
-      const float p = reflectivity / std::max(range_m * range_m, 1e-6f);
+      const float p = reflectivity / std::max(range_m * range_m, overlap_m2);
       power += p;
       beyond += p * (range_m - first_m);
       cosine += p * cos_incidence;
@@ -73,7 +83,8 @@ class Footprint final : public EchoModel {
     Echo echo(std::uint32_t object, std::uint16_t material) const {
       if (!(power > 0.0f)) return {{first_m, 0.0f, material, object}, 0.0f};
       const float range_m = first_m + beyond / power;
-      return {{range_m, cosine / power, material, object}, power * range_m * range_m / static_cast<float>(kSubRays)};
+      const float square_m2 = std::max(range_m * range_m, overlap_m2);
+      return {{range_m, cosine / power, material, object}, power * square_m2 / static_cast<float>(kSubRays)};
     }
   };
 
@@ -90,7 +101,7 @@ class Footprint final : public EchoModel {
     if (farthest_m - nearest_m > pulse_m_) return std::nullopt;
     std::size_t first = 0;
     while (hit.triangle[first] == scene::Hit::kMiss) ++first;
-    Sum sum{.first_m = hit.range_m[first]};
+    Sum sum{.overlap_m2 = overlap_m2_, .first_m = hit.range_m[first]};
     std::size_t brightest = first;
     for (std::size_t i = first; i < kSubRays; ++i) {
       if (hit.triangle[i] == scene::Hit::kMiss) continue;
@@ -103,6 +114,7 @@ class Footprint final : public EchoModel {
 
   /// Glints as the echoes of a shot.
   void gather(std::span<Echo> glints, std::size_t shot, Echoes& out) const {
+    if (glints.empty()) return;
     // A stable order: equal ranges stay in the order of the sub-rays.
     std::stable_sort(glints.begin(), glints.end(),
                      [](const Echo& a, const Echo& b) { return a.truth.range_m < b.truth.range_m; });
@@ -114,22 +126,23 @@ class Footprint final : public EchoModel {
     }
   }
 
-  static Echo merged(std::span<const Echo> glints) {
-    Sum sum{.first_m = glints[0].truth.range_m};
+  Echo merged(std::span<const Echo> glints) const {
+    Sum sum{.overlap_m2 = overlap_m2_, .first_m = glints[0].truth.range_m};
     const Echo* brightest = nullptr;
     for (const Echo& g : glints)
       if (sum.add(g.truth.range_m, g.reflectivity, g.truth.cos_incidence)) brightest = &g;
     return sum.echo(brightest->truth.object, brightest->truth.material);
   }
 
-  float pulse_m_;
+  float pulse_m_, overlap_m2_;
+  SeeThrough see_through_;
   FootprintOffsets offsets_;
 };
 
 }  // namespace
 
-std::unique_ptr<EchoModel> make_footprint(const LidarConfig& config, std::uint64_t) {
-  return std::make_unique<Footprint>(config);
+std::unique_ptr<EchoModel> make_footprint(const LidarConfig& config, std::uint64_t seed) {
+  return std::make_unique<Footprint>(config, seed);
 }
 
 }  // namespace canyon::lidar

@@ -3,6 +3,7 @@
 #include "lidar/detector.h"
 #include "lidar/echo_model.h"
 #include "lidar/return_choice.h"
+#include "lidar/see_through.h"
 #include "lidar/weather.h"
 
 namespace canyon::lidar {
@@ -37,6 +38,7 @@ void visit(FieldVisitor& f, LidarConfig& c) {
          "beam table: the name of a built-in one (vlp16, hdl32e, hdl64e, os1_64, os1_128, mid360, grid16), "
          "grid:LASERS:MIN_DEG:MAX_DEG, or the path of a .csv file");
   choice(f, "model", c.model, echo_models(), "how a beam meets the scene");
+  choice(f, "see_through", c.see_through, see_through_rows(), "what light goes on behind");
   choice(f, "detector", c.detector, detectors(), "what the receiver makes of an echo");
   choice(f, "returns", c.returns, return_modes(), "which echoes of a shot are reported");
   f.number("rate_hz", c.rate_hz, {0.1, 100}, "revolutions (frames) per second");

@@ -39,7 +39,8 @@ struct LidarConfig {
   double range_bias_m = 0.0;     ///< 1-sigma of each laser's constant bias
   double angle_noise_deg = 0.0;  ///< 1-sigma of the beam's true direction about the reported, each of two axes
   double latency_s = 0.0;        ///< the stamp is that much later than what was measured
-  double crosstalk = 0.0;        ///< probability that a shot is answered by another sensor's pulse first
+  std::string see_through = "nothing";
+  double crosstalk = 0.0;  ///< probability that a shot is answered by another sensor's pulse first
   Eigen::Vector3d ego_min_m{0, 0, 0}, ego_max_m{0, 0, 0};  ///< corners in B of what the sensor sees of its own vehicle
   double wavelength_nm = 905.0;
   Eigen::Vector2d divergence_mrad{3.0, 1.5};  ///< VLP-16 manual: full width, across and along the spin axis
@@ -53,5 +54,12 @@ struct LidarConfig {
   bool blinded = false;  ///< returns nothing (coupling studies)
 };
 void visit(FieldVisitor& f, LidarConfig& c);
+
+/// Square of the range below which nearness brings no more energy (full_overlap_m), m^2: received energy is
+/// reflectivity / max(range^2, this).
+inline float full_overlap_m2(const LidarConfig& c) {
+  const double overlap_m = c.full_overlap_m > 0.01 ? c.full_overlap_m : 0.01;
+  return static_cast<float>(overlap_m * overlap_m);
+}
 
 }  // namespace canyon::lidar

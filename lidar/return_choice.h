@@ -17,7 +17,7 @@ struct ReturnModeRow {
 };
 const std::vector<ReturnModeRow>& return_modes();
 
-/// A detected echo of a shot: its layer, and the energy received, reflectivity / range^2.
+/// A detected echo of a shot: its layer, and the energy received (full_overlap_m2()).
 struct DetectedEcho {
   std::size_t layer = 0;
   float strength = 0.0f;

@@ -8,6 +8,7 @@
 #include "lidar/detector.h"
 #include "lidar/echo_model.h"
 #include "lidar/return_choice.h"
+#include "lidar/see_through.h"
 #include "lidar/volley_scanner.h"
 
 namespace canyon::lidar {
@@ -38,6 +39,15 @@ Status validate(const LidarConfig& c, const BeamTable& table) {
   if (((c.ego_max_m - c.ego_min_m).array() < 0).any()) {
     return config_error("ego_max_m", "a corner lower than ego_min_m", "ego_min_m or more along each axis");
   }
+  const bool inside = ((c.mount_m - c.ego_min_m).array() > 0).all() && ((c.ego_max_m - c.mount_m).array() > 0).all();
+  if (inside) {
+    return config_error("ego_min_m", "the sensor itself is in the box that hides its own vehicle",
+                        "a box that leaves out mount_m");
+  }
+  if (table.rosette && c.azimuth_steps != 0) {
+    return config_error("azimuth_steps", std::to_string(c.azimuth_steps),
+                        "0 (" + table.name + " has a path of its own, at its own rate)");
+  }
   if (c.azimuth_steps == 0) {
     if (table.cycle_s > 0) return Ok{};
     return config_error("azimuth_steps", "0",
@@ -67,6 +77,7 @@ Result<std::unique_ptr<Scanner>> make_scanner(const LidarConfig& config, std::ui
   CANYON_TRY(const EchoModelRow* model, row_of(echo_models(), "model", config.model));
   CANYON_TRY(const DetectorRow* detector, row_of(detectors(), "detector", config.detector));
   CANYON_TRY(const ReturnModeRow* returns, row_of(return_modes(), "returns", config.returns));
+  CANYON_TRY_STATUS(row_of(see_through_rows(), "see_through", config.see_through));
   return make_volley_scanner(config, std::move(table), model->make(config, seed), detector->make(config, seed),
                              returns->mode, seed);
 }

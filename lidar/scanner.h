@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -32,8 +33,14 @@ class Scanner {
   /// `truth` must cover [t - latency - period, t - latency], lasers that run free one firing cycle more at the
   /// beginning; poses of B in W. `index` numbers the revolution. What was in `out` is replaced; its memory is used
   /// again, which saves a tenth of the time.
+  /// `moving` says where moving things are so many seconds after the stamp; without it they stand as in `scene`, which
+  /// must hold the same things in the same order in either case. They are placed anew for every 32 firing cycles.
+  using InstancesAt = std::function<std::vector<scene::Instance>(double after_stamp_s)>;
   virtual void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
-                    LidarOutput& out) = 0;
+                    const InstancesAt& moving, LidarOutput& out) = 0;
+  void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene, LidarOutput& out) {
+    scan(index, t, truth, scene, nullptr, out);
+  }
   LidarOutput scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene) {
     LidarOutput out;
     scan(index, t, truth, scene, out);

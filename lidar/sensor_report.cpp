@@ -64,6 +64,7 @@ SensorReport::SensorReport(const LidarConfig& config, ReturnMode mode, const Fir
       quantum_m_(config.range_quantum_m),
       min_m_(config.min_range_m),
       max_m_(config.max_range_m),
+      overlap_m2_(full_overlap_m2(config)),
       firing_order_(pattern.firing_order()) {
   const RandomStream bias(seed, "lidar.range_bias");
   for (std::uint32_t laser = 0; laser < pattern.lasers(); ++laser) {
@@ -98,7 +99,7 @@ void SensorReport::choose(const Volley& volley, const Echoes& echoes, VolleyRetu
           if (!(ranges[k][lane] > 0)) continue;
           const EchoPacket& echo = echoes.layer(k)[p];
           const float square_m2 = echo.range_m[lane] * echo.range_m[lane];
-          detected[count++] = {k, echo.reflectivity[lane] / std::max(square_m2, 1e-6f)};
+          detected[count++] = {k, echo.reflectivity[lane] / std::max(square_m2, overlap_m2_)};
         }
         count = choose_returns(mode_, detected.data(), count);
         for (std::size_t k = 0; k < count; ++k) {

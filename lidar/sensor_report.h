@@ -51,6 +51,7 @@ class SensorReport {
  private:
   ReturnMode mode_;
   double quantum_m_, min_m_, max_m_;
+  float overlap_m2_;
   std::vector<double> bias_m_;  ///< by laser
   std::vector<std::size_t> firing_order_;
   std::vector<double> firing_s_;  ///< by laser

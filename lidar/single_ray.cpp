@@ -1,10 +1,13 @@
 #include "lidar/echo_model.h"
+#include "lidar/see_through.h"
 
 namespace canyon::lidar {
 namespace {
 
 class SingleRay final : public EchoModel {
  public:
+  SingleRay(const LidarConfig& config, std::uint64_t seed) : see_through_(config, seed) {}
+
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
     thread_local std::vector<scene::HitPacket> hits;
     hits.resize(volley.packets());
@@ -16,14 +19,33 @@ class SingleRay final : public EchoModel {
         for (const std::uint32_t triangle : hits[p + kAhead].triangle) scene.prefetch_surface(triangle);
       for (std::size_t lane = 0; lane < Volley::kLanes; ++lane) echoes[p].set(lane, surfaces.echo(hits[p], lane));
     }
+    if (see_through_.any()) follow_all(volley, hits, scene, surfaces, out);
   }
   std::size_t rays_per_shot() const override { return 1; }
+
+ private:
+  void follow_all(const Volley& volley, std::span<const scene::HitPacket> hits, const scene::SceneAt& scene,
+                  const Surfaces& surfaces, Echoes& out) const {
+    std::vector<Echo> met;
+    for (std::size_t shot = 0; shot < volley.shots(); ++shot) {
+      const std::size_t p = shot / Volley::kLanes, lane = shot % Volley::kLanes;
+      if (!(volley.rays[p].max_m[lane] >= 0)) continue;
+      if (!see_through_.leaves() && !surfaces.transparent(out.layer(0)[p].truth[lane].material)) continue;
+      see_through_.follow({ray_of(volley.rays[p], lane, volley.origin_W),
+                           static_cast<std::uint32_t>(Volley::laser_of(shot)), volley.draw_of(shot), 0},
+                          hits[p], lane, scene, surfaces, met);
+      out.layer(0)[p].set(lane, {});
+      for (const Echo& echo : met) out.insert(shot, echo);
+    }
+  }
+
+  SeeThrough see_through_;
 };
 
 }  // namespace
 
-std::unique_ptr<EchoModel> make_single_ray(const LidarConfig&, std::uint64_t) {
-  return std::make_unique<SingleRay>();
+std::unique_ptr<EchoModel> make_single_ray(const LidarConfig& config, std::uint64_t seed) {
+  return std::make_unique<SingleRay>(config, seed);
 }
 
 }  // namespace canyon::lidar

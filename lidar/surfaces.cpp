@@ -13,6 +13,8 @@ Surfaces::Surfaces(const scene::SceneAt& scene, double wavelength_nm) : scene_(&
     light.mirror = static_cast<float>(m.lidar_specular);
     light.slope = static_cast<float>(m.lidar_specular_lobe_deg * kDegree);
     light.retro = static_cast<float>(kPi * m.lidar_retro_1_sr);
+    light.through = static_cast<float>(m.lidar_transmittance);
+    if (m.name == "foliage") foliage_ = static_cast<std::uint16_t>(lights_.size());
     light.plain = light.mirror == 0 && light.retro == 0;
     lights_.push_back(light);
   }

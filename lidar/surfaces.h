@@ -26,6 +26,15 @@ class Surfaces {
     return light.plain ? diffuse : diffuse + special(light, cos_incidence);
   }
 
+  /// Share of the light that a material lets straight through.
+  float transmittance(std::uint16_t material) const { return lights_[material].through; }
+  bool transparent(std::uint16_t material) const { return material != kNoMaterial && transmittance(material) > 0.0f; }
+  /// The material "foliage", or kNoMaterial; and how much light a leaf sends back.
+  std::uint16_t foliage() const { return foliage_; }
+  float leaf(float cos_incidence) const {
+    return foliage_ == kNoMaterial ? 0.5f * cos_incidence : of_material(foliage_, cos_incidence);
+  }
+
   /// What a ray met, as an echo; no echo where it met nothing.
   Echo echo(const scene::HitPacket& hit, std::size_t lane) const {
     if (hit.triangle[lane] == scene::Hit::kMiss) return {};
@@ -39,12 +48,14 @@ class Surfaces {
     float reflectance = 0;
     float mirror = 0, slope = 1;
     float retro = 0;
+    float through = 0;
     bool plain = true;
   };
   static float special(const Light& light, float cos_incidence);
 
   const scene::SceneAt* scene_;
   std::vector<Light> lights_;  ///< by material
+  std::uint16_t foliage_ = kNoMaterial;
 };
 
 }  // namespace canyon::lidar

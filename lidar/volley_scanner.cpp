@@ -18,12 +18,19 @@
 namespace canyon::lidar {
 namespace {
 
+/// Noise and bias may bring a surface just beyond the limit into view: eight standard deviations of each.
+double reach_m(const LidarConfig& config) {
+  const double edge_m = config.detector == "radiometric" ? config.pulse_m / (2.0 * config.threshold_snr) : 0.0;
+  return config.max_range_m + 8.0 * (config.range_noise_m + config.range_bias_m + edge_m);
+}
+
 class VolleyScanner final : public Scanner {
  public:
   VolleyScanner(const LidarConfig& config, BeamTable table, std::unique_ptr<EchoModel> model,
                 std::unique_ptr<Detector> detector, ReturnMode returns, std::uint64_t seed)
       : config_(config),
         period_s_(1.0 / config.rate_hz),
+        reach_m_(reach_m(config)),
         X_BL_(sensor_in_body(config)),
         pattern_(std::move(table), config.rate_hz, static_cast<std::size_t>(config.azimuth_steps)),
         model_(std::move(model)),
@@ -38,7 +45,7 @@ class VolleyScanner final : public Scanner {
   using Scanner::true_ranges;
 
   void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
-            LidarOutput& out) override {
+            const InstancesAt& moving, LidarOutput& out) override {
     CANYON_CHECK(index >= 0, "index = ", index);
     out.scan.t = t;
     out.scan.period_s = period_s_;
@@ -68,7 +75,7 @@ class VolleyScanner final : public Scanner {
     std::mutex mutex;
     parallel_for(volleys, 1, [&](std::size_t v, std::size_t) {
       thread_local VolleyReturns returns;
-      run_chain(sweep, v, motion, origin_W, scene, surfaces, returns);
+      run_chain(sweep, v, motion, origin_W, scene, moving, surfaces, returns);
       count[v] = returns.total();
       std::size_t first = 0;
       {
@@ -213,14 +220,20 @@ class VolleyScanner final : public Scanner {
   }
 
   void run_chain(const FiringPattern::Sweep& sweep, std::size_t v, const SweepMotion& motion,
-                 const Eigen::Vector3d& origin_W, const scene::SceneAt& scene, const Surfaces& surfaces,
-                 VolleyReturns& out) const {
+                 const Eigen::Vector3d& origin_W, const scene::SceneAt& scene, const InstancesAt& moving,
+                 const Surfaces& surfaces, VolleyReturns& out) const {
     thread_local Volley volley;
     volley.origin_W = origin_W;
     thread_local Echoes echoes;
-    // Noise may bring a surface just beyond the limit into view.
-    fire(sweep, v, motion, config_.max_range_m + 8.0 * config_.range_noise_m, volley);
-    model_->trace(volley, scene, surfaces, echoes);
+    fire(sweep, v, motion, reach_m_, volley);
+    if (moving) {
+      scene::SceneAt then = scene;
+      then.set_instances(
+          moving(volley.first_s + 0.5 * static_cast<double>(volley.cycles) * volley.step_s - config_.latency_s));
+      model_->trace(volley, then, Surfaces(then, config_.wavelength_nm), echoes);
+    } else {
+      model_->trace(volley, scene, surfaces, echoes);
+    }
     weather_.apply(volley, echoes);
     crosstalk_.apply(volley, echoes);
     detector_->detect(volley, echoes);
@@ -228,7 +241,7 @@ class VolleyScanner final : public Scanner {
   }
 
   LidarConfig config_;
-  double period_s_;
+  double period_s_, reach_m_;
   Pose X_BL_;
   FiringPattern pattern_;
   std::unique_ptr<EchoModel> model_;

@@ -14,8 +14,8 @@ constexpr double kPerDbPerKm = 1e-3 / 4.342944819032518;  // dB/km as 1/m: 10 lo
 
 /// Particle kinds: extinction over backscatter, sr.
 constexpr double kWaterRatio_sr = 18.8;  // cloud droplets at 905 nm: Pinnick et al. 1983; O'Connor et al. 2004
-constexpr double kSnowRatio_sr = 20.0;   // ice: 10 to 30 sr are reported
-constexpr double kDustRatio_sr = 50.0;   // mineral dust near 900 nm: 45 to 60 sr are reported
+constexpr double kSnowRatio_sr = 20.0;   // assumption: for ice 10 to 30 sr are reported
+constexpr double kDustRatio_sr = 50.0;   // assumption: for mineral dust near 900 nm 45 to 60 sr are reported
 
 /// Visibility in km and wavelength in nm to an exponent, after Kruse et al. 1962.
 double kruse_exponent(double v_km) {
@@ -47,7 +47,7 @@ const std::vector<ExtinctionLaw>& rain_laws() {
       {"marshall_palmer", [](double r, double) { return 3.6e-4 * std::pow(r, 0.63); },
        "3.6e-4 R^0.63 1/m: drops of Marshall and Palmer 1948 with twice their cross-section"},
       {"carbonneau", [](double r, double) { return 1.076 * kPerDbPerKm * std::pow(r, 0.67); },
-       "1.076 R^0.67 dB/km: optical links, Carbonneau and Wisely 1998"},
+       "1.076 R^0.67 dB/km: optical links, Carbonneau and Wisely 1998, as Al Naboulsi et al. 2005 quote it"},
       {"goodin_2019", [](double r, double) { return 0.01 * std::pow(r, 0.6); },
        "0.01 R^0.6 1/m: empirical, some twenty times stronger; Goodin et al. 2019"},
   };
@@ -67,15 +67,17 @@ const std::vector<ExtinctionLaw>& fog_laws() {
 const std::vector<ExtinctionLaw>& snow_laws() {
   static const std::vector<ExtinctionLaw> kRows{
       {"wet", [](double s, double l) { return (1.023e-4 * l + 3.7855466) * kPerDbPerKm * std::pow(s, 0.72); },
-       "ITU-R P.1814, wet snow"},
+       "ITU-R P.1817-1 table 2, wet snow"},
       {"dry", [](double s, double l) { return (5.42e-5 * l + 5.4958776) * kPerDbPerKm * std::pow(s, 1.38); },
-       "ITU-R P.1814, dry snow"},
+       "ITU-R P.1817-1 table 2, dry snow"},
   };
   return kRows;
 }
 
+// Coefficients as remembered from Esmail et al. 2017 (a free-space optical link in dust storms), not checked against
+// it.
 double dust_extinction_1_m(double visibility_m) {
-  return 52.0 * kPerDbPerKm * std::pow(1e-3 * visibility_m, -1.05);  // Esmail et al. 2017, dB/km by km
+  return 52.0 * kPerDbPerKm * std::pow(1e-3 * visibility_m, -1.05);  // dB/km by km
 }
 
 Weather::Weather(const LidarConfig& config, std::uint64_t seed) : config_(config), stream_(seed, "lidar.weather") {

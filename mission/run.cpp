@@ -176,8 +176,11 @@ void MissionRun::take_scan() {
   if (withhold >= 0.0 && t - mission_.start >= withhold) return;
   const NavEstimate now = estimate();
 
-  const lidar::LidarOutput output =
-      clock.charge(Part::kLidar, [&] { return scanner_->scan(k_ / imu_per_scan_, t, true_motion_, scene_); });
+  lidar::Scanner::InstancesAt moving;
+  if (!mission_.traffic.empty())
+    moving = [&](double after_s) { return mission_.traffic.at(t - mission_.start + after_s); };
+  lidar::LidarOutput output;
+  clock.charge(Part::kLidar, [&] { scanner_->scan(k_ / imu_per_scan_, t, true_motion_, scene_, moving, output); });
   const LidarScan deskewed =
       clock.charge(Part::kLidar, [&] { return lidar::deskew(output.scan, estimated_motion_, X_BL_); });
   record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());

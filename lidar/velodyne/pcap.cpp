@@ -1,6 +1,7 @@
 #include "lidar/velodyne/pcap.h"
 
 #include <array>
+#include <filesystem>
 
 #include "core/check.h"
 #include "core/files.h"
@@ -101,7 +102,9 @@ Result<Capture> read_pcap(const std::string& path) {
   return capture;
 }
 
-std::string pcap_text(const std::vector<Datagram>& datagrams) {
+namespace {
+
+std::string file_header() {
   std::string out;
   put(out, kMicroseconds, 4, false);
   put(out, 2, 2, false);  // version 2.4
@@ -109,23 +112,66 @@ std::string pcap_text(const std::vector<Datagram>& datagrams) {
   put(out, 0, 8, false);  // UTC; accuracy
   put(out, 65535, 4, false);
   put(out, kEthernet, 4, false);
-  for (const Datagram& datagram : datagrams) {
-    const std::size_t length = kEthernetHeader + kIpHeader + kUdpHeader + datagram.payload.size();
-    CANYON_CHECK(length <= 65535, "payload of ", datagram.payload.size(), " bytes");
-    put(out, static_cast<std::uint64_t>(datagram.unix_us / 1'000'000), 4, false);
-    put(out, static_cast<std::uint64_t>(datagram.unix_us % 1'000'000), 4, false);
-    put(out, length, 4, false);
-    put(out, length, 4, false);
-    put(out, 0xffffffffffff, 6, true);
-    put(out, 0x607688000000, 6, true);  // Velodyne's own prefix
-    put(out, 0x0800, 2, true);
-    out += ip_header(datagram.payload.size());
-    put(out, datagram.port, 2, true);
-    put(out, datagram.port, 2, true);
-    put(out, kUdpHeader + datagram.payload.size(), 2, true);
-    put(out, 0, 2, true);  // no checksum
-    out += datagram.payload;
-  }
+  return out;
+}
+
+std::string record(const Datagram& datagram) {
+  const std::size_t length = kEthernetHeader + kIpHeader + kUdpHeader + datagram.payload.size();
+  CANYON_CHECK(length <= 65535, "payload of ", datagram.payload.size(), " bytes");
+  std::string out;
+  put(out, static_cast<std::uint64_t>(datagram.unix_us / 1'000'000), 4, false);
+  put(out, static_cast<std::uint64_t>(datagram.unix_us % 1'000'000), 4, false);
+  put(out, length, 4, false);
+  put(out, length, 4, false);
+  put(out, 0xffffffffffff, 6, true);
+  put(out, 0x607688000000, 6, true);  // Velodyne's own prefix
+  put(out, 0x0800, 2, true);
+  out += ip_header(datagram.payload.size());
+  put(out, datagram.port, 2, true);
+  put(out, datagram.port, 2, true);
+  put(out, kUdpHeader + datagram.payload.size(), 2, true);
+  put(out, 0, 2, true);  // no checksum
+  return out + datagram.payload;
+}
+
+Error not_written(const std::string& path) {
+  return Error{path, 0, "", "could not be written", "", 1};
+}
+
+}  // namespace
+
+Result<PcapWriter> PcapWriter::create(const std::string& path, bool force) {
+  std::error_code error;
+  if (!force && std::filesystem::exists(path, error))
+    return Error{path, 0, "", "exists already", "a new name, or --force"};
+  std::ofstream file(path + ".part", std::ios::binary | std::ios::trunc);
+  if (!(file << file_header())) return Error{path, 0, "", "cannot be written", "a folder that can be written to"};
+  return PcapWriter(path, std::move(file));
+}
+
+PcapWriter::~PcapWriter() {
+  if (!file_.is_open()) return;
+  file_.close();
+  std::error_code ignored;
+  std::filesystem::remove(path_ + ".part", ignored);
+}
+
+Status PcapWriter::add(const Datagram& datagram) {
+  if (!(file_ << record(datagram))) return not_written(path_);
+  return Ok{};
+}
+
+Status PcapWriter::commit() {
+  file_.close();
+  std::error_code error;
+  if (!file_.fail()) std::filesystem::rename(path_ + ".part", path_, error);
+  if (file_.fail() || error) return not_written(path_);
+  return Ok{};
+}
+
+std::string pcap_text(const std::vector<Datagram>& datagrams) {
+  std::string out = file_header();
+  for (const Datagram& datagram : datagrams) out += record(datagram);
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,25 @@ struct Capture {
   std::string warning;  ///< empty: none
 };
 Result<Capture> read_pcap(const std::string& path);
+
+/// Writes a capture datagram by datagram. It becomes visible under its name when it is complete; until then it is
+/// beside it, with ".part" at the end, and goes away if it is not committed.
+class PcapWriter {
+ public:
+  /// Fails (exit 2) if the file exists and `force` is false, or if it cannot be written.
+  static Result<PcapWriter> create(const std::string& path, bool force);
+  PcapWriter(PcapWriter&& other) noexcept = default;
+  PcapWriter& operator=(PcapWriter&&) = delete;
+  ~PcapWriter();
+
+  Status add(const Datagram& datagram);
+  Status commit();
+
+ private:
+  PcapWriter(std::string path, std::ofstream file) : path_(std::move(path)), file_(std::move(file)) {}
+  std::string path_;
+  std::ofstream file_;
+};
 
 /// The datagrams as a capture file: microseconds, little-endian, from 192.168.1.201 to 255.255.255.255, as the sensors
 /// send them when they leave the factory.

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 namespace canyon::lidar::velodyne {
@@ -27,6 +28,14 @@ UdpSender::UdpSender(UdpSender&& other) noexcept
 
 UdpSender::~UdpSender() {
   if (socket_ >= 0) close(socket_);
+}
+
+Status UdpSender::send_at(std::string_view payload, double due_s) {
+  const auto due =
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(due_s));
+  if (!start_) start_ = std::chrono::steady_clock::now() - due;
+  std::this_thread::sleep_until(*start_ + due);
+  return send(payload);
 }
 
 Status UdpSender::send(std::string_view payload) const {

@@ -314,6 +314,15 @@ TEST(LidarConfig, MistakesAreNamed) {
             "lidar.azimuth_steps: 1800, expected at most 904 at 20 Hz (vlp16 needs 55.296 us per firing)");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.rate_hz = 20, c.azimuth_steps = 904; }), "no error");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "grid16", c.rate_hz = 20; }), "no error") << "no cycle, no limit";
+  EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "mid360"; }),
+            "lidar.azimuth_steps: 1800, expected 0 (mid360 has a path of its own, at its own rate)");
+  EXPECT_EQ(error_of([](LidarConfig& c) {
+              c.ego_min_m = {-1, -1, 0}, c.ego_max_m = {3, 1, 2};
+            }),
+            "lidar.ego_min_m: the sensor itself is in the box that hides its own vehicle, expected a box that leaves "
+            "out mount_m");
+  EXPECT_EQ(error_of([](LidarConfig& c) { c.see_through = "walls"; }),
+            "lidar.see_through: unknown see_through \"walls\", expected one of nothing, glass, leaves, both");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.min_range_m = 100; }),
             "lidar.min_range_m: 100, expected less than max_range_m, 100");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.model = "two_ray"; }),

@@ -14,6 +14,7 @@
 #include "lidar/velodyne/packet_reader.h"
 #include "lidar/velodyne/packet_writer.h"
 #include "lidar/velodyne/pcap.h"
+#include "lidar/velodyne/udp_sender.h"
 #include "tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
@@ -71,8 +72,8 @@ std::vector<pcl::PointXYZI> grab(pcl::HDLGrabber& grabber, std::size_t& sweeps) 
 
 /// PCL's points are ours, in the same order, in Velodyne's frame (x right, y forward). `blur_deg`: how far its azimuth
 /// may be off.
-void expect_same(const std::vector<pcl::PointXYZI>& theirs, const std::vector<velodyne::Return>& ours,
-                 double blur_deg) {
+void expect_same(const std::vector<pcl::PointXYZI>& theirs, const std::vector<velodyne::Return>& ours, double blur_deg,
+                 const BeamTable& table) {
   ASSERT_GT(theirs.size(), 20'000u);
   ASSERT_LE(theirs.size(), ours.size());
   for (std::size_t i = 0; i < theirs.size(); ++i) {
@@ -80,9 +81,8 @@ void expect_same(const std::vector<pcl::PointXYZI>& theirs, const std::vector<ve
     const velodyne::Return& r = ours[i];
     const double range_m = std::hypot(p.x, p.y, p.z);
     ASSERT_NEAR(range_m, r.distance_m, 2e-5 * r.distance_m) << i;
-    const double elevation_deg = std::asin(p.z / range_m) / kDegree;
-    const Eigen::Vector3d from_origin(r.point.x, r.point.y, 0);
-    ASSERT_NEAR(range_m * std::cos(elevation_deg * kDegree), from_origin.norm(), 2e-4 + 2e-5 * range_m) << i;
+    ASSERT_NEAR(p.z, r.distance_m * std::sin(table.beams[r.laser].elevation_rad), 2e-4 + 2e-5 * range_m) << i;
+    ASSERT_NEAR(std::hypot(p.x, p.y), std::hypot(r.point.x, r.point.y), 2e-4 + 2e-5 * range_m) << i;
     const double azimuth_deg = std::atan2(p.x, p.y) / kDegree;
     ASSERT_LE(std::abs(std::remainder(azimuth_deg - r.azimuth_deg, 360.0)), blur_deg) << i;
     ASSERT_EQ(p.intensity, r.reflectivity) << i;
@@ -103,7 +103,7 @@ TEST_F(PclGrabber, VlpGrabberDecodesOurVlp16) {
   EXPECT_GE(sweeps, 3u);
   // It interpolates between the two cycles of a block, but takes one azimuth for all firings of a cycle: 34.56 us at
   // 3600 deg/s.
-  expect_same(theirs, ours, 34.56e-6 * 3600 + 0.02);
+  expect_same(theirs, ours, 34.56e-6 * 3600 + 0.02, *load_beam_table("vlp16"));
 }
 
 TEST_F(PclGrabber, HdlGrabberDecodesOurHdl32e) {
@@ -113,7 +113,43 @@ TEST_F(PclGrabber, HdlGrabberDecodesOurHdl32e) {
   const auto theirs = grab(grabber, sweeps);
   EXPECT_GE(sweeps, 3u);
   // It takes one azimuth for all firings of a block: 36.9 us at 3600 deg/s.
-  expect_same(theirs, ours, 36.9e-6 * 3600 + 0.02);
+  expect_same(theirs, ours, 36.9e-6 * 3600 + 0.02, *load_beam_table("hdl32e"));
+}
+
+/// PCL listens on a port of the loopback interface; we send as `canyon lidar scan --udp` does, at the sensor's own
+/// pace.
+TEST_F(PclGrabber, VlpGrabberDecodesOurUdpStream) {
+  constexpr std::uint16_t kPort = 23688;
+  const auto ours = write_capture("vlp16", 600, path_);
+  const auto capture = velodyne::read_pcap(path_);
+  ASSERT_TRUE(capture.ok());
+  pcl::VLPGrabber grabber(boost::asio::ip::address::from_string("127.0.0.1"), kPort);
+  std::mutex mutex;
+  std::vector<pcl::PointXYZI> theirs;
+  std::size_t sweeps = 0;
+  std::function<void(const Cloud::ConstPtr&)> take = [&](const Cloud::ConstPtr& cloud) {
+    const std::lock_guard lock(mutex);
+    theirs.insert(theirs.end(), cloud->begin(), cloud->end());
+    ++sweeps;
+  };
+  grabber.registerCallback(take);
+  grabber.start();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until it listens
+  auto sender = *velodyne::UdpSender::open("127.0.0.1", kPort);
+  const auto begin = std::chrono::steady_clock::now();
+  const std::int64_t first_us = capture->datagrams.front().unix_us;
+  double sent_s = 0;
+  for (const auto& datagram : capture->datagrams) {
+    sent_s = 1e-6 * static_cast<double>(datagram.unix_us - first_us);
+    ASSERT_TRUE(sender.send_at(datagram.payload, sent_s).ok());
+  }
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_GE(took_s, sent_s) << "never ahead of the sensor";
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  grabber.stop();
+  const std::lock_guard lock(mutex);
+  EXPECT_GE(sweeps, 3u);
+  expect_same(theirs, ours, 34.56e-6 * 3600 + 0.02, *load_beam_table("vlp16"));
 }
 
 }  // namespace
