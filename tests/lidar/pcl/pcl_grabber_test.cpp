@@ -1,4 +1,5 @@
 // PCL's own decoders of Velodyne packets read our captures.
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -146,7 +147,17 @@ TEST_F(PclGrabber, VlpGrabberDecodesOurUdpStream) {
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   EXPECT_GE(took_s, sent_s) << "never ahead of the sensor";
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  // PCL notices that it is to stop when a packet arrives: one that is no data packet, until it has.
+  std::atomic<bool> stopped = false;
+  std::thread last([&] {
+    while (!stopped) {
+      EXPECT_TRUE(sender.send("the end").ok());
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
   grabber.stop();
+  stopped = true;
+  last.join();
   const std::lock_guard lock(mutex);
   EXPECT_GE(sweeps, 3u);
   expect_same(theirs, ours, 34.56e-6 * 3600 + 0.02, *load_beam_table("vlp16"));
