@@ -1,6 +1,6 @@
 # canyon_precompile(TARGET ROOT): what nearly all files include is precompiled once, for ROOT (further arguments: headers of
 # ROOT's own), and used by every TARGET. Short on purpose: <nlohmann/json.hpp> in it would cost each file 0.4 s.
-# Tests do without: behind precompiled headers g++ 12 warns of strings inside the standard library (its bug 105329).
+# Tests do without: behind precompiled headers g++ 12 gives false alarms of strings inside the standard library.
 function(canyon_precompile target root)
   if(NOT CANYON_PRECOMPILED_HEADERS)
     return()
