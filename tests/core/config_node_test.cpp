@@ -3,7 +3,7 @@
 #include "core/check.h"
 #include "core/config.h"
 #include "core/files.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon {
 namespace {

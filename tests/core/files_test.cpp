@@ -6,7 +6,7 @@
 #include <zlib.h>
 
 #include "core/random.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon {
 namespace {

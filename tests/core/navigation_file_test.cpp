@@ -6,13 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "core/units.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_data.h"
 
 namespace canyon {
 namespace {
 
 std::string temporary(const std::string& name, const std::string& text) {
-  const std::string path = ::testing::TempDir() + "canyon_navigation_" + name;
+  const std::string path = testing::temporary_file(name);
   std::ofstream(path) << text;
   return path;
 }
@@ -82,7 +83,7 @@ TEST(NavigationFile, NamesWhatIsWrongAndWhere) {
     EXPECT_FALSE(file) << text;
     return file ? "" : file.error().str();
   };
-  const std::string path = ::testing::TempDir() + "canyon_navigation_bad.nav";
+  const std::string path = testing::temporary_file("bad.nav");
   const std::string columns =
       "11 columns, week sow lat lon h vN vE vD roll pitch heading, or a header with "
       "sow,lat_deg,lon_deg,h_m,vn,ve,vd,roll_deg,pitch_deg,heading_deg";

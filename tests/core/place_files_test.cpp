@@ -4,19 +4,18 @@
 #include <filesystem>
 #include <fstream>
 
-#include <unistd.h>
-
 #include <gtest/gtest.h>
 
 #include "core/earth.h"
 #include "core/units.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon {
 namespace {
 
 class PlaceFilesTest : public ::testing::Test {
  protected:
-  PlaceFilesTest() : path_(::testing::TempDir() + "canyon_places_" + std::to_string(getpid()) + ".csv") {}
+  PlaceFilesTest() : path_(testing::temporary_file("places.csv")) {}
   ~PlaceFilesTest() override { std::filesystem::remove(path_); }
   Result<std::vector<StampedPlace>> read(const std::string& text) {
     std::ofstream(path_) << text;

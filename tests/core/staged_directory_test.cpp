@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/files.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon {
 namespace {

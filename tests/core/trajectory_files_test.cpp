@@ -6,7 +6,7 @@
 #include "core/files.h"
 #include "core/random.h"
 #include "core/trajectory.h"
-#include "tests/core/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_data.h"
 
 namespace canyon {

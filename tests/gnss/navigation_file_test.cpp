@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "gnss/rinex/text_lines.h"
 #include "tests/gnss/nav_text.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_data.h"
 
 namespace canyon::gnss {
@@ -115,13 +116,12 @@ TEST(NavigationFile, OtherKindsOfAMixedFileAreCounted) {
 }
 
 TEST(NavigationFile, GzipIsUnpacked) {
-  const std::string text = navigation_text(kStart, 4, 1, false), path = ::testing::TempDir() + "canyon_nav_test.10n.gz";
+  const std::string text = navigation_text(kStart, 4, 1, false), path = canyon::testing::temporary_file("test.10n.gz");
   gzFile out = gzopen(path.c_str(), "wb");
   ASSERT_NE(out, nullptr);
   gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
   gzclose(out);
   const auto file = read_navigation_file(path);
-  std::remove(path.c_str());
   ASSERT_TRUE(file.ok()) << file.error().str();
   EXPECT_EQ(file->kepler.size(), 4u);
 }

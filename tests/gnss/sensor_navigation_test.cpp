@@ -8,6 +8,7 @@
 #include "core/units.h"
 #include "tests/gnss/nav_text.h"
 #include "tests/gnss/pseudorange_sensor_fixture.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_data.h"
 
 namespace canyon::gnss {
@@ -20,7 +21,7 @@ using testing::WallScene;
 
 TEST_F(PseudorangeSensorTest, NavigationFileFromDisk) {
   const GpsTime day = GpsTime::from_calendar(2010, 7, 1, 0, 0, 0.0);
-  const std::string path = ::testing::TempDir() + "canyon_sensor_test.10n";
+  const std::string path = canyon::testing::temporary_file("day.10n");
   std::string text = testing::navigation_text(day, 31, 3, false);
   text.resize(text.size() - 100);
   ASSERT_TRUE(write_text_file(path, text).ok());
@@ -38,15 +39,14 @@ TEST_F(PseudorangeSensorTest, NavigationFileFromDisk) {
   EXPECT_THAT(
       error_of(c),
       HasSubstr(": gnss.nav_file: covers 2010-06-30T22:00:00 to 2010-07-01T06:00:00 GPS time, not the mission's"));
-  std::remove(path.c_str());
-  EXPECT_THAT(error_of(c), HasSubstr("canyon_sensor_test.10n"));
+  EXPECT_THAT(error_of(c), HasSubstr("day.10n"));
 }
 
 // Satellites fade out one by one, each when its light time puts the transmission past the fit interval; clocks are off
 // by up to 0.3 ms, so that for moments the truth still has an ephemeris and the receiver none.
 TEST_F(PseudorangeSensorTest, EphemeridesExpireGracefully) {
   const GpsTime day = GpsTime::from_calendar(2010, 7, 1, 0, 0, 0.0);
-  const std::string path = ::testing::TempDir() + "canyon_expiry_test.10n";
+  const std::string path = canyon::testing::temporary_file("expiry.10n");
   ASSERT_TRUE(write_text_file(path, testing::navigation_text(day, 31, 1, false)).ok());
   GnssConfig c = errors_off();
   c.nav_file = path;
@@ -58,7 +58,6 @@ TEST_F(PseudorangeSensorTest, EphemeridesExpireGracefully) {
     before = out.epoch.observations.size();
   }
   EXPECT_EQ(before, 0u);
-  std::remove(path.c_str());
 }
 
 TEST_F(PseudorangeSensorTest, RealNavigationFile) {

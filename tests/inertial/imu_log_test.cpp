@@ -1,7 +1,5 @@
 #include "inertial/imu_log.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,16 +11,14 @@
 #include "core/files.h"
 #include "core/random.h"
 #include "core/units.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::inertial {
 namespace {
 
 class ImuLogTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    path_ =
-        (std::filesystem::path(::testing::TempDir()) / ("canyon_log_" + std::to_string(getpid()) + ".csv")).string();
-  }
+  void SetUp() override { path_ = testing::temporary_file("log.csv"); }
   void TearDown() override { std::filesystem::remove(path_); }
 
   Result<ImuLog> read(const std::string& text, const ImuLogFormat& format = {}) const {

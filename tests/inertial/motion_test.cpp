@@ -15,12 +15,13 @@
 #include "inertial/motion/rigid_motion.h"
 #include "inertial/true_increments.h"
 #include "tests/inertial/smooth_motion.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::inertial {
 namespace {
 
 std::string temporary(const std::string& name, const std::string& text) {
-  const std::string path = ::testing::TempDir() + "canyon_motion_" + name;
+  const std::string path = testing::temporary_file(name);
   std::ofstream(path) << text;
   return path;
 }

@@ -9,6 +9,7 @@
 #include "fusion/dead_reckoning.h"
 #include "inertial/imu_model.h"
 #include "inertial/motion/motion.h"
+#include "tests/support/temporary_folder.h"
 
 /// What errors of the sensor do to free inertial navigation at rest, through the real error chain and strapdown.
 namespace canyon {
@@ -18,7 +19,7 @@ const Geodetic kPlace{45.0 * kDegree, 0.0, 0.0};
 
 /// A sensor with white noise alone.
 std::string white_sensor(double arw_deg_per_sqrt_hr, double vrw_m_s_per_sqrt_hr) {
-  const std::string path = ::testing::TempDir() + "canyon_white_sensor.toml";
+  const std::string path = testing::temporary_file("white_sensor.toml");
   const std::string others =
       "turn_on_bias_source = \"test\"\nin_run_bias_source = \"test\"\nscale_ppm = 0.0\nmisalignment_mrad = 0.0\n";
   std::ofstream(path) << "name = \"white\"\n[gyro]\narw_source = \"test\"\narw_deg_per_sqrt_hr = "

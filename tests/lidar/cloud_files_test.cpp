@@ -1,22 +1,17 @@
 #include "lidar/cloud_files.h"
 
-#include <filesystem>
-
 #include <gtest/gtest.h>
 
 #include "core/files.h"
 #include "core/random.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::lidar {
 namespace {
 
 class CloudFiles : public ::testing::Test {
  protected:
-  std::string path_ =
-      (std::filesystem::temp_directory_path() /
-       ("canyon_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".pcd"))
-          .string();
-  void TearDown() override { std::filesystem::remove(path_); }
+  std::string path_ = canyon::testing::temporary_file("test.pcd");
   std::string error_of(const std::string& content) {
     EXPECT_TRUE(write_text_file(path_, content).ok());
     const auto cloud = read_pcd(path_);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +14,7 @@
 #include "lidar/velodyne/pcap.h"
 #include "lidar/velodyne/udp_sender.h"
 #include "tests/lidar/lidar_scenes.h"
+#include "tests/support/temporary_folder.h"
 #include "tests/support/test_data.h"
 
 namespace canyon::lidar::velodyne {
@@ -216,8 +216,7 @@ TEST(Packets, OnlyForSensorsAndModesThatHaveThem) {
 
 class Pcap : public ::testing::Test {
  protected:
-  std::string path_ = (std::filesystem::temp_directory_path() / "canyon_pcap_test.pcap").string();
-  void TearDown() override { std::filesystem::remove(path_); }
+  std::string path_ = canyon::testing::temporary_file("test.pcap");
   std::string error_of(const std::string& bytes) {
     EXPECT_TRUE(write_text_file(path_, bytes).ok());
     const auto capture = read_pcap(path_);

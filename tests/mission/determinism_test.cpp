@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 #include "mission/results.h"
 #include "tests/mission/short_mission.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::mission::testing {
 namespace {
@@ -26,11 +27,10 @@ std::string hash_with(int threads, const std::string& directory) {
 }
 
 TEST(Determinism, ResultsAreTheSameBitsForAnyNumberOfThreads) {
-  const std::string base = ::testing::TempDir() + "/canyon_determinism_";
+  const std::string base = canyon::testing::temporary_file("threads_");
   const std::string one = hash_with(1, base + "1"), two = hash_with(2, base + "2"), eight = hash_with(8, base + "8");
   EXPECT_EQ(one, two);
   EXPECT_EQ(one, eight);
-  for (const char* suffix : {"1", "2", "8"}) std::filesystem::remove_all(base + suffix);
 }
 
 TEST(Determinism, AnotherSeedGivesOtherResults) {

@@ -1,5 +1,4 @@
 #include <cstring>
-#include <filesystem>
 
 #include <gtest/gtest.h>
 #include <pcl/io/pcd_io.h>
@@ -10,14 +9,14 @@
 #include "core/random.h"
 #include "lidar/cloud_files.h"
 #include "lidar/scan_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::lidar {
 namespace {
 
 class PclReader : public ::testing::Test {
  protected:
-  std::string path_ = (std::filesystem::temp_directory_path() / "canyon_pcl_reader_test.pcd").string();
-  void TearDown() override { std::filesystem::remove(path_); }
+  std::string path_ = canyon::testing::temporary_file("test.pcd");
 };
 
 TEST_F(PclReader, ReadsOurCloudToTheBit) {

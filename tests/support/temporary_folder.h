@@ -37,4 +37,10 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// A path in a folder of this process alone, removed when it ends: ctest runs the tests of a file side by side.
+inline std::string temporary_file(const std::string& name) {
+  static const TemporaryFolder folder;
+  return folder.file(name);
+}
+
 }  // namespace canyon::testing
