@@ -41,7 +41,10 @@ Argument Argument::number_within(double lowest, double highest) const {
 
 template <class T>
 Argument Arguments::option(const char* name, T& variable, const std::string& help) {
-  return Argument(app_->add_option(name, variable, help));
+  CLI::Option* option = app_->add_option(name, variable, help);
+  // A script whose variable is empty would otherwise get what it gets without the option.
+  option->check([](const std::string& value) { return value.empty() ? std::string("empty") : std::string(); });
+  return Argument(option);
 }
 template Argument Arguments::option(const char*, std::string&, const std::string&);
 template Argument Arguments::option(const char*, std::vector<std::string>&, const std::string&);

@@ -68,6 +68,32 @@ Status check_name(const ConfigNode& tree) {
   return node->error("run.name", "found \"" + *name + "\"", kPlainName);
 }
 
+/// The keys of "gnss.rate_hz, imu.rate_hz".
+std::vector<std::string> listed(const std::string& keys) {
+  std::vector<std::string> out;
+  for (std::size_t from = 0, comma = 0; comma != std::string::npos; from = comma + 2) {
+    comma = keys.find(", ", from);
+    out.push_back(keys.substr(from, comma == std::string::npos ? comma : comma - from));
+  }
+  return out;
+}
+
+/// "autonomy" of "autonomy.waypoint[3]"; "" of "autonomy".
+std::string parent(const std::string& key) {
+  const auto dot = key.rfind('.');
+  return dot == std::string::npos ? "" : key.substr(0, dot);
+}
+
+/// What is set at a key; of "autonomy.waypoint[3]" the third of the waypoints.
+const ConfigNode* node_at(const ConfigNode& tree, const std::string& key) {
+  const auto bracket = key.rfind('[');
+  if (bracket == std::string::npos) return tree.find(key);
+  const ConfigNode* node = tree.find(key.substr(0, bracket));
+  const std::size_t item = std::stoul(key.substr(bracket + 1));
+  if (node == nullptr || item == 0 || node->array() == nullptr || item > node->array()->size()) return node;
+  return &(*node->array())[item - 1];
+}
+
 }  // namespace
 
 Result<MissionFile> MissionFile::load(const std::string& path) {
@@ -203,7 +229,7 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
 Result<MissionConfig> MissionFile::resolve(const std::string& fidelity) const {
   CANYON_TRY(const ConfigNode tree, resolved_tree(fidelity));
   MissionConfig config;
-  CANYON_TRY_STATUS(read_config(&tree, "", config));
+  if (const auto read = read_config(&tree, "", config); !read) return locate(read.error(), {fidelity});
   return config;
 }
 
@@ -215,52 +241,45 @@ Result<MissionConfig> MissionFile::resolve_mixed(const std::string& gnss, const 
   return config;
 }
 
-std::string MissionFile::told_key(const std::string& keys) const {
-  std::vector<std::string> listed;
-  for (std::size_t from = 0, comma = 0; comma != std::string::npos; from = comma + 2) {
-    comma = keys.find(", ", from);
-    listed.push_back(keys.substr(from, comma == std::string::npos ? comma : comma - from));
+std::vector<MissionFile::Layer> MissionFile::written(const std::vector<std::string>& fidelities) const {
+  std::vector<Layer> layers{{"", &options_}};
+  for (const std::string& fidelity : fidelities) {
+    auto lineage = ancestry(fidelity);
+    if (!lineage) continue;
+    for (auto name = lineage->rbegin(); name != lineage->rend(); ++name)
+      if (const ConfigNode* own = user_.find("fidelity." + *name)) layers.push_back({"fidelity." + *name + ".", own});
   }
-  for (const ConfigNode* tree : {&options_, &user_, &base_})
-    for (const std::string& key : listed)
-      if (tree->find(key) != nullptr) return key;
-  return listed.front();
+  layers.push_back({"", &user_});
+  return layers;
 }
 
-Error MissionFile::locate(Error error) const {
+Error MissionFile::locate(Error error, const std::vector<std::string>& fidelities) const {
   if (!error.file.empty()) return error;
-  error.key = told_key(error.key);
-  // Where was the key (or its nearest parent) set last?
-  const auto find_in = [&](const ConfigNode& tree) {
-    std::string key = error.key;
-    while (!key.empty()) {
-      std::string dotted = key;
-      std::size_t item = 0;  // waypoint[3] -> the third element of the array
-      if (const auto bracket = dotted.rfind('['); bracket != std::string::npos) {
-        item = static_cast<std::size_t>(std::stoul(dotted.substr(bracket + 1)));
-        dotted = dotted.substr(0, bracket);
+  const std::vector<Layer> layers = written(fidelities);
+  const std::vector<std::string> told = listed(error.key);
+  error.key = told.front();
+  for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer)
+    for (auto key = told.rbegin(); key != told.rend(); ++key)
+      if (layer->tree->find(*key) != nullptr) error.key = *key;
+  const auto point_at = [&error](const ConfigNode& node) { error.file = node.file_, error.line = node.line_; };
+  // Where was the key, or its nearest parent, set last?
+  for (std::string key = error.key; !key.empty(); key = parent(key))
+    for (const Layer& layer : layers)
+      if (const ConfigNode* node = node_at(*layer.tree, key)) {
+        point_at(*node);
+        if (key == error.key) error.key = layer.prefix + key;
+        return error;
       }
-      if (const ConfigNode* node = tree.find(dotted)) {
-        if (item > 0 && node->array() != nullptr && item <= node->array()->size()) node = &(*node->array())[item - 1];
-        error.file = node->file_;
-        error.line = node->line_;
-        return true;
+  for (std::string key = error.key; !key.empty(); key = parent(key))
+    if (const ConfigNode* node = node_at(base_, key)) {
+      point_at(*node);
+      // What is right in the city that the base mission was made for is not in another one.
+      if (const ConfigNode* scene = user_.find("scene")) {
+        error.what += " (inherited from " + error.file + "; this [scene] is another city)";
+        point_at(*scene);
       }
-      const auto dot = key.rfind('.');
-      key = dot == std::string::npos ? "" : key.substr(0, dot);
+      return error;
     }
-    return false;
-  };
-  if (find_in(options_) || find_in(user_)) return error;
-  if (find_in(base_)) {
-    // What is right in the city that the base mission was made for is not in another one.
-    if (const ConfigNode* scene = user_.find("scene")) {
-      error.what += " (inherited from " + error.file + "; this [scene] is another city)";
-      error.file = scene->file_;
-      error.line = scene->line_;
-    }
-    return error;
-  }
   error.file = file_;
   return error;
 }

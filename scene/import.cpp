@@ -74,10 +74,13 @@ class Import {
  private:
   Status read_files() {
     CANYON_TRY(out_.parts.materials, load_materials(config_.materials));
-    for (const std::string& name : {config_.wall_material, config_.roof_material, config_.ground_material}) {
+    const std::pair<const char*, std::string> named[] = {{"scene.wall_material", config_.wall_material},
+                                                         {"scene.roof_material", config_.roof_material},
+                                                         {"scene.ground_material", config_.ground_material}};
+    for (const auto& material : named) {
       const auto& table = out_.parts.materials;
-      if (std::none_of(table.begin(), table.end(), [&](const Material& m) { return m.name == name; }))
-        return Error{"", 0, "scene.wall_material", "no material \"" + name + "\"", "a material of the table"};
+      if (std::none_of(table.begin(), table.end(), [&](const Material& m) { return m.name == material.second; }))
+        return Error{"", 0, material.first, "no material \"" + material.second + "\"", "a material of the table"};
     }
     ReadOptions options{config_.height_property, config_.ground_property, config_.storeys_property,
                         config_.up_axis,         config_.storey_m,        config_.default_height_m};

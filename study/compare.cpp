@@ -31,12 +31,13 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
         return Error{.what = "two runs would be named \"" + plan[i].name + "\"",
                      .expected = "another name for the fidelity"};
   for (const RunPlan& run : plan) {
-    auto config = run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu);
-    if (!config) return file.locate(config.error());
-    auto prepared = mission::prepare(*config, scenes);
-    if (!prepared) return file.locate(prepared.error());
-    if (auto sensors = mission::check_sensors(*config, *prepared); !sensors) return file.locate(sensors.error());
-    comparison.configs.push_back(*std::move(config));
+    const std::vector<std::string> sources{run.gnss, run.imu};
+    CANYON_TRY(auto config, run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu));
+    auto prepared = mission::prepare(config, scenes);
+    if (!prepared) return file.locate(prepared.error(), sources);
+    if (auto sensors = mission::check_sensors(config, *prepared); !sensors)
+      return file.locate(sensors.error(), sources);
+    comparison.configs.push_back(std::move(config));
     comparison.missions.push_back(*std::move(prepared));
   }
   return comparison;

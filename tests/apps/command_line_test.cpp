@@ -129,6 +129,7 @@ TEST_F(CommandLineTest, UsageMistakesNameTheArgumentAsItWasTyped) {
                  "canyon run: no option \"--frobnicate\", expected one that canyon run --help names\n");
   expect_mistake("run mission.toml --output x", "canyon run: no option \"--output\", expected \"--out\"?\n");
   expect_mistake("run mission.toml x", "canyon run: \"x\" is one argument too many\n");
+  expect_mistake("run mission.toml --out ''", "--out: \"\", expected another value\n");
   // One value with commas: the mission is not swallowed as a fidelity.
   expect_mistake("compare --fidelities low high mission.toml",
                  "canyon compare: \"mission.toml\" is one argument too many\n");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::mission {
 namespace {
@@ -18,16 +19,16 @@ MissionFile parse(const std::string& toml) {
 }
 
 /// The message a user sees for a mission file, whichever step finds the mistake.
-std::string message(const std::string& toml) {
+std::string message(const std::string& toml, const std::string& fidelity = "high") {
   auto file = MissionFile::parse(toml, "my.toml");
   if (!file) return file.error().str();
-  const auto config = file->resolve("high");
-  if (!config) return file->locate(config.error()).str();
+  const auto config = file->resolve(fidelity);
+  if (!config) return config.error().str();
   SceneCache scenes;
   const auto mission = prepare(*config, scenes);
-  if (!mission) return file->locate(mission.error()).str();
+  if (!mission) return file->locate(mission.error(), {fidelity}).str();
   const auto sensors = check_sensors(*config, *mission);
-  return sensors ? "no mistake" : file->locate(sensors.error()).str();
+  return sensors ? "no mistake" : file->locate(sensors.error(), {fidelity}).str();
 }
 
 constexpr const char* kEmptyScene = "base = \"vicksburg\"\n[scene]\nempty = true\n";
@@ -272,8 +273,23 @@ TEST(Prepare, TheShorterOfTheTwoLimitsHolds) {
   EXPECT_EQ(prepared("limit_s = 90000\n[success]\nlimit_factor = 2").time_limit_s, 2.0 * nominal_s);
 }
 
+TEST(Prepare, AMistakeOfAFidelityIsToldWhereItStands) {
+  const std::string head = "base = \"vicksburg\"\n[scene]\nempty = true\n[gnss]\nrate_hz = 2.0\n";
+  EXPECT_THAT(message(head + "[fidelity.mine]\nlidar.beams = \"vlp17\"\n", "mine"),
+              HasSubstr("my.toml:7: fidelity.mine.lidar.beams: unknown beam table \"vlp17\""));
+  EXPECT_EQ(
+      message(head + "[fidelity.fast.gnss]\nrate_hz = 3.0\n", "fast"),
+      "my.toml:7: fidelity.fast.gnss.rate_hz: the IMU's 100 Hz are not a multiple of 3 Hz, expected imu.rate_hz to "
+      "be a whole number times gnss.rate_hz");
+  // Of a fidelity based on it, too; and what is set for all stays where it is.
+  EXPECT_THAT(message(head + "[fidelity.mine]\nlidar.beams = \"vlp17\"\n[fidelity.next]\nbase = \"mine\"\n", "next"),
+              HasSubstr("my.toml:7: fidelity.mine.lidar.beams: unknown"));
+  EXPECT_THAT(message(head + "[lidar]\nbeams = \"vlp17\"\n[fidelity.mine.lidar]\nmodel = \"footprint\"\n", "mine"),
+              HasSubstr("my.toml:7: lidar.beams: unknown"));
+}
+
 TEST(Prepare, FilesAreReadToTheEndAndTheirHashesKept) {
-  const std::string path = ::testing::TempDir() + "/canyon_prepare_beams.csv";
+  const std::string path = canyon::testing::temporary_file("beams.csv");
   ASSERT_TRUE(write_text_file(path, "abc").ok());
   SceneCache scenes;
   const auto mission =
