@@ -9,6 +9,7 @@
 
 struct RTCDeviceTy;
 struct RTCSceneTy;
+struct RTCRayHit16;
 
 /// What the files that know Embree (embree_*.cpp) share.
 namespace canyon::scene::embree {
@@ -20,6 +21,10 @@ void check_no_error(const char* during);
 /// Builds the tree of a scene on the calling thread: the order in which a parallel build places triangles in the tree
 /// may vary, and with it which of two triangles a ray through their common edge meets.
 void build(RTCSceneTy* scene);
+
+/// What a packet's rays meet first of the geometries that `mask` names, as Embree lays it out; valid until the calling
+/// thread's next call. Lanes that are not traced meet nothing. Throws where a ray is not finite.
+const RTCRayHit16& trace(RTCSceneTy* scene, std::uint32_t mask, const RayPacket& rays);
 
 /// Throws unless the ray's numbers are finite.
 inline void check_finite(const Ray& ray) {

@@ -14,6 +14,12 @@ namespace canyon::scene {
 
 using embree::device;
 
+namespace {
+
+constexpr unsigned kEverything = 0xffffffffu;  // as a mask
+
+}  // namespace
+
 struct RigidShape::Embree {
   RTCScene scene = nullptr;
   ~Embree() {
@@ -87,65 +93,29 @@ Plane InstanceSet::plane(const Member& member) const {
   return embree::plane_of({X_CS * in_S.a, X_CS * in_S.b, X_CS * in_S.c});
 }
 
-namespace {
-
-/// Embree's own packet over the instances: nothing behind `reach_m` is looked for.
-class Query {
- public:
-  Query() {
-    std::memset(&packet_, 0, sizeof packet_);
-    std::fill_n(packet_.ray.mask, RayPacket::kRays, 0xffffffffu);
-    rtcInitIntersectContext(&context_);
-    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  }
-
-  void set(std::size_t lane, float ox, float oy, float oz, float dx, float dy, float dz, float reach_m) {
-    packet_.ray.org_x[lane] = ox, packet_.ray.org_y[lane] = oy, packet_.ray.org_z[lane] = oz;
-    packet_.ray.dir_x[lane] = dx, packet_.ray.dir_y[lane] = dy, packet_.ray.dir_z[lane] = dz;
-    packet_.ray.tfar[lane] = reach_m;
-    valid_[lane] = reach_m >= 0.0f ? -1 : 0;
-  }
-
-  void trace(RTCScene scene) {
-    std::fill_n(packet_.hit.geomID, RayPacket::kRays, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(packet_.hit.instID[0], RayPacket::kRays, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(valid_, scene, &context_, &packet_);
-  }
-
-  bool met(std::size_t lane) const { return valid_[lane] != 0 && packet_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
-  InstanceSet::Member member(std::size_t lane) const { return {packet_.hit.instID[0][lane], packet_.hit.primID[lane]}; }
-  float range_m(std::size_t lane) const { return packet_.ray.tfar[lane]; }
-
- private:
-  alignas(64) RTCRayHit16 packet_;
-  alignas(64) int valid_[RayPacket::kRays];
-  RTCIntersectContext context_;
-};
-
-}  // namespace
-
 void InstanceSet::trace(const Ray& ray, std::uint32_t first_triangle, Hit& hit) const {
   trace(std::span<const Ray>(&ray, 1), first_triangle, std::span<Hit>(&hit, 1));
 }
 
 void InstanceSet::trace(std::span<const Ray> rays, std::uint32_t first_triangle, std::span<Hit> hits) const {
-  Query query;
+  RayPacket packet;
   for (std::size_t begin = 0; begin < rays.size(); begin += RayPacket::kRays) {
     const std::size_t count = std::min(RayPacket::kRays, rays.size() - begin);
     for (std::size_t lane = 0; lane < RayPacket::kRays; ++lane) {
       const std::size_t k = begin + std::min(lane, count - 1);
       const Eigen::Vector3f o = (rays[k].origin - center_W_).cast<float>(), d = rays[k].direction;
-      const float reach_m = hits[k].hit() ? hits[k].range_m : rays[k].max_m;
-      query.set(lane, o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), lane < count ? reach_m : -1.0f);
+      packet.origin_x[lane] = o.x(), packet.origin_y[lane] = o.y(), packet.origin_z[lane] = o.z();
+      packet.direction_x[lane] = d.x(), packet.direction_y[lane] = d.y(), packet.direction_z[lane] = d.z();
+      packet.max_m[lane] = lane >= count ? -1.0f : hits[k].hit() ? hits[k].range_m : rays[k].max_m;
     }
-    query.trace(embree_->scene);
+    const RTCRayHit16& found = embree::trace(embree_->scene, kEverything, packet);
     for (std::size_t lane = 0; lane < count; ++lane) {
-      if (!query.met(lane)) continue;
-      const Member member = query.member(lane);
+      if (found.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+      const Member member{found.hit.instID[0][lane], found.hit.primID[lane]};
       Hit& hit = hits[begin + lane];
       hit.triangle = first_triangle + first_[member.instance] + member.triangle;
       const Ray& ray = rays[begin + lane];
-      embree::refine(ray.origin - center_W_, ray.direction, plane(member), query.range_m(lane), hit);
+      embree::refine(ray.origin - center_W_, ray.direction, plane(member), found.ray.tfar[lane], hit);
     }
   }
 }
@@ -154,23 +124,24 @@ void InstanceSet::trace(std::span<const RayPacket> rays, const Eigen::Vector3d& 
                         std::span<HitPacket> hits) const {
   const Eigen::Vector3d shift = origin_W - center_W_;
   const auto sx = static_cast<float>(shift.x()), sy = static_cast<float>(shift.y()), sz = static_cast<float>(shift.z());
-  Query query;
   for (std::size_t p = 0; p < rays.size(); ++p) {
     const RayPacket& r = rays[p];
     HitPacket& h = hits[p];
-    for (std::size_t i = 0; i < RayPacket::kRays; ++i)
-      query.set(i, r.origin_x[i] + sx, r.origin_y[i] + sy, r.origin_z[i] + sz, r.direction_x[i], r.direction_y[i],
-                r.direction_z[i], std::min(h.range_m[i], r.max_m[i]));
-    query.trace(embree_->scene);
+    RayPacket shifted = r;
     for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
-      if (!query.met(i)) continue;
-      const Member member = query.member(i);
-      const PlaneRange found =
+      shifted.origin_x[i] += sx, shifted.origin_y[i] += sy, shifted.origin_z[i] += sz;
+      shifted.max_m[i] = std::min(h.range_m[i], r.max_m[i]);  // nothing behind what was met is looked for
+    }
+    const RTCRayHit16& found = embree::trace(embree_->scene, kEverything, shifted);
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      if (found.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      const Member member{found.hit.instID[0][i], found.hit.primID[i]};
+      const PlaneRange at =
           plane_range(plane(member), r.origin_x[i] + shift.x(), r.origin_y[i] + shift.y(), r.origin_z[i] + shift.z(),
-                      r.direction_x[i], r.direction_y[i], r.direction_z[i], query.range_m(i));
+                      r.direction_x[i], r.direction_y[i], r.direction_z[i], found.ray.tfar[i]);
       h.triangle[i] = first_triangle + first_[member.instance] + member.triangle;
-      h.range_m[i] = found.range_m;
-      h.cos_incidence[i] = static_cast<float>(std::min(std::abs(found.approach), 1.0));
+      h.range_m[i] = at.range_m;
+      h.cos_incidence[i] = static_cast<float>(std::min(std::abs(at.approach), 1.0));
     }
   }
 }
@@ -185,7 +156,7 @@ bool InstanceSet::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3
   query.dir_x = direction.x(), query.dir_y = direction.y(), query.dir_z = direction.z();
   query.tnear = min_m;
   query.tfar = max_m;
-  query.mask = 0xffffffffu;
+  query.mask = kEverything;
   rtcOccluded1(embree_->scene, &context, &query);
   return query.tfar < 0.0f;  // Embree sets -infinity
 }

@@ -21,37 +21,6 @@ using embree::device;
 
 constexpr std::size_t kPacket = RayPacket::kRays;
 
-/// Embree's own packet, laid out from ours.
-class Query {
- public:
-  Query() {
-    std::memset(&packet_, 0, sizeof packet_);
-    std::fill_n(packet_.ray.mask, kPacket, unsigned{kTraceAll});
-    rtcInitIntersectContext(&context_);
-    context_.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  }
-
-  const RTCRayHit16& trace(RTCScene scene, const RayPacket& rays) {
-    RTCRay16& r = packet_.ray;
-    const int traced = load_lanes(rays, {r.org_x, r.org_y, r.org_z, r.dir_x, r.dir_y, r.dir_z, r.tfar, valid_});
-    CANYON_CHECK(traced >= 0, "a packet holds a ray that is not finite");
-    traced_ += traced;
-    std::fill_n(packet_.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
-    std::fill_n(packet_.hit.instID[0], kPacket, RTC_INVALID_GEOMETRY_ID);
-    rtcIntersect16(valid_, scene, &context_, &packet_);
-    return packet_;
-  }
-
-  const RTCRayHit16& found() const { return packet_; }
-  std::int64_t traced() const { return traced_; }
-
- private:
-  std::int64_t traced_ = 0;
-  alignas(64) RTCRayHit16 packet_;
-  alignas(64) int valid_[kPacket];
-  RTCIntersectContext context_;
-};
-
 }  // namespace
 
 struct Tracer::Embree {
@@ -170,8 +139,7 @@ struct Tracer::Embree {
 class Tracer::Embree::LanePlanes {
  public:
   explicit LanePlanes(const Surfaces& surfaces) : surfaces_(surfaces) {
-    held_.fill(surfaces.nothing());
-    triangles_.fill(Hit::kMiss);
+    held_.fill(Hit::kMiss);  // no index into the surfaces
   }
 
   /// Takes indices into the surfaces and leaves indices of the mesh.
@@ -189,7 +157,7 @@ class Tracer::Embree::LanePlanes {
 
  private:
   const Surfaces& surfaces_;
-  PlanePacket packet_{};
+  PlanePacket packet_;
   std::array<std::uint32_t, kPacket> held_, triangles_;
 };
 
@@ -223,7 +191,6 @@ Hit Tracer::trace(const Ray& ray, const RaySpan& span) const {
 
 void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   CANYON_CHECK(rays.size() == hits.size(), "rays = ", rays.size(), ", hits = ", hits.size());
-  Query query;
   RayPacket packet;
   for (std::size_t begin = 0; begin < rays.size(); begin += kPacket) {
     const std::size_t count = std::min(kPacket, rays.size() - begin);
@@ -236,7 +203,7 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
       packet.direction_z[lane] = ray.direction.z();
       packet.max_m[lane] = lane < count ? ray.max_m : -1.0f;
     }
-    const RTCRayHit16& found = query.trace(embree_->scene, packet);
+    const RTCRayHit16& found = embree::trace(embree_->scene, kTraceAll, packet);
     for (std::size_t lane = 0; lane < count; ++lane) {
       hits[begin + lane] =
           embree_->hit(rays[begin + lane], found.hit.geomID[lane], found.hit.primID[lane], found.ray.tfar[lane]);
@@ -244,28 +211,16 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   }
 }
 
-std::int64_t Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
+void Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
   CANYON_CHECK(rays.size() == hits.size(), "packets of rays = ", rays.size(), ", of hits = ", hits.size());
-  // Steps, each a packet behind the one before, so that nothing waits: a packet is traced; what it met is called into
-  // the cache; its planes are laid out by lane; ranges are computed from them.
-  std::array<Query, 2> queries;
   const Embree::Surfaces& surfaces = embree_->surfaces();
-  std::array<Embree::LanePlanes, 2> lanes{Embree::LanePlanes(surfaces), Embree::LanePlanes(surfaces)};
-  for (std::size_t p = 0; p < rays.size() + 3; ++p) {
-    if (p < rays.size()) queries[p % 2].trace(embree_->scene, rays[p]);
-    if (p >= 1 && p <= rays.size()) {
-      const RTCRayHit16& found = queries[(p - 1) % 2].found();
-      HitPacket& hit = hits[p - 1];
-      count_through({found.hit.geomID, found.hit.primID, found.ray.tfar}, surfaces.first, surfaces.nothing(), hit);
-      for (const std::uint32_t index : hit.triangle) {
-        __builtin_prefetch(surfaces.planes.data() + index, 0, 0);
-        __builtin_prefetch(surfaces.triangles.data() + index, 0, 0);
-      }
-    }
-    if (p >= 2 && p <= rays.size() + 1) lanes[p % 2].hold(hits[p - 2].triangle);
-    if (p >= 3) plane_ranges(rays[p - 3], lanes[(p - 1) % 2].packet(), hits[p - 3]);
+  Embree::LanePlanes planes(surfaces);
+  for (std::size_t p = 0; p < rays.size(); ++p) {
+    const RTCRayHit16& found = embree::trace(embree_->scene, kTraceAll, rays[p]);
+    count_through({found.hit.geomID, found.hit.primID, found.ray.tfar}, surfaces.first, surfaces.nothing(), hits[p]);
+    planes.hold(hits[p].triangle);
+    plane_ranges(rays[p], planes.packet(), hits[p]);
   }
-  return queries[0].traced() + queries[1].traced();
 }
 
 bool Tracer::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, const RaySpan& span,

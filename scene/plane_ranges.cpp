@@ -52,9 +52,9 @@ CANYON_VECTOR_CLONES void gather_planes(const Plane* planes, const std::uint32_t
   }
 }
 
-CANYON_VECTOR_CLONES int load_lanes(const RayPacket& rays, const TracerLanes& lanes) {
+CANYON_VECTOR_CLONES bool load_lanes(const RayPacket& rays, const TracerLanes& lanes) {
   const auto copy = [](const float* from, float* to) { std::memcpy(to, from, kRays * sizeof(float)); };
-  int count = 0, not_finite = 0;
+  int not_finite = 0;
   int valid[kRays];
   for (std::size_t i = 0; i < kRays; ++i) {
     const float ox = rays.origin_x[i], oy = rays.origin_y[i], oz = rays.origin_z[i];
@@ -62,15 +62,13 @@ CANYON_VECTOR_CLONES int load_lanes(const RayPacket& rays, const TracerLanes& la
     // v - v is 0 for finite numbers and NaN else.
     const float sum = ((ox - ox) + (oy - oy) + (oz - oz)) + ((dx - dx) + (dy - dy) + (dz - dz));
     not_finite |= sum == 0.0f ? 0 : 1;
-    const int traced = rays.max_m[i] >= 0.0f ? 1 : 0;
-    valid[i] = -traced;
-    count += traced;
+    valid[i] = rays.max_m[i] >= 0.0f ? -1 : 0;
   }
   std::memcpy(lanes.valid, valid, sizeof valid);
   copy(rays.origin_x, lanes.origin_x), copy(rays.origin_y, lanes.origin_y), copy(rays.origin_z, lanes.origin_z);
   copy(rays.direction_x, lanes.direction_x), copy(rays.direction_y, lanes.direction_y);
   copy(rays.direction_z, lanes.direction_z), copy(rays.max_m, lanes.max_m);
-  return not_finite == 0 ? count : -1;
+  return not_finite == 0;
 }
 
 }  // namespace canyon::scene

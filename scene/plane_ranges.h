@@ -57,8 +57,8 @@ struct TracerLanes {
   float *origin_x, *origin_y, *origin_z, *direction_x, *direction_y, *direction_z, *max_m;
   int* valid;
 };
-/// Copies a packet, marks the lanes that are to be traced (max_m >= 0) with -1, others with 0, and counts them; -1 if
-/// an origin or direction is infinite or NaN.
-int load_lanes(const RayPacket& rays, const TracerLanes& lanes);
+/// Copies a packet and marks the lanes that are to be traced (max_m >= 0) with -1, others with 0. False if an origin or
+/// direction is infinite or NaN.
+bool load_lanes(const RayPacket& rays, const TracerLanes& lanes);
 
 }  // namespace canyon::scene

@@ -44,20 +44,18 @@ const SceneObject& SceneAt::object(std::uint32_t index) const {
 }
 
 Hit SceneAt::trace(const Ray& ray) const {
-  traced_rays_.add(1);
   Hit hit = scene_->tracer_->trace(ray);
   if (instances_) instances_->trace(ray, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hit);
   return hit;
 }
 
 void SceneAt::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
-  traced_rays_.add(static_cast<std::int64_t>(rays.size()));
   scene_->tracer_->trace(rays, hits);
   if (instances_) instances_->trace(rays, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
 }
 
 void SceneAt::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, const Eigen::Vector3d& origin_W) const {
-  traced_rays_.add(scene_->tracer_->trace(rays, hits, origin_W));
+  scene_->tracer_->trace(rays, hits, origin_W);
   if (instances_) instances_->trace(rays, origin_W, static_cast<std::uint32_t>(scene_->mesh().triangles.size()), hits);
 }
 
@@ -69,7 +67,6 @@ bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) co
   const Eigen::Vector3d way = b_W - a_W;
   const double length_m = way.norm();
   if (length_m <= 2.0 * kClearance_m) return false;
-  occlusion_rays_.add(1);
   const Eigen::Vector3f direction = (way / length_m).cast<float>();
   const auto max_m = static_cast<float>(length_m - kClearance_m);
   return scene_->tracer_->occluded(a_W, direction, kClearance_m, max_m, kTraceAll) ||
@@ -79,7 +76,6 @@ bool SceneAt::blocked(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W) co
 bool SceneAt::blocked_towards(const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W, double max_m,
                               bool ignore_foliage) const {
   if (max_m <= kClearance_m) return false;
-  occlusion_rays_.add(1);
   const Eigen::Vector3f direction = direction_W.cast<float>();
   const auto end_m = static_cast<float>(max_m);
   const std::uint32_t mask = ignore_foliage ? kTraceTerrain | kTraceSolid : kTraceAll;
@@ -97,13 +93,7 @@ void SceneAt::crown_passages(const Eigen::Vector3d& p_W, const Eigen::Vector3d& 
 }
 
 NearestSurface SceneAt::nearest(const Eigen::Vector3d& p_W, double max_m) const {
-  nearest_queries_.add(1);
   return scene_->tracer_->nearest(p_W, max_m);
-}
-
-TraceCounters SceneAt::counters() const {
-  return {traced_rays_.n.load(std::memory_order_relaxed), occlusion_rays_.n.load(std::memory_order_relaxed),
-          nearest_queries_.n.load(std::memory_order_relaxed)};
 }
 
 }  // namespace canyon::scene

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -36,17 +35,10 @@ struct NearestSurface {
   std::uint32_t triangle = Hit::kMiss;
 };
 
-/// Work done by the queries of one SceneAt, for cost reports.
-struct TraceCounters {
-  std::int64_t traced_rays = 0;
-  std::int64_t occlusion_rays = 0;
-  std::int64_t nearest_queries = 0;
-};
-
 /// The scene at one time as sensors receive it; one per run. Cheap to make and to copy; a copy keeps the instances it
-/// was made with. All queries are const and thread-safe. Counts its rays, for cost reports. Ray origins, directions and
-/// points must be finite. Scenes wider than 2 km are traced in tiles, each about a center of its own, so that rays are
-/// as exact everywhere as near W's origin (scene/tiled_tracer.h).
+/// was made with. All queries are const and thread-safe. Ray origins, directions and points must be finite. Scenes
+/// wider than 2 km are traced in tiles, each about a center of its own, so that rays are as exact everywhere as near
+/// W's origin (scene/tiled_tracer.h).
 ///
 /// Moving things have an acceleration structure of their own over their shapes', made anew at each step; the static
 /// scene's is never touched, and a scene without moving things pays nothing for them. Triangles from
@@ -74,13 +66,6 @@ class SceneAt {
     const Mesh& mesh = scene_->mesh();
     if (triangle < mesh.triangles.size()) return {mesh.material[triangle], mesh.object[triangle], false};
     return moving_surface(triangle);
-  }
-  /// Calls what surface() needs of a triangle that lies far off in memory into the cache, for soon.
-  void prefetch_surface(std::uint32_t triangle) const {
-    const Mesh& mesh = scene_->mesh();
-    if (triangle >= mesh.triangles.size()) return;
-    __builtin_prefetch(mesh.material.data() + triangle);
-    __builtin_prefetch(mesh.object.data() + triangle);
   }
   const SceneObject& object(std::uint32_t index) const;
 
@@ -115,27 +100,12 @@ class SceneAt {
   /// index.
   NearestSurface nearest(const Eigen::Vector3d& p_W, double max_m) const;
 
-  TraceCounters counters() const;
-
  private:
-  /// A relaxed counter that copies like a number.
-  struct Counter {
-    Counter() = default;
-    Counter(const Counter& other) : n(other.n.load(std::memory_order_relaxed)) {}
-    Counter& operator=(const Counter& other) {
-      n.store(other.n.load(std::memory_order_relaxed), std::memory_order_relaxed);
-      return *this;
-    }
-    void add(std::int64_t count) { n.fetch_add(count, std::memory_order_relaxed); }
-    std::atomic<std::int64_t> n{0};
-  };
-
   Surface moving_surface(std::uint32_t triangle) const;
 
   const Scene* scene_;
   std::shared_ptr<const InstanceSet> instances_;  ///< null: nothing moves
   std::vector<SceneObject> moving_objects_;
-  mutable Counter traced_rays_, occlusion_rays_, nearest_queries_;
 };
 
 }  // namespace canyon::scene

@@ -149,8 +149,8 @@ void TiledTracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
   std::transform(rays.begin(), rays.end(), hits.begin(), [this](const Ray& r) { return trace(r); });
 }
 
-std::int64_t TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits,
-                                const Eigen::Vector3d& origin_W) const {
+void TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits,
+                        const Eigen::Vector3d& origin_W) const {
   if (!tiled() && origin_W.isZero(0.0)) return tracer(*tiles_[0]).trace(rays, hits);
   CANYON_CHECK(rays.size() == hits.size(), "packets of rays = ", rays.size(), ", of hits = ", hits.size());
   CANYON_CHECK(origin_W.allFinite(), "origin ", origin_W.transpose());
@@ -171,11 +171,10 @@ std::int64_t TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPa
       r.max_m[i] = ours ? std::min(r.max_m[i], static_cast<float>(out_m[p][i])) : -1.0f;
     }
   }
-  std::int64_t traced = tracer(tile(column(about.x()), row(about.y()))).trace(here, hits);
+  tracer(tile(column(about.x()), row(about.y()))).trace(here, hits);
   for (std::size_t p = 0; p < rays.size(); ++p) {
     const RayPacket& r = rays[p];
     for (std::size_t i = 0; i < kPacket; ++i) {
-      traced += r.max_m[i] >= 0.0f && here[p].max_m[i] < 0.0f ? 1 : 0;
       if (hits[p].triangle[i] != Hit::kMiss || !(r.max_m[i] > out_m[p][i])) continue;
       const Ray ray{origin_W + Eigen::Vector3f(r.origin_x[i], r.origin_y[i], r.origin_z[i]).cast<double>(),
                     {r.direction_x[i], r.direction_y[i], r.direction_z[i]},
@@ -186,7 +185,6 @@ std::int64_t TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPa
       hits[p].cos_incidence[i] = std::min(std::abs(hit.normal.dot(ray.direction)), 1.0f);
     }
   }
-  return traced;
 }
 
 bool TiledTracer::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, float min_m, float max_m,

@@ -35,8 +35,7 @@ class TiledTracer {
   // As SceneAt's.
   Hit trace(const Ray& ray) const;
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// Returns how many rays were traced.
-  std::int64_t trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, const Eigen::Vector3d& origin_W) const;
+  void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits, const Eigen::Vector3d& origin_W) const;
   bool occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, float min_m, float max_m,
                 std::uint32_t mask) const;
   NearestSurface nearest(const Eigen::Vector3d& p_W, double max_m) const;

@@ -22,7 +22,7 @@ struct RaySpan {
 };
 
 /// Ray tracing and nearest-surface queries over some triangles of a static mesh. All that Canyon knows of Embree is in
-/// embree_tracer.cpp.
+/// embree_*.cpp.
 ///
 /// It works in W moved to a center of whole metres, by which no vertex is rounded: there single precision is finest.
 ///
@@ -40,8 +40,8 @@ class Tracer {
   /// As SceneAt's; origins, directions and points must be finite. Of the ray only the span is looked at.
   Hit trace(const Ray& ray, const RaySpan& span) const;
   void trace(std::span<const Ray> rays, std::span<Hit> hits) const;
-  /// Origins of packets are relative to the center. Returns how many rays were traced.
-  std::int64_t trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const;
+  /// Origins of packets are relative to the center.
+  void trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const;
   /// Anything of `mask` on the span?
   bool occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, const RaySpan& span,
                 std::uint32_t mask) const;
