@@ -98,9 +98,19 @@ const BareEmbree& bare() {
   return embree;
 }
 
-Eigen::Vector3d sensor_place() {
-  const Eigen::Vector2d crossing = city().streets().nodes_W[city().streets().nodes_W.size() / 2];
-  return {crossing.x(), crossing.y(), city().ground(crossing.x(), crossing.y())->height_m + 1.8};
+/// So wide that it is traced in tiles.
+const canyon::scene::Scene& wide_city() {
+  static const canyon::scene::Scene scene(canyon::scene::make_city({.extent_m = 2200.0}));
+  return scene;
+}
+const BareEmbree& bare_wide() {
+  static const BareEmbree embree(wide_city().mesh());
+  return embree;
+}
+
+Eigen::Vector3d sensor_place(const canyon::scene::Scene& scene = city()) {
+  const Eigen::Vector2d crossing = scene.streets().nodes_W[scene.streets().nodes_W.size() / 2];
+  return {crossing.x(), crossing.y(), scene.ground(crossing.x(), crossing.y())->height_m + 1.8};
 }
 
 enum class Order { kRing, kColumn, kVolley };
@@ -216,8 +226,8 @@ BENCHMARK_CAPTURE(bare_order, column, Order::kColumn)->UseManualTime();
 constexpr canyon::GpsTime kStart{1'000'000'000'000'000'000};
 
 /// 8 m/s in a curve of 0.3 rad/s.
-canyon::Trajectory driving() {
-  const canyon::Pose middle{Eigen::Quaterniond::Identity(), sensor_place()};
+canyon::Trajectory driving(const canyon::scene::Scene& scene = city()) {
+  const canyon::Pose middle{Eigen::Quaterniond::Identity(), sensor_place(scene)};
   canyon::Vector6d twist;
   twist << 0, 0, 0.3, 8, 0, 0;
   canyon::Trajectory motion;
@@ -271,14 +281,15 @@ canyon::lidar::LidarConfig at_origin() {
 }
 
 /// Ranges of a driving sensor, every ray from its own place: nothing else.
-void single_ray_ranges(benchmark::State& state, const char* beams, int steps) {
+void single_ray_ranges(benchmark::State& state, const char* beams, int steps, bool wide = false) {
   canyon::set_threads(1);
-  const canyon::scene::SceneAt scene(city());
+  const canyon::scene::SceneAt scene(wide ? wide_city() : city());
+  const BareEmbree& theirs = wide ? bare_wide() : bare();
   const auto& table = table_of(beams);
   canyon::lidar::LidarConfig config = at_origin();
   config.beams = beams;
   config.azimuth_steps = steps;
-  const canyon::Trajectory motion = driving();
+  const canyon::Trajectory motion = driving(scene.scene());
   const auto best = driving_rays(config, motion);
   std::vector<float> ranges(best.size() * kLanes);
   const auto scanner = *canyon::lidar::make_scanner(config, 1);
@@ -287,10 +298,11 @@ void single_ray_ranges(benchmark::State& state, const char* beams, int steps) {
   const double count = steps * static_cast<double>(table.beams.size());
   side_by_side(
       state, count, [&] { scanner->true_ranges(index++, kStart, motion, scene, out); }, count,
-      [&] { bare().trace(best, ranges); });
+      [&] { theirs.trace(best, ranges); });
 }
 BENCHMARK_CAPTURE(single_ray_ranges, vlp16, "vlp16", 1800)->UseManualTime();
 BENCHMARK_CAPTURE(single_ray_ranges, os1_128, "os1_128", 1024)->UseManualTime();
+BENCHMARK_CAPTURE(single_ray_ranges, vlp16_in_tiles, "vlp16", 1800, true)->UseManualTime();
 
 void single_ray_scan(benchmark::State& state) {
   whole_scan(state, at_origin());

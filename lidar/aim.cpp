@@ -30,13 +30,19 @@ CANYON_VECTOR_CLONES void aim_head(const HeadBeam& beam, const HeadAngles& head,
   }
 }
 
-CANYON_VECTOR_CLONES void spread_placements(const double* from, const double* to, double share, double share_step,
-                                            PlacementPacket& out) {
+CANYON_VECTOR_CLONES void bend_placements(const double* node, const double* rate_before, const double* rate_after,
+                                          double time_s, double step_s, PlacementPacket& out) {
+  double early_s[kShots], late_s[kShots];
+  for (std::size_t i = 0; i < kShots; ++i) {
+    const double t = time_s + static_cast<double>(static_cast<int>(i)) * step_s;
+    early_s[i] = t < 0.0 ? t : 0.0;
+    late_s[i] = t < 0.0 ? 0.0 : t;
+  }
   for (std::size_t k = 0; k < 12; ++k) {
-    const double start = from[k], change = to[k] - from[k];
+    const double start = node[k], before = rate_before[k], after = rate_after[k];
     float* __restrict row = k < 9 ? out.R[3 * (k % 3) + k / 3] : out.p[k - 9];
     for (std::size_t i = 0; i < kShots; ++i)
-      row[i] = static_cast<float>(start + (share + static_cast<double>(static_cast<int>(i)) * share_step) * change);
+      row[i] = static_cast<float>(start + (early_s[i] * before + late_s[i] * after));
   }
 }
 

@@ -38,10 +38,13 @@ struct HeadBeam {
 /// Sixteen steps of one laser, from `head` on.
 void aim_head(const HeadBeam& beam, const HeadAngles& head, AimPacket& out);
 
-/// Placements between two: R by columns and p, twelve numbers each, at the shares share + i * share_step of the way.
-void spread_placements(const double* from, const double* to, double share, double share_step, PlacementPacket& out);
+/// Placements about a node: R by columns and p, twelve numbers, there, and their rates before and after it; at the
+/// times time_s + i * step_s after it.
+void bend_placements(const double* node, const double* rate_before, const double* rate_after, double time_s,
+                     double step_s, PlacementPacket& out);
 
-/// The same for the lanes of which `among` is not 0, each at its own share of the way; the others stay as they are.
+/// Placements between two nodes, for the lanes of which `among` is not 0, each at its own share of the way; the others
+/// stay as they are.
 void spread_some_placements(const double* from, const double* to, const double* shares, const int* among,
                             PlacementPacket& out);
 

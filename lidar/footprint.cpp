@@ -1,18 +1,18 @@
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 #include <span>
 
 #include "core/units.h"
 #include "lidar/echo_model.h"
 #include "lidar/footprint_rays.h"
+#include "lidar/glint_sum.h"
 #include "lidar/see_through.h"
 
 namespace canyon::lidar {
 namespace {
 
-constexpr std::size_t kSubRays = FootprintOffsets::kRays;
+constexpr int kSubRays = FootprintOffsets::kRays;
 
 /// A beam of Gaussian cross-section, sixteen sub-rays of equal energy. `divergence_mrad` is its full width at 1/e^2 of
 /// the middle's intensity, so four standard deviations.
@@ -30,32 +30,34 @@ class Footprint final : public EchoModel {
         offsets_(footprint_offsets(1e-3 * config.divergence_mrad[0] / 4.0, 1e-3 * config.divergence_mrad[1] / 4.0)) {}
 
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
-    std::array<scene::RayPacket, Volley::kCycles> rays;
-    std::array<scene::HitPacket, Volley::kCycles> hits;
+    constexpr std::size_t kBeams = 8;  // at once: what they need stays in the nearest cache
+    std::array<scene::RayPacket, kBeams> rays;
+    std::array<scene::HitPacket, kBeams> hits;
     std::vector<Echo> glints, met;
     const std::span<EchoPacket> first = out.start(volley.packets());
-    for (std::size_t laser = 0; laser < volley.lasers; ++laser) {
-      for (std::size_t c = 0; c < Volley::kCycles; ++c) {
-        const std::size_t lane = c % Volley::kLanes;
+    for (std::size_t begin = 0; begin < volley.shots(); begin += kBeams) {
+      for (std::size_t k = 0; k < kBeams; ++k) {
+        const std::size_t shot = begin + k, c = Volley::cycle_of(shot), lane = c % Volley::kLanes;
         const PlacementPacket& placements = volley.placements[c / Volley::kLanes];
         const float up[3] = {placements.R[2][lane], placements.R[5][lane], placements.R[8][lane]};
-        spread_beam(volley.rays[Volley::shot(laser, c) / Volley::kLanes], lane, up, offsets_, rays[c]);
+        spread_beam(volley.rays[shot / Volley::kLanes], lane, up, offsets_, rays[k]);
       }
       scene.trace(rays, hits, volley.origin_W);
-      for (std::size_t c = 0; c < Volley::kCycles; ++c) {
-        const std::size_t shot = Volley::shot(laser, c);
+      for (std::size_t k = 0; k < kBeams; ++k) {
+        const std::size_t shot = begin + k;
         EchoPacket& packet = first[shot / Volley::kLanes];
-        const auto whole = see_through_.any() ? std::nullopt : one_echo(hits[c], scene, surfaces);
+        const auto whole = see_through_.any() ? std::nullopt : one_echo(hits[k], scene, surfaces);
         packet.set(shot % Volley::kLanes, whole.value_or(Echo{}));
         if (whole) continue;
         glints.clear();
-        for (std::size_t i = 0; i < kSubRays; ++i) {
+        for (std::size_t i = 0; i < FootprintOffsets::kRays; ++i) {
           if (!see_through_.any()) {
-            if (hits[c].triangle[i] != scene::Hit::kMiss) glints.push_back(surfaces.echo(hits[c], i));
-          } else if (rays[c].max_m[i] >= 0) {
-            see_through_.follow({ray_of(rays[c], i, volley.origin_W), static_cast<std::uint32_t>(laser),
-                                 volley.draw_of(shot), static_cast<std::uint32_t>(i)},
-                                hits[c], i, scene, surfaces, met);
+            if (hits[k].triangle[i] != scene::Hit::kMiss) glints.push_back(surfaces.echo(hits[k], i));
+          } else if (rays[k].max_m[i] >= 0) {
+            see_through_.follow(
+                {ray_of(rays[k], i, volley.origin_W), static_cast<std::uint32_t>(Volley::laser_of(shot)),
+                 volley.draw_of(shot), static_cast<std::uint32_t>(i)},
+                hits[k], i, scene, surfaces, met);
             glints.insert(glints.end(), met.begin(), met.end());
           }
         }
@@ -66,50 +68,24 @@ class Footprint final : public EchoModel {
   std::size_t rays_per_shot() const override { return kSubRays; }
 
  private:
-  /// A sum of glints, each of a sixteenth of the beam's energy, weighted by what the receiver gets of them.
-  struct Sum {
-    float overlap_m2, first_m, power = 0.0f, beyond = 0.0f, cosine = 0.0f, most = -1.0f;
+  Echo echo_of(const GlintSum& sum, std::uint32_t object, std::uint16_t material) const {
+    if (!(sum.power > 0.0f)) return {{sum.nearest_m, 0.0f, material, object}, 0.0f};
+    const float range_m = sum.nearest_m + sum.beyond / sum.power;
+    const float square_m2 = std::max(range_m * range_m, overlap_m2_);
+    return {{range_m, sum.cosine / sum.power, material, object}, sum.power * square_m2 / static_cast<float>(kSubRays)};
+  }
 
-    /// True if this is the brightest so far.
-    bool add(float range_m, float reflectivity, float cos_incidence) {
-      const float p = reflectivity / std::max(range_m * range_m, overlap_m2);
-      power += p;
-      beyond += p * (range_m - first_m);
-      cosine += p * cos_incidence;
-      if (!(p > most)) return false;
-      most = p;
-      return true;
-    }
-    Echo echo(std::uint32_t object, std::uint16_t material) const {
-      if (!(power > 0.0f)) return {{first_m, 0.0f, material, object}, 0.0f};
-      const float range_m = first_m + beyond / power;
-      const float square_m2 = std::max(range_m * range_m, overlap_m2);
-      return {{range_m, cosine / power, material, object}, power * square_m2 / static_cast<float>(kSubRays)};
-    }
-  };
-
-  /// The most frequent case, quickly: all that the sub-rays met lies within a pulse's length (or they met nothing).
-  std::optional<Echo> one_echo(const scene::HitPacket& hit, const scene::SceneAt& scene,
+  /// The most frequent case, quickly: all that the sub-rays met lies within a pulse's length, or they met nothing.
+  std::optional<Echo> one_echo(const scene::HitPacket& hits, const scene::SceneAt& scene,
                                const Surfaces& surfaces) const {
-    constexpr float kNothing_m = std::numeric_limits<float>::infinity();
-    float nearest_m = kNothing_m, farthest_m = 0.0f;
-    for (std::size_t i = 0; i < kSubRays; ++i) {
-      nearest_m = std::min(nearest_m, hit.range_m[i]);
-      farthest_m = std::max(farthest_m, hit.range_m[i] < kNothing_m ? hit.range_m[i] : 0.0f);
-    }
-    if (nearest_m == kNothing_m) return Echo{};
-    if (farthest_m - nearest_m > pulse_m_) return std::nullopt;
-    std::size_t first = 0;
-    while (hit.triangle[first] == scene::Hit::kMiss) ++first;
-    Sum sum{.overlap_m2 = overlap_m2_, .first_m = hit.range_m[first]};
-    std::size_t brightest = first;
-    for (std::size_t i = first; i < kSubRays; ++i) {
-      if (hit.triangle[i] == scene::Hit::kMiss) continue;
-      const float cosine = hit.cos_incidence[i];
-      if (sum.add(hit.range_m[i], surfaces.reflectivity(hit.triangle[i], cosine), cosine)) brightest = i;
-    }
-    const auto surface = scene.surface(hit.triangle[brightest]);
-    return sum.echo(surface.object, surface.material);
+    float reflectivity[kSubRays];
+    surfaces.reflectivities(hits, reflectivity);
+    GlintSum sum;
+    sum_glints(hits, reflectivity, overlap_m2_, sum);
+    if (sum.brightest == kSubRays) return Echo{};
+    if (sum.farthest_m - sum.nearest_m > pulse_m_) return std::nullopt;
+    const auto surface = scene.surface(hits.triangle[sum.brightest]);
+    return echo_of(sum, surface.object, surface.material);
   }
 
   /// Glints as the echoes of a shot.
@@ -127,11 +103,17 @@ class Footprint final : public EchoModel {
   }
 
   Echo merged(std::span<const Echo> glints) const {
-    Sum sum{.overlap_m2 = overlap_m2_, .first_m = glints[0].truth.range_m};
+    GlintSum sum{.nearest_m = glints.front().truth.range_m, .farthest_m = glints.back().truth.range_m};
+    float most = -1.0f;
     const Echo* brightest = nullptr;
-    for (const Echo& g : glints)
-      if (sum.add(g.truth.range_m, g.reflectivity, g.truth.cos_incidence)) brightest = &g;
-    return sum.echo(brightest->truth.object, brightest->truth.material);
+    for (const Echo& g : glints) {
+      const float p = g.reflectivity / std::max(g.truth.range_m * g.truth.range_m, overlap_m2_);
+      sum.power += p;
+      sum.beyond += p * (g.truth.range_m - sum.nearest_m);
+      sum.cosine += p * g.truth.cos_incidence;
+      if (p > most) most = p, brightest = &g;
+    }
+    return echo_of(sum, brightest->truth.object, brightest->truth.material);
   }
 
   float pulse_m_, overlap_m2_;

@@ -1,8 +1,8 @@
 #include "lidar/sensor_report.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <numeric>
 
 #include "core/random.h"
 #include "core/vector_clones.h"
@@ -55,10 +55,6 @@ CANYON_VECTOR_CLONES void place_points(const float* ranges, const AimPacket& aim
 
 }  // namespace
 
-std::size_t VolleyReturns::total() const {
-  return std::accumulate(count.begin(), count.end(), std::size_t{0});
-}
-
 SensorReport::SensorReport(const LidarConfig& config, ReturnMode mode, const FiringPattern& pattern, std::uint64_t seed)
     : mode_(mode),
       quantum_m_(config.range_quantum_m),
@@ -79,9 +75,10 @@ void SensorReport::choose(const Volley& volley, const Echoes& echoes, VolleyRetu
   out.depth = most;
   out.lasers = volley.lasers, out.cycles = volley.cycles;
   out.first_s = volley.first_s, out.step_s = volley.step_s;
-  out.count.fill(0);
+  out.total = 0;
   if (out.layers.size() < most) out.layers.resize(most);
   for (std::size_t k = 0; k < most; ++k) out.layers[k].resize(volley.packets());
+  std::array<DetectedEcho, Echoes::kMost> detected;
   for (std::size_t p = 0; p < volley.packets(); ++p) {
     const Limits limits{bias_m_[p / Volley::kPacketsPerLaser], quantum_m_, min_m_, max_m_};
     alignas(64) float ranges[Echoes::kMost][kShots];
@@ -91,9 +88,12 @@ void SensorReport::choose(const Volley& volley, const Echoes& echoes, VolleyRetu
       std::memcpy(out.layers[0][p].truth, echo.truth, sizeof echo.truth);
       place_points(ranges[0], volley.aims[p], echo.intensity, out.layers[0][p]);
     } else {
-      alignas(64) float chosen[Echoes::kMost][kShots] = {}, intensity[Echoes::kMost][kShots] = {};
+      alignas(64) float chosen[Echoes::kMost][kShots], intensity[Echoes::kMost][kShots];
+      for (std::size_t k = 0; k < most; ++k) {
+        std::fill_n(chosen[k], kShots, 0.0f);
+        std::fill_n(intensity[k], kShots, 0.0f);
+      }
       for (std::size_t lane = 0; lane < kShots; ++lane) {
-        std::array<DetectedEcho, Echoes::kMost> detected;
         std::size_t count = 0;
         for (std::size_t k = 0; k < layers; ++k) {
           if (!(ranges[k][lane] > 0)) continue;
@@ -111,43 +111,38 @@ void SensorReport::choose(const Volley& volley, const Echoes& echoes, VolleyRetu
       }
       for (std::size_t k = 0; k < most; ++k) place_points(chosen[k], volley.aims[p], intensity[k], out.layers[k][p]);
     }
-    std::uint32_t* count = out.count.data() + p % Volley::kPacketsPerLaser * kShots;
-    for (std::size_t k = 0; k < most; ++k)
-      for (std::size_t lane = 0; lane < kShots; ++lane) count[lane] += out.layers[k][p].reported[lane];
+    for (std::size_t k = 0; k < most; ++k) {
+      std::uint32_t count = 0;
+      for (const std::uint32_t reported : out.layers[k][p].reported) count += reported;
+      out.total += count;
+    }
   }
 }
 
 void SensorReport::write(const VolleyReturns& returns, std::span<LidarPoint> points,
                          std::span<LidarPointTruth> truth) const {
-  // Laser by laser, as the returns lie in memory; each cycle has its own place to go on at.
-  std::array<std::uint32_t, Volley::kCycles> next{};
-  std::array<double, Volley::kCycles> cycle_s{};
-  std::array<float, Volley::kCycles> time_s{};
-  for (std::size_t c = 0; c < Volley::kCycles; ++c) {
-    next[c] = c == 0 ? 0 : next[c - 1] + returns.count[c - 1];
-    cycle_s[c] = returns.first_s + static_cast<double>(c) * returns.step_s;
-  }
-  LidarPoint* const point = points.data();
-  LidarPointTruth* const fact = truth.data();
-  for (const std::size_t laser : firing_order_) {
-    const double firing_s = firing_s_[laser];
-    for (std::size_t c = 0; c < Volley::kCycles; ++c)
-      time_s[c] = static_cast<float>(std::min(0.0, cycle_s[c] + firing_s));
-    for (std::size_t c = 0; c < returns.cycles; ++c) {
-      const std::size_t packet = Volley::shot(laser, c) / kShots, lane = c % kShots;
+  std::array<const ReturnPacket*, Echoes::kMost> layers{};
+  for (std::size_t k = 0; k < returns.depth; ++k) layers[k] = returns.layers[k].data();
+  LidarPoint* point = points.data();
+  LidarPointTruth* fact = truth.data();
+  for (std::size_t c = 0; c < returns.cycles; ++c) {
+    const std::size_t lane = c % kShots;
+    const double cycle_s = returns.first_s + static_cast<double>(c) * returns.step_s;
+    for (const std::size_t laser : firing_order_) {
+      const std::size_t packet = Volley::shot(laser, c) / kShots;
+      const auto time_s = static_cast<float>(std::min(0.0, cycle_s + firing_s_[laser]));
       for (std::size_t k = 0; k < returns.depth; ++k) {
-        const ReturnPacket& r = returns.layers[k][packet];
+        const ReturnPacket& r = layers[k][packet];
         if (r.reported[lane] == 0) break;
-        const std::uint32_t i = next[c]++;
         const ReturnPacket::Light light = r.light[lane];
-        point[i] = {.x = light.x,
+        *point++ = {.x = light.x,
                     .y = light.y,
                     .z = light.z,
                     .intensity = light.intensity,
-                    .time_s = time_s[c],
+                    .time_s = time_s,
                     .ring = static_cast<std::uint16_t>(laser),
                     .return_index = static_cast<std::uint8_t>(k)};
-        fact[i] = r.truth[lane];
+        *fact++ = r.truth[lane];
       }
     }
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <span>
 #include <vector>
 
@@ -31,9 +30,7 @@ struct VolleyReturns {
   std::size_t depth = 0;  ///< layers in use
   std::size_t lasers = 0, cycles = 0;
   double first_s = 0.0, step_s = 0.0;
-  std::array<std::uint32_t, Volley::kCycles> count{};  ///< of returns, by cycle
-
-  std::size_t total() const;
+  std::size_t total = 0;  ///< of returns
 };
 
 /// The sensor's last steps: which of the detected echoes it reports, with the bias of their laser, in whole quanta,
@@ -45,7 +42,7 @@ class SensorReport {
   void choose(const Volley& volley, const Echoes& echoes, VolleyReturns& out) const;
   /// The most returns that a shot has; 0: any number.
   std::size_t most_returns() const { return mode_ == ReturnMode::kAll ? 0 : mode_ == ReturnMode::kDual ? 2 : 1; }
-  /// Returns as points, in the order of firing. Both spans are of total() elements.
+  /// Returns as points, in the order of firing. Both spans are of `total` elements.
   void write(const VolleyReturns& returns, std::span<LidarPoint> points, std::span<LidarPointTruth> truth) const;
 
  private:

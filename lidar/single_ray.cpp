@@ -13,12 +13,7 @@ class SingleRay final : public EchoModel {
     hits.resize(volley.packets());
     scene.trace(volley.rays, hits, volley.origin_W);
     const std::span<EchoPacket> echoes = out.start(volley.packets());
-    constexpr std::size_t kAhead = 2;  // packets
-    for (std::size_t p = 0; p < hits.size(); ++p) {
-      if (p + kAhead < hits.size())
-        for (const std::uint32_t triangle : hits[p + kAhead].triangle) scene.prefetch_surface(triangle);
-      for (std::size_t lane = 0; lane < Volley::kLanes; ++lane) echoes[p].set(lane, surfaces.echo(hits[p], lane));
-    }
+    for (std::size_t p = 0; p < hits.size(); ++p) surfaces.echoes(hits[p], echoes[p]);
     if (see_through_.any()) follow_all(volley, hits, scene, surfaces, out);
   }
   std::size_t rays_per_shot() const override { return 1; }

@@ -1,6 +1,7 @@
 #include "lidar/surfaces.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "core/units.h"
 
@@ -30,6 +31,44 @@ float Surfaces::special(const Light& light, float cos_incidence) {
     mirror = light.mirror * std::exp(-tan_square / (2.0f * spread)) / (8.0f * spread * square * square * cos_incidence);
   }
   return mirror + light.retro * cos_incidence;
+}
+
+template <class Visit>
+void Surfaces::each_lane(const scene::HitPacket& hits, float* out, const Visit& visit) const {
+  static constexpr Light kNothing;
+  constexpr scene::SceneAt::Surface kNowhere{kNoMaterial, kNoObject, false};
+  const Light* lights[EchoPacket::kShots];
+  float reflectance[EchoPacket::kShots];
+  bool plain = true;
+  std::uint32_t triangle = scene::Hit::kMiss;
+  const Light* light = &kNothing;
+  scene::SceneAt::Surface met = kNowhere;
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) {
+    if (hits.triangle[i] != triangle) {
+      triangle = hits.triangle[i];
+      met = triangle == scene::Hit::kMiss ? kNowhere : scene_->surface(triangle);
+      light = triangle == scene::Hit::kMiss ? &kNothing : &lights_[met.material];
+      plain = plain && light->plain;
+    }
+    lights[i] = light;
+    reflectance[i] = light->reflectance;
+    visit(i, met);
+  }
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) out[i] = reflectance[i] * hits.cos_incidence[i];
+  if (plain) return;
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i)
+    if (!lights[i]->plain) out[i] += special(*lights[i], hits.cos_incidence[i]);
+}
+
+void Surfaces::echoes(const scene::HitPacket& hits, EchoPacket& out) const {
+  std::memcpy(out.range_m, hits.range_m, sizeof hits.range_m);
+  each_lane(hits, out.reflectivity, [&](std::size_t i, const scene::SceneAt::Surface& met) {
+    out.truth[i] = {hits.range_m[i], hits.cos_incidence[i], met.material, met.object};
+  });
+}
+
+void Surfaces::reflectivities(const scene::HitPacket& hits, float* out) const {
+  each_lane(hits, out, [](std::size_t, const scene::SceneAt::Surface&) {});
 }
 
 }  // namespace canyon::lidar

@@ -9,9 +9,11 @@
 namespace canyon::lidar {
 namespace {
 
+using Numbers = Eigen::Matrix<double, 12, 1>;  // of a placement
+
 // What a chord between two nodes may be off the arc; and nodes are never closer than this.
 constexpr double kChordAngle_rad = 3e-8;
-constexpr double kChordWay_m = 1e-7;
+constexpr double kChordWay_m = 1e-6;
 constexpr double kClosest_s = 0.05e-3;
 constexpr double kTimeTolerance_s = 1e-8;  // a point's time_s in single precision: 4 ns at 0.1 s
 
@@ -116,11 +118,15 @@ void SweepMotion::placements(double time_s, double step_s, std::size_t& hint, Pl
   const auto end_s = [&](std::size_t k) {  // of segment k; the last one holds its own end
     return k + 2 < nodes_.size() ? nodes_[k + 1].time_s : std::numeric_limits<double>::infinity();
   };
-  if (time_s >= first_s && times_s[kShots - 1] < end_s(segment) && times_s[kShots - 1] < last_s) {
-    const Node &a = nodes_[segment], &b = nodes_[segment + 1];
-    const double length_s = b.time_s - a.time_s;
-    spread_placements(a.placement.R.data(), b.placement.R.data(), (time_s - a.time_s) / length_s, step_s / length_s,
-                      out);
+  const std::size_t next = segment + 1, after_next = std::min(segment + 2, nodes_.size() - 1);
+  if (time_s >= first_s && times_s[kShots - 1] < nodes_[after_next].time_s) {  // most often: two segments at most
+    const auto of = [&](std::size_t k) { return Eigen::Map<const Numbers>(nodes_[k].placement.R.data()); };
+    const Numbers before = (of(next) - of(segment)) / (nodes_[next].time_s - nodes_[segment].time_s);
+    const Numbers after =
+        after_next == next ? before
+                           : Numbers((of(after_next) - of(next)) / (nodes_[after_next].time_s - nodes_[next].time_s));
+    bend_placements(nodes_[next].placement.R.data(), before.data(), after.data(), time_s - nodes_[next].time_s, step_s,
+                    out);
   } else {
     // Segment by segment, each for the lanes that lie in it.
     for (std::size_t lane = 0; lane < kShots; ++segment) {

@@ -1,6 +1,7 @@
 #include "lidar/volley_scanner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <span>
@@ -76,7 +77,7 @@ class VolleyScanner final : public Scanner {
     parallel_for(volleys, 1, [&](std::size_t v, std::size_t) {
       thread_local VolleyReturns returns;
       run_chain(sweep, v, motion, origin_W, scene, moving, surfaces, returns);
-      count[v] = returns.total();
+      count[v] = returns.total;
       std::size_t first = 0;
       {
         const std::lock_guard lock(mutex);
@@ -106,24 +107,28 @@ class VolleyScanner final : public Scanner {
     const Eigen::Vector3d origin_W = ray_origin(truth, scene);
     const SweepMotion motion = motion_of(t, truth, sweep, origin_W);
     out.resize(pattern_.lasers() * sweep.cycles);
-    parallel_for(volleys_of(sweep), 1, [&](std::size_t begin, std::size_t end) {
-      thread_local Volley volley;
-      thread_local std::vector<scene::HitPacket> hits;
-      for (std::size_t v = begin; v < end; ++v) {
-        fire(sweep, v, motion, config_.max_range_m, volley);
-        hits.resize(volley.packets());
-        scene.trace(volley.rays, hits, origin_W);
-        for (std::size_t laser = 0; laser < volley.lasers; ++laser) {
-          float* ring = out.data() + laser * sweep.cycles + volley.first_cycle;
-          for (std::size_t c = 0; c < volley.cycles; c += Volley::kLanes) {
-            const float* range_m = hits[Volley::shot(laser, c) / Volley::kLanes].range_m;
-            if (c + Volley::kLanes <= volley.cycles)  // a copy of known size takes no call
-              std::copy_n(range_m, Volley::kLanes, ring + c);
-            else
-              std::copy_n(range_m, volley.cycles - c, ring + c);
-          }
+    // Laser by laser over many cycles: long runs of neighbouring rays.
+    constexpr std::size_t kPackets = 16, kCycles = kPackets * Volley::kLanes;
+    parallel_for((sweep.cycles + kCycles - 1) / kCycles, 1, [&](std::size_t stripe, std::size_t) {
+      const std::size_t first = stripe * kCycles, cycles = std::min(kCycles, sweep.cycles - first);
+      const std::size_t packets = (cycles + Volley::kLanes - 1) / Volley::kLanes;
+      std::array<PlacementPacket, kPackets> placements;
+      std::array<scene::RayPacket, kPackets> rays;
+      std::array<scene::HitPacket, kPackets> hits;
+      AimPacket aim;
+      for_lasers(sweep, motion, first, std::span(placements).first(packets), [&](std::size_t laser, float late_s) {
+        for (std::size_t k = 0; k < packets; ++k)
+          lay_out(sweep, laser, first + k * Volley::kLanes, placements[k], late_s, config_.max_range_m, aim, rays[k]);
+        scene.trace(std::span(rays).first(packets), std::span(hits).first(packets), origin_W);
+        float* ring = out.data() + laser * sweep.cycles + first;
+        for (std::size_t c = 0; c < cycles; c += Volley::kLanes) {
+          const float* range_m = hits[c / Volley::kLanes].range_m;
+          if (c + Volley::kLanes <= cycles)  // a copy of known size takes no call
+            std::copy_n(range_m, Volley::kLanes, ring + c);
+          else
+            std::copy_n(range_m, cycles - c, ring + c);
         }
-      }
+      });
     });
     rays_ += static_cast<std::int64_t>(out.size());
   }
@@ -150,57 +155,68 @@ class VolleyScanner final : public Scanner {
     return motion;
   }
 
-  /// Lays out the rays of volley v.
-  void fire(const FiringPattern::Sweep& sweep, std::size_t v, const SweepMotion& motion, double reach_m,
-            Volley& volley) const {
-    const double step_s = pattern_.step_s();
-    volley.lasers = pattern_.lasers();
-    volley.first_cycle = v * Volley::kCycles;
-    volley.cycles = std::min(Volley::kCycles, sweep.cycles - volley.first_cycle);
-    volley.first_draw = sweep.first_cycle + volley.first_cycle;
-    volley.first_s = sweep.start_s + static_cast<double>(volley.first_cycle) * step_s;
-    volley.step_s = step_s;
-    volley.aims.resize(volley.packets());
-    volley.rays.resize(volley.packets());
-    const bool whole = volley.cycles == Volley::kCycles;
+  /// Calls visit(laser, late_s) for each laser in firing order: it fires late_s after the times of `placements`, which
+  /// are those of consecutive cycles from `first` on, sixteen to a packet.
+  template <class Visit>
+  void for_lasers(const FiringPattern::Sweep& sweep, const SweepMotion& motion, std::size_t first,
+                  std::span<PlacementPacket> placements, const Visit& visit) const {
     // Shots of one cycle are placed from one place each, those fired late in a long cycle from one of their own.
     constexpr double kSamePlace_s = 100e-6;
     double placed_s = -1.0;
     std::size_t hint = 0;
-    for (std::size_t laser : pattern_.firing_order()) {
+    for (const std::size_t laser : pattern_.firing_order()) {
       const double firing_s = pattern_.table().beams[laser].firing_s;
       if (placed_s < 0 || firing_s - placed_s > kSamePlace_s) {
         placed_s = firing_s;
-        for (std::size_t k = 0; k < Volley::kPacketsPerLaser; ++k) {
-          const double offset_s = static_cast<double>(k * Volley::kLanes) * step_s;
-          motion.placements(volley.first_s + offset_s + placed_s, step_s, hint, volley.placements[k]);
-        }
+        for (std::size_t k = 0; k < placements.size(); ++k)
+          motion.placements(first_s(sweep, first + k * Volley::kLanes) + placed_s, pattern_.step_s(), hint,
+                            placements[k]);
       }
+      visit(laser, static_cast<float>(firing_s - placed_s));
+    }
+  }
+  double first_s(const FiringPattern::Sweep& sweep, std::size_t cycle) const {
+    return sweep.start_s + static_cast<double>(cycle) * pattern_.step_s();
+  }
+
+  /// Aims and rays of one laser in sixteen cycles from `first` on. Those beyond the sweep are not traced.
+  void lay_out(const FiringPattern::Sweep& sweep, std::size_t laser, std::size_t first,
+               const PlacementPacket& placements, float late_s, double reach_m, AimPacket& aim,
+               scene::RayPacket& rays) const {
+    const std::size_t left = first < sweep.cycles ? sweep.cycles - first : 0;
+    if (left == 0) {
+      rays = {};
+    } else {
+      pattern_.aim(sweep, laser, first, aim);
+      if (config_.angle_noise_deg > 0) {
+        AimPacket shaken = aim;
+        shake(laser, sweep.first_cycle + first, shaken);
+        place_shots(shaken, placements, late_s, static_cast<float>(reach_m), rays);
+      } else {
+        place_shots(aim, placements, late_s, static_cast<float>(reach_m), rays);
+      }
+      if (ego_.any()) ego_.hide(aim, rays);
+    }
+    for (std::size_t i = left; i < Volley::kLanes; ++i) rays.max_m[i] = -1.0f;
+  }
+
+  /// Lays out the rays of volley v.
+  void fire(const FiringPattern::Sweep& sweep, std::size_t v, const SweepMotion& motion, Volley& volley) const {
+    volley.lasers = pattern_.lasers();
+    volley.first_cycle = v * Volley::kCycles;
+    volley.cycles = std::min(Volley::kCycles, sweep.cycles - volley.first_cycle);
+    volley.first_draw = sweep.first_cycle + volley.first_cycle;
+    volley.first_s = first_s(sweep, volley.first_cycle);
+    volley.step_s = pattern_.step_s();
+    volley.aims.resize(volley.packets());
+    volley.rays.resize(volley.packets());
+    for_lasers(sweep, motion, volley.first_cycle, volley.placements, [&](std::size_t laser, float late_s) {
       for (std::size_t k = 0; k < Volley::kPacketsPerLaser; ++k) {
         const std::size_t packet = laser * Volley::kPacketsPerLaser + k;
-        const std::size_t first = k * Volley::kLanes;
-        scene::RayPacket& rays = volley.rays[packet];
-        if (first >= volley.cycles) {
-          rays = {};
-          std::fill_n(rays.max_m, Volley::kLanes, -1.0f);
-          continue;
-        }
-        pattern_.aim(sweep, laser, volley.first_cycle + first, volley.aims[packet]);
-        const auto late_s = static_cast<float>(firing_s - placed_s);
-        if (config_.angle_noise_deg > 0) {
-          AimPacket shaken = volley.aims[packet];
-          shake(laser, volley.first_draw + first, shaken);
-          place_shots(shaken, volley.placements[k], late_s, static_cast<float>(reach_m), rays);
-        } else {
-          place_shots(volley.aims[packet], volley.placements[k], late_s, static_cast<float>(reach_m), rays);
-        }
-        if (!whole) {
-          for (std::size_t i = 0; i < Volley::kLanes; ++i)
-            if (first + i >= volley.cycles) rays.max_m[i] = -1.0f;
-        }
-        if (ego_.any()) ego_.hide(volley.aims[packet], rays);
+        lay_out(sweep, laser, volley.first_cycle + k * Volley::kLanes, volley.placements[k], late_s, reach_m_,
+                volley.aims[packet], volley.rays[packet]);
       }
-    }
+    });
   }
 
   /// True directions about the nominal ones. Stream "lidar.angle", entity = laser, index = firing cycle, n = axis.
@@ -225,7 +241,7 @@ class VolleyScanner final : public Scanner {
     thread_local Volley volley;
     volley.origin_W = origin_W;
     thread_local Echoes echoes;
-    fire(sweep, v, motion, reach_m_, volley);
+    fire(sweep, v, motion, volley);
     if (moving) {
       scene::SceneAt then = scene;
       then.set_instances(
