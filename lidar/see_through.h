@@ -30,7 +30,7 @@ inline scene::Ray ray_of(const scene::RayPacket& p, std::size_t lane, const Eige
 /// Follows a ray behind what it met first.
 ///
 /// Panes: a surface that lets the share t of the light through gives its own echo, and what lies behind it is seen
-/// through it twice: t^2. Every triangle of such a material is a pane, at any angle the same t.
+/// through it twice: t^2. Every triangle of such a material is a pane (lidar/pane.h).
 ///
 /// Leaves: a crown is a volume of leaves turned every way, of one-sided area `leaf_density` per volume, of which a beam
 /// meets half (Ross 1981): the way to the first leaf is exponential with rate density / 2, and a chord d stays clear

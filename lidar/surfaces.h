@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "lidar/echoes.h"
+#include "lidar/pane.h"
 #include "scene/scene_at.h"
 
 namespace canyon::lidar {
@@ -26,9 +27,11 @@ class Surfaces {
     return light.plain ? diffuse : diffuse + special(light, cos_incidence);
   }
 
+  bool transparent(std::uint16_t material) const { return material != kNoMaterial && lights_[material].through > 0.0f; }
   /// Share of the light that a material lets straight through.
-  float transmittance(std::uint16_t material) const { return lights_[material].through; }
-  bool transparent(std::uint16_t material) const { return material != kNoMaterial && transmittance(material) > 0.0f; }
+  float transmittance(std::uint16_t material, float cos_incidence) const {
+    return static_cast<float>(pane_transmittance(lights_[material].through, cos_incidence));
+  }
   /// The material "foliage", or kNoMaterial; and how much light a leaf sends back.
   std::uint16_t foliage() const { return foliage_; }
   float leaf(float cos_incidence) const {

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
+#include "core/units.h"
+#include "lidar/pane.h"
 #include "tests/lidar/screens.h"
 
 namespace canyon::lidar {
@@ -84,6 +86,29 @@ TEST_P(Panes, EachIsPassedTwice) {
     EXPECT_EQ(shot.materials, (std::vector<std::string>{"pane", "wall"})) << "the strongest, 0.06 / 10^2, and the last";
 }
 INSTANTIATE_TEST_SUITE_P(BothBeams, Panes, ::testing::Values("single_ray", "footprint"));
+
+/// Fresnel's formulas in their other form, by angles, and the way through a plate.
+double by_angles(double at_normal, double angle_rad) {
+  const double inside_rad = std::asin(std::sin(angle_rad) / 1.52);
+  const double sum = angle_rad + inside_rad, difference = angle_rad - inside_rad;
+  const double across = std::pow(std::sin(difference) / std::sin(sum), 2);
+  const double along = std::pow(std::tan(difference) / std::tan(sum), 2);
+  const double faces = 0.5 * ((1 - across) / (1 + across) + (1 - along) / (1 + along));
+  const double at_zero = std::pow(0.52 / 2.52, 2), faces_at_zero = (1 - at_zero) / (1 + at_zero);
+  return faces * std::pow(at_normal / faces_at_zero, 1 / std::cos(inside_rad));
+}
+
+TEST(Pane, PassesLessLightAtAnAngle) {
+  EXPECT_NEAR(pane_transmittance(0.8, 1.0), 0.8, 1e-15);
+  for (const double deg : {1.0, 20.0, 45.0, 60.0, 80.0, 89.0})
+    EXPECT_NEAR(pane_transmittance(0.8, std::cos(deg * kDegree)), by_angles(0.8, deg * kDegree), 1e-12) << deg;
+  // A plate that takes nothing itself lets all of one polarisation through at Brewster's angle.
+  const double clear = 2 * 1.52 / (1 + 1.52 * 1.52), brewster_rad = std::atan(1.52);
+  const double across = std::pow(std::cos(2 * brewster_rad), 2);
+  EXPECT_NEAR(pane_transmittance(clear, std::cos(brewster_rad)), 0.5 * (1 + (1 - across) / (1 + across)), 1e-12);
+  EXPECT_EQ(pane_transmittance(0.8, 0.0), 0.0);
+  EXPECT_EQ(pane_transmittance(0.0, 0.5), 0.0);
+}
 
 /// A crown at 15 m before a wall at 30 m: radii so large across that all chords of a narrow fan are 2 radii_x.
 scene::SceneParts crown_and_wall(double half_depth_m, double density) {
