@@ -12,6 +12,8 @@
 namespace canyon::lidar {
 namespace {
 
+constexpr double kEps = 2.3e-16;
+
 /// The numbers that follow `name` in the text, in order.
 std::vector<double> numbers_after(const std::string& text, const std::string& name) {
   std::vector<double> out;
@@ -29,6 +31,34 @@ std::vector<double> json_list(const std::string& text, const std::string& key) {
   for (std::sregex_iterator it(list.begin(), list.end(), number), end; it != end; ++it)
     out.push_back(std::stod(it->str()));
   return out;
+}
+
+TEST(BeamCalibration, Vlp16EqualsTheCalibrationFileOfTheRosDriver) {
+  CANYON_REAL_DATA(path, "lidar/calib/VLP16db.yaml");
+  const std::string text = *read_text_file(path);
+  const auto ids = numbers_after(text, " laser_id: ");
+  const auto elevations = numbers_after(text, " vert_correction: ");
+  const auto azimuths = numbers_after(text, " rot_correction: ");
+  const BeamTable table = *load_beam_table("vlp16");
+  ASSERT_EQ(elevations.size(), table.beams.size());
+  for (std::size_t j = 0; j < elevations.size(); ++j) {
+    EXPECT_EQ(ids[j], static_cast<double>(j));
+    EXPECT_NEAR(table.beams[j].elevation_rad, elevations[j], 4 * kEps) << j;
+    EXPECT_EQ(table.beams[j].azimuth_offset_rad, azimuths[j]) << j;
+  }
+}
+
+TEST(BeamCalibration, Vlp16EqualsTheManufacturersCalibrationFile) {
+  CANYON_REAL_DATA(path, "lidar/calib/velodyne_default_calib_VLP-16.xml");
+  const std::string text = *read_text_file(path);
+  const auto elevations = numbers_after(text, "<vertCorrection_>");
+  const auto azimuths = numbers_after(text, "<rotCorrection_>");
+  const BeamTable table = *load_beam_table("vlp16");
+  ASSERT_GE(elevations.size(), table.beams.size());  // the file has room for 64
+  for (std::size_t j = 0; j < table.beams.size(); ++j) {
+    EXPECT_NEAR(table.beams[j].elevation_rad, elevations[j] * kDegree, 4 * kEps) << j;
+    EXPECT_EQ(table.beams[j].azimuth_offset_rad, azimuths[j]) << j;
+  }
 }
 
 TEST(BeamCalibration, Hdl32eEqualsBothFiles) {

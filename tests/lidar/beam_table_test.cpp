@@ -4,9 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files.h"
 #include "core/units.h"
-#include "tests/support/test_data.h"
 
 namespace canyon::lidar {
 namespace {
@@ -52,43 +50,6 @@ TEST(BeamTable, GridHasTheSameElevationsWithoutOffsets) {
     EXPECT_EQ(grid->beams[j].origin_up_m, 0.0);
   }
   EXPECT_EQ(grid->last_firing_s(), 0.0);
-}
-
-/// The numbers that follow each `name` as a word of its own, in order.
-std::vector<double> numbers_after(const std::string& text, const std::string& name) {
-  std::vector<double> out;
-  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
-    out.push_back(std::stod(text.substr(at + name.size(), 40)));
-  }
-  return out;
-}
-
-TEST(BeamTable, Vlp16EqualsTheCalibrationFileOfTheRosDriver) {
-  CANYON_REAL_DATA(path, "lidar/calib/VLP16db.yaml");
-  const std::string text = *read_text_file(path);
-  const auto ids = numbers_after(text, " laser_id: ");
-  const auto elevations = numbers_after(text, " vert_correction: ");
-  const auto azimuths = numbers_after(text, " rot_correction: ");
-  const BeamTable table = *load_beam_table("vlp16");
-  ASSERT_EQ(elevations.size(), table.beams.size());
-  for (std::size_t j = 0; j < elevations.size(); ++j) {
-    EXPECT_EQ(ids[j], static_cast<double>(j));
-    EXPECT_NEAR(table.beams[j].elevation_rad, elevations[j], 4 * kEps) << j;
-    EXPECT_EQ(table.beams[j].azimuth_offset_rad, azimuths[j]) << j;
-  }
-}
-
-TEST(BeamTable, Vlp16EqualsTheManufacturersCalibrationFile) {
-  CANYON_REAL_DATA(path, "lidar/calib/velodyne_default_calib_VLP-16.xml");
-  const std::string text = *read_text_file(path);
-  const auto elevations = numbers_after(text, "<vertCorrection_>");
-  const auto azimuths = numbers_after(text, "<rotCorrection_>");
-  const BeamTable table = *load_beam_table("vlp16");
-  ASSERT_GE(elevations.size(), table.beams.size());  // the file has room for 64
-  for (std::size_t j = 0; j < table.beams.size(); ++j) {
-    EXPECT_NEAR(table.beams[j].elevation_rad, elevations[j] * kDegree, 4 * kEps) << j;
-    EXPECT_EQ(table.beams[j].azimuth_offset_rad, azimuths[j]) << j;
-  }
 }
 
 TEST(BeamTable, CommentsBlanksAndSpacesAreFine) {

@@ -158,5 +158,17 @@ TEST(Extremes, FiveKilometresFromTheOrigin) {
   for (std::size_t i = 0; i < out.truth.size(); ++i) EXPECT_NEAR(out.scan.points[i].x, 20.0, 2 * 0.25e-3 + 1e-4);
 }
 
+/// Rays are traced about the middle of a tile nearby, so that only the corners' own rounding counts: here there is
+/// none.
+TEST(Extremes, FarAwayExactCornersGiveExactRanges) {
+  const double far_m = 12'000.25;
+  scene::SceneParts parts = testing::empty_parts();
+  testing::add_wall(parts, {far_m + 20, far_m - 100}, {far_m + 20, far_m + 100}, 60);
+  LidarConfig config = ideal_lidar();
+  const LidarOutput out = scan_of(parts, config, pose_at(far_m, far_m, 2, 0));
+  ASSERT_GT(out.truth.size(), 1000u);
+  for (std::size_t i = 0; i < out.truth.size(); ++i) EXPECT_NEAR(out.scan.points[i].x, 20.0, 1e-4);
+}
+
 }  // namespace
 }  // namespace canyon::lidar

@@ -2,7 +2,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <mutex>
 #include <thread>
 
@@ -17,11 +16,17 @@
 #include "lidar/velodyne/pcap.h"
 #include "lidar/velodyne/udp_sender.h"
 #include "tests/lidar/lidar_scenes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace canyon::lidar {
 namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointXYZI>;
+
+// How far PCL's azimuths are off, at 3600 deg/s: the VLP grabber interpolates between the two cycles of a block but
+// takes one azimuth for all firings of a cycle, 34.56 us; the HDL grabber takes one for all firings of a block, 36.9
+// us.
+constexpr double kVlpBlur_deg = 34.56e-6 * 3600 + 0.02, kHdlBlur_deg = 36.9e-6 * 3600 + 0.02;
 
 /// Four revolutions as packets, written as a capture; returns every return in the packets' order.
 std::vector<velodyne::Return> write_capture(const std::string& beams, double rpm, const std::string& path) {
@@ -92,8 +97,7 @@ void expect_same(const std::vector<pcl::PointXYZI>& theirs, const std::vector<ve
 
 class PclGrabber : public ::testing::Test {
  protected:
-  std::string path_ = (std::filesystem::temp_directory_path() / "canyon_pcl_grabber_test.pcap").string();
-  void TearDown() override { std::filesystem::remove(path_); }
+  std::string path_ = canyon::testing::temporary_file("test.pcap");
 };
 
 TEST_F(PclGrabber, VlpGrabberDecodesOurVlp16) {
@@ -102,9 +106,7 @@ TEST_F(PclGrabber, VlpGrabberDecodesOurVlp16) {
   pcl::VLPGrabber grabber(path_);
   const auto theirs = grab(grabber, sweeps);
   EXPECT_GE(sweeps, 3u);
-  // It interpolates between the two cycles of a block, but takes one azimuth for all firings of a cycle: 34.56 us at
-  // 3600 deg/s.
-  expect_same(theirs, ours, 34.56e-6 * 3600 + 0.02, *load_beam_table("vlp16"));
+  expect_same(theirs, ours, kVlpBlur_deg, *load_beam_table("vlp16"));
 }
 
 TEST_F(PclGrabber, HdlGrabberDecodesOurHdl32e) {
@@ -113,18 +115,13 @@ TEST_F(PclGrabber, HdlGrabberDecodesOurHdl32e) {
   pcl::HDLGrabber grabber("", path_);
   const auto theirs = grab(grabber, sweeps);
   EXPECT_GE(sweeps, 3u);
-  // It takes one azimuth for all firings of a block: 36.9 us at 3600 deg/s.
-  expect_same(theirs, ours, 36.9e-6 * 3600 + 0.02, *load_beam_table("hdl32e"));
+  expect_same(theirs, ours, kHdlBlur_deg, *load_beam_table("hdl32e"));
 }
 
-/// PCL listens on a port of the loopback interface; we send as `canyon lidar scan --udp` does, at the sensor's own
-/// pace.
-TEST_F(PclGrabber, VlpGrabberDecodesOurUdpStream) {
-  constexpr std::uint16_t kPort = 23688;
-  const auto ours = write_capture("vlp16", 600, path_);
-  const auto capture = velodyne::read_pcap(path_);
-  ASSERT_TRUE(capture.ok());
-  pcl::VLPGrabber grabber(boost::asio::ip::address::from_string("127.0.0.1"), kPort);
+/// Everything that a grabber gives which listens on a port of the loopback interface. We send a capture as `canyon
+/// lidar scan --udp` does, at the sensor's own pace.
+std::vector<pcl::PointXYZI> listen(pcl::HDLGrabber& grabber, std::uint16_t port, const std::string& path) {
+  const auto capture = *velodyne::read_pcap(path);
   std::mutex mutex;
   std::vector<pcl::PointXYZI> theirs;
   std::size_t sweeps = 0;
@@ -136,13 +133,13 @@ TEST_F(PclGrabber, VlpGrabberDecodesOurUdpStream) {
   grabber.registerCallback(take);
   grabber.start();
   std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until it listens
-  auto sender = *velodyne::UdpSender::open("127.0.0.1", kPort);
+  auto sender = *velodyne::UdpSender::open("127.0.0.1", port);
   const auto begin = std::chrono::steady_clock::now();
-  const std::int64_t first_us = capture->datagrams.front().unix_us;
+  const std::int64_t first_us = capture.datagrams.front().unix_us;
   double sent_s = 0;
-  for (const auto& datagram : capture->datagrams) {
+  for (const auto& datagram : capture.datagrams) {
     sent_s = 1e-6 * static_cast<double>(datagram.unix_us - first_us);
-    ASSERT_TRUE(sender.send_at(datagram.payload, sent_s).ok());
+    EXPECT_TRUE(sender.send_at(datagram.payload, sent_s).ok());
   }
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   EXPECT_GE(took_s, sent_s) << "never ahead of the sensor";
@@ -160,7 +157,21 @@ TEST_F(PclGrabber, VlpGrabberDecodesOurUdpStream) {
   last.join();
   const std::lock_guard lock(mutex);
   EXPECT_GE(sweeps, 3u);
-  expect_same(theirs, ours, 34.56e-6 * 3600 + 0.02, *load_beam_table("vlp16"));
+  return theirs;
+}
+
+TEST_F(PclGrabber, VlpGrabberDecodesOurUdpStream) {
+  constexpr std::uint16_t kPort = 23688;
+  const auto ours = write_capture("vlp16", 600, path_);
+  pcl::VLPGrabber grabber(boost::asio::ip::address::from_string("127.0.0.1"), kPort);
+  expect_same(listen(grabber, kPort, path_), ours, kVlpBlur_deg, *load_beam_table("vlp16"));
+}
+
+TEST_F(PclGrabber, HdlGrabberDecodesOurUdpStream) {
+  constexpr std::uint16_t kPort = 23689;
+  const auto ours = write_capture("hdl32e", 600, path_);
+  pcl::HDLGrabber grabber(boost::asio::ip::address::from_string("127.0.0.1"), kPort);
+  expect_same(listen(grabber, kPort, path_), ours, kHdlBlur_deg, *load_beam_table("hdl32e"));
 }
 
 }  // namespace
