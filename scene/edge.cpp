@@ -96,21 +96,21 @@ EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
   if (edges_.empty()) return;
   Eigen::Vector3d low = edges_[0].a_W;
   for (const Edge& e : edges_) low = low.cwiseMin(0.5 * (e.a_W + e.b_W));
-  using Place = std::pair<int, int>;
-  std::map<Place, std::size_t> tile_of;
-  std::map<std::pair<Place, Place>, std::size_t> block_of;  // by tile and place
+  using Cell = std::pair<int, int>;
+  std::map<Cell, std::size_t> tile_of;
+  std::map<std::pair<Cell, Cell>, std::size_t> block_of;  // by tile and place
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
     const Edge& e = edges_[i];
     const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W);
-    const Place wide(static_cast<int>((middle.y() - low.y()) / kTile_m),
-                     static_cast<int>((middle.x() - low.x()) / kTile_m));
+    const Cell wide(static_cast<int>((middle.y() - low.y()) / kTile_m),
+                    static_cast<int>((middle.x() - low.x()) / kTile_m));
     const auto [tile_at, new_tile] = tile_of.emplace(wide, tiles_.size());
     if (new_tile)
       tiles_.push_back(
           {{.x_m = low.x() + (wide.second + 0.5) * kTile_m, .y_m = low.y() + (wide.first + 0.5) * kTile_m}, {}});
     Tile& tile = tiles_[tile_at->second];
-    const Place place(static_cast<int>(std::floor(middle.y() / kBlock_m)),
-                      static_cast<int>(std::floor(middle.x() / kBlock_m)));
+    const Cell place(static_cast<int>(std::floor(middle.y() / kBlock_m)),
+                     static_cast<int>(std::floor(middle.x() / kBlock_m)));
     const auto [at, fresh] = block_of.emplace(std::pair{wide, place}, tile.blocks.size());
     if (fresh)
       tile.blocks.push_back({{.x_m = (place.second + 0.5) * kBlock_m, .y_m = (place.first + 0.5) * kBlock_m}, {}});

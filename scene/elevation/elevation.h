@@ -11,7 +11,8 @@
 
 namespace canyon::scene {
 
-/// Heights of the ground on a regular grid of a map.
+/// Heights of the ground on a regular grid of a map. Places are in the units of its coordinate system: metres, or
+/// degrees of longitude and latitude.
 struct Elevation {
   SourceFrame frame;
   double west = 0.0, north = 0.0;     ///< where the first sample stands
