@@ -74,11 +74,13 @@ class ObjectEdges {
         lowest_m = std::min(lowest_m.value_or(*ground_m), *ground_m);
     return lowest_m.value_or(-1e300);
   }
-  /// Between two buildings there may be no terrain: what lies below all that is near is buried too.
+  /// What a file puts on its ground lies a little above it or below, by the ground's own triangles. Between two
+  /// buildings there may be no terrain: what lies below all that is near is buried too.
+  static constexpr double kFlush_m = 0.01;
   bool buried(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double lowest_ground_m) const {
     const auto below = [&](const Eigen::Vector3d& p) {
       const auto ground = scene_.ground(p.x(), p.y());
-      return p.z() <= (ground ? ground->height_m : lowest_ground_m);
+      return p.z() <= (ground ? ground->height_m : lowest_ground_m) + kFlush_m;
     };
     return below(a) && below(b);
   }

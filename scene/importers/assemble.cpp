@@ -8,6 +8,7 @@
 #include "core/lower_case.h"
 #include "scene/importers/footprint.h"
 #include "scene/importers/outline.h"
+#include "scene/importers/solid_bottom.h"
 #include "scene/mesh_builder.h"
 #include "scene/tree.h"
 #include "scene/triangulate.h"
@@ -132,7 +133,7 @@ class Assembler {
 
   /// What belongs to one building or tree.
   struct Solid {
-    std::vector<std::array<Eigen::Vector3d, 3>> faces, marked;  ///< all; those that are said to be the bottom
+    std::vector<SolidFace> faces;
     double low_m = std::numeric_limits<double>::infinity(), high_m = -low_m;
     std::vector<std::vector<Eigen::Vector2d>> footprint;  ///< the largest, with its courtyards
     bool of_parts = false;                                ///< an outline came first, parts follow
@@ -204,9 +205,9 @@ class Assembler {
   /// The crown of a tree that came as triangles: what GNSS signals pass.
   void add_crown(const Solid& solid) {
     if (solid.faces.empty()) return;
-    Eigen::Vector2d low = solid.faces[0][0].head<2>(), high = low;
-    for (const auto& face : solid.faces)
-      for (const Eigen::Vector3d& p : face) low = low.cwiseMin(p.head<2>()), high = high.cwiseMax(p.head<2>());
+    Eigen::Vector2d low = solid.faces[0].corners[0].head<2>(), high = low;
+    for (const SolidFace& face : solid.faces)
+      for (const Eigen::Vector3d& p : face.corners) low = low.cwiseMin(p.head<2>()), high = high.cwiseMax(p.head<2>());
     const Eigen::Vector2d middle = 0.5 * (low + high), half = 0.5 * (high - low);
     const double height_m = solid.high_m - solid.low_m;
     if (!(half.minCoeff() > 0.0 && height_m > 0.0)) return;
@@ -223,34 +224,14 @@ class Assembler {
              leaves_, planted_++, mesh_, parts_);
   }
 
-  static void note(const std::array<Eigen::Vector3d, 3>& corners, bool bottom, Solid& solid) {
+  /// The mesh's last triangle belongs to a solid.
+  void note(const std::array<Eigen::Vector3d, 3>& corners, bool bottom, Solid& solid) const {
     if (!corners[0].allFinite() || !corners[1].allFinite() || !corners[2].allFinite()) return;
-    if (bottom) solid.marked.push_back(corners);
-    solid.faces.push_back(corners);
+    solid.faces.push_back({corners, static_cast<std::uint32_t>(parts_.mesh.triangles.size() - 1), bottom});
     for (const Eigen::Vector3d& p : corners) {
       solid.low_m = std::min(solid.low_m, p.z());
       solid.high_m = std::max(solid.high_m, p.z());
     }
-  }
-
-  /// The border of a building's bottom, clockwise seen from above: of what is said to be the bottom, else of the faces
-  /// that look down, else, where a shell is open below, of the shell.
-  static std::vector<std::vector<Eigen::Vector3d>> bottom_rings(const Solid& solid) {
-    if (!solid.marked.empty()) return border_rings(solid.marked);
-    std::vector<std::array<Eigen::Vector3d, 3>> down;
-    for (const auto& face : solid.faces) {
-      const Eigen::Vector3d normal = (face[1] - face[0]).cross(face[2] - face[0]);
-      if (normal.z() < -0.5 * normal.norm()) down.push_back(face);
-    }
-    if (!down.empty()) return border_rings(down);
-    auto rings = border_rings(solid.faces);
-    std::erase_if(rings, [&](const auto& ring) {
-      double mean_m = 0.0;
-      for (const Eigen::Vector3d& p : ring) mean_m += p.z() / static_cast<double>(ring.size());
-      return mean_m > 0.5 * (solid.low_m + solid.high_m);
-    });
-    for (auto& ring : rings) std::reverse(ring.begin(), ring.end());
-    return rings;
   }
 
   void finish_building(std::uint32_t object, Solid& solid) {
@@ -261,9 +242,9 @@ class Assembler {
       building.base_m = solid.base_m;
       building.height_m = solid.height_m;
     } else if (!solid.faces.empty()) {
-      const auto rings = bottom_rings(solid);
-      for (const auto& ring : rings) add_skirt(object, ring);
-      for (const auto& ring : rings) {
+      const SolidBottom bottom = bottom_of(solid.faces);
+      sink(object, bottom);
+      for (const auto& ring : bottom.rings) {
         std::vector<Eigen::Vector2d> flat;
         for (const Eigen::Vector3d& p : ring) flat.push_back(p.head<2>());
         solid.footprint.push_back(std::move(flat));
@@ -275,8 +256,8 @@ class Assembler {
       if (largest != solid.footprint.end()) std::iter_swap(solid.footprint.begin(), largest);
       if (solid.footprint.empty()) {
         std::vector<Eigen::Vector2d> corners;
-        for (const auto& face : solid.faces)
-          for (const Eigen::Vector3d& p : face) corners.emplace_back(p.head<2>());
+        for (const SolidFace& face : solid.faces)
+          for (const Eigen::Vector3d& p : face.corners) corners.emplace_back(p.head<2>());
         solid.footprint = {convex_hull(std::move(corners))};
       }
       const bool outline_positive = twice_area(solid.footprint[0]) > 0.0;
@@ -299,22 +280,45 @@ class Assembler {
     parts_.buildings.push_back(std::move(building));
   }
 
-  /// Walls from a building's bottom down into the terrain, where that lies lower.
-  void add_skirt(std::uint32_t object, std::vector<Eigen::Vector3d> ring) {
-    const std::optional<double> ground_m = lowest_ground(ring);
-    double low_m = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& p : ring) low_m = std::min(low_m, p.z());
-    if (!ground_m || *ground_m >= low_m) return;
-    std::reverse(ring.begin(), ring.end());  // counter-clockwise seen from above
-    std::vector<Eigen::Vector2d> outline;
-    std::vector<double> top_m;
-    for (const Eigen::Vector3d& p : ring) {
-      outline.push_back(p.head<2>());
-      top_m.push_back(p.z());
-    }
+  /// A building's bottom, and the walls around it, go down into the terrain where that lies lower; where there is no
+  /// bottom, one is made there.
+  void sink(std::uint32_t object, SolidBottom bottom) {
+    constexpr double kNone_m = std::numeric_limits<double>::infinity();
+    const auto low_of = [](const auto& ring) {
+      double low_m = kNone_m;
+      for (const Eigen::Vector3d& p : ring) low_m = std::min(low_m, p.z());
+      return low_m;
+    };
+    const auto stands = [&](const auto& ring) { return !(lowest_ground(ring).value_or(kNone_m) < low_of(ring)); };
+    if (std::all_of(bottom.rings.begin(), bottom.rings.end(), stands)) return;
+    if (bottom.triangles.empty()) std::erase_if(bottom.rings, stands);
+    double depth_m = kNone_m;
+    for (const auto& ring : bottom.rings)
+      depth_m = std::min({depth_m, low_of(ring), lowest_ground(ring).value_or(kNone_m) - kSunk_m});
     mesh_.resume_object(object);
-    mesh_.walls(outline, std::vector<double>(ring.size(), *ground_m - kSunk_m), top_m,
-                mesh_.material(config_.wall_material));
+    const std::uint16_t wall = mesh_.material(config_.wall_material);
+    for (auto ring : bottom.rings) {
+      std::reverse(ring.begin(), ring.end());  // outlines counter-clockwise seen from above
+      std::vector<Eigen::Vector2d> outline;
+      std::vector<double> top_m;
+      for (const Eigen::Vector3d& p : ring) {
+        outline.push_back(p.head<2>());
+        top_m.push_back(p.z());
+      }
+      mesh_.walls(outline, std::vector<double>(ring.size(), depth_m), top_m, wall);
+    }
+    if (bottom.triangles.empty()) {
+      const auto at_depth = [&](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), depth_m); };
+      for (const auto& t : floor_of(bottom)) mesh_.triangle(at_depth(t[0]), at_depth(t[1]), at_depth(t[2]), wall);
+    }
+    Mesh& mesh = parts_.mesh;
+    for (const std::uint32_t triangle : bottom.triangles)
+      for (std::uint32_t& vertex : mesh.triangles[triangle]) {
+        Eigen::Vector3f lowered = mesh.vertices[vertex];
+        lowered.z() = static_cast<float>(depth_m);
+        vertex = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.push_back(lowered);
+      }
   }
 
   /// Streets meet where they have a point in common.

@@ -1,0 +1,86 @@
+// Buildings on a slope: their shells reach into the ground and are closed there.
+#include "scene/importers/solid_bottom.h"
+
+#include "scene/inspect.h"
+#include "tests/scene/import_fixture.h"
+
+namespace canyon::scene::testing {
+namespace {
+
+/// Ground that rises 3 m over 60 m to the east, and a building of the given surfaces from x = 20 to 40 and y = 20 to
+/// 40, z = 1.5 to 7.5: half a metre above the ground at its west. A yard, for those that use it, from 26 to 34.
+std::string on_a_slope(const std::string& surfaces, const std::string& semantics) {
+  return R"({"type":"CityJSON","version":"2.0","transform":{"scale":[0.1,0.1,0.1],"translate":[0,0,0]},"CityObjects":{
+"land":{"type":"TINRelief","geometry":[{"type":"CompositeSurface","lod":1,"boundaries":[[[16,17,18]],[[16,18,19]]]}]},
+"house":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"2.0","boundaries":[)" +
+         surfaces + "]" + semantics + R"(}]}},"vertices":[
+[200,200,15],[400,200,15],[400,400,15],[200,400,15],[200,200,75],[400,200,75],[400,400,75],[200,400,75],
+[260,260,15],[340,260,15],[340,340,15],[260,340,15],[260,260,75],[340,260,75],[340,340,75],[260,340,75],
+[0,0,0],[600,0,30],[600,600,30],[0,600,0]]})";
+}
+
+constexpr const char* kWalls = "[[0,1,5,4]],[[1,2,6,5]],[[2,3,7,6]],[[3,0,4,7]]";
+constexpr const char* kYardWalls = "[[8,12,13,9]],[[9,13,14,10]],[[10,14,15,11]],[[11,15,12,8]]";
+
+struct SolidBottomTest : Import {
+  void expect_closed(const std::string& surfaces, const std::string& semantics, std::size_t yards) {
+    const SceneParts made = parts("slope.city.json", on_a_slope(surfaces, semantics));
+    ASSERT_EQ(made.buildings.size(), 1u);
+    const Building& b = made.buildings[0];
+    EXPECT_EQ(b.footprint_W.size(), 4u);
+    EXPECT_EQ(b.courtyards_W.size(), yards);
+    EXPECT_NEAR(b.height_m, 6.0, 1e-4);
+    const Soundness sound = soundness(Scene(made));
+    EXPECT_EQ(sound.objects, 1u);
+    EXPECT_EQ(sound.watertight, 1u);
+    EXPECT_EQ(sound.open_edges + sound.crowded_edges + sound.flipped_edges + sound.inside_out, 0u);
+    // Walls to half a metre below the lowest ground around, which is that 5 cm before the western wall.
+    const double depth_m = 1.0 - 0.05 * 0.05 - 0.5, wall_m = 7.5 - depth_m,
+                 around_m = 4 * 20.0 + (yards > 0 ? 4 * 8.0 : 0.0);
+    const double floor_m2 = yards > 0 ? 20 * 20 - 8 * 8 : 20 * 20;
+    EXPECT_NEAR(area_m2(made, "concrete"), around_m * wall_m + floor_m2, 0.01) << "walls and the floor";
+    float lowest_m = 1e9f;
+    for (std::size_t i = 0; i < made.mesh.triangles.size(); ++i)
+      if (made.objects[made.mesh.object[i]].kind == ObjectKind::kBuilding)
+        for (const std::uint32_t v : made.mesh.triangles[i]) lowest_m = std::min(lowest_m, made.mesh.vertices[v].z());
+    EXPECT_NEAR(lowest_m - b.base_m, depth_m - 1.5, 1e-4);
+  }
+};
+
+TEST_F(SolidBottomTest, OfAClosedBuilding) {
+  const std::string surfaces = std::string("[[3,2,1,0]],[[4,5,6,7]],") + kWalls;
+  expect_closed(surfaces, "", 0);
+  expect_closed(surfaces,
+                R"(,"semantics":{"surfaces":[{"type":"GroundSurface"},{"type":"RoofSurface"},{"type":"WallSurface"}],)"
+                R"("values":[0,1,2,2,2,2]})",
+                0);
+}
+
+TEST_F(SolidBottomTest, OfOneThatIsOpenBelow) {
+  expect_closed(std::string("[[4,5,6,7]],") + kWalls, "", 0);
+}
+
+TEST_F(SolidBottomTest, AroundAYard) {
+  const std::string walls = std::string(kWalls) + "," + kYardWalls;
+  expect_closed("[[4,5,6,7],[12,15,14,13]]," + walls, "", 1);
+  expect_closed("[[4,5,6,7],[12,15,14,13]],[[3,2,1,0],[8,9,10,11]]," + walls, "", 1);
+}
+
+TEST(SolidBottom, EavesAreNoBottom) {
+  // A table: its top looks down at 3 m, its foot at 0 m.
+  const auto square = [](double half, double z, bool down) {
+    const Eigen::Vector3d a(-half, -half, z), b(half, -half, z), c(half, half, z), d(-half, half, z);
+    return down ? std::vector<SolidFace>{{{a, c, b}, 0, false}, {{a, d, c}, 1, false}}
+                : std::vector<SolidFace>{{{a, b, c}, 2, false}, {{a, c, d}, 3, false}};
+  };
+  std::vector<SolidFace> faces = square(1.0, 0.0, true);
+  for (const auto& part : {square(4.0, 3.0, true), square(4.0, 3.2, false)})
+    for (const SolidFace& f : part) faces.push_back({f.corners, f.triangle + 4, f.bottom});
+  const SolidBottom bottom = bottom_of(faces);
+  ASSERT_EQ(bottom.rings.size(), 1u);
+  EXPECT_EQ(bottom.rings[0].size(), 4u);
+  EXPECT_EQ(bottom.triangles, (std::vector<std::uint32_t>{0, 1}));
+}
+
+}  // namespace
+}  // namespace canyon::scene::testing
