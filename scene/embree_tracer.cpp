@@ -24,8 +24,6 @@ constexpr std::size_t kPacket = RayPacket::kRays;
 }  // namespace
 
 struct Tracer::Embree {
-  class LanePlanes;
-
   Embree(const Mesh& the_mesh, const Eigen::Vector3d& center) : mesh(the_mesh), center_W(center) {}
   ~Embree() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -100,30 +98,25 @@ struct Tracer::Embree {
     return out;
   }
 
-  /// What packets need of the triangles, geometry after geometry (`first` is where each begins): 36 bytes each, made
-  /// when the first packet is traced, so that scenes whose sensors send none do not pay.
-  struct Surfaces {
-    std::array<std::uint32_t, 3> first{};
-    std::vector<Plane> planes;
-    std::vector<std::uint32_t> triangles;  ///< index in the mesh
-    /// The last one stands for what met nothing: a plane of zeros and Hit::kMiss.
-    std::uint32_t nothing() const { return static_cast<std::uint32_t>(planes.size() - 1); }
-  };
-  const Surfaces& surfaces() const {
-    std::call_once(surfaces_once, [this] {
+  /// What packets need of the triangles: 36 bytes each, made when the first packet is traced, so that scenes whose
+  /// sensors send none do not pay.
+  PlaneTable planes() const {
+    std::call_once(table_once, [this] {
       for (std::size_t id = 0; id < members.size(); ++id) {
-        made_surfaces.first[id] = static_cast<std::uint32_t>(made_surfaces.triangles.size());
-        made_surfaces.triangles.insert(made_surfaces.triangles.end(), members[id].begin(), members[id].end());
+        first[id] = static_cast<std::uint32_t>(table_triangles.size());
+        table_triangles.insert(table_triangles.end(), members[id].begin(), members[id].end());
       }
-      made_surfaces.planes.reserve(made_surfaces.triangles.size() + 1);
-      for (const std::uint32_t index : made_surfaces.triangles) made_surfaces.planes.push_back(plane(index));
-      made_surfaces.planes.emplace_back();
-      made_surfaces.triangles.push_back(Hit::kMiss);
+      table_planes.reserve(table_triangles.size() + 1);
+      for (const std::uint32_t index : table_triangles) table_planes.push_back(plane(index));
+      table_planes.emplace_back();
+      table_triangles.push_back(Hit::kMiss);
     });
-    return made_surfaces;
+    return {table_planes.data(), table_triangles.data(), first, static_cast<std::uint32_t>(table_planes.size() - 1)};
   }
-  mutable std::once_flag surfaces_once;
-  mutable Surfaces made_surfaces;
+  mutable std::once_flag table_once;
+  mutable std::array<std::uint32_t, 3> first{};
+  mutable std::vector<Plane> table_planes;
+  mutable std::vector<std::uint32_t> table_triangles;
 
   /// The hit in double precision, from the plane of the triangle that Embree found.
   Hit hit(const Ray& ray, unsigned geometry_id, unsigned primitive_id, float embree_range_m) const {
@@ -133,32 +126,6 @@ struct Tracer::Embree {
     embree::refine(local(ray.origin), ray.direction, plane(result.triangle), embree_range_m, result);
     return result;
   }
-};
-
-/// The planes of what the lanes of a packet met. Neighbouring packets often meet the same.
-class Tracer::Embree::LanePlanes {
- public:
-  explicit LanePlanes(const Surfaces& surfaces) : surfaces_(surfaces) {
-    held_.fill(Hit::kMiss);  // no index into the surfaces
-  }
-
-  /// Takes indices into the surfaces and leaves indices of the mesh.
-  void hold(std::uint32_t* index) {
-    std::uint32_t changed = 0;
-    for (std::size_t lane = 0; lane < kPacket; ++lane) changed |= held_[lane] ^ index[lane];
-    if (changed != 0) {
-      std::memcpy(held_.data(), index, sizeof held_);
-      gather_planes(surfaces_.planes.data(), surfaces_.triangles.data(), index, packet_, triangles_.data());
-    }
-    std::memcpy(index, triangles_.data(), sizeof triangles_);
-  }
-
-  const PlanePacket& packet() const { return packet_; }
-
- private:
-  const Surfaces& surfaces_;
-  PlanePacket packet_;
-  std::array<std::uint32_t, kPacket> held_, triangles_;
 };
 
 Tracer::Tracer(const SceneParts& parts, std::span<const std::uint32_t> triangles, const Eigen::Vector3d& center_W)
@@ -213,13 +180,11 @@ void Tracer::trace(std::span<const Ray> rays, std::span<Hit> hits) const {
 
 void Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) const {
   CANYON_CHECK(rays.size() == hits.size(), "packets of rays = ", rays.size(), ", of hits = ", hits.size());
-  const Embree::Surfaces& surfaces = embree_->surfaces();
-  Embree::LanePlanes planes(surfaces);
+  const PlaneTable table = embree_->planes();
+  HeldPlanes held;
   for (std::size_t p = 0; p < rays.size(); ++p) {
     const RTCRayHit16& found = embree::trace(embree_->scene, kTraceAll, rays[p]);
-    count_through({found.hit.geomID, found.hit.primID, found.ray.tfar}, surfaces.first, surfaces.nothing(), hits[p]);
-    planes.hold(hits[p].triangle);
-    plane_ranges(rays[p], planes.packet(), hits[p]);
+    hits_of({found.hit.geomID, found.hit.primID, found.ray.tfar}, table, rays[p], held, hits[p]);
   }
 }
 

@@ -12,44 +12,41 @@ constexpr std::size_t kRays = RayPacket::kRays;
 
 }  // namespace
 
-CANYON_VECTOR_CLONES void plane_ranges(const RayPacket& rays, const PlanePacket& planes, HitPacket& hits) {
+CANYON_VECTOR_CLONES void hits_of(const TracedPacket& traced, const PlaneTable& table, const RayPacket& rays,
+                                  HeldPlanes& held, HitPacket& hits) {
   // Arrays of its own, so that the compiler knows that nothing overlaps.
-  float range_m[kRays], cosine[kRays];
+  std::uint32_t place[kRays], changed[kRays];
+  float far_m[kRays], range_m[kRays], cosine[kRays];
+  const std::uint32_t first0 = table.first[0], first1 = table.first[1], first2 = table.first[2];
+  const std::uint32_t nothing = table.nothing;
   for (std::size_t i = 0; i < kRays; ++i) {
-    const PlaneRange found =
-        plane_range(planes.lanes[i], rays.origin_x[i], rays.origin_y[i], rays.origin_z[i], rays.direction_x[i],
-                    rays.direction_y[i], rays.direction_z[i], hits.range_m[i]);
+    // Everything is read, met or not: what is read on a condition is not vectorised.
+    const std::uint32_t geometry = traced.geometry[i], primitive = traced.primitive[i];
+    const float found_m = traced.far_m[i];
+    const std::uint32_t start = geometry == 0 ? first0 : geometry == 1 ? first1 : first2;
+    place[i] = geometry <= 2 ? start + primitive : nothing;
+    far_m[i] = geometry <= 2 ? found_m : std::numeric_limits<float>::infinity();
+    changed[i] = place[i] ^ held.places[i];
+  }
+  std::uint32_t any = 0;
+  for (std::size_t i = 0; i < kRays; ++i) any |= changed[i];
+  if (any != 0) {
+    for (std::size_t i = 0; i < kRays; ++i) {
+      held.planes[i] = table.planes[place[i]];
+      held.triangles[i] = table.triangles[place[i]];
+    }
+    std::memcpy(held.places, place, sizeof place);
+  }
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const PlaneRange found = plane_range(held.planes[i], rays.origin_x[i], rays.origin_y[i], rays.origin_z[i],
+                                         rays.direction_x[i], rays.direction_y[i], rays.direction_z[i], far_m[i]);
     const double towards = found.approach < 0.0 ? -found.approach : found.approach;
     range_m[i] = found.range_m;
     cosine[i] = static_cast<float>(towards < 1.0 ? towards : 1.0);
   }
-  for (std::size_t i = 0; i < kRays; ++i) hits.range_m[i] = range_m[i];
-  for (std::size_t i = 0; i < kRays; ++i) hits.cos_incidence[i] = cosine[i];
-}
-
-CANYON_VECTOR_CLONES void count_through(const TracedPacket& traced, const std::array<std::uint32_t, 3>& first,
-                                        std::uint32_t nothing, HitPacket& hits) {
-  const std::uint32_t first0 = first[0], first1 = first[1], first2 = first[2];
-  std::uint32_t index[kRays];
-  float range_m[kRays];
-  for (std::size_t i = 0; i < kRays; ++i) {
-    // Everything is read, met or not: what is read on a condition is not vectorised.
-    const std::uint32_t geometry = traced.geometry[i], primitive = traced.primitive[i];
-    const float far_m = traced.far_m[i];
-    const std::uint32_t start = geometry == 0 ? first0 : geometry == 1 ? first1 : first2;
-    index[i] = geometry <= 2 ? start + primitive : nothing;
-    range_m[i] = geometry <= 2 ? far_m : std::numeric_limits<float>::infinity();
-  }
-  for (std::size_t i = 0; i < kRays; ++i) hits.triangle[i] = index[i];
-  for (std::size_t i = 0; i < kRays; ++i) hits.range_m[i] = range_m[i];
-}
-
-CANYON_VECTOR_CLONES void gather_planes(const Plane* planes, const std::uint32_t* numbers, const std::uint32_t* index,
-                                        PlanePacket& out, std::uint32_t* out_numbers) {
-  for (std::size_t i = 0; i < kRays; ++i) {
-    out.lanes[i] = planes[index[i]];
-    out_numbers[i] = numbers[index[i]];
-  }
+  std::memcpy(hits.range_m, range_m, sizeof range_m);
+  std::memcpy(hits.cos_incidence, cosine, sizeof cosine);
+  std::memcpy(hits.triangle, held.triangles, sizeof held.triangles);
 }
 
 CANYON_VECTOR_CLONES bool load_lanes(const RayPacket& rays, const TracerLanes& lanes) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "scene/ray_packet.h"
 
@@ -9,11 +11,6 @@ namespace canyon::scene {
 /// The plane of a triangle in double precision: x * p.x + y * p.y + z * p.z = offset, (x, y, z) a unit vector.
 struct Plane {
   double x = 0.0, y = 0.0, z = 0.0, offset = 0.0;
-};
-
-/// Planes of the sixteen rays of a packet.
-struct alignas(64) PlanePacket {
-  Plane lanes[RayPacket::kRays];
 };
 
 /// Where a ray meets the plane of the triangle that the ray tracer found at `traced_m`: computed in double precision
@@ -35,22 +32,32 @@ struct PlaneRange {
   return {static_cast<float>(kept_m), approach};
 }
 
-/// The triangles that sixteen rays met, counted through: `first` of its geometry plus its number there, `nothing` where
-/// the geometry is unknown. Sets hits.triangle and, to what was traced or infinity, hits.range_m.
+/// The triangles of a scene counted through, geometry after geometry; the last one stands for what met nothing: a plane
+/// of zeros and Hit::kMiss.
+struct PlaneTable {
+  const Plane* planes;
+  const std::uint32_t* triangles;      ///< index in the mesh
+  std::array<std::uint32_t, 3> first;  ///< where each geometry begins
+  std::uint32_t nothing;               ///< the last one's place
+};
+
+/// What a ray tracer found for sixteen rays: geometry (unknown: nothing), triangle in it, range.
 struct TracedPacket {
   const std::uint32_t *geometry, *primitive;
   const float* far_m;
 };
-void count_through(const TracedPacket& traced, const std::array<std::uint32_t, 3>& first, std::uint32_t nothing,
-                   HitPacket& hits);
 
-/// Lays the planes out by lane, and the numbers that go with them.
-void gather_planes(const Plane* planes, const std::uint32_t* numbers, const std::uint32_t* index, PlanePacket& out,
-                   std::uint32_t* out_numbers);
+/// Planes by lane, kept from packet to packet: neighbours often meet the same.
+struct alignas(64) HeldPlanes {
+  Plane planes[RayPacket::kRays];
+  std::uint32_t places[RayPacket::kRays];  ///< in the table
+  std::uint32_t triangles[RayPacket::kRays];
+  HeldPlanes() { std::fill_n(places, RayPacket::kRays, 0xffffffffu); }  // no place: nothing is held
+};
 
-/// plane_range() of sixteen rays, to the same bits: hits.range_m, which holds what was traced, and hits.cos_incidence.
-/// Lanes that met nothing need a plane of zeros and keep their range.
-void plane_ranges(const RayPacket& rays, const PlanePacket& planes, HitPacket& hits);
+/// plane_range() of sixteen rays, to the same bits, and what else is told of them.
+void hits_of(const TracedPacket& traced, const PlaneTable& table, const RayPacket& rays, HeldPlanes& held,
+             HitPacket& hits);
 
 /// Where the ray tracer wants a packet's numbers.
 struct TracerLanes {
