@@ -47,7 +47,7 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
   }
   out.seed = static_cast<std::uint64_t>(options.seed);
   const auto start = GpsTime::parse(config.time.start, "time.start");
-  if (!start) return file.locate(start.error(), {options.fidelity});
+  if (!start) return file.locate(start.error(), options.fidelity);
   out.start = *start;
   out.scene_name = open_sky ? "open sky" : built_in ? mission::kDefaultMission : options.scene;
   if (open_sky) {

@@ -89,9 +89,9 @@ Result<Setup> setup_of(const Options& options) {
   Setup out;
   out.lidar = config.lidar;
   const auto start = GpsTime::parse(config.time.start, "time.start");
-  if (!start) return file.locate(start.error(), {options.fidelity});
+  if (!start) return file.locate(start.error(), options.fidelity);
   if (const auto scanner = lidar::make_scanner(out.lidar, 1); !scanner)
-    return file.locate(scanner.error(), {options.fidelity});
+    return file.locate(scanner.error(), options.fidelity);
   mission::SceneCache scenes;
   CANYON_TRY(const scene::SceneConfig scene, scene_config(options.scene));
   CANYON_TRY(out.scene, scenes.get(scene));

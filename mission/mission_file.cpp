@@ -84,6 +84,12 @@ std::string parent(const std::string& key) {
   return dot == std::string::npos ? "" : key.substr(0, dot);
 }
 
+/// What a mixed run takes from the second fidelity.
+constexpr const char* kInitialAttitude = "run.initial_attitude_error_deg";
+bool is_of_imu(const std::string& key) {
+  return key == "imu" || key.rfind("imu.", 0) == 0 || key == kInitialAttitude;
+}
+
 /// What is set at a key; of "autonomy.waypoint[3]" the third of the waypoints.
 const ConfigNode* node_at(const ConfigNode& tree, const std::string& key) {
   const auto bracket = key.rfind('[');
@@ -229,7 +235,7 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
 Result<MissionConfig> MissionFile::resolve(const std::string& fidelity) const {
   CANYON_TRY(const ConfigNode tree, resolved_tree(fidelity));
   MissionConfig config;
-  if (const auto read = read_config(&tree, "", config); !read) return locate(read.error(), {fidelity});
+  if (const auto read = read_config(&tree, "", config); !read) return locate(read.error(), fidelity);
   return config;
 }
 
@@ -241,31 +247,38 @@ Result<MissionConfig> MissionFile::resolve_mixed(const std::string& gnss, const 
   return config;
 }
 
-std::vector<MissionFile::Layer> MissionFile::written(const std::vector<std::string>& fidelities) const {
-  std::vector<Layer> layers{{"", &options_}};
-  for (const std::string& fidelity : fidelities) {
+const ConfigNode* MissionFile::Layer::find(const std::string& key) const {
+  return (is_of_imu(key) ? imu : others) ? node_at(*tree, key) : nullptr;
+}
+
+std::vector<MissionFile::Layer> MissionFile::written(const std::string& gnss, const std::string& imu) const {
+  std::vector<Layer> layers{{"", &options_, true, true}};
+  const auto add = [&](const std::string& fidelity, bool of_imu, bool of_others) {
     auto lineage = ancestry(fidelity);
-    if (!lineage) continue;
+    if (!lineage) return;
     for (auto name = lineage->rbegin(); name != lineage->rend(); ++name)
-      if (const ConfigNode* own = user_.find("fidelity." + *name)) layers.push_back({"fidelity." + *name + ".", own});
-  }
-  layers.push_back({"", &user_});
+      if (const ConfigNode* own = user_.find("fidelity." + *name))
+        layers.push_back({"fidelity." + *name + ".", own, of_imu, of_others});
+  };
+  add(gnss, gnss == imu, true);
+  if (gnss != imu) add(imu, true, false);
+  layers.push_back({"", &user_, true, true});
   return layers;
 }
 
-Error MissionFile::locate(Error error, const std::vector<std::string>& fidelities) const {
+Error MissionFile::locate(Error error, const std::string& gnss, const std::string& imu) const {
   if (!error.file.empty()) return error;
-  const std::vector<Layer> layers = written(fidelities);
+  const std::vector<Layer> layers = written(gnss, imu);
   const std::vector<std::string> told = listed(error.key);
   error.key = told.front();
   for (auto layer = layers.rbegin(); layer != layers.rend(); ++layer)
     for (auto key = told.rbegin(); key != told.rend(); ++key)
-      if (layer->tree->find(*key) != nullptr) error.key = *key;
+      if (layer->find(*key) != nullptr) error.key = *key;
   const auto point_at = [&error](const ConfigNode& node) { error.file = node.file_, error.line = node.line_; };
   // Where was the key, or its nearest parent, set last?
   for (std::string key = error.key; !key.empty(); key = parent(key))
     for (const Layer& layer : layers)
-      if (const ConfigNode* node = node_at(*layer.tree, key)) {
+      if (const ConfigNode* node = layer.find(key)) {
         point_at(*node);
         if (key == error.key) error.key = layer.prefix + key;
         return error;

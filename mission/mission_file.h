@@ -40,23 +40,27 @@ class MissionFile {
   /// Sensors of two fidelities mixed: GNSS (and all else) of `gnss`, IMU and initial alignment of `imu`.
   Result<MissionConfig> resolve_mixed(const std::string& gnss, const std::string& imu) const;
 
-  /// Points an Error without a place at the line where its key was set for these fidelities, or at the file. Of several
-  /// keys that contradict one another ("gnss.rate_hz, imu.rate_hz") it becomes that of the one that the user wrote,
-  /// else of the first.
-  Error locate(Error error, const std::vector<std::string>& fidelities) const;
+  /// Points an Error without a place at the line where its key was set for a run (as resolve_mixed), or at the file. Of
+  /// several keys that contradict one another ("gnss.rate_hz, imu.rate_hz") it becomes that of the one that the user
+  /// wrote, else of the first.
+  Error locate(Error error, const std::string& gnss, const std::string& imu) const;
+  Error locate(Error error, const std::string& fidelity) const { return locate(std::move(error), fidelity, fidelity); }
 
  private:
   static Result<MissionFile> from_tree(ConfigNode tree, const std::string& file_name);
   Status check_user_fidelities() const;
   /// The fidelities that one is made of, from the built-in one it starts from to itself.
   Result<std::vector<std::string>> ancestry(const std::string& fidelity) const;
-  /// A part of what the user wrote, and what its keys begin with in the file.
+  /// A part of what the user wrote, what its keys begin with in the file, and which it holds for: those of the IMU, the
+  /// others, or both.
   struct Layer {
     std::string prefix;
     const ConfigNode* tree;
+    bool imu, others;
+    const ConfigNode* find(const std::string& key) const;
   };
-  /// What the user wrote that holds for these fidelities; what wins comes first.
-  std::vector<Layer> written(const std::vector<std::string>& fidelities) const;
+  /// What the user wrote that holds for a run; what wins comes first.
+  std::vector<Layer> written(const std::string& gnss, const std::string& imu) const;
   Result<ConfigNode> resolved_tree(const std::string& fidelity) const;
 
   std::string file_;

@@ -31,12 +31,11 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
         return Error{.what = "two runs would be named \"" + plan[i].name + "\"",
                      .expected = "another name for the fidelity"};
   for (const RunPlan& run : plan) {
-    const std::vector<std::string> sources{run.gnss, run.imu};
     CANYON_TRY(auto config, run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu));
     auto prepared = mission::prepare(config, scenes);
-    if (!prepared) return file.locate(prepared.error(), sources);
+    if (!prepared) return file.locate(prepared.error(), run.gnss, run.imu);
     if (auto sensors = mission::check_sensors(config, *prepared); !sensors)
-      return file.locate(sensors.error(), sources);
+      return file.locate(sensors.error(), run.gnss, run.imu);
     comparison.configs.push_back(std::move(config));
     comparison.missions.push_back(*std::move(prepared));
   }

@@ -26,9 +26,9 @@ std::string message(const std::string& toml, const std::string& fidelity = "high
   if (!config) return config.error().str();
   SceneCache scenes;
   const auto mission = prepare(*config, scenes);
-  if (!mission) return file->locate(mission.error(), {fidelity}).str();
+  if (!mission) return file->locate(mission.error(), fidelity).str();
   const auto sensors = check_sensors(*config, *mission);
-  return sensors ? "no mistake" : file->locate(sensors.error(), {fidelity}).str();
+  return sensors ? "no mistake" : file->locate(sensors.error(), fidelity).str();
 }
 
 constexpr const char* kEmptyScene = "base = \"vicksburg\"\n[scene]\nempty = true\n";
@@ -286,6 +286,16 @@ TEST(Prepare, AMistakeOfAFidelityIsToldWhereItStands) {
               HasSubstr("my.toml:7: fidelity.mine.lidar.beams: unknown"));
   EXPECT_THAT(message(head + "[lidar]\nbeams = \"vlp17\"\n[fidelity.mine.lidar]\nmodel = \"footprint\"\n", "mine"),
               HasSubstr("my.toml:7: lidar.beams: unknown"));
+}
+
+TEST(Prepare, OfAMixedRunTheImuIsLookedUpInItsOwnFidelity) {
+  const MissionFile file = parse(
+      "base = \"vicksburg\"\n[gnss]\nrate_hz = 7.0\n[imu]\nrate_hz = 70.0\n[fidelity.high.gnss]\nrate_hz = 10.0\n"
+      "[fidelity.high.imu]\nrate_hz = 300.0\n");
+  const Error mistake{.key = "gnss.rate_hz, imu.rate_hz", .what = "no multiple"};
+  EXPECT_EQ(file.locate(mistake, "low", "high").str(), "my.toml:9: fidelity.high.imu.rate_hz: no multiple");
+  EXPECT_EQ(file.locate(mistake, "high", "low").str(), "my.toml:7: fidelity.high.gnss.rate_hz: no multiple");
+  EXPECT_EQ(file.locate(mistake, "low").str(), "my.toml:3: gnss.rate_hz: no multiple");
 }
 
 TEST(Prepare, FilesAreReadToTheEndAndTheirHashesKept) {
