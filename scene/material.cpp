@@ -39,7 +39,8 @@ void visit(FieldVisitor& f, Material& m) {
   f.number("lidar_specular_lobe_deg", m.lidar_specular_lobe_deg, {0.001, 45.0},
            "standard deviation of the mirror's slope");
   f.number("lidar_retro_1_sr", m.lidar_retro_1_sr, {0.0, 1e5}, "coefficient of retroreflection R_A, cd/(lx m^2)");
-  f.number("lidar_transmittance", m.lidar_transmittance, {0.0, 1.0}, "share of the light that passes through");
+  f.number("lidar_transmittance", m.lidar_transmittance, {0.0, 1.0},
+           "share of the light that passes through at normal incidence; less at an angle, as through a pane");
   f.text("source", m.source, "where the figures come from");
 }
 

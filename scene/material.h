@@ -30,7 +30,7 @@ struct Material {
   /// Coefficient of retroreflection R_A, cd/(lx m^2), that is 1/sr: light sent back to where it came from. A white
   /// Lambertian surface has 1/pi.
   double lidar_retro_1_sr = 0.0;
-  double lidar_transmittance = 0.0;  ///< share of the light that passes straight through, 0..1
+  double lidar_transmittance = 0.0;  ///< share of the light that passes straight through at normal incidence, 0..1
   std::string source;                ///< where the figures come from
 
   /// Complex relative permittivity eta = eps_r - j 17.98 sigma / f_GHz.

@@ -242,12 +242,13 @@ class Assembler {
       building.base_m = solid.base_m;
       building.height_m = solid.height_m;
     } else if (!solid.faces.empty()) {
-      const SolidBottom bottom = bottom_of(solid.faces);
-      sink(object, bottom);
-      for (const auto& ring : bottom.rings) {
-        std::vector<Eigen::Vector2d> flat;
-        for (const Eigen::Vector3d& p : ring) flat.push_back(p.head<2>());
-        solid.footprint.push_back(std::move(flat));
+      for (const SolidBottom& bottom : bottoms_of(solid.faces)) {
+        sink(object, bottom);
+        for (const auto& ring : bottom.rings) {
+          std::vector<Eigen::Vector2d> flat;
+          for (const Eigen::Vector3d& p : ring) flat.push_back(p.head<2>());
+          solid.footprint.push_back(std::move(flat));
+        }
       }
       // Bottoms run clockwise seen from above: the outline has the largest area, yards the other sense.
       const auto largest = std::max_element(
@@ -280,21 +281,19 @@ class Assembler {
     parts_.buildings.push_back(std::move(building));
   }
 
-  /// A building's bottom, and the walls around it, go down into the terrain where that lies lower; where there is no
-  /// bottom, one is made there.
-  void sink(std::uint32_t object, SolidBottom bottom) {
-    constexpr double kNone_m = std::numeric_limits<double>::infinity();
-    const auto low_of = [](const auto& ring) {
-      double low_m = kNone_m;
+  /// Where the ground lies lower somewhere around a bottom, that and the walls around it go down into it; where there
+  /// is no bottom, one is made there.
+  void sink(std::uint32_t object, const SolidBottom& bottom) {
+    constexpr double kStep_m = 2.0;  // what is farther above the ground, a chimney, stands on another part
+    double hangs_m = 0.0, depth_m = std::numeric_limits<double>::infinity();
+    for (const auto& ring : bottom.rings) {
+      double low_m = std::numeric_limits<double>::infinity();
       for (const Eigen::Vector3d& p : ring) low_m = std::min(low_m, p.z());
-      return low_m;
-    };
-    const auto stands = [&](const auto& ring) { return !(lowest_ground(ring).value_or(kNone_m) < low_of(ring)); };
-    if (std::all_of(bottom.rings.begin(), bottom.rings.end(), stands)) return;
-    if (bottom.triangles.empty()) std::erase_if(bottom.rings, stands);
-    double depth_m = kNone_m;
-    for (const auto& ring : bottom.rings)
-      depth_m = std::min({depth_m, low_of(ring), lowest_ground(ring).value_or(kNone_m) - kSunk_m});
+      const double ground_m = lowest_ground(ring).value_or(low_m);
+      hangs_m = std::max(hangs_m, low_m - ground_m);
+      depth_m = std::min(depth_m, std::min(ground_m, low_m) - kSunk_m);
+    }
+    if (!(hangs_m > 0.0) || (hangs_m > kStep_m && !bottom.sure)) return;
     mesh_.resume_object(object);
     const std::uint16_t wall = mesh_.material(config_.wall_material);
     for (auto ring : bottom.rings) {
