@@ -26,7 +26,7 @@ double faces(double cos_incidence, double cos_inside) {
 double pane_transmittance(double at_normal, double cos_incidence) {
   const double cosine = std::clamp(cos_incidence, 0.0, 1.0);
   const double cos_inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (kIndex * kIndex));
-  const double faces_at_normal = faces(1.0, 1.0);
+  static const double faces_at_normal = faces(1.0, 1.0);
   const double inside = std::min(1.0, at_normal / faces_at_normal);  // along the shortest way
   if (!(inside > 0.0)) return 0.0;
   return at_normal * faces(cosine, cos_inside) / faces_at_normal * std::pow(inside, 1.0 / cos_inside - 1.0);

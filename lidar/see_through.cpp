@@ -75,7 +75,8 @@ void SeeThrough::follow(const Shot& shot, const scene::HitPacket& first, std::si
     if (!passed) {
       out.push_back({{range_m, cosine, surface.material, surface.object},
                      light * surfaces.of_material(surface.material, cosine)});
-      const float through = panes_ ? surfaces.transmittance(surface.material, cosine) : 0.0f;
+      const float through =
+          panes_ && surfaces.transparent(surface.material) ? surfaces.transmittance(surface.material, cosine) : 0.0f;
       light *= through * through;
       if (light < kDark) return;
     }

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -39,6 +40,7 @@ TEST_F(PseudorangeSensorTest, NavigationFileFromDisk) {
   EXPECT_THAT(
       error_of(c),
       HasSubstr(": gnss.nav_file: covers 2010-06-30T22:00:00 to 2010-07-01T06:00:00 GPS time, not the mission's"));
+  std::remove(path.c_str());
   EXPECT_THAT(error_of(c), HasSubstr("day.10n"));
 }
 

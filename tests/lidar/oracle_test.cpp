@@ -1,9 +1,11 @@
 // Rays by the million against a brute force in double precision that tries every triangle.
+#include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <mutex>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -105,19 +107,27 @@ Outcome compare(const scene::Scene& scene, std::size_t packets, const Place& pla
       for (std::size_t i = 0; i < kLanes; ++i) {
         const double range_m = hits[0].range_m[i], expected_m = expected.range_m[i];
         part.met += expected.triangle[i] >= 0 ? 1 : 0;
-        if (range_m == expected_m) continue;  // among them both infinite
+        const bool met = expected.triangle[i] >= 0, hit = hits[0].triangle[i] != scene::Hit::kMiss;
+        if (!met && !hit) continue;
+        const Eigen::Vector3d o(rays[0].origin_x[i], rays[0].origin_y[i], rays[0].origin_z[i]);
+        const Eigen::Vector3d d(rays[0].direction_x[i], rays[0].direction_y[i], rays[0].direction_z[i]);
+        const auto triangle_of = [&](bool ours) {
+          return scene::Triangle::of(scene.mesh(),
+                                     ours ? hits[0].triangle[i] : static_cast<std::uint32_t>(expected.triangle[i]));
+        };
         const double off_m = std::abs(range_m - expected_m);
         // Rounded once to float: half a unit in the last place of the range; the brute force's own 1e-9.
-        if (off_m <= expected_m * 6.1e-8 + 1e-9) {
+        if (met && hit && off_m <= expected_m * 6.1e-8 + 1e-9) {
           part.worst_m = std::max(part.worst_m, off_m);
+          // Another triangle at the same range: the point lies in it as well, to the tracer's resolution.
+          const Eigen::Vector3d point = o + expected_m * d;
+          if (hits[0].triangle[i] != static_cast<std::uint32_t>(expected.triangle[i])) {
+            EXPECT_LT((triangle_of(true).closest_point(point) - point).norm(), 1e-3) << "ray " << p * kLanes + i;
+          }
           continue;
         }
         const bool ours = range_m < expected_m;
-        const auto triangle = ours ? hits[0].triangle[i] : static_cast<std::uint32_t>(expected.triangle[i]);
-        const Eigen::Vector3d o(rays[0].origin_x[i], rays[0].origin_y[i], rays[0].origin_z[i]);
-        const Eigen::Vector3d d(rays[0].direction_x[i], rays[0].direction_y[i], rays[0].direction_z[i]);
-        EXPECT_LT(distance_to_edges(scene::Triangle::of(scene.mesh(), triangle), o + std::min(range_m, expected_m) * d),
-                  1e-3)
+        EXPECT_LT(distance_to_edges(triangle_of(ours), o + std::min(range_m, expected_m) * d), 1e-3)
             << "ray " << p * kLanes + i << ": " << range_m << " m, brute force " << expected_m << " m";
         ++part.at_edges;
       }
@@ -140,7 +150,7 @@ TEST(Oracle, AMillionRaysDifferAtEdgesOnly) {
   });
   EXPECT_GT(out.met, 500'000u);
   // Single precision resolves 2e-6 m here; the edges of a few hundred metres cover less than 1e-5 of the directions.
-  EXPECT_LT(out.at_edges, 100u);
+  EXPECT_LE(out.at_edges, 10u);
 }
 
 /// The built-in city of half a million triangles, from everywhere in it, up to 20 m above the ground.
@@ -151,8 +161,9 @@ TEST(OracleNightly, AHundredThousandRaysInTheCity) {
     return {x, y, scene.ground(x, y)->height_m + random.uniform(0.5, 20, 2, n)};
   });
   EXPECT_GT(out.met, 50'000u);
-  // Single precision resolves 3e-5 m here, and a ray passes a few edges (leaves, kerbs) within a metre of each.
-  EXPECT_LT(out.at_edges, 100u);
+  // Single precision resolves 3e-5 m here, to both sides of 3 m of edge in a square metre (triangles of 2 m): that is
+  // passed by 2e-4 of the rays, twenty.
+  EXPECT_LE(out.at_edges, 20u);
 }
 
 }  // namespace
