@@ -30,7 +30,7 @@ class Footprint final : public EchoModel {
         offsets_(footprint_offsets(1e-3 * config.divergence_mrad[0] / 4.0, 1e-3 * config.divergence_mrad[1] / 4.0)) {}
 
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
-    constexpr std::size_t kBeams = 8;  // at once: what they need stays in the nearest cache
+    constexpr std::size_t kBeams = 16;  // at once: what they need stays in the nearest cache
     std::array<scene::RayPacket, kBeams> rays;
     std::array<scene::HitPacket, kBeams> hits;
     std::vector<Echo> glints, met;

@@ -68,6 +68,16 @@ void Surfaces::echoes(const scene::HitPacket& hits, EchoPacket& out) const {
 }
 
 void Surfaces::reflectivities(const scene::HitPacket& hits, float* out) const {
+  // Most often the rays of one beam meet one plain triangle.
+  std::uint32_t others = 0;
+  for (const std::uint32_t triangle : hits.triangle) others |= triangle ^ hits.triangle[0];
+  if (others == 0 && hits.triangle[0] != scene::Hit::kMiss) {
+    const Light& light = lights_[scene_->surface(hits.triangle[0]).material];
+    if (light.plain) {
+      for (std::size_t i = 0; i < EchoPacket::kShots; ++i) out[i] = light.reflectance * hits.cos_incidence[i];
+      return;
+    }
+  }
   each_lane(hits, out, [](std::size_t, const scene::SceneAt::Surface&) {});
 }
 

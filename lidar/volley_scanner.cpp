@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <span>
@@ -67,37 +68,49 @@ class VolleyScanner final : public Scanner {
       report_.write(returns, std::span(out.scan.points).subspan(first, count),
                     std::span(out.truth).subspan(first, count));
     };
-    // Where a volley's returns go in the output is known once those before it are counted. A volley that comes in its
-    // turn is written at once, while its returns are still in the cache; one that a second thread computes ahead waits
-    // in a place of its own. So the result does not depend on the number of threads.
+    // Where a volley's returns go in the output is known once those before it are counted. Threads take volleys in
+    // order. One that comes in its turn is written at once, while its returns are still in the cache; one that comes
+    // early waits in a place of its own for the thread that fills the gap. So the result does not depend on the number
+    // of threads.
     if (returns_.size() < volleys) returns_.resize(volleys);
-    std::vector<std::size_t> count(volleys);
+    std::vector<char> waits(volleys, 0);
+    std::atomic<std::size_t> next = 0;
     std::size_t turn = 0, written = 0;
     std::mutex mutex;
-    parallel_for(volleys, 1, [&](std::size_t v, std::size_t) {
+    parallel_for(std::min(static_cast<std::size_t>(threads()), volleys), 1, [&](std::size_t, std::size_t) {
       thread_local VolleyReturns returns;
-      run_chain(sweep, v, motion, origin_W, scene, moving, surfaces, returns);
-      count[v] = returns.total;
-      std::size_t first = 0;
-      {
-        const std::lock_guard lock(mutex);
-        if (turn == v && most > 0) {
+      for (std::size_t v = next++; v < volleys; v = next++) {
+        run_chain(sweep, v, motion, origin_W, scene, moving, surfaces, returns);
+        std::size_t first = 0, first_after = 0, end_turn = 0;
+        {
+          const std::lock_guard lock(mutex);
+          if (turn != v || most == 0) {
+            std::swap(returns, returns_[v]);
+            waits[v] = 1;
+            continue;
+          }
           first = written;
-          written += count[v];
-          ++turn;
-        } else {
-          std::swap(returns, returns_[v]);
-          return;
+          first_after = written += returns.total;
+          for (++turn; turn < volleys && waits[turn] != 0; ++turn) written += returns_[turn].total;
+          end_turn = turn;
+        }
+        write(returns, first, returns.total);
+        for (std::size_t after = v + 1; after < end_turn; ++after) {
+          write(returns_[after], first_after, returns_[after].total);
+          first_after += returns_[after].total;
         }
       }
-      write(returns, first, count[v]);
     });
-    std::vector<std::size_t> first(volleys + 1, written);
-    for (std::size_t v = turn; v < volleys; ++v) first[v + 1] = first[v] + count[v];
-    out.scan.points.resize(first[volleys]);
-    out.truth.resize(first[volleys]);
-    parallel_for(volleys - turn, 1,
-                 [&](std::size_t k, std::size_t) { write(returns_[turn + k], first[turn + k], count[turn + k]); });
+    if (most == 0) {  // nobody knows how many returns there are before all are counted
+      std::vector<std::size_t> first(volleys + 1, 0);
+      for (std::size_t v = 0; v < volleys; ++v) first[v + 1] = first[v] + returns_[v].total;
+      written = first[volleys];
+      out.scan.points.resize(written);
+      out.truth.resize(written);
+      parallel_for(volleys, 1, [&](std::size_t v, std::size_t) { write(returns_[v], first[v], returns_[v].total); });
+    }
+    out.scan.points.resize(written);
+    out.truth.resize(written);
     rays_ += static_cast<std::int64_t>(sweep.cycles * pattern_.lasers() * model_->rays_per_shot());
   }
 
