@@ -188,12 +188,12 @@ TEST(SingleRay, NoiseHasTheStatedMomentsAndNothingElse) {
   const LidarOutput out = scan_of(four_walls(20), config, testing::standing(Pose{}), 7, 42);
   const double n = static_cast<double>(out.truth.size());
   ASSERT_EQ(n, 28800);
+  const BeamTable table = *load_beam_table("vlp16");
   double sum = 0, squares = 0, lag = 0, previous = 0;
   std::size_t within = 0;
   for (std::size_t i = 0; i < out.truth.size(); ++i) {
     const LidarPoint& p = out.scan.points[i];
-    const Beam& beam = load_beam_table("vlp16")->beams[p.ring];
-    const double measured_m = (position(p) - Eigen::Vector3d(0, 0, beam.origin_up_m)).norm();
+    const double measured_m = (position(p) - Eigen::Vector3d(0, 0, table.beams[p.ring].origin_up_m)).norm();
     const double error = (measured_m - out.truth[i].range_m) / config.range_noise_m;
     sum += error;
     squares += error * error;
