@@ -8,25 +8,81 @@ namespace canyon::lidar {
 
 constexpr std::size_t kShots = AimPacket::kShots;
 
+namespace {
+
+/// A shot in L: where it leaves and its direction.
+struct Shot {
+  float ox, oy, oz, dx, dy, dz;
+};
+
+/// `cosine`, `sine`: of the head's azimuth.
+[[gnu::always_inline]] inline Shot aimed(const HeadBeam& b, float cosine, float sine) {
+  const float c = cosine * b.cos_azimuth - sine * b.sin_azimuth, s = sine * b.cos_azimuth + cosine * b.sin_azimuth;
+  // Forward of the head is (-c, s), its left (-s, -c).
+  const float hc = cosine * b.cos_turn - sine * b.sin_turn, hs = sine * b.cos_turn + cosine * b.sin_turn;
+  return {-b.origin_out * hc - b.origin_left * hs,
+          b.origin_out * hs - b.origin_left * hc,
+          b.origin_up,
+          -b.cos_elevation * c,
+          b.cos_elevation * s,
+          b.sin_elevation};
+}
+
+/// What the sensor turns (rad, in L) and moves (m, in W) until a shot, to first order.
+struct Late {
+  float wx, wy, wz, vx, vy, vz;
+  Late(const PlacementPacket& at, float late_s)
+      : wx(late_s * at.w_WL_L[0]),
+        wy(late_s * at.w_WL_L[1]),
+        wz(late_s * at.w_WL_L[2]),
+        vx(late_s * at.v_WL_W[0]),
+        vy(late_s * at.v_WL_W[1]),
+        vz(late_s * at.v_WL_W[2]) {}
+};
+
+[[gnu::always_inline]] inline Shot placed(const Shot& shot, const PlacementPacket& at, const Late& l, std::size_t i) {
+  const auto& R = at.R;
+  const auto& p = at.p;
+  const float dx = shot.dx + (l.wy * shot.dz - l.wz * shot.dy), dy = shot.dy + (l.wz * shot.dx - l.wx * shot.dz),
+              dz = shot.dz + (l.wx * shot.dy - l.wy * shot.dx);
+  return {p[0][i] + (l.vx + (R[0][i] * shot.ox + R[1][i] * shot.oy + R[2][i] * shot.oz)),
+          p[1][i] + (l.vy + (R[3][i] * shot.ox + R[4][i] * shot.oy + R[5][i] * shot.oz)),
+          p[2][i] + (l.vz + (R[6][i] * shot.ox + R[7][i] * shot.oy + R[8][i] * shot.oz)),
+          R[0][i] * dx + R[1][i] * dy + R[2][i] * dz,
+          R[3][i] * dx + R[4][i] * dy + R[5][i] * dz,
+          R[6][i] * dx + R[7][i] * dy + R[8][i] * dz};
+}
+
+[[gnu::always_inline]] inline void store(const Shot& shot, std::size_t i, float max_m,
+                                         scene::RayPacket& __restrict out) {
+  out.origin_x[i] = shot.ox, out.origin_y[i] = shot.oy, out.origin_z[i] = shot.oz;
+  out.direction_x[i] = shot.dx, out.direction_y[i] = shot.dy, out.direction_z[i] = shot.dz;
+  out.max_m[i] = max_m;
+}
+
+}  // namespace
+
 CANYON_VECTOR_CLONES void aim_head(const HeadBeam& beam, const HeadAngles& head, AimPacket& out) {
   const HeadBeam b = beam;
   const float* __restrict cosine = head.cosine;
   const float* __restrict sine = head.sine;
   AimPacket& __restrict aim = out;
   for (std::size_t i = 0; i < kShots; ++i) {
-    const float c = cosine[i] * b.cos_azimuth - sine[i] * b.sin_azimuth;
-    const float s = sine[i] * b.cos_azimuth + cosine[i] * b.sin_azimuth;
-    aim.direction_x[i] = -b.cos_elevation * c;
-    aim.direction_y[i] = b.cos_elevation * s;
-    aim.direction_z[i] = b.sin_elevation;
+    const Shot shot = aimed(b, cosine[i], sine[i]);
+    aim.origin_x[i] = shot.ox, aim.origin_y[i] = shot.oy, aim.origin_z[i] = shot.oz;
+    aim.direction_x[i] = shot.dx, aim.direction_y[i] = shot.dy, aim.direction_z[i] = shot.dz;
   }
-  for (std::size_t i = 0; i < kShots; ++i) {
-    // Forward of the head is (-c, s), its left (-s, -c).
-    const float c = cosine[i] * b.cos_turn - sine[i] * b.sin_turn;
-    const float s = sine[i] * b.cos_turn + cosine[i] * b.sin_turn;
-    aim.origin_x[i] = -b.origin_out * c - b.origin_left * s;
-    aim.origin_y[i] = b.origin_out * s - b.origin_left * c;
-    aim.origin_z[i] = b.origin_up;
+}
+
+CANYON_VECTOR_CLONES void fire_head(const HeadBeam& beam, const HeadAngles& head, const PlacementPacket* placements,
+                                    std::size_t packets, float late_s, float max_m, scene::RayPacket* out) {
+  const HeadBeam b = beam;
+  for (std::size_t k = 0; k < packets; ++k) {
+    const float* __restrict cosine = head.cosine + k * kShots;
+    const float* __restrict sine = head.sine + k * kShots;
+    const PlacementPacket& __restrict at = placements[k];
+    const Late late(at, late_s);
+    for (std::size_t i = 0; i < kShots; ++i) store(placed(aimed(b, cosine[i], sine[i]), at, late, i), i, max_m, out[k]);
   }
 }
 
@@ -67,24 +123,11 @@ CANYON_VECTOR_CLONES void spread_some_placements(const double* from, const doubl
 
 CANYON_VECTOR_CLONES void place_shots(const AimPacket& __restrict aim, const PlacementPacket& __restrict placements,
                                       float late_s, float max_m, scene::RayPacket& __restrict rays) {
-  // What the sensor turns and moves until the shot, to first order.
-  const float wx = late_s * placements.w_WL_L[0], wy = late_s * placements.w_WL_L[1],
-              wz = late_s * placements.w_WL_L[2];
-  const float vx = late_s * placements.v_WL_W[0], vy = late_s * placements.v_WL_W[1],
-              vz = late_s * placements.v_WL_W[2];
-  const auto& R = placements.R;
-  const auto& p = placements.p;
+  const Late late(placements, late_s);
   for (std::size_t i = 0; i < kShots; ++i) {
-    const float x = aim.direction_x[i], y = aim.direction_y[i], z = aim.direction_z[i];
-    const float dx = x + (wy * z - wz * y), dy = y + (wz * x - wx * z), dz = z + (wx * y - wy * x);
-    const float ox = aim.origin_x[i], oy = aim.origin_y[i], oz = aim.origin_z[i];
-    rays.direction_x[i] = R[0][i] * dx + R[1][i] * dy + R[2][i] * dz;
-    rays.direction_y[i] = R[3][i] * dx + R[4][i] * dy + R[5][i] * dz;
-    rays.direction_z[i] = R[6][i] * dx + R[7][i] * dy + R[8][i] * dz;
-    rays.origin_x[i] = p[0][i] + (vx + (R[0][i] * ox + R[1][i] * oy + R[2][i] * oz));
-    rays.origin_y[i] = p[1][i] + (vy + (R[3][i] * ox + R[4][i] * oy + R[5][i] * oz));
-    rays.origin_z[i] = p[2][i] + (vz + (R[6][i] * ox + R[7][i] * oy + R[8][i] * oz));
-    rays.max_m[i] = max_m;
+    const Shot shot{aim.origin_x[i],    aim.origin_y[i],    aim.origin_z[i],
+                    aim.direction_x[i], aim.direction_y[i], aim.direction_z[i]};
+    store(placed(shot, placements, late, i), i, max_m, rays);
   }
 }
 

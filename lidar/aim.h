@@ -37,6 +37,9 @@ struct HeadBeam {
 
 /// Sixteen steps of one laser, from `head` on.
 void aim_head(const HeadBeam& beam, const HeadAngles& head, AimPacket& out);
+/// aim_head() and place_shots() in one, to the same bits, of many packets.
+void fire_head(const HeadBeam& beam, const HeadAngles& head, const PlacementPacket* placements, std::size_t packets,
+               float late_s, float max_m, scene::RayPacket* out);
 
 /// Placements about a node: R by columns and p, twelve numbers, there, and their rates before and after it; at the
 /// times time_s + i * step_s after it.

@@ -78,6 +78,19 @@ void FiringPattern::aim(const Sweep& sweep, std::size_t laser, std::size_t cycle
   aim_head(sweep.beams[laser], {cosine_.data() + cycle, sine_.data() + cycle}, out);
 }
 
+void FiringPattern::fire(const Sweep& sweep, std::size_t laser, std::size_t cycle,
+                         std::span<const PlacementPacket> placements, float late_s, float max_m,
+                         scene::RayPacket* out) const {
+  if (!table_.rosette)
+    return fire_head(sweep.beams[laser], {cosine_.data() + cycle, sine_.data() + cycle}, placements.data(),
+                     placements.size(), late_s, max_m, out);
+  AimPacket aims;
+  for (std::size_t k = 0; k < placements.size(); ++k) {
+    aim_rosette(sweep, laser, cycle + k * AimPacket::kShots, aims);
+    place_shots(aims, placements[k], late_s, max_m, out[k]);
+  }
+}
+
 void FiringPattern::aim_rosette(const Sweep& sweep, std::size_t laser, std::size_t cycle, AimPacket& out) const {
   const Rosette& r = *table_.rosette;
   const double middle = 0.5 * (r.elevation_max_rad + r.elevation_min_rad);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lidar/aim.h"
@@ -43,6 +44,9 @@ class FiringPattern {
 
   /// Shots of one laser in sixteen cycles from `cycle` on; those beyond the sweep are whatever follows.
   void aim(const Sweep& sweep, std::size_t laser, std::size_t cycle, AimPacket& out) const;
+  /// The same of many packets, placed at once (place_shots()).
+  void fire(const Sweep& sweep, std::size_t laser, std::size_t cycle, std::span<const PlacementPacket> placements,
+            float late_s, float max_m, scene::RayPacket* out) const;
 
  private:
   std::vector<HeadBeam> beams(double turn_rad) const;

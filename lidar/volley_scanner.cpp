@@ -122,6 +122,8 @@ class VolleyScanner final : public Scanner {
     out.resize(pattern_.lasers() * sweep.cycles);
     // Laser by laser over many cycles: long runs of neighbouring rays.
     constexpr std::size_t kPackets = 16, kCycles = kPackets * Volley::kLanes;
+    const auto max_m = static_cast<float>(config_.max_range_m);
+    const bool plain = !(config_.angle_noise_deg > 0) && !ego_.any();
     parallel_for((sweep.cycles + kCycles - 1) / kCycles, 1, [&](std::size_t stripe, std::size_t) {
       const std::size_t first = stripe * kCycles, cycles = std::min(kCycles, sweep.cycles - first);
       const std::size_t packets = (cycles + Volley::kLanes - 1) / Volley::kLanes;
@@ -130,8 +132,14 @@ class VolleyScanner final : public Scanner {
       std::array<scene::HitPacket, kPackets> hits;
       AimPacket aim;
       for_lasers(sweep, motion, first, std::span(placements).first(packets), [&](std::size_t laser, float late_s) {
-        for (std::size_t k = 0; k < packets; ++k)
-          lay_out(sweep, laser, first + k * Volley::kLanes, placements[k], late_s, config_.max_range_m, aim, rays[k]);
+        if (plain) {
+          pattern_.fire(sweep, laser, first, std::span(placements).first(packets), late_s, max_m, rays.data());
+          std::fill(rays[packets - 1].max_m + (cycles - 1) % Volley::kLanes + 1,
+                    rays[packets - 1].max_m + Volley::kLanes, -1.0f);
+        } else {
+          for (std::size_t k = 0; k < packets; ++k)
+            lay_out(sweep, laser, first + k * Volley::kLanes, placements[k], late_s, max_m, aim, rays[k]);
+        }
         scene.trace(std::span(rays).first(packets), std::span(hits).first(packets), origin_W);
         float* ring = out.data() + laser * sweep.cycles + first;
         for (std::size_t c = 0; c < cycles; c += Volley::kLanes) {
@@ -194,7 +202,7 @@ class VolleyScanner final : public Scanner {
 
   /// Aims and rays of one laser in sixteen cycles from `first` on. Those beyond the sweep are not traced.
   void lay_out(const FiringPattern::Sweep& sweep, std::size_t laser, std::size_t first,
-               const PlacementPacket& placements, float late_s, double reach_m, AimPacket& aim,
+               const PlacementPacket& placements, float late_s, float reach_m, AimPacket& aim,
                scene::RayPacket& rays) const {
     const std::size_t left = first < sweep.cycles ? sweep.cycles - first : 0;
     if (left == 0) {
@@ -204,9 +212,9 @@ class VolleyScanner final : public Scanner {
       if (config_.angle_noise_deg > 0) {
         AimPacket shaken = aim;
         shake(laser, sweep.first_cycle + first, shaken);
-        place_shots(shaken, placements, late_s, static_cast<float>(reach_m), rays);
+        place_shots(shaken, placements, late_s, reach_m, rays);
       } else {
-        place_shots(aim, placements, late_s, static_cast<float>(reach_m), rays);
+        place_shots(aim, placements, late_s, reach_m, rays);
       }
       if (ego_.any()) ego_.hide(aim, rays);
     }
@@ -226,8 +234,8 @@ class VolleyScanner final : public Scanner {
     for_lasers(sweep, motion, volley.first_cycle, volley.placements, [&](std::size_t laser, float late_s) {
       for (std::size_t k = 0; k < Volley::kPacketsPerLaser; ++k) {
         const std::size_t packet = laser * Volley::kPacketsPerLaser + k;
-        lay_out(sweep, laser, volley.first_cycle + k * Volley::kLanes, volley.placements[k], late_s, reach_m_,
-                volley.aims[packet], volley.rays[packet]);
+        lay_out(sweep, laser, volley.first_cycle + k * Volley::kLanes, volley.placements[k], late_s,
+                static_cast<float>(reach_m_), volley.aims[packet], volley.rays[packet]);
       }
     });
   }
