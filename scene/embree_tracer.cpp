@@ -98,25 +98,24 @@ struct Tracer::Embree {
     return out;
   }
 
-  /// What packets need of the triangles: 36 bytes each, made when the first packet is traced, so that scenes whose
+  /// What packets need of the triangles: 40 bytes each, made when the first packet is traced, so that scenes whose
   /// sensors send none do not pay.
   PlaneTable planes() const {
-    std::call_once(table_once, [this] {
+    std::call_once(rows_once, [this] {
+      std::size_t count = 1;
+      for (const auto& geometry : members) count += geometry.size();
+      rows.reserve(count);
       for (std::size_t id = 0; id < members.size(); ++id) {
-        first[id] = static_cast<std::uint32_t>(table_triangles.size());
-        table_triangles.insert(table_triangles.end(), members[id].begin(), members[id].end());
+        first[id] = static_cast<std::uint32_t>(rows.size());
+        for (const std::uint32_t index : members[id]) rows.push_back({plane(index), index});
       }
-      table_planes.reserve(table_triangles.size() + 1);
-      for (const std::uint32_t index : table_triangles) table_planes.push_back(plane(index));
-      table_planes.emplace_back();
-      table_triangles.push_back(Hit::kMiss);
+      rows.push_back({{}, Hit::kMiss});
     });
-    return {table_planes.data(), table_triangles.data(), first, static_cast<std::uint32_t>(table_planes.size() - 1)};
+    return {rows.data(), first, static_cast<std::uint32_t>(rows.size() - 1)};
   }
-  mutable std::once_flag table_once;
+  mutable std::once_flag rows_once;
   mutable std::array<std::uint32_t, 3> first{};
-  mutable std::vector<Plane> table_planes;
-  mutable std::vector<std::uint32_t> table_triangles;
+  mutable std::vector<PlaneRow> rows;
 
   /// The hit in double precision, from the plane of the triangle that Embree found.
   Hit hit(const Ray& ray, unsigned geometry_id, unsigned primitive_id, float embree_range_m) const {

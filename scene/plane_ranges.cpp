@@ -32,8 +32,9 @@ CANYON_VECTOR_CLONES void hits_of(const TracedPacket& traced, const PlaneTable& 
   for (std::size_t i = 0; i < kRays; ++i) any |= changed[i];
   if (any != 0) {
     for (std::size_t i = 0; i < kRays; ++i) {
-      held.planes[i] = table.planes[place[i]];
-      held.triangles[i] = table.triangles[place[i]];
+      const PlaneRow& row = table.rows[place[i]];
+      held.planes[i] = row.plane;
+      held.triangles[i] = row.triangle;
     }
     std::memcpy(held.places, place, sizeof place);
   }

@@ -32,11 +32,16 @@ struct PlaneRange {
   return {static_cast<float>(kept_m), approach};
 }
 
+/// A triangle's plane and its index in the mesh, side by side in memory: a ray's triangle is most often a cache miss.
+struct PlaneRow {
+  Plane plane;
+  std::uint32_t triangle = 0;
+};
+
 /// The triangles of a scene counted through, geometry after geometry; the last one stands for what met nothing: a plane
 /// of zeros and Hit::kMiss.
 struct PlaneTable {
-  const Plane* planes;
-  const std::uint32_t* triangles;      ///< index in the mesh
+  const PlaneRow* rows;
   std::array<std::uint32_t, 3> first;  ///< where each geometry begins
   std::uint32_t nothing;               ///< the last one's place
 };
