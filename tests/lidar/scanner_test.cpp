@@ -355,5 +355,37 @@ TEST(LidarConfig, EveryFieldIsReadFromTheMissionFile) {
   EXPECT_LT((sensor_in_body(c) * Eigen::Vector3d(10, 0, 0) - Eigen::Vector3d(1, 12, 3)).norm(), 1e-12);
 }
 
+/// The quick way to ranges alone gives the very numbers of the scan's truth: driving in a curve, sweeps that fill no
+/// whole packets, a head and a rosette, shaken and hidden beams.
+TEST(TrueRanges, AreThoseOfTheScansTruth) {
+  const scene::Scene scene(four_walls(20));
+  const scene::SceneAt at(scene);
+  Vector6d twist;
+  twist << 0.02, -0.01, 0.3, 8, 0.1, 0;
+  Trajectory motion;
+  for (int k = -40; k <= 2; ++k) motion.append({kStart + 0.005 * k, Pose::exp(twist * (0.005 * k))});
+  const auto expect_same = [&](const LidarConfig& config, std::size_t least) {
+    std::vector<float> quick = scanner(config)->true_ranges(3, kStart, motion, at), slow;
+    for (const LidarPointTruth& t : scanner(config)->scan(3, kStart, motion, at).truth) slow.push_back(t.range_m);
+    std::erase_if(quick, [](float range_m) { return std::isinf(range_m); });
+    std::sort(quick.begin(), quick.end());
+    std::sort(slow.begin(), slow.end());
+    EXPECT_GT(slow.size(), least);
+    EXPECT_EQ(quick, slow);
+  };
+  for (const char* beams : {"vlp16", "os1_64", "mid360"}) {
+    SCOPED_TRACE(beams);
+    LidarConfig config = ideal_lidar();
+    config.beams = beams;
+    config.azimuth_steps = std::string(beams) == "mid360" ? 0 : 1003;
+    expect_same(config, 10000);
+    config.angle_noise_deg = 0.05;
+    expect_same(config, 10000);
+    config.angle_noise_deg = 0;
+    config.ego_min_m = {0.5, -30, -30}, config.ego_max_m = {30, 30, 30};  // what lies ahead
+    expect_same(config, 5000);
+  }
+}
+
 }  // namespace
 }  // namespace canyon::lidar
