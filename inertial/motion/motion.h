@@ -85,9 +85,18 @@ std::vector<std::string> motion_names();
 /// its phases from the streams "imu.vibration.*".
 Result<PlacedMotion> make_motion(const MotionConfig& config, std::uint64_t seed);
 
-/// Increments of an ideal IMU over (from_s, to_s]: integrals of rate and specific force (inertial/true_increments.h) to
-/// 1e-12 rad and m/s, by adaptive Gauss-Kronrod quadrature of the path's own derivatives. `t` and `dt_s` are those of
-/// the stamps, start + from_s and start + to_s rounded to 1 ns.
-ImuSample motion_increments(const PlacedMotion& placed, double from_s, double to_s);
+/// How far the increments of one interval may be from the exact integrals, each component.
+struct IncrementAccuracy {
+  double dtheta_rad = 0.0, dv_m_s = 0.0;
+};
+
+/// Increments of an ideal IMU over (from_s, to_s]: integrals of rate and specific force (inertial/true_increments.h) by
+/// adaptive Gauss-Kronrod quadrature of the path's own derivatives. To 1e-12 rad and m/s, or to what rounding leaves of
+/// the path's magnitudes where that is more: 50 epsilons of the terms that are summed, and what rounding of the time
+/// makes of a fast change. The work is bounded (256 panels of 15 points); a path that turns or shakes too fast for them
+/// is integrated less well, and `reached`, if given, says how well. `t` and `dt_s` are those of the stamps, start +
+/// from_s and start + to_s rounded to 1 ns. Throws ProgramError if the motion is not finite.
+ImuSample motion_increments(const PlacedMotion& placed, double from_s, double to_s,
+                            IncrementAccuracy* reached = nullptr);
 
 }  // namespace canyon::inertial

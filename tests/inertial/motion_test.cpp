@@ -315,5 +315,70 @@ TEST(Motion, GeneratorObeysNewtonAndEulerOverTenMinutes) {
   }
 }
 
+// 2026-11-22: an absolute tolerance of 1e-12, halved with every panel, is below the rounding of 1e7 m/s^2: the panels
+// were halved 40 times each, for ever. The closed form: the force is v^2 / r on the left, the rate v / r about z.
+TEST(MotionIncrements, FastMotionsAreIntegratedToTheirRounding) {
+  MotionConfig c;
+  c.path = "circle";
+  c.radius_m = 1e-3;
+  c.speed_m_s = 100.0;
+  const auto placed = make_motion(c, 1);
+  IncrementAccuracy reached;
+  const ImuSample s = motion_increments(*placed, 1.0, 1.005, &reached);
+  const double rate = 1e5, force = 1e7;
+  EXPECT_NEAR(s.dtheta_U.z() / s.dt_s, rate + Wgs84::rate_rad_s * std::sin(c.lat_deg * kDegree), 1e-12 * rate);
+  EXPECT_NEAR(s.dv_U.y() / s.dt_s, force, 0.02);  // Coriolis: 2 * 7.3e-5 * 100 m/s
+  // Two terms of 1e7 m/s^2, 50 epsilons.
+  EXPECT_LT(reached.dv_m_s, 3.0 * force * 0.005 * 50.0 * 2.3e-16);
+  EXPECT_LT(reached.dtheta_rad, 2.0 * rate * 0.005 * 50.0 * 2.3e-16);
+  EXPECT_GT(reached.dv_m_s, 1e-12);
+  // Halves add up within what is said.
+  IncrementAccuracy first_reached, second_reached;
+  const ImuSample first = motion_increments(*placed, 1.0, 1.0025, &first_reached);
+  const ImuSample second = motion_increments(*placed, 1.0025, 1.005, &second_reached);
+  EXPECT_LE((first.dv_U + second.dv_U - s.dv_U).cwiseAbs().maxCoeff(),
+            reached.dv_m_s + first_reached.dv_m_s + second_reached.dv_m_s);
+  EXPECT_LE((first.dtheta_U + second.dtheta_U - s.dtheta_U).cwiseAbs().maxCoeff(),
+            reached.dtheta_rad + first_reached.dtheta_rad + second_reached.dtheta_rad);
+}
+
+/// What is too fast for the panels is said: 1e6 turns in the interval.
+TEST(MotionIncrements, WhatTheWorkDoesNotReachIsSaid) {
+  MotionConfig c;
+  c.path = "coning";
+  c.cone_deg = 90.0;
+  c.cone_hz = 1e5;
+  c.pitch_deg = 0.0;
+  const auto placed = make_motion(c, 1);
+  IncrementAccuracy reached;
+  const ImuSample s = motion_increments(*placed, 0.0, 10.0, &reached);
+  EXPECT_TRUE(s.dv_U.allFinite());
+  EXPECT_GT(reached.dv_m_s, 1e-3);
+}
+
+/// One coordinate far away, and all coordinates far away: it ends, and is as accurate as it says.
+TEST(MotionIncrements, FarPlacesEnd) {
+  for (const bool all : {false, true}) {
+    std::string tum;
+    for (int k = 0; k < 20; ++k) tum += std::to_string(0.1 * k) + (all || k == 9 ? " 1e9 0" : " 5 0") + " 0 0 0 0 1\n";
+    MotionConfig c;
+    c.path = "recorded";
+    c.file = temporary("far.tum", tum);
+    const auto placed = make_motion(c, 1);
+    ASSERT_TRUE(placed) << placed.error().str();
+    IncrementAccuracy whole_reached;
+    const ImuSample whole = motion_increments(*placed, 0.0, 1.9, &whole_reached);
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double allowed = whole_reached.dv_m_s;
+    for (int k = 0; k < 190; ++k) {
+      IncrementAccuracy reached;
+      sum += motion_increments(*placed, 0.01 * k, 0.01 * (k + 1), &reached).dv_U;
+      allowed += reached.dv_m_s;
+    }
+    EXPECT_LE((sum - whole.dv_U).cwiseAbs().maxCoeff(), allowed);
+    EXPECT_LT(allowed, all ? 1e-3 : 1e-10 * 1e11);  // of 1e11 m/s^2 around the one that is far
+  }
+}
+
 }  // namespace
 }  // namespace canyon::inertial
