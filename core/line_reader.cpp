@@ -3,8 +3,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/time.h"
-
 namespace canyon {
 
 std::vector<std::string_view> split(std::string_view line, std::string_view separators, bool join_separators) {
@@ -50,6 +48,39 @@ Result<std::int64_t> parse_seconds(const LineReader& in, std::string_view field)
   for (std::size_t i = 0; i < 9; ++i) fraction = 10 * fraction + (i < after.size() ? after[i] - '0' : 0);
   if (after.size() > 9 && after[9] >= '5') ++fraction;
   return whole * kNsPerSecond + fraction;
+}
+
+namespace {
+
+Result<double> parse_within(const LineReader& in, std::string_view field, double limit, const char* expected) {
+  CANYON_TRY(const double value, parse_number(in, field));
+  if (std::abs(value) > limit) return in.error("\"" + std::string(trimmed(field)) + "\" is out of range", expected);
+  return value;
+}
+
+}  // namespace
+
+Result<double> parse_coordinate(const LineReader& in, std::string_view field) {
+  return parse_within(in, field, 1e9, "metres from -1e9 to 1e9");
+}
+
+Result<double> parse_speed(const LineReader& in, std::string_view field) {
+  return parse_within(in, field, 3e8, "m/s from -3e8 to 3e8");
+}
+
+Result<GpsTime> gps_instant(const LineReader& in, int week, std::int64_t sow_ns) {
+  GpsTime t;
+  if (__builtin_add_overflow(GpsTime::from_week_sow(week, 0.0).ns, sow_ns, &t.ns))
+    return in.error("a time beyond the year 2272", "a GPS week from 0 to 14000 and the seconds of it");
+  return t;
+}
+
+Status check_time_order(const LineReader& in, GpsTime first, GpsTime last, GpsTime t, const char* expected) {
+  if (!(last < t)) return in.error("time does not increase", expected);
+  std::int64_t since = 0;
+  if (__builtin_sub_overflow(t.ns, first.ns, &since))
+    return in.error("more than 292 years after the first line", expected);
+  return Ok{};
 }
 
 }  // namespace canyon

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/time.h"
 
 namespace canyon {
 
@@ -60,5 +61,18 @@ Result<double> parse_number(const LineReader& in, std::string_view field);
 
 /// Seconds as nanoseconds. Plain decimals are read digit by digit: as a double, GPS seconds of today would lose 0.1 us.
 Result<std::int64_t> parse_seconds(const LineReader& in, std::string_view field);
+
+/// A coordinate in metres, at most 1e9 m (two and a half times the distance of the Moon) from where it is counted: what
+/// is farther is no place of a vehicle, and its squares would leave the range of numbers.
+Result<double> parse_coordinate(const LineReader& in, std::string_view field);
+
+/// A speed component in m/s, below that of light.
+Result<double> parse_speed(const LineReader& in, std::string_view field);
+
+/// The instant of a GPS week (0 to 14000) and nanoseconds from its start, if it can be represented.
+Result<GpsTime> gps_instant(const LineReader& in, int week, std::int64_t sow_ns);
+
+/// That `t` is later than `last` and that the time since `first` can be represented (292 years).
+Status check_time_order(const LineReader& in, GpsTime first, GpsTime last, GpsTime t, const char* expected);
 
 }  // namespace canyon

@@ -1,5 +1,6 @@
 #include "core/navigation_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -7,11 +8,13 @@
 
 #include "core/files.h"
 #include "core/line_reader.h"
+#include "core/progress.h"
 #include "core/units.h"
 
 namespace canyon {
 namespace {
 
+constexpr std::size_t kRecordsPerLook = 4096;  // at whether the user wants to stop: some 10 ms
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Columns in the order of the KF-GINS format, with the names a CSV may give them.
@@ -73,7 +76,10 @@ Result<NavigationRecord> record_of(const LineReader& in, const std::vector<std::
       continue;
     }
     if (places[c] >= fields.size()) return in.error(std::to_string(fields.size()) + " columns", kExpected);
-    CANYON_TRY(v[c], parse_number(in, fields[places[c]]));
+    const std::string_view field = fields[places[c]];
+    CANYON_TRY(v[c], c == 4             ? parse_coordinate(in, field)
+                     : c >= 5 && c <= 7 ? parse_speed(in, field)
+                                        : parse_number(in, field));
   }
   if (v[0] != std::floor(v[0]) || v[0] < 0.0 || v[0] > 14000.0)
     return in.error("GPS week " + std::string(fields[places[0]]), "a whole number from 0 to 14000");
@@ -83,20 +89,22 @@ Result<NavigationRecord> record_of(const LineReader& in, const std::vector<std::
   CANYON_TRY(const std::int64_t sow_ns, parse_seconds(in, fields[places[1]]));
   const Geodetic at{v[2] * kDegree, v[3] * kDegree, v[4]};
   NavigationRecord record;
-  record.t = {GpsTime::from_week_sow(static_cast<int>(v[0]), 0.0).ns + sow_ns};
+  CANYON_TRY(record.t, gps_instant(in, static_cast<int>(v[0]), sow_ns));
   record.X_EU.p = ecef_from_geodetic(at);
   record.X_EU.R = attitude_from_ned(at, v[8] * kDegree, v[9] * kDegree, v[10] * kDegree);
   record.v_EU_E = rotation_E_from_ned(at) * Eigen::Vector3d(v[5], v[6], v[7]);
   return record;
 }
 
-/// The word after "# gravity" among the comments.
-std::string stated_gravity(std::string_view text) {
+/// The word after "# gravity" among the comments, and its line.
+void read_stated_gravity(std::string_view text, NavigationFile& file) {
   constexpr std::string_view kKey = "# gravity ";
   const std::size_t at = text.find(kKey);
-  if (at == std::string_view::npos) return "";
+  if (at == std::string_view::npos) return;
   const std::string_view rest = text.substr(at + kKey.size());
-  return std::string(trimmed(rest.substr(0, rest.find_first_of("\r\n"))));
+  file.gravity = std::string(trimmed(rest.substr(0, rest.find_first_of("\r\n"))));
+  file.gravity_line =
+      1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
 }  // namespace
@@ -117,20 +125,22 @@ NedAttitude ned_attitude(const Geodetic& at, const Eigen::Quaterniond& R_EU) {
 Result<NavigationFile> read_navigation_file(const std::string& path) {
   CANYON_TRY(std::string text, read_text_or_gzip_file(path));
   NavigationFile file;
-  file.gravity = stated_gravity(text);
+  read_stated_gravity(text, file);
   LineReader in(path, std::move(text));
   Places places{};
   for (std::size_t c = 0; c < places.size(); ++c) places[c] = c;
   std::string_view line;
   for (bool first = true; in.next(line); first = false) {
+    if (file.records.size() % kRecordsPerLook == 0) throw_if_cancelled();
     if (first && is_header(line)) {
       CANYON_TRY(places, places_of(in, line));
       continue;
     }
     const bool commas = line.find(',') != std::string_view::npos;
     CANYON_TRY(const NavigationRecord record, record_of(in, split(line, commas ? "," : " \t", !commas), places));
-    if (!file.records.empty() && !(file.records.back().t < record.t))
-      return in.error("time does not increase", "records in the order of time");
+    if (!file.records.empty())
+      CANYON_TRY_STATUS(check_time_order(in, file.records.front().t, file.records.back().t, record.t,
+                                         "records in the order of time"));
     file.records.push_back(record);
   }
   if (file.records.empty()) return in.empty_file("navigation records");
@@ -140,7 +150,9 @@ Result<NavigationFile> read_navigation_file(const std::string& path) {
 Status write_navigation_file(const std::string& path, const NavigationFile& file) {
   std::string out = "# week sow lat_deg lon_deg h_m vN vE vD roll_deg pitch_deg heading_deg; the IMU, FRD in NED\n";
   if (!file.gravity.empty()) out += "# gravity " + file.gravity + "\n";
-  for (const NavigationRecord& record : file.records) {
+  for (std::size_t k = 0; k < file.records.size(); ++k) {
+    if (k % kRecordsPerLook == 0) throw_if_cancelled();
+    const NavigationRecord& record = file.records[k];
     const Geodetic at = geodetic_from_ecef(record.X_EU.p);
     const Eigen::Vector3d v = rotation_E_from_ned(at).transpose() * record.v_EU_E;
     const NedAttitude a = ned_attitude(at, record.X_EU.R);

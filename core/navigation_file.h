@@ -29,7 +29,8 @@ NedAttitude ned_attitude(const Geodetic& at, const Eigen::Quaterniond& R_EU);
 
 struct NavigationFile {
   std::vector<NavigationRecord> records;
-  std::string gravity;  ///< the gravity model that a comment `# gravity NAME` states; else empty
+  std::string gravity;   ///< what a comment `# gravity NAME` states, whether there is such a model or not; else empty
+  int gravity_line = 0;  ///< where it stands
 };
 
 /// Reads the KF-GINS text format, `week sow lat lon h vN vE vD roll pitch heading` (degrees, metres, m/s), columns

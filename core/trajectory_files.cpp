@@ -7,26 +7,31 @@
 
 #include "core/files.h"
 #include "core/line_reader.h"
+#include "core/progress.h"
 #include "core/trajectory.h"
 #include "core/units.h"
 
 namespace canyon {
 namespace {
 
+constexpr std::size_t kPosesPerLook = 4096;  // at whether the user wants to stop
+
 /// Unit quaternion from four numbers of a file, written with at least three digits.
 Result<Eigen::Quaterniond> parse_quaternion(const LineReader& in, double w, double x, double y, double z) {
   Eigen::Quaterniond q(w, x, y, z);
   const double norm = q.norm();
-  if (std::abs(norm - 1.0) > 0.01) return in.error("quaternion of norm " + std::to_string(norm), "norm 1");
+  if (std::abs(norm - 1.0) > 0.01)
+    return in.error("quaternion of norm " + (norm < 1e9 ? std::to_string(norm) : "1e9 or more"), "norm 1");
   // What is normalised up to rounding stays as it is, so that a written file reads back to the same bits.
   if (std::abs(norm - 1.0) > 1e-15) q.normalize();
   return q;
 }
 
 Status append_in_order(const LineReader& in, Trajectory& trajectory, GpsTime t, const Pose& X_WB) {
-  if (!trajectory.empty() && !(trajectory.poses().back().t < t)) {
-    return in.error("time does not increase", "poses in the order of time");
-  }
+  if (trajectory.poses().size() % kPosesPerLook == 0) throw_if_cancelled();
+  if (!trajectory.empty())
+    CANYON_TRY_STATUS(check_time_order(in, trajectory.poses().front().t, trajectory.poses().back().t, t,
+                                       "poses in the order of time"));
   trajectory.append({t, X_WB});
   return Ok{};
 }
@@ -69,7 +74,7 @@ Result<Trajectory> read_tum(const std::string& path) {
     CANYON_TRY(const std::int64_t ns, parse_seconds(in, fields[0]));
     std::array<double, 7> v{};
     for (std::size_t i = 0; i < 7; ++i) {
-      CANYON_TRY(v[i], parse_number(in, fields[i + 1]));
+      CANYON_TRY(v[i], i < 3 ? parse_coordinate(in, fields[i + 1]) : parse_number(in, fields[i + 1]));
     }
     CANYON_TRY(const Eigen::Quaterniond q, parse_quaternion(in, v[6], v[3], v[4], v[5]));
     CANYON_TRY_STATUS(append_in_order(in, trajectory, GpsTime{ns}, {q, {v[0], v[1], v[2]}}));
@@ -100,10 +105,13 @@ Result<Trajectory> read_kitti(const std::string& path, GpsTime start, double rat
       return in.error(std::to_string(fields.size()) + " columns", "12: a 3 x 4 matrix, row by row");
     Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
     for (std::size_t i = 0; i < 12; ++i) {
-      CANYON_TRY(T(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)), parse_number(in, fields[i]));
+      CANYON_TRY(T(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)),
+                 i % 4 == 3 ? parse_coordinate(in, fields[i]) : parse_number(in, fields[i]));
     }
     const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
-    const double defect = (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+    // First by itself: of numbers whose squares overflow the products are no numbers.
+    const bool small = R.cwiseAbs().maxCoeff() < 2.0;
+    const double defect = small ? (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() : 1.0;
     if (defect > 0.01 || R.determinant() < 0.0)
       return in.error("first three columns are not a rotation", "orthonormal axes");
     const auto k = static_cast<std::int64_t>(trajectory.poses().size());
@@ -169,13 +177,14 @@ Result<Trajectory> read_csv_trajectory(const std::string& path) {
     CANYON_TRY(const std::int64_t sow_ns, parse_seconds(in, fields[place[1]]));
     std::array<double, 7> v{};
     for (std::size_t i = 0; i + 2 < columns.size(); ++i) {
-      CANYON_TRY(v[i], parse_number(in, fields[place[i + 2]]));
+      const std::string_view field = fields[place[i + 2]];
+      CANYON_TRY(v[i], i < 3 ? parse_coordinate(in, field) : parse_number(in, field));
     }
     Eigen::Quaterniond q = rotation_from({v[3] * kDegree, v[4] * kDegree, v[5] * kDegree});
     if (!of_mission) {
       CANYON_TRY(q, parse_quaternion(in, v[3], v[4], v[5], v[6]));
     }
-    const GpsTime t{GpsTime::from_week_sow(static_cast<int>(week), 0.0).ns + sow_ns};
+    CANYON_TRY(const GpsTime t, gps_instant(in, static_cast<int>(week), sow_ns));
     CANYON_TRY_STATUS(append_in_order(in, trajectory, t, {q, {v[0], v[1], v[2]}}));
   }
   if (trajectory.empty()) return in.empty_file("poses");

@@ -62,7 +62,7 @@ void visit(FieldVisitor& f, MotionConfig& c) {
   f.file("file", c.file, "", "points or trajectory");
   f.number("smoothing_s", c.smoothing_s, {0, 1e5},
            "period of an oscillation of which smoothing leaves half; 0: through every point");
-  f.number("file_rate_hz", c.file_rate_hz, {1e-6, 1e5}, "poses per second of a file without times");
+  f.number("file_rate_hz", c.file_rate_hz, {1e-3, 1e5}, "poses per second of a file without times");
   f.group("vibration", c.vibration, "vibration of the IMU against the body");
 }
 

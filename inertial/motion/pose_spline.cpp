@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/progress.h"
 #include "core/units.h"
 #include "inertial/motion/rigid_motion.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 /// Slower than this the direction of travel says nothing.
 constexpr double kLeastSpeed_m_s = 0.01;
+constexpr std::size_t kPointsPerLook = 4096;  // at whether the user wants to stop
 
 SeriesVector position_at(const QuinticSpline& spline, double t_s) {
   return {spline.at(t_s, 0), spline.at(t_s, 1), spline.at(t_s, 2)};
@@ -50,6 +52,22 @@ Error cannot_join(double t_s, const char* what, std::string expected) {
   return Error{.what = text, .expected = std::move(expected)};
 }
 
+/// Points a nanosecond apart make derivatives that no number holds.
+Status check_finite(const Motion& motion, const std::vector<double>& t_s) {
+  for (std::size_t i = 0; i + 1 < t_s.size(); ++i) {
+    if (i % kPointsPerLook == 0) throw_if_cancelled();
+    for (const double share : {0.0, 0.5, 1.0}) {
+      const KinematicState k = motion.at(t_s[i] + share * (t_s[i + 1] - t_s[i]));
+      if (k.X_WB.p.allFinite() && k.v_WB_W.allFinite() && std::isfinite(k.a_WB_W.squaredNorm()) &&
+          std::isfinite(k.w_WB_B.squaredNorm()) && k.alpha_WB_B.allFinite())
+        continue;
+      return cannot_join(t_s[i], "speed or acceleration grow beyond all numbers",
+                         "points farther apart in time, or nearer in space");
+    }
+  }
+  return Ok{};
+}
+
 Status check_direction(const QuinticSpline& position, const std::vector<double>& t_s) {
   constexpr int kPerInterval = 8;
   Eigen::Vector2d before = Eigen::Vector2d::Zero();
@@ -57,7 +75,7 @@ Status check_direction(const QuinticSpline& position, const std::vector<double>&
     for (int k = 0; k <= kPerInterval; ++k) {
       const double t = t_s[i] + (t_s[i + 1] - t_s[i]) * k / kPerInterval;
       const Eigen::Vector2d v(position.at(t, 0).first(), position.at(t, 1).first());
-      if (v.norm() < kLeastSpeed_m_s || v.dot(before) < 0.0)
+      if (!(v.norm() >= kLeastSpeed_m_s) || v.dot(before) < 0.0)
         return cannot_join(t, "there is no direction of travel", "attitudes where the body halts or turns back");
       before = v;
     }
@@ -70,12 +88,17 @@ Status check_direction(const QuinticSpline& position, const std::vector<double>&
 Result<std::shared_ptr<const Motion>> make_pose_spline(const PoseKnots& knots, double smoothing_s) {
   const auto n = static_cast<Eigen::Index>(knots.t_s.size());
   if (n < 3) return Error{.what = std::to_string(n) + " points", .expected = "three or more"};
+  for (std::size_t i = 0; i + 1 < knots.t_s.size(); ++i)
+    if (!(knots.t_s[i] < knots.t_s[i + 1]))
+      return cannot_join(knots.t_s[i], "two points are nearer in time than a double can tell", "points farther apart");
   Eigen::MatrixXd positions(n, 3), attitudes(n, 4);
   for (Eigen::Index i = 0; i < n; ++i) positions.row(i) = knots.p_WB[static_cast<std::size_t>(i)];
   QuinticSpline position(knots.t_s, positions, smoothing_s);
   if (knots.R_WB.empty()) {
     CANYON_TRY_STATUS(check_direction(position, knots.t_s));
-    return std::shared_ptr<const Motion>(std::make_shared<NoseAhead>(std::move(position)));
+    const auto motion = std::make_shared<NoseAhead>(std::move(position));
+    CANYON_TRY_STATUS(check_finite(*motion, knots.t_s));
+    return std::shared_ptr<const Motion>(motion);
   }
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Quaterniond& q = knots.R_WB[static_cast<std::size_t>(i)];
@@ -87,8 +110,10 @@ Result<std::shared_ptr<const Motion>> make_pose_spline(const PoseKnots& knots, d
       return cannot_join(knots.t_s[static_cast<std::size_t>(i)], "the attitude has turned by more than 120 degrees",
                          "points closer in time");
   }
-  return std::shared_ptr<const Motion>(
-      std::make_shared<PoseSpline>(std::move(position), QuinticSpline(knots.t_s, attitudes, smoothing_s)));
+  const auto motion =
+      std::make_shared<PoseSpline>(std::move(position), QuinticSpline(knots.t_s, attitudes, smoothing_s));
+  CANYON_TRY_STATUS(check_finite(*motion, knots.t_s));
+  return std::shared_ptr<const Motion>(motion);
 }
 
 }  // namespace canyon::inertial

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 
 #include "core/files.h"
 #include "core/line_reader.h"
@@ -9,6 +10,7 @@
 namespace canyon::inertial {
 namespace {
 
+constexpr double kLongest_s = 1e9;  // some 30 years
 constexpr const char* kExpected = "t_s,x_m,y_m,z_m or t_s,x_m,y_m,z_m,yaw_deg,pitch_deg,roll_deg";
 
 Result<PoseKnots> read_points(const std::string& path) {
@@ -25,8 +27,10 @@ Result<PoseKnots> read_points(const std::string& path) {
       return in.error(std::to_string(fields.size()) + " columns", kExpected);
     std::array<double, 7> v{};
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      CANYON_TRY(v[i], parse_number(in, fields[i]));
+      CANYON_TRY(v[i], i >= 1 && i <= 3 ? parse_coordinate(in, fields[i]) : parse_number(in, fields[i]));
     }
+    if (std::abs(v[0]) > kLongest_s)
+      return in.error("\"" + std::string(fields[0]) + "\" is not a time", "seconds from -1e9 to 1e9");
     if (!knots.t_s.empty() && !(knots.t_s.back() < v[0]))
       return in.error("time does not increase", "points in the order of time");
     knots.t_s.push_back(v[0]);

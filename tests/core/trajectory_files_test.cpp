@@ -184,5 +184,25 @@ TEST(TrajectoryFiles, RealKittiPosesAreRead) {
   for (const StampedPose& pose : t->poses()) EXPECT_NEAR(pose.X_WB.R.norm(), 1.0, 4.5e-16);
 }
 
+// 2026-11-22: 1e308 m went through to a failed check of the true motion.
+TEST(TrajectoryFiles, PlacesAndTimesHaveLimits) {
+  expect_errors({{"0 0 1e308 0 0 0 0 1\n", ":1: \"1e308\" is out of range, expected metres from -1e9 to 1e9"},
+                 {"0 0 0 -1.1e9 0 0 0 1\n", ":1: \"-1.1e9\" is out of range, expected metres from -1e9 to 1e9"},
+                 {"0 0 0 0 0 0 0 1e200\n", ":1: quaternion of norm 1e9 or more, expected norm 1"},
+                 {"-9e9 0 0 0 0 0 0 1\n9e9 0 0 0 0 0 0 1\n",
+                  ":2: more than 292 years after the first line, expected poses in the order of time"}},
+                [](const std::string& file) { return read_tum(file); });
+  expect_errors({{"gps_week,sow,x_m,y_m,z_m,qw,qx,qy,qz\n14000,9e9,0,0,0,1,0,0,0\n",
+                  ":2: a time beyond the year 2272, expected a GPS week from 0 to 14000 and the seconds of it"},
+                 {"gps_week,sow,x_m,y_m,z_m,qw,qx,qy,qz\n1,0,0,0,2e9,1,0,0,0\n",
+                  ":2: \"2e9\" is out of range, expected metres from -1e9 "
+                  "to 1e9"}},
+                read_csv_trajectory);
+  expect_errors(
+      {{"1 0 0 1e9 0 1 0 -1e10 0 0 1 0\n", ":1: \"-1e10\" is out of range, expected metres from -1e9 to 1e9"},
+       {"1e200 0 0 0 0 1e200 0 0 0 0 1 0\n", ":1: first three columns are not a rotation, expected orthonormal axes"}},
+      [](const std::string& file) { return read_kitti(file, GpsTime{}, 10.0); });
+}
+
 }  // namespace
 }  // namespace canyon
