@@ -4,8 +4,15 @@
 #include <cmath>
 
 #include "core/earth.h"
+#include "core/progress.h"
 
 namespace canyon::fusion {
+namespace {
+
+constexpr std::size_t kStatesPerLook = 4096;  // at whether the user wants to stop: some 10 ms
+constexpr double kStampRounding_s = 2e-9;     // a stamp and an interval's end, each rounded to 1 ns
+
+}  // namespace
 
 std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavState& initial, Strapdown& strapdown) {
   strapdown.reset();
@@ -13,6 +20,7 @@ std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavS
   std::vector<NavState> states = {initial};
   GpsTime last{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (k % kStatesPerLook == 0) throw_if_cancelled();
     const ImuSample& s = samples[k];
     const double since_last_s = k > 0 ? s.t - last : s.dt_s;
     const bool contiguous = std::abs(since_last_s - s.dt_s) <= 0.5 * s.dt_s;
@@ -25,7 +33,9 @@ std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavS
       continue;
     }
     const double elapsed_s = s.t - state.t;
-    if (std::abs(elapsed_s - s.dt_s) > 0.5 * s.dt_s) {
+    // Where the start lies within the sample's interval, only what is behind it counts.
+    const bool begun_before = states.size() == 1 && s.dt_s - elapsed_s > kStampRounding_s;
+    if (begun_before || std::abs(elapsed_s - s.dt_s) > 0.5 * s.dt_s) {
       const double scale = elapsed_s / s.dt_s;
       in = {.dt_s = elapsed_s, .dtheta_U = scale * s.dtheta_U, .dv_U = scale * s.dv_U};
     }
@@ -64,7 +74,9 @@ NavState interpolate(const NavState& a, const NavState& b, GpsTime t) {
 std::vector<NavError> navigation_errors(std::span<const NavState> estimate, std::span<const NavState> reference) {
   std::vector<NavError> errors;
   std::size_t next = 0;
-  for (const NavState& truth : reference) {
+  for (std::size_t k = 0; k < reference.size(); ++k) {
+    if (k % kStatesPerLook == 0) throw_if_cancelled();
+    const NavState& truth = reference[k];
     while (next < estimate.size() && estimate[next].t < truth.t) ++next;
     if (next == estimate.size()) break;
     if (next == 0 && estimate[0].t != truth.t) continue;

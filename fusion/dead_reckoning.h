@@ -12,9 +12,9 @@
 namespace canyon::fusion {
 
 /// States at the start and after every sample, by free inertial navigation from `initial`. Samples that end at or
-/// before initial.t only let the integrator look back. Where samples are missing between two (a gap of more than half
-/// an interval) the integrator forgets its past and the one behind the gap stands for it: its mean rates are taken for
-/// the whole time.
+/// before initial.t only let the integrator look back; of one whose interval holds initial.t, the part behind it is
+/// taken as its share of the time. Where samples are missing between two (a gap of more than half an interval) the
+/// integrator forgets its past and the one behind the gap stands for it: its mean rates are taken for the whole time.
 std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavState& initial, Strapdown& strapdown);
 
 /// A state at rest at that place and heading, its attitude levelled with a specific force (of any length) measured

@@ -100,5 +100,20 @@ TEST(NavigationErrors, AreEstimateMinusReference) {
   EXPECT_TRUE(std::isnan(navigation_error_statistics(std::span(errors).first(1)).position_rms_m));
 }
 
+// 2026-11-22: of a sample whose interval held the start all was taken, also what was before it.
+TEST(DeadReckoning, TakesTheShareOfASampleThatIsBehindTheStart) {
+  const NavState initial = start();
+  std::vector<ImuSample> samples = rest(initial, 100);
+  for (ImuSample& s : samples) s.dv_U += 0.01 * (initial.R_EU.conjugate() * Eigen::Vector3d(1.0, 0.0, 0.0));  // 1 m/s^2
+  NavState later = initial;
+  later.t = initial.t + 0.003;  // at rest there, in the middle of the first sample
+  auto strapdown = make_strapdown("two_sample");
+  const auto states = dead_reckon(samples, later, *strapdown);
+  ASSERT_EQ(states.size(), 101u);
+  // a t^2 / 2 of 0.997 s; Coriolis and Schuler take 1e-4 of it.
+  EXPECT_NEAR((states.back().p_EU_E - initial.p_EU_E).norm(), 0.5 * 0.997 * 0.997, 1e-4);
+  EXPECT_NEAR(states.back().v_EU_E.norm(), 0.997, 1e-4 * 0.997);
+}
+
 }  // namespace
 }  // namespace canyon::fusion
