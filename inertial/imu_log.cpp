@@ -8,12 +8,14 @@
 #include "core/earth.h"
 #include "core/files.h"
 #include "core/line_reader.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "inertial/allan/deviation.h"
 
 namespace canyon::inertial {
 namespace {
 
+constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to stop
 constexpr const char* kExpectedNames =
     "t_s or --rate, and channels such as gx_rad_s, gy_deg_s, az_m_s2, ax_g, with *FACTOR for counts";
 
@@ -175,7 +177,7 @@ struct Places {
 };
 
 std::string text(const char* format, auto... values) {
-  char buffer[120];
+  char buffer[400];
   std::snprintf(buffer, sizeof buffer, format, values...);
   return buffer;
 }
@@ -216,18 +218,43 @@ Status check_live(const ImuLog& log, const Places& places) {
   return Ok{};
 }
 
-/// What no unit can show on average. `as_increments`: the file is said to hold increments.
-Status check_force(const ImuLog& log, double interval_s, bool as_increments, const Places& places) {
-  // Of the magnitudes: a log that turns, as one of many positions does, has no mean direction.
+/// How the units are judged: what speaks against them is an Error where they are guessed, a doubt where they are named.
+struct Judge {
+  const Places& places;
+  bool named_units;  ///< the header, or --columns, has names with units
+  double interval_s;
+};
+
+/// So fast that the centripetal force on a unit may be any.
+bool turns_fast(const ImuLog& log) {
+  constexpr double kFast_rad_s = 5.0;
+  if (log.channels[0].empty()) return false;
+  double square = 0.0;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (const double x : log.channels[c]) square += x * x / static_cast<double>(log.size());
+  return square > kFast_rad_s * kFast_rad_s;
+}
+
+/// The magnitude of the specific force on average: a log that turns, as one of many positions does, has no mean
+/// direction.
+double mean_force(const ImuLog& log) {
   double force = 0.0;
   for (std::size_t k = 0; k < log.size(); ++k)
     force += std::hypot(log.channels[3][k], log.channels[4][k], log.channels[5][k]) / static_cast<double>(log.size());
-  const auto near = [&](double expected) { return std::abs(force / expected - 1.0) < 0.1; };
-  if (near(kStandardGravity)) return Ok{};
+  return force;
+}
+bool near(double value, double expected) {
+  return std::abs(value / expected - 1.0) < 0.1;
+}
+
+/// What no unit can show on average. `as_increments`: the file is said to hold increments.
+Status check_force(ImuLog& log, const Judge& judge, bool as_increments) {
+  const double force = mean_force(log), interval_s = judge.interval_s;
+  if (near(force, kStandardGravity)) return Ok{};
   const std::string figure = text("mean specific force %.4g m/s^2: ", force);
   if (as_increments) {
-    if (near(kStandardGravity / interval_s))
-      return places.error(0, figure + "these are rates, where increments are said", "names in _m_s2");
+    if (near(force, kStandardGravity / interval_s))
+      return judge.places.error(0, figure + "these are rates, where increments are said", "names in _m_s2");
     return Ok{};
   }
   struct Mistake {
@@ -245,24 +272,35 @@ Status check_force(const ImuLog& log, double interval_s, bool as_increments, con
   const auto off = [&](const Mistake& m) { return std::abs(force / m.force - 1.0); };
   const Mistake& nearest = *std::min_element(std::begin(mistakes), std::end(mistakes),
                                              [&](const Mistake& a, const Mistake& b) { return off(a) < off(b); });
-  if (near(nearest.force)) return places.error(0, figure + nearest.what, nearest.expected);
+  if (!near(force, nearest.force)) return Ok{};
+  const Error error = judge.places.error(0, figure + nearest.what, nearest.expected);
+  if (!judge.named_units || !turns_fast(log)) return error;
+  log.doubts.push_back(error.str() + "; taken as named, for the unit turns fast");
   return Ok{};
 }
 
-Status check_rates(const ImuLog& log, double interval_s, bool as_increments, const Places& places) {
+Status check_rates(ImuLog& log, const Judge& judge, bool as_increments) {
   constexpr double kLargest = 100.0;  // rad/s; the fastest gyroscopes on the market end at 70 (4000 deg/s)
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t k = 0; k < log.channels[c].size(); ++k)
-      if (std::abs(log.channels[c][k]) > kLargest)
-        return places.error(k,
-                            text("%s = %.4g rad/s: no gyroscope goes so far; these are %s", kChannelNames[c],
-                                 log.channels[c][k], as_increments ? "rates, where increments are said" : "deg/s"),
-                            as_increments ? "names in _rad_s" : "names in _deg_s");
-  // Only the Earth's rate itself tells rates from increments: a MEMS bias may have any size, but hardly just that.
+  const Places& places = judge.places;
   // Where the accelerometer is of the same kind, gravity has spoken for both.
-  const bool witness = !log.channels[3].empty() && log.increments[1] == as_increments;
-  if (witness || log.channels[0].empty()) return Ok{};
+  const bool same_kind = !log.channels[3].empty() && log.increments[1] == as_increments;
+  for (std::size_t c = 0; c < 3 && !(as_increments && same_kind); ++c)
+    for (std::size_t k = 0; k < log.channels[c].size(); ++k) {
+      if (!(std::abs(log.channels[c][k]) > kLargest)) continue;
+      const Error error =
+          places.error(k,
+                       text("%s = %.4g rad/s: no gyroscope goes so far; these are %s", kChannelNames[c],
+                            log.channels[c][k], as_increments ? "rates, where increments are said" : "deg/s"),
+                       as_increments ? "names in _rad_s" : "names in _deg_s");
+      if (!judge.named_units) return error;
+      log.doubts.push_back(text("%s:%d: %s = %.4g rad/s, taken as named: no gyroscope on the market goes so far",
+                                places.path.c_str(), places.lines[k], kChannelNames[c], log.channels[c][k]));
+      return Ok{};
+    }
+  // Only the Earth's rate itself tells rates from increments: a MEMS bias may have any size, but hardly just that.
+  if (same_kind || log.channels[0].empty()) return Ok{};
   const double rate = std::hypot(mean_of(log.channels[0]), mean_of(log.channels[1]), mean_of(log.channels[2]));
+  const double interval_s = judge.interval_s;
   const double mistaken = as_increments ? Wgs84::rate_rad_s / interval_s : Wgs84::rate_rad_s * interval_s;
   if (std::abs(rate / mistaken - 1.0) >= 0.1) return Ok{};
   return places.error(0,
@@ -277,9 +315,31 @@ Status check_rates(const ImuLog& log, double interval_s, bool as_increments, con
 }
 
 /// Each triad by itself: a file may hold rates of one and increments of the other.
-Status check_magnitudes(const ImuLog& log, double interval_s, const Places& places) {
-  if (!log.channels[3].empty()) CANYON_TRY_STATUS(check_force(log, interval_s, log.increments[1], places));
-  return check_rates(log, interval_s, log.increments[0], places);
+Status check_magnitudes(ImuLog& log, const Judge& judge) {
+  if (!log.channels[3].empty()) CANYON_TRY_STATUS(check_force(log, judge, log.increments[1]));
+  return check_rates(log, judge, log.increments[0]);
+}
+
+/// Beyond these, numbers are no measurements of anything, and their squares leave the range of numbers.
+Status check_range(const ImuLog& log, const Places& places) {
+  constexpr double kLargest = 1e12;  // rad/s, m/s^2
+  for (std::size_t c = 0; c < 6; ++c)
+    for (std::size_t k = 0; k < log.channels[c].size(); ++k)
+      if (!(std::abs(log.channels[c][k]) <= kLargest))
+        return places.error(
+            k, text("%s = %.4g %s is out of range", kChannelNames[c], log.channels[c][k], c < 3 ? "rad/s" : "m/s^2"),
+            "a rate or force below 1e12");
+  return Ok{};
+}
+
+/// Intervals that samples can have; times as seconds that are instants.
+Status check_times(const ImuLog& log, double interval_s, const Places& places) {
+  constexpr double kLatest_s = 9.2e9, kShortest_s = 1e-9;
+  for (const std::size_t k : {std::size_t{0}, log.size() - 1})
+    if (std::abs(log.t_s[k]) > kLatest_s)
+      return places.error(k, text("time %.6g s", log.t_s[k]), "seconds from -9.2e9 to 9.2e9");
+  if (interval_s >= kShortest_s) return Ok{};
+  return places.error(0, text("samples %.3g s apart", interval_s), "a nanosecond or more; is the time's unit right?");
 }
 
 /// A sensor's increment covers its own sample interval: what a host stamps late, and what a gap has lost, is not in it.
@@ -321,10 +381,15 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
   ImuLog log;
   Places places{path, {}};
   std::string_view line;
+  const bool a_layout = std::any_of(std::begin(kLayouts), std::end(kLayouts),
+                                    [&](const ImuLogLayout& layout) { return format.columns == layout.name; });
+  bool named_units = !format.columns.empty() && !a_layout;
   for (bool first = true; in.next(line); first = false) {
+    if (log.size() % kSamplesPerLook == 0) throw_if_cancelled();
     if (first && has_letters(line)) {
       if (!columns.empty()) continue;  // --columns stands for it
       CANYON_TRY(columns, columns_of(line, in.error("", "")));
+      named_units = line.find("field.") == std::string_view::npos;  // rostopic's names have none
       CANYON_TRY_STATUS(check_columns(columns, format.rate_hz, in.error("", "")));
       continue;
     }
@@ -354,8 +419,10 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
   for (const Column& column : columns)
     if (column.increment) log.increments[static_cast<std::size_t>(column.target - 1) / 3] = true;
   const double interval_s = sampling_of(log.t_s).interval_s;
+  CANYON_TRY_STATUS(check_times(log, interval_s, places));
   to_rates(interval_s, log);
-  CANYON_TRY_STATUS(check_magnitudes(log, interval_s, places));
+  CANYON_TRY_STATUS(check_range(log, places));
+  CANYON_TRY_STATUS(check_magnitudes(log, {places, named_units, interval_s}));
   if (format.live) CANYON_TRY_STATUS(check_live(log, places));
   return log;
 }

@@ -17,6 +17,8 @@ struct ImuLog {
   /// Whether the file holds increments of the gyroscope, of the accelerometer. They became rates by the usual interval
   /// (sampling_of), which every increment covers, whatever stamps and gaps say; times that interval they come back.
   std::array<bool, 2> increments{};
+  /// What makes the units that the file names look mistaken, a line each; they were taken as named.
+  std::vector<std::string> doubts;
 
   std::size_t size() const { return t_s.size(); }
 };
@@ -44,11 +46,13 @@ struct ImuLogLayout {
 std::span<const ImuLogLayout> imu_log_layouts();
 
 /// Reads CSV, or columns apart by blanks, plain or gzip. Errors name the line: missing columns, fields that are not
-/// numbers, time that does not increase, channels stuck at one value or saturated, and magnitudes that betray the unit:
-/// an accelerometer shows gravity on average, so a specific force of some 1 or 980 means g or cm/s^2 where m/s^2 is
-/// said, and one of gravity times the interval means increments, and the other way round; a gyroscope that the
-/// accelerometer does not bear witness for (none there, or the one said to be increments and the other not) betrays
-/// itself where its mean is the Earth's rate times the interval or divided by it.
+/// numbers or beyond 1e12 rad/s or m/s^2, time that does not increase, channels stuck at one value or saturated, and
+/// magnitudes that betray the unit. Where the header or `columns` name the unit, a rate that no gyroscope measures is
+/// only a doubt, and of a log that turns fast so is the force. Else an accelerometer shows gravity on average, so a
+/// specific force of some 1 or 980 means g or cm/s^2 where m/s^2 is said, and one of gravity times the interval means
+/// increments, and the other way round; a gyroscope that the accelerometer does not bear witness for (none there, or
+/// the one said to be increments and the other not) betrays itself where its mean is the Earth's rate times the
+/// interval or divided by it.
 Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format);
 
 }  // namespace canyon::inertial

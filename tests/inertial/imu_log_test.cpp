@@ -137,9 +137,6 @@ TEST_F(ImuLogTest, UnitMixUpsAreNamed) {
   EXPECT_EQ(mistake(resting("t_s,gx_rad_s,gy_rad_s,gz_rad_s", 1.0, 1.0, 200, earth)),
             "log.csv:2: mean rate 7.292e-07 rad/s is the Earth's times the interval: these are angle increments, not "
             "rates, expected names in _rad");
-  const auto fast = [](int k, double* v) { v[1] = k == 7 ? 180.0 : v[1]; };
-  EXPECT_EQ(mistake(resting(kSi, 1.0, 1.0, 200, fast)),
-            "log.csv:9: gy = 180 rad/s: no gyroscope goes so far; these are deg/s, expected names in _deg_s");
 }
 
 // Each triad is judged by itself. The Earth's rate by the interval: rates where increments are said.
@@ -194,6 +191,41 @@ TEST_F(ImuLogTest, StuckAndSaturatedChannelsAreNamed) {
             "the sensor's range");
   // Coarse steps stay at their extreme without being saturated.
   EXPECT_TRUE(read(resting(kSi, 1.0, 1.0, 200, [](int k, double* v) { v[0] = 0.05 * std::floor(k / 10 % 3); })).ok());
+}
+
+// 2026-11-22: rates above those of any gyroscope were refused as deg/s where the header says rad/s.
+TEST_F(ImuLogTest, UnitsThatAreNamedAreOnlyDoubted) {
+  const auto fast = [](int k, double* v) { v[1] = k == 7 ? 180.0 : v[1]; };
+  const auto doubt = [&](const std::string& text, const ImuLogFormat& format = {}) {
+    const auto log = read(text, format);
+    EXPECT_TRUE(log.ok()) << log.error().str();
+    return log.ok() && log->doubts.size() == 1 ? log->doubts[0].substr(path_.size()) : "no doubt";
+  };
+  const char* expected = ":9: gy = 180 rad/s, taken as named: no gyroscope on the market goes so far";
+  EXPECT_EQ(doubt(resting(kSi, 1.0, 1.0, 200, fast)), expected);
+  EXPECT_EQ(doubt(resting("# no names here", 1.0, 1.0, 200, fast), {.columns = std::string(kSi)}), expected);
+  // rostopic's names have no units: there it is a guess.
+  EXPECT_EQ(mistake(resting("%time,field.angular_velocity.x,field.angular_velocity.y,field.angular_velocity.z,"
+                            "field.linear_acceleration.x,field.linear_acceleration.y,field.linear_acceleration.z",
+                            1.0, 1.0, 200, fast),
+                    {.rate_hz = 100.0}),
+            "log.csv:9: gy = 180 rad/s: no gyroscope goes so far; these are deg/s, expected names in _deg_s");
+  // 100 g, and a unit that turns at 31 rad/s: a centrifuge, not cm/s^2.
+  const auto spin = [](int, double* v) { v[2] += 31.0; };
+  EXPECT_EQ(doubt(resting(kSi, 1.0, 100.0, 200, spin)),
+            ":2: mean specific force 980.7 m/s^2: these are cm/s^2, expected _m_s2*0.01; taken as named, for the unit "
+            "turns fast");
+  EXPECT_TRUE(read(resting(kSi, 1.0, 1.0))->doubts.empty());
+}
+
+// 2026-11-22: numbers that no clock and no sensor gives ended in failed checks of the time, or in figures of nothing.
+TEST_F(ImuLogTest, ImpossibleNumbersAreNamed) {
+  EXPECT_EQ(mistake(std::string(kSi) + "\n0,0,0,0,0,0,9.8\n1,0,0,0,0,-1e200,9.8\n"),
+            "log.csv:3: ay = -1e+200 m/s^2 is out of range, expected a rate or force below 1e12");
+  EXPECT_EQ(mistake(std::string(kSi) + "\n-1e10,0,0,0,0,0,9.8\n1,0,0,0,0,0,9.8\n"),
+            "log.csv:2: time -1e+10 s, expected seconds from -9.2e9 to 9.2e9");
+  EXPECT_EQ(mistake(std::string(kSi) + "\n0,0,0,0,0,0,9.8\n1e-300,0,0,0,0,0,9.8\n"),
+            "log.csv:2: samples 1e-300 s apart, expected a nanosecond or more; is the time's unit right?");
 }
 
 }  // namespace
