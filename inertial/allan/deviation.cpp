@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "core/chi_square.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "inertial/allan/degrees_of_freedom.h"
 
 namespace canyon::inertial {
@@ -28,6 +29,7 @@ SquareSum sum_squares(std::int64_t count, Difference difference) {
   constexpr std::int64_t kBlock = 4096;
   double total = 0.0;
   for (std::int64_t begin = 0; begin < count; begin += kBlock) {
+    throw_if_cancelled();
     const std::int64_t end = std::min(count, begin + kBlock);
     double lanes[4] = {};
     std::int64_t k = begin;
@@ -63,6 +65,7 @@ SquareSum modified(std::span<const double> x, std::int64_t m) {
   // Sum over m neighbouring second differences, moved along by one at a time. Prefix sums of the phase keep it free of
   // the drift that a running sum would gather.
   std::vector<double> prefix(static_cast<std::size_t>(n + 1), 0.0);
+  throw_if_cancelled();
   for (std::int64_t k = 0; k < n; ++k)
     prefix[static_cast<std::size_t>(k + 1)] = prefix[static_cast<std::size_t>(k)] + x[static_cast<std::size_t>(k)];
   const double* p = prefix.data();
@@ -109,6 +112,7 @@ const Row& row_of(const std::string& kind) {
 std::vector<std::vector<double>> phases(std::span<const double> rate, const std::vector<Segment>& segments) {
   std::vector<std::vector<double>> out;
   for (const Segment& s : segments) {
+    throw_if_cancelled();
     const std::span<const double> part = rate.subspan(s.begin, s.end - s.begin);
     const double mean =
         std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(std::max<std::size_t>(1, part.size()));

@@ -7,7 +7,9 @@
 
 #include "core/check.h"
 #include "core/chi_square.h"
+#include "core/progress.h"
 #include "inertial/allan/noise_terms.h"
+#include "inertial/cancel_callback.h"
 
 #ifdef CANYON_WITH_CERES
 #include <ceres/ceres.h>
@@ -222,8 +224,11 @@ Solution solve(const Combination& model, std::span<const DeviationPoint> points,
   options.max_num_iterations = 200;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
+  const auto cancel = make_cancel_callback();
+  options.callbacks.push_back(cancel.get());
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  throw_if_cancelled();
   out.chi_square = 2.0 * summary.final_cost;
   return out;
 }
@@ -371,6 +376,7 @@ std::vector<double> standard_deviations(const Solution& s, std::span<const Devia
       jacobian(i, k) = (ahead - behind) / (2.0 * kStep);
     }
     for (Eigen::Index j = 0; j <= i; ++j) {
+      throw_if_cancelled();  // the correlation at long averages is a long sum
       const DeviationPoint& other = points[static_cast<std::size_t>(j)];
       const double together = 2.0 / std::sqrt(point.edf * other.edf) *
                               overlapping_correlation(static_cast<double>(point.m), static_cast<double>(other.m));

@@ -5,7 +5,9 @@
 #include <Eigen/QR>
 
 #include "core/check.h"
+#include "core/progress.h"
 #include "inertial/calibration/triad_calibration.h"
+#include "inertial/cancel_callback.h"
 
 #ifdef CANYON_WITH_CERES
 #include <ceres/ceres.h>
@@ -68,8 +70,11 @@ Result<TriadCalibration> fit_to_gravity(std::span<const Eigen::Vector3d> positio
   options.function_tolerance = 1e-14;
   options.parameter_tolerance = 1e-14;
   options.max_num_iterations = 100;
+  const auto cancel = make_cancel_callback();
+  options.callbacks.push_back(cancel.get());
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
+  throw_if_cancelled();
   // Covariance from the normal equations, which positions that leave a direction open make singular.
   ceres::CRSMatrix sparse;
   problem.Evaluate(ceres::Problem::EvaluateOptions(), nullptr, nullptr, nullptr, &sparse);
