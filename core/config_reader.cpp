@@ -241,6 +241,15 @@ class Reader final : public FieldVisitor {
   std::vector<std::string> known_;
 };
 
+/// All that is missing, in one message: the first by its own, the others by name.
+Error all_missing(Error first, const std::vector<Error>& errors) {
+  std::string others;
+  for (const Error& error : errors)
+    if (error.key != first.key) others += (others.empty() ? "" : ", ") + error.key;
+  if (!others.empty()) first.what += ", and so are " + others;
+  return first;
+}
+
 }  // namespace
 
 void FieldVisitor::vector3(const char* key, Eigen::Vector3d& value, Range range, const char* doc) {
@@ -271,7 +280,7 @@ Status read_fields(const ConfigNode* node, const std::string& prefix, const Visi
     const bool b_elsewhere = b.file != errors.front().file;
     return std::pair(a_elsewhere, a.line) < std::pair(b_elsewhere, b.line);
   });
-  return *topmost;
+  return mistakes.wrong.empty() ? all_missing(*topmost, errors) : *topmost;
 }
 
 }  // namespace canyon

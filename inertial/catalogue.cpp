@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/config_text.h"
 #include "core/embedded.h"
 #include "core/files.h"
 #include "core/units.h"
@@ -122,17 +123,33 @@ std::vector<std::string> catalogue_names() {
 
 namespace {
 
-/// A number that nobody can trace is worse than none: every figure that acts must say where it was read.
+/// A number that nobody can trace is worse than none: every figure that acts must say where it was read. `lacking`:
+/// the keys of sources that are not there, and `place` the table of the first of them.
+struct Sources {
+  std::vector<std::string> lacking;
+  const ConfigNode* place = nullptr;
+};
 template <class Sheet, class Rows>
-Status check_sources(const char* table, const Sheet& sheet, const Rows& rows, const ConfigNode& node) {
+void check_sources(const char* table, const Sheet& sheet, const Rows& rows, const ConfigNode& node, Sources& sources) {
   for (const auto& row : rows) {
     const Figure& figure = sheet.*row.figure;
-    if (row.need == row.kHasDefault || figure.value == 0.0 || !figure.source.empty()) continue;
-    const ConfigNode* place = node.find(table);
-    return (place ? *place : node)
-        .error(std::string(table) + "." + row.source_key, "is missing", "the source of a figure that is not zero");
+    if (row.need == row.kHasDefault || !(std::abs(figure.value) > 0.0) || !figure.source.empty()) continue;
+    if (sources.place == nullptr) sources.place = node.find(table) ? node.find(table) : &node;
+    sources.lacking.push_back(std::string(table) + "." + row.source_key);
   }
-  return Ok{};
+}
+
+Sources check_sources(const CatalogueEntry& entry, const ConfigNode& node) {
+  Sources sources;
+  check_sources("gyro", entry.gyro, gyro_rows(), node, sources);
+  check_sources("accel", entry.accel, accel_rows(), node, sources);
+  check_sources("unit", entry.unit, unit_rows(), node, sources);
+  return sources;
+}
+
+std::string and_so_are(const std::vector<std::string>& keys, std::size_t from) {
+  if (from >= keys.size()) return "";
+  return ", and so are " + plain_list({keys.begin() + static_cast<std::ptrdiff_t>(from), keys.end()});
 }
 
 /// Noise that is not there must be said to be zero: a forgotten line would make a perfect sensor.
@@ -161,10 +178,18 @@ Result<CatalogueEntry> entry_from(const ConfigNode& node) {
     return gyro->error("gyro", "has_gyroscope = false, but there is a [gyro] table", "one of the two");
   }
   require(entry.accel, accel_rows());
-  CANYON_TRY_STATUS(read_config(&node, "", entry));
-  CANYON_TRY_STATUS(check_sources("gyro", entry.gyro, gyro_rows(), node));
-  CANYON_TRY_STATUS(check_sources("accel", entry.accel, accel_rows(), node));
-  CANYON_TRY_STATUS(check_sources("unit", entry.unit, unit_rows(), node));
+  const Status read = read_config(&node, "", entry);
+  const Sources sources = check_sources(entry, node);
+  if (!read.ok()) {
+    Error error = read.error();  // what is missing, all of it in one line; another mistake comes alone
+    const bool missing = error.what.rfind("is missing", 0) == 0;
+    if (missing && !sources.lacking.empty())
+      error.what += (error.what == "is missing" ? ", and so are " : ", ") + plain_list(sources.lacking);
+    return error;
+  }
+  if (!sources.lacking.empty())
+    return sources.place->error(sources.lacking.front(), "is missing" + and_so_are(sources.lacking, 1),
+                                "the source of a figure that is not zero");
   CANYON_TRY_STATUS(check_corners("gyro", entry.gyro.flicker_low_hz.value, entry.gyro.flicker_high_hz.value, node));
   CANYON_TRY_STATUS(check_corners("accel", entry.accel.flicker_low_hz.value, entry.accel.flicker_high_hz.value, node));
   return entry;

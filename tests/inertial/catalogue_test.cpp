@@ -162,8 +162,29 @@ TEST(Catalogue, NoiseIsNeverZeroByOmission) {
     ASSERT_FALSE(entry.ok()) << key;
     EXPECT_THAT(entry.error().str(), ::testing::HasSubstr("." + key + ": is missing, expected a number from 0 to "));
   }
+}
+
+// 2026-11-22: they came one at a time, ten runs for ten keys.
+TEST(Catalogue, AllThatIsMissingIsToldInOneMessage) {
   EXPECT_EQ(parse_catalogue_entry("name = \"mine\"\n", "mine.toml").error().str(),
-            "mine.toml: gyro.arw_deg_per_sqrt_hr: is missing, expected a number from 0 to 1000");
+            "mine.toml: gyro.arw_deg_per_sqrt_hr: is missing, and so are gyro.turn_on_bias_deg_per_hr, "
+            "gyro.in_run_bias_deg_per_hr, gyro.scale_ppm, gyro.misalignment_mrad, accel.vrw_m_s_per_sqrt_hr, "
+            "accel.turn_on_bias_mg, accel.in_run_bias_mg, accel.scale_ppm, accel.misalignment_mrad, expected a number "
+            "from 0 to 1000");
+  // Keys and sources together; sources alone.
+  const std::string figures = "[gyro]\narw_deg_per_sqrt_hr = 0.3\nscale_ppm = 2\n";
+  const std::string others = "turn_on_bias_deg_per_hr = 0\nin_run_bias_deg_per_hr = 0\nmisalignment_mrad = 0\n";
+  const std::string accel =
+      "[accel]\nvrw_m_s_per_sqrt_hr = 0\nturn_on_bias_mg = 0\nin_run_bias_mg = 0\nscale_ppm = 0\nmisalignment_mrad = "
+      "0\n";
+  EXPECT_EQ(parse_catalogue_entry("name = \"mine\"\n" + figures + accel, "mine.toml").error().str(),
+            "mine.toml:2: gyro.turn_on_bias_deg_per_hr: is missing, and so are gyro.in_run_bias_deg_per_hr, "
+            "gyro.misalignment_mrad, gyro.arw_source, gyro.scale_source, expected a number from 0 to 1e+06");
+  EXPECT_EQ(parse_catalogue_entry("name = \"mine\"\n" + figures + others + accel, "mine.toml").error().str(),
+            "mine.toml:2: gyro.arw_source: is missing, and so are gyro.scale_source, expected the source of a figure "
+            "that is not zero");
+  // A misspelt key is still told first.
+  EXPECT_EQ(parse_catalogue_entry("name = \"mine\"\n[gyro]\nscale_pm = 2\n", "mine.toml").error().line, 3);
 }
 
 TEST(Catalogue, RefusesAFigureWithoutSource) {
