@@ -13,6 +13,7 @@
 #include "core/earth.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "inertial/allan/deviation.h"
 #include "inertial/calibration/fitted_entry.h"
@@ -23,6 +24,8 @@ namespace canyon::apps {
 namespace {
 
 using inertial::TriadCalibration;
+
+constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to stop
 
 struct Options {
   CommonOptions common;
@@ -107,6 +110,7 @@ Pairs pairs_of(const inertial::ImuLog& log, const inertial::ImuLog& truth) {
   Pairs out;
   std::size_t j = 0;
   for (std::size_t k = 0; k < log.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
     const double t = log.t_s[k] + later_s;
     if (t < truth.t_s.front() || t > truth.t_s.back()) continue;
     while (j + 2 < truth.size() && truth.t_s[j + 1] <= t) ++j;
@@ -135,6 +139,7 @@ Result<Outcome> fit_to_truth(const Options& options, const inertial::ImuLog& log
              inertial::read_imu_log(options.truth,
                                     {.columns = options.truth_columns, .rate_hz = options.log.rate_hz, .live = false}));
   CANYON_TRY_STATUS(need_all_channels(truth, options.truth));
+  tell_doubts(truth);
   const Pairs pairs = pairs_of(log, truth);
   std::array<TriadCalibration, 2> found;
   inertial::ImuLog rest;  // what the calibration leaves: the unit's noise, and the reference's
@@ -149,6 +154,7 @@ Result<Outcome> fit_to_truth(const Options& options, const inertial::ImuLog& log
     }
     found[triad] = *calibration;
     for (std::size_t k = 0; k < pairs.t_s.size(); ++k) {
+      if (k % kSamplesPerLook == 0) throw_if_cancelled();
       const Eigen::Vector3d left = found[triad].corrected(pairs.measured[triad][k]) - pairs.truth[triad][k];
       for (std::size_t axis = 0; axis < 3; ++axis)
         rest.channels[3 * triad + axis].push_back(left[static_cast<Eigen::Index>(axis)]);
@@ -263,6 +269,8 @@ Status write_entry(const std::string& path, const std::string& toml, bool force)
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
   CANYON_TRY(const inertial::ImuLog log, read_log(options.log, options.at_rest));
+  tell_doubts(log);
+  if (options.at_rest) tell_motion(options.log.log, inertial::find_motion(log));
   CANYON_TRY(Outcome found, options.at_rest     ? fit_at_rest(options, log)
                             : options.positions ? fit_to_positions(options, log)
                                                 : fit_to_truth(options, log));
@@ -293,7 +301,7 @@ VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_common(arguments, options->common);
   declare_imu_log(arguments, options->log);
-  Arguments ways = arguments.one_of("way");
+  Arguments ways = arguments.one_of("method");
   ways.flag("--static", options->at_rest, "the unit rests: noise and bias");
   ways.flag("--positions", options->positions,
             "the unit rests in nine or more positions: bias, scale and misalignment of the accelerometer against "

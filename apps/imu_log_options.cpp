@@ -1,5 +1,10 @@
 #include "apps/imu_log_options.h"
 
+#include <algorithm>
+#include <cstdio>
+
+#include "core/units.h"
+
 namespace canyon::apps {
 
 void declare_imu_log(Arguments& arguments, ImuLogOptions& options) {
@@ -21,6 +26,31 @@ void declare_imu_log(Arguments& arguments, ImuLogOptions& options) {
 
 Result<inertial::ImuLog> read_log(const ImuLogOptions& options, bool live) {
   return inertial::read_imu_log(options.log, {.columns = options.columns, .rate_hz = options.rate_hz, .live = live});
+}
+
+void tell_doubts(const inertial::ImuLog& log) {
+  for (const std::string& doubt : log.doubts) std::fprintf(stderr, "warning: %s\n", doubt.c_str());
+}
+
+void tell_motion(const std::string& path, const inertial::MotionFound& motion) {
+  constexpr std::size_t kListed = 3;
+  if (!motion.moves()) return;
+  std::string where;
+  char text[160];
+  for (std::size_t i = 0; i < std::min(kListed, motion.intervals.size()); ++i) {
+    const inertial::MovingInterval& m = motion.intervals[i];
+    std::snprintf(text, sizeof text, "%s%.6g to %.6g s", i > 0 ? ", " : "", m.from_s, m.to_s);
+    where += text;
+  }
+  if (motion.intervals.size() > kListed)
+    where += " and " + std::to_string(motion.intervals.size() - kListed) + " more times";
+  const inertial::MovingInterval& worst = motion.worst();
+  const bool gyro = worst.channel < 3;
+  std::snprintf(text, sizeof text, "%s %s by %.3g %s", inertial::kChannelNames[worst.channel],
+                worst.shakes ? "shakes" : "differs from rest", worst.amount / (gyro ? kDegree : 1.0),
+                gyro ? "deg/s" : "m/s^2");
+  std::fprintf(stderr, "warning: %s moves from %s of its time (%s): the figures are of noise and motion together\n",
+               path.c_str(), where.c_str(), text);
 }
 
 const char* channel_unit(int channel) {

@@ -4,6 +4,7 @@
 
 #include "apps/arguments.h"
 #include "inertial/allan/log_noise.h"
+#include "inertial/allan/motion_check.h"
 #include "inertial/imu_log.h"
 
 namespace canyon::apps {
@@ -17,6 +18,12 @@ void declare_imu_log(Arguments& arguments, ImuLogOptions& options);
 
 /// Reads the log; `live` as in ImuLogFormat.
 Result<inertial::ImuLog> read_log(const ImuLogOptions& options, bool live);
+
+/// Warns on stderr of units that look mistaken.
+void tell_doubts(const inertial::ImuLog& log);
+
+/// Warns on stderr where a log that ought to rest moves.
+void tell_motion(const std::string& path, const inertial::MotionFound& motion);
 
 /// "rad/s" or "m/s^2": of channel 0..5.
 const char* channel_unit(int channel);

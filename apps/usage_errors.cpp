@@ -12,11 +12,19 @@ namespace canyon::apps {
 
 namespace {
 
+/// The verbs inside one; CLI11 keeps its groups of options among them, which have no name.
+std::vector<const CLI::App*> subverbs_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* sub) { return !sub->get_name().empty(); });
+}
+
 std::vector<std::string> verbs_of(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(sub->get_name());
+  for (const CLI::App* sub : subverbs_of(app)) names.push_back(sub->get_name());
   return names;
+}
+
+std::vector<const CLI::App*> option_groups_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); });
 }
 
 std::string nearest_hint(const std::string& word, const std::vector<std::string>& known) {
@@ -33,7 +41,7 @@ Place place_of(const CLI::App& app, const std::vector<std::string>& arguments) {
   Place place{&app, 0};
   for (bool found = true; found && place.words < arguments.size();) {
     found = false;
-    for (const CLI::App* sub : place.app->get_subcommands([](const CLI::App*) { return true; })) {
+    for (const CLI::App* sub : subverbs_of(*place.app)) {
       if (sub->get_name() != arguments[place.words]) continue;
       place = {sub, place.words + 1};
       found = true;
@@ -51,7 +59,27 @@ std::vector<std::string> options_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const CLI::App* group : option_groups_of(app))
+    for (const std::string& name : options_of(*group)) names.push_back(name);
   return names;
+}
+
+/// A group of which exactly one option must be given, and none or several are.
+std::optional<Error> not_one_of_a_group(const CLI::App& verb) {
+  for (const CLI::App* group : option_groups_of(verb)) {
+    if (group->get_require_option_min() != 1 || group->get_require_option_max() != 1) continue;
+    std::vector<std::string> known, given;
+    for (const CLI::Option* option : group->get_options()) {
+      if (option == group->get_help_ptr()) continue;
+      known.push_back(option->get_name());
+      if (option->count() > 0) given.push_back(option->get_name());
+    }
+    if (given.size() == 1) continue;
+    return Error{.file = full_name(verb),
+                 .what = given.empty() ? "no " + group->get_group() + " given" : plain_list(given) + " together",
+                 .expected = "one of " + plain_list(known)};
+  }
+  return std::nullopt;
 }
 
 /// "a whole number from 0 to 1024" of CLI11's "INT:INT in [0 - 1024]".
@@ -97,7 +125,9 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error, const std::
   }
 
   const std::string message = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+  // What nobody knows is told before what is missing: it may be missing because it is misspelt.
+  const bool missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  if (missing || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     const std::vector<std::string> extras = app.remaining(true);
     for (const std::string& word : arguments) {
       if (std::find(extras.begin(), extras.end(), word) == extras.end()) continue;
@@ -117,6 +147,8 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error, const std::
       if (message.rfind(name + ":", 0) == 0 || message.rfind(name + " ", 0) == 0)
         return {.file = verb, .what = name + " has no value", .expected = "one"};
   }
+  if (missing && message.find('[') != std::string::npos)  // a list of options, one of which it is about
+    if (const auto wrong = not_one_of_a_group(*place.app)) return *wrong;
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
     return {.file = verb,
             .what = message.substr(0, message.find(' ')) + " is missing",

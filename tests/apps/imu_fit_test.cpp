@@ -136,5 +136,17 @@ TEST_F(ImuFitTest, MistakesAreOneLine) {
   expect_mistake("imu fit given.csv --positions", "given.csv: 1 resting positions, expected nine or more");
 }
 
+// 2026-11-22: groups of options were taken for verbs: "no verb given, expected one of".
+TEST_F(ImuFitTest, AMissingOrWrongMethodIsNamed) {
+  write("given.csv", log(10, false, 0.0, 0.0));
+  expect_mistake("imu fit given.csv",
+                 "canyon imu fit: no method given, expected one of --static, --positions, --truth\n");
+  expect_mistake("imu fit given.csv --static --positions",
+                 "canyon imu fit: --static, --positions together, expected one of --static, --positions, --truth\n");
+  expect_mistake("imu fit given.csv --statik", "canyon imu fit: no option \"--statik\", expected \"--static\"?\n");
+  expect_mistake("imu fit --static", "canyon imu fit: LOG is missing");
+  expect_mistake("imu", "canyon imu: no verb given, expected one of allan, fit, simulate, dead-reckon, paper\n");
+}
+
 }  // namespace
 }  // namespace canyon::apps
