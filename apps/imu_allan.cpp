@@ -36,6 +36,7 @@ struct Options {
 struct Analysis {
   inertial::ImuLog log;
   inertial::Sampling sampling;
+  inertial::MotionFound motion;  ///< of a log that ought to rest
   std::vector<ChannelNoise> channels;
   std::vector<std::string> kinds;                              ///< beside overlapping
   std::vector<std::vector<std::vector<DeviationPoint>>> more;  ///< [channel][kind]
@@ -66,6 +67,7 @@ Result<Analysis> analyse(const Options& options) {
   a.kinds.erase(std::remove(a.kinds.begin(), a.kinds.end(), "overlapping"), a.kinds.end());
   CANYON_TRY(a.log, read_log(options.log, true));
   a.sampling = inertial::sampling_of(a.log.t_s);
+  a.motion = inertial::find_motion(a.log);
   const double confidence = options.confidence_percent / 100.0;
   CANYON_TRY(a.channels,
              inertial::log_noise(a.log, a.sampling,
@@ -122,6 +124,16 @@ Json json_of(const Analysis& a, const Options& options) {
               {"jitter_s", a.sampling.jitter_s},
               {"gaps", a.sampling.segments.size() - 1},
               {"confidence", options.confidence_percent / 100.0}};
+  Json moves = Json::array();
+  for (const inertial::MovingInterval& m : a.motion.intervals)
+    moves.push_back({{"from_s", m.from_s},
+                     {"to_s", m.to_s},
+                     {"channel", kChannelNames[m.channel]},
+                     {"kind", m.shakes ? "scatter" : "mean"},
+                     {"amount", m.amount},
+                     {"unit", channel_unit(m.channel)}});
+  out["moving_share"] = a.motion.share;
+  out["moves"] = moves;
   Json axes = Json::object();
   for (std::size_t i = 0; i < a.channels.size(); ++i) {
     const ChannelNoise& c = a.channels[i];
@@ -265,6 +277,8 @@ void print_text(const Analysis& a, const Options& options) {
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
   CANYON_TRY(const Analysis a, analyse(options));
+  tell_doubts(a.log);
+  tell_motion(options.log.log, a.motion);
   if (!options.out.empty()) CANYON_TRY_STATUS(write_files(a, options));
   if (options.common.json)
     std::printf("%s\n", json_of(a, options).dump().c_str());

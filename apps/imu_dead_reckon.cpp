@@ -11,11 +11,16 @@
 #include "apps/json.h"
 #include "apps/usage_errors.h"
 #include "apps/verb.h"
+#include "core/config.h"
+#include "core/config_text.h"
 #include "core/files.h"
 #include "core/navigation_file.h"
 #include "core/parallel.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "fusion/dead_reckoning.h"
+#include "fusion/reference_track.h"
+#include "fusion/rounding_growth.h"
 #include "inertial/allan/deviation.h"
 #include "inertial/imu_log.h"
 #include "report/time_plot.h"
@@ -24,6 +29,8 @@ namespace canyon::apps {
 
 namespace {
 
+constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to stop
+
 struct Options {
   CommonOptions common;
   std::string imu, columns, truth, initial, at_rest, axes = "flu", gravity, out;
@@ -31,8 +38,6 @@ struct Options {
   double level_s = 10.0;
   bool force = false;
 };
-
-constexpr double kSameInstant_s = 1e-6;
 
 /// Whether the file begins with a number: then it has no header, and is taken for the KF-GINS text format.
 Result<bool> is_bare(const std::string& path) {
@@ -46,6 +51,15 @@ struct Recording {
   bool kf_gins = false;  ///< the text format
   std::size_t gaps = 0;
 };
+
+/// Stamps as instants: 292 years from the GPS epoch are what nanoseconds in 64 bits hold.
+Status check_stamps(const Options& options, const inertial::ImuLog& log, int week) {
+  const double most_s = 9.2e9 - kSecondsPerWeek * (week + 1);
+  if (std::max(std::abs(log.t_s.front()), std::abs(log.t_s.back())) < most_s) return Ok{};
+  char text[80];
+  std::snprintf(text, sizeof text, "stamps from %.6g to %.6g s", log.t_s.front(), log.t_s.back());
+  return Error{options.imu, 0, "", text, "seconds of the truth's GPS week"};
+}
 
 /// Increments over the interval that ends at each stamp, in forward-left-up; the first interval and those behind gaps
 /// are as long as usual. Stamps are seconds of `week`.
@@ -64,6 +78,8 @@ Result<Recording> read_imu(const Options& options, int week) {
     if (!log) return log.error();
     std::fprintf(stderr, "warning: %s\n", refused.str().c_str());
   }
+  for (const std::string& doubt : log->doubts) std::fprintf(stderr, "warning: %s\n", doubt.c_str());
+  CANYON_TRY_STATUS(check_stamps(options, *log, week));
   for (int c = 0; c < 6; ++c)
     if (log->channels[static_cast<std::size_t>(c)].empty())
       return Error{options.imu, 0, "", std::string("no column for ") + inertial::kChannelNames[c], "all six channels"};
@@ -73,6 +89,7 @@ Result<Recording> read_imu(const Options& options, int week) {
   out.gaps = sampling.segments.size() - 1;
   for (const inertial::Segment& segment : sampling.segments)
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
+      if (k % kSamplesPerLook == 0) throw_if_cancelled();
       const auto& c = log->channels;
       ImuSample s;
       s.t = GpsTime::from_week_sow(week, 0.0) + log->t_s[k];
@@ -93,38 +110,24 @@ fusion::NavState state_of(const NavigationRecord& record) {
 /// Where the integration starts and what it is compared with.
 struct Reference {
   fusion::NavState initial;
-  std::vector<fusion::NavState> truth;  ///< empty: none
+  std::vector<fusion::NavState> truth;  ///< the start and what is behind it; empty: none
   std::string gravity;                  ///< that the truth file states
 };
 
-/// The first reference state that falls on the edge of a sample; else the first edge within the reference.
+/// "12.000 to 34.000 s of the week" of the first; they go on past its end.
+std::string of_week(GpsTime first, GpsTime last) {
+  const GpsTime week = GpsTime::from_week_sow(first.week(), 0.0);
+  char text[80];
+  std::snprintf(text, sizeof text, "%.3f to %.3f s of the week", first - week, last - week);
+  return text;
+}
+
 Result<fusion::NavState> start_in_truth(const std::vector<fusion::NavState>& truth,
                                         const std::vector<ImuSample>& samples, const Options& options) {
-  std::vector<GpsTime> edges = {samples.front().t - samples.front().dt_s};
-  for (const ImuSample& s : samples) edges.push_back(s.t);
-  std::size_t next = 0;
-  for (const fusion::NavState& state : truth) {
-    while (next < edges.size() && edges[next] < state.t - kSameInstant_s) ++next;
-    if (next + 1 >= edges.size()) break;
-    if (edges[next] - state.t > kSameInstant_s) continue;
-    fusion::NavState start = state;
-    start.t = edges[next];
-    return start;
-  }
-  for (const GpsTime edge : edges) {
-    const auto behind = std::upper_bound(truth.begin(), truth.end(), edge,
-                                         [](GpsTime t, const fusion::NavState& state) { return t < state.t; });
-    if (behind != truth.begin() && behind != truth.end() && edge < edges.back())
-      return fusion::interpolate(*(behind - 1), *behind, edge);
-  }
-  const auto range = [&](GpsTime first, GpsTime last) {
-    const GpsTime week = GpsTime::from_week_sow(truth.front().t.week(), 0.0);
-    char text[80];
-    std::snprintf(text, sizeof text, "%.3f to %.3f s of the week", first - week, last - week);
-    return std::string(text);
-  };
-  return Error{options.truth, 0, "", "covers " + range(truth.front().t, truth.back().t),
-               "times from " + range(edges.front(), edges.back()) + ", as in " + options.imu};
+  if (const auto start = fusion::first_common_state(truth, samples)) return *start;
+  return Error{
+      options.truth, 0, "", "covers " + of_week(truth.front().t, truth.back().t),
+      "times from " + of_week(samples.front().t - samples.front().dt_s, samples.back().t) + ", as in " + options.imu};
 }
 
 Result<Reference> from_initial(const Options& options, const std::vector<ImuSample>& samples) {
@@ -174,30 +177,77 @@ struct Outcome {
   std::string gravity;
   std::vector<fusion::NavState> states;
   std::vector<fusion::NavError> errors;
-  fusion::NavErrorStatistics statistics;
+  fusion::HeldErrors held;
+  fusion::NavErrorStatistics statistics;  ///< of all errors
+  fusion::NavErrorStatistics held_ones;   ///< of those that hold
+
+  std::span<const fusion::NavError> held_errors() const { return std::span(errors).first(held.count); }
+  bool holds() const { return !held.until.has_value(); }
+  double since_start_s(GpsTime t) const { return t - states.front().t; }
 };
 
 Json vector_json(const Eigen::Vector3d& v) {
   return Json::array({or_null(v.x()), or_null(v.y()), or_null(v.z())});
 }
 
-Json summary_json(const Options& options, const Outcome& o) {
-  const auto& s = o.statistics;
+/// Why position and velocity are not given over the whole time.
+std::string rounding_reason(const Outcome& o) {
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "free inertial height is unstable, and what arithmetic rounds grows as e^(t / 570 s): from then on it "
+                "may be larger than the error that is asked for, at the end %.2g m",
+                o.held.rounding_m);
+  return text;
+}
+
+Json position_json(const fusion::NavErrorStatistics& s) {
   return Json{{"rms_3d_m", or_null(s.position_rms_m)},
               {"rms_e_m", or_null(s.position_rms_enu_m.x())},
               {"rms_n_m", or_null(s.position_rms_enu_m.y())},
               {"rms_u_m", or_null(s.position_rms_enu_m.z())},
               {"velocity_rms_m_s", vector_json(s.velocity_rms_enu_m_s)},
-              {"attitude_rms_deg", vector_json(s.attitude_rms_rad / kDegree)},
               {"final_error_m", or_null(s.final_error_m)},
-              {"final_horizontal_error_m", or_null(s.final_horizontal_m)},
-              {"integrator", options.integrator},
-              {"gravity", o.gravity},
-              {"samples", o.states.size() - 1},
-              {"gaps", o.recording.gaps},
-              {"compared", o.errors.empty() ? 0 : o.errors.size() - 1},
-              {"start_sow_s", o.states.front().t.sow_s()},
-              {"duration_s", o.states.back().t - o.states.front().t}};
+              {"final_horizontal_error_m", or_null(s.final_horizontal_m)}};
+}
+
+/// Times of the log that no reference state speaks for, before and behind those that are scored.
+struct Unscored {
+  double before_s = 0.0, behind_s = 0.0;
+};
+Unscored unscored(const Outcome& o) {
+  const ImuSample& first = o.recording.samples.front();
+  return {std::max(0.0, o.errors.front().t - (first.t - first.dt_s)),
+          std::max(0.0, o.recording.samples.back().t - o.errors.back().t)};
+}
+
+Json scored_json(const Outcome& o) {
+  if (o.errors.size() < 2) return nullptr;
+  const GpsTime week = GpsTime::from_week_sow(o.errors.front().t.week(), 0.0);
+  const Unscored left = unscored(o);
+  return Json{{"from_sow_s", o.errors.front().t - week},
+              {"to_sow_s", o.errors.back().t - week},
+              {"duration_s", o.errors.back().t - o.errors.front().t},
+              {"unscored_before_s", left.before_s},
+              {"unscored_behind_s", left.behind_s}};
+}
+
+Json summary_json(const Options& options, const Outcome& o) {
+  const fusion::NavErrorStatistics none = fusion::navigation_error_statistics({});
+  Json out = position_json(o.holds() ? o.statistics : none);
+  out["attitude_rms_deg"] = vector_json(o.statistics.attitude_rms_rad / kDegree);
+  out["holds_until_s"] = o.holds() ? Json(nullptr) : Json(o.since_start_s(*o.held.until));
+  out["reason"] = o.holds() ? Json(nullptr) : Json(rounding_reason(o));
+  out["rounding_m"] = or_null(o.held.rounding_m);
+  if (!o.holds()) out["held"] = position_json(o.held_ones);
+  out["integrator"] = options.integrator;
+  out["gravity"] = o.gravity;
+  out["samples"] = o.states.size() - 1;
+  out["gaps"] = o.recording.gaps;
+  out["compared"] = o.errors.empty() ? 0 : o.errors.size() - 1;
+  out["start_sow_s"] = o.states.front().t.sow_s();
+  out["duration_s"] = o.states.back().t - o.states.front().t;
+  out["scored"] = scored_json(o);
+  return out;
 }
 
 void append_row(std::string& out, const char* format, auto... values) {
@@ -210,10 +260,15 @@ std::string drift_csv(const Outcome& o) {
   std::string out =
       "t_s,error_e_m,error_n_m,error_u_m,error_ve_m_s,error_vn_m_s,error_vu_m_s,error_roll_deg,error_pitch_deg,"
       "error_yaw_deg\n";
-  for (const fusion::NavError& e : o.errors) {
+  for (std::size_t k = 0; k < o.errors.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
+    const fusion::NavError& e = o.errors[k];
     const Eigen::Vector3d p = e.position_enu_m, v = e.velocity_enu_m_s, a = e.attitude_rad / kDegree;
-    append_row(out, "%.9f,%.7f,%.7f,%.7f,", e.t - o.states.front().t, p.x(), p.y(), p.z());
-    if (v.allFinite()) {
+    const bool held = k < o.held.count;
+    append_row(out, "%.9f,", o.since_start_s(e.t));
+    out += held ? "" : ",,,";
+    if (held) append_row(out, "%.7f,%.7f,%.7f,", p.x(), p.y(), p.z());
+    if (held && v.allFinite()) {
       append_row(out, "%.9f,%.9f,%.9f,", v.x(), v.y(), v.z());
     } else {
       out += ",,,";
@@ -231,7 +286,9 @@ struct PlainIntegrals {
 
   explicit PlainIntegrals(const Outcome& o) {
     Eigen::Vector3d angle = Eigen::Vector3d::Zero();
-    for (const ImuSample& s : o.recording.samples) {
+    for (std::size_t k = 0; k < o.recording.samples.size(); ++k) {
+      if (k % kSamplesPerLook == 0) throw_if_cancelled();
+      const ImuSample& s = o.recording.samples[k];
       if (s.t <= o.states.front().t) continue;
       t_s.push_back(s.t - o.states.front().t);
       angle += s.dtheta_U / kDegree;
@@ -246,6 +303,7 @@ struct PlainIntegrals {
 std::string heading_csv(const Outcome& o, const PlainIntegrals& plain) {
   std::string out = "t_s,roll_deg,pitch_deg,heading_deg,angle_x_deg,angle_y_deg,angle_z_deg\n";
   for (std::size_t k = 0; k < plain.t_s.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
     const fusion::NavState& s = o.states[k + 1];
     const NedAttitude a = ned_attitude(geodetic_from_ecef(s.p_EU_E), s.R_EU);
     append_row(out, "%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", plain.t_s[k], a.roll_rad / kDegree, a.pitch_rad / kDegree,
@@ -267,12 +325,14 @@ std::string plot_svg(const Options& options, const Outcome& o, const PlainIntegr
   if (!o.errors.empty()) {
     TimePanel attitude{"Attitude error", "deg", {{"roll", {}, {}}, {"pitch", {}, {}}, {"yaw", {}, {}}}};
     TimePanel position{"Position error (as figure 7)", "m", {{"east", {}, {}}, {"north", {}, {}}, {"up", {}, {}}}};
-    for (const fusion::NavError& e : o.errors) {
+    for (std::size_t k = 0; k < o.errors.size(); ++k) {
+      if (k % kSamplesPerLook == 0) throw_if_cancelled();
+      const fusion::NavError& e = o.errors[k];
       for (int i = 0; i < 3; ++i) {
         const auto u = static_cast<std::size_t>(i);
-        for (TimePanel* panel : {&attitude, &position}) panel->curves[u].t_s.push_back(e.t - o.states.front().t);
+        for (TimePanel* panel : {&attitude, &position}) panel->curves[u].t_s.push_back(o.since_start_s(e.t));
         attitude.curves[u].y.push_back(e.attitude_rad[i] / kDegree);
-        position.curves[u].y.push_back(e.position_enu_m[i]);
+        position.curves[u].y.push_back(k < o.held.count ? e.position_enu_m[i] : kNaN);
       }
     }
     panels.push_back(attitude);
@@ -299,24 +359,42 @@ Status write_output(const Options& options, const Outcome& o) {
   return staged.commit();
 }
 
+void tell_scored(const Outcome& o) {
+  const Unscored left = unscored(o);
+  std::printf("  scored from %s at %zu instants", of_week(o.errors.front().t, o.errors.back().t).c_str(),
+              o.errors.size() - 1);
+  if (left.before_s > fusion::kSameInstant_s || left.behind_s > fusion::kSameInstant_s)
+    std::printf("; of the log %.3f s before and %.3f s behind are not", left.before_s, left.behind_s);
+  std::printf("\n");
+}
+
 void tell(const Options& options, const Outcome& o) {
-  const auto& s = o.statistics;
   std::printf("%s: %zu samples, %.3f s from %.3f s of the week; %s, gravity %s\n", options.imu.c_str(),
               o.states.size() - 1, o.states.back().t - o.states.front().t, o.states.front().t.sow_s(),
               options.integrator.c_str(), o.gravity.c_str());
   if (o.errors.size() < 2) {
     const Geodetic at = geodetic_from_ecef(o.states.back().p_EU_E);
     std::printf("  at the end: %.9f, %.9f deg, %.3f m\n", at.lat_rad / kDegree, at.lon_rad / kDegree, at.h_m);
+    if (!(o.held.rounding_m <= fusion::kReferenceTells_m))
+      std::printf("  of it rounding alone, which grows as e^(t / 570 s), may be %.2g m\n", o.held.rounding_m);
     return;
   }
+  tell_scored(o);
+  if (!o.holds())
+    std::printf("  position and velocity hold until %.6g s; %s. Up to there:\n", o.since_start_s(*o.held.until),
+                rounding_reason(o).c_str());
+  const auto& s = o.held_ones;
   const auto row = [](const char* what, const Eigen::Vector3d& v, const char* unit) {
     std::printf("  %-32s %12.6g %12.6g %12.6g %s\n", what, v.x(), v.y(), v.z(), unit);
   };
   row("position RMS, east north up", s.position_rms_enu_m, "m");
   row("velocity RMS, east north up", s.velocity_rms_enu_m_s, "m/s");
-  row("attitude RMS, roll pitch yaw", s.attitude_rms_rad / kDegree, "deg");
-  row("at the end, east north up", o.errors.back().position_enu_m, "m");
-  std::printf("  final error %.6g m, of it horizontal %.6g m\n", s.final_error_m, s.final_horizontal_m);
+  if (o.holds()) row("attitude RMS, roll pitch yaw", o.statistics.attitude_rms_rad / kDegree, "deg");
+  row(o.holds() ? "at the end, east north up" : "at that time, east north up", o.held_errors().back().position_enu_m,
+      "m");
+  std::printf("  %s error %.6g m, of it horizontal %.6g m\n", o.holds() ? "final" : "then", s.final_error_m,
+              s.final_horizontal_m);
+  if (!o.holds()) row("attitude RMS of all the time", o.statistics.attitude_rms_rad / kDegree, "deg");
 }
 
 Result<Reference> reference_of(const Options& options, const NavigationFile& truth,
@@ -325,10 +403,12 @@ Result<Reference> reference_of(const Options& options, const NavigationFile& tru
   if (!options.at_rest.empty()) return from_rest(options, samples);
   Reference out;
   out.gravity = truth.gravity;
-  for (const NavigationRecord& record : truth.records) out.truth.push_back(state_of(record));
-  CANYON_TRY(out.initial, start_in_truth(out.truth, samples, options));
+  std::vector<fusion::NavState> states;
+  for (const NavigationRecord& record : truth.records) states.push_back(state_of(record));
+  CANYON_TRY(out.initial, start_in_truth(states, samples, options));
   if (!out.initial.v_EU_E.allFinite())
     return Error{options.truth, 0, "", "has no velocity to start from", "columns vn,ve,vd"};
+  out.truth = fusion::reference_from(out.initial, states);
   return out;
 }
 
@@ -339,6 +419,16 @@ Status check_name(const std::string& option, const std::string& name, const std:
     list += (list.empty() ? "one of " : ", ") + one;
   }
   return Error{option, 0, "", "\"" + name + "\"", list};
+}
+
+/// The gravity that the truth file states must be one that we have.
+Status check_stated_gravity(const Options& options, const NavigationFile& truth) {
+  const std::vector<std::string> known = gravity_names();
+  if (truth.gravity.empty() || std::find(known.begin(), known.end(), truth.gravity) != known.end()) return Ok{};
+  const std::string nearest = nearest_word(truth.gravity, known);
+  return Error{
+      options.truth, truth.gravity_line, "# gravity", "unknown name \"" + truth.gravity + "\"",
+      "one of " + quoted_list(known) + ", or --gravity" + (nearest.empty() ? "" : "; nearest is \"" + nearest + "\"")};
 }
 
 Result<int> run(const Options& options) {
@@ -354,6 +444,7 @@ Result<int> run(const Options& options) {
   CANYON_TRY(o.recording, read_imu(options, truth.records.empty() ? 0 : truth.records.front().t.week()));
   CANYON_TRY(o.reference, reference_of(options, truth, o.recording.samples));
   CANYON_TRY_STATUS(check_axes(options, o.recording.samples, o.reference.initial));
+  if (options.gravity.empty()) CANYON_TRY_STATUS(check_stated_gravity(options, truth));
   o.gravity = !options.gravity.empty()       ? options.gravity
               : !o.reference.gravity.empty() ? o.reference.gravity
               : o.recording.kf_gins          ? "grs80_series"
@@ -361,7 +452,9 @@ Result<int> run(const Options& options) {
   const auto strapdown = fusion::make_strapdown(options.integrator, gravity_by_name(o.gravity));
   o.states = fusion::dead_reckon(o.recording.samples, o.reference.initial, *strapdown);
   o.errors = fusion::navigation_errors(o.states, o.reference.truth);
+  o.held = fusion::held_errors(o.states, o.errors);
   o.statistics = fusion::navigation_error_statistics(o.errors);
+  o.held_ones = fusion::navigation_error_statistics(o.held_errors());
   CANYON_TRY_STATUS(write_output(options, o));
   if (options.common.json)
     std::printf("%s\n", summary_json(options, o).dump().c_str());

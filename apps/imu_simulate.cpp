@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include <nlohmann/json.hpp>
 
@@ -44,6 +46,7 @@ void visit(FieldVisitor& f, LogConfig& c) {
 
 constexpr double kUsualDuration_s = 600.0;
 constexpr std::size_t kChunk = 256;               // samples
+constexpr std::size_t kSamplesPerLook = 4096;     // at whether the user wants to stop
 constexpr std::size_t kMostSamples = 10'000'000;  // 14 h at 200 Hz; truth, log and text are held in memory, 6 GB
 
 /// A TOML file (--path), then the other options, then each --set KEY=VALUE.
@@ -89,6 +92,7 @@ struct Simulation {
   std::string sensor, errors;
   double rate_hz = 0.0, duration_s = 0.0;
   std::vector<ImuSample> truth, measured;
+  inertial::IncrementAccuracy accuracy;  ///< of the least accurate true increment
 };
 
 Result<double> duration_of(const Options& options, const inertial::PlacedMotion& placed) {
@@ -99,6 +103,10 @@ Result<double> duration_of(const Options& options, const inertial::PlacedMotion&
   std::snprintf(text, sizeof text, "%g s", options.duration_s);
   std::snprintf(limit, sizeof limit, "at most %.9g s, the length of the trajectory", longest_s);
   return Error{"--duration", 0, "", text, limit};
+}
+
+inertial::IncrementAccuracy worse(const inertial::IncrementAccuracy& a, const inertial::IncrementAccuracy& b) {
+  return {std::max(a.dtheta_rad, b.dtheta_rad), std::max(a.dv_m_s, b.dv_m_s)};
 }
 
 Result<Simulation> simulate(const Options& options) {
@@ -123,16 +131,25 @@ Result<Simulation> simulate(const Options& options) {
   if (samples == 0) return Error{"--duration", 0, "", "shorter than one sample", "at least 1 / --rate"};
   s.truth.resize(samples);
   Progress progress("imu simulate", static_cast<double>(samples), !options.common.json);
+  std::vector<inertial::IncrementAccuracy> worst((samples - 1) / kChunk + 1);
   parallel_for(samples, kChunk, [&](std::size_t begin, std::size_t end) {
-    throw_if_cancelled();
+    inertial::IncrementAccuracy& of_chunk = worst[begin / kChunk];
     for (std::size_t k = begin; k < end; ++k) {
+      throw_if_cancelled();
+      inertial::IncrementAccuracy reached;
       s.truth[k] = inertial::motion_increments(s.motion, static_cast<double>(k) / s.rate_hz,
-                                               static_cast<double>(k + 1) / s.rate_hz);
+                                               static_cast<double>(k + 1) / s.rate_hz, &reached);
+      of_chunk = worse(of_chunk, reached);
     }
     progress.advance(static_cast<double>(end - begin));
   });
+  for (const inertial::IncrementAccuracy& of_chunk : worst) s.accuracy = worse(s.accuracy, of_chunk);
   s.measured = s.truth;
-  chain->corrupt_batch(0, s.measured);
+  for (std::size_t k = 0; k < samples; k += kSamplesPerLook) {
+    throw_if_cancelled();
+    chain->corrupt_batch(static_cast<std::int64_t>(k),
+                         std::span(s.measured).subspan(k, std::min(kSamplesPerLook, samples - k)));
+  }
   return s;
 }
 
@@ -167,6 +184,7 @@ constexpr const char* kRatesHeader = "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_
 std::string rates_csv(const Simulation& s) {
   std::string out = kRatesHeader;
   for (std::size_t k = 0; k < s.truth.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
     const ImuSample& m = s.measured[k];
     append_time(out, s, m.t);
     append_six(out, m.dtheta_U / s.truth[k].dt_s, m.dv_U / s.truth[k].dt_s, ',');
@@ -178,7 +196,9 @@ std::string rates_csv(const Simulation& s) {
 std::string kf_gins_text(const Simulation& s) {
   const Eigen::Vector3d frd(1.0, -1.0, -1.0);
   std::string out;
-  for (const ImuSample& m : s.measured) {
+  for (std::size_t k = 0; k < s.measured.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
+    const ImuSample& m = s.measured[k];
     append_time(out, s, m.t);
     append_six(out, frd.cwiseProduct(m.dtheta_U), frd.cwiseProduct(m.dv_U), ' ');
   }
@@ -189,6 +209,7 @@ std::string kf_gins_text(const Simulation& s) {
 std::string errors_csv(const Simulation& s) {
   std::string out = kRatesHeader;
   for (std::size_t k = 0; k < s.truth.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
     const ImuSample &m = s.measured[k], &t = s.truth[k];
     append_time(out, s, t.t);
     append_six(out, (m.dtheta_U - t.dtheta_U) / t.dt_s, (m.dv_U - t.dv_U) / t.dt_s, ',');
@@ -202,6 +223,7 @@ NavigationFile truth_file(const Simulation& s) {
   file.gravity = "wgs84";
   file.records.resize(s.truth.size() + 1);
   parallel_for(file.records.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    throw_if_cancelled();
     for (std::size_t k = begin; k < end; ++k) {
       const KinematicState imu = s.motion.imu_at(static_cast<double>(k) / s.rate_hz);
       file.records[k] = {k == 0 ? s.motion.start : s.truth[k - 1].t, s.motion.frame.X_EW() * imu.X_WB,
@@ -214,6 +236,7 @@ NavigationFile truth_file(const Simulation& s) {
 Json summary_json(const Options& options, const Simulation& s) {
   double speed_m_s = 0.0, rate_rad_s = 0.0, force_m_s2 = 0.0;
   for (std::size_t k = 0; k < s.truth.size(); ++k) {
+    if (k % kSamplesPerLook == 0) throw_if_cancelled();
     speed_m_s = std::max(speed_m_s, s.motion.motion->at(static_cast<double>(k) / s.rate_hz).v_WB_W.norm());
     rate_rad_s = std::max(rate_rad_s, s.truth[k].dtheta_U.norm() / s.truth[k].dt_s);
     force_m_s2 = std::max(force_m_s2, s.truth[k].dv_U.norm() / s.truth[k].dt_s);
@@ -234,6 +257,8 @@ Json summary_json(const Options& options, const Simulation& s) {
       {"speed_max_m_s", speed_m_s},
       {"rate_max_deg_s", rate_rad_s / kDegree},
       {"specific_force_max_m_s2", force_m_s2},
+      {"accuracy_rad", s.accuracy.dtheta_rad},
+      {"accuracy_m_s", s.accuracy.dv_m_s},
       {"origin", {{"lat_deg", origin.lat_rad / kDegree}, {"lon_deg", origin.lon_rad / kDegree}, {"h_m", origin.h_m}}},
       {"frame",
        "imu.csv, errors.csv: forward-left-up, means over the interval that ends at t_s; imu_kf_gins.txt: "
@@ -271,6 +296,7 @@ Result<int> run(const Options& options) {
               static_cast<long long>(options.seed));
   std::printf("  at most %.4g m/s, %.4g deg/s, %.4g m/s^2\n", summary["speed_max_m_s"].get<double>(),
               summary["rate_max_deg_s"].get<double>(), summary["specific_force_max_m_s2"].get<double>());
+  std::printf("  true increments within %.1g rad and %.1g m/s\n", s.accuracy.dtheta_rad, s.accuracy.dv_m_s);
   if (!options.out.empty()) std::printf("Written: %s\n", options.out.c_str());
   return 0;
 }

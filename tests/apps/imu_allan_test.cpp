@@ -78,5 +78,51 @@ TEST_F(ImuAllanTest, MistakesAreOneLine) {
   expect_mistake("imu allan given.csv --kind mtie", "--kind: \"mtie\" is none, expected of overlapping, modified, ");
 }
 
+// 2026-11-22: a log that moves gave figures of its motion as those of its noise, without a word.
+TEST_F(ImuAllanTest, ALogThatMovesIsWarnedOf) {
+  write("given.csv", resting(6000));
+  ASSERT_EQ(canyon("imu allan given.csv --json"), 0) << read("stderr");
+  EXPECT_EQ(read("stderr"), "");
+  auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_TRUE(json["moves"].empty());
+  EXPECT_EQ(json["moving_share"], 0.0);
+  // Taken in hand for five seconds.
+  std::string handled = resting(6000);
+  std::size_t at = 0;
+  std::string out;
+  for (int row = 0; at < handled.size(); ++row) {
+    const std::size_t next = handled.find('\n', at);
+    std::string line = handled.substr(at, next - at);
+    if (row >= 2001 && row < 2501) {
+      const std::size_t first = line.find(','), second = line.find(',', first + 1);
+      line.replace(first + 1, second - first - 1, "0.2");
+    }
+    out += line + "\n";
+    at = next + 1;
+  }
+  write("given.csv", out);
+  ASSERT_EQ(canyon("imu allan given.csv --json"), 0) << read("stderr");
+  EXPECT_THAT(read("stderr"),
+              HasSubstr("warning: given.csv moves from 20 to 24.99 s of its time (gx differs from rest by "
+                        "11.5 deg/s): the figures are of noise and motion together\n"));
+  json = nlohmann::json::parse(read("stdout"));
+  ASSERT_EQ(json["moves"].size(), 1U);
+  EXPECT_EQ(json["moves"][0]["channel"], "gx");
+  EXPECT_NEAR(json["moves"][0]["from_s"].get<double>(), 20.0, 1e-9);
+  EXPECT_NEAR(json["moving_share"].get<double>(), 5.0 / 60.0, 1e-9);
+  ASSERT_EQ(canyon("imu fit given.csv --static"), 0) << read("stderr");
+  EXPECT_THAT(read("stderr"), HasSubstr("warning: given.csv moves from 20 to 24.99 s"));
+  // Of motions, evenly fast ones too.
+  for (const char* path : {"figure_eight", "circle", "coning"}) {
+    ASSERT_EQ(
+        canyon(std::string("imu simulate --errors white_only --duration 60 --rate 100 --out given_log.csv --path ") +
+               path + " --force"),
+        0)
+        << read("stderr");
+    EXPECT_EQ(canyon("imu allan given_log.csv"), 0) << path;
+    EXPECT_THAT(read("stderr"), HasSubstr("warning: given_log.csv moves from ")) << path;
+  }
+}
+
 }  // namespace
 }  // namespace canyon::apps

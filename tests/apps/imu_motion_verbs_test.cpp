@@ -268,5 +268,164 @@ TEST_F(ImuMotionVerbsTest, IdealLogOfARealDrive) {
   EXPECT_LT(drift["final_error_m"].get<double>(), 8.2e-3);
 }
 
+// 2026-11-22: the quadrature's tolerance was absolute and below what rounding leaves of fast and far motions: the
+// panels were halved without end. Neither took less than ten minutes.
+TEST_F(ImuMotionVerbsTest, FastAndFarMotionsEndAndSayTheirAccuracy) {
+  const auto fast = json_of(
+      "imu simulate --path circle --set radius_m=0.001 --set speed_m_s=100 --errors none --duration 2 --out fast.csv");
+  EXPECT_EQ(fast["samples"], 400);
+  // 1e7 m/s^2 for 5 ms: 50 epsilons of two such terms are 1.1e-9 m/s.
+  EXPECT_GT(fast["accuracy_m_s"].get<double>(), 1e-12);
+  EXPECT_LT(fast["accuracy_m_s"].get<double>(), 2.0 * 2.0 * 1e7 * 0.005 * 50.0 * 2.3e-16);
+  EXPECT_LT(fast["accuracy_rad"].get<double>(), 2.0 * 500.0 * 50.0 * 2.3e-16);
+  std::string tum;
+  for (int k = 0; k < 20; ++k)
+    tum += std::to_string(k) + (k == 9 ? " 1e9" : " " + std::to_string(2 * k)) + " 0 0 0 0 0 1\n";
+  write("given.tum", tum);
+  const auto far = json_of("imu simulate --trajectory given.tum --errors none --out far.csv");
+  EXPECT_EQ(far["samples"], 3800);
+  const auto usual = json_of("imu simulate --path circle --errors none --duration 2 --out usual.csv");
+  EXPECT_LE(usual["accuracy_m_s"].get<double>(), 1e-12);
+  EXPECT_LE(usual["accuracy_rad"].get<double>(), 1e-12);
+}
+
+// 2026-11-22: what was no number of a place, a gravity model or an instant ended in the message of a failed check.
+TEST_F(ImuMotionVerbsTest, ImpossibleTrajectoriesAreToldInOneLine) {
+  write("given.tum", "0 0 0 0 0 0 0 1\n1 1e308 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n");
+  expect_mistake("imu simulate --trajectory given.tum",
+                 "given.tum:2: \"1e308\" is out of range, expected metres from -1e9 to 1e9\n");
+  write("given.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,5,-1e300,0\n2,9,0,0\n");
+  expect_mistake("imu simulate --points given.csv", "given.csv:3: \"-1e300\" is out of range, expected metres");
+  write("given.nav", "0 0 45 7 1e308 0 0 0 0 0 0\n");
+  expect_mistake("imu simulate --trajectory given.nav", "given.nav:1: \"1e308\" is out of range, expected metres");
+  write("given.nav", "14000 9.1e9 45 7 200 0 0 0 0 0 0\n");
+  expect_mistake("imu simulate --trajectory given.nav",
+                 "given.nav:1: a time beyond the year 2272, expected a GPS week");
+  write("given.tum", "0 0 0 0 0 0 0 1\n1e-9 1e9 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n4e9 0 0 0 0 0 0 1\n");
+  EXPECT_NE(canyon("imu simulate --trajectory given.tum --duration 0.1 --errors none"), 1) << read("stderr");
+  ASSERT_EQ(canyon("imu simulate --at 45,7,200 --duration 2 --rate 50 --out given_still"), 0) << read("stderr");
+  std::string truth = read("given_still/truth.nav");
+  const std::size_t at = truth.find("# gravity wgs84");
+  ASSERT_NE(at, std::string::npos);
+  write("given.nav", truth.replace(at, 15, "# gravity wgs-1"));
+  expect_mistake("imu dead-reckon --imu given_still/imu.csv --truth given.nav",
+                 "given.nav:2: # gravity: unknown name \"wgs-1\", expected one of \"wgs84\", \"grs80_series\", or "
+                 "--gravity; nearest is \"wgs84\"\n");
+  EXPECT_EQ(canyon("imu dead-reckon --imu given_still/imu.csv --truth given.nav --gravity wgs84"), 0);
+  write("given.csv",
+        "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n1e300,0,0,0,0,0,9.8\n2e300,0,0,0,0,0,9.8\n");
+  expect_mistake("imu dead-reckon --imu given.csv --static 45,7,200,0",
+                 "given.csv:2: time 1e+300 s, expected seconds from -9.2e9 to 9.2e9");
+  write("given.csv", "t_s,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2\n0,0,0,0,0,0,9.8\n1,0,1e308,0,0,0,9.8\n");
+  expect_mistake("imu dead-reckon --imu given.csv --static 45,7,200,0",
+                 "given.csv:3: gy = 1e+308 rad/s is out of range, expected a rate or force below 1e12");
+}
+
+/// The lines of a truth file, each `step`th from `first` on, their stamps moved by a fraction of a sample.
+std::string thinned(const std::string& truth, std::size_t first, std::size_t step) {
+  std::string out;
+  std::size_t row = 0;
+  for (std::size_t at = 0, next; at < truth.size(); at = next + 1) {
+    next = truth.find('\n', at);
+    const bool comment = truth[at] == '#';
+    if (comment || (row >= first && (row - first) % step == 0)) out += truth.substr(at, next + 1 - at);
+    row += comment ? 0 : 1;
+  }
+  return out;
+}
+
+// 2026-11-22: the start waited for a state of the truth within 1 us of a sample, and what was before it was dropped
+// without a word: of 60 s on a circle 3 s were scored, 0.06 m told instead of 9.8 m.
+TEST_F(ImuMotionVerbsTest, TruthThatMissesTheSamplesIsScoredFromItsBeginning) {
+  const std::string circle = "imu simulate --path circle --sensor mpu6050 --errors full --duration 60 --seed 5 --rate ";
+  json_of(circle + "200 --out drive");
+  json_of("imu simulate --path circle --errors none --duration 60 --rate 333 --out truth");
+  const auto on_samples = json_of("imu dead-reckon --imu drive/imu.csv --truth drive/truth.nav");
+  // Truth at 333 Hz meets the samples at whole seconds only; thinned to 20.8 Hz from row 7 on it does every 16 s.
+  write("given.nav", thinned(read("truth/truth.nav"), 7, 16));
+  const auto off_samples = json_of("imu dead-reckon --imu drive/imu.csv --truth given.nav");
+  EXPECT_NEAR(off_samples["scored"]["from_sow_s"].get<double>(), 7.0 / 333.0, 1e-9);
+  EXPECT_GT(off_samples["scored"]["duration_s"].get<double>(), 59.9);
+  EXPECT_NEAR(off_samples["scored"]["unscored_before_s"].get<double>(), 7.0 / 333.0, 1e-4);  // the clock's error
+  EXPECT_NEAR(off_samples["final_error_m"].get<double>(), on_samples["final_error_m"].get<double>(),
+              0.01 * on_samples["final_error_m"].get<double>());  // 0.1 s less of drift that grows with t^2 to t^3
+  EXPECT_EQ(canyon("imu dead-reckon --imu drive/imu.csv --truth given.nav"), 0);
+  EXPECT_THAT(read("stdout"), HasSubstr("scored from 0.021 to "));
+  EXPECT_THAT(read("stdout"), HasSubstr("; of the log 0.021 s before and "));
+}
+
+/// Without errors, what interpolation of the truth and the share of the first sample leave: on the circle (4 m/s^2,
+/// 0.4 rad/s) below a millimetre after 60 s, from truth at 20 Hz that begins before the log or within one of its
+/// samples.
+TEST_F(ImuMotionVerbsTest, AStartBetweenStampsCostsNoAccuracy) {
+  json_of("imu simulate --path circle --errors none --duration 60 --rate 200 --out drive");
+  json_of("imu simulate --path circle --errors none --duration 60 --rate 333 --out truth");
+  write("given_within.nav", thinned(read("truth/truth.nav"), 5, 16));
+  write("given_before.nav", thinned(read("truth/truth.nav"), 1, 16));
+  std::string late = read("drive/imu.csv");
+  std::size_t at = late.find('\n') + 1;  // the log begins at 0.03 s, between two states of the truth
+  for (int row = 0; row < 6; ++row) late.erase(at, late.find('\n', at) + 1 - at);
+  write("given_late.csv", late);
+  for (const char* call :
+       {"--imu drive/imu.csv --truth given_within.nav", "--imu given_late.csv --truth given_before.nav"}) {
+    const auto drift = json_of(std::string("imu dead-reckon ") + call);
+    EXPECT_LT(drift["final_error_m"].get<double>(), 1e-3) << call;
+    EXPECT_GT(drift["scored"]["duration_s"].get<double>(), 59.9) << call;
+    EXPECT_LT(drift["scored"]["unscored_before_s"].get<double>(), 0.05) << call;
+  }
+}
+
+// 2026-11-22: after 24 hours without any error of the sensor 6.0e9 m (two_sample) and 5.5e6 m (euler) were told as the
+// integrators' drift: rounding, grown by e^(t / 570 s).
+TEST_F(ImuMotionVerbsTest, AFigureThatRoundingHasOvertakenIsNotTold) {
+  json_of("imu simulate --at 45,7,200 --errors none --duration 86400 --rate 10 --out day");
+  for (const char* integrator : {"two_sample", "euler"}) {
+    const auto drift = json_of(std::string("imu dead-reckon --imu day/imu.csv --truth day/truth.nav --integrator ") +
+                               integrator + " --out drift --force");
+    for (const char* figure :
+         {"rms_3d_m", "rms_e_m", "rms_n_m", "rms_u_m", "final_error_m", "final_horizontal_error_m"})
+      EXPECT_TRUE(drift[figure].is_null()) << integrator << " " << figure;
+    EXPECT_TRUE(drift["velocity_rms_m_s"][2].is_null()) << integrator;
+    EXPECT_LT(drift["attitude_rms_deg"][0].get<double>(), 1e-3) << integrator;
+    EXPECT_THAT(drift["reason"].get<std::string>(), HasSubstr("grows as e^(t / 570 s)")) << integrator;
+    const double until_s = drift["holds_until_s"].get<double>();
+    EXPECT_GT(until_s, 3600.0) << integrator;
+    EXPECT_LT(until_s, 6.0 * 3600.0) << integrator;
+    EXPECT_LT(drift["held"]["final_error_m"].get<double>(), integrator[0] == 'e' ? 1e7 : 0.01) << integrator;
+    EXPECT_EQ(canyon(std::string("imu dead-reckon --imu day/imu.csv --truth day/truth.nav --integrator ") + integrator),
+              0);
+    EXPECT_THAT(read("stdout"), HasSubstr("position and velocity hold until ")) << integrator;
+  }
+  EXPECT_THAT(read("drift/drift.csv"), HasSubstr(",,,,,,,0."));
+  // What is far above rounding is told, whatever the time: an accelerometer that is off by 1 mg, after two hours.
+  write_biased_sensor();
+  json_of("imu simulate --at 45,7,200 --sensor biased.toml --duration 7200 --rate 10 --seed 4 --out hours");
+  const auto real = json_of("imu dead-reckon --imu hours/imu.csv --truth hours/truth.nav");
+  EXPECT_GT(real["final_error_m"].get<double>(), 1e3);
+  EXPECT_TRUE(real["holds_until_s"].is_null());
+  EXPECT_TRUE(real["reason"].is_null());
+}
+
+// 2026-11-22: 157 rad/s in a log whose header names rad/s were taken for deg/s and refused, also in a log of our own.
+TEST_F(ImuMotionVerbsTest, UnitsThatTheHeaderNamesAreTaken) {
+  ASSERT_EQ(
+      canyon("imu simulate --path coning --set cone_deg=90 --set cone_hz=50 --errors none --duration 2 --rate 1000 "
+             "--out cone"),
+      0)
+      << read("stderr");
+  for (const char* log : {"imu.csv", "imu_kf_gins.txt"})
+    json_of(std::string("imu dead-reckon --imu cone/") + log + " --truth cone/truth.nav");
+  json_of("imu dead-reckon --imu cone/imu.csv --truth cone/truth.nav");
+  EXPECT_THAT(read("stderr"), HasSubstr("rad/s, taken as named: no gyroscope on the market goes so far"));
+  // 100 g on a centrifuge look like gravity in cm/s^2.
+  ASSERT_EQ(canyon("imu simulate --path circle --set radius_m=1 --set speed_m_s=31.3 --errors none --duration 1 --rate "
+                   "1000 --out spin"),
+            0)
+      << read("stderr");
+  json_of("imu dead-reckon --imu spin/imu.csv --truth spin/truth.nav");
+  EXPECT_THAT(read("stderr"),
+              HasSubstr("these are cm/s^2, expected _m_s2*0.01; taken as named, for the unit turns fast"));
+}
+
 }  // namespace
 }  // namespace canyon::apps
