@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/progress.h"
 
 namespace canyon::inertial {
 namespace {
@@ -31,8 +32,10 @@ double spread(const ImuLog& log, std::size_t first, std::size_t begin, std::size
 /// Which windows are quiet in three channels.
 std::vector<bool> quiet_windows(const ImuLog& log, std::size_t first, std::size_t length) {
   std::vector<double> spreads;
-  for (std::size_t begin = 0; begin + length <= log.size(); begin += length)
+  for (std::size_t begin = 0; begin + length <= log.size(); begin += length) {
+    throw_if_cancelled();
     spreads.push_back(spread(log, first, begin, begin + length));
+  }
   std::vector<double> sorted = spreads;
   std::sort(sorted.begin(), sorted.end());
   const double limit = kQuietFactor * sorted[sorted.size() / 10];
