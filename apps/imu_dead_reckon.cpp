@@ -161,11 +161,16 @@ Result<Reference> from_rest(const Options& options, const std::vector<ImuSample>
   return out;
 }
 
-/// Gravity must pull down in the first second; an axis convention mistaken turns it round.
+/// Gravity must pull down in the first second, or as long as the unit keeps its attitude by half a radian; an axis
+/// convention mistaken turns it round.
 Status check_axes(const Options& options, const std::vector<ImuSample>& samples, const fusion::NavState& initial) {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  for (const ImuSample& s : samples)
-    if (s.t > initial.t && s.t - initial.t < 1.0) force += s.dv_U;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), turned = force;
+  for (const ImuSample& s : samples) {
+    if (s.t <= initial.t) continue;
+    if (s.t - initial.t >= 1.0 || turned.norm() > 0.5) break;
+    force += s.dv_U;
+    turned += s.dtheta_U;
+  }
   if ((initial.R_EU * force).dot(gravity_E(initial.p_EU_E)) <= 0.0) return Ok{};
   return Error{options.imu, 0, "", "in the initial attitude the specific force points down",
                options.axes == "frd" ? "--axes flu" : "forward-left-up axes, or --axes frd"};
@@ -192,12 +197,13 @@ Json vector_json(const Eigen::Vector3d& v) {
 
 /// Why position and velocity are not given over the whole time.
 std::string rounding_reason(const Outcome& o) {
-  char text[240];
-  std::snprintf(text, sizeof text,
-                "free inertial height is unstable, and what arithmetic rounds grows as e^(t / 570 s): from then on it "
-                "may be larger than the error that is asked for, at the end %.2g m",
-                o.held.rounding_m);
-  return text;
+  std::string text =
+      "free inertial height is unstable, and what arithmetic rounds grows as e^(t / 570 s): from then on it may be "
+      "larger than the error that is asked for";
+  if (!std::isfinite(o.held.rounding_m)) return text;
+  char at_the_end[40];
+  std::snprintf(at_the_end, sizeof at_the_end, ", at the end %.2g m", o.held.rounding_m);
+  return text + at_the_end;
 }
 
 Json position_json(const fusion::NavErrorStatistics& s) {

@@ -95,7 +95,7 @@ TEST_F(ImuAllanTest, ALogThatMovesIsWarnedOf) {
     std::string line = handled.substr(at, next - at);
     if (row >= 2001 && row < 2501) {
       const std::size_t first = line.find(','), second = line.find(',', first + 1);
-      line.replace(first + 1, second - first - 1, "0.2");
+      line.replace(first + 1, second - first - 1, std::to_string(0.2 + 1e-4 * (row % 17 - 8)));
     }
     out += line + "\n";
     at = next + 1;
