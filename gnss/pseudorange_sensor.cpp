@@ -85,12 +85,19 @@ class PseudorangeSensor final : public GnssSensor {
     out.epoch.t = t + out.truth.receiver_clock_m / kSpeedOfLight;
 
     const std::vector<Sight> sights = satellites_above_mask(epoch);
-    const std::vector<SignalPaths> paths = trace(p_A_W, sights, scene);
+    const std::vector<SignalPaths> paths = trace(
+        p_A_W, sights, [](GnssSystem system) { return first_band(system); }, scene);
+    // Fields, and so which ways are worth following, depend on the carrier.
+    std::vector<SignalPaths> second_paths;
+    if (parts_.mode->dual_frequency())
+      second_paths = trace(
+          p_A_W, sights, [this](GnssSystem system) { return second_band(system, config_.second_frequency); }, scene);
     std::vector<CorrectionInput> inputs;
     std::vector<std::size_t> truth_of;  // index of the truth record of each observation
     for (std::size_t i = 0; i < sights.size(); ++i) {
       GnssObservationTruth truth = describe(epoch, sights[i], paths[i]);
-      truth.tracked = observe(epoch, sights[i], paths[i], truth, inputs);
+      truth.tracked =
+          observe(epoch, sights[i], paths[i], second_paths.empty() ? nullptr : &second_paths[i], truth, inputs);
       if (truth.tracked) truth_of.push_back(i);
       out.truth.satellites.push_back(truth);
     }
@@ -118,6 +125,8 @@ class PseudorangeSensor final : public GnssSensor {
     Transmission signal;
     SkyView view;
     Eigen::Vector3d direction_W;
+
+    double carrier_hz(int band) const { return gnss::carrier_hz(sv.system, band, signal.state.frequency_channel); }
   };
 
   /// What all satellites of an epoch share.
@@ -127,14 +136,6 @@ class PseudorangeSensor final : public GnssSensor {
     Eigen::Vector3d p_A_W, v_A_W;
     Horizon horizon;
     GnssOutput out;
-  };
-
-  /// Delays of one satellite and the two carriers.
-  struct Link {
-    RangeDelays acting;
-    double clock_s = 0.0;  ///< of the satellite, for this band
-    double wavelength_m = 0.0;
-    double ionosphere_m = 0.0;  ///< at this carrier
   };
 
   struct Measured {
@@ -172,12 +173,17 @@ class PseudorangeSensor final : public GnssSensor {
     return sights;
   }
 
-  std::vector<SignalPaths> trace(const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights,
+  template <class BandOf>
+  std::vector<SignalPaths> trace(const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights, const BandOf& band_of,
                                  const scene::SceneAt& scene) {
     std::vector<Eigen::Vector3d> directions_W;
-    for (const auto& s : sights) directions_W.push_back(s.direction_W);
+    std::vector<double> carriers_hz;
+    for (const auto& s : sights) {
+      directions_W.push_back(s.direction_W);
+      carriers_hz.push_back(s.carrier_hz(band_of(s.sv.system)));
+    }
     std::vector<SignalPaths> paths(sights.size());
-    parts_.paths->trace(p_A_W, directions_W, scene, paths, counters_);
+    parts_.paths->trace(p_A_W, {directions_W, carriers_hz}, scene, paths, counters_);
     return paths;
   }
 
@@ -220,11 +226,11 @@ class PseudorangeSensor final : public GnssSensor {
     return channel.multipath->receive(direct, echoes, wavelength_m);
   }
 
-  /// One signal of one satellite. `ionosphere_m` acts on this band's code.
+  /// One signal of one satellite. `acting` has the ionosphere of the first band.
   Measured measure_signal(const Epoch& epoch, const Sight& sight, const SignalPaths& paths, int band,
                           SignalStreams& streams, const GnssObservationTruth& truth, const RangeDelays& acting) const {
     const SatelliteState& state = sight.signal.state;
-    const double carrier = carrier_hz(sight.sv.system, band, state.frequency_channel);
+    const double carrier = sight.carrier_hz(band);
     const double wavelength_m = kSpeedOfLight / carrier;
     const Channel& own = channel(sight.sv.system, band);
     Measured m;
@@ -243,7 +249,7 @@ class PseudorangeSensor final : public GnssSensor {
     const double scale = config_.thermal_noise_scale, T = 1e-3 * config_.integration_ms;
     m.noise_m = scale * own.tracking->noise_m(r.cn0_dbhz) * streams.code.at(entity, epoch.index);
 
-    const double ratio = carrier_hz(sight.sv.system, first_band(sight.sv.system), state.frequency_channel) / carrier;
+    const double ratio = sight.carrier_hz(first_band(sight.sv.system)) / carrier;
     const double ionosphere_m = acting.ionosphere_m * ratio * ratio;
     const double common_m = sight.signal.range_m + epoch.out.truth.receiver_clock_m -
                             kSpeedOfLight * state.clock_of_band_s(band) + acting.troposphere_m + acting.ephemeris_m +
@@ -267,12 +273,13 @@ class PseudorangeSensor final : public GnssSensor {
   }
 
   /// Measures one satellite, completes its truth record and appends the observation. False, and nothing appended, if it
-  /// is not tracked; also in the millisecond in which a satellite's last ephemeris expires between the true time of
-  /// transmission and the satellite clock's reading.
-  bool observe(Epoch& epoch, const Sight& sight, const SignalPaths& paths, GnssObservationTruth& truth,
-               std::vector<CorrectionInput>& inputs) {
+  /// is not tracked at its first band; a second signal that is not is left out.
+  bool observe(Epoch& epoch, const Sight& sight, const SignalPaths& paths, const SignalPaths* second_paths,
+               GnssObservationTruth& truth, std::vector<CorrectionInput>& inputs) {
+    const int band = first_band(sight.sv.system);
+    const double from_l1 = kL1Hz / sight.carrier_hz(band);
     const RangeDelays raw{
-        parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
+        from_l1 * from_l1 * parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
         parts_.ephemeris_error->range_m(sight.sv, sight.signal.state, epoch.out.truth.p_A_E, epoch.t)};
     const RangeDelays acting = parts_.mode->acting(raw);
     truth.phase_centre_m = config_.antenna_phase_centre
@@ -280,18 +287,16 @@ class PseudorangeSensor final : public GnssSensor {
                                                                      (frame_.R_EW() * sight.direction_W))
                                : 0.0;
 
-    const int band = first_band(sight.sv.system);
     const Measured first = measure_signal(epoch, sight, paths, band, first_, truth, acting);
+    const int other_band = second_band(sight.sv.system, config_.second_frequency);
     Measured second;
-    GnssObservation o;
-    if (parts_.mode->dual_frequency()) {
-      o.second.band = second_band(sight.sv.system, config_.second_frequency);
-      second = measure_signal(epoch, sight, paths, o.second.band, second_, truth, acting);
-    }
-    if (!first.tracked || (parts_.mode->dual_frequency() && !second.tracked)) return false;
+    if (second_paths != nullptr)
+      second = measure_signal(epoch, sight, *second_paths, other_band, second_, truth, acting);
+    if (!first.tracked || (second_paths != nullptr && !second.tracked)) return false;
     if (!transmission_from_pseudorange(*parts_.constellation, sight.sv, epoch.out.epoch.t, first.pseudorange_m))
       return false;
 
+    GnssObservation o;
     o.sv = sight.sv;
     o.band = band;
     o.pseudorange_m = first.pseudorange_m;
@@ -307,19 +312,19 @@ class PseudorangeSensor final : public GnssSensor {
     truth.carrier_multipath_m = first.reception.carrier_error_m;
     truth.range_rate_multipath_m_s = first.reception.range_rate_error_m_s;
     truth.ambiguity_cycles = first.ambiguity_cycles;
-    CorrectionInput input{sight.sv, epoch.t, sight.view, {}, sight.signal.range_m, acting, {}};
+    CorrectionInput input{sight.sv, epoch.t, sight.view, {}, sight.signal.range_m, acting, from_l1 * from_l1, {}};
     if (second.tracked) {
+      o.second.band = other_band;
       o.second.pseudorange_m = second.pseudorange_m;
       o.second.doppler_hz = second.doppler_hz;
       o.second.carrier_phase_cycles = second.carrier_phase_cycles;
       o.second.cn0_dbhz = second.cn0_dbhz;
       o.second.slipped = second.slipped;
-      const int channel_number = sight.signal.state.frequency_channel;
-      const double ratio = carrier_hz(sight.sv.system, band, channel_number) /
-                           carrier_hz(sight.sv.system, o.second.band, channel_number);
-      input.two.gain = 1.0 / (ratio * ratio - 1.0);
-      input.two.noise_m = second.noise_m - first.noise_m;
-      input.two.multipath_m = second.multipath_m - first.multipath_m;
+      const double ratio = sight.carrier_hz(band) / sight.carrier_hz(other_band);
+      input.two.emplace();
+      input.two->gain = 1.0 / (ratio * ratio - 1.0);
+      input.two->noise_m = second.noise_m - first.noise_m;
+      input.two->multipath_m = second.multipath_m - first.multipath_m;
     }
     epoch.out.epoch.observations.push_back(o);
     inputs.push_back(input);

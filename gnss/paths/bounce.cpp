@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include "core/units.h"
-#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -21,17 +20,22 @@ Eigen::Vector3d across(const Eigen::Vector3d& way_W, const Eigen::Vector3d& norm
 }  // namespace
 
 Bounce bounce_off(const scene::Material& material, const Eigen::Vector3d& incoming_W, const Eigen::Vector3d& normal_W,
-                  double further_roughness_m) {
+                  double further_roughness_m, double carrier_hz) {
   Bounce b{incoming_W, normal_W, {}, 1.0};
   if (material.rf_absorbing) return b;
   const double cosine = std::clamp(-incoming_W.dot(normal_W), 0.0, 1.0), incidence_rad = std::acos(cosine);
-  const std::complex<double> permittivity = material.permittivity(kL1Hz);
+  const double wavelength_m = kSpeedOfLight / carrier_hz;
+  const std::complex<double> permittivity = material.permittivity(carrier_hz);
   b.coefficients = material.thickness_m > 0.0
-                       ? fresnel_slab(permittivity, material.thickness_m, kL1WavelengthM, incidence_rad)
+                       ? fresnel_slab(permittivity, material.thickness_m, wavelength_m, incidence_rad)
                        : fresnel(permittivity, incidence_rad);
   const double roughness_m = std::hypot(material.roughness_m, further_roughness_m);
-  if (roughness_m > 0.0) b.factor = roughness_factor(roughness_m, cosine, kL1WavelengthM);
+  if (roughness_m > 0.0) b.factor = roughness_factor(roughness_m, cosine, wavelength_m);
   return b;
+}
+
+double finite_facet_factor(double area_m2, double cos_incidence, double wavelength_m, double distance_m) {
+  return std::min(1.0, area_m2 * cos_incidence / (wavelength_m * distance_m));
 }
 
 CircularField reflected_field(std::span<const Bounce> bounces) {

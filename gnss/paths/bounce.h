@@ -18,10 +18,14 @@ struct Bounce {
   double factor = 1.0;  ///< further loss of field, both polarizations: roughness, size
 };
 
-/// At L1, off a material: its slab if it has a thickness, else a half-space; its own roughness and a further one,
-/// independent of it. Nothing comes back from an absorber.
+/// At that carrier, off a material: its slab if it has a thickness, else a half-space; its own roughness and a further
+/// one, independent of it. Nothing comes back from an absorber.
 Bounce bounce_off(const scene::Material& material, const Eigen::Vector3d& incoming_W, const Eigen::Vector3d& normal_W,
-                  double further_roughness_m);
+                  double further_roughness_m, double carrier_hz);
+
+/// What a facet of that area reflects at most of the field that an infinite one does: area x cos(incidence) /
+/// (wavelength x distance from the antenna along the way), physical optics; 1 from its first Fresnel zone on.
+double finite_facet_factor(double area_m2, double cos_incidence, double wavelength_m, double distance_m);
 
 /// Field of a right-hand circular wave of amplitude 1 after reflections, in the order of propagation.
 struct CircularField {

@@ -5,7 +5,7 @@ namespace {
 
 class Shadows final : public DiffractionModel {
  public:
-  void trace(const Eigen::Vector3d&, std::span<const Eigen::Vector3d>, const scene::SceneAt&, std::span<SignalPaths>,
+  void trace(const Eigen::Vector3d&, const PlaneWaves&, const scene::SceneAt&, std::span<SignalPaths>,
              GnssCounters&) const override {}
 };
 

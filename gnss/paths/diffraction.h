@@ -13,8 +13,8 @@ class DiffractionModel {
  public:
   virtual ~DiffractionModel() = default;
   /// `out` has line_of_sight; adds echoes (not sorted) and changes `direct`.
-  virtual void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W,
-                     const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) const = 0;
+  virtual void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
+                     std::span<SignalPaths> out, GnssCounters& counters) const = 0;
 };
 
 using MakeDiffractionModel = std::unique_ptr<DiffractionModel>(const PathParameters&);

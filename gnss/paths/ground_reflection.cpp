@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "gnss/paths/bounce.h"
-#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -61,16 +60,15 @@ std::optional<Found> reflection_point(const scene::Scene& scene, const Eigen::Ve
 
 }  // namespace
 
-void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_W,
-                            std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
-                            std::span<SignalPaths> out, GnssCounters& counters) {
+void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
+                            const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) {
   const auto under = scene.scene().ground(p_A_W.x(), p_A_W.y());
   if (!under || p_A_W.z() <= under->height_m) return;
   const double height_m = p_A_W.z() - under->height_m;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const Eigen::Vector3d& s = directions_W[i];
+    const Eigen::Vector3d& s = waves.direction_W(i);
     if (s.z() <= 0.0) continue;
-    const double radius_m = std::clamp(std::sqrt(kL1WavelengthM * height_m / s.z()), 0.3, 10.0);
+    const double radius_m = std::clamp(std::sqrt(waves.wavelength_m(i) * height_m / s.z()), 0.3, 10.0);
     const auto found = reflection_point(scene.scene(), p_A_W, s, radius_m);
     if (!found) continue;
     const Plane& plane = found->plane;
@@ -78,7 +76,7 @@ void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_
     const double cosine = std::min(plane.normal_W.dot(s), 1.0);
     const double excess_m = 2.0 * (plane.normal_W.dot(p_A_W) - plane.offset_m) * cosine;
     if (material.rf_absorbing || (out[i].line_of_sight && excess_m > p.cutoff_m)) continue;
-    const Bounce bounce = bounce_off(material, -s, plane.normal_W, p.roughness_m);
+    const Bounce bounce = bounce_off(material, -s, plane.normal_W, p.roughness_m, waves.carrier_hz(i));
     const CircularField field = reflected_field({&bounce, 1});
     const double weakest_db = out[i].line_of_sight ? p.weakest_db : p.weakest_nlos_db;
     if (std::norm(field.copolar) + std::norm(field.crosspolar) < std::pow(10.0, weakest_db / 10.0)) continue;

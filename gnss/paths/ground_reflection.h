@@ -11,8 +11,7 @@ namespace canyon::gnss {
 /// 10 m) around the reflection point, which is found by iteration; where it is not found in 30 steps (a rough edge, a
 /// slope that turns away) there is none. Both legs are tested for obstacles. No terrain under the antenna, or an
 /// antenna below it: no reflection.
-void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_W,
-                            std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
-                            std::span<SignalPaths> out, GnssCounters& counters);
+void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
+                            const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters);
 
 }  // namespace canyon::gnss

@@ -7,7 +7,6 @@
 #include "gnss/paths/beam.h"
 #include "gnss/paths/bounce.h"
 #include "gnss/paths/skyline.h"
-#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -123,13 +122,12 @@ struct Workspace {
 /// antenna mirrored at f1 ... fk; the way over them to satellite s is the straight line from image k towards s, folded.
 class Search {
  public:
-  Search(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W,
-         std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene, std::span<SignalPaths> out,
-         GnssCounters& counters, Workspace& work)
+  Search(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
+         const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters, Workspace& work)
       : order_(order),
         p_(p),
         antenna_W_(p_A_W),
-        directions_W_(directions_W),
+        waves_(waves),
         scene_(scene),
         facets_(scene.scene().facets().facets()),
         work_(work),
@@ -137,11 +135,11 @@ class Search {
         counters_(counters),
         weakest_(std::pow(10.0, p.weakest_db / 20.0)),
         weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)),
-        reach_per_area_(p.finite_facets ? 1.0 / (kL1WavelengthM * std::min(weakest_, weakest_nlos_))
+        reach_per_area_(p.finite_facets ? 1.0 / (waves.shortest_wavelength_m() * std::min(weakest_, weakest_nlos_))
                                         : std::numeric_limits<double>::infinity()) {}
 
   void run() {
-    work_.sky.fill(directions_W_);
+    work_.sky.fill(waves_.directions_W());
     choose_facets();
     for (const std::uint32_t id : work_.first) {
       sequence_[0] = id;
@@ -158,7 +156,7 @@ class Search {
       for (std::uint32_t i = 0; i < facets_.size(); ++i) ids[i] = i;
     } else {
       double lowest = 1.0;
-      for (const Eigen::Vector3d& s : directions_W_) lowest = std::min(lowest, s.z());
+      for (const Eigen::Vector3d& s : waves_.directions_W()) lowest = std::min(lowest, s.z());
       index.mirrors(antenna_W_, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_per_area_, p_.leaning_reach_m, ids);
       if (order_ > 1) add_near(index, ids);
     }
@@ -234,14 +232,14 @@ class Search {
   }
 
   void try_satellite(int count, std::size_t satellite) {
-    const Eigen::Vector3d& s = directions_W_[satellite];
+    const Eigen::Vector3d& s = waves_.direction_W(satellite);
     const auto k = static_cast<std::size_t>(count);
     const double excess_m = (antenna_W_ - images_W_[k - 1]).dot(s);
     const bool visible = out_[satellite].line_of_sight;
     if (visible && excess_m > p_.cutoff_m) return;
     std::array<Eigen::Vector3d, SignalPath::kMaxReflections> points_W;
     if (!fold(k, s, points_W)) return;
-    SignalPath path = field(k, s, points_W);
+    SignalPath path = field(k, satellite, points_W);
     const double amplitude2 = std::norm(path.copolar) + std::norm(path.crosspolar);
     const double least = visible ? weakest_ : weakest_nlos_;
     if (!(amplitude2 > 0.0) || amplitude2 < least * least) return;
@@ -280,19 +278,20 @@ class Search {
     return true;
   }
 
-  SignalPath field(std::size_t k, const Eigen::Vector3d& s,
+  SignalPath field(std::size_t k, std::size_t satellite,
                    const std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W) const {
     std::array<Bounce, SignalPath::kMaxReflections> bounces;  // in the order of propagation
-    Eigen::Vector3d incoming_W = -s;
+    const double wavelength_m = waves_.wavelength_m(satellite);
+    Eigen::Vector3d incoming_W = -waves_.direction_W(satellite);
     for (std::size_t j = k; j-- > 0;) {
       const scene::Facet& f = facets_[sequence_[j]];
       const scene::Material& material = scene_.scene().materials()[f.material];
       Bounce& b = bounces[k - 1 - j];
-      b = bounce_off(material, incoming_W, f.normal_W, p_.roughness_m);
+      b = bounce_off(material, incoming_W, f.normal_W, p_.roughness_m, waves_.carrier_hz(satellite));
       if (p_.finite_facets) {
         const double cos_incidence = std::clamp(-incoming_W.dot(f.normal_W), 0.0, 1.0);
         const double distance_m = (points_W[j] - images_W_[j]).norm();
-        b.factor *= std::min(1.0, f.area_m2 * cos_incidence / (kL1WavelengthM * distance_m));
+        b.factor *= finite_facet_factor(f.area_m2, cos_incidence, wavelength_m, distance_m);
       }
       incoming_W -= 2.0 * incoming_W.dot(f.normal_W) * f.normal_W;
     }
@@ -333,7 +332,7 @@ class Search {
   int order_;
   const PathParameters& p_;
   Eigen::Vector3d antenna_W_;
-  std::span<const Eigen::Vector3d> directions_W_;
+  const PlaneWaves& waves_;
   const scene::SceneAt& scene_;
   const std::vector<scene::Facet>& facets_;
   Workspace& work_;
@@ -347,12 +346,11 @@ class Search {
 
 }  // namespace
 
-void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W,
-                 std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene, std::span<SignalPaths> out,
-                 GnssCounters& counters) {
-  if (directions_W.empty()) return;
+void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
+                 const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) {
+  if (waves.empty()) return;
   thread_local Workspace work;
-  Search(order, p, p_A_W, directions_W, scene, out, counters, work).run();
+  Search(order, p, p_A_W, waves, scene, out, counters, work).run();
 }
 
 }  // namespace canyon::gnss

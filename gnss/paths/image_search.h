@@ -8,8 +8,7 @@ namespace canyon::gnss {
 
 /// Adds all ways with 1 to `order` (up to SignalPath::kMaxReflections) specular reflections to `out`, whose
 /// line_of_sight must be known; echoes are not sorted. See make_specular1.
-void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W,
-                 std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene, std::span<SignalPaths> out,
-                 GnssCounters& counters);
+void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
+                 const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters);
 
 }  // namespace canyon::gnss

@@ -6,7 +6,6 @@
 
 #include "gnss/paths/diffraction.h"
 #include "gnss/paths/knife_edge.h"
-#include "gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {
@@ -64,16 +63,18 @@ class KnifeEdges final : public DiffractionModel {
     while (std::abs(knife_edge_field(nu)) > weakest && nu < 30.0) nu += 0.01;
     nu = std::max(nu, kDeepest);
     weakest_ = weakest;
-    largest_detour_m_ = 0.25 * nu * nu * kL1WavelengthM;
+    largest_nu_ = nu;
   }
 
-  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
+    if (waves.empty()) return;
     const auto& edges = scene.scene().edges();
     double lowest = 1.0;
-    for (const Eigen::Vector3d& s : directions_W) lowest = std::min(lowest, s.z());
+    for (const Eigen::Vector3d& s : waves.directions_W()) lowest = std::min(lowest, s.z());
+    const double reach_m = largest_detour_m(waves.longest_wavelength_m());
     std::vector<std::uint32_t> candidates;
-    edges.shading(p_A_W, std::asin(std::clamp(lowest, 0.0, 1.0)), largest_detour_m_, candidates);
+    edges.shading(p_A_W, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_m, candidates);
     std::vector<double> nearest_nu(out.size(), kDeepest);
     for (const std::uint32_t i : candidates) {
       const scene::Edge& edge = edges.edges()[i];
@@ -82,28 +83,38 @@ class KnifeEdges final : public DiffractionModel {
       const double distance_m = to_middle_W.norm();
       // The whole edge, and how far a wave may bend there, lie in a cone around its middle.
       const double near_m = std::max(distance_m - half_m, 0.1);
-      const double wide = std::min(half_m / distance_m, 1.0), bent = std::sqrt(2.0 * largest_detour_m_ / near_m);
+      const double wide = std::min(half_m / distance_m, 1.0), bent = std::sqrt(2.0 * reach_m / near_m);
       const double angle_rad = std::asin(wide) + bent * 1.1;
       const double least = angle_rad < 3.0 ? std::cos(angle_rad) * distance_m : -distance_m;
       for (std::size_t k = 0; k < out.size(); ++k) {
-        const Eigen::Vector3d& s = directions_W[k];
+        const Eigen::Vector3d& s = waves.direction_W(k);
         if (to_middle_W.dot(s) < least) continue;
+        const double wavelength_m = waves.wavelength_m(k);
         const auto b = bend(edge, p_A_W, s);
-        if (!b || b->detour_m > largest_detour_m_ || b->shadow == out[k].line_of_sight) continue;
+        if (!b || b->detour_m > largest_detour_m(wavelength_m) || b->shadow == out[k].line_of_sight) continue;
         if (out[k].line_of_sight) {
-          const double nu = knife_edge_nu(b->detour_m, kL1WavelengthM);
+          const double nu = knife_edge_nu(b->detour_m, wavelength_m);
           if (nu < nearest_nu[k] && clear(edge, *b, p_A_W, s, scene, counters, nullptr) && solid(edge, *b, scene)) {
             nearest_nu[k] = nu;
             out[k].direct = knife_edge_field(-nu);
           }
         } else {
-          bent_way(edge, *b, p_A_W, s, scene, counters, out[k]);
+          bent_way(edge, *b, p_A_W, {s, wavelength_m}, scene, counters, out[k]);
         }
       }
     }
   }
 
  private:
+  /// One satellite's wave: unit vector towards it, and its length.
+  struct Wave {
+    const Eigen::Vector3d& s;
+    double length_m;
+  };
+
+  /// Beyond it the field is too weak to matter, and the lit side's ripples too small.
+  double largest_detour_m(double wavelength_m) const { return 0.25 * largest_nu_ * largest_nu_ * wavelength_m; }
+
   static Eigen::Vector3d outside(const scene::Edge& edge, const Bend& b) { return b.point_W + kOff_m * edge.outward_W; }
 
   /// Legs from the edge to the satellite and to p. With `behind`, only the second must be clear, and *behind says
@@ -129,9 +140,10 @@ class KnifeEdges final : public DiffractionModel {
            !scene.blocked(start_W, b.point_W + kProbe_m * (n2 - 0.5 * n1));
   }
 
-  void bent_way(const scene::Edge& edge, const Bend& b, const Eigen::Vector3d& p_W, const Eigen::Vector3d& s,
+  void bent_way(const scene::Edge& edge, const Bend& b, const Eigen::Vector3d& p_W, const Wave& wave,
                 const scene::SceneAt& scene, GnssCounters& counters, SignalPaths& out) const {
-    const std::complex<double> field = knife_edge_field(knife_edge_nu(b.detour_m, kL1WavelengthM));
+    const Eigen::Vector3d& s = wave.s;
+    const std::complex<double> field = knife_edge_field(knife_edge_nu(b.detour_m, wave.length_m));
     if (std::abs(field) < weakest_) return;
     bool open = false;
     if (!clear(edge, b, p_W, s, scene, counters, twice_ ? &open : nullptr)) return;
@@ -139,20 +151,20 @@ class KnifeEdges final : public DiffractionModel {
     if (!solid(edge, b, scene)) return;
     const Eigen::Vector3d at_W = outside(edge, b);
     if (!open) {
-      second_edge(edge, b, at_W, p_W, s, scene, counters, out);
+      second_edge(edge, b, at_W, p_W, wave, scene, counters, out);
       return;
     }
-    const std::complex<double> beside = twice_ ? lit_beside(b, at_W, p_W, scene, counters) : 1.0;
-    add(field * beside, b.detour_m, 1, at_W, p_W, scene.foliage_m(at_W, s), scene, out, counters);
+    const std::complex<double> beside = twice_ ? lit_beside(b, at_W, p_W, wave.length_m, scene, counters) : 1.0;
+    add(field * beside, b.detour_m, wave.length_m, 1, at_W, p_W, scene.foliage_m(at_W, s), scene, out, counters);
   }
 
   /// What the edge that comes nearest to the way from p to a bend, without cutting it off, makes of its field.
   std::complex<double> lit_beside(const Bend& far, const Eigen::Vector3d& far_W, const Eigen::Vector3d& p_W,
-                                  const scene::SceneAt& scene, GnssCounters& counters) const {
+                                  double wavelength_m, const scene::SceneAt& scene, GnssCounters& counters) const {
     const Eigen::Vector3d to_far_W = (far.point_W - p_W) / far.distance_m;
     const auto& edges = scene.scene().edges();
     std::vector<std::uint32_t> candidates;
-    edges.shading(p_W, std::asin(std::clamp(to_far_W.z(), 0.0, 1.0)), largest_detour_m_, candidates);
+    edges.shading(p_W, std::asin(std::clamp(to_far_W.z(), 0.0, 1.0)), largest_detour_m(wavelength_m), candidates);
     double nearest_nu = kDeepest;
     std::complex<double> field = 1.0;
     for (const std::uint32_t i : candidates) {
@@ -160,7 +172,7 @@ class KnifeEdges final : public DiffractionModel {
       const auto b = bend(edge, p_W, to_far_W);
       if (!b || b->shadow || b->distance_m > far.distance_m - kOff_m) continue;
       const double detour_m = (far.point_W - b->point_W).norm() + b->distance_m - far.distance_m;
-      const double nu = knife_edge_nu(std::max(detour_m, 0.0), kL1WavelengthM);
+      const double nu = knife_edge_nu(std::max(detour_m, 0.0), wavelength_m);
       if (nu >= nearest_nu || !solid(edge, *b, scene)) continue;
       const Eigen::Vector3d at_W = outside(edge, *b);
       counters.occlusion_rays += 2;
@@ -173,15 +185,17 @@ class KnifeEdges final : public DiffractionModel {
 
   /// The edge is itself in the shadow of another one.
   void second_edge(const scene::Edge& near, const Bend& first, const Eigen::Vector3d& first_W,
-                   const Eigen::Vector3d& p_W, const Eigen::Vector3d& s, const scene::SceneAt& scene,
-                   GnssCounters& counters, SignalPaths& out) const {
+                   const Eigen::Vector3d& p_W, const Wave& wave, const scene::SceneAt& scene, GnssCounters& counters,
+                   SignalPaths& out) const {
+    const Eigen::Vector3d& s = wave.s;
+    const double wavelength_m = wave.length_m, reach_m = largest_detour_m(wavelength_m);
     const auto& edges = scene.scene().edges();
     std::vector<std::uint32_t> candidates;
-    edges.shading(first_W, std::asin(std::clamp(s.z(), 0.0, 1.0)), largest_detour_m_, candidates);
+    edges.shading(first_W, std::asin(std::clamp(s.z(), 0.0, 1.0)), reach_m, candidates);
     for (const std::uint32_t i : candidates) {
       const scene::Edge& edge = edges.edges()[i];
       const auto b = bend(edge, first_W, s);
-      if (!b || !b->shadow || b->detour_m > largest_detour_m_ || b->distance_m < 0.1) continue;
+      if (!b || !b->shadow || b->detour_m > reach_m || b->distance_m < 0.1) continue;
       const Eigen::Vector3d second_W = outside(edge, *b);
       // The near edge sees the wave come from the far one. Where the way from there to p passes above it, that way is
       // an echo by itself, with the near edge beside it.
@@ -189,8 +203,8 @@ class KnifeEdges final : public DiffractionModel {
       const double whole_m = whole_W.norm();
       if (!in_shadow(near, p_W, first.point_W, whole_W / whole_m)) continue;
       const double detour_m = std::max((b->point_W - first.point_W).norm() + first.distance_m - whole_m, 0.0);
-      const std::complex<double> near_field = knife_edge_field(knife_edge_nu(detour_m, kL1WavelengthM));
-      const std::complex<double> far_field = knife_edge_field(knife_edge_nu(b->detour_m, kL1WavelengthM));
+      const std::complex<double> near_field = knife_edge_field(knife_edge_nu(detour_m, wavelength_m));
+      const std::complex<double> far_field = knife_edge_field(knife_edge_nu(b->detour_m, wavelength_m));
       std::complex<double> field = near_field * far_field;
       constexpr double kDeep = 0.17782794;  // 15 dB
       if (std::abs(near_field) < kDeep && std::abs(far_field) < kDeep)
@@ -200,13 +214,13 @@ class KnifeEdges final : public DiffractionModel {
       const Eigen::Vector3d leg_W = second_W - first_W;
       const double leg_m = leg_W.norm();
       const double foliage_m = scene.foliage_m(second_W, s) + scene.foliage_m(first_W, leg_W / leg_m, leg_m);
-      add(field, b->detour_m + detour_m, 2, first_W, p_W, foliage_m, scene, out, counters);
+      add(field, b->detour_m + detour_m, wavelength_m, 2, first_W, p_W, foliage_m, scene, out, counters);
     }
   }
 
-  static void add(std::complex<double> field, double detour_m, int edges, const Eigen::Vector3d& at_W,
-                  const Eigen::Vector3d& p_W, double foliage_m, const scene::SceneAt& scene, SignalPaths& out,
-                  GnssCounters& counters) {
+  static void add(std::complex<double> field, double detour_m, double wavelength_m, int edges,
+                  const Eigen::Vector3d& at_W, const Eigen::Vector3d& p_W, double foliage_m,
+                  const scene::SceneAt& scene, SignalPaths& out, GnssCounters& counters) {
     SignalPath path;
     const Eigen::Vector3d leg_W = at_W - p_W;
     const double leg_m = leg_W.norm();
@@ -218,7 +232,7 @@ class KnifeEdges final : public DiffractionModel {
         return;
     path.excess_m = detour_m;
     // The field's phase is relative to the straight way, an echo's to its own.
-    path.copolar = field * std::polar(1.0, 2.0 * kPi * detour_m / kL1WavelengthM);
+    path.copolar = field * std::polar(1.0, 2.0 * kPi * detour_m / wavelength_m);
     path.diffractions = edges;
     path.foliage_m = foliage_m + scene.foliage_m(p_W, path.arrival_W, leg_m);
     out.echoes.push_back(path);
@@ -227,7 +241,7 @@ class KnifeEdges final : public DiffractionModel {
 
   PathParameters p_;
   bool twice_;
-  double weakest_, largest_detour_m_;
+  double weakest_, largest_nu_;
 };
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include "core/units.h"
 #include "gnss/paths/bounce.h"
 #include "gnss/paths/path_model.h"
-#include "gnss/signal.h"
 #include "scene/triangle.h"
 
 namespace canyon::gnss {
@@ -40,25 +39,26 @@ class Launching final : public PathModel {
     CANYON_CHECK(p.launched_rays > 0, "launched_rays = ", p.launched_rays);
   }
 
-  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
-    visibility_->trace(p_A_W, directions_W, scene, out, counters);
-    if (directions_W.empty()) return;
+    visibility_->trace(p_A_W, waves, scene, out, counters);
+    if (waves.empty()) return;
     std::vector<std::map<Sequence, std::pair<double, Launched>>> caught(out.size());
     const double turn_rad = kPi * (3.0 - std::sqrt(5.0)), count = p_.launched_rays;
     // Each ray stands for 4 pi / count of solid angle; the capture cone is half as wide again, so that no gap is left.
     const double cone = std::cos(std::min(1.5 * std::sqrt(4.0 / count), 0.5 * kPi));
     for (int i = 0; i < p_.launched_rays; ++i) {
       const double z = 1.0 - 2.0 * (i + 0.5) / count, r = std::sqrt(1.0 - z * z);
-      launch(p_A_W, {r * std::cos(turn_rad * i), r * std::sin(turn_rad * i), z}, directions_W, cone, scene, caught,
-             counters);
+      launch(p_A_W, {r * std::cos(turn_rad * i), r * std::sin(turn_rad * i), z}, waves.directions_W(), cone, scene,
+             caught, counters);
     }
     for (std::size_t k = 0; k < out.size(); ++k) {
       // A wall that lies on a border of the keys' rounding stands under two of them: the nearer ray counts.
       std::vector<const std::pair<double, Launched>*> rays;
       for (const auto& [sequence, best] : caught[k]) rays.push_back(&best);
       std::stable_sort(rays.begin(), rays.end(), [](const auto* a, const auto* b) { return a->first > b->first; });
-      for (const auto* ray : rays) connect(p_A_W, directions_W[k], ray->second, scene, out[k], counters);
+      for (const auto* ray : rays)
+        connect(p_A_W, waves.direction_W(k), waves.carrier_hz(k), ray->second, scene, out[k], counters);
       std::stable_sort(out[k].echoes.begin(), out[k].echoes.end(),
                        [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
     }
@@ -117,8 +117,8 @@ class Launching final : public PathModel {
   }
 
   /// The satellite's end of the way: a ray from it to the last reflection point.
-  void connect(const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& s, const Launched& ray, const scene::SceneAt& scene,
-               SignalPaths& out, GnssCounters& counters) const {
+  void connect(const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& s, double carrier_hz, const Launched& ray,
+               const scene::SceneAt& scene, SignalPaths& out, GnssCounters& counters) const {
     const auto last = static_cast<std::size_t>(ray.bounces - 1);
     SignalPath path;
     path.excess_m = std::max(ray.length_m - (ray.points_W[last] - p_A_W).dot(s), 0.0);
@@ -133,12 +133,12 @@ class Launching final : public PathModel {
       const scene::Facet& f = scene.scene().facets().facets()[*facet];
       const Eigen::Vector3d from_W = j == 0 ? p_A_W : ray.points_W[j - 1];
       Bounce& b = bounces[last - j];
-      b = bounce_off(scene.scene().materials()[f.material], incoming_W, ray.normals_W[j], p_.roughness_m);
+      b = bounce_off(scene.scene().materials()[f.material], incoming_W, ray.normals_W[j], p_.roughness_m, carrier_hz);
       if (p_.finite_facets) {
         const double cosine = std::clamp(-incoming_W.dot(ray.normals_W[j]), 0.0, 1.0);
         const double before_m = j == 0 ? 0.0 : (ray.points_W[0] - p_A_W).norm();
         const double distance_m = before_m + (ray.points_W[j] - from_W).norm();
-        b.factor *= std::min(1.0, f.area_m2 * cosine / (kL1WavelengthM * distance_m));
+        b.factor *= finite_facet_factor(f.area_m2, cosine, kSpeedOfLight / carrier_hz, distance_m);
       }
       incoming_W -= 2.0 * incoming_W.dot(b.normal_W) * b.normal_W;
     }

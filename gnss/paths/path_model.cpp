@@ -7,8 +7,8 @@ namespace {
 
 class OpenSky final : public PathModel {
  public:
-  void trace(const Eigen::Vector3d&, std::span<const Eigen::Vector3d>, const scene::SceneAt&,
-             std::span<SignalPaths> out, GnssCounters&) const override {
+  void trace(const Eigen::Vector3d&, const PlaneWaves&, const scene::SceneAt&, std::span<SignalPaths> out,
+             GnssCounters&) const override {
     std::fill(out.begin(), out.end(), SignalPaths{});
   }
 };

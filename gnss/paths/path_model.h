@@ -11,6 +11,7 @@
 
 #include "gnss/model_table.h"
 #include "gnss/paths/fresnel.h"
+#include "gnss/paths/plane_waves.h"
 #include "gnss/sensor.h"
 
 namespace canyon::gnss {
@@ -48,10 +49,9 @@ struct SignalPaths {
 class PathModel {
  public:
   virtual ~PathModel() = default;
-  /// directions_W: unit, from the antenna to each satellite (the wave is plane over the scene). out.size() ==
-  /// directions.size().
-  virtual void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W,
-                     const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) const = 0;
+  /// The ways, and the fields at each wave's own carrier. out.size() == waves.size().
+  virtual void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
+                     std::span<SignalPaths> out, GnssCounters& counters) const = 0;
 };
 
 /// What is worth finding. The defaults suit a receiver that tracks 45 dB-Hz at the zenith down to 25 dB-Hz.
@@ -60,8 +60,8 @@ struct PathParameters {
   double weakest_db = -20.0;       ///< visible satellites: weaker fields (relative to free direct) do not matter
   double weakest_nlos_db = -20.0;  ///< blocked satellites: weaker fields are not tracked
   double roughness_m = 0.0;        ///< standard deviation of the surfaces' height, for the Rayleigh factor
-  /// A facet smaller than its first Fresnel zone reflects area x cos(incidence) / (wavelength x distance) of what an
-  /// infinite one does (physical optics). Off: every facet reflects like an infinite one.
+  /// A facet smaller than its first Fresnel zone reflects less than an infinite one (finite_facet_factor). Off: every
+  /// facet reflects like an infinite one.
   bool finite_facets = true;
   /// Ways with several reflections: within this distance of the antenna all facets are combined; beyond it, only those
   /// that FacetIndex::mirrors gives, which leaves out walls too low to be met by any way over vertical mirrors alone.

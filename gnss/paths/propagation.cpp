@@ -13,12 +13,12 @@ class Propagation final : public PathModel {
               const PathParameters& p)
       : paths_(std::move(paths)), diffraction_(std::move(diffraction)), ground_reflection_(ground_reflection), p_(p) {}
 
-  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
-    paths_->trace(p_A_W, directions_W, scene, out, counters);
-    if (directions_W.empty()) return;
-    if (ground_reflection_) add_ground_reflections(p_, p_A_W, directions_W, scene, out, counters);
-    diffraction_->trace(p_A_W, directions_W, scene, out, counters);
+    paths_->trace(p_A_W, waves, scene, out, counters);
+    if (waves.empty()) return;
+    if (ground_reflection_) add_ground_reflections(p_, p_A_W, waves, scene, out, counters);
+    diffraction_->trace(p_A_W, waves, scene, out, counters);
     for (auto& paths : out)
       std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
                        [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });

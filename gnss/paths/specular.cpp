@@ -10,10 +10,10 @@ class Specular final : public PathModel {
  public:
   Specular(int order, const PathParameters& p) : order_(order), p_(p), visibility_(make_visibility(p)) {}
 
-  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
-    visibility_->trace(p_A_W, directions_W, scene, out, counters);
-    find_images(order_, p_, p_A_W, directions_W, scene, out, counters);
+    visibility_->trace(p_A_W, waves, scene, out, counters);
+    find_images(order_, p_, p_A_W, waves, scene, out, counters);
     for (auto& paths : out)
       std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
                        [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });

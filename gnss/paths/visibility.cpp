@@ -5,14 +5,14 @@ namespace {
 
 class Visibility final : public PathModel {
  public:
-  void trace(const Eigen::Vector3d& p_A_W, std::span<const Eigen::Vector3d> directions_W, const scene::SceneAt& scene,
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
     for (std::size_t i = 0; i < out.size(); ++i) {
       SignalPaths& paths = out[i];
       paths.echoes.clear();
-      paths.line_of_sight = !scene.blocked_towards(p_A_W, directions_W[i]);
+      paths.line_of_sight = !scene.blocked_towards(p_A_W, waves.direction_W(i));
       paths.direct = paths.line_of_sight ? 1.0 : 0.0;
-      paths.foliage_m = paths.line_of_sight ? scene.foliage_m(p_A_W, directions_W[i]) : 0.0;
+      paths.foliage_m = paths.line_of_sight ? scene.foliage_m(p_A_W, waves.direction_W(i)) : 0.0;
     }
     counters.occlusion_rays += static_cast<std::int64_t>(out.size());
   }

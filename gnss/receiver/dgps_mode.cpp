@@ -37,7 +37,8 @@ class Dgps final : public ReceiverMode {
     RangeDelays residual;
     if (p_.ionosphere)
       residual.ionosphere_m = 1e-3 * p_.ionosphere_gradient_mm_per_km * p_.baseline_km *
-                              ionosphere_.at(in.sv.entity(), in.t) * single_layer_obliquity(elevation_rad);
+                              ionosphere_.at(in.sv.entity(), in.t) * single_layer_obliquity(elevation_rad) *
+                              in.ionosphere_from_l1;
     if (p_.troposphere)
       residual.troposphere_m = 1e-3 * p_.troposphere_gradient_mm_per_km * p_.baseline_km * troposphere_.at(0, in.t) *
                                niell_wet(elevation_rad, in.true_view.receiver.lat_rad);

@@ -6,18 +6,24 @@ namespace {
 /// Two frequencies: the ionosphere is what their pseudoranges differ by, I1 = (P2 - P1) / ((f1/f2)^2 - 1), so that the
 /// corrected range is the ionosphere-free combination (f1^2 P1 - f2^2 P2) / (f1^2 - f2^2). First order in 1/f^2; the
 /// higher orders are millimetres. Its price is in the same formula: noise and multipath of both signals come in, for
-/// equal noise by 2.98 (L1 and L2) or 2.59 (L1 and L5). Troposphere: Saastamoinen and Niell with a standard atmosphere
-/// at the receiver's height; orbit and satellite clock errors remain whole.
+/// equal noise by 2.98 (L1 and L2) or 2.59 (L1 and L5). Of a satellite whose second signal is lost the ionosphere is
+/// modelled as with one frequency: with half of the delay left over it is still worth its geometry. Troposphere:
+/// Saastamoinen and Niell with a standard atmosphere at the receiver's height; orbit and satellite clock errors remain
+/// whole.
 class Dual final : public ReceiverMode {
  public:
-  explicit Dual(const ReceiverModeParameters& p) : troposphere_(p.troposphere) {}
+  explicit Dual(const ReceiverModeParameters& p) : p_(p) {}
 
   Correction correction(const CorrectionInput& in) const override {
     Correction c;
-    c.noise_m = in.two.gain * in.two.noise_m;
-    c.multipath_m = in.two.gain * in.two.multipath_m;
-    c.modelled.ionosphere_m = in.two.gain * in.two.measured_m - c.noise_m - c.multipath_m;
-    if (troposphere_) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
+    if (in.two) {
+      c.noise_m = in.two->gain * in.two->noise_m;
+      c.multipath_m = in.two->gain * in.two->multipath_m;
+      c.modelled.ionosphere_m = in.two->gain * in.two->measured_m - c.noise_m - c.multipath_m;
+    } else {
+      c.modelled.ionosphere_m = modelled_ionosphere_m(p_, in);
+    }
+    if (p_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
     return c;
   }
   FixStatus status() const override { return FixStatus::kSingle; }
@@ -25,7 +31,7 @@ class Dual final : public ReceiverMode {
   bool corrects_atmosphere() const override { return true; }
 
  private:
-  bool troposphere_;
+  ReceiverModeParameters p_;
 };
 
 }  // namespace

@@ -26,9 +26,9 @@ std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, con
     CANYON_CHECK(view.has_value(), "no ephemeris for ", o.sv.str(), " that was just simulated at ", epoch.t.iso());
     o.clock_m = kSpeedOfLight * view->state.clock_of_band_s(o.band);
     o.v_E = view->state.v_E;
-    if (o.second.band > 0)
-      inputs[i].two.measured_m = o.second.pseudorange_m + kSpeedOfLight * view->state.clock_of_band_s(o.second.band) -
-                                 o.pseudorange_m - o.clock_m;
+    if (inputs[i].two)
+      inputs[i].two->measured_m = o.second.pseudorange_m + kSpeedOfLight * view->state.clock_of_band_s(o.second.band) -
+                                  o.pseudorange_m - o.clock_m;
     ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0, o.sv.system});
     const double carrier = carrier_hz(o.sv.system, o.band, view->state.frequency_channel);
     rates.push_back({view->state.p_E, view->state.v_E,
@@ -51,13 +51,16 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
     corrections[i] = receiver.mode.correction(inputs[i]);
     o.correction_m = corrections[i].total_m();
     // The difference of two frequencies tells the ionosphere, but not without their noise.
-    const bool two = receiver.mode.dual_frequency();
-    const double gain = inputs[i].two.gain;
+    const bool two = inputs[i].two.has_value(), lost = receiver.mode.dual_frequency() && !two;
+    const double gain = two ? inputs[i].two->gain : 0.0, modelled_m = corrections[i].modelled.ionosphere_m;
     o.sigma_m = receiver.weighting.sigma_m({.system = o.sv.system,
                                             .elevation_rad = view.elevation_rad,
                                             .cn0_dbhz = o.cn0_dbhz,
-                                            .ionosphere_m = two ? 0.0 : corrections[i].modelled.ionosphere_m,
+                                            .ionosphere_m = two || lost ? 0.0 : modelled_m,
                                             .code_factor = two ? std::hypot(1.0 + gain, gain) : 1.0});
+    // Among satellites that measure their ionosphere, one that models it must not count for more: models remove about
+    // half (IS-GPS-200N 20.3.3.5.2.5), so as much as is subtracted is left.
+    if (lost) o.sigma_m = std::hypot(o.sigma_m, modelled_m);
     ranges[i].range_m = o.corrected_m();
     ranges[i].sigma_m = o.sigma_m;
   }

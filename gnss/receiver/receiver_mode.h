@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/messages.h"
@@ -44,8 +45,9 @@ struct CorrectionInput {
   SkyView true_view;       ///< where the satellite really stands
   SkyView receivers_view;  ///< where the receiver believes it to stand
   double range_m = 0.0;
-  RangeDelays acting;  ///< what acts on the rover's range
-  FrequencyDifference two;
+  RangeDelays acting;                      ///< what acts on the rover's range, at its own carrier
+  double ionosphere_from_l1 = 1.0;         ///< delay there per delay at L1: (L1 / carrier)^2
+  std::optional<FrequencyDifference> two;  ///< none: only the first signal is tracked
 };
 
 /// Mode of operation: which errors act on the range, and which of them the receiver removes.
@@ -76,8 +78,11 @@ struct ReceiverModeParameters {
 using MakeReceiverMode = std::unique_ptr<ReceiverMode>(const ReceiverModeParameters&);
 std::span<const ModelRow<MakeReceiverMode>> receiver_modes();
 
-/// Names of what may be subtracted for the ionosphere in mode single.
+/// Names of what may be subtracted for the ionosphere with one frequency: in mode single, and in mode dual for a
+/// satellite whose second signal is lost.
 std::vector<std::string> ionosphere_corrections();
+/// What that correction subtracts, m.
+double modelled_ionosphere_m(const ReceiverModeParameters& p, const CorrectionInput& in);
 
 std::unique_ptr<ReceiverMode> make_single(const ReceiverModeParameters& p);
 std::unique_ptr<ReceiverMode> make_dual(const ReceiverModeParameters& p);

@@ -17,20 +17,12 @@ constexpr const char* kKlobuchar = "klobuchar";
 /// clock errors remain whole.
 class Single final : public ReceiverMode {
  public:
-  explicit Single(const ReceiverModeParameters& p) : p_(p) {
-    CANYON_CHECK(p_.ionosphere_correction == kNone || p_.ionosphere_correction == kHalf ||
-                     p_.ionosphere_correction == kKlobuchar,
-                 "ionosphere_correction = ", p_.ionosphere_correction);
-  }
+  explicit Single(const ReceiverModeParameters& p) : p_(p) {}
 
   Correction correction(const CorrectionInput& in) const override {
     Correction c;
-    const SkyView& v = in.receivers_view;
-    if (p_.ionosphere && p_.ionosphere_correction == kHalf) c.modelled.ionosphere_m = 0.5 * in.acting.ionosphere_m;
-    if (p_.ionosphere && p_.ionosphere_correction == kKlobuchar)
-      c.modelled.ionosphere_m =
-          klobuchar_delay_m(p_.klobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad, v.azimuth_rad, v.elevation_rad);
-    if (p_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(v);
+    c.modelled.ionosphere_m = modelled_ionosphere_m(p_, in);
+    if (p_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
     return c;
   }
   FixStatus status() const override { return FixStatus::kSingle; }
@@ -44,6 +36,16 @@ class Single final : public ReceiverMode {
 
 std::vector<std::string> ionosphere_corrections() {
   return {kNone, kHalf, kKlobuchar};
+}
+
+double modelled_ionosphere_m(const ReceiverModeParameters& p, const CorrectionInput& in) {
+  const std::string& model = p.ionosphere_correction;
+  CANYON_CHECK(model == kNone || model == kHalf || model == kKlobuchar, "ionosphere_correction = ", model);
+  const SkyView& v = in.receivers_view;
+  if (!p.ionosphere || model == kNone) return 0.0;
+  if (model == kHalf) return 0.5 * in.acting.ionosphere_m;
+  return in.ionosphere_from_l1 *
+         klobuchar_delay_m(p.klobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad, v.azimuth_rad, v.elevation_rad);
 }
 
 std::unique_ptr<ReceiverMode> make_single(const ReceiverModeParameters& p) {
