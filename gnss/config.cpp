@@ -43,7 +43,8 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   f.choice("ionosphere", c.ionosphere, model_names(ionosphere_models()), "ionospheric delay");
   f.number("vtec_tecu", c.vtec_tecu, {0.0, 500.0}, "vertical total electron content");
   f.choice("ionosphere_correction", c.ionosphere_correction, ionosphere_corrections(),
-           "mode single: what the receiver subtracts for the ionosphere");
+           "mode single, and of mode dual satellites whose second signal is lost: what the receiver subtracts for the "
+           "ionosphere");
   f.choice("troposphere", c.troposphere, model_names(troposphere_models()), "tropospheric delay");
   f.number("pressure_hpa", c.pressure_hpa, {100.0, 1100.0}, "air pressure at weather_height_m");
   f.number("temperature_c", c.temperature_c, {-80.0, 60.0}, "air temperature there");

@@ -292,7 +292,7 @@ class PseudorangeSensor final : public GnssSensor {
     Measured second;
     if (second_paths != nullptr)
       second = measure_signal(epoch, sight, *second_paths, other_band, second_, truth, acting);
-    if (!first.tracked || (second_paths != nullptr && !second.tracked)) return false;
+    if (!first.tracked) return false;
     if (!transmission_from_pseudorange(*parts_.constellation, sight.sv, epoch.out.epoch.t, first.pseudorange_m))
       return false;
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -114,6 +115,52 @@ TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
   // As good as it says: chi-square of three degrees, exceeded once in 10,000 times.
   const Eigen::Vector3d error = bridged.fix.p_A_E - truth_E();
   EXPECT_LT(error.dot(bridged.fix.covariance_E.ldlt().solve(error)), chi_square_threshold(1e-4, 3));
+}
+
+// 2026-11-22: a satellite whose second signal was lost was dropped as a whole.
+TEST_F(PseudorangeSensorTest, ASatelliteWhoseSecondSignalIsLostStays) {
+  GnssConfig c = open_sky("single");
+  c.paths = "specular1";
+  c.diffraction = "knife_edge";
+  c.multipath_rule = "correlator";
+  c.tracking_threshold_dbhz = 28.0;
+  c.thermal_noise_scale = 0.0;
+  c.receiver_clock = "none";
+  const auto single = make(c);
+  c.mode = "dual";
+  const auto dual = make(c);
+  int lost = 0, used = 0;
+  for (std::int64_t k = 0; k < 900; ++k) {
+    const GpsTime t = kStart + 30.0 * static_cast<double>(k);
+    const auto look = [&](GnssSensor& sensor) {
+      return sensor.measure(1000 * k, t, antenna_W, still, scene::SceneAt(*scene));
+    };
+    const GnssOutput one = look(*single), two = look(*dual);
+    // The first signals are the same ones.
+    ASSERT_EQ(one.epoch.observations.size(), two.epoch.observations.size()) << k;
+    for (std::size_t i = 0; i < two.epoch.observations.size(); ++i) {
+      const GnssObservation &a = one.epoch.observations[i], &b = two.epoch.observations[i];
+      EXPECT_EQ(a.sv, b.sv);
+      EXPECT_EQ(a.pseudorange_m, b.pseudorange_m);
+      if (b.second.band != 0) continue;
+      ++lost;
+      used += b.used ? 1 : 0;
+      EXPECT_TRUE(std::isnan(b.second.pseudorange_m));
+      // Its ionosphere is modelled as with one frequency, and what the model leaves is in its sigma.
+      const auto& truth = *std::find_if(two.truth.satellites.begin(), two.truth.satellites.end(),
+                                        [&](const auto& s) { return s.sv == b.sv; });
+      EXPECT_NEAR(truth.ionosphere_m, 0.5 * truth.ionosphere_delay_m, 1e-9);
+      EXPECT_GT(b.sigma_m, 0.5 * truth.ionosphere_delay_m);
+      // The truth record still accounts for the corrected range; light times to 1e-5 m.
+      EXPECT_NEAR(b.corrected_m(),
+                  truth.range_m + truth.multipath_m + truth.ionosphere_m + truth.troposphere_m + truth.ephemeris_m +
+                      truth.noise_m + truth.base_m + truth.phase_centre_m,
+                  1e-4)
+          << b.sv.str();
+    }
+  }
+  EXPECT_GT(lost, 20);
+  EXPECT_GT(used, 10);
 }
 
 TEST_F(PseudorangeSensorTest, AFilterNeedsAReceiverClock) {
