@@ -66,6 +66,8 @@ class PseudorangeSensor final : public GnssSensor {
     PvtFilterParameters p;
     p.acceleration_m_s2 = config_.estimator_acceleration_m_s2;
     p.start.max_gdop = config_.max_gdop;
+    p.start.fault_exclusion = config_.raim;
+    p.start.false_alarm = config_.raim_false_alarm;
     filter_.emplace(p);
   }
 

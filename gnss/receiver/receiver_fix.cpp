@@ -66,36 +66,47 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
   }
 }
 
-/// The elements that belong to satellites in the fix.
-template <class T>
-std::vector<T> of_used(const GnssEpoch& epoch, const std::vector<T>& all) {
-  std::vector<T> used;
+/// Velocity from the Dopplers of the satellites in the fix.
+void fill_velocity(const GnssEpoch& epoch, std::span<const RateMeasurement> all, double max_gdop, GnssFix& fix) {
+  constexpr double kOutlierSigmas = 5.0;
+  std::vector<RateMeasurement> used;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (epoch.observations[i].used) used.push_back(all[i]);
-  return used;
-}
-
-/// Velocity from the Dopplers of the satellites in the fix.
-void fill_velocity(std::span<const RateMeasurement> rates, double max_gdop, GnssFix& fix) {
-  constexpr double kOutlierSigmas = 5.0;
-  const VelocitySolution velocity = solve_velocity(rates, fix.p_A_E, {max_gdop, kOutlierSigmas});
+  const VelocitySolution velocity = solve_velocity(used, fix.p_A_E, {max_gdop, kOutlierSigmas});
   if (!velocity.ok) return;
   fix.v_A_E = velocity.v_E;
   fix.velocity_covariance_E = velocity.covariance_E;
 }
 
-/// An epoch without a position of its own, but with a filter that runs: whatever satellites there are.
-void bridge(PvtFilter& filter, FixStatus status, std::span<const RangeMeasurement> ranges,
-            std::span<const RateMeasurement> rates, const Eigen::Vector3d& at_E, GnssEpoch& epoch, GnssFix& fix) {
+/// The filter's fix, from all satellites that there are: what it expects tells a fault better than one epoch's
+/// residuals, which need redundancy. Says why where there is none.
+void filtered_fix(PvtFilter& filter, FixStatus status, std::span<const RangeMeasurement> ranges,
+                  std::span<const RateMeasurement> rates, const Eigen::Vector3d& at_E, GnssEpoch& epoch, GnssFix& fix) {
   const PvtFilter::Estimate estimate = filter.update(fix.t, ranges, rates, at_E);
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     epoch.observations[i].used = estimate.ranges_used[i];
     fix.satellites += estimate.ranges_used[i] ? 1 : 0;
   }
-  if (!estimate.ok || fix.satellites == 0) return;
+  if (!estimate.ok || fix.satellites == 0) {
+    if (!estimate.ok) fix.reason = estimate.reason;
+    if (fix.reason.empty()) fix.reason = "no satellite that the filter's prediction agrees with";
+    return;
+  }
   fix.status = status;
   fix.reason.clear();
   estimate.fill(fix);
+}
+
+/// The epoch by itself.
+void snapshot_fix(const PositionSolution& solution, FixStatus status, double max_gdop,
+                  std::span<const RateMeasurement> rates, GnssEpoch& epoch, GnssFix& fix) {
+  fix.status = status;
+  fix.p_A_E = solution.p_E;
+  fix.covariance_E = solution.covariance_E;
+  fix.clock_m = solution.clock_m;
+  fix.satellites = solution.satellites_used();
+  for (std::size_t i = 0; i < epoch.observations.size(); ++i) epoch.observations[i].used = solution.used[i];
+  fill_velocity(epoch, rates, max_gdop, fix);
 }
 
 }  // namespace
@@ -136,22 +147,10 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   fix.t = t;
   fix.dop = solution.dop;
   fix.reason = solution.reason;
-  if (!solution.ok) {
-    const bool refused = solution.integrity.status == IntegrityTest::Status::kFailed;
-    if (expected_E && !refused) bridge(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
-    return fix;
-  }
-  fix.status = receiver.mode.status();
-  fix.p_A_E = solution.p_E;
-  fix.covariance_E = solution.covariance_E;
-  fix.clock_m = solution.clock_m;
-  fix.satellites = solution.satellites_used();
-  for (std::size_t i = 0; i < observations.size(); ++i) observations[i].used = solution.used[i];
-  rates = of_used(epoch, rates);
   if (receiver.filter != nullptr)
-    receiver.filter->update(t, of_used(epoch, ranges), rates, fix.p_A_E).fill(fix);
-  else
-    fill_velocity(rates, receiver.max_gdop, fix);
+    filtered_fix(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
+  else if (solution.ok)
+    snapshot_fix(solution, receiver.mode.status(), receiver.max_gdop, rates, epoch, fix);
   return fix;
 }
 

@@ -26,8 +26,9 @@ struct ReceiverParts {
 /// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,
 /// clock, correction, sigma, used) and solves them. `inputs` runs parallel to epoch.observations; its receivers_view is
 /// filled in. `corrections` gets what was subtracted. The fix carries the time `t` and not the receiver clock's reading
-/// epoch.t: a receiver corrects its own time tag with the clock that it solves. A filter is given the satellites that
-/// the epoch's own solution kept; once it runs, it also makes a fix of the few satellites of an epoch that has none.
+/// epoch.t: a receiver corrects its own time tag with the clock that it solves. With a filter the fix is the filter's:
+/// it begins with a least squares of its own, and once it runs it is given all satellites, few or many, whatever the
+/// epoch's own solution made of them, and tests each against what it expects.
 GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
                     std::vector<Correction>& corrections);
 

@@ -116,6 +116,9 @@ class SinglePoint {
       PvtFilterParameters f;
       f.acceleration_m_s2 = config.acceleration_m_s2;
       f.start.max_gdop = config.max_gdop;
+      f.start.fault_exclusion = config.fault_exclusion;
+      f.start.false_alarm = config.false_alarm;
+      f.start.max_exclusions = static_cast<int>(config.max_exclusions);
       filter_.emplace(f);
     }
     if (file.header.approx_position_E) guess_E_ = *file.header.approx_position_E;
@@ -176,16 +179,18 @@ class SinglePoint {
     out.fix.reason = solution.reason;
     out.integrity = solution.integrity;
     if (!solution.ok) {
-      if (solution.integrity.status != IntegrityTest::Status::kFailed) bridge(candidates, out);
+      bridge(candidates, out);
       return out;
     }
     fill(solution, out);
-    const std::vector<RateMeasurement> rates = rates_of(candidates, out.epoch);
-    if (filter_)
-      filter(ranges, rates, out);
-    else if (const auto velocity = solve_velocity(rates, solution.p_E, {config_.max_gdop, kOutlierSigmas}); velocity.ok)
-      out.fix.v_A_E = velocity.v_E;
     guess_E_ = solution.p_E;
+    if (filter_) {
+      filter(candidates, ranges, solution.p_E, out);
+      return out;
+    }
+    const auto velocity =
+        solve_velocity(rates_of(candidates, out.epoch), solution.p_E, {config_.max_gdop, kOutlierSigmas});
+    if (velocity.ok) out.fix.v_A_E = velocity.v_E;
     return out;
   }
 
@@ -323,7 +328,7 @@ class SinglePoint {
     out.excluded = static_cast<int>(out.epoch.observations.size()) - fix.satellites;
   }
 
-  /// From the Dopplers of the satellites in the fix.
+  /// From the Dopplers of the satellites in use.
   std::vector<RateMeasurement> rates_of(const std::vector<Candidate>& candidates, const GnssEpoch& epoch) const {
     std::vector<RateMeasurement> rates;
     for (const auto& o : epoch.observations) {
@@ -340,32 +345,35 @@ class SinglePoint {
     return rates;
   }
 
-  /// Replaces the epoch's own solution by the filter's, which is given the ranges that it used.
-  void filter(const std::vector<RangeMeasurement>& ranges, const std::vector<RateMeasurement>& rates,
-              SinglePointEpoch& out) {
-    std::vector<RangeMeasurement> used;
-    for (std::size_t i = 0; i < ranges.size(); ++i)
-      if (out.epoch.observations[i].used) used.push_back(ranges[i]);
-    filter_->update(out.fix.t, used, rates, out.fix.p_A_E).fill(out.fix);
+  /// Puts the filter's solution in the place of the epoch's own, if there is one. The filter is given all ranges: what
+  /// it expects tells a fault better than one epoch's residuals.
+  void filter(const std::vector<Candidate>& candidates, const std::vector<RangeMeasurement>& ranges,
+              const Eigen::Vector3d& at_E, SinglePointEpoch& out) {
+    const std::vector<GnssObservation> own = out.epoch.observations;
+    for (auto& o : out.epoch.observations) o.used = true;
+    const PvtFilter::Estimate e = filter_->update(out.fix.t, ranges, rates_of(candidates, out.epoch), at_E);
+    const auto used = std::count(e.ranges_used.begin(), e.ranges_used.end(), true);
+    if (!e.ok || used == 0) {
+      out.epoch.observations = own;
+      return;
+    }
+    for (std::size_t i = 0; i < ranges.size(); ++i) out.epoch.observations[i].used = e.ranges_used[i];
+    out.fix.satellites = static_cast<int>(used);
+    out.excluded = static_cast<int>(ranges.size()) - out.fix.satellites;
+    out.fix.status = FixStatus::kSingle;
+    out.fix.reason.clear();
+    e.fill(out.fix);
+    guess_E_ = e.p_E;
   }
 
-  /// An epoch without a position of its own: a filter that runs makes use of the few satellites that there are.
+  /// An epoch without a position of its own, for want of satellites or because its ranges contradict one another: a
+  /// filter that runs makes use of what there is.
   void bridge(const std::vector<Candidate>& candidates, SinglePointEpoch& out) {
     const auto expected_E = filter_ ? filter_->predicted_p_E(out.fix.t) : std::nullopt;
     if (!expected_E) return;
     std::vector<RangeMeasurement> ranges;
     correct(candidates, out.fix.t, *expected_E, out.epoch, ranges);
-    for (auto& o : out.epoch.observations) o.used = true;
-    const PvtFilter::Estimate e = filter_->update(out.fix.t, ranges, rates_of(candidates, out.epoch), *expected_E);
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      out.epoch.observations[i].used = e.ranges_used[i];
-      out.fix.satellites += e.ranges_used[i] ? 1 : 0;
-    }
-    if (!e.ok || out.fix.satellites == 0) return;
-    out.fix.status = FixStatus::kSingle;
-    out.fix.reason.clear();
-    e.fill(out.fix);
-    guess_E_ = e.p_E;
+    filter(candidates, ranges, *expected_E, out);
   }
 
   const ObservationFile& file_;

@@ -363,6 +363,31 @@ TEST_F(SyntheticDay, TheFilterBridgesEpochsWithFewSatellites) {
   EXPECT_LT((filtered->epochs[13].fix.p_A_E - place_).norm(), 1.0);
 }
 
+// 2026-11-22: a failed RAIM test kept the filter from bridging, and it was given only what the snapshot had kept.
+TEST_F(SyntheticDay, TheFilterBridgesEpochsThatContradictThemselves) {
+  const auto f = file([](int k, GnssEpoch& e) {
+    if (k < 10 || k >= 13) return;
+    // One of five: the test fails, and none of five can be told to be wrong with four left.
+    e.observations.resize(5);
+    e.observations[2].pseudorange_m += 200.0;
+  });
+  auto c = plain();
+  c.systems = "G";
+  c.acceleration_m_s2 = 0.01;
+  c.fault_exclusion = "detect";
+  c.estimator = "kalman";
+  const auto filtered = solve_file(f, c);
+  ASSERT_TRUE(filtered.ok());
+  EXPECT_EQ(filtered->solved(), 40);
+  for (std::size_t k = 10; k < 13; ++k) {
+    const auto& e = filtered->epochs[k];
+    ASSERT_EQ(e.fix.status, FixStatus::kSingle) << e.fix.reason;
+    EXPECT_EQ(e.fix.satellites, 4);
+    EXPECT_FALSE(e.epoch.observations[2].used);
+    EXPECT_LT((e.fix.p_A_E - place_).norm(), 1.0);
+  }
+}
+
 /// What an SP3 file every 30 s says of these records.
 PreciseOrbits orbits_of(const NavigationData& navigation) {
   return *parse_sp3_file(testing::sp3_text(*make_broadcast(navigation), kSyntheticNoon - 1140.0, 30.0, 79), "s.sp3");
