@@ -165,7 +165,7 @@ class PseudorangeSensor final : public GnssSensor {
     const Eigen::Vector3d& p_A_E = epoch.out.truth.p_A_E;
     std::vector<Sight> sights;
     for (const SatelliteId sv : parts_.constellation->satellites()) {
-      const auto signal = transmission_to(*parts_.constellation, sv, epoch.t, p_A_E);
+      const auto signal = transmission_to(*parts_.constellation, sv, epoch.t, p_A_E, epoch.out.epoch.t);
       if (!signal) continue;
       const Eigen::Vector3d satellite_E = signal->p_E();
       const SkyView view = epoch.horizon.view(epoch.t, satellite_E);

@@ -25,8 +25,9 @@ class RecordBook {
     return out;
   }
 
-  std::optional<SatelliteState> state(SatelliteId sv, GpsTime t) const {
-    const Record* record = choice_ == EphemerisChoice::kNearestToe ? nearest(sv, t) : transmitted(sv, t);
+  /// At t, by the record that is chosen at `received`.
+  std::optional<SatelliteState> state(SatelliteId sv, GpsTime t, GpsTime received) const {
+    const Record* record = choice_ == EphemerisChoice::kNearestToe ? nearest(sv, received) : transmitted(sv, received);
     if (record == nullptr || !record->healthy()) return std::nullopt;
     return record->at(t);
   }
@@ -48,12 +49,13 @@ class RecordBook {
     for (auto it = not_before(sv, t - longest_s_); it != records_.end() && it->sv == sv; ++it) {
       const std::int64_t away_ns = std::abs(it->toe.ns - t.ns);
       if (it->toe > t && (away_ns > longest_s_ * 1e9 || (best != nullptr && away_ns > best_ns))) break;
-      // Galileo's toe lies before the transmission (OS SIS ICD 5.1.2): a later one cannot have been received, and is
-      // taken only for want of an earlier one.
-      if (it->sv.system == GnssSystem::kGalileo && it->toe > t && best != nullptr) break;
-      // At equal distance the earlier toe; at equal toe the last given.
-      if (!it->valid_at(t) || (best != nullptr && (away_ns > best_ns || (away_ns == best_ns && it->toe > best->toe))))
-        continue;
+      // Galileo's toe lies before the transmission (OS SIS ICD 5.1.2): one that is not past cannot have been received,
+      // and is taken only for want of an earlier one.
+      if (it->sv.system == GnssSystem::kGalileo && it->toe >= t && best != nullptr && best->toe < t) break;
+      // At equal distance the later toe: it is the one on the air. GPS and QZSS send a set from two hours before its
+      // toe until its toe (IS-GPS-200N 20.3.4.5), GLONASS one from 15 minutes before t_b to 15 after (ICD 4.4), and
+      // BeiDou's sets begin with their toe. At equal toe the last given.
+      if (!it->valid_at(t) || (best != nullptr && away_ns > best_ns)) continue;
       best = &*it;
       best_ns = away_ns;
     }
@@ -97,8 +99,9 @@ class Broadcast final : public Constellation {
 
   const std::vector<SatelliteId>& satellites() const override { return satellites_; }
 
-  std::optional<SatelliteState> state(SatelliteId sv, GpsTime t) const override {
-    return sv.system == GnssSystem::kGlonass ? glonass_.state(sv, t) : kepler_.state(sv, t);
+  std::optional<SatelliteState> state(SatelliteId sv, GpsTime t) const override { return state_received(sv, t, t); }
+  std::optional<SatelliteState> state_received(SatelliteId sv, GpsTime t, GpsTime received) const override {
+    return sv.system == GnssSystem::kGlonass ? glonass_.state(sv, t, received) : kepler_.state(sv, t, received);
   }
 
  private:

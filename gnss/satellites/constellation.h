@@ -39,6 +39,12 @@ class Constellation {
   virtual const std::vector<SatelliteId>& satellites() const = 0;
   /// State at GPS time t; nullopt where the satellite is unhealthy or has no ephemeris valid at t.
   virtual std::optional<SatelliteState> state(SatelliteId sv, GpsTime t) const = 0;
+  /// The same for a signal that left at t and arrives when the receiver's clock reads `received`: where a satellite has
+  /// several records, that reading chooses among them, for all satellites of an epoch alike, as a receiver's does.
+  virtual std::optional<SatelliteState> state_received(SatelliteId sv, GpsTime t, GpsTime received) const {
+    static_cast<void>(received);
+    return state(sv, t);
+  }
 };
 
 /// The 24 baseline slots of the GPS Standard Positioning Service Performance Standard (2001, table 3-1), A1..F4 =

@@ -19,6 +19,10 @@ class Merged final : public Constellation {
     const auto part = part_of_.find(sv);
     return part == part_of_.end() ? std::nullopt : parts_[part->second]->state(sv, t);
   }
+  std::optional<SatelliteState> state_received(SatelliteId sv, GpsTime t, GpsTime received) const override {
+    const auto part = part_of_.find(sv);
+    return part == part_of_.end() ? std::nullopt : parts_[part->second]->state_received(sv, t, received);
+  }
 
  private:
   std::vector<std::unique_ptr<Constellation>> parts_;

@@ -46,8 +46,10 @@ struct NavigationData {
 
 /// Which of a satellite's records is used at a time.
 enum class EphemerisChoice {
-  /// Toe nearest to t: the best orbit that the file knows, also for times before it was transmitted; but of Galileo's,
-  /// whose toe lies before the transmission, the last before t.
+  /// Toe nearest to t: the best orbit that the file knows, also for times before it was transmitted; of two equally
+  /// near
+  /// the later, which is then the one on the air. But of Galileo's, whose toe lies before the transmission, the last
+  /// before t.
   kNearestToe,
   kTransmitted  ///< the newest that had been transmitted by t: what a receiver had then
 };

@@ -21,13 +21,13 @@ Eigen::Vector3d Transmission::v_E() const {
 }
 
 std::optional<Transmission> transmission_to(const Constellation& constellation, SatelliteId sv, GpsTime t,
-                                            const Eigen::Vector3d& p_E) {
+                                            const Eigen::Vector3d& p_E, std::optional<GpsTime> receiver_time) {
   Transmission out;
   out.travel_s = 0.075;
   // The range rate is below 3e-6 of the speed of light, so every pass gains more than five digits.
   for (int pass = 0; pass < 3; ++pass) {
     out.t = t - out.travel_s;
-    const auto state = constellation.state(sv, out.t);
+    const auto state = constellation.state_received(sv, out.t, receiver_time.value_or(t));
     if (!state) return std::nullopt;
     out.state = *state;
     for (int turn = 0; turn < 2; ++turn) {
@@ -43,12 +43,12 @@ std::optional<ReceiverView> transmission_from_pseudorange(const Constellation& c
   const GpsTime satellite_reading = receiver_time - pseudorange_m / kSpeedOfLight;
   ReceiverView out{satellite_reading, {}};
   for (int pass = 0; pass < 2; ++pass) {
-    const auto state = constellation.state(sv, out.t);
+    const auto state = constellation.state_received(sv, out.t, receiver_time);
     if (!state) return std::nullopt;
     out.state = *state;
     out.t = satellite_reading - state->clock_s;
   }
-  const auto state = constellation.state(sv, out.t);
+  const auto state = constellation.state_received(sv, out.t, receiver_time);
   if (!state) return std::nullopt;
   out.state = *state;
   return out;
