@@ -83,6 +83,7 @@ Result<int> run(const Options& options) {
                                (config.epochs == 1 ? " epoch" : " epochs") + "; scene " + setup.scene_name +
                                ", receiver " + options.setup.fidelity;
   for (const Layer& layer : layers()) {
+    throw_if_cancelled();
     const Grid& grid = map.*layer.grid;
     const report::RasterMap picture{layer.title, subtitle, layer.unit, &grid, layer.edges, layer.bad_is_low};
     const std::string stem = staged.staging_path() + "/" + layer.file;

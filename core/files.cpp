@@ -12,6 +12,7 @@
 #include <zlib.h>
 
 #include "core/check.h"
+#include "core/progress.h"
 
 namespace canyon {
 namespace {
@@ -55,6 +56,7 @@ Result<std::string> gunzip(const std::string& path, const std::string& packed) {
     }
     stream.next_out = reinterpret_cast<Bytef*>(buffer.data());
     stream.avail_out = static_cast<uInt>(buffer.size());
+    throw_if_cancelled();
     status = inflate(&stream, Z_NO_FLUSH);
     text.append(buffer.data(), buffer.size() - stream.avail_out);
     if (text.size() > std::max(kAlwaysAllowed, kMostGrowth * packed.size()))
@@ -79,8 +81,10 @@ Result<std::string> read_text_file(const std::string& path) {
   if (!in) return file_error(path, "cannot be read (" + system_message(errno) + ")", "a readable file");
   std::string text;
   std::array<char, 1 << 16> buffer;
-  while (in.read(buffer.data(), buffer.size()) || in.gcount() > 0)
+  while (in.read(buffer.data(), buffer.size()) || in.gcount() > 0) {
+    throw_if_cancelled();
     text.append(buffer.data(), static_cast<std::size_t>(in.gcount()));
+  }
   if (in.bad()) return file_error(path, "cannot be read (" + system_message(errno) + ")", "a readable file");
   return text;
 }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/result.h"
 #include "core/time.h"
 
@@ -22,11 +23,15 @@ class LineReader {
       line = std::string_view(text_).substr(position_, end - position_);
       position_ = end + 1;
       ++number_;
+      if (number_ % 4096 == 0) throw_if_cancelled();
       while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
       if (!line.empty() && line.front() != '#') return true;
     }
     return false;
   }
+
+  /// Of the line last read, from 1.
+  int number() const { return number_; }
 
   Error error(std::string what, std::string expected) const {
     Error e;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/median.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "gnss/products/clock_datum.h"
 #include "gnss/satellites/system_constants.h"
@@ -55,6 +56,7 @@ OrbitErrors orbit_errors(const Constellation& broadcast, const PreciseOrbits& pr
   for (const auto& [sv, track] : precise.satellites) {
     if (options.systems.find(system_letter(sv.system)) == std::string::npos) continue;
     for (const PreciseSample& sample : track) {
+      throw_if_cancelled();
       const auto state = broadcast.state(sv, sample.t);
       if (!state) continue;
       const double clock_s = options.clocks != nullptr ? options.clocks->clock_s(sv, sample.t) : sample.clock_s;

@@ -38,6 +38,7 @@ void measure_cell(const GnssMapConfig& config, const scene::SceneAt& scene, gnss
   double visible = 0.0, horizontal = 0.0, up = 0.0;
   std::vector<double> gdop;
   for (int k = 0; k < config.epochs; ++k) {
+    throw_if_cancelled();
     const double t_s = k * config.step_s;
     const auto epoch =
         sensor.measure(gnss::epoch_index(config.gnss, t_s), config.start + t_s, p_A_W, Eigen::Vector3d::Zero(), scene);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/progress.h"
 #include "gnss/rinex/navigation_writer.h"
 #include "gnss/satellites/ephemeris_fit.h"
 
@@ -56,6 +57,7 @@ Result<std::vector<std::string>> differences(const Constellation& constellation,
   for (const SatelliteId sv : constellation.satellites()) {
     int simulated = 0, missing = 0;
     for (int k = 0; k <= steps; ++k) {
+      throw_if_cancelled();
       const GpsTime t = start + std::min(k * kStepS, end - start);
       const auto state = constellation.state(sv, t);
       if (!state) continue;

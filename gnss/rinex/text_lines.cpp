@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "core/progress.h"
+
 namespace canyon::gnss {
 namespace {
 
@@ -22,6 +24,8 @@ bool TextLines::next() {
   const std::size_t end = rest_.find('\n');
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
   ++number_;
+  // Every reader of ours comes by here.
+  if (number_ % 4096 == 0) throw_if_cancelled();
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/progress.h"
 #include "core/singular_values.h"
 #include "core/units.h"
 #include "gnss/satellites/system_constants.h"
@@ -127,6 +128,7 @@ Eigen::VectorXd position_errors(const Samples& samples, const Record& record) {
 template <class Vector, class MakeRecord>
 Vector fitted(const Samples& samples, Vector x, const Vector& scales, const MakeRecord& make_record) {
   for (int iteration = 0; iteration < 6; ++iteration) {
+    throw_if_cancelled();
     const Eigen::VectorXd residual = position_errors(samples, make_record(x));
     Eigen::MatrixXd jacobian(residual.size(), x.size());
     for (Eigen::Index j = 0; j < x.size(); ++j) {

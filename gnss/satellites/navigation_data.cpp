@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/progress.h"
+
 namespace canyon::gnss {
 namespace {
 
@@ -86,6 +88,7 @@ Status check_coverage(const NavigationData& data, const std::string& systems, Gp
   const double length_s = end - start;
   const int steps = static_cast<int>(std::ceil(length_s / kStepS));
   for (int k = 0; k <= steps; ++k) {
+    throw_if_cancelled();
     const GpsTime t = start + std::min(k * kStepS, length_s);
     const auto valid = std::count_if(constellation->satellites().begin(), constellation->satellites().end(),
                                      [&](SatelliteId sv) { return constellation->state(sv, t).has_value(); });

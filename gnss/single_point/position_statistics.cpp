@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/earth.h"
+#include "core/progress.h"
 
 namespace canyon::gnss {
 namespace {
@@ -25,6 +26,7 @@ PositionStatistics position_statistics(const std::vector<GnssFix>& fixes, const 
   Eigen::Vector3d velocity_square = Eigen::Vector3d::Zero();
   int velocities = 0;
   for (const GnssFix& fix : fixes) {
+    throw_if_cancelled();
     ++out.epochs;
     if (fix.status == FixStatus::kNone) continue;
     ++out.solved;

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/earth.h"
+#include "core/progress.h"
 
 namespace canyon::gnss {
 namespace {
@@ -26,6 +27,7 @@ std::string solution_csv(const SinglePointResult& result) {
       "gps_week,sow,x_m,y_m,z_m,status,satellites,gdop,pdop,hdop,vdop,tdop,excluded,sigma_e_m,sigma_n_m,sigma_u_m,"
       "clock_m,vx_m_s,vy_m_s,vz_m_s,reason\n";
   for (const auto& e : result.epochs) {
+    throw_if_cancelled();
     const GnssFix& fix = e.fix;
     const bool solved = fix.status != FixStatus::kNone;
     Eigen::Vector3d sigma_enu = Eigen::Vector3d::Constant(kNaN);
