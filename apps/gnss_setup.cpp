@@ -46,7 +46,7 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
     out.config.nav_files = options.nav;
   }
   out.seed = static_cast<std::uint64_t>(options.seed);
-  const auto start = GpsTime::parse(config.time.start, "time.start");
+  const auto start = mission::start_time(config);
   if (!start) return file.locate(start.error(), options.fidelity);
   out.start = *start;
   out.scene_name = open_sky ? "open sky" : built_in ? mission::kDefaultMission : options.scene;

@@ -88,7 +88,7 @@ Result<Setup> setup_of(const Options& options) {
   CANYON_TRY(const mission::MissionConfig config, file.resolve(options.fidelity));
   Setup out;
   out.lidar = config.lidar;
-  const auto start = GpsTime::parse(config.time.start, "time.start");
+  const auto start = mission::start_time(config);
   if (!start) return file.locate(start.error(), options.fidelity);
   if (const auto scanner = lidar::make_scanner(out.lidar, 1); !scanner)
     return file.locate(scanner.error(), options.fidelity);

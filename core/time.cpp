@@ -254,7 +254,8 @@ Result<GpsTime> GpsTime::parse(std::string_view text, std::string_view origin) {
   error.file = origin;
   error.what = "\"" + std::string(text) + "\" is not a time";
   error.expected =
-      "YYYY-MM-DDTHH:MM:SS (GPS time), the same with a trailing Z (UTC), or WEEK:SECONDS_OF_WEEK, from 1980-01-06 on";
+      "YYYY-MM-DDTHH:MM:SS (GPS time), the same with a trailing Z (UTC), or WEEK:SECONDS_OF_WEEK, from 1980-01-06 to " +
+      std::to_string(kLastYear) + "-12-31";
   return error;
 }
 

@@ -94,6 +94,9 @@ class SceneCache {
   std::map<std::string, std::shared_ptr<const scene::Scene>> scenes_;
 };
 
+/// [time] start; an Error for its key.
+Result<GpsTime> start_time(const MissionConfig& config);
+
 /// Reads every file that is named, builds the scene and checks what needs it: start and waypoints inside the scene and
 /// outside buildings, observed buildings known, rates that divide the IMU's, stops as long as asked for. Errors name
 /// the key; MissionFile::locate adds file and line.

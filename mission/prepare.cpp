@@ -81,16 +81,17 @@ Result<std::shared_ptr<const scene::Scene>> SceneCache::get(const scene::SceneCo
   return slot;
 }
 
+Result<GpsTime> start_time(const MissionConfig& config) {
+  const auto start = GpsTime::parse(config.time.start, "");
+  if (start) return *start;
+  Error error = start.error();
+  error.key = "time.start";
+  return error;
+}
+
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes) {
   PreparedMission mission;
-  auto start = GpsTime::parse(config.time.start, "");
-  if (!start) {
-    Error error = start.error();
-    error.key = "time.start";
-    error.file.clear();
-    return error;
-  }
-  mission.start = *start;
+  CANYON_TRY(mission.start, start_time(config));
   CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.gnss.rate_hz, "gnss"));
   CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.lidar.rate_hz, "lidar"));
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));

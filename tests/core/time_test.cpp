@@ -132,7 +132,7 @@ TEST(GpsTimeParse, MalformedTextIsAnErrorWordForWord) {
   EXPECT_EQ(bad.error().str(),
             "--start: \"yesterday\" is not a time, expected YYYY-MM-DDTHH:MM:SS (GPS time), the same with a trailing Z "
             "(UTC), or "
-            "WEEK:SECONDS_OF_WEEK, from 1980-01-06 on");
+            "WEEK:SECONDS_OF_WEEK, from 1980-01-06 to 2261-12-31");
   EXPECT_EQ(bad.error().exit_code, 2);
 }
 
