@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/progress.h"
+#include "gnss/antenna_height.h"
 #include "report/raster_map.h"
 #include "study/gnss_map.h"
 
@@ -70,6 +71,8 @@ Result<int> run(const Options& options) {
   config.step_s = options.step_s;
   config.cell_m = options.cell_m;
   config.height_m = options.height_m;
+  const double origin_m = setup.scene->frame().origin().h_m;
+  CANYON_TRY_STATUS(gnss::check_antenna_height(origin_m + options.height_m, {.file = "--scene, --height"}));
   const std::string out = options.setup.out.empty() ? "gnss-map" : options.setup.out;
   CANYON_TRY(auto staged, StagedDirectory::create(out, options.setup.force));
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/units.h"
+#include "gnss/antenna_height.h"
 #include "mission/mission_file.h"
 
 namespace canyon::apps {
@@ -83,7 +84,9 @@ Result<Geodetic> parse_place(const std::string& text, const std::string& option)
   if (std::abs(values[0]) > 90.0 || std::abs(values[1]) > 360.0)
     return Error{option, 0, "", "\"" + text + "\" is not on the Earth",
                  "latitude -90..90, longitude -180..360 degrees"};
-  return Geodetic{values[0] * kDegree, values[1] * kDegree, values[2]};
+  const Geodetic place{values[0] * kDegree, values[1] * kDegree, values[2]};
+  CANYON_TRY_STATUS(gnss::check_antenna_height(place.h_m, {.file = option}));
+  return place;
 }
 
 }  // namespace canyon::apps

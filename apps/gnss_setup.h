@@ -40,7 +40,8 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
 /// Exactly `count` numbers with commas between them.
 Result<std::vector<double>> parse_numbers(const std::string& text, std::size_t count, const std::string& option,
                                           const std::string& expected);
-/// "32.35,-90.88,61.5": degrees north, degrees east, ellipsoidal height in metres.
+/// "32.35,-90.88,61.5": degrees north, degrees east, ellipsoidal height in metres, which gnss::check_antenna_height()
+/// takes.
 Result<Geodetic> parse_place(const std::string& text, const std::string& option);
 
 }  // namespace canyon::apps

@@ -17,6 +17,7 @@
 #include "core/place_files.h"
 #include "core/progress.h"
 #include "core/units.h"
+#include "gnss/antenna_height.h"
 #include "gnss/nmea/nmea_writer.h"
 #include "gnss/rinex/navigation_writer.h"
 #include "gnss/rinex/observation_writer.h"
@@ -51,8 +52,31 @@ Result<PlacePath> antenna_path(const Options& options, const GnssSetup& setup, c
     return PlacePath(trajectory, setup.scene->frame(), setup.config.lever_arm_m);
   }
   CANYON_TRY(auto places, read_places(options.trajectory));
+  for (const StampedPlace& place : places)
+    CANYON_TRY_STATUS(gnss::check_antenna_height(place.p_E, {.file = options.trajectory, .line = place.line}));
   return PlacePath(std::move(places));
 }
+
+/// What lies between an antenna and the scene's ground.
+class GroundCheck {
+ public:
+  explicit GroundCheck(const scene::Scene& scene) : scene_(scene) {}
+
+  /// Terrain hides the sky from an antenna below it; where the place was typed in, that is a mistake.
+  void add(const Eigen::Vector3d& p_A_W) {
+    const auto ground = scene_.ground(p_A_W.x(), p_A_W.y());
+    if (!ground || p_A_W.z() >= ground->height_m) return;
+    ++below_;
+    deepest_m_ = std::max(deepest_m_, ground->height_m - p_A_W.z());
+  }
+  std::int64_t below() const { return below_; }
+  double deepest_m() const { return deepest_m_; }
+
+ private:
+  const scene::Scene& scene_;
+  std::int64_t below_ = 0;
+  double deepest_m_ = 0.0;
+};
 
 /// Collects what is told at the end.
 struct Totals {
@@ -158,7 +182,8 @@ Result<std::string> observations(const std::vector<GnssEpoch>& epochs, const Opt
   header.interval_s = 1.0 / options.rate_hz;
   if (!options.at.empty()) header.approx_position_E = start_E;
   std::map<GnssSystem, std::set<int>> bands;
-  for (const GnssEpoch& epoch : epochs)
+  for (const GnssEpoch& epoch : epochs) {
+    throw_if_cancelled();
     for (const GnssObservation& o : epoch.observations) {
       bands[o.sv.system].insert(o.band);
       if (o.second.band != 0) bands[o.sv.system].insert(o.second.band);
@@ -166,12 +191,16 @@ Result<std::string> observations(const std::vector<GnssEpoch>& epochs, const Opt
       if (const auto state = source.constellation->state(o.sv, epoch.t))
         header.glonass_channels[o.sv.prn] = state->frequency_channel;
     }
+  }
   if (bands.empty()) return Error{options.rinex_obs, 0, "", "nothing was received", "at least one satellite"};
   for (const auto& [system, digits] : bands)
     header.bands.emplace_back(system, std::vector<int>(digits.begin(), digits.end()));
   const gnss::ObservationWriter writer(header);
   std::string out = writer.header();
-  for (const GnssEpoch& epoch : epochs) out += writer.epoch(epoch);
+  for (const GnssEpoch& epoch : epochs) {
+    throw_if_cancelled();
+    out += writer.epoch(epoch);
+  }
   return out;
 }
 
@@ -237,6 +266,13 @@ Result<int> run(const Options& options) {
     staged = std::make_unique<StagedDirectory>(std::move(directory));
   }
   CANYON_TRY(const auto source, make_satellite_source(setup.config, setup.start, setup.start + duration_s));
+  GroundCheck ground(*setup.scene);
+  if (at) {
+    ground.add(frame.from_geodetic(*at));
+    if (ground.below() > 0)
+      return Error{"--at", 0, "", text("the antenna would be %.2f m below the ground of the scene", ground.deepest_m()),
+                   "an ellipsoidal height above it"};
+  }
   const auto count = static_cast<std::int64_t>(std::floor(duration_s * options.rate_hz + 1e-9)) + 1;
   Progress progress("simulating", static_cast<double>(count), !options.setup.common.json);
   Recorder recorder(setup.scene->parts().undulation_m);
@@ -246,13 +282,24 @@ Result<int> run(const Options& options) {
     const GpsTime t = tick(setup.start, k, options.rate_hz);
     const auto state = path.at(t);
     if (!state) break;  // the last tick may round to a nanosecond past the end
-    const auto output = sensor->measure(k, t, frame.to_W(state->p_E), frame.R_EW().transpose() * state->v_E, scene);
+    // Between places the way is a smooth curve, which may lead where they do not.
+    CANYON_TRY_STATUS(gnss::check_antenna_height(state->p_E, {options.trajectory, 0, t.iso()}));
+    const Eigen::Vector3d p_A_W = frame.to_W(state->p_E);
+    ground.add(p_A_W);
+    const auto output = sensor->measure(k, t, p_A_W, frame.R_EW().transpose() * state->v_E, scene);
     totals.add(output);
     recorder.add(output);
     progress.advance(1.0);
   }
 
   for (const std::string& warning : sensor->warnings()) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (ground.below() > 0)
+    std::fprintf(
+        stderr,
+        "warning: %s: the antenna is below the ground of the scene in %lld of %lld epochs, by up to %.2f m, and "
+        "receives nothing there; heights are ellipsoidal\n",
+        options.trajectory.c_str(), static_cast<long long>(ground.below()), static_cast<long long>(totals.epochs),
+        ground.deepest_m());
   if (staged) {
     CANYON_TRY_STATUS(write_text_file(staged->staging_path() + "/fixes.csv", recorder.fixes()));
     CANYON_TRY_STATUS(write_text_file(staged->staging_path() + "/satellites.csv", recorder.satellites()));
@@ -283,7 +330,7 @@ VerbAction declare(Arguments& arguments) {
   at.excludes(trajectory);
   arguments.option("--duration", options->duration_s, "seconds; default: one epoch with --at, all of --trajectory")
       .within(0.0, 30.0 * 86400.0);
-  arguments.option("--rate", options->rate_hz, "epochs per second").default_shown().within(1e-4, 100.0);
+  arguments.option("--rate", options->rate_hz, "epochs per second").default_shown().within(1e-3, 100.0);
   arguments
       .option("--errors", options->errors,
               "all, none, or a list of: ionosphere,troposphere,ephemeris,receiver_clock,multipath,noise,base_station")

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "core/progress.h"
 #include "core/units.h"
+#include "gnss/antenna_height.h"
 #include "gnss/paths/obstruction.h"
 #include "report/sky_plot.h"
 
@@ -38,13 +39,23 @@ std::string text(const char* format, auto... values) {
 
 /// The antenna in W: --at, or --xy above the ground of the scene.
 Result<Eigen::Vector3d> antenna(const Options& options, const scene::Scene& scene, const std::optional<Geodetic>& at) {
-  if (at) return scene.frame().from_geodetic(*at);
+  if (at) {
+    const Eigen::Vector3d p_A_W = scene.frame().from_geodetic(*at);
+    const auto ground = scene.ground(p_A_W.x(), p_A_W.y());
+    if (ground && p_A_W.z() < ground->height_m)
+      return Error{"--at", 0, "",
+                   text("the antenna would be %.2f m below the ground of the scene", ground->height_m - p_A_W.z()),
+                   "an ellipsoidal height above it"};
+    return p_A_W;
+  }
   CANYON_TRY(const auto xy, parse_numbers(options.xy, 2, "--xy", "X,Y: metres east and north of the scene's origin"));
   const double x = xy[0], y = xy[1];
   const auto ground = scene.ground(x, y);
   if (!ground)
     return Error{"--xy", 0, "", "\"" + options.xy + "\" lies outside the scene", "X,Y in metres from its origin"};
-  return Eigen::Vector3d(x, y, ground->height_m + options.height_m);
+  const Eigen::Vector3d p_A_W(x, y, ground->height_m + options.height_m);
+  CANYON_TRY_STATUS(gnss::check_antenna_height(scene.frame().to_E(p_A_W), {.file = "--xy, --height"}));
+  return p_A_W;
 }
 
 report::SkyState state_of(const GnssObservationTruth& s) {
@@ -75,13 +86,15 @@ double cn0_of(const gnss::GnssOutput& output, SatelliteId sv) {
 
 std::string satellites_csv(const std::vector<Epoch>& epochs) {
   std::string out = "t_s,satellite,elevation_deg,azimuth_deg,cn0_dbhz,line_of_sight,tracked,reflections,multipath_m\n";
-  for (const Epoch& e : epochs)
+  for (const Epoch& e : epochs) {
+    throw_if_cancelled();
     for (const GnssObservationTruth& s : e.output.truth.satellites) {
       const double cn0 = cn0_of(e.output, s.sv);
       out += text("%.3f,%s,%.3f,%.3f,%s,%d,%d,%d,%s\n", e.t_s, s.sv.str().c_str(), s.elevation_rad / kDegree,
                   s.azimuth_rad / kDegree, std::isfinite(cn0) ? text("%.2f", cn0).c_str() : "", s.line_of_sight ? 1 : 0,
                   s.tracked ? 1 : 0, s.reflections, s.tracked ? text("%.3f", s.multipath_m).c_str() : "");
     }
+  }
   return out;
 }
 
@@ -109,7 +122,8 @@ report::SkyPlot plot_of(const std::vector<Epoch>& epochs, const gnss::Obstructio
   plot.blocked = [&mask](int azimuth, int elevation) { return mask.blocked(azimuth, elevation); };
   std::map<SatelliteId, report::SkyTrack> tracks;
   std::map<SatelliteId, double> last;
-  for (const Epoch& e : epochs)
+  for (const Epoch& e : epochs) {
+    throw_if_cancelled();
     for (const GnssObservationTruth& s : e.output.truth.satellites) {
       // A satellite that set and rose again gets a second track.
       if (last.contains(s.sv) && e.t_s - last[s.sv] > 1.5 * options.step_s) {
@@ -121,6 +135,7 @@ report::SkyPlot plot_of(const std::vector<Epoch>& epochs, const gnss::Obstructio
       track.name = s.sv.str();
       track.points.push_back({s.azimuth_rad / kDegree, s.elevation_rad / kDegree, state_of(s)});
     }
+  }
   for (auto& [sv, track] : tracks) plot.tracks.push_back(std::move(track));
   return plot;
 }
@@ -131,6 +146,7 @@ Json json_of(const std::vector<Epoch>& epochs, const gnss::ObstructionMask& mask
   out["open_sky_share_above_10_deg"] = mask.open_share(10);
   out["epochs"] = Json::array();
   for (const Epoch& e : epochs) {
+    throw_if_cancelled();
     Json satellites = Json::array();
     for (const GnssObservationTruth& s : e.output.truth.satellites)
       satellites.push_back({{"satellite", s.sv.str()},
@@ -237,7 +253,9 @@ VerbAction declare(Arguments& arguments) {
   const auto xy =
       arguments.option("--xy", options->xy, "X,Y of the antenna in the scene, metres east and north of its origin");
   at.excludes(xy);
-  arguments.option("--height", options->height_m, "with --xy: metres above ground").default_shown();
+  arguments.option("--height", options->height_m, "with --xy: metres above ground")
+      .default_shown()
+      .within(0.0, gnss::kHighestAntennaM);
   arguments.option("--duration", options->duration_s, "seconds to follow the sky").within(0.0, 7.0 * 86400.0);
   arguments.option("--step", options->step_s, "seconds between epochs").default_shown().within(0.1, 86400.0);
   return [options]() -> Result<int> {

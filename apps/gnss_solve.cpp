@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/place_files.h"
+#include "gnss/antenna_height.h"
 #include "gnss/products/antex_file.h"
 #include "gnss/products/ionex_file.h"
 #include "gnss/products/precise_orbits.h"
@@ -46,8 +47,9 @@ Result<Eigen::Vector3d> parse_ecef(const std::string& text) {
   Eigen::Vector3d p_E;
   int used = 0;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &p_E.x(), &p_E.y(), &p_E.z(), &used) != 3 ||
-      used != static_cast<int>(text.size()) || !p_E.allFinite() || p_E.norm() < 6.2e6)
+      used != static_cast<int>(text.size()) || !p_E.allFinite())
     return Error{"--truth-ecef", 0, "", "\"" + text + "\"", "X,Y,Z of a place on the Earth, metres"};
+  CANYON_TRY_STATUS(gnss::check_antenna_height(p_E, {.file = "--truth-ecef"}));
   return p_E;
 }
 
@@ -58,6 +60,8 @@ Result<gnss::Truth> truth_of(const Options& options) {
   }
   if (options.truth.empty()) return gnss::Truth([](GpsTime) { return std::optional<gnss::TruePlace>(); });
   CANYON_TRY(auto places, read_places(options.truth));
+  for (const StampedPlace& place : places)
+    CANYON_TRY_STATUS(gnss::check_antenna_height(place.p_E, {.file = options.truth, .line = place.line}));
   const auto path = std::make_shared<PlacePath>(std::move(places));
   return gnss::Truth([path](GpsTime t) -> std::optional<gnss::TruePlace> {
     const auto state = path->at(t);

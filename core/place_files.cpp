@@ -62,7 +62,7 @@ Result<StampedPlace> parse_place_line(const LineReader& in, std::string_view lin
   for (int i = 0; i < 3; ++i) {
     CANYON_TRY(p[i], parse_number(in, fields[columns.place[static_cast<std::size_t>(i)]]));
   }
-  StampedPlace out{GpsTime{static_cast<std::int64_t>(week) * 604'800 * kNsPerSecond + sow_ns}, p};
+  StampedPlace out{GpsTime{static_cast<std::int64_t>(week) * 604'800 * kNsPerSecond + sow_ns}, p, in.number()};
   if (columns.geodetic.value_or(p.norm() < kEcefAtLeast_m)) {
     if (std::abs(p.x()) > 90.0 || std::abs(p.y()) > 360.0) return in.error("no such place", "degrees, degrees, metres");
     out.p_E = ecef_from_geodetic({p.x() * kDegree, p.y() * kDegree, p.z()});
@@ -74,7 +74,7 @@ std::vector<StampedPlace> places_of(const Trajectory& trajectory, const LocalFra
                                     const Eigen::Vector3d& lever_arm_B) {
   std::vector<StampedPlace> places;
   for (const StampedPose& pose : trajectory.poses())
-    places.push_back({pose.t, frame.to_E(pose.X_WB.p + pose.X_WB.R * lever_arm_B)});
+    places.push_back({pose.t, frame.to_E(pose.X_WB.p + pose.X_WB.R * lever_arm_B), 0});
   return places;
 }
 

@@ -15,6 +15,7 @@ namespace canyon {
 struct StampedPlace {
   GpsTime t;
   Eigen::Vector3d p_E;
+  int line = 0;  ///< of the file it is from; 0 = of none
 };
 
 /// CSV of `gps_week,sow,lat_deg,lon_deg,h_m` (ellipsoidal height) or `gps_week,sow,x_m,y_m,z_m` (E), more columns

@@ -75,6 +75,54 @@ TEST_F(GnssVerbsTest, SimulationAlongAWay) {
   EXPECT_THAT(read("out/satellites.csv"), HasSubstr("1610,306000.000000000,G03,"));
 }
 
+// 2026-11-22: a receiver at the Earth's centre saw ten satellites.
+TEST_F(GnssVerbsTest, HeightsThatNoModelCoversAreRefused) {
+  const std::string covered = ", expected -500 to 20000 m, the heights that the models of the atmosphere cover";
+  expect_mistake("gnss simulate --at 32,-90,-6378000",
+                 "--at: the antenna would be 6378000 m below the ellipsoid" + covered);
+  expect_mistake("gnss simulate --at 32,-90,20001", "--at: the antenna would be 20001 m above the ellipsoid" + covered);
+  expect_mistake("gnss sky --at 32,-90,-501", "--at: the antenna would be 501 m below the ellipsoid" + covered);
+  expect_mistake("gnss sky --scene vicksburg --xy 0,0 --height -5", "--height");
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav --truth-ecef 0,0,1",
+                 "--truth-ecef: the antenna would be 6370999 m below the ellipsoid" + covered);
+  write("given_high.csv", "gps_week,sow,lat_deg,lon_deg,h_m\n1610,306000,32,-90,60\n1610,306001,32,-90,4e5\n");
+  expect_mistake("gnss simulate --trajectory given_high.csv --out out",
+                 "given_high.csv:3: the antenna would be 400000 m above the ellipsoid" + covered);
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav --truth given_high.csv", "given_high.csv:3: the antenna");
+  // Both ends on the ground, and the way between them through the Earth: Mississippi to France in 100 s.
+  write("given_chord.csv", "1610,306000,32,-90,60\n1610,306100,45,5,60\n");
+  expect_mistake("gnss simulate --trajectory given_chord.csv --out out --nmea log.nmea",
+                 "given_chord.csv: 2010-11-17T13:00:01.000: the antenna would be ");
+  write("given_deep.tum", "0 0 0 -900 0 0 0 1\n10 0 0 -900 0 0 0 1\n");
+  expect_mistake("gnss simulate --scene vicksburg --trajectory given_deep.tum --start 0:0", "given_deep.tum: ");
+  EXPECT_EQ(canyon("gnss simulate --at 32,-90,-500 --json"), 0);
+  EXPECT_EQ(canyon("gnss simulate --at 32,-90,20000 --json"), 0);
+}
+
+// Below the ground of a scene: a mistake where the place was typed in, without reception on a way that leads there.
+TEST_F(GnssVerbsTest, BelowTheGroundThereIsNoReception) {
+  expect_mistake("gnss simulate --scene vicksburg --at 32.35,-90.88,-20",
+                 "m below the ground of the scene, expected an");
+  expect_mistake("gnss sky --scene vicksburg --at 32.35,-90.88,-20", "m below the ground of the scene, expected an");
+  std::string way;
+  for (int k = 0; k < 4; ++k)
+    way +=
+        std::to_string(1290000000 + k) + " 213.9 " + std::to_string(30 + k) + (k < 2 ? " 30" : " -30") + " 0 0 0 1\n";
+  write("given_way.tum", way);
+  ASSERT_EQ(canyon("gnss simulate --scene vicksburg --trajectory given_way.tum --json"), 0) << read("stderr");
+  EXPECT_THAT(read("stderr"),
+              HasSubstr("given_way.tum: the antenna is below the ground of the scene in 2 of 4 epochs"));
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(json["fixes"], 2);
+}
+
+// 2026-11-22: the mistake was told as that of the key time.start, and no limit was said.
+TEST_F(GnssVerbsTest, AStartThatIsNoTimeIsTheOptionsMistake) {
+  expect_mistake("gnss sky --at 32.35,-90.88,60 --start bad", "--start: time.start: \"bad\" is not a time, expected ");
+  expect_mistake("gnss simulate --at 32.35,-90.88,60 --start 2300-01-01T00:00:00", "from 1980-01-06 to 2261-12-31");
+  expect_mistake("lidar scan --start bad --at 0,0,2,0 --out scan", "--start: time.start: \"bad\" is not a time");
+}
+
 TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("gnss simulate --at 1,2,3 --errors noise,magic",
                  "--errors: \"magic\" is not an error, expected none, all, or of ionosphere troposphere ephemeris "
@@ -90,6 +138,8 @@ TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("gnss sky --at 95,0,60", "--at: \"95,0,60\" is not on the Earth");
   expect_mistake("gnss sky --scene vicksburg --xy 5000,0", "--xy: \"5000,0\" lies outside the scene");
   expect_mistake("gnss sky --scene nowhere.toml --xy 0,0", "nowhere.toml");
+  // 2026-11-22: taken by the option, and then an internal error.
+  expect_mistake("gnss simulate --at 32.35,-90.88,60 --rate 1e-4", "--rate");
   expect_mistake("gnss map --scene none", "--scene: \"none\" has no ground to map, expected a scene");
   expect_mistake("gnss map --fidelity best", "best");
   expect_mistake("gnss", "canyon gnss: no verb given, expected one of sky, ");
