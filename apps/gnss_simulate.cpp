@@ -12,6 +12,7 @@
 #include "apps/json.h"
 #include "core/files.h"
 #include "core/fix_status.h"
+#include "core/geoid.h"
 #include "core/median.h"
 #include "core/parallel.h"
 #include "core/place_files.h"
@@ -108,6 +109,7 @@ struct Totals {
 /// The files of a simulation, filled epoch by epoch.
 class Recorder {
  public:
+  /// `undulation_m`: of the scene, 0 where it has none; then the geoid's at each place.
   explicit Recorder(double undulation_m) : undulation_m_(undulation_m) {}
 
   void add(const gnss::GnssOutput& output) {
@@ -122,8 +124,10 @@ class Recorder {
   const std::string& satellites() const { return satellites_; }
 
  private:
-  std::string nmea_of(const gnss::GnssOutput& output) const {
-    gnss::NmeaEpoch epoch{.fix = output.fix, .undulation_m = undulation_m_, .satellites = {}};
+  std::string nmea_of(const gnss::GnssOutput& output) {
+    const double undulation_m =
+        undulation_m_ != 0.0 ? undulation_m_ : geoid_.undulation_m(geodetic_from_ecef(output.truth.p_A_E));
+    gnss::NmeaEpoch epoch{.fix = output.fix, .undulation_m = undulation_m, .satellites = {}};
     for (const GnssObservationTruth& s : output.truth.satellites) {
       gnss::NmeaSatellite satellite{s.sv, s.elevation_rad, s.azimuth_rad};
       for (const GnssObservation& o : output.epoch.observations)
@@ -164,6 +168,7 @@ class Recorder {
   }
 
   double undulation_m_;
+  Geoid geoid_;
   std::vector<GnssEpoch> epochs_;
   std::string nmea_;
   std::string fixes_ =

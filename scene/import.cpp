@@ -27,8 +27,9 @@ void visit(FieldVisitor& f, ImportConfig& c) {
   f.text("crs", c.crs, "coordinate system, as PROJ knows it, in place of the file's own; axes east, north");
   f.choice("heights", c.heights, {"auto", "orthometric", "ellipsoidal"},
            "what heights in the files are above; auto: as the coordinate system says, else orthometric");
-  f.number("undulation_m", c.undulation_m, {-1000.0, 200.0},
-           "geoid above the ellipsoid; -1000: of GeographicLib's geoid where that is installed, else 0 with a warning");
+  f.number(
+      "undulation_m", c.undulation_m, {-1000.0, 200.0},
+      "geoid above the ellipsoid; -1000: of the finest of GeographicLib's geoids that is installed, else of EGM96");
   f.numbers("center_deg", c.center_deg, 0, {-360.0, 360.0},
             "latitude, longitude of W's origin; empty: the middle of the scene");
   f.number("radius_m", c.radius_m, {0.0, 1e6}, "if > 0: only what is that near to W's origin is read");
@@ -157,13 +158,10 @@ class Import {
       if (config_.undulation_m > ImportConfig::kUndulationUnknown) {
         undulation_m_ = config_.undulation_m;
         out_.report.undulation_source = "stated";
-      } else if (const auto geoid = geoid_height(middle)) {
-        undulation_m_ = geoid->undulation_m;
-        out_.report.undulation_source = geoid->model;
       } else {
-        out_.report.warnings.push_back(
-            "no geoid model is installed and none is stated (scene.undulation_m): heights above sea level are taken "
-            "for ellipsoidal ones");
+        const GeoidHeight geoid = geoid_height(middle);
+        undulation_m_ = geoid.undulation_m;
+        out_.report.undulation_source = geoid.model;
       }
     }
     out_.parts.undulation_m = undulation_m_;

@@ -116,6 +116,19 @@ TEST_F(GnssVerbsTest, BelowTheGroundThereIsNoReception) {
   EXPECT_EQ(json["fixes"], 2);
 }
 
+// 2026-11-22: the geoid separation of GGA was 0 where no geoid was installed.
+TEST_F(GnssVerbsTest, NmeaHasTheGeoidsSeparation) {
+  ASSERT_EQ(canyon("gnss simulate --at 32.35,-90.88,60 --errors none --nmea out.nmea"), 0) << read("stderr");
+  // EGM96 has -27.57 m there, EGM2008 within a metre of it; height above sea level + separation = 60 m.
+  const std::string log = read("out.nmea");
+  const std::size_t at = log.find(",M,");
+  ASSERT_NE(at, std::string::npos);
+  const double above_sea_m = std::stod(log.substr(log.rfind(',', at - 1) + 1)),
+               separation_m = std::stod(log.substr(at + 3));
+  EXPECT_NEAR(separation_m, -27.57, 1.0);
+  EXPECT_NEAR(above_sea_m + separation_m, 60.0, 0.0015);
+}
+
 // 2026-11-22: the mistake was told as that of the key time.start, and no limit was said.
 TEST_F(GnssVerbsTest, AStartThatIsNoTimeIsTheOptionsMistake) {
   expect_mistake("gnss sky --at 32.35,-90.88,60 --start bad", "--start: time.start: \"bad\" is not a time, expected ");
