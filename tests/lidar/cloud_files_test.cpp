@@ -72,11 +72,96 @@ TEST_F(CloudFiles, MistakesAreNamed) {
   EXPECT_EQ(error_of(head + "POINTS 99999999999999999\nDATA binary\n"),
             ": POINTS: data for 0 points only, expected 99999999999999999");
   EXPECT_EQ(error_of("FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nPOINTS 0\nDATA binary\n"),
-            ": z: no such field, expected x, y, z of type F and size 4");
-  EXPECT_EQ(error_of("FIELDS x y z\nSIZE 4 -4 4\n"), ":2: SIZE: \"SIZE 4 -4 4\", expected positive whole numbers");
+            ": z: no such field, expected x, y, z of type F, size 4 and count 1");
+  EXPECT_EQ(error_of("FIELDS x y z\nSIZE 4 -4 4\n"),
+            ":2: SIZE: \"SIZE 4 -4 4\", expected 1, 2, 4 or 8 bytes for each field");
   EXPECT_EQ(error_of("FIELDS x y z\nSIZE 4 4\n"), ":2: SIZE: \"SIZE 4 4\", expected one value per field");
   EXPECT_FALSE(read_pcd("no_such_file.pcd").ok());
   EXPECT_FALSE(write_pcd("no_such_folder/cloud.pcd", {}).ok());
+}
+
+// 2026-11-22: every COUNT line multiplied the fields' sizes, so that seven of them made a stride of 0 (division by
+// zero) or one that lay beyond the data (segmentation fault).
+TEST_F(CloudFiles, NoEntryComesTwice) {
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  const std::string count = "COUNT 1024 1024 1024\n";
+  std::string counts;
+  for (int i = 0; i < 7; ++i) counts += count;
+  EXPECT_EQ(error_of(head + counts + "POINTS 1\nDATA binary\n0123456789abcdef"),
+            ":5: COUNT: \"COUNT 1024 1024 1024\", expected each entry once");
+  EXPECT_EQ(error_of(head + "SIZE 8 8 8\n"), ":4: SIZE: \"SIZE 8 8 8\", expected each entry once");
+  EXPECT_EQ(error_of(head + "FIELDS x\n"), ":4: FIELDS: \"FIELDS x\", expected each entry once");
+}
+
+// 2026-11-22: a header without fields made a stride of 0; sizes, types and shapes were not looked at.
+TEST_F(CloudFiles, DamagedHeadersAreNamed) {
+  const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
+  EXPECT_EQ(error_of("POINTS 1\nDATA binary\n0123456789ab"), ":2: DATA: \"DATA binary\", expected FIELDS before it");
+  EXPECT_EQ(error_of("FIELDS\n"), ":1: FIELDS: \"FIELDS\", expected names of fields");
+  EXPECT_EQ(error_of("FIELDS x y z\nPOINTS 1\nDATA binary\n0123456789ab"),
+            ":3: DATA: \"DATA binary\", expected SIZE before it");
+  EXPECT_EQ(error_of("SIZE 4\n"), ":1: SIZE: \"SIZE 4\", expected one value per field");
+  EXPECT_EQ(error_of("FIELDS x y z\nSIZE 4 3 4\n"),
+            ":2: SIZE: \"SIZE 4 3 4\", expected 1, 2, 4 or 8 bytes for each field");
+  EXPECT_EQ(error_of("FIELDS x y z\nTYPE F FF F\n"), ":2: TYPE: \"TYPE F FF F\", expected F, I or U for each field");
+  EXPECT_EQ(error_of(head + "COUNT 1 1 70000\n"),
+            ":4: COUNT: \"COUNT 1 1 70000\", expected whole numbers from 1 to 65536");
+  EXPECT_EQ(error_of(head + "COUNT 1 0 1\n"), ":4: COUNT: \"COUNT 1 0 1\", expected whole numbers from 1 to 65536");
+  EXPECT_EQ(error_of(head + "COUNT 1 1 2\nPOINTS 0\nDATA binary\n"),
+            ": z: no such field, expected x, y, z of type F, size 4 and count 1");
+  EXPECT_EQ(error_of(head + "WIDTH 2\nHEIGHT 3\nPOINTS 5\nDATA binary\n"),
+            ":7: DATA: \"DATA binary\", expected WIDTH times HEIGHT to be POINTS");
+  EXPECT_EQ(
+      error_of(head + "WIDTH 18446744073709551615\nHEIGHT 18446744073709551615\nPOINTS 1\nDATA binary\n0123456789ab"),
+      ":7: DATA: \"DATA binary\", expected WIDTH times HEIGHT to be POINTS");
+  EXPECT_EQ(error_of(head + "WIDTH 18446744073709551616\n"),
+            ":4: WIDTH: \"WIDTH 18446744073709551616\", expected WIDTH N");
+  EXPECT_EQ(error_of(head + "POINTS 1\nDATA binary_compressed\n0123456789ab"),
+            ":5: DATA: \"DATA binary_compressed\", expected DATA binary");
+  EXPECT_EQ(error_of("FIELDS x x y z\nSIZE 4 4 4 4\nTYPE F F F F\nPOINTS 0\nDATA binary\n"),
+            ": x: there are two such fields, expected one");
+  EXPECT_EQ(error_of("\x01\xff junk\n"),
+            ":1: ??: \"?? junk\", expected one of VERSION, FIELDS, SIZE, TYPE, COUNT, WIDTH, HEIGHT, VIEWPOINT, "
+            "POINTS, DATA");
+}
+
+// Bits, cuts, huge numbers and repeated lines, seeded: an error or a cloud, no exception, no signal.
+TEST_F(CloudFiles, DamagedFilesEndInAnErrorOrACloud) {
+  std::vector<MapPoint> points(40);
+  for (std::size_t i = 0; i < points.size(); ++i) points[i].p_W.setConstant(static_cast<float>(i));
+  ASSERT_TRUE(write_pcd(path_, points).ok());
+  const std::string good = *read_text_file(path_);
+  const std::size_t header = good.find("DATA binary\n") + 12;
+  const RandomStream random(12, "test.damage");
+  int read = 0;
+  for (std::uint32_t variant = 0; variant < 2000; ++variant) {
+    std::uint64_t n = 0;
+    const auto below = [&](std::size_t end) {
+      return static_cast<std::size_t>(random.uniform(variant, n++) * static_cast<double>(end));
+    };
+    std::string bytes = good;
+    if (variant % 4 == 0) {
+      for (int k = 0; k < 3; ++k) bytes[below(header)] ^= static_cast<char>(1u << below(8));
+    } else if (variant % 4 == 1) {
+      bytes.resize(below(bytes.size()));
+    } else if (variant % 4 == 2) {
+      const char* const numbers[] = {"0", "-1", "1024", "65536", "4294967296", "18446744073709551615", "1e9", "nan"};
+      const std::size_t at = bytes.find_first_of("0123456789", 60 + below(header - 80));
+      bytes.replace(at, 1, numbers[below(8)]);
+    } else {
+      const std::size_t begin = bytes.rfind('\n', below(header - 2)) + 1, end = bytes.find('\n', begin) + 1;
+      const std::string line = bytes.substr(begin, end - begin);
+      for (std::size_t k = 0, count = 1 + below(8); k < count; ++k) bytes.insert(begin, line);
+    }
+    ASSERT_TRUE(write_text_file(path_, bytes).ok());
+    const auto cloud = read_pcd(path_);
+    read += cloud.ok() ? 1 : 0;
+    if (!cloud.ok()) {
+      ASSERT_EQ(cloud.error().str().find('\n'), std::string::npos) << variant;
+    }
+  }
+  EXPECT_GT(read, 0);
+  EXPECT_LT(read, 2000);
 }
 
 }  // namespace
