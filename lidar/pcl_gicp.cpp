@@ -27,6 +27,7 @@ constexpr double kRotationEpsilon_rad = 2e-5;
 // Normals come from neighbours up to some eight leaves away, so residuals correlate over twice that.
 constexpr double kBlock_leaves = 16.0;
 constexpr std::size_t kFewestPoints = 50;  // in the source, the target, and matched
+constexpr double kFarthest_m = 1e8;        // farther than two clouds of 2^20 voxels can be apart
 
 /// PCL's interface over our own tree, which is bounded by the correspondence distance and builds and answers faster.
 /// Where nothing lies within it the distance is infinite: PCL takes "none found" for a broken tree and gives up.
@@ -62,6 +63,7 @@ class Gicp final : public PclGicp {
   }
 
   bool settled() const { return settled_; }
+  bool degenerate() const { return degenerate_; }
   std::size_t matched() const { return source_indices_.size(); }
   int rounds() const { return nr_iterations_; }
 
@@ -97,6 +99,7 @@ class Gicp final : public PclGicp {
     const Eigen::Vector3d p = transform.topRightCorner<3, 1>();
     Matrix6d H = Matrix6d::Zero();
     Vector6d g = Vector6d::Zero();
+    double radius2 = 0.0;
     for (std::size_t k = 0; k < source_indices.size(); ++k) {
       const auto i = static_cast<std::size_t>(source_indices[k]);
       const Eigen::Vector3d p_S = source[i].getVector3fMap().cast<double>();
@@ -111,11 +114,16 @@ class Gicp final : public PclGicp {
       H.bottomRightCorner<3, 3>() += M_S;
       g.head<3>() += p_S.cross(Md);
       g.tail<3>() += Md;
+      radius2 += p_S.squaredNorm();
     }
     H.bottomLeftCorner<3, 3>() = H.topRightCorner<3, 3>().transpose();
+    degenerate_ = !determines_pose(H, std::sqrt(radius2 / static_cast<double>(source_indices.size())));
+    if (degenerate_) PCL_THROW_EXCEPTION(pcl::SolverDidntConvergeException, "singular geometry");
     const Vector6d xi = -H.ldlt().solve(g);
-    if (!xi.allFinite()) PCL_THROW_EXCEPTION(pcl::SolverDidntConvergeException, "singular geometry");
     const Matrix4 moved = (Pose::from_matrix(transform) * Pose::exp(xi)).matrix();
+    // A step that leaves all maps behind would meet no target; PCL goes on in single precision.
+    if (!(moved.array().abs() < kFarthest_m).all())
+      PCL_THROW_EXCEPTION(pcl::SolverDidntConvergeException, "the step is not finite");
     // PCL stops by the same rule, element by element, but does not say so if it stops for the iterations' sake.
     const Eigen::Array44d change = (moved - transform).array().abs();
     settled_ = (change.topLeftCorner<3, 3>() < kRotationEpsilon_rad).all() &&
@@ -124,7 +132,7 @@ class Gicp final : public PclGicp {
   }
 
   pcl::Indices source_indices_, target_indices_;
-  bool settled_ = false;
+  bool settled_ = false, degenerate_ = false;
 };
 
 Eigen::Matrix3d plane_covariance(const Eigen::Vector3d& normal) {
@@ -144,8 +152,10 @@ class GicpRegistration final : public Registration {
   RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
                            const Pose& guess) const override {
     RegistrationResult result;
-    result.status = RegistrationStatus::kTooFewPoints;
     result.X_TS = guess;
+    result.status = RegistrationStatus::kDiverged;
+    if (!guess.matrix().allFinite()) return result;
+    result.status = RegistrationStatus::kTooFewPoints;
 
     const Target target = unite(targets, guess);
     if (source.points.size() < kFewestPoints || target.points.size() < kFewestPoints) return result;
@@ -176,12 +186,19 @@ class GicpRegistration final : public Registration {
 
     result.iterations = gicp.rounds();
     if (gicp.matched() < kFewestPoints) return result;
+    result.status = RegistrationStatus::kDegenerate;
+    if (gicp.degenerate()) return result;
     const Eigen::Matrix4d X_GS = gicp.getFinalTransformation();
     result.X_TS = guess * Pose::from_matrix(X_GS);
     result.status = gicp.settled() ? RegistrationStatus::kConverged : RegistrationStatus::kNotConverged;
     const auto matches = gicp.correspondences(source, target.tilt_variance, X_GS);
     const RegistrationPrecision precision =
         registration_precision(matches, X_GS.topLeftCorner<3, 3>(), kBlock_leaves * config_.leaf_m);
+    if (!precision.covariance.allFinite()) {
+      result.X_TS = guess;
+      result.status = RegistrationStatus::kDegenerate;
+      return result;
+    }
     result.covariance = precision.covariance;
     result.rms_m = precision.rms_m;
     return result;
@@ -209,7 +226,8 @@ class GicpRegistration final : public Registration {
       const std::uint32_t occupied = voxels.size();
       for (std::size_t i = 0; i < cloud.points.size(); ++i) {
         const Eigen::Vector3f p = (R_GC * cloud.points[i].cast<double>() + X_GC.p).cast<float>();
-        if (voxels.insert(voxels.coordinates(p)) < occupied) continue;
+        const auto voxel = voxels.coordinates(p);  // none: far from the guess, so nothing to match
+        if (!voxel || voxels.insert(*voxel) < occupied) continue;
         target.points.push_back(p);
         target.tilt_variance.push_back(cloud.tilt_variance[i]);
         target.cloud->push_back(Point(p.x(), p.y(), p.z()));

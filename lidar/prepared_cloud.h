@@ -18,7 +18,8 @@ class PreparedCloud {
 };
 
 /// Thins to one centroid per voxel of leaf_m and fits a plane to the 20 nearest neighbours of each point. Points that
-/// are not finite, or exactly (0, 0, 0) as some sensors mark a missing return, are left out.
+/// are not finite, farther than 2^20 voxels from the origin, or exactly (0, 0, 0) as some sensors mark a missing
+/// return, are left out.
 PreparedCloud prepare_cloud(std::span<const Eigen::Vector3f> points, double leaf_m);
 
 }  // namespace canyon::lidar

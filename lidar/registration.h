@@ -30,12 +30,15 @@ struct RegistrationConfig {
 };
 void visit(FieldVisitor& f, RegistrationConfig& c);
 
-enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints };
+/// kDegenerate: what was matched does not determine a pose, as points on one line do not. kDiverged: the guess or the
+/// solution is not finite. In either case, as with too few points, the guess stands and there is no covariance.
+enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints, kDegenerate, kDiverged };
 
 struct RegistrationResult {
   RegistrationStatus status = RegistrationStatus::kNotConverged;
-  Pose X_TS;                                       ///< a point of source in target's frame
-  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of xi, source frame; see registration_covariance.h
+  Pose X_TS;  ///< a point of source in target's frame
+  Matrix6d covariance =
+      Matrix6d::Constant(kNaN);  ///< of xi, source frame; see registration_covariance.h. Finite, or NaN as a whole
   int iterations = 0;
   double rms_m = kNaN;  ///< of the matched points' distances along the surface normals
 };
@@ -54,7 +57,7 @@ class Registration {
     Pose X_TC;  ///< pose of the cloud in the target frame
   };
   /// Aligns `source` onto the union of `targets`, starting from `guess` = X_TS. Where targets overlap the last one
-  /// counts.
+  /// counts. Whatever the clouds and the guess are, the answer is a status.
   virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
                                    const Pose& guess) const = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -55,7 +56,9 @@ Sums sum_up(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS
       sums.along += J.transpose() * (kAlongSurface * d_along);
     }
     sums.radius2 += match.p_S.squaredNorm();
-    const std::uint32_t block = blocks.insert(blocks.coordinates(match.p_S.cast<float>()));
+    const auto place = blocks.coordinates(match.p_S.cast<float>());
+    CANYON_CHECK(place, "match at ", match.p_S.transpose());
+    const std::uint32_t block = blocks.insert(*place);
     if (block == sums.block_gradients.size()) sums.block_gradients.push_back(Vector6d::Zero());
     sums.block_gradients[block] += J.transpose() * (match.information * match.residual);
   }
@@ -72,12 +75,25 @@ Matrix6d gradient_scatter(const Sums& sums, double n) {
 
 }  // namespace
 
+bool determines_pose(const Matrix6d& A, double radius_m) {
+  constexpr double kSingular = 1e-10;
+  if (!(radius_m > 0)) return false;
+  Vector6d scale;
+  scale << Eigen::Vector3d::Constant(1.0 / radius_m), Eigen::Vector3d::Ones();
+  const Matrix6d scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  if (!scaled.allFinite()) return false;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] > kSingular * eigen.eigenvalues()[5];
+}
+
 RegistrationPrecision registration_precision(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS,
                                              double block_m) {
   CANYON_CHECK(matches.size() > 6, "matches = ", matches.size());
   const Sums sums = sum_up(matches, R_TS, block_m);
   const auto n = static_cast<double>(matches.size());
   RegistrationPrecision precision;
+  precision.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+  if (!determines_pose(sums.A, std::sqrt(sums.radius2 / n))) return precision;
   precision.rms_m = sums.weight > 0 ? std::sqrt(std::max(0.0, sums.cost) / sums.weight) : 0.0;
 
   // Metres and radians made comparable at the cloud's rms radius; a trace of it keeps N definite when normals are

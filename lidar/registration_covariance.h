@@ -18,10 +18,16 @@ struct Correspondence {
 
 /// How well geometry and residuals determine X_TS.
 struct RegistrationPrecision {
-  Matrix6d covariance;    ///< of xi in X = X_TS Exp(xi), source frame
+  Matrix6d covariance;    ///< of xi in X = X_TS Exp(xi), source frame; NaN unless determines_pose(A)
   double rms_m = 0.0;     ///< of the residuals along the surface normals
   int unconstrained = 0;  ///< directions that the geometry leaves open
 };
+
+/// Whether a curvature A = sum J^T M J, as below, determines all six directions at all: points on a line leave the turn
+/// about it open, whatever M says. `radius_m` is the root mean square distance of the points from the source's origin.
+/// False where, with rotations at that radius, the smallest eigenvalue is below 1e-10 of the largest: the points then
+/// lie within 1e-5 of their distance from one line, some hundred times what single precision can tell.
+bool determines_pose(const Matrix6d& A, double radius_m);
 
 /// sigma given to a direction that the geometry leaves open (for rotations: at the cloud's rms radius).
 inline constexpr double kUnconstrainedSigma_m = 10.0;

@@ -36,10 +36,10 @@ VoxelIndex::VoxelIndex(double leaf_m, std::size_t expected_voxels)
   CANYON_CHECK(leaf_m > 0 && std::isfinite(leaf_m), "leaf_m = ", leaf_m);
 }
 
-VoxelCoordinates VoxelIndex::coordinates(const Eigen::Vector3f& p) const {
+std::optional<VoxelCoordinates> VoxelIndex::coordinates(const Eigen::Vector3f& p) const {
   const Eigen::Array3d scaled = (p.cast<double>() / leaf_m_).array().floor();
-  CANYON_CHECK((scaled.abs() < kHalf).all(), "point ", p.transpose(), ", leaf_m = ", leaf_m_);
-  return scaled.cast<int>().matrix();
+  if (!(scaled.abs() < kHalf).all()) return std::nullopt;  // so also for NaN
+  return VoxelCoordinates(scaled.cast<int>().matrix());
 }
 
 std::size_t VoxelIndex::slot_of(std::uint64_t key) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,8 +24,8 @@ class VoxelIndex {
   /// Voxels met so far.
   std::uint32_t size() const { return size_; }
 
-  /// Throws if p is not finite or too far out.
-  VoxelCoordinates coordinates(const Eigen::Vector3f& p) const;
+  /// Of the voxel that p lies in; none if p is not finite or too far out.
+  std::optional<VoxelCoordinates> coordinates(const Eigen::Vector3f& p) const;
   /// Number of a voxel; a new one if it was not met before.
   std::uint32_t insert(const VoxelCoordinates& voxel);
   /// Number of a voxel, or kNone.

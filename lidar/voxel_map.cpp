@@ -3,7 +3,12 @@
 namespace canyon::lidar {
 
 bool VoxelMap::insert(const MapPoint& point) {
-  const std::uint32_t number = index_.insert(index_.coordinates(point.p_W));
+  const auto voxel = index_.coordinates(point.p_W);
+  if (!voxel) {
+    ++out_of_reach_;
+    return false;
+  }
+  const std::uint32_t number = index_.insert(*voxel);
   if (number != points_.size()) return false;
   points_.push_back(point);
   return true;
@@ -17,8 +22,9 @@ std::vector<Eigen::Vector3f> voxel_centroids(std::span<const Eigen::Vector3f> po
   VoxelIndex index(leaf_m, points.size() / 4);
   std::vector<Sum> sums;
   for (const Eigen::Vector3f& p : points) {
-    if (!p.allFinite()) continue;
-    const std::uint32_t number = index.insert(index.coordinates(p));
+    const auto voxel = index.coordinates(p);
+    if (!voxel) continue;
+    const std::uint32_t number = index.insert(*voxel);
     if (number == sums.size()) sums.emplace_back();
     sums[number].sum += p.cast<double>();
     ++sums[number].count;

@@ -19,6 +19,10 @@ const char* word(std::optional<lidar::RegistrationStatus> status) {
       return "not_converged";
     case lidar::RegistrationStatus::kTooFewPoints:
       return "too_few_points";
+    case lidar::RegistrationStatus::kDegenerate:
+      return "degenerate";
+    case lidar::RegistrationStatus::kDiverged:
+      return "diverged";
   }
   return "";
 }

@@ -31,6 +31,21 @@ std::vector<Correspondence> matches(const std::vector<Eigen::Vector3d>& normals,
   return out;
 }
 
+// 2026-11-22: the inverse of the singular curvature made the covariance NaN and nobody looked.
+TEST(RegistrationPrecision, PointsOnALineDetermineNoPose) {
+  std::vector<Correspondence> line;
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d p = Eigen::Vector3d(3, 4, 0) + 0.5 * i * Eigen::Vector3d(1, 2, 2) / 3.0;
+    line.push_back({p, Eigen::Vector3d::Zero(), 0.5 * Eigen::Matrix3d::Identity(), 0.0});
+  }
+  EXPECT_TRUE(registration_precision(line, Eigen::Matrix3d::Identity(), 4.0).covariance.array().isNaN().all());
+  // 1 mm beside the line, of 25 m: told from it, and every direction open, since no surface says anything.
+  for (std::size_t i = 0; i < line.size(); i += 2) line[i].p_S += 1e-3 * Eigen::Vector3d(2, -2, 1) / 3.0;
+  const auto beside = registration_precision(line, Eigen::Matrix3d::Identity(), 4.0);
+  EXPECT_TRUE(beside.covariance.allFinite());
+  EXPECT_EQ(beside.unconstrained, 6);
+}
+
 const std::vector<Eigen::Vector3d> kAllDirections{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 TEST(RegistrationPrecision, IndependentResidualsGiveTheLeastSquaresCovariance) {

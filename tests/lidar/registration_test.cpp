@@ -1,6 +1,7 @@
 #include "lidar/registration.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -215,6 +216,50 @@ TEST(Gicp, TooFewPointsOrMatchesIsAStatus) {
   expect_too_few(*cloud, nothing);
   expect_too_few(*cloud, {});
   expect_too_few(*cloud, far);
+}
+
+/// A status whose guess stands, without a covariance.
+void expect_no_answer(const RegistrationResult& result, RegistrationStatus status) {
+  EXPECT_EQ(result.status, status);
+  EXPECT_TRUE(result.covariance.array().isNaN().all());
+}
+
+// 2026-11-22: "converged" with a covariance of NaN: the turn about the line is free, the curvature singular.
+TEST(Gicp, ACloudOnOneLineIsDegenerate) {
+  CANYON_NEEDS_GICP();
+  const auto gicp = registration("gicp");
+  std::vector<Eigen::Vector3f> line;
+  for (int i = 0; i < 2000; ++i) line.emplace_back(1.0f + 0.02f * static_cast<float>(i), 2.0f, 0.5f);
+  const auto cloud = gicp->prepare(line);
+  const Registration::Placed placed{cloud, Pose{}};
+  const Pose guess = pose_at(0.1, 0.05, 0, 0);
+  const auto result = gicp->align(*cloud, std::span(&placed, 1), guess);
+  expect_no_answer(result, RegistrationStatus::kDegenerate);
+  EXPECT_EQ(result.X_TS.p, guess.p);
+}
+
+// 2026-11-22: each of these threw out of the voxel grid or the neighbour tree.
+TEST(Gicp, FarPointsAndBadGuessesAreStatuses) {
+  CANYON_NEEDS_GICP();
+  Views views(testing::street_crossing());
+  const auto gicp = registration("gicp");
+  auto points = views.from(pose_at(0, 0, 1.8, 0), 0);
+  const auto clean = gicp->prepare(points);
+  points.emplace_back(1e9f, 0.0f, 0.0f);
+  points.emplace_back(0.0f, NAN, 0.0f);
+  const auto cloud = gicp->prepare(points);
+  EXPECT_EQ(cloud->points, clean->points) << "what lies beyond the grid, or nowhere, is left out";
+  const Registration::Placed placed{cloud, Pose{}};
+  const auto align = [&](const Pose& guess) { return gicp->align(*cloud, std::span(&placed, 1), guess); };
+  EXPECT_EQ(align(Pose{}).status, RegistrationStatus::kConverged);
+  expect_no_answer(align(pose_at(NAN, 0, 0, 0)), RegistrationStatus::kDiverged);
+  Pose no_rotation;
+  no_rotation.R.coeffs().setConstant(NAN);
+  expect_no_answer(align(no_rotation), RegistrationStatus::kDiverged);
+  for (const double far_m : {1e7, 1e30, 1e200})
+    expect_no_answer(align(pose_at(far_m, 0, 0, 0)), RegistrationStatus::kTooFewPoints);
+  const Registration::Placed nowhere{cloud, pose_at(0, INFINITY, 0, 0)};
+  expect_no_answer(gicp->align(*cloud, std::span(&nowhere, 1), Pose{}), RegistrationStatus::kTooFewPoints);
 }
 
 TEST(Gicp, SameBitsEveryTimeAndForAnyNumberOfThreads) {
