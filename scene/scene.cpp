@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "scene/site.h"
 #include "scene/tiled_tracer.h"
 #include "scene/triangle.h"
 #include "scene/triangulate.h"
@@ -97,7 +98,11 @@ std::optional<double> Scene::ground_beside(double x, double y) const {
 }
 
 const Building* Scene::building_at(const Eigen::Vector2d& xy) const {
-  for (const Building& building : parts_.buildings) {
+  return scene::building_at(parts_.buildings, xy);
+}
+
+const Building* building_at(const std::vector<Building>& buildings, const Eigen::Vector2d& xy) {
+  for (const Building& building : buildings) {
     if (!polygon_contains(building.footprint_W, xy)) continue;
     const auto& yards = building.courtyards_W;
     if (std::none_of(yards.begin(), yards.end(), [&](const auto& yard) { return polygon_contains(yard, xy); }))

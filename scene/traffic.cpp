@@ -41,6 +41,21 @@ std::shared_ptr<const RigidShape> make_shape(const Shape& shape, const Scene& sc
   return std::make_shared<const RigidShape>(shape.name, shape.kind, std::move(parts.mesh));
 }
 
+std::string way_key(std::size_t i) {
+  return "scene.moving[" + std::to_string(i + 1) + "].path_m";
+}
+
+Status check_size(const MovingConfig& config, std::size_t i) {
+  if (config.path_m.size() < 2 || config.path_m.size() % 2 != 0)
+    return Error{"", 0, way_key(i), std::to_string(config.path_m.size()) + " numbers", "x, y of at least one point"};
+  return Ok{};
+}
+
+Error lies_outside(std::size_t i, const Eigen::Vector2d& p) {
+  return Error{"", 0, way_key(i), "(" + number_text(p.x()) + ", " + number_text(p.y()) + ") lies outside the scene",
+               "a point on the terrain"};
+}
+
 }  // namespace
 
 void visit(FieldVisitor& f, MovingConfig& c) {
@@ -57,14 +72,24 @@ std::vector<std::string> moving_shapes() {
   return names;
 }
 
+Status check_ways(const std::vector<MovingConfig>& moving, const Eigen::Vector2d& low_W,
+                  const Eigen::Vector2d& high_W) {
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    CANYON_TRY_STATUS(check_size(moving[i], i));
+    for (std::size_t k = 0; k + 1 < moving[i].path_m.size(); k += 2) {
+      const Eigen::Vector2d p(moving[i].path_m[k], moving[i].path_m[k + 1]);
+      if ((p.array() < low_W.array()).any() || (p.array() > high_W.array()).any()) return lies_outside(i, p);
+    }
+  }
+  return Ok{};
+}
+
 Result<Traffic> Traffic::make(const std::vector<MovingConfig>& moving, const Scene& scene) {
   Traffic out;
   out.scene_ = &scene;
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const MovingConfig& config = moving[i];
-    const std::string key = "scene.moving[" + std::to_string(i + 1) + "].path_m";
-    if (config.path_m.size() < 2 || config.path_m.size() % 2 != 0)
-      return Error{"", 0, key, std::to_string(config.path_m.size()) + " numbers", "x, y of at least one point"};
+    CANYON_TRY_STATUS(check_size(config, i));
     Moving m{config.name.empty() ? config.shape + " " + std::to_string(i + 1) : config.name,
              nullptr,
              {},
@@ -72,11 +97,7 @@ Result<Traffic> Traffic::make(const std::vector<MovingConfig>& moving, const Sce
              config.start_s};
     for (std::size_t k = 0; k + 1 < config.path_m.size(); k += 2) {
       m.path_W.emplace_back(config.path_m[k], config.path_m[k + 1]);
-      if (!scene.ground(m.path_W.back().x(), m.path_W.back().y()))
-        return Error{
-            "", 0, key,
-            "(" + number_text(config.path_m[k]) + ", " + number_text(config.path_m[k + 1]) + ") lies outside the scene",
-            "a point on the terrain"};
+      if (!scene.ground(m.path_W.back().x(), m.path_W.back().y())) return lies_outside(i, m.path_W.back());
     }
     for (const Moving& other : out.moving_)
       if (other.shape->name() == config.shape) m.shape = other.shape;

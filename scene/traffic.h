@@ -22,6 +22,9 @@ void visit(FieldVisitor& f, MovingConfig& c);
 /// The shapes there are: "car" (4.5 x 1.8 x 1.5 m), "bus" (12 x 2.55 x 3 m), "person" (0.3 x 0.5 x 1.75 m).
 std::vector<std::string> moving_shapes();
 
+/// That each way has points, all of them within the rectangle; what can be told before there is terrain.
+Status check_ways(const std::vector<MovingConfig>& moving, const Eigen::Vector2d& low_W, const Eigen::Vector2d& high_W);
+
 /// What moves in a scene, over time: on the terrain, headed along its way. A function of time alone, so runs that share
 /// a scene meet the same traffic.
 class Traffic {

@@ -148,11 +148,17 @@ void add_gabled(MeshBuilder& mesh, const Rectangle& r, double bottom_m, double e
   }
 }
 
-void build(const Design& d, const Terrain& terrain, MeshBuilder& mesh, SceneParts& parts) {
+/// What of building `number` (from 1) does not depend on the ground.
+Building planned(const Design& d, std::size_t number) {
   Building building;
-  building.name = "building " + std::to_string(parts.buildings.size() + 1);
-  building.object = mesh.begin_object(building.name, ObjectKind::kBuilding);
+  building.name = "building " + std::to_string(number);
   building.footprint_W = d.outline;
+  return building;
+}
+
+void build(const Design& d, const Terrain& terrain, MeshBuilder& mesh, SceneParts& parts) {
+  Building building = planned(d, parts.buildings.size() + 1);
+  building.object = mesh.begin_object(building.name, ObjectKind::kBuilding);
   const Terrain::Span ground = terrain.span(d.bounds.x0, d.bounds.y0, d.bounds.x1, d.bounds.y1);
   building.base_m = ground.low_m;
   building.height_m = d.height_m + (ground.high_m - ground.low_m);  // the design's height holds on the uphill side
@@ -173,14 +179,26 @@ void build(const Design& d, const Terrain& terrain, MeshBuilder& mesh, ScenePart
   parts.buildings.push_back(std::move(building));
 }
 
+std::vector<Design> designs(const CityConfig& config, const Plan& plan) {
+  const RandomStream stream(static_cast<std::uint64_t>(config.seed), "scene.city.buildings");
+  std::vector<Design> all;
+  for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
+    for (Design& d : design_block(plan.blocks[i], i, stream)) all.push_back(std::move(d));
+  }
+  return all;
+}
+
 }  // namespace
 
+std::vector<Building> planned_buildings(const CityConfig& config, const Plan& plan) {
+  std::vector<Building> buildings;
+  for (const Design& d : designs(config, plan)) buildings.push_back(planned(d, buildings.size() + 1));
+  return buildings;
+}
+
 void add_buildings(const CityConfig& config, const Plan& plan, const Terrain& terrain, SceneParts& parts) {
-  const RandomStream stream(static_cast<std::uint64_t>(config.seed), "scene.city.buildings");
   MeshBuilder mesh(parts);
-  for (std::size_t i = 0; i < plan.blocks.size(); ++i) {
-    for (const Design& d : design_block(plan.blocks[i], i, stream)) build(d, terrain, mesh, parts);
-  }
+  for (const Design& d : designs(config, plan)) build(d, terrain, mesh, parts);
 }
 
 }  // namespace canyon::scene::city
