@@ -1,6 +1,7 @@
+#include "lidar/deskew.h"
+
 #include <algorithm>
 
-#include "lidar/scanner.h"
 #include "lidar/sweep_motion.h"
 
 namespace canyon::lidar {

@@ -63,9 +63,4 @@ Result<std::unique_ptr<Scanner>> make_scanner(const LidarConfig& config, std::ui
 /// Pose of the sensor in the body, from mount_m and mount_yaw_pitch_roll_deg.
 Pose sensor_in_body(const LidarConfig& config);
 
-/// Moves every point to the sensor frame at the scan's stamp, using the buffered motion (normally the filter's own):
-/// p' = X_WL(t)^-1 X_WL(t + time_s) p. Points whose time the buffer does not cover are dropped.
-/// Returned points are in L at the stamp with time_s = 0.
-LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_BL);
-
 }  // namespace canyon::lidar

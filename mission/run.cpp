@@ -6,6 +6,7 @@
 
 #include "core/random.h"
 #include "core/units.h"
+#include "lidar/deskew.h"
 #include "lidar/voxel_map.h"
 #include "mission/mapper.h"
 

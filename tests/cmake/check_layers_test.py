@@ -1,5 +1,7 @@
 """check_layers.py on small trees, each with one thing wrong: what it says, word for word, and that it says nothing else."""
 
+import fnmatch
+import importlib.util
 import pathlib
 import subprocess
 import sys
@@ -112,6 +114,26 @@ class CheckLayers(unittest.TestCase):
         self.assert_breach(
             {"mission/reference_autonomy.cpp": '#include "core/truth.h"\n'},
             'mission/reference_autonomy.cpp:1: "core/truth.h": truth is for sensors, recorder and scorer only')
+
+    # 2026-11-22: deskewing, on the way of the estimate, could see the truth through the scanner's header, and no rule
+    # forbade it; nor was it forbidden to the mapper and to what registration stands on.
+    def test_truth_does_not_reach_what_lies_on_the_way_of_the_estimate(self):
+        for name in ("lidar/deskew.cpp", "lidar/prepared_cloud.cpp", "lidar/voxel_map.cpp", "mission/mapper.cpp"):
+            self.assert_breach(
+                {"lidar/scanner.h": '#pragma once\n#include "core/truth.h"\n', name: '#include "lidar/scanner.h"\n'},
+                f'{name}:1: "core/truth.h" (through lidar/scanner.h): truth is for sensors, recorder and scorer only')
+
+    # 2026-11-22: the rules named folders that were never there.
+    def test_what_the_rules_name_exists(self):
+        spec = importlib.util.spec_from_file_location("check_layers", SCRIPT)
+        rules = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(rules)
+        root = SCRIPT.parents[1]
+        for folder in [*rules.FLOORS, *rules.OUTSIDE]:
+            self.assertTrue((root / folder).is_dir(), folder)
+        names = [path.relative_to(root).as_posix() for folder in rules.FLOORS for path in (root / folder).rglob("*.*")]
+        for pattern in [*rules.BLIND_TO_TRUTH, *(place for row in rules.LIBRARIES for place in row[2])]:
+            self.assertTrue(fnmatch.filter(names, pattern), pattern)
 
     def test_no_other_random_numbers(self):
         self.assert_breach(

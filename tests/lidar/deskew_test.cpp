@@ -1,3 +1,5 @@
+#include "lidar/deskew.h"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
