@@ -27,6 +27,8 @@ Scorer::Scorer(const MissionConfig& config, const PreparedMission& mission, cons
       scene_(scene),
       start_(mission.start),
       time_limit_s_(mission.time_limit_s),
+      stopped_on_purpose_(config.time.limit_s > 0.0 &&
+                          config.time.limit_s < config.success.limit_factor * mission.nominal_s),
       last_checked_(Eigen::Vector2d::Constant(1e9)),
       last_t_(mission.start) {
   for (const Waypoint& place : places_) {
@@ -114,22 +116,31 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
   return t_s < time_limit_s_;  // finish() says what that means
 }
 
+void Scorer::autonomy_fault(const KinematicState& truth, const DriveCommand& command) {
+  fail("autonomy_fault", truth,
+       "its command was " + number(command.speed_m_s, "m/s") + ", " + number(command.curvature_1_m, "1/m"));
+}
+
 void Scorer::finish(const KinematicState& truth, bool done) {
   if (failure_) return;
   if (!done) {
-    fail("timeout", truth, "not finished within " + number(truth.t - start_, "s"));
+    const std::string after = number(truth.t - start_, "s");
+    if (stopped_on_purpose_) {
+      fail("stopped", truth, "by [time] limit_s after " + after);
+    } else {
+      fail("timeout", truth, "not finished within " + after);
+    }
     return;
   }
   for (std::size_t i = 0; i < waypoints_.size(); ++i) {
     const WaypointScore& score = waypoints_[i];
-    if (!score.mission) continue;
+    const std::string who = score.name.empty() ? "waypoint " + std::to_string(i + 1) : score.name;
     if (!score.reached) {
       fail("missed_waypoint", truth,
-           score.name + ": came within " + number(score.closest_m, "m") + ", stood there for " +
-               number(score.stopped_s, "s"));
-    } else if (!facades_[i].empty() && score.facade_seen_share < config_.facade_share) {
-      fail("no_line_of_sight", truth,
-           score.name + ": " + number(100.0 * score.facade_seen_share, "% of the facade in sight"));
+           who + ": came within " + number(score.closest_m, "m") +
+               (score.mission ? ", stood there for " + number(score.stopped_s, "s") : ""));
+    } else if (score.mission && !facades_[i].empty() && score.facade_seen_share < config_.facade_share) {
+      fail("no_line_of_sight", truth, who + ": " + number(100.0 * score.facade_seen_share, "% of the facade in sight"));
     }
   }
 }

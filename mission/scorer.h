@@ -13,7 +13,8 @@ namespace canyon::mission {
 
 /// How a mission failed, when and where.
 struct Failure {
-  std::string kind;  ///< collision, timeout, stuck, missed_waypoint, no_line_of_sight, left_scene
+  std::string kind;  ///< collision, timeout, stopped, stuck, missed_waypoint, no_line_of_sight, left_scene,
+                     ///< autonomy_fault
   double t_s = 0.0;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   std::string detail;
@@ -29,7 +30,10 @@ struct WaypointScore {
   double facade_seen_share = 0.0;  ///< best during a halt within the radius
 };
 
-/// Scores a mission on truth while it runs.
+/// Scores a mission on truth while it runs. It is a success if the autonomy finished it in time without a failure on
+/// the way, having truly reached every waypoint, in whatever order: the mission waypoints with a halt of stop_s within
+/// the radius and enough of the facade in sight, the others by passing within the radius. Out of several failures the
+/// first in time counts; of those that only the end shows, that of the first waypoint.
 class Scorer {
  public:
   Scorer(const MissionConfig& config, const PreparedMission& mission, const scene::SceneAt& scene);
@@ -37,6 +41,8 @@ class Scorer {
   /// One true step; `observing` (the autonomy stands on purpose) excuses standing still.
   /// Returns false once the run has to end: collision, stuck, off the terrain, out of time.
   bool step(const KinematicState& truth, double speed_m_s, bool on_terrain, bool observing);
+  /// The autonomy gave a command that is not finite.
+  void autonomy_fault(const KinematicState& truth, const DriveCommand& command);
   /// To be called once at the end: decides what is still open. `done` = the autonomy believes it has finished.
   void finish(const KinematicState& truth, bool done);
 
@@ -55,6 +61,7 @@ class Scorer {
   const scene::SceneAt& scene_;
   GpsTime start_;
   double time_limit_s_;
+  bool stopped_on_purpose_;  ///< it is [time] limit_s, not the mission's own limit, that ends the run
   std::vector<WaypointScore> waypoints_;
   std::vector<std::vector<Eigen::Vector3d>> facades_;
   std::vector<double> halt_s_;

@@ -10,14 +10,16 @@
 namespace canyon::report {
 
 std::string outcome_words(const std::string& outcome) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kWords{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kWords{
       {{"success", "completed the mission"},
        {"collision", "hit an obstacle"},
        {"timeout", "ran out of time"},
-       {"missed_waypoint", "missed a mission waypoint"},
+       {"stopped", "was stopped by the time limit it was given"},
+       {"missed_waypoint", "missed a waypoint"},
        {"no_line_of_sight", "did not see its building of interest"},
        {"stuck", "got stuck"},
-       {"left_scene", "left the scene"}}};
+       {"left_scene", "left the scene"},
+       {"autonomy_fault", "was given a command that is no number by its autonomy"}}};
   for (const auto& [kind, words] : kWords) {
     if (kind == outcome) return std::string(words);
   }

@@ -74,7 +74,8 @@ std::string success_sentence(const Run& run, const Mission& mission) {
 }
 
 std::string failure_sentence(const Run& run, const Mission& mission) {
-  std::string text = " failed: it " + outcome_words(run.failure ? run.failure->kind : run.outcome);
+  const std::string& kind = run.failure ? run.failure->kind : run.outcome;
+  std::string text = (kind == "stopped" ? " " : " failed: it ") + outcome_words(kind);
   if (run.failure) {
     const Failure& f = *run.failure;
     if (std::isfinite(f.t_s)) text += " after " + show_quantity(f.t_s, "s", 4);

@@ -55,6 +55,23 @@ TEST_F(ScorerTest, AStopTooShortIsAMissedWaypoint) {
   EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
 }
 
+// 2026-11-22: "success" though the vehicle had come no nearer to the first waypoint than 16 m: plain ones were not scored.
+TEST_F(ScorerTest, APlainWaypointThatWasNotReachedIsMissed) {
+  step({213.9, 93.9}, 5.0);
+  for (int i = 0; i < 11; ++i) step({213.9, 150.0}, 0.0, true);
+  scorer_.finish(at({213.9, 150.0}, t_s_), true);
+  EXPECT_TRUE(scorer_.waypoints()[1].reached);
+  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.failure()->detail, "crossing: came within 16.0 m");
+}
+
+TEST_F(ScorerTest, OfSeveralMissedWaypointsTheFirstIsTold) {
+  step({213.9, 60.0}, 5.0);
+  scorer_.finish(at({213.9, 60.0}, t_s_), true);
+  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.failure()->detail, "crossing: came within 49.9 m");
+}
+
 TEST_F(ScorerTest, DrivingIntoAHouseIsACollisionWithItsName) {
   bool ended = false;
   for (double x = 213.9; x < 245 && !ended; x += 0.3) ended = !step({x, 150.0}, 3.0);
@@ -75,6 +92,28 @@ TEST_F(ScorerTest, NotBeingDoneIsATimeout) {
   step({213.9, 60.0}, 5.0);
   scorer_.finish(at({213.9, 60.0}, t_s_), false);
   EXPECT_EQ(scorer_.outcome(), "timeout");
+}
+
+// 2026-11-22: a run that the user's own limit ended early was a "timeout".
+TEST(ScorerLimit, WhatTheUsersOwnLimitEndsIsStopped) {
+  const auto outcome_with = [](const std::string& extra) {
+    const MissionConfig config = short_config("low", "low", extra);
+    const auto mission = prepare(config, scenes());
+    EXPECT_TRUE(mission.ok());
+    const scene::SceneAt scene(*mission->scene);
+    Scorer scorer(config, *mission, scene);
+    KinematicState state;
+    state.t = mission->start + mission->time_limit_s;
+    state.X_WB.p = {213.9, 60.0, mission->scene->ground(213.9, 60.0)->height_m};
+    EXPECT_FALSE(scorer.step(state, 5.0, true, false)) << "the limit ends it";
+    scorer.finish(state, false);
+    return scorer.outcome() + ": " + scorer.failure()->detail;
+  };
+  EXPECT_EQ(outcome_with("[time]\nlimit_s = 20.0"), "stopped: by [time] limit_s after 20.0 s");
+  // One that is longer than the mission's own changes nothing.
+  const std::string own = outcome_with("");
+  EXPECT_EQ(own.rfind("timeout: not finished within ", 0), 0U) << own;
+  EXPECT_EQ(outcome_with("[time]\nlimit_s = 9000.0"), own);
 }
 
 /// A stop of 6 s at W's origin, before a house behind a screen of that height.
