@@ -10,6 +10,7 @@
 #include <tbb/task_arena.h>
 
 #include "core/check.h"
+#include "core/cpu_time.h"
 
 namespace canyon {
 namespace {
@@ -53,7 +54,11 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
   CANYON_CHECK(chunk > 0, "chunk = ", chunk);
   if (n == 0) return;
   const std::size_t chunks = (n - 1) / chunk + 1;
-  const auto run_chunk = [&](std::size_t i) { body(i * chunk, i * chunk + std::min(chunk, n - i * chunk)); };
+  CpuAccount* const account = charged_cpu_account();
+  const auto run_chunk = [&](std::size_t i) {
+    const ChargeCpu charge(account);
+    body(i * chunk, i * chunk + std::min(chunk, n - i * chunk));
+  };
   const std::shared_ptr<Pool> keep = pool();
   if (keep->count == 1 || chunks == 1) {
     for (std::size_t i = 0; i < chunks; ++i) run_chunk(i);

@@ -64,7 +64,7 @@ struct PriorKnowledge {
   Path route;
   std::vector<double> waypoint_s_m;  ///< arc length of each waypoint along the route
 };
-/// Error (without file and line) if the streets do not connect the waypoints.
+/// Error (without file and line) if the streets do not connect the waypoints, or if all of them lie at the start.
 Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets,
                                   const Eigen::Vector2d& start_m);
 

@@ -1,8 +1,5 @@
 #include "mission/part_clock.h"
 
-#include <ctime>
-#include <numeric>
-
 namespace canyon::mission {
 
 const char* name(Part part) {
@@ -23,25 +20,18 @@ const char* name(Part part) {
       return "registration";
     case Part::kScoring:
       return "scoring";
+    case Part::kOther:
+      return "other";
     case Part::kCount:
       break;
   }
   return "";
 }
 
-double thread_cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 double PartClock::total_s() const {
-  return std::accumulate(seconds_.begin(), seconds_.end(), 0.0);
-}
-
-PartClock::Charge::Charge(PartClock& clock, Part part) : clock_(clock), part_(part), start_s_(thread_cpu_s()) {}
-PartClock::Charge::~Charge() {
-  clock_.seconds_[static_cast<std::size_t>(part_)] += thread_cpu_s() - start_s_;
+  double sum_s = 0.0;
+  for (const CpuAccount& account : accounts_) sum_s += account.seconds();
+  return sum_s;
 }
 
 }  // namespace canyon::mission

@@ -3,36 +3,40 @@
 #include <array>
 #include <cstddef>
 
+#include "core/cpu_time.h"
+
 namespace canyon::mission {
 
-/// The parts of a run whose CPU time is told apart.
-enum class Part : std::size_t { kVehicle, kImu, kFilter, kGnss, kLidar, kAutonomy, kRegistration, kScoring, kCount };
+/// The parts of a run whose CPU time is told apart. kOther: making the sensors, moving things, keeping the record.
+enum class Part : std::size_t {
+  kVehicle,
+  kImu,
+  kFilter,
+  kGnss,
+  kLidar,
+  kAutonomy,
+  kRegistration,
+  kScoring,
+  kOther,
+  kCount
+};
 const char* name(Part part);
 
-/// CPU time of the calling thread by part of the run.
+/// CPU time by part of the run, of all threads that worked on it. Parts may lie within one another: each instant counts
+/// for the innermost.
 class PartClock {
  public:
   /// Runs f and charges its CPU time to `part`; returns what f returns.
   template <class F>
-  auto charge(Part part, F&& f) {
-    const Charge charge(*this, part);
+  decltype(auto) charge(Part part, F&& f) {
+    const ChargeCpu charge(&accounts_[static_cast<std::size_t>(part)]);
     return f();
   }
-  double cpu_s(Part part) const { return seconds_[static_cast<std::size_t>(part)]; }
+  double cpu_s(Part part) const { return accounts_[static_cast<std::size_t>(part)].seconds(); }
   double total_s() const;
 
  private:
-  struct Charge {
-    Charge(PartClock& clock, Part part);
-    ~Charge();
-    PartClock& clock_;
-    Part part_;
-    double start_s_;
-  };
-  std::array<double, static_cast<std::size_t>(Part::kCount)> seconds_{};
+  std::array<CpuAccount, static_cast<std::size_t>(Part::kCount)> accounts_;
 };
-
-/// CPU time of the calling thread, s.
-double thread_cpu_s();
 
 }  // namespace canyon::mission
