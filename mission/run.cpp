@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "lidar/deskew.h"
 #include "lidar/voxel_map.h"
+#include "mission/boundaries.h"
 #include "mission/mapper.h"
 
 namespace canyon::mission {
@@ -39,6 +40,7 @@ class MissionRun {
   const MissionConfig config_;
   const PreparedMission& mission_;
   PartClock& clock_;
+  Boundaries boundaries_;
   scene::SceneAt scene_;
   Vehicle vehicle_;
   std::unique_ptr<gnss::GnssSensor> gnss_;
@@ -65,6 +67,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
     : config_(config),
       mission_(mission),
       clock_(clock),
+      boundaries_(mission.start),
       scene_(*mission.scene),
       vehicle_(config.vehicle, *mission.scene, static_cast<std::uint64_t>(config.run.seed), mission.start),
       gnss_(std::move(gnss)),
@@ -125,8 +128,11 @@ Result<bool> MissionRun::step() {
 
   const Vehicle::Step& nodes =
       clock_.charge(Part::kVehicle, [&]() -> const Vehicle::Step& { return vehicle_.advance(command_, t); });
+  CANYON_TRY_STATUS(boundaries_.check(nodes));
   const ImuSample sample = clock_.charge(Part::kImu, [&] { return imu_->sample(k_, nodes); });
+  CANYON_TRY_STATUS(boundaries_.check(sample));
   clock_.charge(Part::kFilter, [&] { filter_.predict(sample); });
+  CANYON_TRY_STATUS(boundaries_.check(estimate()));
   if (k_ % imu_per_gnss_ == 0) CANYON_TRY_STATUS(receive_gnss());
 
   true_motion_.append({t, vehicle_.state().X_WB});
@@ -137,6 +143,11 @@ Result<bool> MissionRun::step() {
   NavEstimate seen = estimate();
   if (config_.autonomy.map == "registered") seen.X_WB = mapper_.correction() * seen.X_WB;
   command_ = clock_.charge(Part::kAutonomy, [&] { return autonomy_->drive(seen); });
+  if (!is_finite(command_)) {
+    scorer_.autonomy_fault(vehicle_.state(), command_);
+    return false;
+  }
+
   if (scan_due)
     record_.nav.push_back({t, vehicle_.state().X_WB, vehicle_.speed_m_s(), estimate(), command_,
                            autonomy_->next_waypoint() + 1, autonomy_->state()});
@@ -155,6 +166,7 @@ Status MissionRun::receive_gnss() {
   const Eigen::Vector3d v_A_W = truth.v_WB_W + truth.X_WB.R * truth.w_WB_B.cross(lever);
   gnss::GnssOutput output =
       clock_.charge(Part::kGnss, [&] { return gnss_->measure(k_ / imu_per_gnss_, truth.t, p_A_W, v_A_W, scene_); });
+  CANYON_TRY_STATUS(boundaries_.check(output));
 
   GnssRow row;
   row.fix = output.fix;
@@ -163,6 +175,7 @@ Status MissionRun::receive_gnss() {
   row.withheld = withhold >= 0.0 && truth.t - mission_.start >= withhold;
   if (!row.withheld) {
     row.update = clock_.charge(Part::kFilter, [&] { return filter_.update(output.fix); });
+    CANYON_TRY_STATUS(boundaries_.check(estimate()));
   }
   for (const GnssObservationTruth& satellite : output.truth.satellites) {
     double cn0 = kNaN;
@@ -189,6 +202,7 @@ Status MissionRun::take_scan() {
     moving = [&](double after_s) { return mission_.traffic.at(t - mission_.start + after_s); };
   lidar::LidarOutput output;
   clock_.charge(Part::kLidar, [&] { scanner_->scan(k_ / imu_per_scan_, t, true_motion_, scene_, moving, output); });
+  CANYON_TRY_STATUS(boundaries_.check(output));
   const LidarScan deskewed =
       clock_.charge(Part::kLidar, [&] { return lidar::deskew(output.scan, estimated_motion_, X_BL_); });
   record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());
@@ -197,6 +211,7 @@ Status MissionRun::take_scan() {
   if (!deskewed.points.empty())
     keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
   if (keyframe != nullptr) {
+    CANYON_TRY_STATUS(boundaries_.check(*keyframe));
     add_keyframe(deskewed, *keyframe);
   }
 
@@ -247,6 +262,7 @@ Result<RunRecord> MissionRun::finish() {
   record_.counters["keyframes_registered"] =
       std::count_if(record_.keyframes.begin(), record_.keyframes.end(),
                     [](const KeyframeRow& row) { return row.status.has_value(); });
+  CANYON_TRY_STATUS(boundaries_.check(record_));
   return std::move(record_);
 }
 

@@ -34,8 +34,6 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
     CANYON_TRY(auto config, run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu));
     auto prepared = mission::prepare(config, scenes);
     if (!prepared) return file.locate(prepared.error(), run.gnss, run.imu);
-    if (auto sensors = mission::check_sensors(config, *prepared); !sensors)
-      return file.locate(sensors.error(), run.gnss, run.imu);
     comparison.configs.push_back(std::move(config));
     comparison.missions.push_back(*std::move(prepared));
   }
@@ -58,6 +56,7 @@ Result<mission::Results> compare(const Comparison& comparison, bool show_progres
         records[i] = *std::move(record);
       } else {
         errors[i] = record.error();
+        if (errors[i]->key.empty()) errors[i]->key = "run " + comparison.plan[i].name;
       }
     }
   });

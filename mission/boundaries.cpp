@@ -1,0 +1,138 @@
+#include "mission/boundaries.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "core/config_text.h"
+
+namespace canyon::mission {
+
+namespace {
+
+// Largest magnitudes, far beyond what the parts give when they work.
+constexpr double kAnyFinite = std::numeric_limits<double>::max();
+constexpr double kTruePlace_m = 1e5;     // the range of every key that is a place in W
+constexpr double kTrueSpeed_m_s = 1e3;   // the vehicle's limit is 30 m/s
+constexpr double kTrueForce_m_s2 = 1e5;  // 10 000 g: no body stays whole
+constexpr double kTrueRate_rad_s = 1e3;  // gyroscopes of vehicles end at 35 rad/s
+constexpr double kBelieved_m = 1e12;     // an unaided filter that starts upside down drifts g t^2: 1e11 m in a day
+constexpr double kBelieved_m_s = 1e9;
+constexpr double kReturn_m = 1e5;  // ten times the largest range that a LIDAR can be given
+
+/// The values of one message; what is refused first is told.
+class Gate {
+ public:
+  Gate(const char* producer, double t_s) : producer_(producer), t_s_(t_s) {}
+
+  /// `what` names the values in the message.
+  template <class Derived>
+  Gate& pass(const char* what, const Eigen::MatrixBase<Derived>& values, double limit = kAnyFinite) {
+    using Scalar = typename Derived::Scalar;
+    const auto most = static_cast<Scalar>(std::min(limit, static_cast<double>(std::numeric_limits<Scalar>::max())));
+    if ((values.array().abs() <= most).all()) return *this;  // not so for NaN
+    for (const auto value : values.reshaped())
+      if (!(std::abs(value) <= most)) return pass(what, static_cast<double>(value), limit);
+    return *this;
+  }
+  Gate& pass(const char* what, double value, double limit = kAnyFinite) {
+    if (std::abs(value) <= limit || !refused_.empty()) return *this;
+    refused_ =
+        std::string(producer_) + " gave " + what + " of " + number_text(value) + " at " + number_text(t_s_) + " s";
+    return *this;
+  }
+  Gate& pass(const char* what, const Pose& pose, double limit) {
+    return pass(what, pose.p, limit).pass("an attitude", pose.R.coeffs(), 2.0);
+  }
+
+  Status status() const {
+    if (refused_.empty()) return Ok{};
+    return Error{.what = "the computation could not finish: " + refused_, .exit_code = 1};
+  }
+
+ private:
+  const char* producer_;
+  double t_s_;
+  std::string refused_;
+};
+
+}  // namespace
+
+Status Boundaries::check(const Vehicle::Step& motion) const {
+  Gate gate("the vehicle", motion.back().t - start_);
+  for (const KinematicState& node : motion) {
+    gate.pass("a position", node.X_WB, kTruePlace_m)
+        .pass("a velocity", node.v_WB_W, kTrueSpeed_m_s)
+        .pass("an acceleration", node.a_WB_W, kTrueForce_m_s2)
+        .pass("a rotation rate", node.w_WB_B, kTrueRate_rad_s)
+        .pass("an angular acceleration", node.alpha_WB_B);
+  }
+  return gate.status();
+}
+
+Status Boundaries::check(const ImuSample& sample) const {
+  return Gate("the IMU", sample.t - start_)
+      .pass("a turn", sample.dtheta_U, kTrueRate_rad_s * sample.dt_s)
+      .pass("a velocity increment", sample.dv_U, kTrueForce_m_s2 * sample.dt_s)
+      .status();
+}
+
+Status Boundaries::check(const gnss::GnssOutput& output) const {
+  Gate gate("the GNSS receiver", output.fix.t - start_);
+  if (output.fix.status != FixStatus::kNone) {
+    gate.pass("a position", output.fix.p_A_E, kBelieved_m).pass("a covariance", output.fix.covariance_E);
+    if (!output.fix.v_A_E.array().isNaN().all()) gate.pass("a velocity", output.fix.v_A_E, kBelieved_m_s);
+  }
+  for (const GnssObservation& observation : output.epoch.observations)
+    if (observation.used) gate.pass("a pseudorange", observation.pseudorange_m, kBelieved_m);
+  for (const GnssObservationTruth& truth : output.truth.satellites)
+    gate.pass("a true range", truth.range_m, kBelieved_m).pass("a true range rate", truth.range_rate_m_s);
+  return gate.status();
+}
+
+Status Boundaries::check(const lidar::LidarOutput& output) const {
+  Gate gate("the LIDAR", output.scan.t - start_);
+  for (const LidarPoint& point : output.scan.points)
+    gate.pass("a return", Eigen::Vector3f(point.x, point.y, point.z), kReturn_m)
+        .pass("an intensity or a time", Eigen::Vector2f(point.intensity, point.time_s));
+  return gate.status();
+}
+
+Status Boundaries::check(const NavEstimate& estimate) const {
+  return Gate("the filter", estimate.t - start_)
+      .pass("a position", estimate.X_WB, kBelieved_m)
+      .pass("a velocity", estimate.v_WB_W, kBelieved_m_s)
+      .pass("a covariance", estimate.pose_covariance)
+      .pass("a covariance", estimate.velocity_covariance_W)
+      .status();
+}
+
+Status Boundaries::check(const Keyframe& keyframe) const {
+  return Gate("the registration", keyframe.t - start_)
+      .pass("a position", keyframe.X_WL_registered, kBelieved_m)
+      .status();
+}
+
+Status Boundaries::check(const RunRecord& record) const {
+  Gate gate("the recorder", record.simulated_s);
+  gate.pass("a duration", record.simulated_s).pass("a distance", record.distance_m);
+  for (const NavRow& row : record.nav)
+    gate.pass("a true position", row.X_WB_true, kTruePlace_m)
+        .pass("a true speed", row.true_speed_m_s)
+        .pass("a position", row.estimate.X_WB, kBelieved_m)
+        .pass("a command", Eigen::Vector2d(row.command.speed_m_s, row.command.curvature_1_m));
+  for (const GnssRow& row : record.gnss_rows) gate.pass("a true position", row.p_A_W_true, 2.0 * kTruePlace_m);
+  for (const KeyframeRow& row : record.keyframes)
+    gate.pass("a true position", row.X_WL_true, 2.0 * kTruePlace_m)
+        .pass("a position", row.X_WL_registered, kBelieved_m);
+  for (const auto* map : {&record.prior_map, &record.registered_map})
+    for (const lidar::MapPoint& point : *map) gate.pass("a map point", point.p_W);
+  return gate.status();
+}
+
+bool is_finite(const DriveCommand& command) {
+  return std::isfinite(command.speed_m_s) && std::isfinite(command.curvature_1_m);
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "core/messages.h"
+#include "core/result.h"
+#include "gnss/sensor.h"
+#include "lidar/scanner.h"
+#include "mission/mapper.h"
+#include "mission/run_record.h"
+#include "mission/vehicle.h"
+
+namespace canyon::mission {
+
+/// Looks at what one part of a run hands to the next. What is not finite, or larger than it can be on Earth (the .cpp
+/// has the limits), is refused where it comes from, and does not travel on to where some library gives up. The Error is
+/// of a computation that could not finish (exit status 1) and names the producer, the time and the value.
+///
+/// NaN where a message means "not measured" passes: a fix that is none, a velocity that the receiver does not give.
+class Boundaries {
+ public:
+  explicit Boundaries(GpsTime start) : start_(start) {}
+
+  Status check(const Vehicle::Step& motion) const;
+  Status check(const ImuSample& sample) const;
+  Status check(const gnss::GnssOutput& output) const;
+  Status check(const lidar::LidarOutput& output) const;
+  Status check(const NavEstimate& estimate) const;
+  Status check(const Keyframe& keyframe) const;
+  /// All that a run leaves behind.
+  Status check(const RunRecord& record) const;
+
+ private:
+  GpsTime start_;
+};
+
+/// Of a command only that it is finite is asked: the vehicle keeps to its limits, and one that is not is the mission's
+/// outcome, since the autonomy is what is under test.
+bool is_finite(const DriveCommand& command);
+
+}  // namespace canyon::mission
