@@ -86,6 +86,10 @@ Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::Str
     corner.push_back(polyline.size() - 1);
   }
   PriorKnowledge prior{Path(polyline, config.corner_radius_m), {}};
+  if (prior.route.empty())
+    return Error{.key = "autonomy.waypoint[1], vehicle.start_m",
+                 .what = "start and waypoints are one place",
+                 .expected = "a way to drive"};
   // Waypoints come in order: each is looked for from the one before on, near where the unrounded streets would put it.
   double s_m = 0.0;
   std::size_t at = 0;

@@ -97,13 +97,9 @@ class SceneCache {
 /// [time] start; an Error for its key.
 Result<GpsTime> start_time(const MissionConfig& config);
 
-/// Reads every file that is named, builds the scene and checks what needs it: start and waypoints inside the scene and
-/// outside buildings, observed buildings known, rates that divide the IMU's, stops as long as asked for. Errors name
-/// the key; MissionFile::locate adds file and line.
+/// Reads every file that is named, builds the scene and every sensor once, and checks what can be checked before any
+/// time is spent: no contradictions between keys (mission/consistency.h), places that can be stood at, reached and seen
+/// from (mission/place_checks.h). Errors name the key; MissionFile::locate adds file and line.
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes);
-
-/// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry
-/// before any time is spent.
-Status check_sensors(const MissionConfig& config, const PreparedMission& mission);
 
 }  // namespace canyon::mission
