@@ -9,8 +9,7 @@ namespace {
 // 2026-11-22: with two threads the LIDAR's time fell from 1.59 to 1.31 s while the process spent the same: what other
 // threads did was nobody's.
 TEST(PartClock, PartsAddUpToWhatTheProcessSpends) {
-  const MissionConfig config =
-      short_config("high", "high", "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"gicp\"");
+  const MissionConfig config = short_config("high", "high", "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"gicp\"");
   const auto mission = prepare(config, scenes());
   ASSERT_TRUE(mission.ok()) << mission.error().str();
   for (const int count : {1, 2}) {
@@ -27,7 +26,7 @@ TEST(PartClock, PartsAddUpToWhatTheProcessSpends) {
       sum_s += record->clock.cpu_s(static_cast<Part>(part));
     EXPECT_EQ(sum_s, record->clock.total_s());
     EXPECT_GT(record->clock.cpu_s(Part::kLidar), 0.1 * sum_s);
-    EXPECT_LT(record->clock.cpu_s(Part::kOther), 0.1 * sum_s);
+    EXPECT_GT(record->clock.cpu_s(Part::kOther), 0.0);
   }
   set_threads(0);
 }

@@ -43,6 +43,7 @@ TEST_F(ScorerTest, SucceedsAfterAStopInSight) {
 }
 
 TEST_F(ScorerTest, AStopTooFarAwayIsAMissedWaypoint) {
+  step({213.9, 109.0}, 5.0);
   for (int i = 0; i < 20; ++i) step({213.9, 146.0}, 0.0, true);
   scorer_.finish(at({213.9, 146.0}, t_s_), true);
   EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
@@ -50,12 +51,14 @@ TEST_F(ScorerTest, AStopTooFarAwayIsAMissedWaypoint) {
 }
 
 TEST_F(ScorerTest, AStopTooShortIsAMissedWaypoint) {
+  step({213.9, 109.0}, 5.0);
   for (int i = 0; i < 8; ++i) step({213.9, 150.0}, 0.0, true);
   scorer_.finish(at({213.9, 150.0}, t_s_), true);
   EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
 }
 
-// 2026-11-22: "success" though the vehicle had come no nearer to the first waypoint than 16 m: plain ones were not scored.
+// 2026-11-22: "success" though the vehicle had come no nearer to the first waypoint than 16 m: plain ones were not
+// scored.
 TEST_F(ScorerTest, APlainWaypointThatWasNotReachedIsMissed) {
   step({213.9, 93.9}, 5.0);
   for (int i = 0; i < 11; ++i) step({213.9, 150.0}, 0.0, true);
