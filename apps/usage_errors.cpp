@@ -151,8 +151,7 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error, const std::
     if (const auto wrong = not_one_of_a_group(*place.app)) return *wrong;
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
     return {.file = verb,
-            .what = message.substr(0, message.find(' ')) + " is missing",
-            .expected = "it; " + verb + " --help shows an example"};
+            .what = message.substr(0, message.find(' ')) + " is missing; " + verb + " --help shows an example"};
   return {.file = verb, .what = message};
 }
 
