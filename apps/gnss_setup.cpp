@@ -27,7 +27,7 @@ void declare_gnss_setup(Arguments& arguments, GnssSetupOptions& options, const c
       .within(std::int64_t{0}, kLargestSeed);
   arguments.option("--out", options.out, "directory for the files; without it only the summary is printed");
   arguments.flag("--force", options.force,
-                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
+                 "replace files that exist, and the directory: only one that canyon wrote, or an empty one");
 }
 
 Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optional<Geodetic>& place) {

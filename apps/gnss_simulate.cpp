@@ -265,11 +265,11 @@ Result<int> run(const Options& options) {
   CANYON_TRY(const auto sensor,
              make_gnss_sensor(setup.config, setup.seed, setup.start, setup.start + duration_s, *setup.scene));
 
-  std::unique_ptr<StagedDirectory> staged;
-  if (!options.setup.out.empty()) {
-    CANYON_TRY(auto directory, StagedDirectory::create(options.setup.out, options.setup.force));
-    staged = std::make_unique<StagedDirectory>(std::move(directory));
-  }
+  OutputSet outputs(options.setup.force);
+  CANYON_TRY(const StagedDirectory* const folder, outputs.directory(options.setup.out));
+  CANYON_TRY(StagedFile* const rinex_obs, outputs.file(options.rinex_obs));
+  CANYON_TRY(StagedFile* const rinex_nav, outputs.file(options.rinex_nav));
+  CANYON_TRY(StagedFile* const nmea, outputs.file(options.nmea));
   CANYON_TRY(const auto source, make_satellite_source(setup.config, setup.start, setup.start + duration_s));
   GroundCheck ground(*setup.scene);
   if (at) {
@@ -305,20 +305,20 @@ Result<int> run(const Options& options) {
         "receives nothing there; heights are ellipsoidal\n",
         options.trajectory.c_str(), static_cast<long long>(ground.below()), static_cast<long long>(totals.epochs),
         ground.deepest_m());
-  if (staged) {
-    CANYON_TRY_STATUS(write_text_file(staged->staging_path() + "/fixes.csv", recorder.fixes()));
-    CANYON_TRY_STATUS(write_text_file(staged->staging_path() + "/satellites.csv", recorder.satellites()));
-    CANYON_TRY_STATUS(staged->commit());
+  if (folder != nullptr) {
+    CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/fixes.csv", recorder.fixes()));
+    CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/satellites.csv", recorder.satellites()));
   }
-  if (!options.rinex_obs.empty()) {
+  if (rinex_obs != nullptr) {
     CANYON_TRY(const std::string text, observations(recorder.epochs(), options, source, path.at(setup.start)->p_E));
-    CANYON_TRY_STATUS(write_text_file(options.rinex_obs, text));
+    CANYON_TRY_STATUS(rinex_obs->write(text));
   }
-  if (!options.rinex_nav.empty()) {
+  if (rinex_nav != nullptr) {
     CANYON_TRY(const std::string text, navigation(source, setup.config.systems, setup.start, setup.start + duration_s));
-    CANYON_TRY_STATUS(write_text_file(options.rinex_nav, text));
+    CANYON_TRY_STATUS(rinex_nav->write(text));
   }
-  if (!options.nmea.empty()) CANYON_TRY_STATUS(write_text_file(options.nmea, recorder.nmea()));
+  if (nmea != nullptr) CANYON_TRY_STATUS(nmea->write(recorder.nmea()));
+  CANYON_TRY_STATUS(outputs.commit());
   tell(options, totals, setup);
   return 0;
 }

@@ -115,13 +115,9 @@ void tell(const gnss::SinglePointResult& result, const gnss::PositionStatistics&
               s.rms_3d_m);
 }
 
-Status write_output(const Options& options, const gnss::SinglePointResult& result, const Json& json) {
-  if (options.out.empty()) return Ok{};
-  if (options.out.ends_with(".csv")) return write_text_file(options.out, gnss::solution_csv(result));
-  CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
-  CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/positions.csv", gnss::solution_csv(result)));
-  CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/summary.json", json.dump(2) + "\n"));
-  return staged.commit();
+Status write_folder(const std::string& path, const gnss::SinglePointResult& result, const Json& json) {
+  CANYON_TRY_STATUS(write_text_file(path + "/positions.csv", gnss::solution_csv(result)));
+  return write_text_file(path + "/summary.json", json.dump(2) + "\n");
 }
 
 /// Broadcast orbits and clocks, or precise ones with the broadcast group delays and GLONASS's channels.
@@ -155,6 +151,10 @@ Result<std::unique_ptr<gnss::Constellation>> satellites(const Options& options, 
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
+  OutputSet outputs(options.force);
+  const bool table_alone = options.out.ends_with(".csv");
+  CANYON_TRY(StagedFile* const table, outputs.file(table_alone ? options.out : ""));
+  CANYON_TRY(const StagedDirectory* const folder, outputs.directory(table_alone ? "" : options.out));
   CANYON_TRY(const auto config, configuration(options));
   CANYON_TRY(const auto truth, truth_of(options));
   CANYON_TRY(const auto navigation, gnss::read_navigation_files(options.navigation));
@@ -173,7 +173,9 @@ Result<int> run(const Options& options) {
   for (const auto& e : result.epochs) fixes.push_back(e.fix);
   const auto statistics = gnss::position_statistics(fixes, truth);
   const auto json = summary_json(result, statistics, file, navigation);
-  CANYON_TRY_STATUS(write_output(options, result, json));
+  if (table != nullptr) CANYON_TRY_STATUS(table->write(gnss::solution_csv(result)));
+  if (folder != nullptr) CANYON_TRY_STATUS(write_folder(folder->staging_path(), result, json));
+  CANYON_TRY_STATUS(outputs.commit());
   warnings.insert(warnings.end(), file.warnings.begin(), file.warnings.end());
   warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
   for (const auto& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
@@ -206,7 +208,7 @@ VerbAction declare(Arguments& arguments) {
       .excludes(ecef);
   arguments.option("--out", options->out, "positions per epoch: a file NAME.csv, or a directory");
   arguments.flag("--force", options->force,
-                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
+                 "replace the file if it exists, or the directory: only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> { return run(*options); };
 }
 

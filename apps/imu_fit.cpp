@@ -261,13 +261,10 @@ void print_triad(const char* name, const TriadCalibration& c, double unit, const
               c.uncalibrated_rms / unit);
 }
 
-Status write_entry(const std::string& path, const std::string& toml, bool force) {
-  if (!force && std::filesystem::exists(path)) return Error{path, 0, "", "exists", "another --out, or --force"};
-  return write_text_file(path, toml);
-}
-
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
+  OutputSet outputs(options.force);
+  CANYON_TRY(StagedFile* const entry, outputs.file(options.out));
   CANYON_TRY(const inertial::ImuLog log, read_log(options.log, options.at_rest));
   tell_doubts(log);
   if (options.at_rest) tell_motion(options.log.log, inertial::find_motion(log));
@@ -280,7 +277,8 @@ Result<int> run(const Options& options) {
     std::fprintf(stderr,
                  "note: gravity is taken as 9.80665 m/s^2; it differs by up to 0.03 from place to place: --at or "
                  "--gravity\n");
-  if (!options.out.empty()) CANYON_TRY_STATUS(write_entry(options.out, found.toml, options.force));
+  if (entry != nullptr) CANYON_TRY_STATUS(entry->write(found.toml));
+  CANYON_TRY_STATUS(outputs.commit());
   if (options.common.json) {
     Json out = {{"entry", found.toml}};
     if (gyro) out["gyro"] = json_of(*gyro);
@@ -290,10 +288,10 @@ Result<int> run(const Options& options) {
   }
   if (gyro) print_triad("Gyroscope", *gyro, kDegree / kHour, "deg/h");
   if (accel) print_triad("Accelerometer", *accel, kMilliG, "mg");
-  if (options.out.empty())
+  if (entry == nullptr)
     std::printf("%s", found.toml.c_str());
   else
-    std::printf("Entry: %s\n", options.out.c_str());
+    std::printf("Entry: %s\n", entry->final_path().c_str());
   return 0;
 }
 

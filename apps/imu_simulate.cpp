@@ -267,26 +267,29 @@ Json summary_json(const Options& options, const Simulation& s) {
       {"gravity", "wgs84"}};
 }
 
-Status write_output(const Options& options, const Simulation& s, const Json& summary) {
-  if (options.out.empty()) return Ok{};
-  if (options.out.ends_with(".csv")) return write_text_file(options.out, rates_csv(s));
-  if (options.out.ends_with(".txt")) return write_text_file(options.out, kf_gins_text(s));
-  CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
-  const std::string folder = staged.staging_path() + "/";
+bool is_log_alone(const std::string& out) {
+  return out.ends_with(".csv") || out.ends_with(".txt");
+}
+
+Status write_folder(const std::string& path, const Simulation& s, const Json& summary) {
+  const std::string folder = path + "/";
   CANYON_TRY_STATUS(write_text_file(folder + "imu.csv", rates_csv(s)));
   CANYON_TRY_STATUS(write_text_file(folder + "imu_kf_gins.txt", kf_gins_text(s)));
   CANYON_TRY_STATUS(write_text_file(folder + "errors.csv", errors_csv(s)));
   CANYON_TRY_STATUS(write_navigation_file(folder + "truth.nav", truth_file(s)));
-  CANYON_TRY_STATUS(write_text_file(folder + "summary.json", summary.dump(2) + "\n"));
-  throw_if_cancelled();
-  return staged.commit();
+  return write_text_file(folder + "summary.json", summary.dump(2) + "\n");
 }
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
+  OutputSet outputs(options.force);
+  CANYON_TRY(StagedFile* const log, outputs.file(is_log_alone(options.out) ? options.out : ""));
+  CANYON_TRY(const StagedDirectory* const folder, outputs.directory(is_log_alone(options.out) ? "" : options.out));
   CANYON_TRY(const Simulation s, simulate(options));
   const Json summary = summary_json(options, s);
-  CANYON_TRY_STATUS(write_output(options, s, summary));
+  if (log != nullptr) CANYON_TRY_STATUS(log->write(options.out.ends_with(".csv") ? rates_csv(s) : kf_gins_text(s)));
+  if (folder != nullptr) CANYON_TRY_STATUS(write_folder(folder->staging_path(), s, summary));
+  CANYON_TRY_STATUS(outputs.commit());
   if (options.common.json) {
     std::printf("%s\n", summary.dump().c_str());
     return 0;
@@ -297,7 +300,8 @@ Result<int> run(const Options& options) {
   std::printf("  at most %.4g m/s, %.4g deg/s, %.4g m/s^2\n", summary["speed_max_m_s"].get<double>(),
               summary["rate_max_deg_s"].get<double>(), summary["specific_force_max_m_s2"].get<double>());
   std::printf("  true increments within %.1g rad and %.1g m/s\n", s.accuracy.dtheta_rad, s.accuracy.dv_m_s);
-  if (!options.out.empty()) std::printf("Written: %s\n", options.out.c_str());
+  if (log != nullptr) std::printf("Written: %s\n", log->final_path().c_str());
+  if (folder != nullptr) std::printf("Written: %s\n", folder->final_path().c_str());
   return 0;
 }
 
@@ -341,7 +345,7 @@ VerbAction declare(Arguments& arguments) {
       "directory for imu.csv, imu_kf_gins.txt, errors.csv, truth.nav and summary.json; NAME.csv or NAME.txt: "
       "the log alone, as rates or as KF-GINS increments");
   arguments.flag("--force", options->force,
-                 "replace the directory if it exists; only one that canyon wrote, or an empty one");
+                 "replace the file if it exists, or the directory: only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> {
     if (options->at.empty() && options->path.empty() && options->points.empty() && options->trajectory.empty())
       return Error{"", 0, "command line", "no motion given",

@@ -142,7 +142,8 @@ struct PacketOutput {
   }
 };
 
-Result<PacketOutput> packet_output(const Options& options, const lidar::LidarConfig& config) {
+/// `capture`: the file asked for, or none.
+Result<PacketOutput> packet_output(const Options& options, const lidar::LidarConfig& config, StagedFile* capture) {
   PacketOutput out;
   out.fast = options.udp_fast;
   if (options.pcap.empty() && options.udp.empty()) return out;
@@ -157,9 +158,8 @@ Result<PacketOutput> packet_output(const Options& options, const lidar::LidarCon
                lidar::velodyne::UdpSender::open(options.udp.substr(0, colon), static_cast<std::uint16_t>(port[0])));
     out.udp.emplace(std::move(sender));
   }
-  if (!options.pcap.empty()) {
-    CANYON_TRY(auto capture, lidar::velodyne::PcapWriter::create(options.pcap, options.force));
-    out.capture.emplace(std::move(capture));
+  if (capture != nullptr) {
+    CANYON_TRY(out.capture, lidar::velodyne::PcapWriter::begin(*capture));
   }
   return out;
 }
@@ -181,13 +181,11 @@ Result<int> run(const Options& options) {
   set_threads(options.common.threads);
   CANYON_TRY(const lidar::CloudFormat* format, lidar::cloud_format(options.format, "--format"));
   CANYON_TRY(const Setup setup, setup_of(options));
-  CANYON_TRY(PacketOutput packets, packet_output(options, setup.lidar));
   CANYON_TRY(const auto scanner, lidar::make_scanner(setup.lidar, static_cast<std::uint64_t>(options.seed)));
-  std::unique_ptr<StagedDirectory> staged;
-  if (!options.out.empty()) {
-    CANYON_TRY(auto directory, StagedDirectory::create(options.out, options.force));
-    staged = std::make_unique<StagedDirectory>(std::move(directory));
-  }
+  OutputSet outputs(options.force);
+  CANYON_TRY(const StagedDirectory* const staged, outputs.directory(options.out));
+  CANYON_TRY(StagedFile* const capture, outputs.file(options.pcap));
+  CANYON_TRY(PacketOutput packets, packet_output(options, setup.lidar, capture));
   scene::SceneAt scene(*setup.scene);
   std::int64_t points = 0;
   double scanning_s = 0.0;
@@ -207,7 +205,7 @@ Result<int> run(const Options& options) {
     scanning_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     points += static_cast<std::int64_t>(output.scan.points.size());
     CANYON_TRY_STATUS(packets.add(k, output.scan));
-    if (staged) {
+    if (staged != nullptr) {
       const std::string stem = staged->staging_path() + text("/scan_%06lld", static_cast<long long>(k));
       CANYON_TRY_STATUS(
           write_text_file(stem + "." + format->name, format->text(t, in_frame(options, setup, output.scan))));
@@ -215,11 +213,8 @@ Result<int> run(const Options& options) {
     }
     progress.advance(1);
   }
-  if (packets.capture) CANYON_TRY_STATUS(packets.capture->commit());
-  if (staged) {
-    CANYON_TRY_STATUS(write_tum(staged->staging_path() + "/trajectory.tum", setup.motion));
-    CANYON_TRY_STATUS(staged->commit());
-  }
+  if (staged != nullptr) CANYON_TRY_STATUS(write_tum(staged->staging_path() + "/trajectory.tum", setup.motion));
+  CANYON_TRY_STATUS(outputs.commit());
   if (options.common.json) {
     const Json out{{"scans", setup.scans},
                    {"rays", scanner->rays()},
@@ -243,7 +238,7 @@ Result<int> run(const Options& options) {
               1e3 * scanning_s / static_cast<double>(setup.scans),
               1e-6 * static_cast<double>(scanner->rays()) / scanning_s);
   if (packets.packets > 0) std::printf("%lld packets\n", static_cast<long long>(packets.packets));
-  if (staged)
+  if (staged != nullptr)
     std::printf("Files: %s/{scan_NNNNNN.%s, scan_NNNNNN_truth.csv, trajectory.tum}\n", staged->final_path().c_str(),
                 format->name);
   return 0;

@@ -24,6 +24,7 @@ struct Options {
   SceneOptions scene;
   std::string picture;
   double cell_m = 1.0;
+  bool force = false;
 };
 
 /// Height above the ground of what is seen from above; NaN outside.
@@ -52,7 +53,7 @@ Grid heights_from_above(const scene::Scene& scene, double cell_m) {
   return grid;
 }
 
-Status draw(const scene::Scene& scene, const Options& options) {
+std::string drawn(const scene::Scene& scene, const Options& options) {
   const Grid grid = heights_from_above(scene, options.cell_m);
   const report::RasterMap map{.title = scene.name(),
                               .subtitle = "height above the ground, from above",
@@ -60,8 +61,7 @@ Status draw(const scene::Scene& scene, const Options& options) {
                               .grid = &grid,
                               .edges = {-0.5, 0.5, 3.0, 8.0, 15.0, 25.0, 50.0, 100.0},
                               .bad_is_low = true};
-  return write_text_file(options.picture,
-                         options.picture.ends_with(".png") ? report::raster_png(map) : report::raster_svg(map));
+  return options.picture.ends_with(".png") ? report::raster_png(map) : report::raster_svg(map);
 }
 
 struct Facts {
@@ -140,6 +140,8 @@ void print_text(const scene::Scene& scene, const scene::ImportReport& report, co
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
+  OutputSet outputs(options.force);
+  CANYON_TRY(StagedFile* const picture, outputs.file(options.picture));
   CANYON_TRY(const scene::SceneConfig config, scene_config(options.scene));
   CANYON_TRY(scene::ImportedScene made, scene::make_scene(config));
   const scene::Scene scene(std::move(made.parts));
@@ -147,7 +149,10 @@ Result<int> run(const Options& options) {
               scene::soundness(scene), scene::sensor_needs(scene)};
   if (!scene.mesh().triangles.empty()) facts.size_m = facts.extent.max - facts.extent.min;
   for (const scene::Building& b : scene.buildings()) facts.height_sum_m += b.height_m;
-  if (!options.picture.empty() && !scene.mesh().triangles.empty()) CANYON_TRY_STATUS(draw(scene, options));
+  if (picture != nullptr && !scene.mesh().triangles.empty()) {
+    CANYON_TRY_STATUS(picture->write(drawn(scene, options)));
+    CANYON_TRY_STATUS(outputs.commit());
+  }
   if (options.common.json)
     std::printf("%s\n", as_json(scene, made.report, facts).dump().c_str());
   else
@@ -160,6 +165,7 @@ VerbAction declare(Arguments& arguments) {
   declare_common(arguments, options->common);
   declare_scene_options(arguments, options->scene, "a scene file, a mission file's scene, or \"vicksburg\" (built in)");
   arguments.option("--picture", options->picture, "draws the scene from above: .svg or .png");
+  arguments.flag("--force", options->force, "replace the picture if it exists");
   arguments.option("--cell", options->cell_m, "of the picture, m").default_shown().within(0.1, 100.0);
   return [options] { return run(*options); };
 }

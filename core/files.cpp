@@ -47,6 +47,7 @@ Result<std::string> gunzip(const std::string& path, const std::string& packed) {
   std::size_t fed = 0;
   int status = Z_OK;
   while (true) {
+    throw_if_cancelled();
     if (stream.avail_in == 0 && fed < packed.size()) {
       const std::size_t piece = std::min<std::size_t>(packed.size() - fed, 1u << 30);
       // zlib's interface predates const; it does not write to its input.

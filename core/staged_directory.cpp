@@ -2,9 +2,10 @@
 #include <system_error>
 #include <utility>
 
-#include <unistd.h>
-
+#include "core/disk.h"
 #include "core/files.h"
+#include "core/staging_litter.h"
+#include "core/staging_name.h"
 
 namespace canyon {
 namespace {
@@ -12,21 +13,11 @@ namespace {
 namespace fs = std::filesystem;
 
 Error directory_error(const std::string& path, std::string what, std::string expected, int exit_code = 2) {
-  Error error;
-  error.file = path;
-  error.what = std::move(what);
-  error.expected = std::move(expected);
-  error.exit_code = exit_code;
-  return error;
+  return Error{path, 0, "", std::move(what), std::move(expected), exit_code};
 }
 
 Error not_writable(const std::string& path, const std::error_code& code) {
   return directory_error(path, "not writable (" + code.message() + ")", "a place where a directory can be created");
-}
-
-/// The nearest sibling name: renaming stays within one file system.
-fs::path sibling(const fs::path& path, const char* role) {
-  return path.parent_path() / ("." + path.filename().string() + "." + role + "-" + std::to_string(getpid()));
 }
 
 /// Stands in every directory that commit() has put in place; only such a one is ever replaced.
@@ -41,12 +32,6 @@ Error not_ours(const std::string& path) {
   return directory_error(path, "not a results directory", "one that canyon wrote, an empty one or a new name");
 }
 
-/// Removes empty directories from the innermost on; one that has got other content meanwhile stays.
-void remove_empty(const std::vector<std::string>& outermost_first) {
-  std::error_code ignored;
-  for (auto it = outermost_first.rbegin(); it != outermost_first.rend(); ++it) fs::remove(*it, ignored);
-}
-
 }  // namespace
 
 std::string free_name(const std::string& path) {
@@ -54,26 +39,6 @@ std::string free_name(const std::string& path) {
   std::error_code code;
   for (int n = 2; fs::exists(fs::symlink_status(name, code)); ++n) name = path + "-" + std::to_string(n);
   return name;
-}
-
-StagedDirectory::StagedDirectory(std::string final_path, std::string staging, bool force,
-                                 std::vector<std::string> parents)
-    : final_(std::move(final_path)),
-      staging_(std::move(staging)),
-      force_(force),
-      created_parents_(std::move(parents)) {}
-
-StagedDirectory::StagedDirectory(StagedDirectory&& other) noexcept
-    : final_(std::move(other.final_)),
-      staging_(std::exchange(other.staging_, {})),
-      force_(other.force_),
-      created_parents_(std::exchange(other.created_parents_, {})) {}
-
-StagedDirectory::~StagedDirectory() {
-  if (staging_.empty()) return;
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
-  remove_empty(created_parents_);
 }
 
 Result<StagedDirectory> StagedDirectory::create(const std::string& path, bool force) {
@@ -106,43 +71,37 @@ Result<StagedDirectory> StagedDirectory::create(const std::string& path, bool fo
   std::vector<std::string> created;
   for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
     if (!fs::create_directory(*it, code) && code) {
-      remove_empty(created);
+      remove_empty_directories(created);
       return not_writable(path, code);
     }
-    created.push_back(*it);
+    created.push_back(fs::absolute(*it, code).string());
   }
-  const fs::path staging = sibling(final_path, "partial");
-  fs::remove_all(staging, code);  // left by a process of the same number that was killed
+  remove_stale_stagings(final_path.parent_path());
+  const fs::path staging = staging_name(final_path, "partial");
   if (!fs::create_directory(staging, code)) {
-    remove_empty(created);
+    remove_empty_directories(created);
     return not_writable(path, code);
   }
   return StagedDirectory(final_path.string(), staging.string(), force, std::move(created));
 }
 
-Status StagedDirectory::commit() {
-  CANYON_CHECK(!staging_.empty(), "committed twice: ", final_);
-  std::error_code code;
-  if (!force_) final_ = free_name(final_);
-  const bool replace = fs::exists(fs::symlink_status(final_, code));
-  if (replace && !may_be_replaced(final_)) return not_ours(final_);
+Status StagedDirectory::seal() {
+  CANYON_CHECK(!staging_path().empty(), "committed twice: ", final_path());
   CANYON_TRY_STATUS(
-      write_text_file(staging_ + "/" + kMarker, "written by canyon; --force may replace this directory\n"));
-  const fs::path old = sibling(final_, "replaced");
-  if (replace) {
-    fs::rename(final_, old, code);
-    if (code) return directory_error(final_, "cannot be replaced (" + code.message() + ")", "a writable directory", 1);
-  }
-  fs::rename(staging_, final_, code);
-  if (code) {
-    std::error_code ignored;
-    if (replace) fs::rename(old, final_, ignored);
-    return directory_error(final_, "cannot be put in place (" + code.message() + ")", "a writable directory", 1);
-  }
-  staging_.clear();
-  created_parents_.clear();
-  if (replace) fs::remove_all(old, code);
+      write_text_file(staging_path() + "/" + kMarker, "written by canyon; --force may replace this directory\n"));
+  if (const auto code = sync_tree(staging_path()))
+    return directory_error(final_path(), "cannot be written to the end (" + code.message() + ")", "space on the disk",
+                           1);
   return Ok{};
+}
+
+Status StagedDirectory::check_replaced() const {
+  if (!may_be_replaced(final_path())) return not_ours(final_path());
+  return Ok{};
+}
+
+std::string StagedDirectory::next_free_name() const {
+  return free_name(final_path());
 }
 
 }  // namespace canyon

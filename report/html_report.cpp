@@ -4,6 +4,7 @@
 
 #include "core/embedded.h"
 #include "core/files.h"
+#include "core/progress.h"
 #include "report/format.h"
 #include "report/html.h"
 #include "report/read_results.h"
@@ -53,17 +54,12 @@ std::string page(const Results& results) {
          "<main>\n<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
          (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) + "</p>\n<h1>" +
          escape_html(headline(results)) + "</h1>\n" + contents(!two_by_two.empty()) + "</header>\n";
-  out += verdict_section(results);
-  out += figures_section(results);
-  out += scene_section(results);
-  out += error_section(results);
-  out += satellites_section(results);
-  out += multipath_section(results);
-  out += maps_section(results);
-  out += registration_section(results);
-  out += two_by_two;
-  out += cost_section(results);
-  out += provenance_section(results);
+  for (const auto part : {verdict_section, figures_section, scene_section, error_section, satellites_section,
+                          multipath_section, maps_section, registration_section}) {
+    throw_if_cancelled();
+    out += part(results);
+  }
+  out += two_by_two + cost_section(results) + provenance_section(results);
   return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
 }
 
@@ -73,12 +69,15 @@ Result<std::string> html_report(const std::string& results_dir) {
   CANYON_TRY(Results results, read_results(results_dir));
   // As they were asked for, which also gives the colours; the mixed runs last.
   std::stable_partition(results.runs.begin(), results.runs.end(), [](const Run& run) { return run.is_pure(); });
+  throw_if_cancelled();
   return page(results);
 }
 
 Status write_html_report(const std::string& results_dir, const std::string& out_file) {
   CANYON_TRY(const std::string html, html_report(results_dir));
-  return write_text_file(out_file, html);
+  CANYON_TRY(auto file, StagedFile::create(out_file, true));
+  CANYON_TRY_STATUS(file.write(html));
+  return file.commit();
 }
 
 }  // namespace canyon::report

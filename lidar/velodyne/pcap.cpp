@@ -1,8 +1,5 @@
 #include "lidar/velodyne/pcap.h"
 
-#include <array>
-#include <filesystem>
-
 #include "core/check.h"
 #include "core/files.h"
 
@@ -134,39 +131,15 @@ std::string record(const Datagram& datagram) {
   return out + datagram.payload;
 }
 
-Error not_written(const std::string& path) {
-  return Error{path, 0, "", "could not be written", "", 1};
-}
-
 }  // namespace
 
-Result<PcapWriter> PcapWriter::create(const std::string& path, bool force) {
-  std::error_code error;
-  if (!force && std::filesystem::exists(path, error))
-    return Error{path, 0, "", "exists already", "a new name, or --force"};
-  std::ofstream file(path + ".part", std::ios::binary | std::ios::trunc);
-  if (!(file << file_header())) return Error{path, 0, "", "cannot be written", "a folder that can be written to"};
-  return PcapWriter(path, std::move(file));
-}
-
-PcapWriter::~PcapWriter() {
-  if (!file_.is_open()) return;
-  file_.close();
-  std::error_code ignored;
-  std::filesystem::remove(path_ + ".part", ignored);
+Result<PcapWriter> PcapWriter::begin(StagedFile& file) {
+  CANYON_TRY_STATUS(file.write(file_header()));
+  return PcapWriter(file);
 }
 
 Status PcapWriter::add(const Datagram& datagram) {
-  if (!(file_ << record(datagram))) return not_written(path_);
-  return Ok{};
-}
-
-Status PcapWriter::commit() {
-  file_.close();
-  std::error_code error;
-  if (!file_.fail()) std::filesystem::rename(path_ + ".part", path_, error);
-  if (file_.fail() || error) return not_written(path_);
-  return Ok{};
+  return file_->write(record(datagram));
 }
 
 std::string pcap_text(const std::vector<Datagram>& datagrams) {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
+#include "core/staged.h"
 
 namespace canyon::lidar::velodyne {
 
@@ -26,23 +26,17 @@ struct Capture {
 };
 Result<Capture> read_pcap(const std::string& path);
 
-/// Writes a capture datagram by datagram. It becomes visible under its name when it is complete; until then it is
-/// beside it, with ".part" at the end, and goes away if it is not committed.
+/// Writes a capture datagram by datagram into a file that the caller commits when it is complete.
 class PcapWriter {
  public:
-  /// Fails (exit 2) if the file exists and `force` is false, or if it cannot be written.
-  static Result<PcapWriter> create(const std::string& path, bool force);
-  PcapWriter(PcapWriter&& other) noexcept = default;
-  PcapWriter& operator=(PcapWriter&&) = delete;
-  ~PcapWriter();
-
+  /// Writes the file's header. `file` must outlive the writer. Fails (exit 1) on a full disk.
+  static Result<PcapWriter> begin(StagedFile& file);
+  /// Fails (exit 1) on a full disk.
   Status add(const Datagram& datagram);
-  Status commit();
 
  private:
-  PcapWriter(std::string path, std::ofstream file) : path_(std::move(path)), file_(std::move(file)) {}
-  std::string path_;
-  std::ofstream file_;
+  explicit PcapWriter(StagedFile& file) : file_(&file) {}
+  StagedFile* file_;
 };
 
 /// The datagrams as a capture file: microseconds, little-endian, from 192.168.1.201 to 255.255.255.255, as the sensors

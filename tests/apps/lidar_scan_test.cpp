@@ -115,7 +115,7 @@ TEST_F(LidarScanTest, CapturesAreWholeAndNotReplacedUnasked) {
   EXPECT_EQ(packets, 226u) << "0.3 s are 226.06 packets of 1327.104 us";
   EXPECT_EQ(read("given.pcap").size(), 24 + packets * (16 + 42 + 1206));
   EXPECT_EQ(canyon("lidar scan --at 120,-40,0,90 --azimuth-steps 0 --pcap given.pcap"), 2);
-  EXPECT_EQ(read("stderr"), "given.pcap: exists already, expected a new name, or --force\n");
+  EXPECT_EQ(read("stderr"), "given.pcap: output file exists, expected a new name or --force\n");
   EXPECT_EQ(canyon("lidar scan --at 120,-40,0,90 --azimuth-steps 0 --pcap given.pcap --force"), 0);
   EXPECT_EQ(read("given.pcap").size() % (16 + 42 + 1206), 24u);
 }
