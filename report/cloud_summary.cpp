@@ -9,6 +9,9 @@
 #include <optional>
 #include <sstream>
 
+#include "core/progress.h"
+#include "report/number_limit.h"
+
 namespace canyon::report {
 namespace {
 
@@ -161,6 +164,7 @@ Result<CloudSummary> summarize_cloud(const std::string& path, const MapGrid& gri
   constexpr std::size_t kPointsAtOnce = 65536;
   std::vector<char> bytes(kPointsAtOnce * header.point_size);
   for (std::uint64_t done = 0; done < header.points;) {
+    throw_if_cancelled();
     const std::size_t n = static_cast<std::size_t>(std::min<std::uint64_t>(kPointsAtOnce, header.points - done));
     in.read(bytes.data(), static_cast<std::streamsize>(n * header.point_size));
     if (static_cast<std::size_t>(in.gcount()) != n * header.point_size) {
@@ -172,7 +176,8 @@ Result<CloudSummary> summarize_cloud(const std::string& path, const MapGrid& gri
       const char* point = bytes.data() + i * header.point_size;
       const float x = float_at(point + header.x_at), y = float_at(point + header.y_at);
       const float error_m = float_at(point + header.error_at);
-      if (!std::isfinite(x) || !std::isfinite(y) || !(error_m >= 0) || !std::isfinite(error_m)) {
+      const auto defined = [](float value) { return std::abs(double{value}) <= kLargestNumber; };  // false for NaN
+      if (!defined(x) || !defined(y) || !(error_m >= 0) || !defined(error_m)) {
         ++cloud.undefined;
         continue;
       }

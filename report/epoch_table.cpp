@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/messages.h"
+#include "core/progress.h"
+#include "report/number_limit.h"
 
 namespace canyon::report {
 namespace {
@@ -106,6 +108,7 @@ Result<EpochTable> parse_epoch_table(std::string_view csv, const std::string& fi
   double last_t_s = -INFINITY;
   for (int line_number = 2; !rest.empty(); ++line_number) {
     const std::string_view line = next_line(rest);
+    if (line_number % 4096 == 0) throw_if_cancelled();
     if (trimmed(line).empty()) continue;
     split_fields(line, fields);
     if (fields.size() != header.size()) {
@@ -121,6 +124,9 @@ Result<EpochTable> parse_epoch_table(std::string_view csv, const std::string& fi
         return Error{file, line_number, *column.name, "'" + fields[column.at] + "'",
                      "a finite number or an empty field"};
       }
+      if (std::abs(value) > kLargestNumber)
+        return Error{file, line_number, *column.name, "'" + fields[column.at] + "'",
+                     "a number of at most 1e15 in size"};
       column.values->push_back(value);
     }
     for (const auto& [at, values] : text_columns) values->push_back(fields[at]);

@@ -1,8 +1,10 @@
 #include "report/figures.h"
 
 #include <array>
+#include <cmath>
 
 #include "core/messages.h"
+#include "report/format.h"
 
 namespace canyon::report {
 namespace {
@@ -13,8 +15,7 @@ constexpr double kMapErrorCap_m = 5;  // docs/results.md
 
 constexpr std::array kRows{
     FigureRow{"Mission", "waypoints_reached", "waypoints reached", "", kCount, ""},
-    FigureRow{"Mission", "mission_waypoints_reached", "mission waypoints reached", "", kCount,
-              "within 3 m on truth, with its stop and its view of the building"},
+    FigureRow{"Mission", "mission_waypoints_reached", "mission waypoints reached", "", kCount, ""},
     FigureRow{"Mission", "duration_s", "duration", "s", kQuantity, ""},
     FigureRow{"Mission", "distance_m", "distance driven", "m", kQuantity, ""},
 
@@ -61,16 +62,15 @@ constexpr std::array kRows{
     FigureRow{"Registration and map", "map_error_prior_rms_m", "map error, prior, RMS", "m", kQuantity,
               "map points to the nearest true surface"},
     FigureRow{"Registration and map", "map_error_rms_m", "map error, registered, RMS", "m", kQuantity, ""},
-    FigureRow{"Registration and map", "map_error_p95_prior_m", "map error, prior, 95 %", "m", kQuantity,
-              "points farther than 5 m from any surface count as 5 m", kMapErrorCap_m},
+    FigureRow{"Registration and map", "map_error_p95_prior_m", "map error, prior, 95 %", "m", kQuantity, "",
+              kMapErrorCap_m},
     FigureRow{"Registration and map", "map_error_p95_m", "map error, registered, 95 %", "m", kQuantity, "",
               kMapErrorCap_m},
     FigureRow{"Registration and map", "map_error_up_prior_rms_m", "map error up, prior, RMS", "m", kQuantity, ""},
     FigureRow{"Registration and map", "map_error_up_rms_m", "map error up, registered, RMS", "m", kQuantity, ""},
     FigureRow{"Registration and map", "map_points", "map points", "", kCount, ""},
-    FigureRow{"Registration and map", "map_points_capped_prior", "of them at 5 m, prior", "", kCount,
-              "no true surface nearer"},
-    FigureRow{"Registration and map", "map_points_capped", "of them at 5 m, registered", "", kCount, ""},
+    FigureRow{"Registration and map", "map_points_capped_prior", "of them capped, prior", "", kCount, ""},
+    FigureRow{"Registration and map", "map_points_capped", "of them capped, registered", "", kCount, ""},
 
     FigureRow{"Cost", "timing.real_time_factor", "real-time factor", "", kQuantity,
               "simulated seconds per second of wall time"},
@@ -84,6 +84,40 @@ constexpr std::array kRows{
 
 std::span<const FigureRow> figure_rows() {
   return kRows;
+}
+
+namespace {
+
+/// A number that all runs agree on, "2 to 5 m" where they do not, or the words where no run says it.
+std::string agreed(const Results& results, double SuccessRules::*rule, std::string (*show)(double),
+                   const std::string& unknown) {
+  double low = kNaN, high = kNaN;
+  for (const Run& run : results.runs) {
+    low = std::fmin(low, run.rules.*rule);
+    high = std::fmax(high, run.rules.*rule);
+  }
+  if (!std::isfinite(low)) return unknown;
+  return low == high ? show(low) : show(low) + " to " + show(high);
+}
+
+/// As it was configured, not as it was measured: 3 m, not 3.00 m.
+std::string metres(double v) {
+  return fixed(v, 3) + "\xC2\xA0m";
+}
+std::string seconds(double v) {
+  return fixed(v, 3) + "\xC2\xA0s";
+}
+
+}  // namespace
+
+std::string figure_meaning(const FigureRow& row, const Results& results) {
+  const std::string cap = metres(kMapErrorCap_m);
+  if (row.key == "mission_waypoints_reached")
+    return "on truth within " + agreed(results, &SuccessRules::waypoint_radius_m, metres, "the radius asked for") +
+           ", with a stop of " + agreed(results, &SuccessRules::stop_s, seconds, "the length asked for");
+  if (row.key == "map_error_p95_prior_m") return "points farther than " + cap + " from any surface count as " + cap;
+  if (row.key == "map_points_capped_prior") return "no true surface nearer than " + cap;
+  return std::string(row.meaning);
 }
 
 double figure_value(const Run& run, const FigureRow& row) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "report/results.h"
@@ -15,12 +16,15 @@ struct FigureRow {
   std::string_view label;
   std::string_view unit;
   Kind kind = Kind::kQuantity;
-  std::string_view meaning;  ///< what a newcomer might ask; may be empty
+  std::string_view meaning;  ///< of the line, where no number of these results stands in it
   double cap = 0.0;          ///< if > 0: values that reach it are known to be that or more
 };
 
 /// All lines in the order of the table, groups together.
 std::span<const FigureRow> figure_rows();
+
+/// What a newcomer might ask of the line, with the numbers that hold in these results; may be empty.
+std::string figure_meaning(const FigureRow& row, const Results& results);
 
 /// The run's figure; NaN if undefined.
 double figure_value(const Run& run, const FigureRow& row);

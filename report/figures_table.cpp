@@ -104,7 +104,8 @@ class FiguresTable {
 
   std::string line(const FigureRow& row) const {
     std::string label = escape_html(row.label);
-    if (!row.meaning.empty()) label += "<span class=\"def\">" + escape_html(row.meaning) + "</span>";
+    if (const std::string meaning = figure_meaning(row, results_); !meaning.empty())
+      label += "<span class=\"def\">" + escape_html(meaning) + "</span>";
     std::string ratio;
     if (has_ratio()) {
       const bool known = !at_cap(figure_value(run(0), row), row) && !at_cap(figure_value(run(1), row), row);

@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "report/format.h"
+#include "report/number_limit.h"
 
 namespace canyon::report {
 namespace {
 
+constexpr int kNumberOverflow = 406;    // the library's number of that mistake
 constexpr std::size_t kMaxDepth = 100;  // deeper nesting is damage, not data; it would only exhaust the stack
 
 /// Where the parser is: the lexer takes characters one by one, so counting its line feeds gives the line of every
@@ -76,7 +78,12 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
     members.back().key = std::move(name);
     return true;
   }
-  bool parse_error(std::size_t position, const std::string& token, const nlohmann::json::exception&) override {
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::json::exception& exception) override {
+    if (exception.id == kNumberOverflow) {
+      error_ = Error{file_, line_of_scalar(), {}, "number " + token.substr(0, 40), "one of at most 1e15 in size"};
+      return false;
+    }
     if (position > size_) {  // the lexer asked for more than there is
       error_ = Error{file_, place_.line, {}, "the JSON text ends too early", "a complete JSON value"};
       return false;
@@ -137,6 +144,13 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::optional<Error> error_;
 };
 
+constexpr const char* kPlausible = "a number of at most 1e15 in size";
+static_assert(kLargestNumber == 1e15);
+
+bool is_plausible(double value) {
+  return std::abs(value) <= kLargestNumber;
+}
+
 std::string joined(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : path + "." + std::string(key);
 }
@@ -195,8 +209,9 @@ bool JsonFields::has(std::string_view key) const {
 double JsonFields::number(std::string_view key) const {
   if (!has(key)) return std::nan("");
   const JsonNode* node = find(key);
-  if (const double* v = node->number()) return *v;
-  fail(node, key, node->describe(), "a number or null");
+  const double* v = node->number();
+  if (v && is_plausible(*v)) return *v;
+  fail(node, key, node->describe(), v ? kPlausible : "a number or null");
   return std::nan("");
 }
 
@@ -274,6 +289,10 @@ std::vector<double> json_numbers(const JsonNode& node, std::size_t size, const s
   if (elements && elements->size() == size) {
     for (const JsonNode& element : *elements) {
       if (element.number()) {
+        if (!is_plausible(*element.number())) {
+          if (!error) error = Error{file, element.line, path, element.describe(), kPlausible};
+          break;
+        }
         out.push_back(*element.number());
       } else if (element.is_null()) {
         out.push_back(std::nan(""));

@@ -67,8 +67,15 @@ Status read_manifest(std::string_view json, const std::string& file, Results& re
   std::optional<Error> error;
   const JsonFields fields(&root, file, {}, error);
   results.version = fields.text("version");
+  results.commit = fields.text("commit");
+  results.command_line = fields.text("command_line");
   results.instruction_set = fields.text("instruction_set");
   results.scene_hash = fields.text("scene_hash");
+  const JsonFields configuration = fields.object("configuration");
+  for (Run& run : results.runs) {
+    const JsonFields success = configuration.object(run.fidelity).object("success");
+    run.rules = {success.number("waypoint_radius_m"), success.number("stop_s")};
+  }
   if (error) return *error;
   return Ok{};
 }

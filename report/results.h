@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,12 +48,18 @@ struct MissionWaypoint {
   double closest_m = 0.0, stopped_s = 0.0, facade_seen_share = 0.0;
 };
 
+/// What had to be done at a waypoint: of the run's configuration, [success]; NaN where the directory does not say.
+struct SuccessRules {
+  double waypoint_radius_m = std::nan(""), stop_s = std::nan("");
+};
+
 /// One run's summary and whatever of its epochs and clouds the directory holds.
 struct Run {
   std::string fidelity, gnss, imu, outcome;
   std::optional<Failure> failure;
   std::map<std::string, double, std::less<>> figures;  ///< every other number of the run, by its key
   std::vector<MissionWaypoint> mission_waypoints;
+  SuccessRules rules;
   std::vector<std::pair<std::string, double>> counters;
   double real_time_factor = 0.0, wall_s = 0.0, cpu_s = 0.0;
   std::vector<std::pair<std::string, double>> cpu_parts_s;
@@ -109,7 +116,7 @@ struct Results {
   std::optional<TwoByTwo> two_by_two;
   std::string hash;
   double wall_s = 0.0, cpu_s = 0.0, peak_memory_mb = 0.0, threads = 0.0;
-  std::string version, instruction_set, scene_hash;  ///< of manifest.json
+  std::string version, commit, command_line, instruction_set, scene_hash;  ///< of manifest.json
 
   const Run* run(std::string_view fidelity) const;
 };

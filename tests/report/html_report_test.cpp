@@ -473,6 +473,55 @@ TEST_F(DamagedResults, MistakesInCloudsAndSceneAreTold) {
           "scene.json:[0-9]+: buildings\\[2\\].footprint\\[1\\]: string \"corner\", expected a list of 2 numbers"));
 }
 
+// 2026-11-22: a number beyond the range of numbers, or one whose square is, ended the program by a failed check.
+TEST_F(DamagedResults, NumbersBeyondAllMeasureAreTold) {
+  const std::string summary = load(file("summary.json"));
+  for (const char* huge : {"1e308", "-1.7976931348623157e308", "99999999999999999999"}) {
+    edit_json(file("summary.json"), [](auto& json) { json["runs"][1]["failure"]["x_m"] = 12345678; });
+    store(file("summary.json"), replaced(load(file("summary.json")), "12345678", huge));
+    EXPECT_THAT(error(), ::testing::MatchesRegex("summary.json:[0-9]+: runs\\[1\\].failure.x_m: number .*, expected a "
+                                                 "number of at most 1e15 in size"))
+        << huge;
+    store(file("summary.json"), summary);
+  }
+  // JSON itself has no bound.
+  edit_json(file("summary.json"), [](auto& json) { json["mission"]["route"][1][0] = 12345678; });
+  store(file("summary.json"), replaced(load(file("summary.json")), "12345678", "1e999"));
+  EXPECT_THAT(error(),
+              ::testing::MatchesRegex("summary.json:[0-9]+: number 1e999, expected one of at most 1e15 in size"));
+  store(file("summary.json"), summary);
+
+  const std::string scene = load(file("scene.json"));
+  edit_json(file("scene.json"), [](auto& json) { json["buildings"][2]["footprint"][1][0] = 12345678; });
+  store(file("scene.json"), replaced(load(file("scene.json")), "12345678", "1e308"));
+  EXPECT_THAT(error(), ::testing::MatchesRegex("scene.json:[0-9]+: buildings\\[2\\].footprint\\[1\\]: number .*, "
+                                               "expected a number of at most 1e15 in size"));
+  store(file("scene.json"), scene);
+
+  const std::string path = file("epochs/high_gnss.csv");
+  const std::string csv = load(path);
+  const std::size_t second_row = csv.find('\n', csv.find('\n') + 1) + 1;
+  store(path, csv.substr(0, second_row) + "1e308" + csv.substr(csv.find(',', second_row)));
+  EXPECT_EQ(error(), "epochs/high_gnss.csv:3: t_s: '1e308', expected a number of at most 1e15 in size");
+}
+
+// 2026-11-22: the page said "within 3 m" whatever the mission asked for.
+TEST_F(DamagedResults, TheRadiusIsThatOfTheMission) {
+  EXPECT_THAT(section(page(), "figures"),
+              HasSubstr("on truth within the radius asked for, with a stop of the length "));
+  const auto configure = [&](const char* run, double radius_m, double stop_s) {
+    edit_json(file("manifest.json"), [&](auto& json) {
+      json["configuration"][run]["success"] = {{"waypoint_radius_m", radius_m}, {"stop_s", stop_s}};
+    });
+  };
+  configure("low", 40.0, 7.0);
+  configure("high", 40.0, 7.0);
+  EXPECT_THAT(section(page(), "figures"), HasSubstr("on truth within 40\xC2\xA0m, with a stop of 7\xC2\xA0s<"));
+  configure("high", 2.0, 7.0);
+  EXPECT_THAT(section(page(), "figures"), HasSubstr("within 2\xC2\xA0m to 40\xC2\xA0m, with a stop of 7\xC2\xA0s<"));
+  EXPECT_THAT(section(page(), "figures"), Not(HasSubstr("within 3")));
+}
+
 TEST(HtmlReportErrors, AMissingDirectoryIsTold) {
   const auto html = html_report("/no/such/results");
   ASSERT_FALSE(html.ok());
