@@ -6,10 +6,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/invocation.h"
 #include "apps/usage_errors.h"
 #include "apps/verb.h"
 #include "core/progress.h"
 #include "core/version.h"
+#include "scene/ray_tracer_instructions.h"
 
 namespace canyon::apps {
 
@@ -60,7 +62,8 @@ void declare_common(Arguments& arguments, CommonOptions& options) {
   arguments.flag("--json", options.json, "print one JSON object on stdout and nothing else");
 }
 
-int run_command_line(int argc, char** argv) {
+int run_command_line(int argc, char** argv, const char* commit) {
+  set_invocation(argc, argv, commit);
   CLI::App app{"Canyon: how much navigation fidelity does an autonomous vehicle's test need, and what does it cost?"};
   app.name("canyon");
   app.set_version_flag("--version", std::string("canyon ") + kVersion);
@@ -83,6 +86,7 @@ int run_command_line(int argc, char** argv) {
     return complain(usage_error(app, error, {argv + 1, argv + argc}));
   }
 
+  if (const auto limit = scene::check_ray_tracer_limit(); !limit.ok()) return complain(limit.error());
   install_cancel_handler();
   try {
     const auto result = actions.at(chosen(app))();

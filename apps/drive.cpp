@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/invocation.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/progress.h"
@@ -26,7 +27,8 @@ void print_json(const mission::Results& results, const std::string& directory, c
   out["seed"] = out["mission"]["seed"];
   out["results_dir"] = directory;
   out["hash"] = hash;
-  std::printf("%s\n", out.dump().c_str());
+  // The directory's name may be of any bytes.
+  std::printf("%s\n", out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
 }
 
 /// Each warning once, however many runs met it.
@@ -45,7 +47,9 @@ Result<int> drive_and_report(const MissionOptions& options, const mission::Missi
   CANYON_TRY(const auto comparison, study::prepare_comparison(file, plan));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
-  CANYON_TRY(const auto results, study::compare(comparison, !options.common.json));
+  CANYON_TRY(auto results, study::compare(comparison, !options.common.json));
+  results.command_line = invocation().command_line;
+  results.commit = invocation().commit;
   CANYON_TRY(const std::string hash, mission::write_results(staged.staging_path(), results));
   CANYON_TRY_STATUS(report::write_html_report(staged.staging_path(), staged.staging_path() + "/report.html"));
   throw_if_cancelled();

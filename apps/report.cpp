@@ -23,7 +23,8 @@ VerbAction declare(Arguments& arguments) {
     const std::string file = options->directory + "/report.html";
     CANYON_TRY_STATUS(report::write_html_report(options->directory, file));
     if (options->common.json) {
-      std::printf("%s\n", nlohmann::json{{"report", file}}.dump().c_str());
+      const nlohmann::json json{{"report", file}};
+      std::printf("%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     } else {
       std::printf("Report: %s\n", std::filesystem::absolute(file).lexically_normal().c_str());
     }

@@ -9,8 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "scene/ray_tracer_instructions.h"
 
 namespace canyon::mission {
 
@@ -21,6 +23,10 @@ namespace {
 /// Undefined is null, never 0 or NaN.
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json known(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
 }
 
 Json point(const Eigen::Vector2d& p) {
@@ -79,6 +85,7 @@ Result<std::string> results_hash(const std::string& directory, Json summary) {
   std::sort(files.begin(), files.end());
   std::string digest;
   for (const auto& file : files) {
+    throw_if_cancelled();
     CANYON_TRY(const std::string bytes, read_text_file(directory + "/" + file));
     digest += file + " " + sha256_hex(bytes) + "\n";
   }
@@ -96,12 +103,19 @@ Json manifest_json(const Results& results) {
   }
   return {{"schema", 1},
           {"version", kVersion},
+          {"commit", known(results.commit)},
+          {"command_line", known(results.command_line)},
           {"seed", results.records.front().config.run.seed},
           {"start", results.mission->start.iso()},
-          {"instruction_set", instruction_set()},
+          {"instruction_set", scene::ray_tracer_instruction_set()},
           {"scene_hash", results.mission->scene->hash()},
           {"files", files},
           {"configuration", runs}};
+}
+
+/// The command line and the paths in it may be of any bytes; what is no UTF-8 is replaced.
+std::string json_text(const Json& json) {
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -263,7 +277,9 @@ Result<std::string> write_results(const std::string& directory, const Results& r
   std::filesystem::create_directories(directory + "/epochs", ignored);
   std::filesystem::create_directories(directory + "/clouds", ignored);
   for (const RunRecord& record : results.records) {
+    throw_if_cancelled();
     CANYON_TRY_STATUS(write_epochs(directory, record));
+    throw_if_cancelled();
     const std::string stem = directory + "/clouds/" + record.name;
     CANYON_TRY_STATUS(lidar::write_pcd(stem + "_prior.pcd", record.prior_map));
     if (record.registers()) CANYON_TRY_STATUS(lidar::write_pcd(stem + "_registered.pcd", record.registered_map));
@@ -272,7 +288,7 @@ Result<std::string> write_results(const std::string& directory, const Results& r
   CANYON_TRY(const std::string hash, results_hash(directory, summary));
   summary["hash"] = hash;
   CANYON_TRY_STATUS(write_text_file(directory + "/summary.json", summary.dump(1) + "\n"));
-  CANYON_TRY_STATUS(write_text_file(directory + "/manifest.json", manifest_json(results).dump(1) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory + "/manifest.json", json_text(manifest_json(results))));
   CANYON_TRY_STATUS(write_text_file(directory + "/scene.json", scene_json(*results.mission->scene).dump() + "\n"));
   return hash;
 }

@@ -21,6 +21,8 @@ struct Results {
   double wall_s = 0.0;
   double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
   int threads = 0;
+  std::string command_line;  ///< that asked for it; empty: not known
+  std::string commit;        ///< of the source that the program was built from; empty: not known
 };
 
 /// One element of summary.json's `runs`.

@@ -54,12 +54,14 @@ std::string provenance_section(const Results& results) {
   }
   body += row("runs", listed(runs));
   body += row("Canyon version", results.version);
-  body += row("instruction set", results.instruction_set);
+  body += row("commit of the source", results.commit);
+  body += row("command line", results.command_line);
+  body += row("ray tracer\xE2\x80\x99s instruction set", results.instruction_set);
   body += row("scene hash", results.scene_hash);
   body += row("results hash (SHA-256)", results.hash);
   body +=
-      "</dl>\n<p>The same mission, seed and version give the same hash on the same type of CPU, with any number of "
-      "threads. All numbers of this page "
+      "</dl>\n<p>The same mission, seed and version give the same hash with any number of threads, and on another "
+      "type of CPU as far as <code>docs/results.md</code> says. All numbers of this page "
       "are in, or follow from, <code>summary.json</code>, <code>epochs/</code> and <code>clouds/</code> beside it; the "
       "full configuration in "
       "<code>manifest.json</code>; "

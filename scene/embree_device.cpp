@@ -9,7 +9,7 @@ namespace canyon::scene::embree {
 
 RTCDevice device() {
   static const RTCDevice instance = [] {
-    RTCDevice made = rtcNewDevice(nullptr);
+    RTCDevice made = rtcNewDevice(device_options().c_str());
     CANYON_CHECK(made != nullptr, "Embree error ", static_cast<int>(rtcGetDeviceError(nullptr)));
     CANYON_CHECK(rtcGetDeviceProperty(made, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0,
                  "this Embree was built without ray masks");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <string>
 
 #include "core/check.h"
 #include "scene/plane_ranges.h"
@@ -16,6 +17,8 @@ namespace canyon::scene::embree {
 
 /// One device for the whole process.
 RTCDeviceTy* device();
+/// What it is made with: the limit of ray_tracer_instructions.h, in Embree's words.
+std::string device_options();
 /// Throws if Embree has reported an error since the last call.
 void check_no_error(const char* during);
 /// Builds the tree of a scene on the calling thread: the order in which a parallel build places triangles in the tree
