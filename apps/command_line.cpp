@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/invocation.h"
+#include "apps/standard_streams.h"
 #include "apps/usage_errors.h"
 #include "apps/verb.h"
 #include "core/progress.h"
@@ -28,6 +29,11 @@ std::string group_summary(const std::string& group) {
 int complain(const Error& error) {
   std::fprintf(stderr, "%s\n", error.str().c_str());
   return error.exit_code;
+}
+
+int interrupted() {
+  tell_interruption();
+  return 130;
 }
 
 /// The subcommand of a verb, inside its group's if it has one.
@@ -62,8 +68,10 @@ void declare_common(Arguments& arguments, CommonOptions& options) {
   arguments.flag("--json", options.json, "print one JSON object on stdout and nothing else");
 }
 
-int run_command_line(int argc, char** argv, const char* commit) {
-  set_invocation(argc, argv, commit);
+namespace {
+
+/// Parses the arguments and runs the verb.
+int parse_and_run(int argc, char** argv) {
   CLI::App app{"Canyon: how much navigation fidelity does an autonomous vehicle's test need, and what does it cost?"};
   app.name("canyon");
   app.set_version_flag("--version", std::string("canyon ") + kVersion);
@@ -87,17 +95,30 @@ int run_command_line(int argc, char** argv, const char* commit) {
   }
 
   if (const auto limit = scene::check_ray_tracer_limit(); !limit.ok()) return complain(limit.error());
-  install_cancel_handler();
   try {
     const auto result = actions.at(chosen(app))();
-    return result ? *result : complain(result.error());
+    if (result) return *result;
+    // What cannot be read or written any more because of the interruption is no mistake.
+    return cancel_requested() ? interrupted() : complain(result.error());
   } catch (const Cancelled&) {
-    std::fprintf(stderr, "interrupted: nothing was written\n");
-    return 130;
+    return interrupted();
   } catch (const std::exception& error) {
+    if (cancel_requested()) return interrupted();
     std::fprintf(stderr, "canyon could not finish: %s\n", error.what());
     return 1;
   }
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, const char* commit) {
+  prepare_standard_streams();
+  install_cancel_handler();
+  set_invocation(argc, argv, commit);
+  int status = parse_and_run(argc, argv);
+  if (const auto printed = finish_standard_output(); !printed.ok() && status != 130) status = complain(printed.error());
+  remove_cancel_handler();
+  return status;
 }
 
 }  // namespace canyon::apps

@@ -11,6 +11,7 @@
 
 #include "core/check.h"
 #include "core/cpu_time.h"
+#include "core/progress.h"
 
 namespace canyon {
 namespace {
@@ -56,6 +57,7 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
   const std::size_t chunks = (n - 1) / chunk + 1;
   CpuAccount* const account = charged_cpu_account();
   const auto run_chunk = [&](std::size_t i) {
+    throw_if_cancelled();
     const ChargeCpu charge(account);
     body(i * chunk, i * chunk + std::min(chunk, n - i * chunk));
   };

@@ -1,7 +1,6 @@
 #include "core/progress.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <utility>
 
@@ -11,13 +10,6 @@ namespace canyon {
 namespace {
 
 constexpr int kBarWidth = 30;
-
-std::atomic<bool> cancel_flag{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "the flag is set inside a signal handler");
-
-extern "C" void set_cancel_flag(int) {
-  cancel_flag.store(true);
-}
 
 }  // namespace
 
@@ -46,26 +38,6 @@ void Progress::draw(double done) {
                           std::string(static_cast<std::size_t>(kBarWidth - filled), ' ');
   std::fprintf(stderr, "\r%s [%s] %5.1f %%\033[K", title_.c_str(), bar.c_str(), 0.1 * permille);
   std::fflush(stderr);
-}
-
-void install_cancel_handler() {
-  struct sigaction action = {};
-  action.sa_handler = set_cancel_flag;
-  action.sa_flags = SA_RESTART;  // file reads and writes go on; loops look at the flag
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-bool cancel_requested() {
-  return cancel_flag.load(std::memory_order_relaxed);
-}
-void set_cancel_requested(bool requested) {
-  cancel_flag.store(requested);
-}
-
-void throw_if_cancelled() {
-  if (cancel_requested()) throw Cancelled{};
 }
 
 }  // namespace canyon

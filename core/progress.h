@@ -26,12 +26,18 @@ class Progress {
 /// Thrown out of long computations after Ctrl-C; main() turns it into exit status 130.
 struct Cancelled {};
 
-/// Installs a SIGINT/SIGTERM handler that only sets a flag.
+/// On SIGINT or SIGTERM a flag is set that long computations look at. One that has not come to a look after 0.6 s, or
+/// at once if the user asks again, is left behind: the staged outputs are removed and the process ends with exit status
+/// 130, whatever its threads are waiting for. A third request ends the process without any more ado.
 void install_cancel_handler();
+/// Everything is done: from here on the signals have their usual effect.
+void remove_cancel_handler();
 bool cancel_requested();
 /// For tests: sets or clears the flag.
 void set_cancel_requested(bool requested);
 /// Throws Cancelled if the user asked to stop; call at least every 100 ms of work.
 void throw_if_cancelled();
+/// The line on stderr, once.
+void tell_interruption();
 
 }  // namespace canyon

@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "core/progress.h"
+
 namespace canyon::lidar::velodyne {
 
 Result<UdpSender> UdpSender::open(const std::string& ipv4, std::uint16_t port) {
@@ -35,6 +37,7 @@ Status UdpSender::send_at(std::string_view payload, double due_s) {
       std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(due_s));
   if (!start_) start_ = std::chrono::steady_clock::now() - due;
   std::this_thread::sleep_until(*start_ + due);
+  throw_if_cancelled();
   return send(payload);
 }
 
