@@ -127,7 +127,7 @@ Result<EpochTable> parse_epoch_table(std::string_view csv, const std::string& fi
       if (std::abs(value) > kLargestNumber)
         return Error{file, line_number, *column.name, "'" + fields[column.at] + "'",
                      "a number of at most 1e15 in size"};
-      column.values->push_back(value);
+      column.values->push_back(without_dust(value));
     }
     for (const auto& [at, values] : text_columns) values->push_back(fields[at]);
     const double t_s = table["t_s"].back();

@@ -210,7 +210,7 @@ double JsonFields::number(std::string_view key) const {
   if (!has(key)) return std::nan("");
   const JsonNode* node = find(key);
   const double* v = node->number();
-  if (v && is_plausible(*v)) return *v;
+  if (v && is_plausible(*v)) return without_dust(*v);
   fail(node, key, node->describe(), v ? kPlausible : "a number or null");
   return std::nan("");
 }
@@ -293,7 +293,7 @@ std::vector<double> json_numbers(const JsonNode& node, std::size_t size, const s
           if (!error) error = Error{file, element.line, path, element.describe(), kPlausible};
           break;
         }
-        out.push_back(*element.number());
+        out.push_back(without_dust(*element.number()));
       } else if (element.is_null()) {
         out.push_back(std::nan(""));
       } else {

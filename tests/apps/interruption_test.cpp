@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include <fcntl.h>
@@ -27,6 +28,17 @@ class Interruption : public testing::CommandLineTest {
     int status = 0;  ///< of exit; -1: by a signal
     double after_s = 0.0;
   };
+  /// Waits until the program has been loaded and listens to SIGINT: before, it ends as any program does.
+  static void wait_until_it_listens(pid_t child) {
+    for (int k = 0; k < 3000; ++k) {
+      std::ifstream in("/proc/" + std::to_string(child) + "/status");
+      for (std::string line; std::getline(in, line);) {
+        if (line.rfind("SigCgt:", 0) != 0) continue;
+        if ((std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1U) != 0) return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
   /// Starts the verb, sends the signal after that time, as often as asked, and waits for the end.
   Ended interrupted(std::vector<std::string> words, double moment_s, int signal = SIGINT, int times = 1) const {
     const pid_t child = fork();
@@ -41,6 +53,7 @@ class Interruption : public testing::CommandLineTest {
       execv(CANYON_BINARY, arguments.data());
       _exit(99);
     }
+    wait_until_it_listens(child);
     std::this_thread::sleep_for(std::chrono::duration<double>(moment_s));
     const auto asked = Clock::now();
     for (int k = 0; k < times; ++k) kill(child, signal);

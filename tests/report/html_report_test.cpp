@@ -505,6 +505,23 @@ TEST_F(DamagedResults, NumbersBeyondAllMeasureAreTold) {
   EXPECT_EQ(error(), "epochs/high_gnss.csv:3: t_s: '1e308', expected a number of at most 1e15 in size");
 }
 
+// 2026-11-22: a logarithmic axis that began at the smallest of all numbers ended the program by a failed check.
+TEST_F(DamagedResults, NumbersTooSmallToBeAreNothing) {
+  const std::string path = file("epochs/high_gnss.csv");
+  std::string csv = load(path);
+  const std::size_t nis_at = [&] {
+    const std::string head = csv.substr(0, csv.find('\n'));
+    return static_cast<std::size_t>(
+               std::count(head.begin(), head.begin() + static_cast<std::ptrdiff_t>(head.find(",nis")), ',')) +
+           1;
+  }();
+  std::size_t at = csv.find('\n') + 1;
+  for (std::size_t k = 0; k < nis_at; ++k) at = csv.find(',', at) + 1;
+  csv.replace(at, csv.find_first_of(",\n", at) - at, "4.9e-324");
+  store(path, csv);
+  EXPECT_THAT(page(), HasSubstr("</html>"));
+}
+
 // 2026-11-22: the page said "within 3 m" whatever the mission asked for.
 TEST_F(DamagedResults, TheRadiusIsThatOfTheMission) {
   EXPECT_THAT(section(page(), "figures"),
