@@ -37,7 +37,9 @@ class XmlElement {
   const void* node_ = nullptr;
 };
 
-/// A parsed file, plain or gzipped. Nothing outside of it is ever fetched.
+/// A parsed file, plain or gzipped. Nothing outside of it is ever fetched. Files that declare entities or attributes,
+/// that nest elements more than 256 deep or hold a single text of more than 10 MB are refused: their cost would not
+/// follow from their size.
 class XmlFile {
  public:
   static Result<XmlFile> load(const std::string& path);
