@@ -20,10 +20,14 @@ namespace canyon::scene {
 /// A tile is made when the first ray needs it. Where rays pass above all that stands in a tile it is not needed, so in
 /// a large scene only the tiles around the vehicle are made, and far ones that are high enough to hide a satellite.
 /// Results do not depend on which tiles were made before, or by which thread.
+///
+/// Where 512 m would make more than kMostTiles of them, or put the triangles into far too many each, edges are doubled
+/// until they do not. That takes a scene wider than 260 km, or thousands of triangles that are kilometres long.
 class TiledTracer {
  public:
   static constexpr double kWide_m = 2000.0;
   static constexpr double kTile_m = 512.0;
+  static constexpr double kMostTiles = 262144.0;
 
   TiledTracer(const SceneParts& parts, const Extent& extent);
 
@@ -44,7 +48,7 @@ class TiledTracer {
  private:
   struct Tile {
     Eigen::Vector3d center_W = Eigen::Vector3d::Zero();
-    mutable std::vector<std::uint32_t> triangles;  ///< until the tracer is made
+    mutable std::vector<std::uint32_t> triangles{};  ///< until the tracer is made
     double bottom_m = std::numeric_limits<double>::infinity(), top_m = -bottom_m;
     mutable std::once_flag once;
     mutable std::unique_ptr<const Tracer> tracer;
@@ -52,10 +56,14 @@ class TiledTracer {
   bool tiled() const { return tiles_.size() > 1; }
   int column(double x_m) const;
   int row(double y_m) const;
-  const Tile& tile(int column, int row) const {
-    return *tiles_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-                   static_cast<std::size_t>(column)];
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
   }
+  /// Null where the scene has nothing.
+  const Tile* tile(int column, int row) const { return tiles_[index(column, row)].get(); }
+  double middle_x_m(int column) const { return west_m_ + (column + 0.5) * edge_m_; }
+  double middle_y_m(int row) const { return south_m_ + (row + 0.5) * edge_m_; }
+  void lay_out(const Extent& extent);
   const Tracer& tracer(const Tile& tile) const;
   /// Calls visit(tile, span) for the tiles that hold something at the ray's height, in the order in which the ray
   /// passes them, until it returns true.
@@ -65,6 +73,7 @@ class TiledTracer {
   Hit trace(const Ray& ray, double from_m) const;
 
   const SceneParts& parts_;
+  double edge_m_ = kTile_m;
   double west_m_ = 0.0, south_m_ = 0.0;  ///< the corner of the first tile
   int columns_ = 1, rows_ = 1;
   std::vector<std::unique_ptr<Tile>> tiles_;  ///< row by row from the south
