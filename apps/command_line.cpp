@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <new>
 
 #include <CLI/CLI.hpp>
 
@@ -102,6 +103,9 @@ int parse_and_run(int argc, char** argv) {
     return cancel_requested() ? interrupted() : complain(result.error());
   } catch (const Cancelled&) {
     return interrupted();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "canyon could not finish: there is not enough memory\n");
+    return 1;
   } catch (const std::exception& error) {
     if (cancel_requested()) return interrupted();
     std::fprintf(stderr, "canyon could not finish: %s\n", error.what());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 #include "core/check.h"
@@ -19,11 +20,20 @@ namespace canyon::scene::embree {
 RTCDeviceTy* device();
 /// What it is made with: the limit of ray_tracer_instructions.h, in Embree's words.
 std::string device_options();
-/// Throws if Embree has reported an error since the last call.
+/// Throws if Embree has reported an error since the last call: Cancelled where the user asked to stop, OutOfMemory, a
+/// failed check for all else.
 void check_no_error(const char* during);
+/// A buffer that Embree has made; throws where it could not.
+void* made(void* buffer);
 /// Builds the tree of a scene on the calling thread: the order in which a parallel build places triangles in the tree
-/// may vary, and with it which of two triangles a ray through their common edge meets.
+/// may vary, and with it which of two triangles a ray through their common edge meets. Throws Cancelled within a tenth
+/// of a second after the user asked to stop.
 void build(RTCSceneTy* scene);
+
+/// The computation could not finish: the machine has too little memory for the scene.
+struct OutOfMemory : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// What a packet's rays meet first of the geometries that `mask` names, as Embree lays it out; valid until the calling
 /// thread's next call. Lanes that are not traced meet nothing. Throws where a ray is not finite.

@@ -35,11 +35,11 @@ RigidShape::RigidShape(std::string name, ObjectKind kind, Mesh mesh)
   rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
   if (!mesh_.triangles.empty()) {
     RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                             sizeof(Eigen::Vector3f), mesh_.vertices.size());
+    void* vertices = embree::made(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                          sizeof(Eigen::Vector3f), mesh_.vertices.size()));
     std::memcpy(vertices, mesh_.vertices.data(), mesh_.vertices.size() * sizeof(Eigen::Vector3f));
-    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                            3 * sizeof(std::uint32_t), mesh_.triangles.size());
+    void* indices = embree::made(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                         3 * sizeof(std::uint32_t), mesh_.triangles.size()));
     std::memcpy(indices, mesh_.triangles.data(), mesh_.triangles.size() * 3 * sizeof(std::uint32_t));
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);

@@ -52,6 +52,7 @@ struct Tracer::Embree {
       if (place == 0) place = static_cast<std::uint32_t>(out.count++);
     // Embree reads each vertex as four floats, so one float beyond the last must be readable.
     out.buffer = rtcNewBuffer(device(), out.count * sizeof(Eigen::Vector3f) + 16);
+    embree::made(out.buffer);
     auto* p = static_cast<Eigen::Vector3f*>(rtcGetBufferData(out.buffer));
     for (std::size_t v = 0; v < out.place.size(); ++v)
       if (out.place[v] != Hit::kMiss) *p++ = (mesh.vertices[v].cast<double>() - center_W).cast<float>();
@@ -64,8 +65,8 @@ struct Tracer::Embree {
     RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices.buffer, 0,
                          sizeof(Eigen::Vector3f), vertices.count);
-    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
+    auto* index = static_cast<std::uint32_t*>(embree::made(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size())));
     for (const std::uint32_t i : triangles)
       for (const std::uint32_t v : mesh.triangles[i]) *index++ = vertices.place[v];
     rtcSetGeometryMask(geometry, 1u << geometry_id);
