@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/progress.h"
 #include "core/units.h"
 #include "scene/scene.h"
 #include "scene/triangle.h"
@@ -43,6 +44,7 @@ void add_edges(const Scene& scene, const std::vector<std::uint32_t>& members, do
   std::map<std::pair<Place, Place>, std::vector<Side>> sides;  // both ends sorted: the two triangles pass them in turn
   std::vector<std::pair<Place, Place>> order;
   for (const std::uint32_t i : members) {
+    throw_if_cancelled();
     const Triangle t = Triangle::of(mesh, i);
     const Eigen::Vector3d corners[3] = {t.a, t.b, t.c};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -55,6 +57,7 @@ void add_edges(const Scene& scene, const std::vector<std::uint32_t>& members, do
     }
   }
   for (const auto& key : order) {
+    throw_if_cancelled();
     const std::vector<Side>& list = sides[key];
     const Side& one = list[0];
     if ((one.b - one.a).norm() < min_length_m || list.size() > 2) continue;
@@ -100,6 +103,7 @@ EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
   std::map<Cell, std::size_t> tile_of;
   std::map<std::pair<Cell, Cell>, std::size_t> block_of;  // by tile and place
   for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    throw_if_cancelled();
     const Edge& e = edges_[i];
     const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W);
     const Cell wide(static_cast<int>((middle.y() - low.y()) / kTile_m),

@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/progress.h"
 #include "core/units.h"
 #include "scene/scene.h"
 #include "scene/triangle.h"
@@ -37,11 +38,13 @@ class Patch {
     std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> by_edge;
     corners_.resize(members_.size());
     for (std::uint32_t i = 0; i < members_.size(); ++i) {
+      throw_if_cancelled();
       for (int k = 0; k < 3; ++k) corners_[i][k] = vertex_id(mesh.vertices[mesh.triangles[members_[i]][k]]);
       for (int k = 0; k < 3; ++k) by_edge[edge(i, k)].push_back(i);
     }
     neighbours_.resize(members_.size());
     for (std::uint32_t i = 0; i < members_.size(); ++i) {
+      throw_if_cancelled();
       for (int k = 0; k < 3; ++k) {
         for (const std::uint32_t j : by_edge[edge(i, k)]) {
           if (j != i) neighbours_[i].push_back(j);
@@ -64,6 +67,7 @@ class Patch {
     std::vector<Facet> found;
     for (const std::uint32_t seed : seeds) {
       if (taken[seed]) continue;
+      throw_if_cancelled();
       Facet facet = describe(grow(seed, taken));
       if (facet.area_m2 >= min_area_m2) found.push_back(std::move(facet));
     }
@@ -187,6 +191,7 @@ std::vector<Facet> merge_planar_facets(const Scene& scene, double min_area_m2) {
   }
   std::vector<Facet> facets;
   for (std::vector<std::uint32_t>& members : by_object) {
+    throw_if_cancelled();
     if (!members.empty()) Patch(mesh, std::move(members)).merge(min_area_m2, facets);
   }
   return facets;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/progress.h"
 #include "core/units.h"
 #include "scene/facet.h"
 
@@ -73,6 +74,7 @@ FacetIndex::FacetIndex(std::vector<Facet> facets) : facets_(std::move(facets)) {
   rows_ = static_cast<int>((high.y() - low.y()) / cell_m_) + 1;
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (std::uint32_t i = 0; i < facets_.size(); ++i) {
+    throw_if_cancelled();
     const Cells range = cells_around(facets_[i].center_W, facets_[i].radius_m);
     for (int row = range.row0; row <= range.row1; ++row) {
       for (int column = range.column0; column <= range.column1; ++column) cells_[cell(column, row)].push_back(i);
@@ -100,6 +102,7 @@ void FacetIndex::build_tiles() {
   };
   std::map<Place, std::map<Place, Block>> blocks;  // ordered by tile, then by block
   for (std::uint32_t i = 0; i < facets_.size(); ++i) {
+    throw_if_cancelled();
     const Facet& f = facets_[i];
     const Place place = place_in(f, block_m);
     auto& of_tile = blocks[place_in(f, kTile_m)];

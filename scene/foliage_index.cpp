@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/progress.h"
+
 namespace canyon::scene {
 namespace {
 
@@ -66,6 +68,7 @@ FoliageIndex::FoliageIndex(const std::vector<Foliage>& crowns) : crowns_(crowns)
   rows_ = static_cast<int>(size.y() / cell_m_) + 1;
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (std::uint32_t i = 0; i < crowns_.size(); ++i) {
+    throw_if_cancelled();
     const Foliage& c = crowns_[i];
     const auto cell_of = [&](double x, double origin, int count) {
       return std::clamp(static_cast<int>((x - origin) / cell_m_), 0, count - 1);

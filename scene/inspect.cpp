@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "core/progress.h"
 #include "scene/triangle.h"
 
 namespace canyon::scene {
@@ -21,6 +22,7 @@ class ObjectEdges {
   explicit ObjectEdges(const Scene& scene) : scene_(scene) {}
 
   void add(std::uint32_t triangle) {
+    throw_if_cancelled();
     const Mesh& mesh = scene_.mesh();
     std::array<std::uint32_t, 3> ids;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -45,6 +47,7 @@ class ObjectEdges {
     std::size_t open = 0, crowded = 0, flipped = 0;
     const double lowest_ground_m = lowest_ground();
     for (const auto& [ends, count] : edges_) {
+      throw_if_cancelled();
       const int n = count.forward + count.backward;
       if (n == 1 && !buried(places_[ends.first], places_[ends.second], lowest_ground_m)) ++open;
       if (n == 2 && count.forward != count.backward) ++flipped;
@@ -69,9 +72,11 @@ class ObjectEdges {
   /// The lowest terrain beside the object's corners; far down if there is none.
   double lowest_ground() const {
     std::optional<double> lowest_m;
-    for (const Eigen::Vector3d& p : places_)
+    for (const Eigen::Vector3d& p : places_) {
+      throw_if_cancelled();
       if (const auto ground_m = scene_.ground_beside(p.x(), p.y()))
         lowest_m = std::min(lowest_m.value_or(*ground_m), *ground_m);
+    }
     return lowest_m.value_or(-1e300);
   }
   /// What a file puts on its ground lies a little above it or below, by the ground's own triangles. Between two
@@ -110,6 +115,7 @@ class NearStreets {
     rows_ = static_cast<int>(size.y() / kCell_m) + 1;
     near_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), false);
     for (const StreetGraph::Edge& edge : streets.edges) {
+      throw_if_cancelled();
       const Eigen::Vector2d &a = streets.nodes_W[edge.a], &b = streets.nodes_W[edge.b], way = b - a;
       const Eigen::Vector2d low = a.cwiseMin(b).array() - reach_m, high = a.cwiseMax(b).array() + reach_m;
       for (int r = row(low.y()); r <= row(high.y()); ++r)
@@ -141,6 +147,7 @@ std::vector<MaterialArea> material_areas(const Scene& scene) {
   const Mesh& mesh = scene.mesh();
   std::vector<MaterialArea> areas(scene.materials().size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    throw_if_cancelled();
     MaterialArea& area = areas[mesh.material[i]];
     ++area.triangles;
     area.area_m2 += 0.5 * Triangle::of(mesh, i).area_normal().norm();
@@ -179,6 +186,7 @@ SensorNeeds sensor_needs(const Scene& scene) {
   out.edges = scene.edges().edges().size();
   NearStreets near(scene, out.lidar_reach_m);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    throw_if_cancelled();
     out.tree_triangles += scene.objects()[mesh.object[i]].kind == ObjectKind::kTree;
     const Triangle t = Triangle::of(mesh, i);
     out.near_triangles += near(((t.a + t.b + t.c) / 3.0).head<2>());

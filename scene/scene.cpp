@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/files.h"
+#include "core/progress.h"
 #include "scene/site.h"
 #include "scene/tiled_tracer.h"
 #include "scene/triangle.h"
@@ -19,6 +20,7 @@ void check_indices(const SceneParts& parts) {
                "triangles = ", mesh.triangles.size(), ", material = ", mesh.material.size(),
                ", object = ", mesh.object.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i % 65536 == 0) throw_if_cancelled();
     for (const std::uint32_t v : mesh.triangles[i]) {
       CANYON_CHECK(v < mesh.vertices.size(), "triangle ", i, " vertex ", v, " of ", mesh.vertices.size());
     }
@@ -113,6 +115,7 @@ const Building* building_at(const std::vector<Building>& buildings, const Eigen:
 
 std::string Scene::hash() const {
   const Mesh& mesh = parts_.mesh;
+  throw_if_cancelled();
   std::string bytes;
   bytes.reserve(mesh.vertices.size() * 12 + mesh.triangles.size() * 18 + 65536);
   append_bytes(bytes, mesh.vertices.data(), mesh.vertices.size());

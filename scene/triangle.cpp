@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/progress.h"
+
 namespace canyon::scene {
 
 Eigen::Vector3d Triangle::closest_point(const Eigen::Vector3d& p) const {
@@ -40,6 +42,7 @@ bool Triangle::usable() const {
 std::size_t drop_unusable_triangles(Mesh& mesh) {
   std::size_t kept = 0;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (i % 65536 == 0) throw_if_cancelled();
     if (!Triangle::of(mesh, i).usable()) continue;
     mesh.triangles[kept] = mesh.triangles[i];
     mesh.material[kept] = mesh.material[i];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "scene/city/draws.h"
 
@@ -198,7 +199,10 @@ std::vector<Building> planned_buildings(const CityConfig& config, const Plan& pl
 
 void add_buildings(const CityConfig& config, const Plan& plan, const Terrain& terrain, SceneParts& parts) {
   MeshBuilder mesh(parts);
-  for (const Design& d : designs(config, plan)) build(d, terrain, mesh, parts);
+  for (const Design& d : designs(config, plan)) {
+    throw_if_cancelled();
+    build(d, terrain, mesh, parts);
+  }
 }
 
 }  // namespace canyon::scene::city

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "scene/city/draws.h"
 
@@ -63,6 +64,7 @@ void drop_streets(StreetGraph& streets, const Rectangle& quarter, double rim, co
   constexpr double kShare = 0.08;
   const std::vector<StreetGraph::Edge> all = streets.edges;
   for (std::size_t i = 0; i < all.size(); ++i) {
+    throw_if_cancelled();
     const auto is_this = [&](const StreetGraph::Edge& e) { return e.a == all[i].a && e.b == all[i].b; };
     const Eigen::Vector2d &a = streets.nodes_W[all[i].a], &b = streets.nodes_W[all[i].b];
     const Eigen::Vector2d middle = 0.5 * (a + b);

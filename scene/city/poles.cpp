@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/progress.h"
 #include "scene/city/kerb.h"
 
 namespace canyon::scene::city {
@@ -13,6 +14,7 @@ void add_poles(const CityConfig& config, const Plan& plan, const Terrain& terrai
   std::size_t count = 0;
   const std::vector<Kerb> all = kerbs(plan);
   for (std::size_t k = 0; k < all.size(); ++k) {
+    throw_if_cancelled();
     const Kerb& kerb = all[k];
     for (double along_m = kCorner_m + (k % 2 == 0 ? 0.0 : 13.0); along_m < kerb.length_m - kCorner_m;
          along_m += kSpacing_m) {

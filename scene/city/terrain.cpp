@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/check.h"
+#include "core/progress.h"
 #include "core/random.h"
 
 namespace canyon::scene::city {
@@ -51,6 +52,7 @@ Terrain::Terrain(const CityConfig& config)
   height_m_.resize(vertex(n_, n_) + 1);
   material_.assign(static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_), 0);
   for (int row = 0; row <= n_; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column <= n_; ++column) {
       const double x = -half_m_ + column * cell_m_, y = -half_m_ + row * cell_m_;
       height_m_[vertex(column, row)] =
@@ -93,6 +95,7 @@ void Terrain::paint(double x0, double y0, double x1, double y1, std::uint16_t ma
   const auto cell_from = [&](double x) {
     return std::clamp(static_cast<int>(std::ceil((x + half_m_) / cell_m_ - 0.5)), 0, n_);
   };
+  throw_if_cancelled();
   for (int row = cell_from(y0); row < cell_from(y1); ++row) {
     for (int column = cell_from(x0); column < cell_from(x1); ++column) {
       material_[static_cast<std::size_t>(row) * static_cast<std::size_t>(n_) + static_cast<std::size_t>(column)] =
@@ -106,12 +109,14 @@ void Terrain::add_to(SceneParts& parts) const {
   const std::uint32_t object = MeshBuilder(parts).begin_object("terrain", ObjectKind::kTerrain);
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (int row = 0; row <= n_; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column <= n_; ++column) {
       mesh.vertices.emplace_back(static_cast<float>(-half_m_ + column * cell_m_),
                                  static_cast<float>(-half_m_ + row * cell_m_), height_m_[vertex(column, row)]);
     }
   }
   for (int row = 0; row < n_; ++row) {
+    throw_if_cancelled();
     for (int column = 0; column < n_; ++column) {
       const auto at = [&](int c, int r) { return first + static_cast<std::uint32_t>(vertex(c, r)); };
       mesh.triangles.push_back({at(column, row), at(column + 1, row), at(column + 1, row + 1)});

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "scene/city/draws.h"
 #include "scene/city/kerb.h"
@@ -44,6 +45,7 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
     const double share = by_zone(kerb.zone, 0.25, 0.4, 0.5, 0.4);
     for (std::size_t slot = 0; kCorner_m + (static_cast<double>(slot) + 1.0) * kSpacing_m < kerb.length_m - kCorner_m;
          ++slot) {
+      throw_if_cancelled();
       Draws draws(streets, k, slot);
       const bool grown = draws.chance(share);
       const double radius_m = draws.between(1.3, 1.7), tall_m = draws.between(1.6, 2.0),
@@ -61,6 +63,7 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
     const double area_per_tree_m2 = by_zone(block.zone, 2500.0, 900.0, 500.0, 260.0);
     const auto wished = static_cast<std::size_t>(land.width() * land.depth() / area_per_tree_m2);
     for (std::size_t i = 0; i < wished; ++i) {
+      throw_if_cancelled();
       Draws draws(parks, b, i);
       const double x = draws.between(land.x0, land.x1), y = draws.between(land.y0, land.y1);
       const Eigen::Vector2d xy(x, y);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/progress.h"
 #include "core/random.h"
 #include "scene/city/draws.h"
 
@@ -38,6 +39,7 @@ void add_garden_walls(const CityConfig& config, const Plan& plan, const Terrain&
   MeshBuilder mesh(parts);
   std::size_t count = 0;
   for (std::size_t b = 0; b < plan.blocks.size(); ++b) {
+    throw_if_cancelled();
     if (plan.blocks[b].zone != Zone::kLow) continue;
     const Rectangle land = plan.blocks[b].kerb.inset(kSidewalk_m + 0.3);
     const auto corners = rectangle(land.x0, land.y0, land.x1, land.y1);

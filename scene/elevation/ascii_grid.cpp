@@ -6,6 +6,7 @@
 #include "core/files.h"
 #include "core/line_reader.h"
 #include "core/lower_case.h"
+#include "core/progress.h"
 #include "scene/elevation/elevation.h"
 
 namespace canyon::scene {
@@ -19,6 +20,7 @@ Result<Elevation> read_ascii_grid(const std::string& path) {
   std::string_view line;
   std::size_t expected = 0;
   while (in.next(line)) {
+    throw_if_cancelled();
     const auto words = split(line, " \t", true);
     if (words.empty()) continue;
     if (out.height_m.empty() && std::isalpha(static_cast<unsigned char>(words[0][0])) && words.size() == 2 &&

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/files.h"
+#include "core/progress.h"
 #include "scene/elevation/elevation.h"
 
 namespace canyon::scene {
@@ -72,10 +73,13 @@ bool read_pixels(TIFF* tiff, SampleType type, Elevation& out) {
     std::uint32_t width = 0, length = 0;
     TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &width);
     TIFFGetField(tiff, TIFFTAG_TILELENGTH, &length);
+    constexpr tmsize_t kLargestTile = tmsize_t{1} << 28;
+    if (TIFFTileSize(tiff) > kLargestTile) return false;
     std::vector<std::uint8_t> tile(static_cast<std::size_t>(TIFFTileSize(tiff)));
     if (width == 0 || length == 0 || tile.size() < std::size_t{width} * length * bytes) return false;
     for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(out.rows); y += length) {
       for (std::uint32_t x = 0; x < static_cast<std::uint32_t>(out.columns); x += width) {
+        throw_if_cancelled();
         if (TIFFReadTile(tiff, tile.data(), x, y, 0, 0) < 0) return false;
         for (std::uint32_t r = 0; r < length; ++r)
           for (std::uint32_t c = 0; c < width; ++c)
@@ -87,6 +91,7 @@ bool read_pixels(TIFF* tiff, SampleType type, Elevation& out) {
   std::vector<std::uint8_t> line(static_cast<std::size_t>(TIFFScanlineSize(tiff)));
   if (line.size() < static_cast<std::size_t>(out.columns) * bytes) return false;
   for (std::uint32_t y = 0; y < static_cast<std::uint32_t>(out.rows); ++y) {
+    throw_if_cancelled();
     if (TIFFReadScanline(tiff, line.data(), y, 0) < 0) return false;
     for (std::uint32_t c = 0; c < static_cast<std::uint32_t>(out.columns); ++c) store(c, y, line.data() + c * bytes);
   }
@@ -98,7 +103,7 @@ bool read_pixels(TIFF* tiff, SampleType type, Elevation& out) {
 /// GeoTIFF of one band, whatever way libtiff can unpack it; placed by pixel scale and tie point or by a transformation
 /// without rotation. Rotated rasters are refused.
 Result<Elevation> read_geotiff(const std::string& path) {
-  CANYON_TRY_STATUS(read_text_file(path));  // a file that is not there is told as everywhere else
+  CANYON_TRY(const std::string bytes, read_text_file(path));  // a file that is not there is told as everywhere else
   TIFFSetErrorHandler(nullptr);
   TIFFSetWarningHandler(nullptr);
   TIFFSetTagExtender(extend);
@@ -115,6 +120,11 @@ Result<Elevation> read_geotiff(const std::string& path) {
   if (static_cast<double>(columns) * rows > kLargestGrid)
     return Error{path, 0, "", std::to_string(columns) + " x " + std::to_string(rows) + " pixels",
                  "at most 400 million"};
+  // Deflate packs a level plain into a thousandth; what claims more was damaged, and would only fill memory.
+  if (static_cast<double>(columns) * rows * type.bits / 8.0 > 1e6 + 2000.0 * static_cast<double>(bytes.size()))
+    return Error{path, 0, "", std::to_string(columns) + " x " + std::to_string(rows) + " pixels in " +
+                                  std::to_string(bytes.size()) + " bytes",
+                 "a whole GeoTIFF"};
   if (samples != 1 || !type.known() || columns == 0 || rows == 0)
     return Error{
         path, 0, "",
