@@ -30,8 +30,7 @@ class LineReader {
     return false;
   }
 
-  /// Of the line last read, from 1.
-  int number() const { return number_; }
+  int number() const { return number_; }  ///< of the line that next() gave last
 
   Error error(std::string what, std::string expected) const {
     Error e;

@@ -5,6 +5,7 @@
 
 #include "core/config.h"
 #include "scene/scene.h"
+#include "scene/scene_cost.h"
 
 namespace canyon::scene {
 
@@ -26,6 +27,14 @@ struct CityConfig {
   bool absorbing = false;  ///< every surface absorbs radio: blockage without reflections
 };
 void visit(FieldVisitor& f, CityConfig& c);
+
+/// What may be asked of the city, in a mission file and on the command line.
+inline constexpr Range kCityExtent_m{300.0, 3000.0};
+inline constexpr Range kCityBlock_m{60.0, 200.0};
+inline constexpr Range kCitySlope_percent{0.0, 8.0};
+
+/// About how many triangles it will have: ground to the triangle, the rest by the area.
+SceneCost predicted_cost(const CityConfig& config);
 
 SceneParts make_city(const CityConfig& config);
 

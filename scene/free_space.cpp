@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "core/progress.h"
+#include "scene/ground_detail.h"
 #include "scene/triangulate.h"
 
 namespace canyon::scene {
@@ -47,6 +49,10 @@ struct Raster {
   }
 };
 
+/// Wider scenes are looked at only near what stands: ground without anything has no middle lines, and what is asked of
+/// it costs as much as the rest.
+constexpr double kWide_m = 4000.0, kNear_m = 150.0;
+
 std::array<Eigen::Vector3d, 3> corners(const Mesh& mesh, std::size_t i) {
   const auto& t = mesh.triangles[i];
   return {mesh.vertices[t[0]].cast<double>(), mesh.vertices[t[1]].cast<double>(), mesh.vertices[t[2]].cast<double>()};
@@ -78,6 +84,7 @@ std::vector<std::uint8_t> open_ground(const SceneParts& parts, const Raster& ras
   const auto kind = [&](std::size_t i) { return parts.objects[mesh.object[i]].kind; };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (kind(i) != ObjectKind::kTerrain) continue;
+    throw_if_cancelled();
     const auto t = corners(mesh, i);
     raster.cover(t[0], t[1], t[2], [&](int c, int r, double z) {
       double& g = ground_m[raster.index(c, r)];
@@ -93,6 +100,7 @@ std::vector<std::uint8_t> open_ground(const SceneParts& parts, const Raster& ras
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (kind(i) == ObjectKind::kTerrain || kind(i) == ObjectKind::kTree) continue;
+    throw_if_cancelled();
     const auto t = corners(mesh, i);
     if (!t[0].allFinite() || !t[1].allFinite() || !t[2].allFinite()) continue;
     raster.cover(t[0], t[1], t[2], stand);
@@ -121,6 +129,32 @@ std::vector<std::uint8_t> open_ground(const SceneParts& parts, const Raster& ras
     }
   }
   return open;
+}
+
+/// Closes what lies farther than kNear_m from all that stands, in squares; nothing if nothing stands.
+void close_far_ground(const SceneParts& parts, const Raster& raster, std::vector<std::uint8_t>& open) {
+  std::vector<std::uint8_t> near(raster.size(), 0);
+  const auto mark = [&](const Eigen::Vector2d& p) {
+    const int c0 = std::max(raster.column(p.x() - kNear_m), 0),
+              c1 = std::min(raster.column(p.x() + kNear_m), raster.columns - 1);
+    const int r0 = std::max(raster.row(p.y() - kNear_m), 0),
+              r1 = std::min(raster.row(p.y() + kNear_m), raster.rows - 1);
+    for (int r = r0; r <= r1; ++r)
+      for (int c = c0; c <= c1; ++c) near[raster.index(c, r)] = 1;
+  };
+  GroundDetail standing;
+  for (std::size_t i = 0; i < parts.mesh.triangles.size(); ++i) {
+    const ObjectKind kind = parts.objects[parts.mesh.object[i]].kind;
+    if (kind == ObjectKind::kTerrain || kind == ObjectKind::kTree) continue;
+    const auto t = corners(parts.mesh, i);
+    for (std::size_t k = 0; k < 3; ++k) standing.add(t[k].head<2>(), t[(k + 1) % 3].head<2>());
+  }
+  const std::vector<GroundDetail::Square> squares = standing.squares();
+  for (const GroundDetail::Square& square : squares) {
+    throw_if_cancelled();
+    mark(GroundDetail::kSquare_m * Eigen::Vector2d(square.x + 0.5, square.y + 0.5));
+  }
+  for (std::size_t i = 0; !squares.empty() && i < open.size(); ++i) open[i] = open[i] && near[i] ? 1 : 0;
 }
 
 /// Distance to the nearest closed cell or the border, in metres, to some 4 % (chamfer 3-4, Borgefors 1986).
@@ -152,6 +186,7 @@ void thin(const Raster& raster, std::vector<std::uint8_t>& mask) {
   for (std::size_t i = 0; i < mask.size(); ++i)
     if (mask[i]) active.push_back(i);
   for (bool changed = true; changed;) {
+    throw_if_cancelled();
     changed = false;
     for (int pass = 0; pass < 2; ++pass) {
       gone.clear();
@@ -302,7 +337,9 @@ StreetGraph free_space_streets(const SceneParts& parts) {
   const Raster raster = raster_of(parts);
   StreetGraph graph;
   if (raster.size() == 0) return graph;
-  const std::vector<float> clear_m = clearance(raster, open_ground(parts, raster));
+  std::vector<std::uint8_t> open = open_ground(parts, raster);
+  if (raster.cell_m * std::max(raster.columns, raster.rows) > kWide_m) close_far_ground(parts, raster, open);
+  const std::vector<float> clear_m = clearance(raster, open);
   std::vector<std::uint8_t> mask(raster.size());
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = clear_m[i] >= static_cast<float>(kClearance_m) ? 1 : 0;
   thin(raster, mask);

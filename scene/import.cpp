@@ -1,19 +1,25 @@
 #include "scene/import.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
 #include "core/config_text.h"
 #include "core/files.h"
 #include "core/geoid.h"
+#include "core/progress.h"
 #include "core/units.h"
+#include "core/utf8.h"
 #include "scene/elevation/elevation.h"
 #include "scene/free_space.h"
 #include "scene/ground_surface.h"
 #include "scene/importers/assemble.h"
+#include "scene/importers/far_points.h"
 #include "scene/importers/importer.h"
+#include "scene/importers/raw_points.h"
 #include "scene/projection.h"
 #include "scene/written_scene.h"
 
@@ -34,7 +40,8 @@ void visit(FieldVisitor& f, ImportConfig& c) {
             "latitude, longitude of W's origin; empty: the middle of the scene");
   f.number("radius_m", c.radius_m, {0.0, 1e6}, "if > 0: only what is that near to W's origin is read");
   f.number("ground_cell_m", c.ground_cell_m, {0.5, 100.0}, "cells of terrain made from heights");
-  f.number("margin_m", c.margin_m, {1.0, 5000.0}, "terrain made around what the files hold");
+  f.number("margin_m", c.margin_m, {1.0, 5000.0},
+           "terrain made around what the files hold, in cells of ground_cell_m; larger cells beyond");
   f.text("height_property", c.height_property, "property with a building's height; empty: those of the known layouts");
   f.text("ground_property", c.ground_property, "property with the height of the ground");
   f.text("storeys_property", c.storeys_property, "property with the number of storeys");
@@ -54,7 +61,8 @@ namespace {
 
 class Import {
  public:
-  Import(const ImportConfig& config, const Geodetic& origin) : config_(config), origin_(origin) {}
+  Import(const ImportConfig& config, const Geodetic& origin, std::int64_t max_triangles)
+      : config_(config), origin_(origin), max_triangles_(max_triangles) {}
 
   Result<ImportedScene> run() {
     CANYON_TRY_STATUS(read_files());
@@ -64,6 +72,7 @@ class Import {
     if (count_dropped_ > 0)
       out_.report.warnings.push_back(std::to_string(count_dropped_) +
                                      " points outside the coordinate system's domain: their surfaces are left out");
+    CANYON_TRY_STATUS(refuse_far_points(scenes_));
     CANYON_TRY_STATUS(make_terrain());
     assemble(scenes_, config_, out_.parts, out_.report);
     make_streets();
@@ -99,20 +108,8 @@ class Import {
       }
       scenes_.push_back(std::move(scene));
     }
-    out_.parts.name = std::filesystem::path(config_.file).filename().string();
+    out_.parts.name = valid_utf8(std::filesystem::path(config_.file).filename().string());
     return Ok{};
-  }
-
-  /// Calls body for every point of a scene with its height: corners, footprints on their ground (NaN where unknown).
-  template <class Body>
-  static void for_points(const RawScene& scene, const Body& body) {
-    for (const RawPolygon& polygon : scene.polygons)
-      for (const auto& ring : polygon.rings)
-        for (const Eigen::Vector3d& p : ring) body(p);
-    for (const RawMesh& mesh : scene.meshes)
-      for (const Eigen::Vector3d& p : mesh.vertices) body(p);
-    for (const RawFootprint& f : scene.footprints)
-      for (const Eigen::Vector2d& p : f.rings[0]) body(Eigen::Vector3d(p.x(), p.y(), f.ground_m));
   }
 
   /// W's origin: the middle of what was read, at the median of the ground's heights, in whole metres.
@@ -133,14 +130,18 @@ class Import {
       for (const double h : lowest)
         if (h < 1e300 && heights.size() < 1000000 && scenes_[i].footprints.empty()) heights.push_back(h);
       // A few points of a large scene tell its middle well enough only if they are its outermost: all are looked at.
-      for_points(scenes_[i], [&](const Eigen::Vector3d& p) {
-        const auto g = projections_[i]->to_geodetic({p.x(), p.y(), 0.0});
-        if (!g) return;
-        low = low.cwiseMin(Eigen::Vector2d(g->lat_rad, g->lon_rad));
-        high = high.cwiseMax(Eigen::Vector2d(g->lat_rad, g->lon_rad));
+      for_corners(scenes_[i], [&](const RawPoint& point) {
+        const auto g = projections_[i]->to_geodetic({point.p.x(), point.p.y(), 0.0});
+        if (!g || !(std::abs(g->lat_rad) <= 0.5 * kPi)) return;
+        // All on the same side of the date line as the first.
+        const double lon_rad =
+            low.x() > high.x() ? g->lon_rad : low.y() + std::remainder(g->lon_rad - low.y(), 2 * kPi);
+        low = low.cwiseMin(Eigen::Vector2d(g->lat_rad, lon_rad));
+        high = high.cwiseMax(Eigen::Vector2d(g->lat_rad, lon_rad));
       });
     }
     const bool local = low.x() > high.x();  // all in metres about the origin that is stated
+    if (local) recentre();
     if (local && config_.terrain.empty()) {
       out_.parts.frame = LocalFrame(origin_);
       out_.report.undulation_source = "none";
@@ -183,6 +184,49 @@ class Import {
     return Ok{};
   }
 
+  static Eigen::Vector3d z_up(const RawScene& scene, const Eigen::Vector3d& p) {
+    return scene.y_up ? Eigen::Vector3d(p.x(), -p.z(), p.y()) : p;
+  }
+
+  /// Local metres far from the file's own origin are those of a map: W goes to their middle, for single precision is
+  /// finest there. An elevation model tells the ground's height; without one the middle of the lowest corners does.
+  void recentre() {
+    constexpr double kNear_m = 2000.0;
+    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+    std::vector<double> heights;
+    for (const RawScene& scene : scenes_) {
+      std::vector<double> lowest(scene.objects.size() + scene.meshes.size(), 1e300);
+      for_corners(scene, [&](const RawPoint& point) {
+        const Eigen::Vector3d p = z_up(scene, point.p);
+        if (!p.head<2>().allFinite()) return;
+        low = low.cwiseMin(p.head<2>());
+        high = high.cwiseMax(p.head<2>());
+        if (point.object < scene.objects.size()) lowest[point.object] = std::min(lowest[point.object], p.z());
+      });
+      for (const RawMesh& mesh : scene.meshes)
+        for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+          for (const std::uint32_t v : mesh.triangles[i])
+            lowest[mesh.object[i]] = std::min(lowest[mesh.object[i]], z_up(scene, mesh.vertices[v]).z());
+      for (const double h : lowest)
+        if (std::abs(h) < 1e300) heights.push_back(h);
+    }
+    if (low.x() > high.x()) return;
+    const Eigen::Vector2d middle = 0.5 * (low + high);
+    if (!(middle.norm() > kNear_m && middle.norm() > 0.5 * (high - low).norm())) return;
+    Eigen::Vector3d& at = out_.report.file_origin_m;
+    at.head<2>() = middle.array().round();
+    if (config_.terrain.empty() && !heights.empty()) {
+      const auto half = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+      std::nth_element(heights.begin(), half, heights.end());
+      at.z() = std::round(*half);
+    }
+    char place[200];
+    std::snprintf(place, sizeof place, "(%.0f, %.0f, %.0f) of the file is set down at %.6f, %.6f deg, %.1f m", at.x(),
+                  at.y(), at.z(), origin_.lat_rad / kDegree, origin_.lon_rad / kDegree, origin_.h_m);
+    out_.report.warnings.push_back("no coordinate system is said (scene.crs) and none is local: " + std::string(place) +
+                                   " (scene.lat_deg, scene.lon_deg, scene.base_height_m)");
+  }
+
   Status read_terrain() {
     CANYON_TRY(elevation_, read_elevation(config_.terrain));
     if (elevation_.frame.crs.empty() && config_.crs.empty())
@@ -204,9 +248,10 @@ class Import {
     RawScene& scene = scenes_[i];
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto to_W = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d {
-      if (!projections_[i]) return scene.y_up ? Eigen::Vector3d(p.x(), -p.z(), p.y()) : p;
+      throw_if_cancelled();
+      if (!projections_[i]) return z_up(scene, p) - out_.report.file_origin_m;
       const auto g = projections_[i]->to_geodetic(p);
-      if (!g) {
+      if (!g || !(std::abs(g->lat_rad) <= 0.5 * kPi)) {
         ++count_dropped_;
         return Eigen::Vector3d::Constant(nan);
       }
@@ -277,52 +322,94 @@ class Import {
     });
   }
 
+  /// What stands, and where a vehicle drives.
+  GroundDetail detail() const {
+    GroundDetail out;
+    const auto ring = [&](const auto& corners) {
+      for (std::size_t k = 0; k < corners.size(); ++k)
+        out.add(corners[k].template head<2>(), corners[(k + 1) % corners.size()].template head<2>());
+    };
+    for (const RawScene& scene : scenes_) {
+      for (const RawPolygon& polygon : scene.polygons)
+        for (const auto& corners : polygon.rings) ring(corners);
+      for (const RawFootprint& f : scene.footprints)
+        for (const auto& corners : f.rings) ring(corners);
+      for (const RawMesh& mesh : scene.meshes) {
+        throw_if_cancelled();
+        for (const auto& t : mesh.triangles)
+          ring(std::array<Eigen::Vector3d, 3>{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+      }
+      for (const RawStreet& street : scene.streets)
+        for (std::size_t k = 0; k + 1 < street.points.size(); ++k) out.add(street.points[k], street.points[k + 1]);
+      for (const RawTree& tree : scene.trees) out.add(tree.place, tree.place);
+    }
+    return out;
+  }
+
+  /// `terrain`: triangles of ground that is made.
+  Status expect(double terrain) {
+    for (const RawScene& scene : scenes_) terrain += triangles_of(scene);
+    out_.report.predicted.triangles = terrain;
+    CANYON_TRY_STATUS(check_cost(out_.report.predicted, max_triangles_, config_.file,
+                                 "larger cells (scene.ground_cell_m), a part of it (scene.radius_m)"));
+    progress_.emplace("scene of about " + cost_text(out_.report.predicted), 1.0);
+    return Ok{};
+  }
+
   Status make_terrain() {
     if (config_.terrain.empty() && files_have_terrain()) {
       out_.report.ground = "surfaces of the file";
-      return Ok{};
+      return expect(0.0);
     }
     Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
     for (const RawScene& scene : scenes_)
-      for_points(scene, [&](const Eigen::Vector3d& p) {
-        if (!p.head<2>().allFinite()) return;
-        low = low.cwiseMin(p.head<2>());
-        high = high.cwiseMax(p.head<2>());
+      for_corners(scene, [&](const RawPoint& point) {
+        if (!point.p.head<2>().allFinite()) return;
+        low = low.cwiseMin(point.p.head<2>());
+        high = high.cwiseMax(point.p.head<2>());
       });
     if (low.x() > high.x()) {
       out_.report.ground = "none";
-      return Ok{};
+      return expect(0.0);
     }
     if (config_.radius_m > 0.0) low = low.cwiseMax(-config_.radius_m), high = high.cwiseMin(config_.radius_m);
     low.array() -= config_.margin_m;
     high.array() += config_.margin_m;
-    const double cells = (high - low).prod() / (config_.ground_cell_m * config_.ground_cell_m);
-    if (!(cells < 2e7))
-      return Error{"", 0, "scene.ground_cell_m", "terrain of " + number_text(std::round(cells)) + " cells",
-                   "larger cells, or scene.radius_m"};
-    GroundGrid grid = ground_grid(low, high, config_.ground_cell_m);
-    const LocalFrame& frame = out_.parts.frame;
+    const GroundWish wish{low, high, config_.ground_cell_m, std::max(config_.margin_m, 5.0 * config_.ground_cell_m)};
+    const double most_cells = 0.5 * static_cast<double>(max_triangles_);
     if (!config_.terrain.empty()) {
       if (!terrain_projection_) CANYON_TRY_STATUS(read_terrain());
-      const bool known = fill_ground(grid, [&](const Eigen::Vector2d& p) -> std::optional<double> {
-        Geodetic g = frame.to_geodetic({p.x(), p.y(), 0.0});
-        const auto h = terrain_height(g);
-        if (!h) return std::nullopt;
-        g.h_m = *h + (terrain_projection_->ellipsoidal() ? 0.0 : undulation_m_);
-        return frame.from_geodetic(g).z();
-      });
-      if (!known)
+      const GroundHeight height = [this](const Eigen::Vector2d& p) { return modelled_ground(p); };
+      const GroundPlan plan(wish, detail(), height, most_cells);
+      CANYON_TRY_STATUS(expect(2.0 * plan.cells()));
+      GroundMesh ground(plan);
+      if (!fill_ground(ground, height))
         return Error{config_.terrain, 0, "", "does not cover the scene", "an elevation model of the same place"};
       out_.report.ground = std::filesystem::path(config_.terrain).filename().string();
-    } else {
-      const auto heights = ground_points(scenes_);
-      fit_ground(grid, heights);
-      out_.report.ground = heights.empty()
-                               ? "level"
-                               : "fitted to " + std::to_string(heights.size()) + " heights of the ground at buildings";
+      add_ground(ground, config_.ground_material, out_.parts);
+      return Ok{};
     }
-    add_ground(grid, config_.ground_material, out_.parts);
+    const auto heights = ground_points(scenes_);
+    const GroundFit fit(heights);
+    const GroundPlan plan(wish, detail(), {}, most_cells);  // between buildings the fit is a guess
+    CANYON_TRY_STATUS(expect(2.0 * plan.cells()));
+    GroundMesh ground(plan);
+    fill_ground(ground, fit);
+    out_.report.ground = heights.empty()
+                             ? "level"
+                             : "fitted to " + std::to_string(heights.size()) + " heights of the ground at buildings";
+    add_ground(ground, config_.ground_material, out_.parts);
     return Ok{};
+  }
+
+  /// Of the elevation model, in W.
+  std::optional<double> modelled_ground(const Eigen::Vector2d& p) const {
+    const LocalFrame& frame = out_.parts.frame;
+    Geodetic g = frame.to_geodetic({p.x(), p.y(), 0.0});
+    const auto h = terrain_height(g);
+    if (!h) return std::nullopt;
+    g.h_m = *h + (terrain_projection_->ellipsoidal() ? 0.0 : undulation_m_);
+    return frame.from_geodetic(g).z();
   }
 
   void make_streets() {
@@ -337,6 +424,8 @@ class Import {
 
   const ImportConfig& config_;
   Geodetic origin_;
+  std::int64_t max_triangles_;
+  std::optional<Progress> progress_;
   ImportedScene out_;
   std::vector<RawScene> scenes_;
   std::vector<std::optional<Projection>> projections_;
@@ -349,7 +438,7 @@ class Import {
 
 }  // namespace
 
-Result<ImportedScene> import_scene(const ImportConfig& config, const Geodetic& origin) {
+Result<ImportedScene> import_scene(const ImportConfig& config, const Geodetic& origin, std::int64_t max_triangles) {
   if (config.file.ends_with(".json")) {
     CANYON_TRY(const std::string text, read_text_file(config.file));
     if (is_written_scene(std::string_view(text).substr(0, 1024))) {
@@ -364,7 +453,7 @@ Result<ImportedScene> import_scene(const ImportConfig& config, const Geodetic& o
       return out;
     }
   }
-  return Import(config, origin).run();
+  return Import(config, origin, max_triangles).run();
 }
 
 }  // namespace canyon::scene

@@ -11,10 +11,12 @@ struct SceneConfig {
   CityConfig city;
   ImportConfig from;
   std::vector<MovingConfig> moving;
+  std::int64_t max_triangles = kMaxTriangles;
 };
 void visit(FieldVisitor& f, SceneConfig& c);
 
-/// The scene that a configuration asks for. lat_deg, lon_deg and base_height_m of the city place files in local metres.
+/// The scene that a configuration asks for, unless it is going to have more than max_triangles. lat_deg, lon_deg and
+/// base_height_m of the city place files in local metres.
 Result<ImportedScene> make_scene(const SceneConfig& config);
 
 }  // namespace canyon::scene

@@ -9,6 +9,8 @@
 
 #include "core/config_text.h"
 #include "core/files.h"
+#include "core/progress.h"
+#include "scene/importers/far_points.h"
 #include "scene/importers/importer.h"
 #include "scene/importers/json_text.h"
 
@@ -64,11 +66,13 @@ std::string obj_text(const SceneParts& parts) {
       "# metres, x east, y north, z up; scene.json beside it tells where on the Earth\nmtllib scene.mtl\n";
   char line[160];
   for (const Eigen::Vector3f& v : mesh.vertices) {
+    throw_if_cancelled();
     const int n = std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", double{v.x()}, double{v.y()}, double{v.z()});
     out.append(line, static_cast<std::size_t>(n));
   }
   std::uint32_t object = 0xffffffffu, material = 0xffffffffu;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    throw_if_cancelled();
     if (mesh.object[i] != object) out += "o " + parts.objects[object = mesh.object[i]].name + "\n";
     if (mesh.material[i] != material) out += "usemtl " + parts.materials[material = mesh.material[i]].name + "\n";
     const auto& t = mesh.triangles[i];
@@ -179,7 +183,11 @@ Result<SceneParts> read_written_scene(const std::string& path) {
   }
   CANYON_TRY(const std::string table, read_text_file(beside("materials.toml")));
   CANYON_TRY(parts.materials, parse_materials(table, beside("materials.toml")));
-  CANYON_TRY(const RawScene raw, read_obj(beside("scene.obj"), {}));
+  std::vector<RawScene> read(1);
+  CANYON_TRY(read[0], read_obj(beside("scene.obj"), {}));
+  RawScene& raw = read[0];
+  raw.files[0] = beside("scene.obj");
+  CANYON_TRY_STATUS(refuse_far_points(read));
 
   std::map<std::string, std::uint32_t> objects, materials;
   for (std::uint32_t i = 0; i < parts.objects.size(); ++i) objects.try_emplace(parts.objects[i].name, i);
@@ -187,6 +195,7 @@ Result<SceneParts> read_written_scene(const std::string& path) {
   const RawMesh& mesh = raw.meshes[0];
   for (const Eigen::Vector3d& p : mesh.vertices) parts.mesh.vertices.push_back(p.cast<float>());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    throw_if_cancelled();
     const auto object = objects.find(raw.objects[mesh.object[i]].name);
     const auto material = materials.find(raw.materials[mesh.material[i]]);
     if (object == objects.end())

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/lower_case.h"
+#include "core/progress.h"
 #include "scene/importers/footprint.h"
 #include "scene/importers/outline.h"
 #include "scene/importers/solid_bottom.h"
@@ -53,11 +54,13 @@ class Assembler {
     builder.begin_object("ground", ObjectKind::kTerrain);
     for (const RawScene& scene : scenes) {
       for (const RawPolygon& polygon : scene.polygons) {
+        throw_if_cancelled();
         if (scene.objects[polygon.object].kind != ObjectKind::kTerrain) continue;
         for_triangles(polygon, [&](const auto& a, const auto& b, const auto& c) { builder.triangle(a, b, c, 0); });
       }
       for (const RawMesh& mesh : scene.meshes)
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+          throw_if_cancelled();
           if (scene.objects[mesh.object[i]].kind != ObjectKind::kTerrain) continue;
           const auto& t = mesh.triangles[i];
           builder.triangle(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], 0);
@@ -122,11 +125,13 @@ class Assembler {
     for (const RawFootprint& footprint : scene.footprints) add_outlined(scene, footprint, first);
     for (const RawPolygon& polygon : scene.polygons) add_polygon(scene, polygon, first);
     for (const RawMesh& mesh : scene.meshes) add_mesh(scene, mesh, first);
-    for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+      throw_if_cancelled();
       if (scene.objects[i].kind == ObjectKind::kBuilding)
         finish_building(first + i, solids_[i]);
       else if (scene.objects[i].kind == ObjectKind::kTree)
         add_crown(solids_[i]);
+    }
     for (const RawTree& tree : scene.trees) plant(tree, first);
     for (const RawStreet& street : scene.streets) add_street(street);
   }
@@ -141,6 +146,7 @@ class Assembler {
   };
 
   void add_outlined(const RawScene& scene, const RawFootprint& f, std::uint32_t first) {
+    throw_if_cancelled();
     mesh_.resume_object(first + f.object);
     Solid& solid = solids_[f.object];
     const std::optional<double> low_m = lowest_ground(f.rings[0]);
@@ -168,6 +174,7 @@ class Assembler {
   }
 
   void add_polygon(const RawScene& scene, const RawPolygon& polygon, std::uint32_t first) {
+    throw_if_cancelled();
     mesh_.resume_object(first + polygon.object);
     const ObjectKind kind = scene.objects[polygon.object].kind;
     std::optional<std::uint16_t> index;
@@ -187,6 +194,7 @@ class Assembler {
     // The same material again and again: looked up once for each default it may take.
     std::map<std::pair<std::uint32_t, const std::string*>, std::uint16_t> known;
     for (std::size_t i = 0; i < raw.triangles.size(); ++i) {
+      throw_if_cancelled();
       const auto& t = raw.triangles[i];
       const std::array<Eigen::Vector3d, 3> corners{raw.vertices[t[0]], raw.vertices[t[1]], raw.vertices[t[2]]};
       const ObjectKind kind = scene.objects[raw.object[i]].kind;
@@ -216,6 +224,7 @@ class Assembler {
   }
 
   void plant(const RawTree& tree, std::uint32_t first) {
+    throw_if_cancelled();
     const auto ground = terrain_->ground(tree.place.x(), tree.place.y());
     mesh_.resume_object(first + tree.object);
     const double radius_m = 0.5 * tree.crown_m;
@@ -373,6 +382,17 @@ std::vector<Eigen::Vector3d> ground_points(const std::vector<RawScene>& scenes) 
       if (scene.objects[i].kind == ObjectKind::kBuilding && std::isfinite(lowest[i].z())) out.push_back(lowest[i]);
   }
   return out;
+}
+
+double triangles_of(const RawScene& scene) {
+  constexpr double kTree = 12.0 + 48.0;  // trunk and leaves
+  double sum = kTree * static_cast<double>(scene.trees.size());
+  for (const RawPolygon& polygon : scene.polygons)
+    for (const auto& ring : polygon.rings) sum += static_cast<double>(ring.size());
+  for (const RawMesh& mesh : scene.meshes) sum += static_cast<double>(mesh.triangles.size());
+  for (const RawFootprint& f : scene.footprints)
+    for (const auto& ring : f.rings) sum += 3.0 * static_cast<double>(ring.size());  // walls and roof
+  return sum;
 }
 
 void assemble(const std::vector<RawScene>& scenes, const ImportConfig& config, SceneParts& parts,

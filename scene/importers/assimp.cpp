@@ -1,8 +1,10 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
 
 #include "core/files.h"
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 
 namespace canyon::scene {
@@ -25,6 +27,7 @@ void add_node(const aiScene& source, const aiNode& node, const Eigen::Matrix4d& 
     const std::uint32_t object = out.add_object(name, kind_by_name(name, ObjectKind::kOther));
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const aiMesh& mesh = *source.mMeshes[node.mMeshes[i]];
+      throw_if_cancelled();
       RawMesh raw;
       for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
         const Eigen::Vector4d p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z, 1.0);
@@ -43,12 +46,20 @@ void add_node(const aiScene& source, const aiNode& node, const Eigen::Matrix4d& 
   for (unsigned i = 0; i < node.mNumChildren; ++i) add_node(source, *node.mChildren[i], placed, out);
 }
 
+/// assimp asks between its stages, and between the pieces of some formats.
+class StopWhenAsked : public Assimp::ProgressHandler {
+ public:
+  bool Update(float) override { return !cancel_requested(); }
+};
+
 }  // namespace
 
 Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions&) {
   CANYON_TRY_STATUS(read_text_file(path));  // a file that is not there is told as everywhere else
   Assimp::Importer importer;
+  importer.SetProgressHandler(new StopWhenAsked);  // the importer's own from here on
   const aiScene* source = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_ValidateDataStructure);
+  throw_if_cancelled();
   if (source == nullptr || source->mRootNode == nullptr)
     return Error{path, 0, "", std::string("cannot be read (") + importer.GetErrorString() + ")", "a mesh file"};
   RawScene out;

@@ -2,6 +2,7 @@
 #include <charconv>
 
 #include "core/line_reader.h"
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 #include "scene/importers/xml_file.h"
 
@@ -65,6 +66,7 @@ class CityGmlReader {
   }
 
   Status add(const XmlElement& element) {
+    throw_if_cancelled();
     const Row* row = nullptr;
     for (const Row& known : kMembers)
       if (element.name() == known.element) row = &known;
@@ -124,6 +126,7 @@ class CityGmlReader {
       }
       found.polygon.rings.push_back(std::move(points));
     }
+    found.polygon.from.line = static_cast<std::uint32_t>(std::max(e.line(), 0));
     if (!found.polygon.rings.empty()) found_.push_back(std::move(found));
     return Ok{};
   }

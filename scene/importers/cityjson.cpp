@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 #include "scene/importers/json_text.h"
 
@@ -61,6 +62,7 @@ class CityJsonReader {
     if (!sequence) {
       CANYON_TRY(const Json document, parse_json(text, path_));
       CANYON_TRY_STATUS(header(document));
+      for (const JsonMember& member : members_of(text, "CityObjects")) line_of_[member.name] = member.line;
       CANYON_TRY_STATUS(city_objects(document, 0));
     }
     while (sequence && begin < text.size()) {
@@ -117,6 +119,7 @@ class CityJsonReader {
     if (vertices == document.end() || !vertices->is_array() || objects == document.end() || !objects->is_object())
       return Error{path_, line, "CityObjects", "no vertices or no city objects", "a CityJSON file"};
     for (const Json& v : *vertices) {
+      throw_if_cancelled();
       if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
         return Error{path_, line, "vertices[" + std::to_string(vertices_.size()) + "]", "not understood",
                      "three numbers"};
@@ -134,6 +137,7 @@ class CityJsonReader {
       }
     }
     for (const auto& [id, object] : objects->items()) {
+      throw_if_cancelled();
       if (const auto list = object.find("geometry"); list != object.end() && list->is_array())
         templates_ += static_cast<int>(std::count_if(
             list->begin(), list->end(), [](const Json& g) { return text_of(g, "type") == "GeometryInstance"; }));
@@ -185,6 +189,8 @@ class CityJsonReader {
     const auto [entry, fresh] = by_id_.try_emplace(root, 0u);
     if (fresh) entry->second = scene_.add_object(root, row.kind);
     object_ = entry->second;
+    const auto known = line_of_.find(id);
+    line_ = line > 0 ? line : known != line_of_.end() ? known->second : 0;
     material_ = scene_.material(row.material);
     const Json none;
     const Json::json_pointer values("/semantics/values"), surfaces("/semantics/surfaces");
@@ -216,6 +222,7 @@ class CityJsonReader {
   bool face(const Json& rings, const Json& value) {
     if (!rings.is_array()) return false;
     RawPolygon polygon{.object = object_, .material = material_};
+    polygon.from.line = static_cast<std::uint32_t>(line_);
     if (surfaces_ != nullptr && surfaces_->is_array() && value.is_number_unsigned() &&
         value.get<std::size_t>() < surfaces_->size()) {
       const std::string type = text_of((*surfaces_)[value.get<std::size_t>()], "type");
@@ -248,6 +255,8 @@ class CityJsonReader {
   Eigen::Vector3d scale_ = Eigen::Vector3d::Ones(), translate_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> vertices_;
   std::map<std::string, std::uint32_t> by_id_;
+  std::map<std::string, int> line_of_;  ///< of city objects, where the file is one object
+  int line_ = 0;
   std::uint32_t object_ = 0, material_ = 0;
   const Json* surfaces_ = nullptr;
   int templates_ = 0, dangling_ = 0, flat_ = 0;

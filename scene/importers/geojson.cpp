@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/files.h"
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 #include "scene/importers/json_text.h"
 
@@ -93,11 +94,13 @@ class GeoJsonReader {
     if (!document.is_object() || text_of(document, "type") != "FeatureCollection" || !document.contains("features") ||
         !document["features"].is_array())
       return Error{path_, 0, "type", "not a collection of features", "\"type\": \"FeatureCollection\""};
+    members_ = members_of(text, "features");
     const Json::json_pointer crs("/crs/properties/name");
     scene_.frame =
         frame_by_name(document.contains(crs) && document[crs].is_string() ? document[crs].get<std::string>() : "CRS84");
     scene_.frame.authority_order = false;  // GeoJSON's order is always east, north
     for (const Json& feature : document["features"]) {
+      throw_if_cancelled();
       if (!feature.is_object() || !feature.contains("geometry")) return mistake("geometry", "no geometry", "a feature");
       if (!feature["geometry"].is_null()) CANYON_TRY_STATUS(add(feature));
       ++number_;
@@ -112,8 +115,13 @@ class GeoJsonReader {
 
  private:
   Error mistake(const std::string& key, std::string what, std::string expected) const {
-    return {path_, 0, "features[" + std::to_string(number_ + 1) + "]." + key, std::move(what), std::move(expected)};
+    return {path_, line(), "features[" + std::to_string(number_ + 1) + "]." + key, std::move(what),
+            std::move(expected)};
   }
+
+  /// Of the feature that is being read.
+  int line() const { return number_ < members_.size() ? members_[number_].line : 0; }
+  RawPlace from() const { return {0, static_cast<std::uint32_t>(line())}; }
 
   Status add(const Json& feature) {
     const Json& geometry = feature["geometry"];
@@ -152,6 +160,7 @@ class GeoJsonReader {
   Status street(const Json& line, const Json& properties) {
     CANYON_TRY(const auto way, points(line));
     RawStreet street;
+    street.from = from();
     for (const Eigen::Vector3d& p : way) street.points.push_back(p.head<2>());
     if (const double width_m = number_of(properties, "width_m"); width_m > 0.0) street.width_m = width_m;
     if (street.points.size() >= 2) scene_.streets.push_back(std::move(street));
@@ -184,7 +193,8 @@ class GeoJsonReader {
     if (!properties.contains(height_key) && high_m > low_m + 1e-6) {
       const std::uint32_t object =
           scene_.add_object(unique(name.empty() ? "structure" : name), kind_by_name(name, ObjectKind::kOther));
-      for (auto& polygon : rings) scene_.polygons.push_back({.object = object, .rings = std::move(polygon)});
+      for (auto& polygon : rings)
+        scene_.polygons.push_back({.object = object, .rings = std::move(polygon), .from = from()});
       return Ok{};
     }
     const std::string ground_key = options_.ground_property.empty() ? layout.ground : options_.ground_property;
@@ -196,6 +206,7 @@ class GeoJsonReader {
     const std::uint32_t object = scene_.add_object(unique(name.empty() ? "building" : name), ObjectKind::kBuilding);
     for (const auto& polygon : rings) {
       RawFootprint footprint{.object = object, .height_m = height_m};
+      footprint.from = from();
       footprint.ground_m = ground_key.empty() ? (std::isfinite(low_m) && low_m < 1e300 ? low_m : kUnknown)
                                               : number_of(properties, ground_key);
       if (!walls.empty()) footprint.wall_material = bd_topo_wall(walls[0]);
@@ -218,6 +229,7 @@ class GeoJsonReader {
   ReadOptions options_;
   RawScene scene_;
   std::size_t number_ = 0;
+  std::vector<JsonMember> members_;
   MissingHeights missing_;
   int other_ = 0;
 };

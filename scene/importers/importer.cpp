@@ -1,6 +1,8 @@
 #include "scene/importers/importer.h"
 
 #include <cctype>
+#include <filesystem>
+#include <system_error>
 
 #include "core/config_text.h"
 #include "core/files.h"
@@ -88,12 +90,17 @@ Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& opt
   }
   const auto read = [&](const SceneFormat& format) -> Result<RawScene> {
     CANYON_TRY(RawScene scene, format.read(path, options));
+    scene.files[0] = path;
     if (options.up_axis != "auto") scene.y_up = options.up_axis == "y";
     return scene;
   };
+  const Error empty{path, 0, "", "is empty", "a scene"};
+  std::error_code unknown_size;
+  if (std::filesystem::file_size(path, unknown_size) == 0 && !unknown_size) return empty;
   if (candidates.size() == 1 && candidates[0]->looks_like == nullptr) return read(*candidates[0]);
 
   CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) return empty;
   std::string expected;
   for (const SceneFormat* format : candidates) {
     if (format->looks_like == nullptr || format->looks_like(text)) return read(*format);

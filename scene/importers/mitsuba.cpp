@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 #include "scene/importers/xml_file.h"
 
@@ -36,12 +37,16 @@ std::string object_of(std::string id) {
 }
 
 Status append(RawScene part, std::uint32_t object, std::uint32_t material, RawScene& out) {
+  const auto file = static_cast<std::uint32_t>(out.files.size());
+  out.files.push_back(part.files[0]);
   for (RawMesh& mesh : part.meshes) {
+    mesh.file = file;
     std::fill(mesh.object.begin(), mesh.object.end(), object);
     std::fill(mesh.material.begin(), mesh.material.end(), material);
     out.meshes.push_back(std::move(mesh));
   }
   for (RawPolygon& polygon : part.polygons) {
+    polygon.from.file = file;
     polygon.object = object;
     polygon.material = material;
     out.polygons.push_back(std::move(polygon));
@@ -59,6 +64,7 @@ Result<RawScene> read_mitsuba(const std::string& path, const ReadOptions& option
   std::map<std::string, int> skipped;
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   for (XmlElement shape = file.root().first_child(); shape; shape = shape.next()) {
+    throw_if_cancelled();
     if (shape.name() != "shape") continue;
     const std::string type = shape.attribute("type").value_or("");
     if (type != "ply" && type != "obj") {
@@ -74,6 +80,7 @@ Result<RawScene> read_mitsuba(const std::string& path, const ReadOptions& option
     auto part =
         type == "ply" ? read_ply((folder / name).string(), options) : read_obj((folder / name).string(), options);
     if (!part) return part.error();
+    part->files[0] = (folder / name).string();
 
     std::string material;
     for (XmlElement ref = shape.first_child(); ref; ref = ref.next()) {

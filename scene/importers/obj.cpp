@@ -3,6 +3,7 @@
 
 #include "core/files.h"
 #include "core/line_reader.h"
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 
 namespace canyon::scene {
@@ -20,6 +21,7 @@ class ObjReader {
     std::string_view line;
     std::string continued;
     while (in_.next(line)) {
+      throw_if_cancelled();
       if (line.back() == '\\') {  // the line goes on
         continued += std::string(line.substr(0, line.size() - 1)) + " ";
         continue;
@@ -63,6 +65,7 @@ class ObjReader {
         return in_.error("\"" + std::string(word) + "\" is not a number", "v x y z");
     }
     scene_.meshes[0].vertices.push_back(p);
+    scene_.meshes[0].line.push_back(static_cast<std::uint32_t>(in_.number()));
     return Ok{};
   }
 
@@ -89,6 +92,7 @@ class ObjReader {
       return Ok{};
     }
     RawPolygon polygon{.object = object, .material = material_, .rings = {{}}};
+    polygon.from.line = static_cast<std::uint32_t>(in_.number());
     for (const std::uint32_t corner : corners_) polygon.rings[0].push_back(mesh.vertices[corner]);
     scene_.polygons.push_back(std::move(polygon));
     return Ok{};

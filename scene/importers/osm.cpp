@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 #include "scene/importers/xml_file.h"
 #include "scene/triangulate.h"
@@ -70,6 +71,7 @@ struct Shape {
   std::string name;  ///< "way 12"
   Tags tags;
   std::vector<std::vector<Ring>> outlines;  ///< each with its holes
+  std::uint32_t line = 0;                   ///< of the file
 
   bool contains(const Eigen::Vector2d& p) const {
     return std::any_of(outlines.begin(), outlines.end(),
@@ -101,6 +103,7 @@ class OsmReader {
       return Error{path_, file.root().line(), "", "<" + std::string(file.root().name()) + ">", "an <osm> file"};
     scene_.frame = {"OGC:CRS84", false};
     for (XmlElement e = file.root().first_child(); e; e = e.next()) {
+      throw_if_cancelled();
       if (e.name() == "node") CANYON_TRY_STATUS(node(e));
       if (e.name() == "way") CANYON_TRY_STATUS(way(e));
     }
@@ -145,7 +148,8 @@ class OsmReader {
     nodes_[id] = p;
     if (!e.first_child()) return Ok{};
     const Tags tags = tags_of(e);
-    if (const auto kind = tags.find("natural"); kind != tags.end() && kind->second == "tree") tree(id, p, tags);
+    if (const auto kind = tags.find("natural"); kind != tags.end() && kind->second == "tree")
+      tree(id, p, tags, e.line());
     return Ok{};
   }
 
@@ -158,8 +162,9 @@ class OsmReader {
       refs.push_back(ref);
     }
     const Tags tags = tags_of(e);
-    if (is(tags, "building") || is(tags, "building:part")) note("way " + std::to_string(id), tags, {refs}, {});
-    if (tags.contains("highway")) street(tags, refs);
+    if (is(tags, "building") || is(tags, "building:part"))
+      note("way " + std::to_string(id), e.line(), tags, {refs}, {});
+    if (tags.contains("highway")) street(tags, refs, e.line());
     ways_[id] = std::move(refs);
     return Ok{};
   }
@@ -177,7 +182,8 @@ class OsmReader {
       if (found == ways_.end()) continue;
       (member.attribute("role") == "inner" ? inner : outer).push_back(found->second);
     }
-    note("relation " + e.attribute("id").value_or("?"), tags, joined(std::move(outer)), joined(std::move(inner)));
+    note("relation " + e.attribute("id").value_or("?"), e.line(), tags, joined(std::move(outer)),
+         joined(std::move(inner)));
   }
 
   /// A relation of type building says which parts belong to which outline.
@@ -224,15 +230,16 @@ class OsmReader {
   }
 
   /// Keeps a building or a part for set_up(), when all are known.
-  void note(const std::string& name, const Tags& tags, const std::vector<std::vector<long long>>& outer,
+  void note(const std::string& name, int line, const Tags& tags, const std::vector<std::vector<long long>>& outer,
             const std::vector<std::vector<long long>>& inner) {
-    Shape shape{name, tags, {}};
+    throw_if_cancelled();
+    Shape shape{name, tags, {}, static_cast<std::uint32_t>(std::max(line, 0))};
     for (const auto& refs : outer)
       if (auto points = ring(refs); !points.empty()) shape.outlines.push_back({std::move(points)});
     for (const auto& refs : inner) {
       const Ring hole = ring(refs);
       if (hole.empty()) continue;
-      const Eigen::Vector2d within = Shape{"", {}, {{hole}}}.inner_point();
+      const Eigen::Vector2d within = Shape{"", {}, {{hole}}, 0}.inner_point();
       for (auto& rings : shape.outlines) {
         if (!polygon_contains(rings[0], within)) continue;
         rings.push_back(hole);
@@ -253,6 +260,7 @@ class OsmReader {
     std::vector<std::vector<const Shape*>> parts_of(buildings_.size());
     std::vector<const Shape*> alone;
     for (const Shape& part : parts_) {
+      throw_if_cancelled();
       const auto stated = outline_of_.find(part.name);
       const auto known = stated == outline_of_.end() ? number_of.end() : number_of.find(stated->second);
       std::size_t b = known == number_of.end() ? 0 : known->second;
@@ -277,6 +285,7 @@ class OsmReader {
       for (const auto& rings : outline.outlines) {
         RawFootprint footprint{.rings = rings};
         footprint.only_outline = true;
+        footprint.from.line = outline.line;
         made.push_back(std::move(footprint));
       }
       const std::size_t outlines = made.size();
@@ -329,19 +338,21 @@ class OsmReader {
     for (const auto& rings : source.outlines) {
       out.push_back(shape);
       out.back().rings = rings;
+      out.back().from.line = source.line;
     }
   }
 
   /// Without figures a street tree of middle age: 10 m high, its crown half as wide.
-  void tree(long long id, const Eigen::Vector2d& p, const Tags& tags) {
+  void tree(long long id, const Eigen::Vector2d& p, const Tags& tags, int line) {
     const double height_m = metres(tags, "height"), crown_m = metres(tags, "diameter_crown");
     RawTree tree{.object = scene_.add_object("node " + std::to_string(id), ObjectKind::kTree), .place = p};
     tree.height_m = height_m > 1.0 && height_m < 120.0 ? height_m : 10.0;
     tree.crown_m = crown_m > 0.5 && crown_m < 60.0 ? crown_m : 0.5 * tree.height_m;
+    tree.from.line = static_cast<std::uint32_t>(std::max(line, 0));
     scene_.trees.push_back(tree);
   }
 
-  void street(const Tags& tags, const std::vector<long long>& refs) {
+  void street(const Tags& tags, const std::vector<long long>& refs, int line) {
     const auto area = tags.find("area"), tunnel = tags.find("tunnel");
     if ((area != tags.end() && area->second == "yes") || (tunnel != tags.end() && tunnel->second != "no")) return;
     const auto value = tags.find("highway");
@@ -352,6 +363,7 @@ class OsmReader {
       street.width_m = width > 1.0 && width < 100.0 ? width : lanes >= 1.0 && lanes < 20.0 ? 3.25 * lanes : row.width_m;
       for (const long long ref : refs)
         if (const auto found = nodes_.find(ref); found != nodes_.end()) street.points.push_back(found->second);
+      street.from.line = static_cast<std::uint32_t>(std::max(line, 0));
       if (street.points.size() >= 2) scene_.streets.push_back(std::move(street));
     }
   }

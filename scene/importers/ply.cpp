@@ -7,6 +7,7 @@
 
 #include "core/files.h"
 #include "core/line_reader.h"
+#include "core/progress.h"
 #include "scene/importers/importer.h"
 
 namespace canyon::scene {
@@ -52,11 +53,14 @@ class PlyReader {
     const std::string name = std::filesystem::path(path_).stem().string();
     object_ = scene.add_object(name, kind_by_name(name, ObjectKind::kOther));
     scene.meshes.emplace_back();
-    for (const Element& element : elements_) {
+    for (const Element& element : elements_)
       if (element.count > 0 && (element.properties.empty() || element.count > text_.size()))
         return mistake(std::to_string(element.count) + " of element \"" + element.name + "\"",
                        "properties, and no more than the file holds");
+    if (format_ == Format::kAscii) ++line_;  // the first line after the header
+    for (const Element& element : elements_) {
       for (std::size_t i = 0; i < element.count; ++i) {
+        throw_if_cancelled();
         if (element.name == "vertex") {
           CANYON_TRY_STATUS(vertex(element, scene.meshes[0]));
         } else if (element.name == "face") {
@@ -181,6 +185,7 @@ class PlyReader {
         p[property.name[0] - 'x'] = values_.empty() ? p.x() : values_[0];
     }
     mesh.vertices.push_back(p);
+    mesh.line.push_back(static_cast<std::uint32_t>(line_));
     return Ok{};
   }
 
@@ -205,6 +210,7 @@ class PlyReader {
         continue;
       }
       RawPolygon polygon{.object = object_, .rings = {{}}};
+      polygon.from.line = static_cast<std::uint32_t>(line_);
       for (const std::uint32_t corner : corners) polygon.rings[0].push_back(mesh.vertices[corner]);
       scene.polygons.push_back(std::move(polygon));
     }

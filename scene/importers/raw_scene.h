@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "core/utf8.h"
 #include "scene/scene.h"
 
 namespace canyon::scene {
@@ -21,18 +22,27 @@ struct SourceFrame {
   bool authority_order = false;
 };
 
+/// Where something stands in a file, for what has to be said of it.
+struct RawPlace {
+  std::uint32_t file = 0;  ///< index into RawScene::files
+  std::uint32_t line = 0;  ///< 1-based; 0: not known
+};
+
 /// A planar surface with holes; rings are not closed.
 struct RawPolygon {
   std::uint32_t object = 0;
   std::uint32_t material = 0;                         ///< index into RawScene::materials
   std::vector<std::vector<Eigen::Vector3d>> rings{};  ///< the outer one first
   bool ground_surface = false;                        ///< the bottom of a building: what must reach the terrain
+  RawPlace from{};
 };
 
 struct RawMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t> object, material;  ///< per triangle
+  std::uint32_t file = 0;                       ///< index into RawScene::files
+  std::vector<std::uint32_t> line;              ///< of the file, per vertex; empty: not known
 };
 
 /// Roofs that a footprint may carry.
@@ -50,6 +60,7 @@ struct RawFootprint {
   bool ridge_across = false;   ///< the ridge runs along the shorter side
   std::string wall_material{}, roof_material{};
   bool only_outline = false;  ///< of a building whose parts follow: they are built, this is its outline
+  RawPlace from{};
 };
 
 /// A tree of which only place and size are known.
@@ -58,15 +69,18 @@ struct RawTree {
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   double height_m = 10.0;
   double crown_m = 5.0;  ///< diameter
+  RawPlace from{};
 };
 
 struct RawStreet {
   std::vector<Eigen::Vector2d> points;
   double width_m = 6.0;
+  RawPlace from{};
 };
 
 /// What a file holds, in the file's coordinates, before it is set into W.
 struct RawScene {
+  std::vector<std::string> files{""};  ///< the first: the scene's own; then those that it names
   SourceFrame frame;
   bool y_up = false;                       ///< y is up and z towards the viewer, who stands in the south
   std::vector<std::string> materials{""};  ///< names as the file has them; the first: the default for where it faces
@@ -79,7 +93,8 @@ struct RawScene {
   std::vector<std::string> warnings;  ///< counted: "5 buildings without a height are left out"
 
   /// Index of a material's name, which is added if it is new.
-  std::uint32_t material(const std::string& material_name) {
+  std::uint32_t material(const std::string& name) {
+    const std::string material_name = valid_utf8(name);
     const auto found = std::find(materials.begin(), materials.end(), material_name);
     if (found == materials.end()) {
       materials.push_back(material_name);
@@ -87,8 +102,8 @@ struct RawScene {
     }
     return static_cast<std::uint32_t>(found - materials.begin());
   }
-  std::uint32_t add_object(std::string name, ObjectKind kind) {
-    objects.push_back({std::move(name), kind});
+  std::uint32_t add_object(const std::string& name, ObjectKind kind) {
+    objects.push_back({valid_utf8(name), kind});
     return static_cast<std::uint32_t>(objects.size() - 1);
   }
 };
