@@ -73,6 +73,36 @@ struct Facts {
   scene::SensorNeeds needs;
 };
 
+/// A corner of the scene on the ground's level, on the map.
+Geodetic corner_on_earth(const scene::Scene& scene, const Eigen::Vector3d& corner_W) {
+  return scene.frame().to_geodetic({corner_W.x(), corner_W.y(), 0.0});
+}
+
+/// South-west and north-east: in W, from which vehicle.start_m and waypoints are chosen, and on the Earth, for --at.
+Json corners_json(const scene::Scene& scene) {
+  if (scene.mesh().triangles.empty()) return nullptr;
+  const auto corner = [&](const Eigen::Vector3d& p) -> Json {
+    const Geodetic g = corner_on_earth(scene, p);
+    return {{"x_m", p.x()},
+            {"y_m", p.y()},
+            {"z_m", p.z()},
+            {"lat_deg", g.lat_rad / kDegree},
+            {"lon_deg", g.lon_rad / kDegree}};
+  };
+  return {{"south_west", corner(scene.extent().min)}, {"north_east", corner(scene.extent().max)}};
+}
+
+void print_corners(const scene::Scene& scene) {
+  if (scene.mesh().triangles.empty()) return;
+  const Eigen::Vector3d &low = scene.extent().min, &high = scene.extent().max;
+  const Geodetic sw = corner_on_earth(scene, low), ne = corner_on_earth(scene, high);
+  std::printf("  corners in W      (%.1f, %.1f) to (%.1f, %.1f) m, as in vehicle.start_m; heights %.1f to %.1f m\n",
+              low.x(), low.y(), high.x(), high.y(), low.z(), high.z());
+  std::printf("  corners           %.6f,%.6f to %.6f,%.6f deg, as in --at LAT,LON,H; H of W's origin %.1f m\n",
+              sw.lat_rad / kDegree, sw.lon_rad / kDegree, ne.lat_rad / kDegree, ne.lon_rad / kDegree,
+              scene.frame().origin().h_m);
+}
+
 Json as_json(const scene::Scene& scene, const scene::ImportReport& report, const Facts& f) {
   Json materials = Json::array();
   for (const auto& m : f.materials)
@@ -87,13 +117,16 @@ Json as_json(const scene::Scene& scene, const scene::ImportReport& report, const
       {"extent_m", {f.size_m.x(), f.size_m.y(), f.size_m.z()}},
       {"area_m2", f.size_m.x() * f.size_m.y()},
       {"origin", {{"lat_deg", origin.lat_rad / kDegree}, {"lon_deg", origin.lon_rad / kDegree}, {"h_m", origin.h_m}}},
+      {"corners", corners_json(scene)},
       {"materials", materials},
       {"crs", report.crs},
+      {"file_origin_m", {report.file_origin_m.x(), report.file_origin_m.y(), report.file_origin_m.z()}},
       {"heights_above", report.vertical},
       {"undulation_m", scene.parts().undulation_m},
       {"undulation_source", report.undulation_source},
       {"ground", report.ground},
       {"streets", {{"source", report.streets}, {"edges", scene.streets().edges.size()}}},
+      {"predicted", {{"triangles", report.predicted.triangles}, {"memory_mb", report.predicted.memory_mb()}}},
       {"dropped_triangles", scene.dropped_triangles()},
       {"objects", f.sound.objects},
       {"watertight_objects", f.sound.watertight},
@@ -113,11 +146,16 @@ void print_text(const scene::Scene& scene, const scene::ImportReport& report, co
   std::printf("%s\n\n", scene.name().c_str());
   std::printf("  origin of W       %.6f, %.6f deg, %.2f m above the ellipsoid\n", origin.lat_rad / kDegree,
               origin.lon_rad / kDegree, origin.h_m);
-  std::printf("  coordinates       %s\n", report.crs.empty() ? "local metres" : report.crs.c_str());
+  std::printf("  coordinates       %s", report.crs.empty() ? "local metres" : report.crs.c_str());
+  if (report.crs.empty())
+    std::printf("; (%.0f, %.0f, %.0f) of the file is W's origin", report.file_origin_m.x(), report.file_origin_m.y(),
+                report.file_origin_m.z());
+  std::printf("\n");
   if (!report.crs.empty())
     std::printf("  heights           above %s, undulation %.2f m (%s)\n", report.vertical.c_str(),
                 scene.parts().undulation_m, report.undulation_source.c_str());
   std::printf("  extent            %.1f x %.1f x %.1f m\n", f.size_m.x(), f.size_m.y(), f.size_m.z());
+  print_corners(scene);
   std::printf("  ground            %s\n", report.ground.c_str());
   std::printf("  streets           %s (%zu pieces)\n", report.streets.c_str(), scene.streets().edges.size());
   std::printf("  buildings         %zu, heights sum to %.1f m\n", scene.buildings().size(), f.height_sum_m);

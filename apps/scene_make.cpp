@@ -55,11 +55,15 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--seed", city.seed, "seed of the built-in city")
       .default_shown()
       .within(std::int64_t{0}, kLargestSeed);
-  arguments.option("--extent", city.extent_m, "edge of the square, m").default_shown().within(200.0, 5000.0);
-  arguments.option("--block", city.block_m, "street to street, m").default_shown().within(40.0, 500.0);
+  arguments.option("--extent", city.extent_m, "edge of the square, m")
+      .default_shown()
+      .within(scene::kCityExtent_m.min, scene::kCityExtent_m.max);
+  arguments.option("--block", city.block_m, "street to street, m")
+      .default_shown()
+      .within(scene::kCityBlock_m.min, scene::kCityBlock_m.max);
   arguments.option("--slope", city.slope_percent, "mean slope of the terrain, percent")
       .default_shown()
-      .within(0.0, 20.0);
+      .within(scene::kCitySlope_percent.min, scene::kCitySlope_percent.max);
   arguments.option("--out", options->out, "directory for the files").default_shown();
   arguments.flag("--force", options->force,
                  "replace the directory if it exists; only one that canyon wrote, or an empty one");
