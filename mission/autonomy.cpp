@@ -2,6 +2,7 @@
 
 #include "core/check.h"
 #include "mission/reference_autonomy.h"
+#include "mission/route_driver.h"
 
 namespace canyon::mission {
 
@@ -14,6 +15,7 @@ struct Row {
 /// A new autonomy is one file and one row.
 constexpr Row kAutonomies[] = {
     {"reference", make_reference_autonomy},
+    {"route_follower", make_route_follower},
 };
 
 }  // namespace
@@ -37,9 +39,11 @@ void visit(FieldVisitor& f, PathChoiceConfig& c) {
 }
 
 void visit(FieldVisitor& f, AutonomyConfig& c) {
-  f.choice("model", c.model, autonomy_models(), "which autonomy drives");
+  f.choice("model", c.model, autonomy_models(),
+           "which autonomy drives: reference, or route_follower: the centre line, whatever stands there");
   f.choice("map", c.map, {"prior", "registered"},
            "pose it works with: the filter's, or corrected by the last registered keyframe");
+  f.number("rate_hz", c.rate_hz, {1, 1000}, "commands per second; each takes effect at the next master step of 10 ms");
   f.number("cruise_m_s", c.cruise_m_s, {0.2, 30}, "speed on a free, straight street");
   f.number("lateral_m_s2", c.lateral_m_s2, {0.1, 10}, "lateral acceleration allowed in corners");
   f.number("braking_m_s2", c.braking_m_s2, {0.1, 10}, "deceleration it plans with");

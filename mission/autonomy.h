@@ -42,6 +42,7 @@ struct AutonomyConfig {
   std::string model = "reference";
   std::string map =
       "prior";  ///< pose it works with: the filter's ("prior") or corrected by the last keyframe ("registered")
+  double rate_hz = 100.0;  ///< commands per second
   double cruise_m_s = 5.0;
   double lateral_m_s2 = 1.2;  ///< lateral acceleration in corners
   double braking_m_s2 = 1.2;
