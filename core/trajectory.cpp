@@ -33,6 +33,10 @@ void Trajectory::forget_before(GpsTime t) {
   if (next != poses_.begin()) poses_.erase(poses_.begin(), next - 1);
 }
 
+void Trajectory::move(const Pose& X) {
+  for (StampedPose& pose : poses_) pose.X_WB = X * pose.X_WB;
+}
+
 std::optional<Pose> Trajectory::at(GpsTime t) const {
   if (poses_.empty() || t < poses_.front().t || poses_.back().t < t) return std::nullopt;
   const auto next = after(poses_, t);

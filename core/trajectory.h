@@ -25,6 +25,8 @@ class Trajectory {
   void append(const StampedPose& pose);
   /// Forgets poses before t, but keeps the one just before it, so that interpolation from t on stays possible.
   void forget_before(GpsTime t);
+  /// Every pose becomes X * pose: the whole is moved, the motion in it stays.
+  void move(const Pose& X);
 
   /// Pose at t; nullopt outside [first, last].
   std::optional<Pose> at(GpsTime t) const;

@@ -60,6 +60,7 @@ bool estimates_gains(const FilterConfig& config, const ImuNoise& noise) {
 }  // namespace
 
 void visit(FieldVisitor& f, FilterConfig& c) {
+  f.file("imu", c.imu, ".toml", "sensor whose datasheet the filter is told; empty: the one of [imu] sensor");
   f.number("initial_attitude_sigma_deg_roll_pitch", c.initial_attitude_sigma_deg_roll_pitch, {1e-6, 180},
            "1-sigma of roll and pitch at the start");
   f.number("initial_attitude_sigma_deg_heading", c.initial_attitude_sigma_deg_heading, {1e-6, 180},

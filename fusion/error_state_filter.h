@@ -18,6 +18,7 @@ namespace canyon::fusion {
 
 /// [fusion] of a mission file.
 struct FilterConfig {
+  std::string imu;  ///< catalogue entry whose datasheet it is told; empty: that of [imu] sensor
   double initial_attitude_sigma_deg_roll_pitch = 0.1;
   double initial_attitude_sigma_deg_heading = 1.0;
   double initial_position_sigma_m = 0.5;

@@ -19,6 +19,12 @@ class StrapdownImu final : public ImuModel {
     errors_->corrupt(k, sample);
     return sample;
   }
+  ImuSample sample(std::int64_t k, const TrueMotion& motion, GpsTime from, GpsTime to) override {
+    CANYON_CHECK(k >= 0, "sample number = ", k);
+    ImuSample sample = true_increments(motion, from, to, frame_, lever_arm_m_);
+    errors_->corrupt(k, sample);
+    return sample;
+  }
   const ImuNoise& noise() const override { return errors_->noise(); }
 
  private:
@@ -94,6 +100,11 @@ Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, st
   CANYON_TRY(setup.entry, entry_of(config));
   CANYON_TRY(setup.environment, environment_of(config));
   return make_error_chain(config.errors, setup);
+}
+
+Result<ImuNoise> datasheet_noise(const ImuConfig& config) {
+  CANYON_TRY(const CatalogueEntry entry, entry_of(config));
+  return entry.noise();
 }
 
 Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame) {

@@ -11,7 +11,7 @@
 #include "core/local_frame.h"
 #include "core/messages.h"
 #include "core/result.h"
-#include "core/truth.h"
+#include "core/true_motion.h"
 #include "inertial/error_chain.h"
 
 namespace canyon::inertial {
@@ -37,7 +37,9 @@ class ImuModel {
   /// Sample k over (nodes.front().t, nodes.back().t]. `nodes` are equally spaced kinematic states of the true motion,
   /// an odd number >= 3 (Simpson) or 5 (Boole); the increments are quadratures of w_IU_U and f_U over them.
   virtual ImuSample sample(std::int64_t k, std::span<const KinematicState> nodes) = 0;
-  /// What the filter should be told of this unit.
+  /// Sample k over (from, to], which need not be the motion's own steps.
+  virtual ImuSample sample(std::int64_t k, const TrueMotion& motion, GpsTime from, GpsTime to) = 0;
+  /// What makes up this unit's errors, as far as a filter can be told.
   virtual const ImuNoise& noise() const = 0;
 };
 
@@ -48,5 +50,8 @@ Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, st
 
 /// The datasheet noise of a catalogue entry.
 Result<ImuNoise> catalogue_noise(const std::string& sensor);
+/// The datasheet noise of the unit that `config` names, with its gyroscope where that is another entry's; which errors
+/// it is simulated with does not count.
+Result<ImuNoise> datasheet_noise(const ImuConfig& config);
 
 }  // namespace canyon::inertial

@@ -77,4 +77,17 @@ ImuSample true_increments(std::span<const KinematicState> nodes, const LocalFram
   return sample;
 }
 
+ImuSample true_increments(const TrueMotion& motion, GpsTime from, GpsTime to, const LocalFrame& frame,
+                          const Eigen::Vector3d& lever_arm_m) {
+  ImuSample sum;
+  motion.for_each_piece(from, to, [&](const TrueMotion::Piece& piece) {
+    const ImuSample part = true_increments(piece, frame, lever_arm_m);
+    sum.dtheta_U += part.dtheta_U;
+    sum.dv_U += part.dv_U;
+  });
+  sum.t = to;
+  sum.dt_s = to - from;
+  return sum;
+}
+
 }  // namespace canyon::inertial

@@ -6,7 +6,7 @@
 
 #include "core/local_frame.h"
 #include "core/messages.h"
-#include "core/truth.h"
+#include "core/true_motion.h"
 
 namespace canyon::inertial {
 
@@ -37,6 +37,10 @@ InertialInput inertial_input(const KinematicState& state, const LocalFrame& fram
 /// of intervals is a multiple of 4 (error O(h^6) over a fixed time), else composite Simpson (O(h^4)). Throws
 /// ProgramError on an even number of nodes, uneven spacing or a state that is not finite.
 ImuSample true_increments(std::span<const KinematicState> nodes, const LocalFrame& frame,
+                          const Eigen::Vector3d& lever_arm_m);
+
+/// The same over (from, to] of a motion with nodes of its own: Boole's rule on every piece between two of them.
+ImuSample true_increments(const TrueMotion& motion, GpsTime from, GpsTime to, const LocalFrame& frame,
                           const Eigen::Vector3d& lever_arm_m);
 
 }  // namespace canyon::inertial

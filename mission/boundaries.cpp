@@ -59,16 +59,14 @@ class Gate {
 
 }  // namespace
 
-Status Boundaries::check(const Vehicle::Step& motion) const {
-  Gate gate("the vehicle", motion.back().t - start_);
-  for (const KinematicState& node : motion) {
-    gate.pass("a position", node.X_WB, kTruePlace_m)
-        .pass("a velocity", node.v_WB_W, kTrueSpeed_m_s)
-        .pass("an acceleration", node.a_WB_W, kTrueForce_m_s2)
-        .pass("a rotation rate", node.w_WB_B, kTrueRate_rad_s)
-        .pass("an angular acceleration", node.alpha_WB_B);
-  }
-  return gate.status();
+Status Boundaries::check(const KinematicState& motion) const {
+  return Gate("the vehicle", motion.t - start_)
+      .pass("a position", motion.X_WB, kTruePlace_m)
+      .pass("a velocity", motion.v_WB_W, kTrueSpeed_m_s)
+      .pass("an acceleration", motion.a_WB_W, kTrueForce_m_s2)
+      .pass("a rotation rate", motion.w_WB_B, kTrueRate_rad_s)
+      .pass("an angular acceleration", motion.alpha_WB_B)
+      .status();
 }
 
 Status Boundaries::check(const ImuSample& sample) const {

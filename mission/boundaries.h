@@ -2,11 +2,11 @@
 
 #include "core/messages.h"
 #include "core/result.h"
+#include "core/truth.h"
 #include "gnss/sensor.h"
 #include "lidar/scanner.h"
 #include "mission/mapper.h"
 #include "mission/run_record.h"
-#include "mission/vehicle.h"
 
 namespace canyon::mission {
 
@@ -19,7 +19,7 @@ class Boundaries {
  public:
   explicit Boundaries(GpsTime start) : start_(start) {}
 
-  Status check(const Vehicle::Step& motion) const;
+  Status check(const KinematicState& motion) const;
   Status check(const ImuSample& sample) const;
   Status check(const gnss::GnssOutput& output) const;
   Status check(const lidar::LidarOutput& output) const;

@@ -11,17 +11,6 @@ namespace canyon::mission {
 
 namespace {
 
-/// `sensor` is the section whose rate the IMU's has to be a multiple of.
-Status check_rate(double imu_hz, double rate_hz, const std::string& sensor) {
-  const double ratio = imu_hz / rate_hz;
-  if (std::abs(ratio - std::round(ratio)) > 1e-9)
-    return Error{
-        .key = sensor + ".rate_hz, imu.rate_hz",
-        .what = "the IMU's " + number_text(imu_hz) + " Hz are not a multiple of " + number_text(rate_hz) + " Hz",
-        .expected = "imu.rate_hz to be a whole number times " + sensor + ".rate_hz"};
-  return Ok{};
-}
-
 /// A stop that the autonomy does not make cannot be scored.
 Status check_stop(double stop_s, const AutonomyConfig& autonomy) {
   const bool stops = std::any_of(autonomy.waypoints.begin(), autonomy.waypoints.end(),
@@ -102,8 +91,6 @@ Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
 }  // namespace
 
 Status check_consistency(const MissionConfig& config) {
-  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.gnss.rate_hz, "gnss"));
-  CANYON_TRY_STATUS(check_rate(config.imu.rate_hz, config.lidar.rate_hz, "lidar"));
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
   CANYON_TRY_STATUS(check_body(config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));

@@ -24,7 +24,9 @@ void visit(FieldVisitor& f, RunConfig& c) {
             "1-sigma of the seeded initial roll, pitch and heading error");
   f.number("map_leaf_m", c.map_leaf_m, {0.02, 10}, "one scored map point per voxel of this size");
   f.number("map_range_m", c.map_range_m, {1, 1000}, "returns beyond are not mapped");
-  f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy and map get the true pose");
+  f.number("epoch_rate_hz", c.epoch_rate_hz, {0.01, 100}, "rows of epochs/RUN_nav.csv per second");
+  f.flag("record_tape", c.record_tape, "keeps the true motion as tapes/RUN.tape, for open loops");
+  f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
   f.number("withhold_fixes_after_s", c.withhold_fixes_after_s, {-1, 1e5},
            "no fix reaches the filter from then on; -1 = never");
@@ -44,6 +46,15 @@ void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("autonomy", c.autonomy, "who drives, and where to");
   f.group("success", c.success, "what the mission is scored by");
   f.group("run", c.run, "seed, map and deliberate cuts");
+}
+
+Result<ImuNoise> noise_told_to_filter(const MissionConfig& config) {
+  if (config.fusion.imu.empty()) return inertial::datasheet_noise(config.imu);
+  auto noise = inertial::catalogue_noise(config.fusion.imu);
+  if (noise) return noise;
+  Error error = noise.error();
+  if (error.key == "imu.sensor") error.key = "fusion.imu";
+  return error;
 }
 
 }  // namespace canyon::mission

@@ -41,10 +41,12 @@ struct RunConfig {
   std::int64_t seed = 1;
   /// 1-sigma of the seeded error of the initial attitude: roll, pitch, heading.
   Eigen::Vector3d initial_attitude_error_deg{0.1, 0.1, 1.0};
-  double map_leaf_m = 0.25;   ///< one scored map point per voxel of this size
-  double map_range_m = 40.0;  ///< returns beyond are not mapped
+  double map_leaf_m = 0.25;     ///< one scored map point per voxel of this size
+  double map_range_m = 40.0;    ///< returns beyond are not mapped
+  double epoch_rate_hz = 10.0;  ///< rows of epochs/RUN_nav.csv per second
+  bool record_tape = true;      ///< keeps the true motion, so that other models can be driven on it
   // Couplings that a study may cut on purpose.
-  bool truth_as_pose = false;            ///< hands the true pose on instead of the filter's
+  bool truth_as_pose = false;            ///< hands the true pose on; what is recorded stays the filter's
   double estimate_up_offset_m = 0.0;     ///< added to the estimate's height
   double withhold_fixes_after_s = -1.0;  ///< if >= 0: no fix reaches the filter from then on
   double withhold_scans_after_s = -1.0;  ///< if >= 0: no scan reaches map and autonomy from then on
@@ -66,5 +68,8 @@ struct MissionConfig {
   RunConfig run;
 };
 void visit(FieldVisitor& f, MissionConfig& c);
+
+/// What the filter is told of the IMU: a datasheet ([fusion] imu), never what the simulated unit really does.
+Result<ImuNoise> noise_told_to_filter(const MissionConfig& config);
 
 }  // namespace canyon::mission

@@ -53,6 +53,7 @@ Status check_sensors(const MissionConfig& config, const PreparedMission& mission
   const GpsTime end = mission.start + mission.time_limit_s;
   CANYON_TRY_STATUS(gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, scene));
   CANYON_TRY_STATUS(inertial::make_imu(config.imu, seed, scene.frame()));
+  CANYON_TRY_STATUS(noise_told_to_filter(config));
   CANYON_TRY_STATUS(lidar::make_scanner(config.lidar, seed));
   CANYON_TRY_STATUS(lidar::make_registration(config.registration));
   return Ok{};

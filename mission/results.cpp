@@ -12,6 +12,8 @@
 #include "core/progress.h"
 #include "core/units.h"
 #include "core/version.h"
+#include "mission/paired_errors.h"
+#include "mission/route_tape.h"
 #include "scene/ray_tracer_instructions.h"
 
 namespace canyon::mission {
@@ -68,6 +70,21 @@ Json two_by_two(const std::vector<RunSummary>& summaries) {
     out[key] = rows;
   }
   return out;
+}
+
+/// Which loop the figures are of; in an open one what they say of two runs epoch by epoch.
+Json loop_json(const Results& results) {
+  if (!results.records.front().open_loop) return {{"kind", "closed"}};
+  Json paired = Json::array();
+  for (const PairedErrors& p : paired_with_first(results.records))
+    paired.push_back({{"a", p.a},
+                      {"b", p.b},
+                      {"epochs", p.epochs},
+                      {"position_error_difference_m", number(p.mean_m)},
+                      {"low_m", number(p.low_m)},
+                      {"high_m", number(p.high_m)},
+                      {"worse_share", number(p.worse_share)}});
+  return {{"kind", "open"}, {"tape", results.tape_source}, {"paired_epochs", paired}};
 }
 
 void remove_timing(Json& node) {
@@ -131,7 +148,7 @@ Json run_json(const RunSummary& s) {
   out["fidelity"] = s.name;
   out["gnss"] = s.gnss;
   out["imu"] = s.imu;
-  out["outcome"] = s.outcome;
+  out["outcome"] = s.open_loop ? Json(nullptr) : Json(s.outcome);
   out["failure"] = nullptr;
   if (s.failure)
     out["failure"] = {{"kind", s.failure->kind},
@@ -139,8 +156,8 @@ Json run_json(const RunSummary& s) {
                       {"x_m", s.failure->p_W.x()},
                       {"y_m", s.failure->p_W.y()},
                       {"detail", s.failure->detail}};
-  out["waypoints_reached"] = s.waypoints_reached;
-  out["mission_waypoints_reached"] = s.mission_waypoints_reached;
+  out["waypoints_reached"] = s.open_loop ? Json(nullptr) : Json(s.waypoints_reached);
+  out["mission_waypoints_reached"] = s.open_loop ? Json(nullptr) : Json(s.mission_waypoints_reached);
   out["duration_s"] = s.duration_s;
   out["distance_m"] = s.distance_m;
   add_statistics(out, "position_error", s.position_m);
@@ -228,6 +245,7 @@ Json summary_json(const Results& results) {
     cpu_s += summary.cpu_s;
   }
   out["two_by_two"] = two_by_two(results.summaries);
+  out["loop"] = loop_json(results);
   out["timing"] = {{"wall_s", results.wall_s},
                    {"cpu_s", cpu_s},
                    {"peak_memory_mb", results.peak_memory_mb},
@@ -272,6 +290,26 @@ Json scene_json(const scene::Scene& scene) {
   return out;
 }
 
+namespace {
+
+/// The run's true motion, for open loops.
+Status write_tape(const std::string& directory, const Results& results, const RunRecord& record) {
+  std::error_code ignored;
+  std::filesystem::create_directories(directory + "/tapes", ignored);
+  std::string bytes =
+      tape_header({.source = record.open_loop ? results.tape_source : record.name + " of " + record.config.run.name,
+                   .scene_hash = results.mission->scene->hash(),
+                   .traffic = traffic_text(record.config),
+                   .nodes = {}});
+  for (TapeNode node : record.tape) {
+    node.motion.t.ns -= record.start.ns;
+    append_tape_node(bytes, node);
+  }
+  return write_text_file(directory + "/tapes/" + record.name + ".tape", bytes);
+}
+
+}  // namespace
+
 Result<std::string> write_results(const std::string& directory, const Results& results) {
   std::error_code ignored;
   std::filesystem::create_directories(directory + "/epochs", ignored);
@@ -283,6 +321,7 @@ Result<std::string> write_results(const std::string& directory, const Results& r
     const std::string stem = directory + "/clouds/" + record.name;
     CANYON_TRY_STATUS(lidar::write_pcd(stem + "_prior.pcd", record.prior_map));
     if (record.registers()) CANYON_TRY_STATUS(lidar::write_pcd(stem + "_registered.pcd", record.registered_map));
+    if (record.config.run.record_tape) CANYON_TRY_STATUS(write_tape(directory, results, record));
   }
   Json summary = summary_json(results);
   CANYON_TRY(const std::string hash, results_hash(directory, summary));

@@ -16,6 +16,7 @@ namespace canyon::mission {
 /// What a results directory is made from (docs/results.md).
 struct Results {
   const PreparedMission* mission = nullptr;  ///< scene, route and limits shared by the runs
+  std::string tape_source;                   ///< what an open loop ran on
   std::vector<RunRecord> records;
   std::vector<RunSummary> summaries;  ///< same index
   double wall_s = 0.0;

@@ -9,13 +9,24 @@
 
 namespace canyon::mission {
 
-/// Drives one mission. The master step is the IMU period; at equal times the order is vehicle, IMU, GNSS, LIDAR,
-/// autonomy. The only loop is estimate -> drive: truth goes to sensors and scorer alone.
+/// What a run takes from its caller instead of making it from the configuration.
+struct RunParts {
+  const Tape* tape = nullptr;          ///< the true motion; must outlive the run
+  std::unique_ptr<Autonomy> autonomy;  ///< who drives
+};
+
+/// Drives one mission. The master step is the vehicle's own (Vehicle::kStep_ns); within it everything else is due at
+/// its own ticks (mission/schedule.h): IMU, GNSS, LIDAR, autonomy in this order at equal times. Commands take effect at
+/// the next master step. A fix or a scan between two IMU samples is used once the filter has come there, in the middle
+/// of the next sample. The only loop is estimate -> drive: truth goes to sensors and scorer alone.
+///
+/// With a tape the loop is open: the true motion is the tape's, whatever the autonomy asks for, and the run goes on to
+/// its end. There is then no outcome and no waypoint is scored.
 ///
 /// Errors only for what the user can mend (a navigation file that cannot be read), and, with exit status 1, where a
 /// part gives what is not finite (mission/boundaries.h); a failed mission is a result. Throws Cancelled after Ctrl-C.
-/// `progress` (may be null) advances by simulated seconds. `autonomy` drives in place of the configured one.
+/// `progress` (may be null) advances by simulated seconds.
 Result<RunRecord> run_mission(const MissionConfig& config, const PreparedMission& mission, Progress* progress = nullptr,
-                              std::unique_ptr<Autonomy> autonomy = nullptr);
+                              RunParts given = {});
 
 }  // namespace canyon::mission

@@ -9,6 +9,7 @@
 
 #include "core/local_frame.h"
 #include "core/messages.h"
+#include "core/tape.h"
 #include "core/truth.h"
 #include "fusion/error_state_filter.h"
 #include "lidar/cloud_files.h"
@@ -21,7 +22,7 @@
 
 namespace canyon::mission {
 
-/// One row per LIDAR scan.
+/// One row per [run] epoch_rate_hz.
 struct NavRow {
   GpsTime t;
   Pose X_WB_true;
@@ -61,12 +62,14 @@ struct RunRecord {
 
   LocalFrame frame;
   GpsTime start;
+  bool open_loop = false;  ///< on a tape: no outcome, no waypoints
   double simulated_s = 0.0;
   double distance_m = 0.0;
   std::string outcome;
   std::optional<Failure> failure;
   std::vector<WaypointScore> waypoints;
 
+  std::vector<TapeNode> tape;  ///< empty but for the start with [run] record_tape = false
   std::vector<NavRow> nav;
   std::vector<GnssRow> gnss_rows;
   std::vector<KeyframeRow> keyframes;

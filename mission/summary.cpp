@@ -131,6 +131,7 @@ RunSummary summarize(const RunRecord& record) {
   out.gnss = record.gnss;
   out.imu = record.imu;
   out.outcome = record.outcome;
+  out.open_loop = record.open_loop;
   out.failure = record.failure;
   out.waypoints = record.waypoints;
   for (const WaypointScore& waypoint : record.waypoints) {

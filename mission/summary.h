@@ -20,6 +20,7 @@ ErrorStatistics error_statistics(std::vector<double> x);
 /// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
 struct RunSummary {
   std::string name, gnss, imu, outcome;
+  bool open_loop = false;  ///< neither outcome nor waypoints
   std::optional<Failure> failure;
   std::vector<WaypointScore> waypoints;
   int waypoints_reached = 0, mission_waypoints_reached = 0;

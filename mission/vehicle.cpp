@@ -26,30 +26,37 @@ void visit(FieldVisitor& f, VehicleConfig& c) {
   f.choice("roughness", c.roughness, RoadRoughness::classes(), "ISO 8608 road class");
 }
 
-/// Over one step, tau from its beginning: v(tau) = v0 + a tau, kappa(tau) = kappa0 + k' tau, yaw' = v kappa.
-struct Vehicle::PlanMotion {
-  double yaw_0, speed_0, curvature_0, acceleration, curvature_rate;
+double Vehicle::PlanMotion::yaw(double tau) const {
+  const double c1 = speed_0 * curvature_0, c2 = acceleration_0 * curvature_0 + speed_0 * curvature_rate,
+               c3 = 0.5 * jerk * curvature_0 + acceleration_0 * curvature_rate, c4 = 0.5 * jerk * curvature_rate;
+  return yaw_0 + tau * (c1 + tau * (c2 / 2.0 + tau * (c3 / 3.0 + tau * c4 / 4.0)));
+}
 
-  double speed(double tau) const { return speed_0 + acceleration * tau; }
-  double curvature(double tau) const { return curvature_0 + curvature_rate * tau; }
-  double yaw(double tau) const {
-    return yaw_0 + speed_0 * curvature_0 * tau +
-           0.5 * (acceleration * curvature_0 + speed_0 * curvature_rate) * tau * tau +
-           acceleration * curvature_rate * tau * tau * tau / 3.0;
+/// Gauss-Legendre quadrature of the plan velocity: five points, error below 1e-15 m at these rates.
+Eigen::Vector2d Vehicle::PlanMotion::displacement(double tau) const {
+  constexpr double kAbscissa[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                                   0.9061798459386640};
+  constexpr double kWeight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                                 0.2369268850561891};
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 5; ++i) {
+    const double at = 0.5 * tau * (1.0 + kAbscissa[i]), direction = yaw(at);
+    sum += kWeight[i] * speed(at) * Eigen::Vector2d(std::cos(direction), std::sin(direction));
   }
-};
+  return 0.5 * tau * sum;
+}
 
 Vehicle::Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start)
     : config_(config),
       scene_(scene),
       roughness_(config.roughness, seed),
       p_(config.start_m),
-      yaw_(yaw_from_heading(config.start_heading_deg * kDegree)) {
-  last_inputs_ = terrain_inputs(p_, yaw_);
-  heave_.x = last_inputs_.heave_m;
-  pitch_.x = last_inputs_.pitch_rad;
-  roll_.x = last_inputs_.roll_rad;
-  step_.fill(node_state(start, 0.0, 1.0, {yaw_, 0.0, 0.0, 0.0, 0.0}, p_));
+      plan_{.yaw_0 = yaw_from_heading(config.start_heading_deg * kDegree)},
+      last_inputs_(terrain_inputs(p_, plan_.yaw_0)),
+      heave_(2.0 * kPi * config.suspension_hz, config.suspension_damping, last_inputs_.heave_m),
+      pitch_(2.0 * kPi * config.suspension_hz, config.suspension_damping, last_inputs_.pitch_rad),
+      roll_(2.0 * kPi * config.suspension_hz, config.suspension_damping, last_inputs_.roll_rad) {
+  state_ = state_at(start, plan_, 0.0);
 }
 
 Vehicle::Inputs Vehicle::terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw) {
@@ -72,26 +79,16 @@ Vehicle::Inputs Vehicle::terrain_inputs(const Eigen::Vector2d& rear_axle, double
   return {rear, std::atan2(rear - front, config_.wheelbase_m), std::atan2(left_side - right_side, config_.track_m)};
 }
 
-KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, const PlanMotion& plan,
-                                   const Eigen::Vector2d& p) const {
-  const double v = plan.speed(tau), kappa = plan.curvature(tau), yaw = plan.yaw(tau), acceleration = plan.acceleration;
+KinematicState Vehicle::state_at(GpsTime t, const PlanMotion& plan, double tau) const {
+  const double v = plan.speed(tau), kappa = plan.curvature(tau), yaw = plan.yaw(tau),
+               acceleration = plan.acceleration(tau);
   const double yaw_rate = v * kappa, yaw_acceleration = acceleration * kappa + v * plan.curvature_rate;
-
-  // Sprung motion: acceleration linear over the step.
-  struct Value {
-    double x, v, a;
-  };
-  const auto at = [&](const Sprung& s) {
-    const double jerk = (s.a_next - s.a) / dt;
-    return Value{s.x + tau * (s.v + tau * (0.5 * s.a + tau * jerk / 6.0)), s.v + tau * (s.a + 0.5 * tau * jerk),
-                 s.a + tau * jerk};
-  };
-  const Value heave = at(heave_), pitch = at(pitch_), roll = at(roll_);
+  const SprungMass::State &heave = heave_.state(), &pitch = pitch_.state(), &roll = roll_.state();
 
   KinematicState state;
   state.t = t;
   const double c = std::cos(yaw), s = std::sin(yaw);
-  state.X_WB = {rotation_from({yaw, pitch.x, roll.x}), {p.x(), p.y(), heave.x}};
+  state.X_WB = {rotation_from({yaw, pitch.x, roll.x}), {p_.x(), p_.y(), heave.x}};
   state.v_WB_W = {v * c, v * s, heave.v};
   state.a_WB_W = {acceleration * c - v * yaw_rate * s, acceleration * s + v * yaw_rate * c, heave.a};
   // Body rates of R = Rz(yaw) Ry(pitch) Rx(roll), and their derivatives.
@@ -105,76 +102,49 @@ KinematicState Vehicle::node_state(GpsTime t, double tau, double dt, const PlanM
   return state;
 }
 
-const Vehicle::Step& Vehicle::advance(const DriveCommand& command, GpsTime t_end) {
-  const GpsTime t_start = step_.back().t;
-  const double dt = t_end - t_start;
-  CANYON_CHECK(dt > 0, "dt = ", dt);
+/// What the command makes of the plan motion over the coming step, as far as the limits allow.
+Vehicle::PlanMotion Vehicle::planned(const DriveCommand& command, double dt_s) const {
+  constexpr double kSpeedTime_s = 0.1;      // within which a difference of speed is to be made up
+  constexpr double kStandstill_m_s = 1e-3;  // slower than this it comes to a true stop
+  PlanMotion plan = plan_;
+  const double target = std::clamp(command.speed_m_s, 0.0, config_.max_speed_m_s);
+  const double acceleration =
+      std::clamp((target - plan.speed_0) / kSpeedTime_s, -config_.max_deceleration_m_s2, config_.max_acceleration_m_s2);
+  plan.jerk = (acceleration - plan.acceleration_0) / dt_s;
+  if (target == 0.0 && plan.speed(dt_s) < kStandstill_m_s) {
+    plan.acceleration_0 = -plan.speed_0 / dt_s;
+    plan.jerk = 0.0;
+  }
+  const double max_steering = config_.max_steering_deg * kDegree, max_rate = config_.max_steering_rate_deg_s * kDegree;
+  const double steering = std::atan(plan.curvature_0 * config_.wheelbase_m);
+  const double wanted = std::clamp(std::atan(command.curvature_1_m * config_.wheelbase_m), -max_steering, max_steering);
+  const double next_steering = steering + std::clamp(wanted - steering, -max_rate * dt_s, max_rate * dt_s);
+  plan.curvature_rate = (std::tan(next_steering) / config_.wheelbase_m - plan.curvature_0) / dt_s;
+  return plan;
+}
+
+const KinematicState& Vehicle::advance(const DriveCommand& command) {
   CANYON_CHECK(std::isfinite(command.speed_m_s) && std::isfinite(command.curvature_1_m),
                "drive command from autonomy: speed ", command.speed_m_s, ", curvature ", command.curvature_1_m);
+  constexpr double dt_s = 1e-9 * static_cast<double>(kStep_ns);
+  const PlanMotion plan = planned(command, dt_s);
+  const bool stops = plan.speed(dt_s) <= 0.0;
 
-  // Constant acceleration and steering rate over the step, as far as the limits allow.
-  const double target_speed = std::clamp(command.speed_m_s, 0.0, config_.max_speed_m_s);
-  double acceleration = std::clamp((target_speed - speed_) / std::max(dt, 0.1), -config_.max_deceleration_m_s2,
-                                   config_.max_acceleration_m_s2);
-  if (speed_ + acceleration * dt < 1e-3 && target_speed == 0.0) acceleration = -speed_ / dt;  // comes to a true stop
-  const double max_steering = config_.max_steering_deg * kDegree, max_rate = config_.max_steering_rate_deg_s * kDegree;
-  const double steering = std::atan(curvature_ * config_.wheelbase_m);
-  const double wanted = std::clamp(std::atan(command.curvature_1_m * config_.wheelbase_m), -max_steering, max_steering);
-  const double next_steering = steering + std::clamp(wanted - steering, -max_rate * dt, max_rate * dt);
-  const double curvature_rate = (std::tan(next_steering) / config_.wheelbase_m - curvature_) / dt;
-  const PlanMotion plan{yaw_, speed_, curvature_, acceleration, curvature_rate};
+  p_ += plan.displacement(dt_s);
+  distance_ += plan.distance(dt_s);
+  last_inputs_ = terrain_inputs(p_, plan.yaw(dt_s));
+  heave_.advance(last_inputs_.heave_m, dt_s);
+  pitch_.advance(last_inputs_.pitch_rad, dt_s);
+  roll_.advance(last_inputs_.roll_rad, dt_s);
 
-  // Plan position at the nodes by Gauss-Legendre quadrature (5 points: error below 1e-15 m at these rates).
-  constexpr double kAbscissa[5] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
-                                   0.9061798459386640};
-  constexpr double kWeight[5] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
-                                 0.2369268850561891};
-  const auto plan_velocity = [&](double tau) {
-    const double yaw = plan.yaw(tau);
-    return Eigen::Vector2d(plan.speed(tau) * Eigen::Vector2d(std::cos(yaw), std::sin(yaw)));
-  };
-  std::array<Eigen::Vector2d, kNodes> p;
-  p[0] = p_;
-  const double h = dt / (kNodes - 1);
-  for (int i = 1; i < kNodes; ++i) {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (int j = 0; j < 5; ++j) sum += kWeight[j] * plan_velocity((i - 1) * h + 0.5 * h * (1.0 + kAbscissa[j]));
-    p[static_cast<std::size_t>(i)] = p[static_cast<std::size_t>(i - 1)] + 0.5 * h * sum;
-  }
-
-  // Sprung accelerations at the end of the step: springs towards the terrain there, from the predicted state.
-  const double end_yaw = plan.yaw(dt);
-  const Inputs inputs = terrain_inputs(p.back(), end_yaw);
-  const double w = 2.0 * kPi * config_.suspension_hz, zeta = config_.suspension_damping;
-  const auto spring = [&](Sprung& s, double input, double previous_input) {
-    // Damped relative to the moving ground, as a shock absorber is.
-    const double input_rate = (input - previous_input) / dt;
-    const double x = s.x + dt * (s.v + 0.5 * dt * s.a), v = s.v + dt * s.a;
-    s.a_next = w * w * (input - x) + 2.0 * zeta * w * (input_rate - v);
-  };
-  spring(heave_, inputs.heave_m, last_inputs_.heave_m);
-  spring(pitch_, inputs.pitch_rad, last_inputs_.pitch_rad);
-  spring(roll_, inputs.roll_rad, last_inputs_.roll_rad);
-  last_inputs_ = inputs;
-
-  for (int i = 0; i < kNodes; ++i) {
-    const double tau = i * h;
-    const GpsTime t = i == kNodes - 1 ? t_end : t_start + tau;
-    step_[static_cast<std::size_t>(i)] = node_state(t, tau, dt, plan, p[static_cast<std::size_t>(i)]);
-  }
-
-  distance_ += speed_ * dt + 0.5 * acceleration * dt * dt;
-  p_ = p.back();
-  yaw_ = wrap_pi(end_yaw);
-  speed_ = std::max(0.0, speed_ + acceleration * dt);
-  curvature_ += curvature_rate * dt;
-  for (Sprung* s : {&heave_, &pitch_, &roll_}) {
-    const double jerk = (s->a_next - s->a) / dt;
-    s->x += dt * (s->v + dt * (0.5 * s->a + dt * jerk / 6.0));
-    s->v += dt * (s->a + 0.5 * dt * jerk);
-    s->a = s->a_next;
-  }
-  return step_;
+  plan_ = {.yaw_0 = wrap_pi(plan.yaw(dt_s)),
+           .speed_0 = stops ? 0.0 : plan.speed(dt_s),
+           .curvature_0 = plan.curvature(dt_s),
+           .acceleration_0 = stops ? 0.0 : plan.acceleration(dt_s),
+           .jerk = 0.0,
+           .curvature_rate = plan.curvature_rate};
+  state_ = state_at({state_.t.ns + kStep_ns}, plan_, 0.0);
+  return state_;
 }
 
 }  // namespace canyon::mission

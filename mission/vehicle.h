@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/config.h"
 #include "core/messages.h"
 #include "core/truth.h"
 #include "mission/road_roughness.h"
+#include "mission/sprung_mass.h"
 #include "scene/scene.h"
 
 namespace canyon::mission {
@@ -32,50 +32,57 @@ struct VehicleConfig {
 };
 void visit(FieldVisitor& f, VehicleConfig& c);
 
-/// The true vehicle. Over one step speed and curvature are linear in time and the accelerations of heave, pitch and
-/// roll are linear in time, so that position, velocity and acceleration at the nodes are exact derivatives of one
-/// another: an ideal IMU integrates back to the truth to quadrature error. No slip: the vertical motion does not act on
-/// the plan motion.
+/// The true vehicle. Its steps are its own: they depend on no sensor. Over one of them acceleration and curvature are
+/// linear in time, and heave, pitch and roll follow the ground under the wheels as sprung masses do, exactly; what lies
+/// between the ends of steps is TrueMotion's. No slip: the vertical motion does not act on the plan motion.
 class Vehicle {
  public:
-  /// Nodes of one step, equally spaced, both ends included.
-  static constexpr int kNodes = 5;
-  using Step = std::array<KinematicState, kNodes>;
+  /// The fixed step of all true motion: the master step of a run. A road wave of 0.7 m, the shortest of ISO 8608, at
+  /// 30 m/s is sampled more than twice.
+  static constexpr std::int64_t kStep_ns = 10'000'000;
 
   /// Stands still at the start, body settled on the terrain. `scene` must outlive the vehicle.
   Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start);
 
-  /// Advances to `t_end` under `command`, within the limits of speed, acceleration and steering.
-  const Step& advance(const DriveCommand& command, GpsTime t_end);
+  /// Advances by one step under `command`, within the limits of speed, acceleration and steering.
+  const KinematicState& advance(const DriveCommand& command);
 
-  const KinematicState& state() const { return step_.back(); }
-  double speed_m_s() const { return speed_; }
+  const KinematicState& state() const { return state_; }
+  double speed_m_s() const { return plan_.speed_0; }
   double distance_m() const { return distance_; }
   /// False once a wheel has left the terrain.
   bool on_terrain() const { return on_terrain_; }
   const VehicleConfig& config() const { return config_; }
 
  private:
-  /// One sprung degree of freedom: acceleration = w^2 (input - x) - 2 zeta w v.
-  struct Sprung {
-    double x = 0, v = 0, a = 0, a_next = 0;
-  };
   struct Inputs {
     double heave_m, pitch_rad, roll_rad;
   };
-  struct PlanMotion;
+  /// Over one step, tau from its beginning: the acceleration changes evenly, and so does the curvature.
+  struct PlanMotion {
+    double yaw_0 = 0, speed_0 = 0, curvature_0 = 0, acceleration_0 = 0, jerk = 0, curvature_rate = 0;
+
+    double acceleration(double tau) const { return acceleration_0 + jerk * tau; }
+    double speed(double tau) const { return speed_0 + (acceleration_0 + 0.5 * jerk * tau) * tau; }
+    double curvature(double tau) const { return curvature_0 + curvature_rate * tau; }
+    double yaw(double tau) const;
+    double distance(double tau) const { return (speed_0 + (0.5 * acceleration_0 + jerk * tau / 6.0) * tau) * tau; }
+    Eigen::Vector2d displacement(double tau) const;
+  };
+  PlanMotion planned(const DriveCommand& command, double dt_s) const;
   Inputs terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw);
-  KinematicState node_state(GpsTime t, double tau, double dt, const PlanMotion& plan, const Eigen::Vector2d& p) const;
+  KinematicState state_at(GpsTime t, const PlanMotion& plan, double tau) const;
 
   VehicleConfig config_;
   const scene::Scene& scene_;
   RoadRoughness roughness_;
-  Step step_;
+  KinematicState state_;
   Eigen::Vector2d p_;
-  double yaw_ = 0, speed_ = 0, curvature_ = 0, distance_ = 0;
-  Sprung heave_, pitch_, roll_;
-  Inputs last_inputs_{0, 0, 0};
+  PlanMotion plan_;  ///< as the last step left it
+  double distance_ = 0;
   bool on_terrain_ = true;
+  Inputs last_inputs_;
+  SprungMass heave_, pitch_, roll_;
 };
 
 }  // namespace canyon::mission

@@ -242,22 +242,9 @@ TEST(MissionFileMessages, UnknownBuilding) {
               HasSubstr("my.toml:2: autonomy.waypoint[1]: waypoint \"x\": no building named \"buildin 247\""));
 }
 
-TEST(MissionFileMessages, RatesMustDivide) {
-  EXPECT_EQ(
-      message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.0\n"),
-      "my.toml:5: gnss.rate_hz: the IMU's 100 Hz are not a multiple of 3 Hz, expected imu.rate_hz to be a whole number "
-      "times gnss.rate_hz");
-}
-
-// 2026-11-21: told of gnss.rate_hz, which the user had not written.
-TEST(MissionFileMessages, OfTwoKeysThatContradictTheOneThatTheUserWroteIsNamed) {
-  EXPECT_EQ(message(std::string(kEmptyScene) + "[imu]\nrate_hz = 33.3\n"),
-            "my.toml:5: imu.rate_hz: the IMU's 33.3 Hz are not a multiple of 2 Hz, expected imu.rate_hz to be a whole "
-            "number times gnss.rate_hz");
-  EXPECT_EQ(
-      message(std::string(kEmptyScene) + "[lidar]\nrate_hz = 30.0\n"),
-      "my.toml:5: lidar.rate_hz: the IMU's 100 Hz are not a multiple of 30 Hz, expected imu.rate_hz to be a whole "
-      "number times lidar.rate_hz");
+// 2026-11-22: rates that were no multiples of one another were refused; now each sensor is due at its own ticks.
+TEST(MissionFileMessages, RatesNeedNotBeMultiplesOfOneAnother) {
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[imu]\nrate_hz = 25.0\n[gnss]\nrate_hz = 3.0\n"), "no mistake");
 }
 
 // 2026-11-21: accepted, though the vehicle then drives on before the stop counts.
@@ -273,10 +260,9 @@ TEST(MissionFileMessages, AStopThatTheAutonomyDoesNotMake) {
 
 // 2026-11-21: "3.2999999999999998 Hz".
 TEST(MissionFileMessages, NumbersAreShownAsTheyWereWritten) {
-  EXPECT_EQ(
-      message(std::string(kEmptyScene) + "[gnss]\nrate_hz = 3.3\n"),
-      "my.toml:5: gnss.rate_hz: the IMU's 100 Hz are not a multiple of 3.3 Hz, expected imu.rate_hz to be a whole "
-      "number times gnss.rate_hz");
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[success]\nstop_s = 7.3\n"),
+            "my.toml:5: success.stop_s: a stop of 7.3 s is asked for, but the autonomy stops for 6 s, expected "
+            "success.stop_s not above autonomy.hold_s");
 }
 
 TEST(MissionFileMessages, BadStart) {
@@ -380,9 +366,9 @@ TEST(Prepare, AMistakeOfAFidelityIsToldWhereItStands) {
   EXPECT_THAT(message(head + "[fidelity.mine]\nlidar.beams = \"vlp17\"\n", "mine"),
               HasSubstr("my.toml:7: fidelity.mine.lidar.beams: unknown beam table \"vlp17\""));
   EXPECT_EQ(
-      message(head + "[fidelity.fast.gnss]\nrate_hz = 3.0\n", "fast"),
-      "my.toml:7: fidelity.fast.gnss.rate_hz: the IMU's 100 Hz are not a multiple of 3 Hz, expected imu.rate_hz to "
-      "be a whole number times gnss.rate_hz");
+      message(head + "[fidelity.fast.autonomy]\nhold_s = 4.0\n", "fast"),
+      "my.toml:7: fidelity.fast.autonomy.hold_s: a stop of 5 s is asked for, but the autonomy stops for 4 s, expected "
+      "success.stop_s not above autonomy.hold_s");
   // Of a fidelity based on it, too; and what is set for all stays where it is.
   EXPECT_THAT(message(head + "[fidelity.mine]\nlidar.beams = \"vlp17\"\n[fidelity.next]\nbase = \"mine\"\n", "next"),
               HasSubstr("my.toml:7: fidelity.mine.lidar.beams: unknown"));

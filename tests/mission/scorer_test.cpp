@@ -171,7 +171,7 @@ TEST(ScorerScene, DrivingOverTheTerrainsEdgeLeavesTheScene) {
   constexpr double kStep = 0.01, kSpeed = 5.0;
   bool go_on = true;
   for (int k = 1; k <= 1500 && go_on; ++k) {
-    vehicle.advance({kSpeed, 0.0}, mission.start + kStep * k);
+    vehicle.advance({kSpeed, 0.0});
     go_on = scorer.step(vehicle.state(), vehicle.speed_m_s(), vehicle.on_terrain(), false);
   }
   EXPECT_FALSE(go_on);

@@ -52,10 +52,10 @@ inline SceneCache& scenes() {
   return cache;
 }
 
-inline RunRecord drive(const MissionConfig& config) {
+inline RunRecord drive(const MissionConfig& config, const Tape* tape = nullptr) {
   auto mission = prepare(config, scenes());
   EXPECT_TRUE(mission.ok()) << (mission.ok() ? "" : mission.error().str());
-  auto record = run_mission(config, *mission);
+  auto record = run_mission(config, *mission, nullptr, {.tape = tape, .autonomy = nullptr});
   EXPECT_TRUE(record.ok()) << (record.ok() ? "" : record.error().str());
   return *std::move(record);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/true_motion.h"
 #include "core/units.h"
 #include "scene/city.h"
 
@@ -23,57 +24,40 @@ class VehicleTest : public ::testing::Test {
 };
 scene::Scene* VehicleTest::scene_ = nullptr;
 
-// Velocity and acceleration at the nodes are derivatives of the pose: integrating them over a step by Boole's rule
-// gives the change of position and velocity. Boole's error is h^7/1e3 times the sixth derivative, far below 1e-12 m
-// here; what is left is rounding, of the order of eps * |p| = 1e-13 m.
-TEST_F(VehicleTest, NodesAreExactDerivativesOfOneAnother) {
+// Plan motion by a fine integration of its own: speed, yaw and position at the end of a step against a midpoint rule of
+// 1000 parts under the accelerations of the nodes. Midpoint: h^2 / 24 times a second derivative below 10, over 10 s.
+TEST_F(VehicleTest, NodesFitTogether) {
   Vehicle vehicle = make();
-  const GpsTime start = vehicle.state().t;
-  double worst_p = 0, worst_v = 0, worst_R = 0;
+  TrueMotion motion;
+  motion.append(vehicle.state());
   for (int k = 1; k <= 1000; ++k) {
-    const double s = 0.01 * k;
-    const auto& nodes = vehicle.advance({3.0, 0.1 * std::sin(s)}, tick(start, k, 100.0));
-    const double h = (nodes[4].t - nodes[0].t) / 4;
-    const auto boole = [&](auto member) {
-      return Eigen::Vector3d(2 * h / 45 *
-                             (7 * member(nodes[0]) + 32 * member(nodes[1]) + 12 * member(nodes[2]) +
-                              32 * member(nodes[3]) + 7 * member(nodes[4])));
-    };
-    const Eigen::Vector3d dp = boole([](const KinematicState& n) { return n.v_WB_W; });
-    const Eigen::Vector3d dv = boole([](const KinematicState& n) { return n.a_WB_W; });
-    worst_p = std::max(worst_p, (nodes[4].X_WB.p - nodes[0].X_WB.p - dp).norm());
-    worst_v = std::max(worst_v, (nodes[4].v_WB_W - nodes[0].v_WB_W - dv).norm());
-    // Attitude: the rate at the middle node against a central difference of the attitude, error of order h^2.
-    const Eigen::Vector3d w = so3_log(nodes[1].X_WB.R.conjugate() * nodes[3].X_WB.R) / (2 * h);
-    worst_R = std::max(worst_R, (w - nodes[2].w_WB_B).norm());
+    motion.append(vehicle.advance({3.0, 0.1 * std::sin(0.01 * k)}));
+    ASSERT_EQ(vehicle.state().t.ns, motion.first().ns + k * Vehicle::kStep_ns);
   }
-  EXPECT_LT(worst_p, 1e-12);
-  EXPECT_LT(worst_v, 1e-12);
-  EXPECT_LT(worst_R, 1e-3);
+  // What joins the nodes differs from what the vehicle did between them by no more than its jerk lets it: the mean
+  // acceleration of a step, from the velocities, against that of its ends.
+  double worst_a = 0, worst_w = 0;
+  for (int k = 100; k < 1000; ++k) {
+    const KinematicState a = motion.at(motion.first() + 0.01 * k), b = motion.at(motion.first() + 0.01 * (k + 1));
+    worst_a = std::max(worst_a, ((b.v_WB_W - a.v_WB_W) / 0.01 - 0.5 * (a.a_WB_W + b.a_WB_W)).norm());
+    const Eigen::Vector3d w = so3_log(a.X_WB.R.conjugate() * b.X_WB.R) / 0.01;
+    worst_w = std::max(worst_w, (w - 0.5 * (a.w_WB_B + b.w_WB_B)).norm());
+  }
+  EXPECT_LT(worst_a, 0.2);   // half of what a road wave (1.4 cycles/m at 3 m/s, 2 mm) changes the damper's force by
+  EXPECT_LT(worst_w, 0.02);  // the same in angle over the wheelbase
 }
 
-TEST_F(VehicleTest, AngularAccelerationIsTheDerivativeOfTheRate) {
-  Vehicle vehicle = make();
-  const GpsTime start = vehicle.state().t;
-  for (int k = 1; k <= 500; ++k) {
-    const auto& nodes = vehicle.advance({4.0, 0.15 * std::sin(0.03 * k)}, tick(start, k, 100.0));
-    const double h = (nodes[4].t - nodes[0].t) / 4;
-    const Eigen::Vector3d alpha = (nodes[3].w_WB_B - nodes[1].w_WB_B) / (2 * h);
-    // Central difference: h^2/6 times the third derivative, 1e-6 * 1e3.
-    ASSERT_LT((alpha - nodes[2].alpha_WB_B).norm(), 1e-3 * (1.0 + alpha.norm())) << "step " << k;
-  }
-}
-
-TEST_F(VehicleTest, StateIsContinuousFromStepToStep) {
-  Vehicle vehicle = make();
-  const GpsTime start = vehicle.state().t;
-  KinematicState before = vehicle.state();
-  for (int k = 1; k <= 300; ++k) {
-    const auto& nodes = vehicle.advance({k < 150 ? 5.0 : 0.0, 0.1}, tick(start, k, 100.0));
-    EXPECT_LT((nodes[0].X_WB.p - before.X_WB.p).norm(), 1e-12);
-    EXPECT_LT((nodes[0].v_WB_W - before.v_WB_W).norm(), 1e-12);
-    EXPECT_LT(nodes[0].X_WB.R.angularDistance(before.X_WB.R), 1e-7);
-    before = nodes[4];
+// 2026-11-22: suspension_hz = 5 with suspension_damping = 2 diverged at the built-in 100 Hz, both in their ranges.
+TEST_F(VehicleTest, TheStiffestSuspensionStaysOnTheRoad) {
+  VehicleConfig config;
+  config.suspension_hz = 5.0;
+  config.suspension_damping = 2.0;
+  Vehicle vehicle = make(config);
+  for (int k = 1; k <= 3000; ++k) {
+    const KinematicState& state = vehicle.advance({5.0, 0.05 * std::sin(0.01 * k)});
+    const auto ground = scene_->ground(state.X_WB.p.x(), state.X_WB.p.y());
+    ASSERT_TRUE(ground.has_value());
+    ASSERT_LT(std::abs(state.X_WB.p.z() - ground->height_m), 0.2) << "step " << k;  // road class B: 3 sigma = 3.6 cm
   }
 }
 
@@ -81,10 +65,9 @@ TEST_F(VehicleTest, StopsCompletelyAndStaysWithinItsLimits) {
   VehicleConfig config;
   config.roughness = "none";
   Vehicle vehicle = make(config);
-  const GpsTime start = vehicle.state().t;
   double last_speed = 0;
   for (int k = 1; k <= 1000; ++k) {
-    vehicle.advance({k < 600 ? 100.0 : 0.0, 10.0}, tick(start, k, 100.0));
+    vehicle.advance({k < 600 ? 100.0 : 0.0, 10.0});
     EXPECT_LE(vehicle.speed_m_s(), config.max_speed_m_s + 1e-12);
     const double a = (vehicle.speed_m_s() - last_speed) / 0.01;
     EXPECT_LE(a, config.max_acceleration_m_s2 + 1e-9);
@@ -96,7 +79,7 @@ TEST_F(VehicleTest, StopsCompletelyAndStaysWithinItsLimits) {
   }
   EXPECT_EQ(vehicle.speed_m_s(), 0.0);
   const double distance = vehicle.distance_m();
-  vehicle.advance({0, 0}, tick(start, 1001, 100.0));
+  vehicle.advance({0, 0});
   EXPECT_EQ(vehicle.distance_m(), distance);
 }
 
@@ -105,11 +88,10 @@ TEST_F(VehicleTest, TurningRadiusIsThatOfTheBicycle) {
   VehicleConfig config;
   config.roughness = "none";
   Vehicle vehicle = make(config);
-  const GpsTime start = vehicle.state().t;
   int k = 0;
   for (; k < 300;) {
     ++k;
-    vehicle.advance({0.0, 10.0}, tick(start, k, 100.0));  // steer while standing
+    vehicle.advance({0.0, 10.0});  // steer while standing
   }
   const double radius = config.wheelbase_m / std::tan(config.max_steering_deg * kDegree);
   const Eigen::Vector3d p0 = vehicle.state().X_WB.p;
@@ -117,7 +99,7 @@ TEST_F(VehicleTest, TurningRadiusIsThatOfTheBicycle) {
   const Eigen::Vector2d center = p0.head<2>() + radius * Eigen::Vector2d(-std::sin(yaw), std::cos(yaw));
   for (; k < 2000;) {
     ++k;
-    vehicle.advance({1.0, 10.0}, tick(start, k, 100.0));
+    vehicle.advance({1.0, 10.0});
     // The sprung body leans, but B's plan position is the rear axle's.
     ASSERT_NEAR((vehicle.state().X_WB.p.head<2>() - center).norm(), radius, 1e-9);
   }
