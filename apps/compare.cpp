@@ -11,11 +11,13 @@ namespace {
 VerbAction declare(Arguments& arguments) {
   struct Options {
     MissionOptions mission;
+    LoopOptions loop;
     std::string fidelities = "low,high,paper";
     bool no_two_by_two = false;
   };
   const auto options = std::make_shared<Options>();
   declare_mission_options(arguments, options->mission);
+  declare_loop_options(arguments, options->loop);
   arguments
       .option("--fidelities", options->fidelities,
               "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
@@ -30,7 +32,7 @@ VerbAction declare(Arguments& arguments) {
       return std::find(fidelities.begin(), fidelities.end(), name) != fidelities.end();
     };
     const bool square = !options->no_two_by_two && has("low") && has("high");
-    return drive_and_report(options->mission, file, study::plan_runs(fidelities, square));
+    return drive_and_report(options->mission, options->loop, file, study::plan_runs(fidelities, square));
   };
 }
 

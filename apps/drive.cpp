@@ -41,10 +41,33 @@ void print_warnings(const mission::Results& results) {
 
 }  // namespace
 
-Result<int> drive_and_report(const MissionOptions& options, const mission::MissionFile& file,
+void declare_loop_options(Arguments& arguments, LoopOptions& options) {
+  arguments.flag("--open-loop", options.open_loop,
+                 "all runs on one true motion, whatever the autonomy asks for: errors are paired, there is no outcome; "
+                 "without --tape or --trajectory on the mission's own route, driven on truth");
+  const auto tape =
+      arguments.option("--tape", options.tape.tape, "true motion to drive on: a .tape, or a results directory")
+          .type("RUN_DIR");
+  arguments
+      .option("--trajectory", options.tape.trajectory,
+              "true motion to drive on: poses in the scene's frame (.tum, .kitti, .csv) or a geodetic reference")
+      .type("FILE")
+      .excludes(tape);
+  arguments.option("--trajectory-rate", options.tape.trajectory_rate_hz, "poses per second of a file without times")
+      .default_shown()
+      .within(1e-3, 1e4);
+}
+
+Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const mission::MissionFile& file,
                              const std::vector<study::RunPlan>& plan) {
   set_threads(options.common.threads);
-  CANYON_TRY(const auto comparison, study::prepare_comparison(file, plan));
+  const bool on_tape = !loop.tape.tape.empty() || !loop.tape.trajectory.empty();
+  if (on_tape && !loop.open_loop)
+    return Error{.file = loop.tape.tape.empty() ? "--trajectory" : "--tape",
+                 .what = "is for open loops",
+                 .expected = "--open-loop beside it"};
+  CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
+  if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
   CANYON_TRY(auto results, study::compare(comparison, !options.common.json));
@@ -61,6 +84,9 @@ Result<int> drive_and_report(const MissionOptions& options, const mission::Missi
     return 0;
   }
   const auto& mission = *results.mission;
+  if (comparison.tape)
+    std::printf("Open loop on %s: %.1f s of true motion, the same for all runs\n", comparison.tape->source.c_str(),
+                comparison.tape->duration_s());
   std::printf("Mission %s, seed %lld, %s: %.0f m planned, nominal %.0f s, limit %.0f s\n\n",
               comparison.configs.front().run.name.c_str(), static_cast<long long>(comparison.configs.front().run.seed),
               mission.start.iso(0).c_str(), mission.prior.route.length_m(), mission.nominal_s, mission.time_limit_s);

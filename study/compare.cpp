@@ -44,14 +44,16 @@ Result<mission::Results> compare(const Comparison& comparison, bool show_progres
   const auto wall_start = std::chrono::steady_clock::now();
   const std::size_t count = comparison.plan.size();
   double total_s = 0.0;
-  for (const auto& mission : comparison.missions) total_s += std::min(mission.nominal_s, mission.time_limit_s);
+  for (const auto& mission : comparison.missions)
+    total_s += comparison.tape ? comparison.tape->duration_s() : std::min(mission.nominal_s, mission.time_limit_s);
   Progress progress("driving " + std::to_string(count) + (count == 1 ? " run" : " runs"), total_s, show_progress);
 
   std::vector<std::optional<mission::RunRecord>> records(count);
   std::vector<std::optional<Error>> errors(count);
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      auto record = mission::run_mission(comparison.configs[i], comparison.missions[i], &progress);
+      auto record = mission::run_mission(comparison.configs[i], comparison.missions[i], &progress,
+                                         {.tape = comparison.tape ? &*comparison.tape : nullptr, .autonomy = nullptr});
       if (record) {
         records[i] = *std::move(record);
       } else {
@@ -70,6 +72,7 @@ Result<mission::Results> compare(const Comparison& comparison, bool show_progres
     results.records.push_back(*std::move(records[i]));
   }
   results.mission = &comparison.missions.front();
+  if (comparison.tape) results.tape_source = comparison.tape->source;
   results.threads = threads();
   results.peak_memory_mb = mission::peak_memory_mb();
   results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
+#include "core/tape.h"
 #include "mission/mission_file.h"
 #include "mission/results.h"
 
@@ -23,7 +25,18 @@ struct Comparison {
   std::vector<RunPlan> plan;
   std::vector<mission::MissionConfig> configs;     ///< same index
   std::vector<mission::PreparedMission> missions;  ///< same index; equal scenes are shared
+  std::optional<Tape> tape;  ///< all runs on this true motion (open loop); none: each drives by itself (closed loop)
 };
+
+/// What an open loop runs on. With neither path: the mission's own route, driven on truth.
+struct TapeChoice {
+  std::string tape;        ///< a tape file, or a results directory that holds one
+  std::string trajectory;  ///< a trajectory file
+  double trajectory_rate_hz = 10.0;
+};
+/// Finds or drives the tape and checks that it fits every run's mission.
+Status choose_tape(const TapeChoice& choice, Comparison& comparison);
+
 /// Every mistake of the mission file is found here, before any time is spent.
 Result<Comparison> prepare_comparison(const mission::MissionFile& file, const std::vector<RunPlan>& plan);
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 
+#include "mission/paired_errors.h"
 #include "study/compare.h"
 
 namespace canyon::study {
@@ -108,12 +109,13 @@ std::string two_by_two(const std::vector<RunSummary>& runs) {
     for (const char* imu : {"low", "high"}) {
       const RunSummary* found = mission::find_run(runs, gnss, imu);
       if (found == nullptr) return "";
-      row += "  " + padded(cell(found->outcome, found->position_m.rms, 2, " m"), 26, true);
+      row += "  " + padded(cell(found->open_loop ? "" : found->outcome, found->position_m.rms, 2, " m"), 26, true);
     }
     out += padded(std::string("  ") + gnss + " GNSS", 14, true) + row + "\n";
   }
-  return "2 x 2: outcome and position error RMS\n" + padded("", 14, true) + "  " + padded("low IMU", 26, true) +
-         "  high IMU\n" + out;
+  const char* title = runs.front().open_loop ? "2 x 2, open loop: position error RMS on one true motion\n"
+                                             : "2 x 2, closed loop: outcome and position error RMS\n";
+  return std::string(title) + padded("", 14, true) + "  " + padded("low IMU", 26, true) + "  high IMU\n" + out;
 }
 
 }  // namespace
@@ -125,14 +127,18 @@ std::string comparison_table(const mission::Results& results) {
     if (run.gnss == run.imu) runs.push_back(run);
 
   Table table(runs);
-  table.section("mission");
-  table.words("outcome", [](const RunSummary& r) { return r.outcome; });
-  table.words("waypoints reached", [](const RunSummary& r) {
-    return std::to_string(r.waypoints_reached) + " of " + std::to_string(r.waypoints.size());
-  });
-  table.words("mission waypoints reached", [](const RunSummary& r) {
-    return std::to_string(r.mission_waypoints_reached) + " of " + std::to_string(mission_waypoints(r));
-  });
+  const bool open_loop = results.records.front().open_loop;
+  table.section(open_loop ? "open loop: one true motion for all runs"
+                          : "mission (closed loop: each run drives by itself)");
+  if (!open_loop) {
+    table.words("outcome", [](const RunSummary& r) { return r.outcome; });
+    table.words("waypoints reached", [](const RunSummary& r) {
+      return std::to_string(r.waypoints_reached) + " of " + std::to_string(r.waypoints.size());
+    });
+    table.words("mission waypoints reached", [](const RunSummary& r) {
+      return std::to_string(r.mission_waypoints_reached) + " of " + std::to_string(mission_waypoints(r));
+    });
+  }
   table.numbers("duration, s", 1, [](const RunSummary& r) { return r.duration_s; });
   table.numbers("distance, m", 0, [](const RunSummary& r) { return r.distance_m; });
 
@@ -205,6 +211,10 @@ std::string comparison_table(const mission::Results& results) {
            ")";
   }
   if (out.back() != '\n') out += "\n";
+  for (const mission::PairedErrors& pair : mission::paired_with_first(results.records))
+    out += "\n" + pair.b + " against " + pair.a + ", epoch by epoch (" + std::to_string(pair.epochs) +
+           "): 3-D error larger by " + fixed(pair.mean_m, 3) + " m on average, 95 % interval " + fixed(pair.low_m, 3) +
+           " to " + fixed(pair.high_m, 3) + " m; larger at " + fixed(100.0 * pair.worse_share, 0) + " % of epochs\n";
   if (const std::string square = two_by_two(results.summaries); !square.empty()) out += "\n" + square;
   return out;
 }

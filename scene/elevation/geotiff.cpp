@@ -122,8 +122,9 @@ Result<Elevation> read_geotiff(const std::string& path) {
                  "at most 400 million"};
   // Deflate packs a level plain into a thousandth; what claims more was damaged, and would only fill memory.
   if (static_cast<double>(columns) * rows * type.bits / 8.0 > 1e6 + 2000.0 * static_cast<double>(bytes.size()))
-    return Error{path, 0, "", std::to_string(columns) + " x " + std::to_string(rows) + " pixels in " +
-                                  std::to_string(bytes.size()) + " bytes",
+    return Error{path, 0, "",
+                 std::to_string(columns) + " x " + std::to_string(rows) + " pixels in " + std::to_string(bytes.size()) +
+                     " bytes",
                  "a whole GeoTIFF"};
   if (samples != 1 || !type.known() || columns == 0 || rows == 0)
     return Error{
