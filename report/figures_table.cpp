@@ -51,7 +51,8 @@ class FiguresTable {
     std::string out =
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table of all figures\"><table "
         "class=\"figures\">\n<thead>" +
-        head() + "</thead>\n<tbody><tr><th scope=\"row\">outcome</th>" + outcomes() + "</tr></tbody>\n";
+        head() + "</thead>\n";
+    if (!results_.open_loop) out += "<tbody><tr><th scope=\"row\">outcome</th>" + outcomes() + "</tr></tbody>\n";
     std::string_view group;
     for (const FigureRow& row : figure_rows()) {
       if (row.group != group) {

@@ -77,7 +77,9 @@ Run read_run(const JsonFields& fields) {
   check_run_name(fields, run.fidelity);
   run.gnss = fields.has("gnss") ? fields.text("gnss") : run.fidelity;
   run.imu = fields.has("imu") ? fields.text("imu") : run.fidelity;
-  if (fields.has("outcome")) run.outcome = fields.required_text("outcome");  // none in an open loop
+  // null in an open loop
+  if (const JsonNode* node = fields.find("outcome"); node == nullptr || !node->is_null())
+    run.outcome = fields.required_text("outcome");
   if (fields.has("failure")) {
     const JsonFields f = fields.object("failure");
     run.failure = Failure{f.required_text("kind"), f.text("detail"), f.number("t_s"), f.number("x_m"), f.number("y_m")};
@@ -147,6 +149,17 @@ TwoByTwo read_two_by_two(const JsonFields& fields) {
   return table;
 }
 
+OpenLoop read_open_loop(const JsonFields& fields) {
+  OpenLoop loop{.tape = fields.text("tape"), .paired = {}};
+  for (const auto& [node, path] : fields.list("paired_epochs")) {
+    const JsonFields f(node, fields.file(), path, fields.error());
+    loop.paired.push_back({f.required_text("a"), f.required_text("b"), f.number("epochs"),
+                           f.number("position_error_difference_m"), f.number("low_m"), f.number("high_m"),
+                           f.number("worse_share")});
+  }
+  return loop;
+}
+
 }  // namespace
 
 Status read_summary(std::string_view json, const std::string& file, Results& results) {
@@ -169,6 +182,8 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   }
   if (!error && results.runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
   if (fields.has("two_by_two")) results.two_by_two = read_two_by_two(fields.object("two_by_two"));
+  if (fields.has("loop") && fields.object("loop").text("kind") == "open")
+    results.open_loop = read_open_loop(fields.object("loop"));
   results.hash = fields.text("hash");
   const JsonFields timing = fields.object("timing");
   results.wall_s = timing.number("wall_s");

@@ -107,8 +107,21 @@ struct SceneDrawing {
   std::vector<Eigen::Vector2d> vehicles;
 };
 
+/// How much larger one run's position error is than another's, epoch by epoch on one true motion.
+struct PairedErrors {
+  std::string a, b;
+  double epochs = 0.0, difference_m = 0.0, low_m = 0.0, high_m = 0.0, worse_share = 0.0;
+};
+
+/// All runs on one true motion: nobody drove, so there is no outcome.
+struct OpenLoop {
+  std::string tape;  ///< where the motion is from
+  std::vector<PairedErrors> paired;
+};
+
 struct Results {
   Mission mission;
+  std::optional<OpenLoop> open_loop;
   SceneFacts scene;
   SceneDrawing drawing;
   MapGrid grid;  ///< over the scene; the clouds' cells

@@ -35,7 +35,7 @@ std::string cell(const Results& results, const TwoByTwo& table, std::size_t row,
   std::string out = "<td>";
   if (const auto i = run_of(results, table.gnss[row], table.imu[column]))
     out += "<p>" + run_tag(results.runs, *i) + "</p>";
-  if (row < table.outcome.size()) {
+  if (!results.open_loop && row < table.outcome.size()) {
     const std::string& outcome = table.outcome[row][column];
     const bool good = outcome == "success";
     out += outcome.empty()
@@ -113,7 +113,11 @@ std::string two_by_two_section(const Results& results) {
     body += "</tr>\n";
   }
   body += "</tbody></table></div>\n";
-  return section("two-by-two", title, escape_html(attribution(table)), body + error_chart(results, table));
+  const std::string loop = results.open_loop
+                               ? " All four runs are on one true motion."
+                               : " Each run drove by itself: these are four drives, and part of the difference may be "
+                                 "where each of them went (compare --open-loop takes that away).";
+  return section("two-by-two", title, escape_html(attribution(table) + loop), body + error_chart(results, table));
 }
 
 }  // namespace canyon::report

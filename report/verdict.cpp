@@ -134,6 +134,14 @@ std::string circumstances(const Run& run) {
 std::string headline(const Results& results) {
   const std::vector<std::size_t> pure = pure_runs(results);
   const std::vector<Run>& runs = results.runs;
+  if (results.open_loop) {
+    const Run &a = runs[pure.empty() ? 0 : pure[0]], &b = pure.size() > 1 ? runs[pure[1]] : a;
+    return "On one true motion " + spoken(b.fidelity) + " was wrong by " +
+           show_quantity(b.figure("position_error_rms_m"), "m") + " RMS" +
+           (pure.size() > 1 ? ", " + spoken(a.fidelity) + " by " + show_quantity(a.figure("position_error_rms_m"), "m")
+                            : std::string()) +
+           ".";
+  }
   if (pure.size() < 2) {
     const Run& run = runs[pure.empty() ? 0 : pure[0]];
     return capitalised(spoken(run.fidelity)) + " " + present(run) + ".";
@@ -151,7 +159,37 @@ std::string headline(const Results& results) {
   return text + ".";
 }
 
+namespace {
+
+/// In an open loop nobody drove: what the runs' errors are, and how they differ.
+std::string open_loop_section(const Results& results) {
+  std::string body = "<ul class=\"verdicts\">\n";
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    const Run& run = results.runs[i];
+    body += "<li class=\"verdict keep " + run_class(i) + (run.is_pure() ? "" : " mixed") + "\"><p><strong>" +
+            escape_html(run.fidelity) + "</strong> was wrong by " +
+            show_quantity(run.figure("position_error_rms_m"), "m") + " RMS and " +
+            show_quantity(run.figure("position_error_max_m"), "m") + " at worst.</p>";
+    for (const PairedErrors& p : results.open_loop->paired) {
+      if (p.b != run.fidelity || !std::isfinite(p.difference_m)) continue;
+      body += "<p class=\"more\">Its error is larger than that of " + escape_html(p.a) + " by " +
+              show_quantity(p.difference_m, "m") + " on average over " + show_count(p.epochs) + " epochs";
+      if (std::isfinite(p.low_m))
+        body += " (95 % interval " + show_quantity(p.low_m, "m") + " to " + show_quantity(p.high_m, "m") + ")";
+      body += ", and at " + show_number(100.0 * p.worse_share) + " % of them.</p>";
+    }
+    body += "</li>\n";
+  }
+  return section("verdict", "Open loop",
+                 "All runs on one true motion: " + escape_html(results.open_loop->tape) +
+                     ". Nobody drove, so there is no outcome; errors are compared epoch by epoch.",
+                 body + "</ul>\n");
+}
+
+}  // namespace
+
 std::string verdict_section(const Results& results) {
+  if (results.open_loop) return open_loop_section(results);
   std::string body = "<ul class=\"verdicts\">\n";
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
     const Run& run = results.runs[i];
