@@ -89,6 +89,11 @@ TEST_F(CloudFiles, NoEntryComesTwice) {
   for (int i = 0; i < 7; ++i) counts += count;
   EXPECT_EQ(error_of(head + counts + "POINTS 1\nDATA binary\n0123456789abcdef"),
             ":5: COUNT: \"COUNT 1024 1024 1024\", expected each entry once");
+  // Two fields of 2^63 bytes: the stride wraps to 12, and x lies at 2^63.
+  std::string wrap = "FIELDS a x y z b\nSIZE 4 4 4 4 4\nTYPE F F F F F\n";
+  for (int i = 0; i < 6; ++i) wrap += "COUNT 1024 1 1 1 1024\n";
+  EXPECT_EQ(error_of(wrap + "COUNT 2 1 1 1 2\nPOINTS 1\nDATA binary\n0123456789ab"),
+            ":5: COUNT: \"COUNT 1024 1 1 1 1024\", expected each entry once");
   EXPECT_EQ(error_of(head + "SIZE 8 8 8\n"), ":4: SIZE: \"SIZE 8 8 8\", expected each entry once");
   EXPECT_EQ(error_of(head + "FIELDS x\n"), ":4: FIELDS: \"FIELDS x\", expected each entry once");
 }
