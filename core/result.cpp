@@ -1,17 +1,19 @@
 #include "core/result.h"
 
+#include "core/printable_text.h"
+
 namespace canyon {
 
 std::string Error::str() const {
   std::string text;
   if (!file.empty()) {
-    text += file;
+    text += escaped_text(file);
     if (line > 0) text += ":" + std::to_string(line);
     text += ": ";
   }
-  if (!key.empty()) text += key + ": ";
-  text += what;
-  if (!expected.empty()) text += ", expected " + expected;
+  if (!key.empty()) text += printable_text(key) + ": ";
+  text += printable_text(what);
+  if (!expected.empty()) text += ", expected " + printable_text(expected);
   return text;
 }
 

@@ -18,7 +18,7 @@ struct Error {
   std::string expected{};  ///< what was expected; may be empty
   int exit_code = 2;       ///< 2 = bad input, 1 = the computation could not finish
 
-  /// `file:line: key: what, expected ...`, parts that are empty left out.
+  /// `file:line: key: what, expected ...`, parts that are empty left out; one line in any case (core/printable_text.h).
   std::string str() const;
 };
 
