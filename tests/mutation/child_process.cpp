@@ -1,0 +1,115 @@
+#include "tests/mutation/child_process.h"
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "core/check.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CANYON_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define CANYON_SANITIZED
+#endif
+#endif
+
+namespace canyon::testing {
+namespace {
+
+#ifdef CANYON_SANITIZED
+/// The address sanitizer maps terabytes, keeps what was freed, and takes two to three times as long.
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+void limit(int resource, double value) {
+  const auto n = static_cast<rlim_t>(std::ceil(value));
+  const rlimit both{n, n};
+  setrlimit(static_cast<__rlimit_resource>(resource), &both);
+}
+
+void set_limits(const ChildLimits& limits) {
+  limit(RLIMIT_CORE, 0.0);
+  limit(RLIMIT_FSIZE, 1e9);
+  limit(RLIMIT_CPU, (kSanitized ? 4.0 : 1.0) * limits.cpu_s);
+  // Addresses, not memory in use: a bound that keeps the machine alive. Libraries and stacks come on top.
+  if (!kSanitized) limit(RLIMIT_AS, 1.5 * static_cast<double>(limits.memory_bytes) + 1e9);
+  alarm(static_cast<unsigned>(limits.wall_s));
+}
+
+void redirect(const std::filesystem::path& file, int descriptor) {
+  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (fd < 0 || dup2(fd, descriptor) < 0) _exit(4);
+  close(fd);
+}
+
+int guarded(const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "an exception left the reader: %s\n", error.what());
+    return 3;
+  }
+}
+
+}  // namespace
+
+pid_t start_child(const std::function<int()>& body, const std::filesystem::path& folder,
+                  const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits) {
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  CANYON_CHECK(child >= 0, "fork: ", std::strerror(errno));
+  if (child > 0) return child;
+  redirect("/dev/null", STDIN_FILENO);
+  redirect(out, STDOUT_FILENO);
+  redirect(err, STDERR_FILENO);
+  if (chdir(folder.c_str()) != 0) _exit(4);
+  set_limits(limits);
+  const int status = guarded(body);
+  std::fflush(nullptr);
+  _exit(status);
+}
+
+std::pair<pid_t, ChildEnd> wait_for_a_child() {
+  int status = 0;
+  rusage used{};
+  const pid_t child = wait4(-1, &status, 0, &used);
+  CANYON_CHECK(child > 0, "wait4: ", std::strerror(errno));
+  ChildEnd end;
+  end.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  end.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  end.cpu_s = seconds(used.ru_utime) + seconds(used.ru_stime);
+  end.peak_memory_bytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;
+  return {child, end};
+}
+
+std::string breach(const ChildEnd& end, const ChildLimits& limits) {
+  char text[120];
+  if (end.signal == SIGXCPU || end.signal == SIGKILL)
+    std::snprintf(text, sizeof text, "ran for more than %.0f s of CPU time", end.cpu_s);
+  else if (end.signal == SIGALRM)
+    std::snprintf(text, sizeof text, "waited for more than %.0f s", limits.wall_s);
+  else if (end.signal != 0)
+    std::snprintf(text, sizeof text, "signal %d (%s)", end.signal, strsignal(end.signal));
+  else if (!kSanitized && end.cpu_s > limits.cpu_s)
+    std::snprintf(text, sizeof text, "took %.1f s of CPU time", end.cpu_s);
+  else if (!kSanitized && end.peak_memory_bytes > limits.memory_bytes)
+    std::snprintf(text, sizeof text, "took %.2f GB", 1e-9 * static_cast<double>(end.peak_memory_bytes));
+  else
+    return "";
+  return text;
+}
+
+}  // namespace canyon::testing

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include <sys/types.h>
+
+/// A function in a process of its own: whatever a reader does to it, the test goes on and knows what it was.
+namespace canyon::testing {
+
+struct ChildLimits {
+  double cpu_s = 20.0;
+  double wall_s = 600.0;                            ///< for one that waits for ever; machines are shared
+  std::size_t memory_bytes = std::size_t{2} << 30;  ///< resident
+};
+
+/// How a child ended.
+struct ChildEnd {
+  int exit_status = 0;  ///< -1 if a signal ended it
+  int signal = 0;
+  double cpu_s = 0.0;
+  std::size_t peak_memory_bytes = 0;
+  std::string out, err;  ///< what it printed
+};
+
+/// Forks a process that works in `folder`, with stdout and stderr in the files `out` and `err`, and whose exit status
+/// is what `body` returns; 3 and the exception's text on stderr if one leaves it. Nothing that runs at a program's end
+/// runs in it. The calling process must have no other threads.
+pid_t start_child(const std::function<int()>& body, const std::filesystem::path& folder,
+                  const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits);
+
+/// Waits for any child; returns its process and how it ended, without what it printed.
+std::pair<pid_t, ChildEnd> wait_for_a_child();
+
+/// What is wrong with that end in any case: a signal, too much time or memory. Empty if nothing is.
+std::string breach(const ChildEnd& end, const ChildLimits& limits);
+
+}  // namespace canyon::testing
