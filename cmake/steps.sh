@@ -110,27 +110,67 @@ parallelism() {
   ((processors > 0)) && echo "$processors" || echo 1
 }
 
-# configure ON|OFF: prepares build/release, with or without the tests. A tree that is already prepared, and has the tests if
-# they are asked for, is left as it is; ninja itself configures again when a CMake file changes.
+# configure ON|OFF [PRESET [CMake options]]: prepares build/PRESET (release), with or without the tests. A tree that is already
+# prepared, and has the tests if they are asked for, is left as it is; ninja itself configures again when a CMake file changes.
 configure() {
-  local tests=$1 folder="$root/build/release"
+  local tests=$1 preset=${2:-release}
+  local folder="$root/build/$preset"
   if [ -f "$folder/build.ninja" ]; then
     [ "$tests" = OFF ] && return
     grep -q '^CANYON_TESTS:BOOL=ON$' "$folder/CMakeCache.txt" && return
   fi
   mkdir -p "$folder"
-  say "configuring build/release"
-  (cd "$root" && cmake --preset release -DCANYON_TESTS="$tests") >"$folder/configure.log" 2>&1 ||
+  say "configuring build/$preset"
+  (cd "$root" && cmake --preset "$preset" -DCANYON_TESTS="$tests" "${@:3}") >"$folder/configure.log" 2>&1 ||
     fail "the build could not be configured" "$folder/configure.log"
 }
 
-# build TARGET: says nothing when there is nothing to do.
+# build TARGET[,TARGET...] [PRESET]: says nothing when there is nothing to do.
 build() {
-  local target=$1 log="$root/build/release/build.log" started=$SECONDS
+  local preset=${2:-release} started=$SECONDS targets what=building
+  local log="$root/build/$preset/build.log"
+  IFS=, read -ra targets <<<"$1"
+  [ "$preset" = release ] || what="building $preset"
   : >"$log"
-  cmake --build "$root/build/release" --target "$target" -- -j"$(parallelism)" 2>&1 | show_progress "building" "$log" ||
+  cmake --build "$root/build/$preset" --target "${targets[@]}" -- -j"$(parallelism)" 2>&1 | show_progress "$what" "$log" ||
     fail "the build failed" "$log"
   if ! grep -q 'no work to do' "$log"; then say "built in $((SECONDS - started)) s"; fi
+}
+
+# test_preset PRESET [ctest options]: the tests of that build, but the nightly ones.
+test_preset() {
+  ctest --test-dir "$root/build/$1" --output-on-failure --no-tests=error -j2 --label-exclude '^nightly$' "${@:2}" ||
+    fail "tests of build/$1 failed"
+}
+
+# The address and undefined-behaviour sanitizers, on what reads files: the tests of core and of damaged files, which call every
+# verb that reads one. With `all`, on every test but the nightly ones.
+run_sanitized() {
+  local started=$SECONDS
+  configure ON asan
+  if [ "${1:-}" = all ]; then
+    build all asan
+    test_preset asan
+  else
+    build canyon_core_tests,canyon_mutation_tests asan
+    test_preset asan --label-regex '^(core|mutation)$' --exclude-regex '^(Layers|Steps|Clang)[.]'
+  fi
+  say "sanitized tests passed after $((SECONDS - started)) s"
+}
+
+# clang's warnings, which are errors, of the libraries and the program, without building them. With `all`, clang builds
+# everything, and its build is tested.
+run_clang() {
+  local started=$SECONDS
+  configure ON clang -DCANYON_PRECOMPILED_HEADERS=OFF
+  if [ "${1:-}" = all ]; then
+    build all clang
+    test_preset clang
+  else
+    say "checking with clang"
+    python3 "$root/cmake/check_clang.py" "$root/build/clang" >&2 || fail "clang refuses what g++ takes"
+  fi
+  say "clang's part took $((SECONDS - started)) s"
 }
 
 # count_skipped: passes ctest's output on, but holds its closing lines back until the skipped tests have been counted and named.
