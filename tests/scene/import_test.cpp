@@ -324,6 +324,14 @@ TEST_F(Import, HeightsAboveTheGeoidAreFromABuiltInGeoidWhereNoneIsInstalled) {
   EXPECT_NEAR(made->parts.undulation_m, 50.72, 1.0);
 }
 
+// 2026-11-22: a material's or object's name that is no UTF-8 ended `scene info --json` by an exception.
+TEST_F(Import, NamesThatAreNoUtf8ArePrintable) {
+  const SceneParts made = parts("hut.obj", "v 0 0 0\nv 4 0 0\nv 4 3 3\no h\xfct\nusemtl stra\xdf\nf 1 2 3\n");
+  EXPECT_EQ(made.objects.back().name, "h\\xfct");
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_EQ(warnings_[0], "material \"stra\\xdf\" is not in the table: 1 surfaces take the default");
+}
+
 TEST_F(Import, UsersMaterialsAndUnknownOnes) {
   config_.materials = {write("m.toml", "[[material]]\nname = \"straw\"\nlidar_reflectance = 0.6\n")};
   const SceneParts made =
