@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """check_clang.py BUILD_DIRECTORY: what clang says of the libraries and the program, without making objects of them.
 
-BUILD_DIRECTORY is one that CMake has configured for clang (preset `clang`), without precompiled headers; its
+BUILD_DIRECTORY is one that CMake has configured for clang (preset `clang`), its precompiled headers built; its
 compile_commands.json names the files and their flags, warnings as errors among them. Prints what is wrong and returns 1.
 Tests, and files whose contents the build makes, are left out."""
 
