@@ -12,7 +12,8 @@ struct SceneCost {
   double triangles = 0.0;
   /// Most memory that making it and tracing in it take; kBytesPerTriangle.
   double memory_mb() const { return triangles * kBytesPerTriangle / 1e6; }
-  /// Measured, rounded up: peak resident memory of `scene info` over scenes of 4.5 and 18 million triangles of ground.
+  /// Peak resident memory of `scene info`, measured and rounded up: 216 bytes over the built-in city of 5.8 million
+  /// triangles, 285 over an OBJ file of a million, which is held beside the scene.
   static constexpr double kBytesPerTriangle = 300.0;
 };
 
