@@ -43,7 +43,7 @@ TEST_F(ImuFitTest, AnEntryThatAMissionTakes) {
   EXPECT_THAT(read("mine.toml"), HasSubstr("name = \"given\""));
   EXPECT_THAT(read("mine.toml"), HasSubstr("arw_deg_per_sqrt_hr = "));
   EXPECT_EQ(canyon("imu fit given.csv --static --out mine.toml"), 2);
-  EXPECT_THAT(read("stderr"), HasSubstr("mine.toml: exists, expected another --out, or --force"));
+  EXPECT_THAT(read("stderr"), HasSubstr("mine.toml: output file exists, expected a new name or --force"));
   write("mission.toml", std::string(testing::kMission) + "[imu]\nsensor = \"mine.toml\"\nerrors = \"full\"\n");
   EXPECT_EQ(canyon("run mission.toml --fidelity low --out out"), 0) << read("stderr");
 }
