@@ -83,15 +83,22 @@ struct PreparedMission {
   double time_limit_s =
       0.0;  ///< of [success] limit_factor and [time] limit_s the shorter: when a run ends at the latest
   std::vector<InputFile> files;
+  std::vector<std::string> warnings;  ///< about the scene's files
 };
 
 /// Scenes by configuration, so that the runs of a comparison share one.
 class SceneCache {
  public:
   Result<std::shared_ptr<const scene::Scene>> get(const scene::SceneConfig& config);
+  /// What a user should know of a scene that get() has given.
+  std::vector<std::string> warnings(const scene::SceneConfig& config) const;
 
  private:
-  std::map<std::string, std::shared_ptr<const scene::Scene>> scenes_;
+  struct Made {
+    std::shared_ptr<const scene::Scene> scene;
+    std::vector<std::string> warnings;
+  };
+  std::map<std::string, Made> scenes_;
 };
 
 /// [time] start; an Error for its key.

@@ -73,14 +73,27 @@ scene::Scene stand_in(const scene::CityConfig& city) {
 
 }  // namespace
 
-Result<std::shared_ptr<const scene::Scene>> SceneCache::get(const scene::SceneConfig& config) {
+namespace {
+
+std::string key_of(const scene::SceneConfig& config) {
   scene::SceneConfig copy = config;
-  auto& slot = scenes_[fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); })];
-  if (!slot) {
+  return fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); });
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const scene::Scene>> SceneCache::get(const scene::SceneConfig& config) {
+  Made& slot = scenes_[key_of(config)];
+  if (!slot.scene) {
     CANYON_TRY(scene::ImportedScene made, scene::make_scene(config));
-    slot = std::make_shared<scene::Scene>(std::move(made.parts));
+    slot = {std::make_shared<scene::Scene>(std::move(made.parts)), std::move(made.report.warnings)};
   }
-  return slot;
+  return slot.scene;
+}
+
+std::vector<std::string> SceneCache::warnings(const scene::SceneConfig& config) const {
+  const auto found = scenes_.find(key_of(config));
+  return found == scenes_.end() ? std::vector<std::string>() : found->second.warnings;
 }
 
 Result<GpsTime> start_time(const MissionConfig& config) {
@@ -107,6 +120,7 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
     CANYON_TRY_STATUS(check_sensors(config, mission, stand_in(config.scene.city)));
   }
   CANYON_TRY(mission.scene, scenes.get(config.scene));
+  mission.warnings = scenes.warnings(config.scene);
   const scene::Scene& scene = *mission.scene;
   if (!site) {
     CANYON_TRY_STATUS(plan(config, scene::site_of(scene), mission));

@@ -401,7 +401,8 @@ Result<RunRecord> MissionRun::finish() {
     record_.prior_quality = lidar::evaluate_map(record_.prior_map, scene_);
     record_.registered_quality = lidar::evaluate_map(record_.registered_map, scene_);
   });
-  record_.warnings = gnss_->warnings();
+  record_.warnings = mission_.warnings;
+  for (std::string& warning : gnss_->warnings()) record_.warnings.push_back(std::move(warning));
   if (out_of_reach > 0)
     record_.warnings.push_back(std::to_string(out_of_reach) + " map points lay too far out for voxels of map_leaf_m");
   const gnss::GnssCounters counters = gnss_->counters();
