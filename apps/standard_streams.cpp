@@ -15,8 +15,6 @@ namespace canyon::apps {
 
 namespace {
 
-constexpr std::size_t kHeldBack = std::size_t{8} << 20;
-
 bool had_sigpipe = true;  ///< false where the caller wants to hear of closed pipes by an error
 
 /// A pipe whose reader has gone.
@@ -37,8 +35,6 @@ void prepare_standard_streams() {
       close(opened);
     }
   }
-  // Nearly all that is printed is held back to the end, where the reason of a failure is known.
-  if (isatty(STDOUT_FILENO) == 0) std::setvbuf(stdout, nullptr, _IOFBF, kHeldBack);
   struct sigaction before = {};
   sigaction(SIGPIPE, nullptr, &before);
   had_sigpipe = before.sa_handler != SIG_IGN;
@@ -47,11 +43,17 @@ void prepare_standard_streams() {
 }
 
 Status finish_standard_output() {
-  const bool failed_before = std::ferror(stdout) != 0;
-  errno = 0;
   std::cout.flush();  // --help
-  if (std::fflush(stdout) == 0 && std::cout && !failed_before) return Ok{};
-  const int code = errno;
+  const bool failed_before = std::ferror(stdout) != 0 || !std::cout;
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !failed_before) return Ok{};
+  int code = errno;
+  if (code == 0) {
+    // It failed while it was printed, and why is forgotten: one more line end fails for the same reason.
+    std::clearerr(stdout);
+    std::fputc('\n', stdout);
+    if (std::fflush(stdout) != 0) code = errno;
+  }
   if (had_sigpipe && (code == EPIPE || is_closed_pipe())) {
     std::signal(SIGPIPE, SIG_DFL);
     std::raise(SIGPIPE);
