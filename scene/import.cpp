@@ -10,9 +10,9 @@
 #include "core/config_text.h"
 #include "core/files.h"
 #include "core/geoid.h"
+#include "core/printable_text.h"
 #include "core/progress.h"
 #include "core/units.h"
-#include "core/utf8.h"
 #include "scene/elevation/elevation.h"
 #include "scene/free_space.h"
 #include "scene/ground_surface.h"
@@ -108,7 +108,7 @@ class Import {
       }
       scenes_.push_back(std::move(scene));
     }
-    out_.parts.name = valid_utf8(std::filesystem::path(config_.file).filename().string());
+    out_.parts.name = escaped_text(std::filesystem::path(config_.file).filename().string());
     return Ok{};
   }
 

@@ -62,6 +62,7 @@ TiledTracer::TiledTracer(const SceneParts& parts, const Extent& extent) : parts_
     tracer(only);
     return;
   }
+  tiled_ = true;
   lay_out(extent);
   tiles_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {

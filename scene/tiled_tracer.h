@@ -53,7 +53,8 @@ class TiledTracer {
     mutable std::once_flag once;
     mutable std::unique_ptr<const Tracer> tracer;
   };
-  bool tiled() const { return tiles_.size() > 1; }
+  /// Also of one tile, where a small scene lies far from the origin: its tree is about its own middle.
+  bool tiled() const { return tiled_; }
   int column(double x_m) const;
   int row(double y_m) const;
   std::size_t index(int column, int row) const {
@@ -73,6 +74,7 @@ class TiledTracer {
   Hit trace(const Ray& ray, double from_m) const;
 
   const SceneParts& parts_;
+  bool tiled_ = false;
   double edge_m_ = kTile_m;
   double west_m_ = 0.0, south_m_ = 0.0;  ///< the corner of the first tile
   int columns_ = 1, rows_ = 1;

@@ -127,7 +127,7 @@ std::string comparison_table(const mission::Results& results) {
     if (run.gnss == run.imu) runs.push_back(run);
 
   Table table(runs);
-  const bool open_loop = results.records.front().open_loop;
+  const bool open_loop = results.summaries.front().open_loop;
   table.section(open_loop ? "open loop: one true motion for all runs"
                           : "mission (closed loop: each run drives by itself)");
   if (!open_loop) {

@@ -7,7 +7,6 @@
 #include "core/config_text.h"
 #include "core/files.h"
 #include "core/lower_case.h"
-#include "core/printable_text.h"
 
 namespace canyon::scene {
 namespace {
@@ -93,9 +92,6 @@ Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& opt
     CANYON_TRY(RawScene scene, format.read(path, options));
     scene.files[0] = path;
     if (options.up_axis != "auto") scene.y_up = options.up_axis == "y";
-    // Names go into messages, JSON and files of our own, which are UTF-8.
-    for (std::string& material : scene.materials) material = escaped_text(material);
-    for (SceneObject& object : scene.objects) object.name = escaped_text(object.name);
     return scene;
   };
   const Error empty{path, 0, "", "is empty", "a scene"};

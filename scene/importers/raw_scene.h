@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "core/utf8.h"
+#include "core/printable_text.h"
 #include "scene/scene.h"
 
 namespace canyon::scene {
@@ -94,7 +94,7 @@ struct RawScene {
 
   /// Index of a material's name, which is added if it is new.
   std::uint32_t material(const std::string& name) {
-    const std::string material_name = valid_utf8(name);
+    const std::string material_name = escaped_text(name);
     const auto found = std::find(materials.begin(), materials.end(), material_name);
     if (found == materials.end()) {
       materials.push_back(material_name);
@@ -103,7 +103,7 @@ struct RawScene {
     return static_cast<std::uint32_t>(found - materials.begin());
   }
   std::uint32_t add_object(const std::string& name, ObjectKind kind) {
-    objects.push_back({valid_utf8(name), kind});
+    objects.push_back({escaped_text(name), kind});
     return static_cast<std::uint32_t>(objects.size() - 1);
   }
 };

@@ -21,9 +21,11 @@ class GnssSolveTest : public testing::CommandLineTest {
   void SetUp() override {
     CommandLineTest::SetUp();
     write("vacuum.toml", "ionosphere = \"none\"\ntroposphere = \"none\"\nsmoothing_s = 0.0\nshared_ionosphere = 0.0\n");
-    ASSERT_EQ(canyon("gnss simulate --at 32.35,-90.88,60 --duration 60 --errors none --rinex-obs given.rnx --rinex-nav "
-                     "given.nav"),
-              0)
+    ASSERT_EQ(
+        canyon(
+            "gnss simulate --force --at 32.35,-90.88,60 --duration 60 --errors none --rinex-obs given.rnx --rinex-nav "
+            "given.nav"),
+        0)
         << read("stderr");
   }
   static constexpr const char* kTruth = "--truth-ecef=-82834.0589,-5392805.4332,3393314.4988";
@@ -100,9 +102,11 @@ std::string antex(double up_mm) {
 // Precise orbits, clocks and antennas, GLONASS's channels from the header of the observations.
 TEST_F(GnssSolveTest, PreciseOrbitsAndAntennas) {
   const GpsTime start = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
-  ASSERT_EQ(canyon("gnss simulate --at 32.35,-90.88,60 --systems GR --start 2010-11-17T13:00:00 --duration 600 --rate "
-                   "0.1 --errors none --rinex-obs given.rnx --rinex-nav given.nav"),
-            0)
+  ASSERT_EQ(
+      canyon(
+          "gnss simulate --force --at 32.35,-90.88,60 --systems GR --start 2010-11-17T13:00:00 --duration 600 --rate "
+          "0.1 --errors none --rinex-obs given.rnx --rinex-nav given.nav"),
+      0)
       << read("stderr");
   EXPECT_EQ(read("stderr"), "");
   const auto nominal = gnss::make_nominal("GR");
@@ -173,9 +177,10 @@ TEST_F(GnssSolveTest, IonosphereMaps) {
   write("ionex.toml",
         "base = \"vicksburg\"\n[scene]\nempty = true\n[gnss]\nmode = \"single_uncorrected\"\nionosphere = \"ionex\"\n"
         "ionex_file = \"given.ionex\"\n");
-  ASSERT_EQ(canyon("gnss simulate --scene ionex.toml --at 32.35,-90.88,60 --start 2010-11-17T13:00:00 --duration 60 "
-                   "--errors ionosphere --rinex-obs given.rnx --rinex-nav given.nav"),
-            0)
+  ASSERT_EQ(
+      canyon("gnss simulate --force --scene ionex.toml --at 32.35,-90.88,60 --start 2010-11-17T13:00:00 --duration 60 "
+             "--errors ionosphere --rinex-obs given.rnx --rinex-nav given.nav"),
+      0)
       << read("stderr");
   write("maps.toml", "ionosphere = \"ionex\"\ntroposphere = \"none\"\nsmoothing_s = 0.0\nshared_ionosphere = 0.0\n");
   const auto rms_m = [&](const std::string& more) {

@@ -55,7 +55,7 @@ class RtklibRoundTripTest : public testing::CommandLineTest {
 
 const Eigen::Vector3d kVicksburg = ecef_from_geodetic({32.35 * kDegree, -90.88 * kDegree, 60.0});
 constexpr const char* kAtVicksburg =
-    "gnss simulate --at 32.35,-90.88,60 --rinex-obs obs.rnx --rinex-nav nav.rnx --seed 4 ";
+    "gnss simulate --force --at 32.35,-90.88,60 --rinex-obs obs.rnx --rinex-nav nav.rnx --seed 4 ";
 
 /// RINEX 3 records of Galileo, each with the two group delays (the last fields of the seventh line) of its satellite's
 /// first record.
@@ -110,7 +110,7 @@ TEST_F(RtklibRoundTripTest, WithErrorsBothSolversAgree) {
 TEST_F(RtklibRoundTripTest, FourBuiltInSystems) {
   for (const auto& [systems, lat, lon] : {std::tuple("GRE", 32.35, -90.88), {"GREC", 30.0, 115.0}}) {
     const std::string place = std::to_string(lat) + "," + std::to_string(lon) + ",60";
-    ASSERT_EQ(canyon("gnss simulate --at " + place + " --systems " + systems +
+    ASSERT_EQ(canyon("gnss simulate --force --at " + place + " --systems " + systems +
                      " --duration 3600 --rate 0.0333333333333 --errors none --rinex-obs obs.rnx --rinex-nav nav.rnx"),
               0)
         << read("stderr");
@@ -138,10 +138,11 @@ TEST_F(RtklibRoundTripTest, FourSystemsOfARealDay) {
   write("given.nav", with_one_group_delay(*read_text_or_gzip_file(nav)));
   const Eigen::Vector3d truth = ecef_from_geodetic({55.49 * kDegree, 8.46 * kDegree, 60.0});
   for (const std::string systems : {"GREC", "G"}) {
-    ASSERT_EQ(canyon("gnss simulate --at 55.49,8.46,60 --duration 14400 --rate 0.0333333333333333 --errors none "
-                     "--nav given.nav --systems " +
-                     systems + " --start 2020-06-25T10:00:00 --rinex-obs obs.rnx --rinex-nav nav.rnx"),
-              0)
+    ASSERT_EQ(
+        canyon("gnss simulate --force --at 55.49,8.46,60 --duration 14400 --rate 0.0333333333333333 --errors none "
+               "--nav given.nav --systems " +
+               systems + " --start 2020-06-25T10:00:00 --rinex-obs obs.rnx --rinex-nav nav.rnx"),
+        0)
         << read("stderr");
     const auto found = rnx2rtkp(false);
     ASSERT_GE(found.size(), 479U);

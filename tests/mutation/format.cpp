@@ -54,7 +54,7 @@ std::vector<Seed> written_by_canyon(const std::vector<std::string>& command, con
   const auto body = [&] {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
-    return apps::run_command_line(static_cast<int>(argv.size()), argv.data());
+    return apps::run_command_line(static_cast<int>(argv.size()), argv.data(), "");
   };
   return written_by(body, names, beside);
 }

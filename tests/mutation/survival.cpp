@@ -54,7 +54,7 @@ int run_in_this_process(const Format& format, const std::string& file, bool json
   std::vector<std::string> arguments = arguments_of(format, file, json);
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
-  return apps::run_command_line(static_cast<int>(argv.size()), argv.data());
+  return apps::run_command_line(static_cast<int>(argv.size()), argv.data(), "");
 }
 
 bool is_utf8_without_controls(const std::string& text) {

@@ -220,18 +220,6 @@ TEST_F(Import, ZurichWithoutItsCoordinateSystemLosesNoMoreTriangles) {
   EXPECT_LE(dropped_bare, dropped + 5);
 }
 
-// 2026-11-22: a name that is no UTF-8 ended --json with an exception of the JSON library.
-TEST_F(Import, NamesBecomeUtf8) {
-  const SceneParts made = parts("gum.obj",
-                                "v 0 0 0\nv 4 0 0\nv 4 3 0\no Stra\xdf"
-                                "e\nusemtl b\xfcgel\nf 1 2 3\n");
-  EXPECT_EQ(made.objects.back().name,
-            "Stra\xef\xbf\xbd"
-            "e");
-  ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_EQ(warnings_[0], "material \"b\xef\xbf\xbdgel\" is not in the table: 1 surfaces take the default");
-}
-
 // 2026-11-22: an empty file "does not look like a scene".
 TEST_F(Import, AnEmptyFileIsToldToBeEmpty) {
   for (const char* name : {"a.obj", "a.ply", "a.json", "a.geojson", "a.city.json", "a.gml", "a.osm", "a.xml"})

@@ -96,7 +96,7 @@ TEST_F(CompareTest, TableHasOneColumnPerRunAndARatio) {
   const std::string table = comparison_table(*results_);
   EXPECT_THAT(table, ::testing::HasSubstr("low"));
   EXPECT_THAT(table, ::testing::HasSubstr("high/low"));
-  EXPECT_THAT(table, ::testing::HasSubstr("2 x 2: outcome and position error RMS"));
+  EXPECT_THAT(table, ::testing::HasSubstr("2 x 2, closed loop: outcome and position error RMS"));
   EXPECT_THAT(table, ::testing::HasSubstr("GDOP, median"));
   EXPECT_THAT(table, ::testing::Not(::testing::HasSubstr("nan")));
 }
