@@ -44,6 +44,7 @@ Status refuse_far_points(const std::vector<RawScene>& scenes) {
                     "farther"};
     };
     for_corners(scene, check);
+    for_courtyard_corners(scene, check);
     for_street_points_and_trees(scene, check);
   }
   if (first) return *first;

@@ -44,6 +44,17 @@ void for_corners(const RawScene& scene, const Body& body) {
   }
 }
 
+/// The same for the courtyards of footprints, which lie within their outlines unless the file is damaged.
+template <class Body>
+void for_courtyard_corners(const RawScene& scene, const Body& body) {
+  for (const RawFootprint& f : scene.footprints) {
+    throw_if_cancelled();
+    for (std::size_t ring = 1; ring < f.rings.size(); ++ring)
+      for (const Eigen::Vector2d& p : f.rings[ring])
+        body(RawPoint{Eigen::Vector3d(p.x(), p.y(), f.ground_m), f.from, f.object});
+  }
+}
+
 /// The same for streets and trees, which have no height.
 template <class Body>
 void for_street_points_and_trees(const RawScene& scene, const Body& body) {

@@ -220,6 +220,16 @@ TEST_F(Import, ZurichWithoutItsCoordinateSystemLosesNoMoreTriangles) {
   EXPECT_LE(dropped_bare, dropped + 5);
 }
 
+// 2026-11-22: a far corner of a courtyard was not looked at, and the building reached around the Earth.
+TEST_F(Import, AFarCornerOfACourtyardIsNamed) {
+  EXPECT_THAT(
+      message("a.geojson",
+              "{\"type\":\"FeatureCollection\",\"features\":[{\"type\":\"Feature\",\"properties\":{\"id\":\"hall\","
+              "\"height\":9},\n\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[[[5,45],[5.001,45],[5.001,45.001],"
+              "[5,45]],[[21,45.0002],[5.0005,45.0002],[5.0005,45.0004],[21,45.0002]]]}}]}"),
+      ::testing::HasSubstr("hall: lies "));
+}
+
 // 2026-11-22: an empty file "does not look like a scene".
 TEST_F(Import, AnEmptyFileIsToldToBeEmpty) {
   for (const char* name : {"a.obj", "a.ply", "a.json", "a.geojson", "a.city.json", "a.gml", "a.osm", "a.xml"})
