@@ -102,6 +102,16 @@ TEST(RouteTape, TheRouteIsDrivenToItsEndWithItsStops) {
   EXPECT_TRUE(check_tape(*tape, "t", config, *mission).ok());
 }
 
+// 2026-11-22: [time] limit_s made the route one that cannot be driven.
+TEST(RouteTape, IsAsLongAsTheTimeLimitAsks) {
+  const MissionConfig config = short_config("low", "low", "[time]\nlimit_s = 5.0");
+  const auto mission = prepare(config, scenes());
+  const auto tape = drive_route(config, *mission);
+  ASSERT_TRUE(tape.ok()) << tape.error().str();
+  EXPECT_DOUBLE_EQ(tape->duration_s(), 5.0);
+  EXPECT_TRUE(check_tape(*tape, "t", config, *mission).ok());
+}
+
 TEST(RouteTape, ATapeThatDoesNotFitIsToldInOneLine) {
   const MissionConfig config = short_config("low", "low");
   const auto mission = prepare(config, scenes());
