@@ -211,10 +211,14 @@ std::string comparison_table(const mission::Results& results) {
            ")";
   }
   if (out.back() != '\n') out += "\n";
-  for (const mission::PairedErrors& pair : mission::paired_with_first(results.records))
+  for (const mission::PairedErrors& pair : mission::paired_with_first(results.records)) {
+    const std::string interval = std::isfinite(pair.low_m)
+                                     ? "95 % interval " + fixed(pair.low_m, 3) + " to " + fixed(pair.high_m, 3) + " m"
+                                     : "too short for an interval";
     out += "\n" + pair.b + " against " + pair.a + ", epoch by epoch (" + std::to_string(pair.epochs) +
-           "): 3-D error larger by " + fixed(pair.mean_m, 3) + " m on average, 95 % interval " + fixed(pair.low_m, 3) +
-           " to " + fixed(pair.high_m, 3) + " m; larger at " + fixed(100.0 * pair.worse_share, 0) + " % of epochs\n";
+           "): 3-D error larger by " + fixed(pair.mean_m, 3) + " m on average, " + interval + "; larger at " +
+           fixed(100.0 * pair.worse_share, 0) + " % of epochs\n";
+  }
   if (const std::string square = two_by_two(results.summaries); !square.empty()) out += "\n" + square;
   return out;
 }
