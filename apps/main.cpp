@@ -1,4 +1,4 @@
-#include "apps/command_line.h"
+#include "canyon/apps/line/command_line.h"
 
 /// Of the source that was built, written by cmake/commit.cmake; empty if it is not known.
 extern const char* const canyon_commit;

@@ -6,9 +6,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/parallel.h"
-#include "core/random.h"
-#include "inertial/allan/deviation.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/random/random.h"
+#include "canyon/inertial/allan/deviation.h"
 
 namespace {
 

@@ -7,13 +7,13 @@
 #include <Random123/philox.h>
 #include <benchmark/benchmark.h>
 
-#include "core/check.h"
-#include "core/random.h"
-#include "core/units.h"
-#include "inertial/error_chain.h"
-#include "inertial/errors/error_link.h"
-#include "inertial/errors/flicker.h"
-#include "tests/inertial/every_link.h"
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/errors/error_link.h"
+#include "canyon/inertial/errors/flicker.h"
+#include "canyon/tests/inertial/every_link.h"
 
 namespace canyon::inertial {
 namespace {

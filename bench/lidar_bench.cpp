@@ -15,16 +15,16 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/parallel.h"
-#include "core/units.h"
-#include "lidar/beam_table.h"
-#include "lidar/firing_pattern.h"
-#include "lidar/footprint_rays.h"
-#include "lidar/scanner.h"
-#include "lidar/sweep_motion.h"
-#include "scene/city.h"
-#include "scene/scene_at.h"
-#include "scene/traffic.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/beam/beam_table.h"
+#include "canyon/lidar/beam/firing_pattern.h"
+#include "canyon/lidar/beam/footprint_rays.h"
+#include "canyon/lidar/scanner.h"
+#include "canyon/lidar/sweep_motion.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/city/traffic.h"
+#include "canyon/scene/scene_at.h"
 
 namespace {
 

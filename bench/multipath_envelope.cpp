@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/units.h"
-#include "gnss/receiver/code_tracking.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/receiver/code_tracking.h"
 
 namespace {
 

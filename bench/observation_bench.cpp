@@ -4,9 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/files.h"
-#include "gnss/rinex/hatanaka.h"
-#include "gnss/rinex/observation_file.h"
+#include "canyon/core/files/files.h"
+#include "canyon/gnss/rinex/observation/hatanaka.h"
+#include "canyon/gnss/rinex/observation/observation_file.h"
 
 namespace {
 

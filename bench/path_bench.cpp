@@ -7,12 +7,12 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/units.h"
-#include "gnss/paths/diffraction.h"
-#include "gnss/paths/path_model.h"
-#include "gnss/paths/propagation.h"
-#include "scene/city.h"
-#include "scene/scene_at.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/diffraction/diffraction.h"
+#include "canyon/gnss/paths/path_model.h"
+#include "canyon/gnss/paths/propagation.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/scene_at.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/random.h"
+#include "canyon/core/random/random.h"
 
 namespace {
 

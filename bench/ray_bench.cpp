@@ -4,9 +4,9 @@
 
 #include <benchmark/benchmark.h>
 
-#include "core/units.h"
-#include "scene/city.h"
-#include "scene/scene_at.h"
+#include "canyon/core/units.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/scene_at.h"
 
 namespace {
 

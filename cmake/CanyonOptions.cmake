@@ -18,8 +18,13 @@ option(CANYON_WITH_ASSIMP "Scenes in glTF and what else assimp reads" ON)
 option(CANYON_WITH_CERES "Fit of noise processes to inertial logs (Ceres)" ON)
 set(CANYON_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
 
+# Headers are included as "canyon/core/time.h", in this tree as where they are installed.
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/include/canyon)
+foreach(folder IN ITEMS core scene gnss inertial lidar fusion mission study report apps tests bench)
+  file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${CMAKE_BINARY_DIR}/include/canyon/${folder} SYMBOLIC)
+endforeach()
 add_library(canyon_flags INTERFACE)
-target_include_directories(canyon_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+target_include_directories(canyon_flags INTERFACE ${CMAKE_BINARY_DIR}/include ${CMAKE_BINARY_DIR}/generated)
 # -ffp-contract=off: a result must not depend on whether the compiler found a fused multiply-add.
 target_compile_options(canyon_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
 if(CANYON_WERROR)

@@ -13,11 +13,14 @@ function(canyon_precompile target root)
   endif()
 endfunction()
 
-# canyon_library(NAME [LINK libs...] [PRIVATE libs...] [EXCLUDE patterns...] [PRECOMPILE headers...]): every .cpp of the folder,
-# one static library canyon_NAME.
+# canyon_library(NAME [LINK libs...] [PRIVATE libs...] [ONLY pattern] [EXCLUDE patterns...] [PRECOMPILE headers...]): every .cpp of
+# the folder and its rooms (whose path from the folder matches ONLY and none of EXCLUDE), one static library canyon_NAME.
 function(canyon_library name)
-  cmake_parse_arguments(ARG "" "" "LINK;PRIVATE;EXCLUDE;PRECOMPILE" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  cmake_parse_arguments(ARG "" "ONLY" "LINK;PRIVATE;EXCLUDE;PRECOMPILE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  if(ARG_ONLY)
+    list(FILTER sources INCLUDE REGEX ${ARG_ONLY})
+  endif()
   foreach(pattern IN LISTS ARG_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX ${pattern})
   endforeach()
@@ -30,7 +33,7 @@ function(canyon_library name)
   endif()
 endfunction()
 
-# canyon_embed(OUT_VARIABLE FILE...): sources that hold the files' bytes and the table that core/embedded.cpp reads.
+# canyon_embed(OUT_VARIABLE FILE...): sources that hold the files' bytes and the table that core/process/embedded.cpp reads.
 function(canyon_embed out_variable)
   set(sources "")
   set(declarations "")
@@ -53,11 +56,14 @@ function(canyon_embed out_variable)
   set(${out_variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# canyon_test(FOLDER LINK libs...): every tests/FOLDER/*_test.cpp in one executable, one ctest entry per test case.
+# canyon_test(FOLDER LINK libs... [EXCLUDE patterns...]): every .cpp of tests/FOLDER and its rooms in one executable, one ctest entry per test case.
 # A name that contains "Nightly" gets the label nightly and is left out of ./test.sh.
 function(canyon_test folder)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  cmake_parse_arguments(ARG "" "" "LINK;EXCLUDE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  foreach(pattern IN LISTS ARG_EXCLUDE)
+    list(FILTER sources EXCLUDE REGEX ${pattern})
+  endforeach()
   if(NOT sources)
     return()
   endif()

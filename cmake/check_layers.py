@@ -5,6 +5,7 @@ A folder includes only folders of lower floors, each heavy library stays in its 
 truth does not reach those who must not see it. The rules are the tables below; docs/design.md says why.
 """
 
+import collections
 import fnmatch
 import pathlib
 import re
@@ -27,13 +28,20 @@ FLOORS = {
 # Outside the floors: free to include any of them.
 OUTSIDE = ["tests", "bench"]
 
+# Rooms of a folder that are a library of their own: the rest of the folder includes neither them nor what they alone may include,
+# so that a program that reads RINEX links no ray tracer.
+ROOMS = {"gnss": (["gnss/paths/*", "gnss/receiver/*", "gnss/sensor/*"], ["scene/*"])}
+
+# So many sources a folder holds, headers and all; a fuller one wants rooms.
+FOLDER_FILES_MAX = 25
+
 # Heavy libraries: which includes are theirs, and the only files that may have them.
 LIBRARIES = [
-    ("Embree", r"embree\d?/", ["scene/embree_*.cpp"]),
-    ("PCL", r"pcl/", ["lidar/pcl_*.cpp"]),
+    ("Embree", r"embree\d?/", ["scene/tracing/embree_*.cpp"]),
+    ("PCL", r"pcl/", ["lidar/registration/pcl_*.cpp"]),
     ("toml++", r"toml\+\+/", ["core/*.cpp"]),
     ("GeographicLib", r"GeographicLib/", ["core/*.cpp"]),
-    ("Random123", r"Random123/", ["core/random*.cpp"]),
+    ("Random123", r"Random123/", ["core/random/*.cpp"]),
     ("oneTBB", r"(tbb|oneapi)/", ["core/*.cpp"]),
     ("OpenSSL", r"openssl/", ["core/*.cpp"]),
     ("zlib", r"zlib\.h", ["core/*.cpp", "report/*.cpp"]),
@@ -41,7 +49,7 @@ LIBRARIES = [
     ("CLI11", r"CLI/", ["apps/*.cpp"]),
     ("Ceres", r"ceres/", ["inertial/*.cpp", "fusion/*.cpp"]),
     ("assimp", r"assimp/", ["scene/importers/assimp.cpp"]),
-    ("libxml2", r"libxml/", ["scene/importers/xml_file.cpp"]),
+    ("libxml2", r"libxml/", ["scene/importers/parsing/xml_file.cpp"]),
     ("libtiff", r"tiff\w*\.h", ["scene/elevation/geotiff.cpp"]),
     ("PROJ", r"proj\w*\.h", ["scene/projection.cpp"]),
     ("SQLite", r"sqlite3\.h", ["study/*.cpp"]),
@@ -59,13 +67,15 @@ TRUTH = "core/truth.h"
 BLIND_TO_TRUTH = [
     "fusion/*",
     "lidar/deskew*", "lidar/sweep_motion*",
-    "lidar/*registration*", "lidar/pcl_*", "lidar/prepared_cloud*", "lidar/neighbour_tree*", "lidar/voxel_*",
-    "mission/mapper*", "mission/*autonomy*", "mission/local_grid*", "mission/path*",
+    "lidar/registration/*",
+    "mission/mapper*", "mission/autonomy/*",
 ]
 
-# Random numbers come from core/random.h: the standard's distributions differ from library to library.
+# Random numbers come from core/random/random.h: the standard's distributions differ from library to library.
 OTHER_RANDOMNESS = r"std::(\w+_distribution|mt19937(_64)?|default_random_engine|random_device)\b"
 
+# How the tree's own headers are included, in the tree as where they are installed.
+PREFIX = "canyon/"
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
 
 
@@ -98,6 +108,10 @@ class Tree:
         found = [(number, INCLUDE.match(line)) for number, line in enumerate(self.lines[name], 1)]
         self.includes[name] = [(number, match[1], match[2]) for number, match in found if match]
 
+    def named(self, quoted):
+        """The file of the tree that an include names, or None: "canyon/core/time.h" is core/time.h."""
+        return quoted.removeprefix(PREFIX) if quoted and quoted.startswith(PREFIX) else None
+
     def breach(self, name, number, what):
         self.breaches.append(f"{name}:{number}: {what}")
 
@@ -118,6 +132,7 @@ class Tree:
             if matches(name, BLIND_TO_TRUTH):
                 self.check_truth(name)
         self.check_registration_files()
+        self.check_folder_sizes()
         for folder in FLOORS:
             self.check_links(folder)
         return self.breaches
@@ -131,21 +146,26 @@ class Tree:
 
     def check_own_header(self, name):
         own = name.removesuffix(".cpp") + ".h"
-        if own in self.lines and (not self.includes[name] or self.includes[name][0][1] != own):
+        if own in self.lines and (not self.includes[name] or self.named(self.includes[name][0][1]) != own):
             number = self.includes[name][0][0] if self.includes[name] else 1
-            self.breach(name, number, f'the first include is the own header, "{own}"')
+            self.breach(name, number, f'the first include is the own header, "{PREFIX}{own}"')
 
     def check_quoted(self, name, folder, number, quoted):
-        target = quoted.split("/")[0]
-        if target == "embedded" and folder in ("core", "tests"):  # generated from the data files
+        if quoted.startswith("embedded/") and folder in ("core", "tests"):  # generated from the data files
             return
-        if "/" not in quoted or (target not in FLOORS and target not in OUTSIDE):
-            self.breach(name, number, f'"{quoted}" is not named from the root of the tree ("{folder}/...")')
-        elif quoted not in self.lines:
+        included = self.named(quoted) or ""
+        target = included.split("/")[0]
+        if target not in FLOORS and target not in OUTSIDE:
+            self.breach(name, number, f'"{quoted}" is not named from the root of the tree ("{PREFIX}{folder}/...")')
+        elif included not in self.lines:
             self.breach(name, number, f'"{quoted}" does not exist')
         elif folder in FLOORS and target != folder and target not in FLOORS[folder]:
             allowed = ", ".join(FLOORS[folder]) or "no other folder"
             self.breach(name, number, f'{folder}/ may not include "{quoted}"; it may include {allowed}')
+        elif folder in ROOMS:
+            rooms, theirs = ROOMS[folder]
+            if not matches(name, rooms) and matches(included, [*rooms, *theirs]):
+                self.breach(name, number, f'"{quoted}": only {", ".join(rooms)} may include it')
 
     def check_angled(self, name, number, angled):
         library = next((row for row in LIBRARIES if re.match(row[1], angled)), None)
@@ -164,11 +184,11 @@ class Tree:
         for number, line in enumerate(self.lines[name], 1):
             found = re.search(OTHER_RANDOMNESS, line)
             if found:
-                self.breach(name, number, f"{found[0]}: random numbers come from core/random.h")
+                self.breach(name, number, f"{found[0]}: random numbers come from core/random/random.h")
 
     def check_truth(self, name):
         """Breadth first through the includes, so that the shortest way to the truth is the one told."""
-        ways = [(number, [quoted]) for number, quoted, _ in self.includes[name] if quoted]
+        ways = [(number, [self.named(quoted)]) for number, quoted, _ in self.includes[name] if self.named(quoted)]
         seen = set()
         while ways:
             number, way = ways.pop(0)
@@ -178,12 +198,18 @@ class Tree:
                 return
             if way[-1] not in seen:
                 seen.add(way[-1])
-                ways += [(number, [*way, quoted]) for _, quoted, _ in self.includes.get(way[-1], []) if quoted]
+                ways += [(number, [*way, self.named(quoted)]) for _, quoted, _ in self.includes.get(way[-1], []) if self.named(quoted)]
 
     def check_registration_files(self):
         heavy = [name for name in self.lines if any(a and a.startswith("pcl/registration/") for _, _, a in self.includes[name])]
         for name in heavy[REGISTRATION_FILES_MAX:]:
             self.breach(name, 1, f"more than {REGISTRATION_FILES_MAX} files include PCL's registration headers (18 s each)")
+
+    def check_folder_sizes(self):
+        sizes = collections.Counter(name.rsplit("/", 1)[0] for name in self.lines)
+        for folder, files in sorted(sizes.items()):
+            if files > FOLDER_FILES_MAX:
+                self.breach(folder, 1, f"{files} sources in one folder; more than {FOLDER_FILES_MAX} want rooms")
 
     def check_links(self, folder):
         """A folder links what it may include, no more."""
@@ -192,7 +218,8 @@ class Tree:
             return
         for number, line in enumerate(path.read_text(encoding="utf-8").split("\n"), 1):
             for target in re.findall(r"\bcanyon_(\w+)", line.split("#")[0]):
-                if target in FLOORS and target != folder and target not in FLOORS[folder]:
+                of = target.split("_")[0]  # canyon_gnss_sensor is of gnss/
+                if of in FLOORS and of != folder and of not in FLOORS[folder]:
                     self.breach(f"{folder}/CMakeLists.txt", number, f"{folder}/ may not link canyon_{target}")
 
 

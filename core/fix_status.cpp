@@ -1,6 +1,6 @@
-#include "core/fix_status.h"
+#include "canyon/core/fix_status.h"
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon {
 

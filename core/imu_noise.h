@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/config.h"
-#include "core/units.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/units.h"
 
 namespace canyon {
 

@@ -1,6 +1,6 @@
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon {
 

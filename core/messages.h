@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "core/rotation.h"
-#include "core/time.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/time.h"
 
 /// What real sensors and estimators output. Floor-2 folders meet only here. Truth has records of its own
 /// (core/truth.h).

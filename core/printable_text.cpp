@@ -1,4 +1,4 @@
-#include "core/printable_text.h"
+#include "canyon/core/printable_text.h"
 
 #include <algorithm>
 #include <cstddef>

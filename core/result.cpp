@@ -1,6 +1,6 @@
-#include "core/result.h"
+#include "canyon/core/result.h"
 
-#include "core/printable_text.h"
+#include "canyon/core/printable_text.h"
 
 namespace canyon {
 

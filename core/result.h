@@ -4,7 +4,7 @@
 #include <utility>
 #include <variant>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon {
 

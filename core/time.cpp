@@ -1,10 +1,10 @@
-#include "core/time.h"
+#include "canyon/core/time.h"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon {
 namespace {

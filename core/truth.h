@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 
-#include "core/messages.h"
-#include "core/rotation.h"
-#include "core/time.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/time.h"
 
 /// Truth records: what only recorder and scorer may see. Each runs parallel to a message, with the same index.
 namespace canyon {

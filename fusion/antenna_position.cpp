@@ -1,6 +1,6 @@
-#include "fusion/antenna_position.h"
+#include "canyon/fusion/antenna_position.h"
 
-#include "core/rotation.h"
+#include "canyon/core/motion/rotation.h"
 
 namespace canyon::fusion {
 

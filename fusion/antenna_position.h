@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "fusion/error_propagation.h"
-#include "fusion/strapdown.h"
+#include "canyon/fusion/error_propagation.h"
+#include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {
 

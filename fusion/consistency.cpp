@@ -1,10 +1,10 @@
-#include "fusion/consistency.h"
+#include "canyon/fusion/consistency.h"
 
 #include <cmath>
 #include <limits>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

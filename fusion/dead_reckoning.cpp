@@ -1,10 +1,10 @@
-#include "fusion/dead_reckoning.h"
+#include "canyon/fusion/dead_reckoning.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/earth.h"
-#include "core/progress.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::fusion {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <Eigen/Core>
 
-#include "core/earth.h"
-#include "core/messages.h"
-#include "fusion/strapdown.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/messages.h"
+#include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {
 

@@ -1,12 +1,12 @@
-#include "fusion/error_propagation.h"
+#include "canyon/fusion/error_propagation.h"
 
 #include <cmath>
 #include <limits>
 
 #include <Eigen/LU>
 
-#include "core/earth.h"
-#include "core/rotation.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/motion/rotation.h"
 
 namespace canyon::fusion {
 namespace {

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "core/imu_noise.h"
-#include "fusion/strapdown.h"
+#include "canyon/core/imu_noise.h"
+#include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {
 

@@ -1,15 +1,15 @@
-#include "fusion/error_state_filter.h"
+#include "canyon/fusion/error_state_filter.h"
 
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-#include "core/check.h"
-#include "core/earth.h"
-#include "core/rotation.h"
-#include "core/units.h"
-#include "fusion/antenna_position.h"
-#include "fusion/consistency.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/antenna_position.h"
+#include "canyon/fusion/consistency.h"
 
 namespace canyon::fusion {
 namespace {

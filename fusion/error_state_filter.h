@@ -7,12 +7,12 @@
 
 #include <Eigen/Core>
 
-#include "core/config.h"
-#include "core/imu_noise.h"
-#include "core/local_frame.h"
-#include "core/messages.h"
-#include "fusion/error_propagation.h"
-#include "fusion/strapdown.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/imu_noise.h"
+#include "canyon/core/messages.h"
+#include "canyon/fusion/error_propagation.h"
+#include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {
 

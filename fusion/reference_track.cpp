@@ -1,11 +1,11 @@
-#include "fusion/reference_track.h"
+#include "canyon/fusion/reference_track.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/rotation.h"
-#include "fusion/dead_reckoning.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/fusion/dead_reckoning.h"
 
 namespace canyon::fusion {
 namespace {

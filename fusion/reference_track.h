@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/messages.h"
-#include "fusion/strapdown.h"
+#include "canyon/core/messages.h"
+#include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {
 

@@ -1,12 +1,12 @@
-#include "fusion/rounding_growth.h"
+#include "canyon/fusion/rounding_growth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/earth.h"
-#include "core/progress.h"
-#include "core/units.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "fusion/dead_reckoning.h"
+#include "canyon/fusion/dead_reckoning.h"
 
 namespace canyon::fusion {
 

@@ -1,7 +1,7 @@
-#include "fusion/strapdown.h"
+#include "canyon/fusion/strapdown.h"
 
-#include "core/check.h"
-#include "fusion/strapdown/models.h"
+#include "canyon/core/check.h"
+#include "canyon/fusion/strapdown/models.h"
 
 namespace canyon::fusion {
 namespace {

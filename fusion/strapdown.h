@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "core/earth.h"
-#include "core/gravity.h"
-#include "core/time.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/earth/gravity.h"
+#include "canyon/core/time.h"
 
 namespace canyon::fusion {
 
@@ -65,7 +65,7 @@ struct StrapdownRow {
 std::span<const StrapdownRow> strapdown_models();
 std::vector<std::string> strapdown_names();
 /// A model by name; throws ProgramError for a name that is not in the table (check user input against
-/// strapdown_names()). Why gravity is exchangeable is told in core/gravity.h.
+/// strapdown_names()). Why gravity is exchangeable is told in core/earth/gravity.h.
 std::unique_ptr<Strapdown> make_strapdown(std::string_view name, GravityFunction gravity = gravity_E);
 
 }  // namespace canyon::fusion

@@ -1,9 +1,9 @@
-#include "gnss/antenna_height.h"
+#include "canyon/gnss/antenna_height.h"
 
 #include <cmath>
 #include <cstdio>
 
-#include "core/earth.h"
+#include "canyon/core/earth/earth.h"
 
 namespace canyon::gnss {
 

@@ -1,14 +1,14 @@
-#include "gnss/orbit_error.h"
+#include "canyon/gnss/orbit_error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "core/median.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "gnss/products/clock_datum.h"
-#include "gnss/satellites/system_constants.h"
+#include "canyon/core/math/median.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/products/clock_datum.h"
+#include "canyon/gnss/satellites/system_constants.h"
 
 namespace canyon::gnss {
 namespace {

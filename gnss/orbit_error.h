@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gnss/products/precise_orbits.h"
+#include "canyon/gnss/products/precise_orbits.h"
 
 namespace canyon::gnss {
 

@@ -1,4 +1,4 @@
-#include "gnss/signal.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {

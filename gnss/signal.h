@@ -1,9 +1,9 @@
 #pragma once
 
-#include "core/messages.h"
-#include "core/units.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/units.h"
 
-/// Constants of the GPS signal and of its user algorithms (IS-GPS-200). They differ from core/earth.h in the last
+/// Constants of the GPS signal and of its user algorithms (IS-GPS-200). They differ from core/earth/earth.h in the last
 /// digits on purpose: a broadcast ephemeris is fitted with exactly these values and must be evaluated with them.
 namespace canyon::gnss {
 

@@ -1,9 +1,9 @@
-#include "gnss/sky_view.h"
+#include "canyon/gnss/sky_view.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "core/earth.h"
-#include "core/time.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
-#include "inertial/cancel_callback.h"
+#include "canyon/inertial/cancel_callback.h"
 
 #ifdef CANYON_WITH_CERES
 
 #include <ceres/iteration_callback.h>
 
-#include "core/progress.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,15 +1,15 @@
-#include "inertial/catalogue.h"
+#include "canyon/inertial/catalogue.h"
 
 #include <cmath>
 #include <limits>
 
-#include "core/check.h"
-#include "core/config_text.h"
-#include "core/embedded.h"
-#include "core/files.h"
-#include "core/units.h"
-#include "inertial/imu_model.h"
-#include "inertial/sheet_rows.h"
+#include "canyon/core/check.h"
+#include "canyon/core/config/text.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/embedded.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/inertial/sheet_rows.h"
 
 namespace canyon::inertial {
 namespace {

@@ -6,11 +6,11 @@
 
 #include <Eigen/Core>
 
-#include "core/config.h"
-#include "core/imu_noise.h"
-#include "core/result.h"
-#include "inertial/errors/error_figures.h"
-#include "inertial/mems/mems_figures.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/imu_noise.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/errors/error_figures.h"
+#include "canyon/inertial/mems/mems_figures.h"
 
 namespace canyon::inertial {
 

@@ -1,8 +1,8 @@
-#include "inertial/error_chain.h"
+#include "canyon/inertial/error_chain.h"
 
 #include <algorithm>
 
-#include "inertial/errors/error_link.h"
+#include "canyon/inertial/errors/error_link.h"
 
 namespace canyon::inertial {
 namespace {

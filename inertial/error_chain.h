@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/imu_noise.h"
-#include "core/messages.h"
-#include "core/result.h"
-#include "inertial/catalogue.h"
-#include "inertial/environment.h"
+#include "canyon/core/imu_noise.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/catalogue.h"
+#include "canyon/inertial/environment.h"
 
 namespace canyon::inertial {
 

@@ -1,16 +1,16 @@
-#include "inertial/imu_log.h"
+#include "canyon/inertial/imu_log.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 
-#include "core/earth.h"
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "inertial/allan/deviation.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/allan/deviation.h"
 
 namespace canyon::inertial {
 namespace {

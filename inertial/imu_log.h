@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 namespace canyon::inertial {
 

@@ -1,9 +1,9 @@
-#include "inertial/imu_model.h"
+#include "canyon/inertial/imu_model.h"
 
-#include "core/check.h"
-#include "core/units.h"
-#include "inertial/catalogue.h"
-#include "inertial/true_increments.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/catalogue.h"
+#include "canyon/inertial/true_increments.h"
 
 namespace canyon::inertial {
 namespace {

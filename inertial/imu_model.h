@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "core/config.h"
-#include "core/imu_noise.h"
-#include "core/local_frame.h"
-#include "core/messages.h"
-#include "core/result.h"
-#include "core/true_motion.h"
-#include "inertial/error_chain.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/imu_noise.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/true_motion.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/error_chain.h"
 
 namespace canyon::inertial {
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "inertial/error_chain.h"
-#include "inertial/errors/error_link.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/errors/error_link.h"
 
 /// The error chains that are made of links (inertial/errors): they differ in which links they take.
 namespace canyon::inertial {

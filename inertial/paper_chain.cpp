@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "core/random.h"
-#include "core/units.h"
-#include "inertial/error_chain.h"
-#include "inertial/errors/markov_process.h"
-#include "inertial/paper_formulas.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/errors/markov_process.h"
+#include "canyon/inertial/paper_formulas.h"
 
 /// The error chain of Durst & Goodin 2012, section 2.2, twice: as printed, and corrected. Both take the catalogue's
 /// [paper] table.

@@ -1,11 +1,11 @@
-#include "inertial/paper_figures.h"
+#include "canyon/inertial/paper_figures.h"
 
 #include <cmath>
 
-#include "core/check.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "inertial/error_chain.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/error_chain.h"
 
 namespace canyon::inertial {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "inertial/catalogue.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/catalogue.h"
 
 namespace canyon::inertial {
 

@@ -1,8 +1,8 @@
-#include "inertial/paper_formulas.h"
+#include "canyon/inertial/paper_formulas.h"
 
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 

@@ -1,8 +1,8 @@
-#include "inertial/sheet_rows.h"
+#include "canyon/inertial/sheet_rows.h"
 
 #include <limits>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 namespace {

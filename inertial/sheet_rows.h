@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "core/config.h"
-#include "inertial/catalogue.h"
-#include "inertial/errors/error_figures.h"
+#include "canyon/core/config/config.h"
+#include "canyon/inertial/catalogue.h"
+#include "canyon/inertial/errors/error_figures.h"
 
 namespace canyon::inertial {
 

@@ -1,9 +1,9 @@
-#include "inertial/true_increments.h"
+#include "canyon/inertial/true_increments.h"
 
 #include <cmath>
 
-#include "core/check.h"
-#include "core/earth.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/earth.h"
 
 namespace canyon::inertial {
 namespace {

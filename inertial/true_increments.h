@@ -4,9 +4,9 @@
 
 #include <Eigen/Core>
 
-#include "core/local_frame.h"
-#include "core/messages.h"
-#include "core/true_motion.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/true_motion.h"
 
 namespace canyon::inertial {
 

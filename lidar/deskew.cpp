@@ -1,8 +1,8 @@
-#include "lidar/deskew.h"
+#include "canyon/lidar/deskew.h"
 
 #include <algorithm>
 
-#include "lidar/sweep_motion.h"
+#include "canyon/lidar/sweep_motion.h"
 
 namespace canyon::lidar {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/messages.h"
-#include "core/trajectory.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/trajectory.h"
 
 namespace canyon::lidar {
 

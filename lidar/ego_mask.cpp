@@ -1,4 +1,4 @@
-#include "lidar/ego_mask.h"
+#include "canyon/lidar/ego_mask.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/rotation.h"
-#include "lidar/aim.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/lidar/beam/aim.h"
 
 namespace canyon::lidar {
 

@@ -1,10 +1,10 @@
-#include "lidar/lidar_config.h"
+#include "canyon/lidar/lidar_config.h"
 
-#include "lidar/detector.h"
-#include "lidar/echo_model.h"
-#include "lidar/return_choice.h"
-#include "lidar/see_through.h"
-#include "lidar/weather.h"
+#include "canyon/lidar/beam/echo_model.h"
+#include "canyon/lidar/beam/see_through.h"
+#include "canyon/lidar/beam/weather.h"
+#include "canyon/lidar/receiver/detector.h"
+#include "canyon/lidar/receiver/return_choice.h"
 
 namespace canyon::lidar {
 namespace {

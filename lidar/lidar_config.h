@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "core/config.h"
+#include "canyon/core/config/config.h"
 
 namespace canyon::lidar {
 

@@ -1,4 +1,4 @@
-#include "lidar/map_quality.h"
+#include "canyon/lidar/map_quality.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 
 #include <Eigen/Geometry>
 
-#include "core/check.h"
-#include "core/parallel.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/units.h"
 
 namespace canyon::lidar {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/messages.h"
-#include "lidar/cloud_files.h"
-#include "scene/scene_at.h"
+#include "canyon/core/messages.h"
+#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::lidar {
 

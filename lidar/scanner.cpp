@@ -1,15 +1,15 @@
-#include "lidar/scanner.h"
+#include "canyon/lidar/scanner.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/config_text.h"
-#include "core/units.h"
-#include "lidar/detector.h"
-#include "lidar/echo_model.h"
-#include "lidar/return_choice.h"
-#include "lidar/see_through.h"
-#include "lidar/volley_scanner.h"
+#include "canyon/core/config/text.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/beam/echo_model.h"
+#include "canyon/lidar/beam/see_through.h"
+#include "canyon/lidar/receiver/detector.h"
+#include "canyon/lidar/receiver/return_choice.h"
+#include "canyon/lidar/volley_scanner.h"
 
 namespace canyon::lidar {
 namespace {

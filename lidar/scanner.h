@@ -5,13 +5,13 @@
 #include <memory>
 #include <vector>
 
-#include "core/messages.h"
-#include "core/result.h"
-#include "core/trajectory.h"
-#include "core/truth.h"
-#include "lidar/lidar_config.h"
-#include "lidar/no_surface.h"
-#include "scene/scene_at.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/trajectory.h"
+#include "canyon/core/result.h"
+#include "canyon/core/truth.h"
+#include "canyon/lidar/beam/no_surface.h"
+#include "canyon/lidar/lidar_config.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::lidar {
 

@@ -1,10 +1,10 @@
-#include "lidar/sweep_motion.h"
+#include "canyon/lidar/sweep_motion.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::lidar {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "core/trajectory.h"
-#include "lidar/aim.h"
+#include "canyon/core/motion/trajectory.h"
+#include "canyon/lidar/beam/aim.h"
 
 namespace canyon::lidar {
 

@@ -1,4 +1,4 @@
-#include "lidar/volley_scanner.h"
+#include "canyon/lidar/volley_scanner.h"
 
 #include <algorithm>
 #include <array>
@@ -7,15 +7,15 @@
 #include <mutex>
 #include <span>
 
-#include "core/check.h"
-#include "core/parallel.h"
-#include "core/units.h"
-#include "lidar/crosstalk.h"
-#include "lidar/ego_mask.h"
-#include "lidar/firing_pattern.h"
-#include "lidar/sensor_report.h"
-#include "lidar/sweep_motion.h"
-#include "lidar/weather.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/beam/firing_pattern.h"
+#include "canyon/lidar/beam/weather.h"
+#include "canyon/lidar/ego_mask.h"
+#include "canyon/lidar/receiver/crosstalk.h"
+#include "canyon/lidar/receiver/sensor_report.h"
+#include "canyon/lidar/sweep_motion.h"
 
 namespace canyon::lidar {
 namespace {

@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <memory>
 
-#include "lidar/beam_table.h"
-#include "lidar/detector.h"
-#include "lidar/echo_model.h"
-#include "lidar/return_choice.h"
-#include "lidar/scanner.h"
+#include "canyon/lidar/beam/beam_table.h"
+#include "canyon/lidar/beam/echo_model.h"
+#include "canyon/lidar/receiver/detector.h"
+#include "canyon/lidar/receiver/return_choice.h"
+#include "canyon/lidar/scanner.h"
 
 namespace canyon::lidar {
 

@@ -1,11 +1,11 @@
-#include "mission/boundaries.h"
+#include "canyon/mission/boundaries.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "core/config_text.h"
+#include "canyon/core/config/text.h"
 
 namespace canyon::mission {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include "core/messages.h"
-#include "core/result.h"
-#include "core/truth.h"
-#include "gnss/sensor.h"
-#include "lidar/scanner.h"
-#include "mission/mapper.h"
-#include "mission/run_record.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
+#include "canyon/core/truth.h"
+#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/lidar/scanner.h"
+#include "canyon/mission/mapper.h"
+#include "canyon/mission/run_record.h"
 
 namespace canyon::mission {
 

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "core/files.h"
-#include "core/fix_status.h"
-#include "core/units.h"
-#include "mission/csv_writer.h"
-#include "mission/results.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/fix_status.h"
+#include "canyon/core/units.h"
+#include "canyon/mission/csv_writer.h"
+#include "canyon/mission/results.h"
 
 namespace canyon::mission {
 

@@ -1,11 +1,11 @@
-#include "mission/mapper.h"
+#include "canyon/mission/mapper.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/LU>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::mission {
 

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "core/messages.h"
-#include "lidar/registration.h"
+#include "canyon/core/messages.h"
+#include "canyon/lidar/registration/registration.h"
 
 namespace canyon::mission {
 

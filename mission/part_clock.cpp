@@ -1,4 +1,4 @@
-#include "mission/part_clock.h"
+#include "canyon/mission/part_clock.h"
 
 namespace canyon::mission {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "core/cpu_time.h"
+#include "canyon/core/process/cpu_time.h"
 
 namespace canyon::mission {
 

@@ -1,4 +1,4 @@
-#include "mission/results.h"
+#include "canyon/mission/results.h"
 
 #include <sys/resource.h>
 
@@ -8,13 +8,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/files.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "core/version.h"
-#include "mission/paired_errors.h"
-#include "mission/route_tape.h"
-#include "scene/ray_tracer_instructions.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/process/version.h"
+#include "canyon/core/units.h"
+#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/scoring/paired_errors.h"
+#include "canyon/scene/tracing/ray_tracer_instructions.h"
 
 namespace canyon::mission {
 

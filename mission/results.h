@@ -6,10 +6,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "core/result.h"
-#include "mission/mission_file.h"
-#include "mission/run_record.h"
-#include "mission/summary.h"
+#include "canyon/core/result.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/run_record.h"
+#include "canyon/mission/summary.h"
 
 namespace canyon::mission {
 

@@ -1,4 +1,4 @@
-#include "mission/run.h"
+#include "canyon/mission/run.h"
 
 #include <algorithm>
 #include <chrono>
@@ -7,15 +7,15 @@
 #include <functional>
 #include <string>
 
-#include "core/random.h"
-#include "core/true_motion.h"
-#include "core/units.h"
-#include "lidar/deskew.h"
-#include "lidar/voxel_map.h"
-#include "mission/boundaries.h"
-#include "mission/mapper.h"
-#include "mission/motion_source.h"
-#include "mission/schedule.h"
+#include "canyon/core/motion/true_motion.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/deskew.h"
+#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/mission/boundaries.h"
+#include "canyon/mission/mapper.h"
+#include "canyon/mission/motion/motion_source.h"
+#include "canyon/mission/motion/schedule.h"
 
 namespace canyon::mission {
 

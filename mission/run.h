@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "core/progress.h"
-#include "core/result.h"
-#include "mission/mission_file.h"
-#include "mission/run_record.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/result.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/run_record.h"
 
 namespace canyon::mission {
 
@@ -16,9 +16,9 @@ struct RunParts {
 };
 
 /// Drives one mission. The master step is the vehicle's own (Vehicle::kStep_ns); within it everything else is due at
-/// its own ticks (mission/schedule.h): IMU, GNSS, LIDAR, autonomy in this order at equal times. Commands take effect at
-/// the next master step. A fix or a scan between two IMU samples is used once the filter has come there, in the middle
-/// of the next sample. The only loop is estimate -> drive: truth goes to sensors and scorer alone.
+/// its own ticks (mission/motion/schedule.h): IMU, GNSS, LIDAR, autonomy in this order at equal times. Commands take
+/// effect at the next master step. A fix or a scan between two IMU samples is used once the filter has come there, in
+/// the middle of the next sample. The only loop is estimate -> drive: truth goes to sensors and scorer alone.
 ///
 /// With a tape the loop is open: the true motion is the tape's, whatever the autonomy asks for, and the run goes on to
 /// its end. There is then no outcome and no waypoint is scored.

@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
-#include "core/local_frame.h"
-#include "core/messages.h"
-#include "core/tape.h"
-#include "core/truth.h"
-#include "fusion/error_state_filter.h"
-#include "lidar/cloud_files.h"
-#include "lidar/map_quality.h"
-#include "mission/autonomy.h"
-#include "mission/mission_config.h"
-#include "mission/mission_file.h"
-#include "mission/part_clock.h"
-#include "mission/scorer.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/tape.h"
+#include "canyon/core/truth.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/lidar/map_quality.h"
+#include "canyon/mission/autonomy/autonomy.h"
+#include "canyon/mission/config/mission_config.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/part_clock.h"
+#include "canyon/mission/scoring/scorer.h"
 
 namespace canyon::mission {
 

@@ -1,10 +1,10 @@
-#include "mission/summary.h"
+#include "canyon/mission/summary.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/median.h"
-#include "core/units.h"
+#include "canyon/core/math/median.h"
+#include "canyon/core/units.h"
 
 namespace canyon::mission {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "mission/run_record.h"
+#include "canyon/mission/run_record.h"
 
 namespace canyon::mission {
 

@@ -1,15 +1,15 @@
-#include "report/html_report.h"
+#include "canyon/report/html_report.h"
 
 #include <algorithm>
 
-#include "core/embedded.h"
-#include "core/files.h"
-#include "core/progress.h"
-#include "report/format.h"
-#include "report/html.h"
-#include "report/read_results.h"
-#include "report/sections.h"
-#include "report/theme.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/embedded.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/report/draw/format.h"
+#include "canyon/report/draw/html.h"
+#include "canyon/report/draw/theme.h"
+#include "canyon/report/read/read_results.h"
+#include "canyon/report/sections/sections.h"
 
 namespace canyon::report {
 namespace {

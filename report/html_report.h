@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 namespace canyon::report {
 

@@ -1,4 +1,4 @@
-#include "scene/import.h"
+#include "canyon/scene/import.h"
 
 #include <algorithm>
 #include <array>
@@ -7,21 +7,21 @@
 #include <filesystem>
 #include <optional>
 
-#include "core/config_text.h"
-#include "core/files.h"
-#include "core/geoid.h"
-#include "core/printable_text.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "scene/elevation/elevation.h"
-#include "scene/free_space.h"
-#include "scene/ground_surface.h"
-#include "scene/importers/assemble.h"
-#include "scene/importers/far_points.h"
-#include "scene/importers/importer.h"
-#include "scene/importers/raw_points.h"
-#include "scene/projection.h"
-#include "scene/written_scene.h"
+#include "canyon/core/config/text.h"
+#include "canyon/core/earth/geoid.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/printable_text.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/scene/elevation/elevation.h"
+#include "canyon/scene/ground/ground_surface.h"
+#include "canyon/scene/importers/assemble.h"
+#include "canyon/scene/importers/far_points.h"
+#include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/raw_points.h"
+#include "canyon/scene/projection.h"
+#include "canyon/scene/tracing/free_space.h"
+#include "canyon/scene/written_scene.h"
 
 namespace canyon::scene {
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "core/config.h"
-#include "core/result.h"
-#include "scene/scene.h"
-#include "scene/scene_cost.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/result.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/scene_cost.h"
 
 namespace canyon::scene {
 

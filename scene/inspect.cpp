@@ -1,4 +1,4 @@
-#include "scene/inspect.h"
+#include "canyon/scene/inspect.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
-#include "core/progress.h"
-#include "scene/triangle.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/surfaces/triangle.h"
 
 namespace canyon::scene {
 namespace {

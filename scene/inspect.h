@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "canyon/scene/scene.h"
 
 namespace canyon::scene {
 

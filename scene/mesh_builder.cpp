@@ -1,6 +1,6 @@
-#include "scene/mesh_builder.h"
+#include "canyon/scene/mesh_builder.h"
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::scene {
 

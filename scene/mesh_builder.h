@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "scene/scene.h"
+#include "canyon/scene/scene.h"
 
 namespace canyon::scene {
 

@@ -1,10 +1,10 @@
-#include "scene/projection.h"
+#include "canyon/scene/projection.h"
 
 #include <proj.h>
 
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::scene {
 

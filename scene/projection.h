@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
-#include "core/earth.h"
-#include "core/result.h"
-#include "scene/importers/raw_scene.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/result.h"
+#include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
 

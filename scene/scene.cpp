@@ -1,15 +1,15 @@
-#include "scene/scene.h"
+#include "canyon/scene/scene.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "core/check.h"
-#include "core/files.h"
-#include "core/progress.h"
-#include "scene/site.h"
-#include "scene/tiled_tracer.h"
-#include "scene/triangle.h"
-#include "scene/triangulate.h"
+#include "canyon/core/check.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/city/site.h"
+#include "canyon/scene/surfaces/triangle.h"
+#include "canyon/scene/surfaces/triangulate.h"
+#include "canyon/scene/tracing/tiled_tracer.h"
 
 namespace canyon::scene {
 namespace {

@@ -12,12 +12,12 @@
 
 #include <Eigen/Core>
 
-#include "core/local_frame.h"
-#include "scene/edge.h"
-#include "scene/facet.h"
-#include "scene/foliage_index.h"
-#include "scene/material.h"
-#include "scene/street_graph.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/scene/city/street_graph.h"
+#include "canyon/scene/surfaces/edge.h"
+#include "canyon/scene/surfaces/facet.h"
+#include "canyon/scene/surfaces/foliage_index.h"
+#include "canyon/scene/surfaces/material.h"
 
 namespace canyon::scene {
 

@@ -1,7 +1,7 @@
-#include "scene/scene_at.h"
+#include "canyon/scene/scene_at.h"
 
-#include "core/check.h"
-#include "scene/tiled_tracer.h"
+#include "canyon/core/check.h"
+#include "canyon/scene/tracing/tiled_tracer.h"
 
 namespace canyon::scene {
 namespace {

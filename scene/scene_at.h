@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
-#include "scene/instances.h"
-#include "scene/ray_packet.h"
-#include "scene/scene.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/tracing/instances.h"
+#include "canyon/scene/tracing/ray_packet.h"
 
 namespace canyon::scene {
 
@@ -38,7 +38,7 @@ struct NearestSurface {
 /// The scene at one time as sensors receive it; one per run. Cheap to make and to copy; a copy keeps the instances it
 /// was made with. All queries are const and thread-safe. Ray origins, directions and points must be finite. Scenes
 /// wider than 2 km are traced in tiles, each about a center of its own, so that rays are as exact everywhere as near
-/// W's origin (scene/tiled_tracer.h).
+/// W's origin (scene/tracing/tiled_tracer.h).
 ///
 /// Moving things have an acceleration structure of their own over their shapes', made anew at each step; the static
 /// scene's is never touched, and a scene without moving things pays nothing for them. Triangles from

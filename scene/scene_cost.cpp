@@ -1,4 +1,4 @@
-#include "scene/scene_cost.h"
+#include "canyon/scene/scene_cost.h"
 
 #include <cstdio>
 

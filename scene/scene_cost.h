@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 namespace canyon::scene {
 

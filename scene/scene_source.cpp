@@ -1,7 +1,7 @@
-#include "scene/scene_source.h"
+#include "canyon/scene/scene_source.h"
 
-#include "core/progress.h"
-#include "core/units.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
 
 namespace canyon::scene {
 

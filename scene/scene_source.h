@@ -1,8 +1,8 @@
 #pragma once
 
-#include "scene/city.h"
-#include "scene/import.h"
-#include "scene/traffic.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/city/traffic.h"
+#include "canyon/scene/import.h"
 
 namespace canyon::scene {
 

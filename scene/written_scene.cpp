@@ -1,4 +1,4 @@
-#include "scene/written_scene.h"
+#include "canyon/scene/written_scene.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,12 +7,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/config_text.h"
-#include "core/files.h"
-#include "core/progress.h"
-#include "scene/importers/far_points.h"
-#include "scene/importers/importer.h"
-#include "scene/importers/json_text.h"
+#include "canyon/core/config/text.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/far_points.h"
+#include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/parsing/json_text.h"
 
 namespace canyon::scene {
 namespace {

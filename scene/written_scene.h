@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "core/result.h"
-#include "scene/scene.h"
+#include "canyon/core/result.h"
+#include "canyon/scene/scene.h"
 
 namespace canyon::scene {
 

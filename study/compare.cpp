@@ -1,13 +1,13 @@
-#include "study/compare.h"
+#include "canyon/study/compare.h"
 
 #include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
 
-#include "core/parallel.h"
-#include "core/progress.h"
-#include "mission/run.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/mission/run.h"
 
 namespace canyon::study {
 

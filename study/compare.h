@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/tape.h"
-#include "mission/mission_file.h"
-#include "mission/results.h"
+#include "canyon/core/motion/tape.h"
+#include "canyon/core/result.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/results.h"
 
 namespace canyon::study {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <limits>
 
-#include "mission/paired_errors.h"
-#include "study/compare.h"
+#include "canyon/mission/scoring/paired_errors.h"
+#include "canyon/study/compare.h"
 
 namespace canyon::study {
 

@@ -1,12 +1,12 @@
-#include "study/gnss_map.h"
+#include "canyon/study/gnss_map.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "core/check.h"
-#include "core/parallel.h"
-#include "scene/scene_at.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::study {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 
-#include "core/ascii_grid.h"
-#include "core/progress.h"
-#include "core/result.h"
-#include "gnss/sensor.h"
+#include "canyon/core/files/ascii_grid.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/result.h"
+#include "canyon/gnss/sensor/sensor.h"
 
 namespace canyon::study {
 

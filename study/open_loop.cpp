@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "mission/route_tape.h"
-#include "study/compare.h"
+#include "canyon/mission/motion/route_tape.h"
+#include "canyon/study/compare.h"
 
 namespace canyon::study {
 

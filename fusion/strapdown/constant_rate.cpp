@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "core/rotation.h"
-#include "fusion/strapdown/models.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/fusion/strapdown/models.h"
 
 namespace canyon::fusion {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "fusion/strapdown.h"
+#include "canyon/fusion/strapdown.h"
 
 /// Makers of the rows of the table in fusion/strapdown.cpp, each in the file of its model.
 namespace canyon::fusion {

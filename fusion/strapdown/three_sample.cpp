@@ -1,9 +1,9 @@
 #include <array>
 #include <cmath>
 
-#include "core/earth.h"
-#include "core/rotation.h"
-#include "fusion/strapdown/models.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/fusion/strapdown/models.h"
 
 namespace canyon::fusion {
 namespace {

@@ -1,5 +1,5 @@
-#include "core/rotation.h"
-#include "fusion/strapdown/models.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/fusion/strapdown/models.h"
 
 namespace canyon::fusion {
 namespace {

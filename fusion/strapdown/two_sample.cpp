@@ -1,4 +1,4 @@
-#include "fusion/strapdown/models.h"
+#include "canyon/fusion/strapdown/models.h"
 
 namespace canyon::fusion {
 namespace {

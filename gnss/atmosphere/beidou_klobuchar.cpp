@@ -1,10 +1,10 @@
-#include "gnss/atmosphere/beidou_klobuchar.h"
+#include "canyon/gnss/atmosphere/beidou_klobuchar.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
-#include "gnss/satellites/system_constants.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/system_constants.h"
 
 namespace canyon::gnss {
 namespace {

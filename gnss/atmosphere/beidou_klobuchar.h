@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gnss/atmosphere/klobuchar.h"
-#include "gnss/sky_view.h"
+#include "canyon/gnss/atmosphere/klobuchar.h"
+#include "canyon/gnss/sky_view.h"
 
 namespace canyon::gnss {
 

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "core/check.h"
-#include "gnss/atmosphere/ionosphere.h"
-#include "gnss/atmosphere/ionosphere_map.h"
+#include "canyon/core/check.h"
+#include "canyon/gnss/atmosphere/ionosphere.h"
+#include "canyon/gnss/atmosphere/ionosphere_map.h"
 
 namespace canyon::gnss {
 namespace {

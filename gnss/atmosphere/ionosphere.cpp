@@ -1,6 +1,6 @@
-#include "gnss/atmosphere/ionosphere.h"
+#include "canyon/gnss/atmosphere/ionosphere.h"
 
-#include "gnss/signal.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <span>
 
-#include "gnss/atmosphere/klobuchar.h"
-#include "gnss/model_table.h"
-#include "gnss/sky_view.h"
+#include "canyon/core/model_table.h"
+#include "canyon/gnss/atmosphere/klobuchar.h"
+#include "canyon/gnss/sky_view.h"
 
 namespace canyon::gnss {
 

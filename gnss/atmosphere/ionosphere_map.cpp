@@ -1,9 +1,9 @@
-#include "gnss/atmosphere/ionosphere_map.h"
+#include "canyon/gnss/atmosphere/ionosphere_map.h"
 
 #include <cmath>
 
-#include "core/units.h"
-#include "gnss/atmosphere/ionosphere.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/atmosphere/ionosphere.h"
 
 namespace canyon::gnss {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gnss/products/ionex_file.h"
-#include "gnss/sky_view.h"
+#include "canyon/gnss/products/ionex_file.h"
+#include "canyon/gnss/sky_view.h"
 
 namespace canyon::gnss {
 

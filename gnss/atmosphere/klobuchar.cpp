@@ -1,9 +1,9 @@
-#include "gnss/atmosphere/klobuchar.h"
+#include "canyon/gnss/atmosphere/klobuchar.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 

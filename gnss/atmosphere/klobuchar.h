@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/time.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

@@ -1,4 +1,4 @@
-#include "gnss/atmosphere/ionosphere.h"
+#include "canyon/gnss/atmosphere/ionosphere.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,10 +1,10 @@
-#include "gnss/atmosphere/niell.h"
+#include "canyon/gnss/atmosphere/niell.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 namespace {

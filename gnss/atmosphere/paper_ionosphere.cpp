@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "gnss/atmosphere/ionosphere.h"
+#include "canyon/gnss/atmosphere/ionosphere.h"
 
 namespace canyon::gnss {
 namespace {

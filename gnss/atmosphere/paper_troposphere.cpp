@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "gnss/atmosphere/niell.h"
-#include "gnss/atmosphere/troposphere.h"
-#include "gnss/atmosphere/zenith_delay.h"
+#include "canyon/gnss/atmosphere/niell.h"
+#include "canyon/gnss/atmosphere/troposphere.h"
+#include "canyon/gnss/atmosphere/zenith_delay.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,4 +1,4 @@
-#include "gnss/atmosphere/troposphere.h"
+#include "canyon/gnss/atmosphere/troposphere.h"
 
 namespace canyon::gnss {
 namespace {

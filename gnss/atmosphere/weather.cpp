@@ -1,4 +1,4 @@
-#include "gnss/atmosphere/weather.h"
+#include "canyon/gnss/atmosphere/weather.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "gnss/atmosphere/zenith_delay.h"
+#include "canyon/gnss/atmosphere/zenith_delay.h"
 
 #include <cmath>
 

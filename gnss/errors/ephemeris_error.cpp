@@ -1,4 +1,4 @@
-#include "gnss/errors/ephemeris_error.h"
+#include "canyon/gnss/errors/ephemeris_error.h"
 
 namespace canyon::gnss {
 namespace {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <span>
 
-#include "gnss/model_table.h"
-#include "gnss/satellites/constellation.h"
+#include "canyon/core/model_table.h"
+#include "canyon/gnss/satellites/constellation.h"
 
 namespace canyon::gnss {
 

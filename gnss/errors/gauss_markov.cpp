@@ -1,9 +1,9 @@
-#include "gnss/errors/gauss_markov.h"
+#include "canyon/gnss/errors/gauss_markov.h"
 
 #include <array>
 #include <cmath>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::gnss {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/random.h"
-#include "core/time.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

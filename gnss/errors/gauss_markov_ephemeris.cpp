@@ -1,5 +1,5 @@
-#include "gnss/errors/ephemeris_error.h"
-#include "gnss/errors/gauss_markov.h"
+#include "canyon/gnss/errors/ephemeris_error.h"
+#include "canyon/gnss/errors/gauss_markov.h"
 
 namespace canyon::gnss {
 namespace {

@@ -2,11 +2,11 @@
 #include <optional>
 #include <vector>
 
-#include "core/check.h"
-#include "core/median.h"
-#include "core/units.h"
-#include "gnss/errors/ephemeris_error.h"
-#include "gnss/products/clock_datum.h"
+#include "canyon/core/check.h"
+#include "canyon/core/math/median.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/errors/ephemeris_error.h"
+#include "canyon/gnss/products/clock_datum.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "core/units.h"
-#include "gnss/errors/ephemeris_error.h"
-#include "gnss/errors/gauss_markov.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/errors/ephemeris_error.h"
+#include "canyon/gnss/errors/gauss_markov.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "core/units.h"
-#include "gnss/errors/ephemeris_error.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/errors/ephemeris_error.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,13 +1,13 @@
-#include "gnss/nmea/nmea_reader.h"
+#include "canyon/gnss/nmea/nmea_reader.h"
 
 #include <cmath>
 #include <optional>
 
-#include "core/files.h"
-#include "core/units.h"
-#include "gnss/nmea/sentence.h"
-#include "gnss/rinex/calendar_fields.h"
-#include "gnss/rinex/text_lines.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/nmea/sentence.h"
+#include "canyon/gnss/rinex/calendar_fields.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 namespace {

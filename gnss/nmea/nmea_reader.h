@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/earth.h"
-#include "core/messages.h"
-#include "core/result.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
 
 namespace canyon::gnss {
 

@@ -1,13 +1,13 @@
-#include "gnss/nmea/nmea_writer.h"
+#include "canyon/gnss/nmea/nmea_writer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
-#include "core/earth.h"
-#include "core/units.h"
-#include "gnss/nmea/sentence.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/nmea/sentence.h"
 
 namespace canyon::gnss {
 namespace {

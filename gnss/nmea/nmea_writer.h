@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::gnss {
 

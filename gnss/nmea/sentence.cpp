@@ -1,4 +1,4 @@
-#include "gnss/nmea/sentence.h"
+#include "canyon/gnss/nmea/sentence.h"
 
 #include <cstdio>
 

@@ -1,4 +1,4 @@
-#include "gnss/paths/beam.h"
+#include "canyon/gnss/paths/beam.h"
 
 #include <Eigen/Geometry>
 

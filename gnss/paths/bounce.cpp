@@ -1,11 +1,11 @@
-#include "gnss/paths/bounce.h"
+#include "canyon/gnss/paths/bounce.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 namespace {

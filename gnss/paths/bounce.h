@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "gnss/paths/fresnel.h"
-#include "scene/material.h"
+#include "canyon/gnss/paths/diffraction/fresnel.h"
+#include "canyon/scene/surfaces/material.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
-#include "gnss/paths/ground_reflection.h"
+#include "canyon/gnss/paths/ground_reflection.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "gnss/paths/bounce.h"
+#include "canyon/gnss/paths/bounce.h"
 
 namespace canyon::gnss {
 namespace {

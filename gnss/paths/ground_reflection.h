@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "gnss/paths/path_model.h"
+#include "canyon/gnss/paths/path_model.h"
 
 namespace canyon::gnss {
 

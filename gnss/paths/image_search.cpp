@@ -1,12 +1,12 @@
-#include "gnss/paths/image_search.h"
+#include "canyon/gnss/paths/image_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "gnss/paths/beam.h"
-#include "gnss/paths/bounce.h"
-#include "gnss/paths/skyline.h"
+#include "canyon/gnss/paths/beam.h"
+#include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/skyline.h"
 
 namespace canyon::gnss {
 namespace {

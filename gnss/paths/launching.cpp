@@ -4,11 +4,11 @@
 #include <map>
 #include <optional>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "gnss/paths/bounce.h"
-#include "gnss/paths/path_model.h"
-#include "scene/triangle.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/path_model.h"
+#include "canyon/scene/surfaces/triangle.h"
 
 namespace canyon::gnss {
 namespace {

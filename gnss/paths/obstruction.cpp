@@ -1,11 +1,11 @@
-#include "gnss/paths/obstruction.h"
+#include "canyon/gnss/paths/obstruction.h"
 
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "scene/scene_at.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 

@@ -9,10 +9,10 @@
 
 #include <Eigen/Core>
 
-#include "gnss/model_table.h"
-#include "gnss/paths/fresnel.h"
-#include "gnss/paths/plane_waves.h"
-#include "gnss/sensor.h"
+#include "canyon/core/model_table.h"
+#include "canyon/gnss/paths/diffraction/fresnel.h"
+#include "canyon/gnss/paths/plane_waves.h"
+#include "canyon/gnss/sensor/sensor.h"
 
 namespace canyon::gnss {
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "core/check.h"
-#include "gnss/signal.h"
+#include "canyon/core/check.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 

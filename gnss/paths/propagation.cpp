@@ -1,8 +1,8 @@
-#include "gnss/paths/propagation.h"
+#include "canyon/gnss/paths/propagation.h"
 
 #include <algorithm>
 
-#include "gnss/paths/ground_reflection.h"
+#include "canyon/gnss/paths/ground_reflection.h"
 
 namespace canyon::gnss {
 namespace {

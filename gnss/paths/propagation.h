@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "gnss/paths/diffraction.h"
-#include "gnss/paths/path_model.h"
+#include "canyon/gnss/paths/diffraction/diffraction.h"
+#include "canyon/gnss/paths/path_model.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
-#include "gnss/paths/skyline.h"
+#include "canyon/gnss/paths/skyline.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "scene/facet.h"
+#include "canyon/scene/surfaces/facet.h"
 
 namespace canyon::gnss {
 

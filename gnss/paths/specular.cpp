@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "gnss/paths/image_search.h"
-#include "gnss/paths/path_model.h"
+#include "canyon/gnss/paths/image_search.h"
+#include "canyon/gnss/paths/path_model.h"
 
 namespace canyon::gnss {
 namespace {

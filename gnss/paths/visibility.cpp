@@ -1,4 +1,4 @@
-#include "gnss/paths/path_model.h"
+#include "canyon/gnss/paths/path_model.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,13 +1,13 @@
-#include "gnss/products/almanac_file.h"
+#include "canyon/gnss/products/almanac_file.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/files.h"
-#include "core/units.h"
-#include "gnss/rinex/reader_warnings.h"
-#include "gnss/rinex/text_lines.h"
-#include "gnss/satellites/ephemeris_limits.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/rinex/reader_warnings.h"
+#include "canyon/gnss/rinex/text_lines.h"
+#include "canyon/gnss/satellites/ephemerides/ephemeris_limits.h"
 
 namespace canyon::gnss {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "core/result.h"
-#include "gnss/satellites/navigation_data.h"
+#include "canyon/core/result.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 
 namespace canyon::gnss {
 

@@ -1,14 +1,14 @@
-#include "gnss/products/antex_file.h"
+#include "canyon/gnss/products/antex_file.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/files.h"
-#include "core/units.h"
-#include "gnss/rinex/calendar_fields.h"
-#include "gnss/rinex/reader_warnings.h"
-#include "gnss/rinex/satellite_name.h"
-#include "gnss/rinex/text_lines.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/rinex/calendar_fields.h"
+#include "canyon/gnss/rinex/reader_warnings.h"
+#include "canyon/gnss/rinex/satellite_name.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 namespace {

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "core/messages.h"
-#include "core/result.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
 
 namespace canyon::gnss {
 

@@ -1,6 +1,6 @@
-#include "gnss/products/clock_datum.h"
+#include "canyon/gnss/products/clock_datum.h"
 
-#include "gnss/signal.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 

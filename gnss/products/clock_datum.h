@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::gnss {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/messages.h"
-#include "core/result.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
 
 namespace canyon::gnss {
 

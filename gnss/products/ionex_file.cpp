@@ -1,16 +1,16 @@
-#include "gnss/products/ionex_file.h"
+#include "canyon/gnss/products/ionex_file.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
-#include "core/files.h"
-#include "core/messages.h"
-#include "core/units.h"
-#include "gnss/rinex/calendar_fields.h"
-#include "gnss/rinex/reader_warnings.h"
-#include "gnss/rinex/text_lines.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/rinex/calendar_fields.h"
+#include "canyon/gnss/rinex/reader_warnings.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 namespace {

@@ -2,13 +2,13 @@
 #include <array>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "gnss/products/clock_datum.h"
-#include "gnss/products/precise_orbits.h"
-#include "gnss/satellites/glonass_channels.h"
-#include "gnss/satellites/system_constants.h"
-#include "gnss/signal.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/products/clock_datum.h"
+#include "canyon/gnss/products/precise_orbits.h"
+#include "canyon/gnss/satellites/glonass_channels.h"
+#include "canyon/gnss/satellites/system_constants.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {

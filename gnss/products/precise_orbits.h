@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "gnss/products/antex_file.h"
-#include "gnss/products/clock_file.h"
-#include "gnss/satellites/constellation.h"
-#include "gnss/satellites/navigation_data.h"
+#include "canyon/core/result.h"
+#include "canyon/gnss/products/antex_file.h"
+#include "canyon/gnss/products/clock_file.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 
 namespace canyon::gnss {
 

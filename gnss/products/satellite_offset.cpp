@@ -1,6 +1,6 @@
-#include "gnss/products/antex_file.h"
-#include "gnss/products/clock_datum.h"
-#include "gnss/satellites/sun.h"
+#include "canyon/gnss/products/antex_file.h"
+#include "canyon/gnss/products/clock_datum.h"
+#include "canyon/gnss/satellites/sun.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,8 +1,8 @@
-#include "gnss/receiver/carrier_noise.h"
+#include "canyon/gnss/receiver/carrier_noise.h"
 
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 

@@ -1,11 +1,11 @@
-#include "gnss/receiver/code_correlation.h"
+#include "canyon/gnss/receiver/code_correlation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::gnss {
 

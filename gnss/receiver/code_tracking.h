@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "gnss/receiver/code_correlation.h"
+#include "canyon/gnss/receiver/code_correlation.h"
 
 namespace canyon::gnss {
 

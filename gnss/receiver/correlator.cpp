@@ -1,8 +1,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/units.h"
-#include "gnss/receiver/multipath_rule.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/receiver/multipath_rule.h"
 
 namespace canyon::gnss {
 namespace {

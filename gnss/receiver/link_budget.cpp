@@ -1,9 +1,9 @@
-#include "gnss/receiver/link_budget.h"
+#include "canyon/gnss/receiver/link_budget.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "gnss/paths/path_model.h"
-#include "gnss/receiver/receiver_antenna.h"
-#include "gnss/signal.h"
+#include "canyon/gnss/paths/path_model.h"
+#include "canyon/gnss/receiver/receiver_antenna.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 

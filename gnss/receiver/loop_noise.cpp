@@ -1,9 +1,9 @@
-#include "gnss/receiver/loop_noise.h"
+#include "canyon/gnss/receiver/loop_noise.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::gnss {
 namespace {

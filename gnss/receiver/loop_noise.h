@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/random.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::gnss {
 

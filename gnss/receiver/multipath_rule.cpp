@@ -1,4 +1,4 @@
-#include "gnss/receiver/multipath_rule.h"
+#include "canyon/gnss/receiver/multipath_rule.h"
 
 namespace canyon::gnss {
 namespace {

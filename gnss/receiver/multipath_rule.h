@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "gnss/model_table.h"
-#include "gnss/receiver/code_tracking.h"
-#include "gnss/receiver/link_budget.h"
+#include "canyon/core/model_table.h"
+#include "canyon/gnss/receiver/code_tracking.h"
+#include "canyon/gnss/receiver/link_budget.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
-#include "gnss/receiver/receiver_antenna.h"
+#include "canyon/gnss/receiver/receiver_antenna.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "gnss/model_table.h"
+#include "canyon/core/model_table.h"
 
 namespace canyon::gnss {
 

@@ -1,4 +1,4 @@
-#include "gnss/receiver/receiver_clock.h"
+#include "canyon/gnss/receiver/receiver_clock.h"
 
 namespace canyon::gnss {
 namespace {

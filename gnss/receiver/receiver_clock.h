@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "gnss/model_table.h"
+#include "canyon/core/model_table.h"
 
 namespace canyon::gnss {
 

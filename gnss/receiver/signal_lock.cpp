@@ -1,10 +1,10 @@
-#include "gnss/receiver/signal_lock.h"
+#include "canyon/gnss/receiver/signal_lock.h"
 
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "gnss/receiver/carrier_noise.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/receiver/carrier_noise.h"
 
 namespace canyon::gnss {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <map>
 
-#include "core/messages.h"
-#include "core/random.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::gnss {
 

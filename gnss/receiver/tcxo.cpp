@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "core/check.h"
-#include "core/random.h"
-#include "core/units.h"
-#include "gnss/receiver/receiver_clock.h"
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/receiver/receiver_clock.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,8 +1,8 @@
-#include "gnss/rinex/calendar_fields.h"
+#include "canyon/gnss/rinex/calendar_fields.h"
 
 #include <array>
 
-#include "gnss/rinex/text_lines.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/time.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

@@ -1,4 +1,4 @@
-#include "gnss/rinex/reader_warnings.h"
+#include "canyon/gnss/rinex/reader_warnings.h"
 
 namespace canyon::gnss {
 namespace {

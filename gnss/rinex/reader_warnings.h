@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 namespace canyon::gnss {
 

@@ -1,9 +1,9 @@
-#include "gnss/rinex/record_fields.h"
+#include "canyon/gnss/rinex/record_fields.h"
 
 #include <cmath>
 
-#include "gnss/rinex/calendar_fields.h"
-#include "gnss/rinex/text_lines.h"
+#include "canyon/gnss/rinex/calendar_fields.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 

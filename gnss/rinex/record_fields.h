@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
-#include "core/time.h"
+#include "canyon/core/result.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

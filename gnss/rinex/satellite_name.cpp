@@ -1,6 +1,6 @@
-#include "gnss/rinex/satellite_name.h"
+#include "canyon/gnss/rinex/satellite_name.h"
 
-#include "gnss/rinex/text_lines.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 namespace canyon::gnss {
 

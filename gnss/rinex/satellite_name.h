@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "gnss/rinex/observation_code.h"
+#include "canyon/gnss/rinex/observation/observation_code.h"
 
 namespace canyon::gnss {
 

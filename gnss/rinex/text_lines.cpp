@@ -1,11 +1,11 @@
-#include "gnss/rinex/text_lines.h"
+#include "canyon/gnss/rinex/text_lines.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 
-#include "core/progress.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/check.h"
-#include "gnss/satellites/navigation_data.h"
+#include "canyon/core/check.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 
 namespace canyon::gnss {
 namespace {

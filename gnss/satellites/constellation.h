@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "core/messages.h"
-#include "core/time.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

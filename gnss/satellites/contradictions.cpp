@@ -1,4 +1,4 @@
-#include "gnss/satellites/contradictions.h"
+#include "canyon/gnss/satellites/contradictions.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "gnss/satellites/glonass_ephemeris.h"
-#include "gnss/satellites/kepler_ephemeris.h"
+#include "canyon/gnss/satellites/ephemerides/glonass_ephemeris.h"
+#include "canyon/gnss/satellites/ephemerides/kepler_ephemeris.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
-#include "gnss/satellites/csv_table.h"
+#include "canyon/gnss/satellites/csv_table.h"
 
 #include <algorithm>
 #include <charconv>
 
-#include "core/check.h"
-#include "core/embedded.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/embedded.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,6 +1,6 @@
-#include "gnss/satellites/glonass_channels.h"
+#include "canyon/gnss/satellites/glonass_channels.h"
 
-#include "gnss/satellites/csv_table.h"
+#include "canyon/gnss/satellites/csv_table.h"
 
 namespace canyon::gnss {
 

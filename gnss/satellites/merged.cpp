@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "gnss/satellites/navigation_data.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,9 +1,9 @@
-#include "gnss/satellites/navigation_data.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/progress.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::gnss {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "gnss/atmosphere/klobuchar.h"
-#include "gnss/satellites/glonass_ephemeris.h"
-#include "gnss/satellites/kepler_ephemeris.h"
+#include "canyon/core/result.h"
+#include "canyon/gnss/atmosphere/klobuchar.h"
+#include "canyon/gnss/satellites/ephemerides/glonass_ephemeris.h"
+#include "canyon/gnss/satellites/ephemerides/kepler_ephemeris.h"
 
 namespace canyon::gnss {
 

@@ -1,4 +1,4 @@
-#include "gnss/satellites/navigation_message.h"
+#include "canyon/gnss/satellites/navigation_message.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "gnss/satellites/constellation.h"
-#include "gnss/satellites/csv_table.h"
-#include "gnss/signal.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/satellites/csv_table.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {

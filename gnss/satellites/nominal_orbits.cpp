@@ -4,14 +4,14 @@
 
 #include <Eigen/Geometry>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "gnss/satellites/constellation.h"
-#include "gnss/satellites/csv_table.h"
-#include "gnss/satellites/glonass_channels.h"
-#include "gnss/satellites/kepler.h"
-#include "gnss/satellites/navigation_data.h"
-#include "gnss/satellites/system_constants.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/satellites/csv_table.h"
+#include "canyon/gnss/satellites/ephemerides/kepler.h"
+#include "canyon/gnss/satellites/glonass_channels.h"
+#include "canyon/gnss/satellites/navigation_data.h"
+#include "canyon/gnss/satellites/system_constants.h"
 
 namespace canyon::gnss {
 namespace {

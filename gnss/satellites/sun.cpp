@@ -1,8 +1,8 @@
-#include "gnss/satellites/sun.h"
+#include "canyon/gnss/satellites/sun.h"
 
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 

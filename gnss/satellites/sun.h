@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/time.h"
+#include "canyon/core/time.h"
 
 namespace canyon::gnss {
 

@@ -1,6 +1,6 @@
-#include "gnss/satellites/system_constants.h"
+#include "canyon/gnss/satellites/system_constants.h"
 
-#include "gnss/signal.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::gnss {
 
 /// Constants with which a system's broadcast ephemerides are fitted, and must therefore be evaluated. They differ from
-/// core/earth.h and from one another in the last digits on purpose.
+/// core/earth/earth.h and from one another in the last digits on purpose.
 struct SystemConstants {
   double mu_m3_s2;          ///< gravitational constant of the Earth
   double earth_rate_rad_s;  ///< rotation rate of the Earth

@@ -1,9 +1,9 @@
-#include "gnss/satellites/transmission.h"
+#include "canyon/gnss/satellites/transmission.h"
 
 #include <cmath>
 
-#include "core/units.h"
-#include "gnss/signal.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "gnss/satellites/constellation.h"
+#include "canyon/gnss/satellites/constellation.h"
 
 namespace canyon::gnss {
 

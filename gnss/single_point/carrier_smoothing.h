@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::gnss {
 

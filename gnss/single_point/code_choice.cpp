@@ -1,4 +1,4 @@
-#include "gnss/single_point/code_choice.h"
+#include "canyon/gnss/single_point/code_choice.h"
 
 #include <string_view>
 

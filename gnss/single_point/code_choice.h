@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "gnss/rinex/observation_file.h"
+#include "canyon/gnss/rinex/observation/observation_file.h"
 
 namespace canyon::gnss {
 

@@ -1,8 +1,8 @@
-#include "gnss/single_point/config.h"
+#include "canyon/gnss/single_point/config.h"
 
-#include "gnss/single_point/range_corrections.h"
-#include "gnss/solver/fault_exclusion.h"
-#include "gnss/solver/weighting.h"
+#include "canyon/gnss/single_point/range_corrections.h"
+#include "canyon/gnss/solver/fault_exclusion.h"
+#include "canyon/gnss/solver/weighting.h"
 
 namespace canyon::gnss {
 

@@ -1,10 +1,10 @@
-#include "gnss/single_point/group_delay.h"
+#include "canyon/gnss/single_point/group_delay.h"
 
 #include <cmath>
 #include <utility>
 
-#include "core/units.h"
-#include "gnss/products/clock_datum.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/products/clock_datum.h"
 
 namespace canyon::gnss {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "gnss/satellites/navigation_data.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 
 namespace canyon::gnss {
 

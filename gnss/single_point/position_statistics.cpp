@@ -1,10 +1,10 @@
-#include "gnss/single_point/position_statistics.h"
+#include "canyon/gnss/single_point/position_statistics.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/earth.h"
-#include "core/progress.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::gnss {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::gnss {
 

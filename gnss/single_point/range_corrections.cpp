@@ -1,13 +1,13 @@
-#include "gnss/single_point/range_corrections.h"
+#include "canyon/gnss/single_point/range_corrections.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
-#include "gnss/atmosphere/beidou_klobuchar.h"
-#include "gnss/atmosphere/troposphere.h"
-#include "gnss/products/clock_datum.h"
-#include "gnss/signal.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/atmosphere/beidou_klobuchar.h"
+#include "canyon/gnss/atmosphere/troposphere.h"
+#include "canyon/gnss/products/clock_datum.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 namespace {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "gnss/atmosphere/klobuchar.h"
-#include "gnss/satellites/constellation.h"
-#include "gnss/single_point/code_choice.h"
-#include "gnss/sky_view.h"
+#include "canyon/gnss/atmosphere/klobuchar.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/single_point/code_choice.h"
+#include "canyon/gnss/sky_view.h"
 
 namespace canyon::gnss {
 

@@ -1,23 +1,23 @@
-#include "gnss/single_point/single_point.h"
+#include "canyon/gnss/single_point/single_point.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "core/check.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "gnss/atmosphere/ionosphere_map.h"
-#include "gnss/satellites/transmission.h"
-#include "gnss/signal.h"
-#include "gnss/single_point/carrier_smoothing.h"
-#include "gnss/single_point/code_choice.h"
-#include "gnss/single_point/group_delay.h"
-#include "gnss/single_point/range_corrections.h"
-#include "gnss/sky_view.h"
-#include "gnss/solver/pvt_filter.h"
-#include "gnss/solver/velocity.h"
-#include "gnss/solver/weighting.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/atmosphere/ionosphere_map.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/signal.h"
+#include "canyon/gnss/single_point/carrier_smoothing.h"
+#include "canyon/gnss/single_point/code_choice.h"
+#include "canyon/gnss/single_point/group_delay.h"
+#include "canyon/gnss/single_point/range_corrections.h"
+#include "canyon/gnss/sky_view.h"
+#include "canyon/gnss/solver/pvt_filter.h"
+#include "canyon/gnss/solver/velocity.h"
+#include "canyon/gnss/solver/weighting.h"
 
 namespace canyon::gnss {
 namespace {

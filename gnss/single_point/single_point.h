@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "core/messages.h"
-#include "gnss/products/ionex_file.h"
-#include "gnss/rinex/observation_file.h"
-#include "gnss/satellites/constellation.h"
-#include "gnss/satellites/navigation_data.h"
-#include "gnss/single_point/config.h"
-#include "gnss/solver/position_solver.h"
+#include "canyon/core/messages.h"
+#include "canyon/gnss/products/ionex_file.h"
+#include "canyon/gnss/rinex/observation/observation_file.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/satellites/navigation_data.h"
+#include "canyon/gnss/single_point/config.h"
+#include "canyon/gnss/solver/position_solver.h"
 
 namespace canyon::gnss {
 

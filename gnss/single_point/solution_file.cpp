@@ -1,10 +1,10 @@
-#include "gnss/single_point/solution_file.h"
+#include "canyon/gnss/single_point/solution_file.h"
 
 #include <cmath>
 #include <cstdio>
 
-#include "core/earth.h"
-#include "core/progress.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::gnss {
 namespace {

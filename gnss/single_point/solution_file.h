@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "gnss/single_point/single_point.h"
+#include "canyon/gnss/single_point/single_point.h"
 
 namespace canyon::gnss {
 

@@ -1,7 +1,7 @@
-#include "core/check.h"
-#include "core/singular_values.h"
-#include "gnss/solver/position_solver.h"
-#include "gnss/solver/receiver_clocks.h"
+#include "canyon/core/check.h"
+#include "canyon/core/math/singular_values.h"
+#include "canyon/gnss/solver/position_solver.h"
+#include "canyon/gnss/solver/receiver_clocks.h"
 
 namespace canyon::gnss {
 namespace {

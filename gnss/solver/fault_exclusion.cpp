@@ -1,7 +1,7 @@
-#include "gnss/solver/fault_exclusion.h"
+#include "canyon/gnss/solver/fault_exclusion.h"
 
-#include "core/check.h"
-#include "core/chi_square.h"
+#include "canyon/core/check.h"
+#include "canyon/core/math/chi_square.h"
 
 namespace canyon::gnss {
 namespace {

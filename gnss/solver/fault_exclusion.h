@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "gnss/model_table.h"
-#include "gnss/solver/gauss_newton.h"
+#include "canyon/core/model_table.h"
+#include "canyon/gnss/solver/gauss_newton.h"
 
 namespace canyon::gnss {
 

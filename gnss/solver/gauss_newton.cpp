@@ -1,15 +1,15 @@
-#include "gnss/solver/gauss_newton.h"
+#include "canyon/gnss/solver/gauss_newton.h"
 
 #include <cmath>
 #include <cstdio>
 
 #include <Eigen/QR>
 
-#include "core/check.h"
-#include "core/earth.h"
-#include "core/units.h"
-#include "gnss/satellites/transmission.h"
-#include "gnss/solver/receiver_clocks.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/solver/receiver_clocks.h"
 
 namespace canyon::gnss {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gnss/solver/position_solver.h"
+#include "canyon/gnss/solver/position_solver.h"
 
 namespace canyon::gnss {
 

@@ -1,13 +1,13 @@
-#include "gnss/solver/position_solver.h"
+#include "canyon/gnss/solver/position_solver.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
 
-#include "core/check.h"
-#include "gnss/solver/fault_exclusion.h"
-#include "gnss/solver/gauss_newton.h"
-#include "gnss/solver/receiver_clocks.h"
+#include "canyon/core/check.h"
+#include "canyon/gnss/solver/fault_exclusion.h"
+#include "canyon/gnss/solver/gauss_newton.h"
+#include "canyon/gnss/solver/receiver_clocks.h"
 
 namespace canyon::gnss {
 namespace {

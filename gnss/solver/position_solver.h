@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/messages.h"
-#include "gnss/model_table.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/model_table.h"
 
 namespace canyon::gnss {
 

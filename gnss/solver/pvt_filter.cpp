@@ -1,15 +1,15 @@
-#include "gnss/solver/pvt_filter.h"
+#include "canyon/gnss/solver/pvt_filter.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
 
-#include "core/chi_square.h"
-#include "core/units.h"
-#include "gnss/satellites/transmission.h"
-#include "gnss/solver/gauss_newton.h"
-#include "gnss/solver/receiver_clocks.h"
+#include "canyon/core/math/chi_square.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/solver/gauss_newton.h"
+#include "canyon/gnss/solver/receiver_clocks.h"
 
 namespace canyon::gnss {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "gnss/solver/position_solver.h"
-#include "gnss/solver/velocity.h"
+#include "canyon/gnss/solver/position_solver.h"
+#include "canyon/gnss/solver/velocity.h"
 
 namespace canyon::gnss {
 

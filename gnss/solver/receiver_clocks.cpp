@@ -1,8 +1,8 @@
-#include "gnss/solver/receiver_clocks.h"
+#include "canyon/gnss/solver/receiver_clocks.h"
 
 #include <algorithm>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::gnss {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "gnss/solver/position_solver.h"
+#include "canyon/gnss/solver/position_solver.h"
 
 namespace canyon::gnss {
 

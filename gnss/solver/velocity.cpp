@@ -1,16 +1,16 @@
-#include "gnss/solver/velocity.h"
+#include "canyon/gnss/solver/velocity.h"
 
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
-#include "core/check.h"
-#include "core/earth.h"
-#include "core/singular_values.h"
-#include "core/units.h"
-#include "gnss/satellites/transmission.h"
-#include "gnss/signal.h"
-#include "gnss/solver/gauss_newton.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/math/singular_values.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/signal.h"
+#include "canyon/gnss/solver/gauss_newton.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,10 +1,10 @@
-#include "gnss/solver/weighting.h"
+#include "canyon/gnss/solver/weighting.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::gnss {
 namespace {

@@ -3,8 +3,8 @@
 #include <memory>
 #include <span>
 
-#include "core/messages.h"
-#include "gnss/model_table.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/model_table.h"
 
 namespace canyon::gnss {
 

@@ -1,9 +1,9 @@
-#include "inertial/aiding/barometer.h"
+#include "canyon/inertial/aiding/barometer.h"
 
 #include <cmath>
 
-#include "core/check.h"
-#include "inertial/aiding/standard_atmosphere.h"
+#include "canyon/core/check.h"
+#include "canyon/inertial/aiding/standard_atmosphere.h"
 
 namespace canyon::inertial {
 

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 
-#include "core/config.h"
-#include "core/messages.h"
-#include "core/random.h"
-#include "core/truth.h"
-#include "inertial/errors/markov_process.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/truth.h"
+#include "canyon/inertial/errors/markov_process.h"
 
 namespace canyon::inertial {
 

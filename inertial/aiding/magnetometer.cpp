@@ -1,9 +1,9 @@
-#include "inertial/aiding/magnetometer.h"
+#include "canyon/inertial/aiding/magnetometer.h"
 
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 namespace {

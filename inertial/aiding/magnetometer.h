@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-#include "core/config.h"
-#include "core/messages.h"
-#include "core/random.h"
-#include "core/rotation.h"
-#include "core/truth.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/truth.h"
 
 namespace canyon::inertial {
 

@@ -1,10 +1,10 @@
-#include "inertial/aiding/odometer.h"
+#include "canyon/inertial/aiding/odometer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/random.h"
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::inertial {
 namespace {

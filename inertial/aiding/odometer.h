@@ -5,10 +5,10 @@
 
 #include <Eigen/Core>
 
-#include "core/config.h"
-#include "core/messages.h"
-#include "core/truth.h"
-#include "inertial/errors/markov_process.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/truth.h"
+#include "canyon/inertial/errors/markov_process.h"
 
 namespace canyon::inertial {
 

@@ -1,9 +1,9 @@
-#include "inertial/aiding/standard_atmosphere.h"
+#include "canyon/inertial/aiding/standard_atmosphere.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,4 +1,4 @@
-#include "inertial/allan/degrees_of_freedom.h"
+#include "canyon/inertial/allan/degrees_of_freedom.h"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,14 @@
-#include "inertial/allan/deviation.h"
+#include "canyon/inertial/allan/deviation.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "core/check.h"
-#include "core/chi_square.h"
-#include "core/parallel.h"
-#include "core/progress.h"
-#include "inertial/allan/degrees_of_freedom.h"
+#include "canyon/core/check.h"
+#include "canyon/core/math/chi_square.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/inertial/allan/degrees_of_freedom.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,4 +1,4 @@
-#include "inertial/allan/log_noise.h"
+#include "canyon/inertial/allan/log_noise.h"
 
 namespace canyon::inertial {
 

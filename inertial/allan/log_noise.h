@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "inertial/allan/deviation.h"
-#include "inertial/allan/noise_fit.h"
-#include "inertial/imu_log.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/allan/deviation.h"
+#include "canyon/inertial/allan/noise_fit.h"
+#include "canyon/inertial/imu_log.h"
 
 namespace canyon::inertial {
 

@@ -1,12 +1,12 @@
-#include "inertial/allan/motion_check.h"
+#include "canyon/inertial/allan/motion_check.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/progress.h"
-#include "core/units.h"
-#include "inertial/allan/deviation.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/allan/deviation.h"
 
 namespace canyon::inertial {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "inertial/imu_log.h"
+#include "canyon/inertial/imu_log.h"
 
 namespace canyon::inertial {
 

@@ -1,22 +1,22 @@
-#include "inertial/allan/noise_fit.h"
+#include "canyon/inertial/allan/noise_fit.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "core/check.h"
-#include "core/chi_square.h"
-#include "core/progress.h"
-#include "inertial/allan/noise_terms.h"
-#include "inertial/cancel_callback.h"
+#include "canyon/core/check.h"
+#include "canyon/core/math/chi_square.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/inertial/allan/noise_terms.h"
+#include "canyon/inertial/cancel_callback.h"
 
 #ifdef CANYON_WITH_CERES
 #include <ceres/ceres.h>
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 
-#include "inertial/allan/degrees_of_freedom.h"
+#include "canyon/inertial/allan/degrees_of_freedom.h"
 #endif
 
 namespace canyon::inertial {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "inertial/allan/deviation.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/allan/deviation.h"
 
 namespace canyon::inertial {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 

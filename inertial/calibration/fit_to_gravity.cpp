@@ -4,10 +4,10 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "core/check.h"
-#include "core/progress.h"
-#include "inertial/calibration/triad_calibration.h"
-#include "inertial/cancel_callback.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/inertial/calibration/triad_calibration.h"
+#include "canyon/inertial/cancel_callback.h"
 
 #ifdef CANYON_WITH_CERES
 #include <ceres/ceres.h>

@@ -1,11 +1,11 @@
-#include "inertial/calibration/fitted_entry.h"
+#include "canyon/inertial/calibration/fitted_entry.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 namespace {

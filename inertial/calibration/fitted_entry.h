@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "inertial/allan/log_noise.h"
-#include "inertial/calibration/triad_calibration.h"
+#include "canyon/inertial/allan/log_noise.h"
+#include "canyon/inertial/calibration/triad_calibration.h"
 
 namespace canyon::inertial {
 

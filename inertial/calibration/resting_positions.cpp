@@ -1,10 +1,10 @@
-#include "inertial/calibration/resting_positions.h"
+#include "canyon/inertial/calibration/resting_positions.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/progress.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::inertial {
 namespace {

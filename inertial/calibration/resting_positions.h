@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "inertial/imu_log.h"
+#include "canyon/inertial/imu_log.h"
 
 namespace canyon::inertial {
 

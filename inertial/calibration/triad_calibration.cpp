@@ -1,11 +1,11 @@
-#include "inertial/calibration/triad_calibration.h"
+#include "canyon/inertial/calibration/triad_calibration.h"
 
 #include <cmath>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::inertial {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 namespace canyon::inertial {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "inertial/errors/imu_block.h"
+#include "canyon/inertial/errors/imu_block.h"
 
 namespace canyon::inertial {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "inertial/errors/block_noise.h"
-#include "inertial/errors/error_link.h"
-#include "inertial/errors/markov_process.h"
-#include "inertial/errors/white_draws.h"
+#include "canyon/inertial/errors/block_noise.h"
+#include "canyon/inertial/errors/error_link.h"
+#include "canyon/inertial/errors/markov_process.h"
+#include "canyon/inertial/errors/white_draws.h"
 
 namespace canyon::inertial {
 

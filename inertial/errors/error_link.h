@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "inertial/environment.h"
-#include "inertial/errors/error_figures.h"
-#include "inertial/errors/imu_block.h"
+#include "canyon/inertial/environment.h"
+#include "canyon/inertial/errors/error_figures.h"
+#include "canyon/inertial/errors/imu_block.h"
 
 namespace canyon::inertial {
 

@@ -1,4 +1,4 @@
-#include "inertial/errors/error_link.h"
+#include "canyon/inertial/errors/error_link.h"
 
 namespace canyon::inertial {
 namespace {

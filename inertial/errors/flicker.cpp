@@ -1,13 +1,13 @@
-#include "inertial/errors/flicker.h"
+#include "canyon/inertial/errors/flicker.h"
 
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "inertial/errors/block_noise.h"
-#include "inertial/errors/error_link.h"
-#include "inertial/errors/markov_process.h"
-#include "inertial/errors/white_draws.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/errors/block_noise.h"
+#include "canyon/inertial/errors/error_link.h"
+#include "canyon/inertial/errors/markov_process.h"
+#include "canyon/inertial/errors/white_draws.h"
 
 namespace canyon::inertial {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::inertial {
 

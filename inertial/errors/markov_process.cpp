@@ -1,8 +1,8 @@
-#include "inertial/errors/markov_process.h"
+#include "canyon/inertial/errors/markov_process.h"
 
 #include <cmath>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::inertial {
 namespace {

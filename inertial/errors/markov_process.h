@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "core/random.h"
-#include "inertial/errors/imu_block.h"
+#include "canyon/core/random/random.h"
+#include "canyon/inertial/errors/imu_block.h"
 
 namespace canyon::inertial {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/random.h"
-#include "inertial/errors/imu_block.h"
+#include "canyon/core/random/random.h"
+#include "canyon/inertial/errors/imu_block.h"
 
 namespace canyon::inertial {
 

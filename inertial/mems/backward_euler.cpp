@@ -1,6 +1,6 @@
 #include <Eigen/LU>
 
-#include "inertial/mems/integrator.h"
+#include "canyon/inertial/mems/integrator.h"
 
 namespace canyon::inertial {
 

@@ -1,4 +1,4 @@
-#include "inertial/mems/pick_off.h"
+#include "canyon/inertial/mems/pick_off.h"
 
 namespace canyon::inertial {
 namespace {

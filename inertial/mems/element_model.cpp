@@ -1,10 +1,10 @@
-#include "inertial/mems/element_model.h"
+#include "canyon/inertial/mems/element_model.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 namespace {

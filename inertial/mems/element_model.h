@@ -3,9 +3,9 @@
 #include <functional>
 #include <limits>
 
-#include "core/result.h"
-#include "inertial/mems/linear_plant.h"
-#include "inertial/mems/mems_figures.h"
+#include "canyon/core/result.h"
+#include "canyon/inertial/mems/linear_plant.h"
+#include "canyon/inertial/mems/mems_figures.h"
 
 namespace canyon::inertial {
 

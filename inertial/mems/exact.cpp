@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "inertial/mems/integrator.h"
+#include "canyon/core/check.h"
+#include "canyon/inertial/mems/integrator.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,6 +1,6 @@
-#include "inertial/mems/integrator.h"
+#include "canyon/inertial/mems/integrator.h"
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::inertial {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "inertial/mems/linear_plant.h"
+#include "canyon/inertial/mems/linear_plant.h"
 
 namespace canyon::inertial {
 

@@ -1,4 +1,4 @@
-#include "inertial/mems/linear_plant.h"
+#include "canyon/inertial/mems/linear_plant.h"
 
 #include <array>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 

@@ -1,6 +1,6 @@
-#include "inertial/mems/mems_figures.h"
+#include "canyon/inertial/mems/mems_figures.h"
 
-#include "inertial/mems/integrator.h"
+#include "canyon/inertial/mems/integrator.h"
 
 namespace canyon::inertial {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "core/config.h"
-#include "inertial/mems/pick_off.h"
+#include "canyon/core/config/config.h"
+#include "canyon/inertial/mems/pick_off.h"
 
 namespace canyon::inertial {
 

@@ -4,10 +4,10 @@
 #include <cstdio>
 #include <optional>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "inertial/error_chain.h"
-#include "inertial/mems/sensing_element.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/mems/sensing_element.h"
 
 namespace canyon::inertial {
 namespace {

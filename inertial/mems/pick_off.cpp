@@ -1,6 +1,6 @@
-#include "inertial/mems/pick_off.h"
+#include "canyon/inertial/mems/pick_off.h"
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::inertial {
 namespace {

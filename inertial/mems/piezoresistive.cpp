@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "core/units.h"
-#include "inertial/mems/pick_off.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/mems/pick_off.h"
 
 namespace canyon::inertial {
 namespace {

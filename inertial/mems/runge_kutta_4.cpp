@@ -1,4 +1,4 @@
-#include "inertial/mems/integrator.h"
+#include "canyon/inertial/mems/integrator.h"
 
 namespace canyon::inertial {
 

@@ -1,10 +1,10 @@
-#include "inertial/mems/sensing_element.h"
+#include "canyon/inertial/mems/sensing_element.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::inertial {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "core/random.h"
-#include "inertial/mems/element_model.h"
-#include "inertial/mems/integrator.h"
+#include "canyon/core/random/random.h"
+#include "canyon/inertial/mems/element_model.h"
+#include "canyon/inertial/mems/integrator.h"
 
 namespace canyon::inertial {
 

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "core/units.h"
-#include "inertial/motion/models.h"
-#include "inertial/motion/rigid_motion.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/models.h"
+#include "canyon/inertial/motion/rigid_motion.h"
 
 namespace canyon::inertial {
 

@@ -1,4 +1,4 @@
-#include "inertial/motion/closed_form.h"
+#include "canyon/inertial/motion/closed_form.h"
 
 namespace canyon::inertial {
 

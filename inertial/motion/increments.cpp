@@ -4,11 +4,11 @@
 #include <limits>
 #include <vector>
 
-#include "core/check.h"
-#include "core/earth.h"
-#include "core/units.h"
-#include "inertial/motion/motion.h"
-#include "inertial/true_increments.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/motion.h"
+#include "canyon/inertial/true_increments.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "inertial/motion/motion.h"
+#include "canyon/inertial/motion/motion.h"
 
 /// Makers of the rows of the table in inertial/motion/motion.cpp, each in the file of its model.
 namespace canyon::inertial {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "core/config.h"
-#include "core/local_frame.h"
-#include "core/messages.h"
-#include "core/result.h"
-#include "core/truth.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
+#include "canyon/core/truth.h"
 
 namespace canyon::inertial {
 

@@ -1,11 +1,11 @@
-#include "inertial/motion/pose_spline.h"
+#include "canyon/inertial/motion/pose_spline.h"
 
 #include <cmath>
 #include <cstdio>
 
-#include "core/progress.h"
-#include "core/units.h"
-#include "inertial/motion/rigid_motion.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/rigid_motion.h"
 
 namespace canyon::inertial {
 namespace {

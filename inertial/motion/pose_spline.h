@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "inertial/motion/motion.h"
-#include "inertial/motion/quintic_spline.h"
+#include "canyon/inertial/motion/motion.h"
+#include "canyon/inertial/motion/quintic_spline.h"
 
 namespace canyon::inertial {
 

@@ -1,11 +1,11 @@
-#include "inertial/motion/quintic_spline.h"
+#include "canyon/inertial/motion/quintic_spline.h"
 
 #include <algorithm>
 #include <numbers>
 
 #include <Eigen/LU>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::inertial {
 namespace {

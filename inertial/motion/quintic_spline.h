@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "inertial/motion/series.h"
+#include "canyon/inertial/motion/series.h"
 
 namespace canyon::inertial {
 

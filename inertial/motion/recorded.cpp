@@ -1,7 +1,7 @@
-#include "core/navigation_file.h"
-#include "core/trajectory.h"
-#include "inertial/motion/models.h"
-#include "inertial/motion/pose_spline.h"
+#include "canyon/core/files/navigation_file.h"
+#include "canyon/core/motion/trajectory.h"
+#include "canyon/inertial/motion/models.h"
+#include "canyon/inertial/motion/pose_spline.h"
 
 namespace canyon::inertial {
 namespace {

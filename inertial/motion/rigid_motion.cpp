@@ -1,4 +1,4 @@
-#include "inertial/motion/rigid_motion.h"
+#include "canyon/inertial/motion/rigid_motion.h"
 
 namespace canyon::inertial {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "core/truth.h"
-#include "inertial/motion/series.h"
+#include "canyon/core/truth.h"
+#include "canyon/inertial/motion/series.h"
 
 namespace canyon::inertial {
 

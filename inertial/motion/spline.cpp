@@ -1,11 +1,11 @@
 #include <array>
 #include <cmath>
 
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/units.h"
-#include "inertial/motion/models.h"
-#include "inertial/motion/pose_spline.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/models.h"
+#include "canyon/inertial/motion/pose_spline.h"
 
 namespace canyon::inertial {
 namespace {

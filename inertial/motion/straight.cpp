@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "inertial/motion/closed_form.h"
+#include "canyon/inertial/motion/closed_form.h"
 
 namespace canyon::inertial {
 namespace {

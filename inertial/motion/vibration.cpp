@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.h"
-#include "core/units.h"
-#include "inertial/motion/models.h"
-#include "inertial/motion/rigid_motion.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/models.h"
+#include "canyon/inertial/motion/rigid_motion.h"
 
 namespace canyon::inertial {
 namespace {

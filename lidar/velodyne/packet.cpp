@@ -1,4 +1,4 @@
-#include "lidar/velodyne/packet.h"
+#include "canyon/lidar/velodyne/packet.h"
 
 namespace canyon::lidar::velodyne {
 namespace {

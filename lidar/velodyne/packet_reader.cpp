@@ -1,10 +1,10 @@
-#include "lidar/velodyne/packet_reader.h"
+#include "canyon/lidar/velodyne/packet_reader.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
 
 namespace canyon::lidar::velodyne {
 namespace {

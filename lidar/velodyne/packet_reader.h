@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/messages.h"
-#include "lidar/beam_table.h"
-#include "lidar/velodyne/packet.h"
+#include "canyon/core/messages.h"
+#include "canyon/lidar/beam/beam_table.h"
+#include "canyon/lidar/velodyne/packet.h"
 
 namespace canyon::lidar::velodyne {
 

@@ -1,9 +1,9 @@
-#include "lidar/velodyne/packet_writer.h"
+#include "canyon/lidar/velodyne/packet_writer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::lidar::velodyne {
 namespace {

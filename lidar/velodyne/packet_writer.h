@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/messages.h"
-#include "core/result.h"
-#include "lidar/firing_pattern.h"
-#include "lidar/lidar_config.h"
-#include "lidar/velodyne/packet.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
+#include "canyon/lidar/beam/firing_pattern.h"
+#include "canyon/lidar/lidar_config.h"
+#include "canyon/lidar/velodyne/packet.h"
 
 namespace canyon::lidar::velodyne {
 

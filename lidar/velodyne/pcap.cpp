@@ -1,7 +1,7 @@
-#include "lidar/velodyne/pcap.h"
+#include "canyon/lidar/velodyne/pcap.h"
 
-#include "core/check.h"
-#include "core/files.h"
+#include "canyon/core/check.h"
+#include "canyon/core/files/files.h"
 
 namespace canyon::lidar::velodyne {
 namespace {

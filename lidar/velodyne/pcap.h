@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/result.h"
-#include "core/staged.h"
+#include "canyon/core/output/staged.h"
+#include "canyon/core/result.h"
 
 namespace canyon::lidar::velodyne {
 

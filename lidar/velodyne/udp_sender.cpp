@@ -1,4 +1,4 @@
-#include "lidar/velodyne/udp_sender.h"
+#include "canyon/lidar/velodyne/udp_sender.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/progress.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::lidar::velodyne {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 namespace canyon::lidar::velodyne {
 

@@ -1,11 +1,11 @@
-#include "scene/city/buildings.h"
+#include "canyon/scene/city/buildings.h"
 
 #include <algorithm>
 #include <string>
 
-#include "core/progress.h"
-#include "core/random.h"
-#include "scene/city/draws.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/random/random.h"
+#include "canyon/scene/city/draws.h"
 
 namespace canyon::scene::city {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/random.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::scene::city {
 

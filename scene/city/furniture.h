@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/city/plan.h"
-#include "scene/city/terrain.h"
+#include "canyon/scene/city/plan.h"
+#include "canyon/scene/city/terrain.h"
 
 namespace canyon::scene::city {
 

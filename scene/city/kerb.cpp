@@ -1,4 +1,4 @@
-#include "scene/city/kerb.h"
+#include "canyon/scene/city/kerb.h"
 
 namespace canyon::scene::city {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "scene/city/plan.h"
+#include "canyon/scene/city/plan.h"
 
 namespace canyon::scene::city {
 

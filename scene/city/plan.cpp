@@ -1,11 +1,11 @@
-#include "scene/city/plan.h"
+#include "canyon/scene/city/plan.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/progress.h"
-#include "core/random.h"
-#include "scene/city/draws.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/random/random.h"
+#include "canyon/scene/city/draws.h"
 
 namespace canyon::scene::city {
 namespace {

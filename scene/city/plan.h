@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "scene/city.h"
+#include "canyon/scene/city/city.h"
 
 namespace canyon::scene::city {
 

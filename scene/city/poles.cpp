@@ -1,9 +1,9 @@
-#include "scene/city/furniture.h"
+#include "canyon/scene/city/furniture.h"
 
 #include <string>
 
-#include "core/progress.h"
-#include "scene/city/kerb.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/city/kerb.h"
 
 namespace canyon::scene::city {
 

@@ -1,12 +1,12 @@
-#include "scene/city/terrain.h"
+#include "canyon/scene/city/terrain.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/check.h"
-#include "core/progress.h"
-#include "core/random.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::scene::city {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "scene/city.h"
-#include "scene/mesh_builder.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/mesh_builder.h"
 
 namespace canyon::scene::city {
 

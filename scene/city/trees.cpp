@@ -1,13 +1,13 @@
-#include "scene/city/furniture.h"
+#include "canyon/scene/city/furniture.h"
 
 #include <cmath>
 #include <string>
 
-#include "core/progress.h"
-#include "core/random.h"
-#include "scene/city/draws.h"
-#include "scene/city/kerb.h"
-#include "scene/tree.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/random/random.h"
+#include "canyon/scene/city/draws.h"
+#include "canyon/scene/city/kerb.h"
+#include "canyon/scene/surfaces/tree.h"
 
 namespace canyon::scene::city {
 namespace {

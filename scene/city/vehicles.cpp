@@ -1,10 +1,10 @@
-#include "scene/city/furniture.h"
+#include "canyon/scene/city/furniture.h"
 
 #include <string>
 
-#include "core/random.h"
-#include "scene/city/draws.h"
-#include "scene/city/kerb.h"
+#include "canyon/core/random/random.h"
+#include "canyon/scene/city/draws.h"
+#include "canyon/scene/city/kerb.h"
 
 namespace canyon::scene::city {
 

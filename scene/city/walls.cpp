@@ -1,12 +1,12 @@
-#include "scene/city/furniture.h"
+#include "canyon/scene/city/furniture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "core/progress.h"
-#include "core/random.h"
-#include "scene/city/draws.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/core/random/random.h"
+#include "canyon/scene/city/draws.h"
 
 namespace canyon::scene::city {
 namespace {

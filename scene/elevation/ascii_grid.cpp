@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <map>
 
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/lower_case.h"
-#include "core/progress.h"
-#include "scene/elevation/elevation.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/lower_case.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/elevation/elevation.h"
 
 namespace canyon::scene {
 /// ESRI ASCII grid: a header of ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize, NODATA_value,

@@ -1,9 +1,9 @@
-#include "scene/elevation/elevation.h"
+#include "canyon/scene/elevation/elevation.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/lower_case.h"
+#include "canyon/core/lower_case.h"
 
 namespace canyon::scene {
 

@@ -6,8 +6,8 @@
 
 #include <Eigen/Core>
 
-#include "core/result.h"
-#include "scene/importers/raw_scene.h"
+#include "canyon/core/result.h"
+#include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
 

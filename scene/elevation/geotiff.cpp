@@ -6,9 +6,9 @@
 #include <cstring>
 #include <memory>
 
-#include "core/files.h"
-#include "core/progress.h"
-#include "scene/elevation/elevation.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/elevation/elevation.h"
 
 namespace canyon::scene {
 namespace {

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/files.h"
-#include "core/zip_file.h"
-#include "scene/elevation/elevation.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/zip_file.h"
+#include "canyon/scene/elevation/elevation.h"
 
 namespace canyon::scene {
 

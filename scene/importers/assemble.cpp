@@ -1,18 +1,18 @@
-#include "scene/importers/assemble.h"
+#include "canyon/scene/importers/assemble.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 
-#include "core/lower_case.h"
-#include "core/progress.h"
-#include "scene/importers/footprint.h"
-#include "scene/importers/outline.h"
-#include "scene/importers/solid_bottom.h"
-#include "scene/mesh_builder.h"
-#include "scene/tree.h"
-#include "scene/triangulate.h"
+#include "canyon/core/lower_case.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/footprint.h"
+#include "canyon/scene/importers/outline.h"
+#include "canyon/scene/importers/solid_bottom.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/surfaces/tree.h"
+#include "canyon/scene/surfaces/triangulate.h"
 
 namespace canyon::scene {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "scene/import.h"
-#include "scene/importers/raw_scene.h"
+#include "canyon/scene/import.h"
+#include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <type_traits>
 
-#include "core/files.h"
-#include "scene/importers/importer.h"
-#include "scene/importers/own_process.h"
+#include "canyon/core/files/files.h"
+#include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/parsing/own_process.h"
 
 namespace canyon::scene {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/files.h"
-#include "core/progress.h"
-#include "scene/importers/importer.h"
-#include "scene/importers/json_text.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/parsing/json_text.h"
 
 namespace canyon::scene {
 namespace {

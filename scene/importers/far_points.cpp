@@ -1,11 +1,11 @@
-#include "scene/importers/far_points.h"
+#include "canyon/scene/importers/far_points.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "core/config_text.h"
-#include "scene/importers/raw_points.h"
+#include "canyon/core/config/text.h"
+#include "canyon/scene/importers/raw_points.h"
 
 namespace canyon::scene {
 namespace {

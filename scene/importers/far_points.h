@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/result.h"
-#include "scene/importers/raw_scene.h"
+#include "canyon/core/result.h"
+#include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
 

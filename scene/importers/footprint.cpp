@@ -1,10 +1,10 @@
-#include "scene/importers/footprint.h"
+#include "canyon/scene/importers/footprint.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "scene/importers/outline.h"
-#include "scene/triangulate.h"
+#include "canyon/scene/importers/outline.h"
+#include "canyon/scene/surfaces/triangulate.h"
 
 namespace canyon::scene {
 namespace {

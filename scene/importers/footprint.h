@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/importers/raw_scene.h"
-#include "scene/mesh_builder.h"
+#include "canyon/scene/importers/raw_scene.h"
+#include "canyon/scene/mesh_builder.h"
 
 namespace canyon::scene {
 

@@ -1,12 +1,12 @@
-#include "scene/importers/importer.h"
+#include "canyon/scene/importers/importer.h"
 
 #include <cctype>
 #include <filesystem>
 #include <system_error>
 
-#include "core/config_text.h"
-#include "core/files.h"
-#include "core/lower_case.h"
+#include "canyon/core/config/text.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/lower_case.h"
 
 namespace canyon::scene {
 namespace {

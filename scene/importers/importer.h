@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/config.h"
-#include "core/result.h"
-#include "scene/importers/raw_scene.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/result.h"
+#include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
 

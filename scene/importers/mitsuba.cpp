@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <map>
 
-#include "core/progress.h"
-#include "scene/importers/importer.h"
-#include "scene/importers/xml_file.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/parsing/xml_file.h"
 
 namespace canyon::scene {
 namespace {

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/progress.h"
-#include "scene/importers/importer.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/importer.h"
 
 namespace canyon::scene {
 namespace {

@@ -5,10 +5,10 @@
 #include <map>
 #include <unordered_map>
 
-#include "core/progress.h"
-#include "scene/importers/importer.h"
-#include "scene/importers/xml_file.h"
-#include "scene/triangulate.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/parsing/xml_file.h"
+#include "canyon/scene/surfaces/triangulate.h"
 
 namespace canyon::scene {
 namespace {

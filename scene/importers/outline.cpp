@@ -1,4 +1,4 @@
-#include "scene/importers/outline.h"
+#include "canyon/scene/importers/outline.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,10 +5,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/progress.h"
-#include "scene/importers/importer.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/importer.h"
 
 namespace canyon::scene {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/progress.h"
-#include "scene/importers/raw_scene.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
 

@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "core/printable_text.h"
-#include "scene/scene.h"
+#include "canyon/core/printable_text.h"
+#include "canyon/scene/scene.h"
 
 namespace canyon::scene {
 

@@ -1,4 +1,4 @@
-#include "scene/importers/solid_bottom.h"
+#include "canyon/scene/importers/solid_bottom.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include <Eigen/Geometry>
 
-#include "scene/importers/outline.h"
-#include "scene/triangulate.h"
+#include "canyon/scene/importers/outline.h"
+#include "canyon/scene/surfaces/triangulate.h"
 
 namespace canyon::scene {
 namespace {

@@ -12,8 +12,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/time.h"
-#include "tests/apps/command_line_fixture.h"
+#include "canyon/core/time.h"
+#include "canyon/tests/apps/command_line_fixture.h"
 
 namespace canyon::apps {
 namespace {

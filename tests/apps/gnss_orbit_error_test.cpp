@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/apps/command_line_fixture.h"
-#include "tests/support/test_data.h"
+#include "canyon/tests/apps/command_line_fixture.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::apps {
 namespace {

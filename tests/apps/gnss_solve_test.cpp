@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "gnss/satellites/constellation.h"
-#include "tests/apps/command_line_fixture.h"
-#include "tests/gnss/product_text.h"
-#include "tests/support/test_data.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/tests/apps/command_line_fixture.h"
+#include "canyon/tests/gnss/atmosphere/product_text.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::apps {
 namespace {

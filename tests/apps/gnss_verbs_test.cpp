@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/apps/command_line_fixture.h"
+#include "canyon/tests/apps/command_line_fixture.h"
 
 namespace canyon::apps {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/random.h"
-#include "tests/apps/command_line_fixture.h"
+#include "canyon/core/random/random.h"
+#include "canyon/tests/apps/command_line_fixture.h"
 
 namespace canyon::apps {
 namespace {

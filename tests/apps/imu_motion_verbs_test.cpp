@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/files.h"
-#include "tests/apps/command_line_fixture.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/tests/apps/command_line_fixture.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::apps {
 namespace {

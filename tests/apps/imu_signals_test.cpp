@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/apps/command_line_fixture.h"
-#include "tests/apps/signalled_verb.h"
+#include "canyon/tests/apps/command_line_fixture.h"
+#include "canyon/tests/apps/signalled_verb.h"
 
 namespace canyon::apps {
 namespace {

@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/apps/command_line_fixture.h"
+#include "canyon/tests/apps/command_line_fixture.h"
 
 namespace canyon::apps {
 namespace {

@@ -8,14 +8,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/earth.h"
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/units.h"
-#include "tests/apps/command_line_fixture.h"
-#include "tests/gnss/rtklib_runner.h"
-#include "tests/support/outside_program.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/units.h"
+#include "canyon/tests/apps/command_line_fixture.h"
+#include "canyon/tests/gnss/rinex/rtklib_runner.h"
+#include "canyon/tests/support/outside_program.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::apps {
 namespace {

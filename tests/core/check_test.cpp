@@ -1,4 +1,4 @@
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 #include <gtest/gtest.h>
 

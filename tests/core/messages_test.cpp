@@ -1,10 +1,10 @@
-#include "core/messages.h"
+#include "canyon/core/messages.h"
 
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/result.h"
+#include "canyon/core/result.h"
 
 #include <memory>
 

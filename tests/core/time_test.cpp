@@ -1,4 +1,4 @@
-#include "core/time.h"
+#include "canyon/core/time.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
-#include "fusion/consistency.h"
+#include "canyon/fusion/consistency.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::fusion {
 namespace {

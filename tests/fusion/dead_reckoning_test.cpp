@@ -1,10 +1,10 @@
-#include "fusion/dead_reckoning.h"
+#include "canyon/fusion/dead_reckoning.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

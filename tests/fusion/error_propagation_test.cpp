@@ -1,14 +1,14 @@
-#include "fusion/error_propagation.h"
+#include "canyon/fusion/error_propagation.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/local_frame.h"
-#include "core/random.h"
-#include "core/rotation.h"
-#include "core/units.h"
-#include "fusion/antenna_position.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/antenna_position.h"
 
 namespace canyon::fusion {
 namespace {

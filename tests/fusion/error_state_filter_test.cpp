@@ -1,4 +1,4 @@
-#include "fusion/error_state_filter.h"
+#include "canyon/fusion/error_state_filter.h"
 
 #include <cmath>
 #include <cstdio>
@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-#include "core/check.h"
-#include "core/random.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/rotation.h"
-#include "core/units.h"
-#include "fusion/consistency.h"
-#include "fusion/error_state_filter.h"
-#include "tests/fusion/recorded_run.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/consistency.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/tests/fusion/recorded_run.h"
+#include "canyon/tests/support/test_data.h"
 
 /// The filter on runs made by others, against truth and against the figures of a public filter (KF-GINS, 21 states) on
 /// the same files. Synthetic twin: tests/inertial/filter_loop_test.cpp.

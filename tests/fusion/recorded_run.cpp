@@ -1,11 +1,11 @@
-#include "tests/fusion/recorded_run.h"
+#include "canyon/tests/fusion/recorded_run.h"
 
 #include <cstring>
 #include <sstream>
 
-#include "core/check.h"
-#include "core/files.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/units.h"
 
 namespace canyon::testing {
 namespace {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "core/local_frame.h"
-#include "core/messages.h"
-#include "core/rotation.h"
-#include "fusion/strapdown.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/fusion/strapdown.h"
 
 /// The recorded runs of the shared data, turned from NED and FRD into our frames at the door.
 namespace canyon::testing {

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "fusion/strapdown.h"
-#include "tests/fusion/recorded_run.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/strapdown.h"
+#include "canyon/tests/fusion/recorded_run.h"
+#include "canyon/tests/support/test_data.h"
 
 /// An ideal IMU made by others on a real car's path, integrated freely. Synthetic twin:
 /// tests/inertial/closure_test.cpp.

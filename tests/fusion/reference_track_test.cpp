@@ -1,11 +1,11 @@
-#include "fusion/reference_track.h"
+#include "canyon/fusion/reference_track.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/rotation.h"
-#include "core/units.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

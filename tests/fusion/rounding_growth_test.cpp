@@ -1,11 +1,11 @@
-#include "fusion/rounding_growth.h"
+#include "canyon/fusion/rounding_growth.h"
 
 #include <cmath>
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

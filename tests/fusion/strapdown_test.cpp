@@ -1,4 +1,4 @@
-#include "fusion/strapdown.h"
+#include "canyon/fusion/strapdown.h"
 
 #include <cmath>
 #include <cstdio>
@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/check.h"
-#include "core/local_frame.h"
-#include "core/rotation.h"
-#include "core/units.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/units.h"
 
 namespace canyon::fusion {
 namespace {

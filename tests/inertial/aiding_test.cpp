@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/check.h"
-#include "core/units.h"
-#include "inertial/aiding/barometer.h"
-#include "inertial/aiding/magnetometer.h"
-#include "inertial/aiding/odometer.h"
-#include "inertial/aiding/standard_atmosphere.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/aiding/barometer.h"
+#include "canyon/inertial/aiding/magnetometer.h"
+#include "canyon/inertial/aiding/odometer.h"
+#include "canyon/inertial/aiding/standard_atmosphere.h"
 
 namespace canyon::inertial {
 namespace {

@@ -5,15 +5,15 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files.h"
-#include "core/random.h"
-#include "core/rotation.h"
-#include "core/units.h"
-#include "inertial/allan/noise_terms.h"
-#include "inertial/calibration/fitted_entry.h"
-#include "inertial/calibration/resting_positions.h"
-#include "inertial/error_chain.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/allan/noise_terms.h"
+#include "canyon/inertial/calibration/fitted_entry.h"
+#include "canyon/inertial/calibration/resting_positions.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,4 +1,4 @@
-#include "inertial/catalogue.h"
+#include "canyon/inertial/catalogue.h"
 
 #include <cmath>
 #include <regex>
@@ -6,11 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/embedded.h"
-#include "core/units.h"
-#include "inertial/allan/noise_terms.h"
-#include "inertial/errors/flicker.h"
-#include "inertial/imu_model.h"
+#include "canyon/core/process/embedded.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/allan/noise_terms.h"
+#include "canyon/inertial/errors/flicker.h"
+#include "canyon/inertial/imu_model.h"
 
 namespace canyon::inertial {
 namespace {

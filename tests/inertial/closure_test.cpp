@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/rotation.h"
-#include "core/units.h"
-#include "fusion/strapdown.h"
-#include "inertial/motion/models.h"
-#include "tests/inertial/smooth_motion.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/strapdown.h"
+#include "canyon/inertial/motion/models.h"
+#include "canyon/tests/inertial/smooth_motion.h"
 
 /// Generator against strapdown: the increments of a known drive, integrated, must give the drive back.
 namespace canyon {

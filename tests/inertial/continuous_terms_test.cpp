@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include "inertial/allan/noise_terms.h"
-#include "inertial/errors/error_link.h"
-#include "inertial/errors/flicker.h"
+#include "canyon/inertial/allan/noise_terms.h"
+#include "canyon/inertial/errors/error_link.h"
+#include "canyon/inertial/errors/flicker.h"
 
 namespace canyon::inertial {
 namespace {

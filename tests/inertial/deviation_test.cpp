@@ -1,4 +1,4 @@
-#include "inertial/allan/deviation.h"
+#include "canyon/inertial/allan/deviation.h"
 
 #include <cmath>
 #include <cstring>
@@ -6,11 +6,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files.h"
-#include "core/line_reader.h"
-#include "core/parallel.h"
-#include "core/random.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/line_reader.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/random/random.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,14 +1,14 @@
-#include "inertial/error_chain.h"
+#include "canyon/inertial/error_chain.h"
 
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "fusion/consistency.h"
-#include "inertial/imu_model.h"
-#include "tests/inertial/smooth_path.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/consistency.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/tests/inertial/smooth_path.h"
 
 namespace canyon::inertial {
 namespace {

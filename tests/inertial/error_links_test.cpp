@@ -1,4 +1,4 @@
-#include "inertial/errors/error_link.h"
+#include "canyon/inertial/errors/error_link.h"
 
 #include <cmath>
 #include <limits>
@@ -6,10 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "inertial/error_chain.h"
-#include "inertial/imu_model.h"
-#include "tests/inertial/every_link.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/tests/inertial/every_link.h"
 
 namespace canyon::inertial {
 namespace {

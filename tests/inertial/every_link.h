@@ -1,7 +1,7 @@
 #pragma once
 
-#include "inertial/catalogue.h"
-#include "inertial/environment.h"
+#include "canyon/inertial/catalogue.h"
+#include "canyon/inertial/environment.h"
 
 namespace canyon::inertial::testing {
 

@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
-#include "core/units.h"
-#include "fusion/consistency.h"
-#include "fusion/error_state_filter.h"
-#include "inertial/imu_model.h"
-#include "tests/inertial/smooth_path.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/consistency.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/tests/inertial/smooth_path.h"
 
 /// Sensor and filter together over many seeded drives: the covariance the filter states must be the one its errors
 /// have.

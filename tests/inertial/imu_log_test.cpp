@@ -1,4 +1,4 @@
-#include "inertial/imu_log.h"
+#include "canyon/inertial/imu_log.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/earth.h"
-#include "core/files.h"
-#include "core/random.h"
-#include "core/units.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::inertial {
 namespace {

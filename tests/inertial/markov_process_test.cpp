@@ -1,11 +1,11 @@
-#include "inertial/errors/markov_process.h"
+#include "canyon/inertial/errors/markov_process.h"
 
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::inertial {
 namespace {

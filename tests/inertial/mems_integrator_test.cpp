@@ -1,12 +1,12 @@
-#include "inertial/mems/integrator.h"
+#include "canyon/inertial/mems/integrator.h"
 
 #include <cmath>
 #include <complex>
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "inertial/mems/element_model.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/mems/element_model.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,14 +1,14 @@
-#include "inertial/allan/motion_check.h"
+#include "canyon/inertial/allan/motion_check.h"
 
 #include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
 
-#include "core/files.h"
-#include "core/random.h"
-#include "core/units.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::inertial {
 namespace {

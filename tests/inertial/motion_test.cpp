@@ -1,4 +1,4 @@
-#include "inertial/motion/motion.h"
+#include "canyon/inertial/motion/motion.h"
 
 #include <cmath>
 #include <cstdio>
@@ -7,15 +7,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/earth.h"
-#include "core/navigation_file.h"
-#include "core/units.h"
-#include "inertial/motion/models.h"
-#include "inertial/motion/quintic_spline.h"
-#include "inertial/motion/rigid_motion.h"
-#include "inertial/true_increments.h"
-#include "tests/inertial/smooth_motion.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/files/navigation_file.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/models.h"
+#include "canyon/inertial/motion/quintic_spline.h"
+#include "canyon/inertial/motion/rigid_motion.h"
+#include "canyon/inertial/true_increments.h"
+#include "canyon/tests/inertial/smooth_motion.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,4 +1,4 @@
-#include "inertial/allan/noise_fit.h"
+#include "canyon/inertial/allan/noise_fit.h"
 
 #include <cmath>
 #include <complex>
@@ -11,12 +11,12 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-#include "core/files.h"
-#include "core/random.h"
-#include "core/units.h"
-#include "inertial/allan/noise_terms.h"
-#include "inertial/imu_log.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/allan/noise_terms.h"
+#include "canyon/inertial/imu_log.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::inertial {
 namespace {

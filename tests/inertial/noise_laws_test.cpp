@@ -4,12 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
-#include "core/units.h"
-#include "fusion/dead_reckoning.h"
-#include "inertial/imu_model.h"
-#include "inertial/motion/motion.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/dead_reckoning.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/inertial/motion/motion.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 /// What errors of the sensor do to free inertial navigation at rest, through the real error chain and strapdown.
 namespace canyon {

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "inertial/paper_figures.h"
-#include "inertial/paper_formulas.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/paper_figures.h"
+#include "canyon/inertial/paper_formulas.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,12 +1,12 @@
-#include "inertial/paper_formulas.h"
+#include "canyon/inertial/paper_formulas.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/random.h"
-#include "core/units.h"
-#include "inertial/errors/markov_process.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/errors/markov_process.h"
 
 namespace canyon::inertial {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "inertial/allan/deviation.h"
-#include "inertial/error_chain.h"
-#include "inertial/mems/element_model.h"
-#include "inertial/paper_formulas.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/allan/deviation.h"
+#include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/mems/element_model.h"
+#include "canyon/inertial/paper_formulas.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,4 +1,4 @@
-#include "inertial/mems/sensing_element.h"
+#include "canyon/inertial/mems/sensing_element.h"
 
 #include <cmath>
 #include <complex>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/units.h"
-#include "inertial/paper_formulas.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/paper_formulas.h"
 
 namespace canyon::inertial {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "core/units.h"
-#include "inertial/motion/motion.h"
-#include "tests/inertial/smooth_path.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/motion/motion.h"
+#include "canyon/tests/inertial/smooth_path.h"
 
 namespace canyon::testing {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "core/rotation.h"
-#include "core/time.h"
-#include "core/truth.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/time.h"
+#include "canyon/core/truth.h"
 
 namespace canyon::testing {
 

@@ -1,13 +1,13 @@
-#include "inertial/true_increments.h"
+#include "canyon/inertial/true_increments.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/check.h"
-#include "core/earth.h"
-#include "core/units.h"
-#include "tests/inertial/smooth_path.h"
+#include "canyon/core/check.h"
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/units.h"
+#include "canyon/tests/inertial/smooth_path.h"
 
 namespace canyon::inertial {
 namespace {

@@ -1,11 +1,11 @@
-#include "lidar/deskew.h"
+#include "canyon/lidar/deskew.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "lidar/scanner.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/lidar/scanner.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

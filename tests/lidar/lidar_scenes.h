@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "core/trajectory.h"
-#include "core/units.h"
-#include "lidar/scanner.h"
-#include "scene/mesh_builder.h"
-#include "scene/scene.h"
-#include "scene/scene_at.h"
+#include "canyon/core/motion/trajectory.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/scanner.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/scene_at.h"
 
 /// Scenes with closed forms, and motions through them.
 namespace canyon::lidar::testing {

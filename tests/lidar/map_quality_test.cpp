@@ -1,13 +1,13 @@
-#include "lidar/map_quality.h"
+#include "canyon/lidar/map_quality.h"
 
 #include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
-#include "core/random.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/random/random.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

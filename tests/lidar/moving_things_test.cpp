@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
-#include "scene/instances.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/scene/tracing/instances.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

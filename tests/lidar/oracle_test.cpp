@@ -9,12 +9,12 @@
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
-#include "core/random.h"
-#include "core/vector_clones.h"
-#include "scene/city.h"
-#include "scene/triangle.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/process/vector_clones.h"
+#include "canyon/core/random/random.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/surfaces/triangle.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

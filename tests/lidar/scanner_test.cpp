@@ -1,4 +1,4 @@
-#include "lidar/scanner.h"
+#include "canyon/lidar/scanner.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/check.h"
-#include "core/parallel.h"
-#include "lidar/beam_table.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/core/check.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/lidar/beam/beam_table.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

@@ -1,9 +1,9 @@
-#include "lidar/sweep_motion.h"
+#include "canyon/lidar/sweep_motion.h"
 
 #include <gtest/gtest.h>
 
-#include "core/check.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/core/check.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

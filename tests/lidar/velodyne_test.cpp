@@ -8,14 +8,14 @@
 
 #include <gtest/gtest.h>
 
-#include "core/files.h"
-#include "lidar/velodyne/packet_reader.h"
-#include "lidar/velodyne/packet_writer.h"
-#include "lidar/velodyne/pcap.h"
-#include "lidar/velodyne/udp_sender.h"
-#include "tests/lidar/lidar_scenes.h"
-#include "tests/support/temporary_folder.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/lidar/velodyne/packet_reader.h"
+#include "canyon/lidar/velodyne/packet_writer.h"
+#include "canyon/lidar/velodyne/pcap.h"
+#include "canyon/lidar/velodyne/udp_sender.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
+#include "canyon/tests/support/temporary_folder.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::lidar::velodyne {
 namespace {

@@ -1,14 +1,14 @@
-#include "mission/boundaries.h"
+#include "canyon/mission/boundaries.h"
 
 #include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
 
-#include "core/files.h"
-#include "mission/results.h"
-#include "tests/mission/short_mission.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/files/files.h"
+#include "canyon/mission/results.h"
+#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::mission::testing {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/units.h"
-#include "inertial/errors/error_link.h"
-#include "tests/mission/short_mission.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/errors/error_link.h"
+#include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
 namespace {

@@ -1,10 +1,10 @@
 #include <filesystem>
 
-#include "core/files.h"
-#include "core/parallel.h"
-#include "mission/results.h"
-#include "tests/mission/short_mission.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/mission/results.h"
+#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::mission::testing {
 namespace {

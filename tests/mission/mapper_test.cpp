@@ -1,12 +1,12 @@
-#include "mission/mapper.h"
+#include "canyon/mission/mapper.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
 
-#include "core/units.h"
-#include "lidar/prepared_cloud.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/registration/prepared_cloud.h"
 
 namespace canyon::mission {
 namespace {

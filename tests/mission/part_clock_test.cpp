@@ -1,7 +1,7 @@
-#include "mission/part_clock.h"
+#include "canyon/mission/part_clock.h"
 
-#include "core/parallel.h"
-#include "tests/mission/short_mission.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
 namespace {

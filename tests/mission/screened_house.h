@@ -2,9 +2,9 @@
 
 #include <memory>
 
-#include "scene/material.h"
-#include "scene/mesh_builder.h"
-#include "scene/scene.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/surfaces/material.h"
 
 namespace canyon::mission::testing {
 

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "mission/mission_file.h"
-#include "mission/run.h"
-#include "mission/summary.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/run.h"
+#include "canyon/mission/summary.h"
 
 namespace canyon::mission::testing {
 

@@ -1,8 +1,8 @@
 // The whole built-in mission; takes minutes, so these run with ./test.sh --nightly only.
 #include <cmath>
 
-#include "core/units.h"
-#include "tests/mission/short_mission.h"
+#include "canyon/core/units.h"
+#include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/mutation/child_process.h"
+#include "canyon/tests/mutation/child_process.h"
 
 #include <cmath>
 #include <csignal>
@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define CANYON_SANITIZED

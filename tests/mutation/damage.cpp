@@ -1,10 +1,10 @@
-#include "tests/mutation/damage.h"
+#include "canyon/tests/mutation/damage.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 
-#include "core/random.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::testing {
 namespace {

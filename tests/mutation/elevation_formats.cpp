@@ -3,11 +3,11 @@
 #include <tiffio.h>
 #include <zlib.h>
 
-#include "core/check.h"
-#include "tests/mutation/format.h"
-#include "tests/report/synthetic_results.h"
-#include "tests/report/temporary_directory.h"
-#include "tests/scene/tiff_text.h"
+#include "canyon/core/check.h"
+#include "canyon/tests/mutation/format.h"
+#include "canyon/tests/report/synthetic_results.h"
+#include "canyon/tests/report/temporary_directory.h"
+#include "canyon/tests/scene/importers/tiff_text.h"
 
 namespace canyon::testing {
 namespace {

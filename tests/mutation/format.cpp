@@ -1,15 +1,15 @@
-#include "tests/mutation/format.h"
+#include "canyon/tests/mutation/format.h"
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "apps/command_line.h"
-#include "core/check.h"
-#include "core/files.h"
-#include "tests/mutation/child_process.h"
-#include "tests/report/temporary_directory.h"
-#include "tests/support/test_data.h"
+#include "canyon/apps/line/command_line.h"
+#include "canyon/core/check.h"
+#include "canyon/core/files/files.h"
+#include "canyon/tests/mutation/child_process.h"
+#include "canyon/tests/report/temporary_directory.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::testing {
 

@@ -2,14 +2,14 @@
 
 #include <zlib.h>
 
-#include "core/check.h"
-#include "gnss/nmea/nmea_reader.h"
-#include "gnss/rinex/navigation_file.h"
-#include "gnss/satellites/constellation.h"
-#include "tests/gnss/hatanaka_compress.h"
-#include "tests/gnss/nav_text.h"
-#include "tests/gnss/product_text.h"
-#include "tests/mutation/format.h"
+#include "canyon/core/check.h"
+#include "canyon/gnss/nmea/nmea_reader.h"
+#include "canyon/gnss/rinex/navigation/navigation_file.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/tests/gnss/atmosphere/product_text.h"
+#include "canyon/tests/gnss/rinex/hatanaka_compress.h"
+#include "canyon/tests/gnss/rinex/nav_text.h"
+#include "canyon/tests/mutation/format.h"
 
 namespace canyon::testing {
 namespace {

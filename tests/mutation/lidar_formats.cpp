@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <cstring>
 
-#include "core/files.h"
-#include "lidar/beam_table.h"
-#include "lidar/cloud_files.h"
-#include "lidar/velodyne/packet_reader.h"
-#include "lidar/velodyne/pcap.h"
-#include "tests/mutation/format.h"
-#include "tests/support/test_data.h"
+#include "canyon/core/files/files.h"
+#include "canyon/lidar/beam/beam_table.h"
+#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/lidar/velodyne/packet_reader.h"
+#include "canyon/lidar/velodyne/pcap.h"
+#include "canyon/tests/mutation/format.h"
+#include "canyon/tests/support/test_data.h"
 
 namespace canyon::testing {
 namespace {

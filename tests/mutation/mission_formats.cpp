@@ -1,4 +1,4 @@
-#include "tests/mutation/format.h"
+#include "canyon/tests/mutation/format.h"
 
 namespace canyon::testing {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/mutation/format.h"
-#include "tests/mutation/survival.h"
+#include "canyon/tests/mutation/format.h"
+#include "canyon/tests/mutation/survival.h"
 
 /// Every reader, given damaged files: success or one line that says what is wrong, no signal, not over 20 s or 2 GB.
 namespace canyon::testing {

@@ -1,9 +1,9 @@
 #include <filesystem>
 
-#include "core/check.h"
-#include "tests/mutation/format.h"
-#include "tests/report/synthetic_results.h"
-#include "tests/report/temporary_directory.h"
+#include "canyon/core/check.h"
+#include "canyon/tests/mutation/format.h"
+#include "canyon/tests/report/synthetic_results.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 namespace canyon::testing {
 namespace {

@@ -8,13 +8,13 @@
 #include <assimp/Exporter.hpp>
 #endif
 
-#include "core/check.h"
-#include "core/units.h"
-#include "scene/import.h"
-#include "scene/written_scene.h"
-#include "tests/mutation/format.h"
-#include "tests/report/synthetic_results.h"
-#include "tests/report/temporary_directory.h"
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/scene/import.h"
+#include "canyon/scene/written_scene.h"
+#include "canyon/tests/mutation/format.h"
+#include "canyon/tests/report/synthetic_results.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 namespace canyon::testing {
 namespace {

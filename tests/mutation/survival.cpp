@@ -1,4 +1,4 @@
-#include "tests/mutation/survival.h"
+#include "canyon/tests/mutation/survival.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/command_line.h"
-#include "core/check.h"
-#include "tests/mutation/damage.h"
-#include "tests/report/temporary_directory.h"
+#include "canyon/apps/line/command_line.h"
+#include "canyon/core/check.h"
+#include "canyon/tests/mutation/damage.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 namespace canyon::testing {
 namespace {

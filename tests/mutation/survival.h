@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/mutation/child_process.h"
-#include "tests/mutation/format.h"
+#include "canyon/tests/mutation/child_process.h"
+#include "canyon/tests/mutation/format.h"
 
 /// Whether a reader survives what it is given.
 namespace canyon::testing {

@@ -1,4 +1,4 @@
-#include "tests/report/browser.h"
+#include "canyon/tests/report/browser.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <sstream>
 
-#include "tests/report/synthetic_results.h"
-#include "tests/report/temporary_directory.h"
+#include "canyon/tests/report/synthetic_results.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 namespace canyon::testing {
 namespace {

@@ -1,11 +1,11 @@
-#include "tests/report/browser.h"
+#include "canyon/tests/report/browser.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/html_report.h"
-#include "tests/report/synthetic_results.h"
-#include "tests/report/temporary_directory.h"
+#include "canyon/report/html_report.h"
+#include "canyon/tests/report/synthetic_results.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 namespace canyon::testing {
 namespace {

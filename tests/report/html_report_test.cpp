@@ -1,4 +1,4 @@
-#include "report/html_report.h"
+#include "canyon/report/html_report.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,9 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/report/markup.h"
-#include "tests/report/synthetic_results.h"
-#include "tests/report/temporary_directory.h"
+#include "canyon/tests/report/markup.h"
+#include "canyon/tests/report/synthetic_results.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 namespace canyon::report {
 namespace {

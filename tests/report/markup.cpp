@@ -1,4 +1,4 @@
-#include "tests/report/markup.h"
+#include "canyon/tests/report/markup.h"
 
 #include <cctype>
 

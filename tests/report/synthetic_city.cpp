@@ -1,9 +1,9 @@
-#include "tests/report/synthetic_city.h"
+#include "canyon/tests/report/synthetic_city.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/random.h"
+#include "canyon/core/random/random.h"
 
 namespace canyon::testing {
 namespace {

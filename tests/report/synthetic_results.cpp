@@ -1,12 +1,12 @@
-#include "tests/report/synthetic_results.h"
+#include "canyon/tests/report/synthetic_results.h"
 
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
-#include "core/check.h"
-#include "tests/report/synthetic_city.h"
-#include "tests/report/synthetic_run.h"
+#include "canyon/core/check.h"
+#include "canyon/tests/report/synthetic_city.h"
+#include "canyon/tests/report/synthetic_run.h"
 
 namespace canyon::testing {
 

@@ -1,4 +1,4 @@
-#include "tests/report/synthetic_run.h"
+#include "canyon/tests/report/synthetic_run.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 #include <Eigen/Dense>
 
-#include "core/random.h"
-#include "core/units.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
 
 namespace canyon::testing {
 namespace {

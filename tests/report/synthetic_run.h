@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "tests/report/synthetic_city.h"
-#include "tests/report/synthetic_results.h"
+#include "canyon/tests/report/synthetic_city.h"
+#include "canyon/tests/report/synthetic_results.h"
 
 namespace canyon::testing {
 

@@ -1,11 +1,11 @@
-#include "tests/report/temporary_directory.h"
+#include "canyon/tests/report/temporary_directory.h"
 
 #include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 
-#include "core/check.h"
+#include "canyon/core/check.h"
 
 namespace canyon::testing {
 

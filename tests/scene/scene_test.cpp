@@ -1,11 +1,11 @@
-#include "scene/scene.h"
+#include "canyon/scene/scene.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "core/check.h"
-#include "tests/scene/small_scenes.h"
+#include "canyon/core/check.h"
+#include "canyon/tests/scene/small_scenes.h"
 
 namespace canyon::scene::testing {
 namespace {

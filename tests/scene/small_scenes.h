@@ -4,10 +4,10 @@
 #include <limits>
 #include <optional>
 
-#include "scene/mesh_builder.h"
-#include "scene/scene.h"
-#include "scene/scene_at.h"
-#include "scene/triangle.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/scene_at.h"
+#include "canyon/scene/surfaces/triangle.h"
 
 /// Scenes small enough for closed forms, and the slow, double-precision oracle.
 namespace canyon::scene::testing {

@@ -1,12 +1,12 @@
-#include "scene/written_scene.h"
+#include "canyon/scene/written_scene.h"
 
 #include <gtest/gtest.h>
 
-#include "scene/city.h"
-#include "scene/import.h"
-#include "scene/inspect.h"
-#include "scene/mesh_builder.h"
-#include "tests/support/outside_program.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/import.h"
+#include "canyon/scene/inspect.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/tests/support/outside_program.h"
 
 namespace canyon::scene {
 namespace {

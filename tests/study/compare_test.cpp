@@ -1,11 +1,11 @@
-#include "study/compare.h"
+#include "canyon/study/compare.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "core/progress.h"
+#include "canyon/core/process/progress.h"
 
 namespace canyon::study {
 namespace {

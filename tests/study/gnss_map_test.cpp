@@ -1,13 +1,13 @@
-#include "study/gnss_map.h"
+#include "canyon/study/gnss_map.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/parallel.h"
-#include "mission/mission_file.h"
-#include "scene/city.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/scene/city/city.h"
 
 namespace canyon::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "tests/support/test_data.h"
+#include "canyon/tests/support/test_data.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -2,9 +2,9 @@
 #include <pcl/point_types.h>
 #include <pcl/registration/gicp.h>
 
-#include "lidar/prepared_cloud.h"
-#include "lidar/registration.h"
-#include "tests/lidar/lidar_scenes.h"
+#include "canyon/lidar/registration/prepared_cloud.h"
+#include "canyon/lidar/registration/registration.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
 namespace {

@@ -10,13 +10,13 @@
 #include <pcl/io/vlp_grabber.h>
 #include <pcl/point_types.h>
 
-#include "core/files.h"
-#include "lidar/velodyne/packet_reader.h"
-#include "lidar/velodyne/packet_writer.h"
-#include "lidar/velodyne/pcap.h"
-#include "lidar/velodyne/udp_sender.h"
-#include "tests/lidar/lidar_scenes.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/files/files.h"
+#include "canyon/lidar/velodyne/packet_reader.h"
+#include "canyon/lidar/velodyne/packet_writer.h"
+#include "canyon/lidar/velodyne/pcap.h"
+#include "canyon/lidar/velodyne/udp_sender.h"
+#include "canyon/tests/lidar/lidar_scenes.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::lidar {
 namespace {

@@ -5,11 +5,11 @@
 #include <pcl/io/ply_io.h>
 #include <pcl/point_types.h>
 
-#include "core/files.h"
-#include "core/random.h"
-#include "lidar/cloud_files.h"
-#include "lidar/scan_files.h"
-#include "tests/support/temporary_folder.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/random/random.h"
+#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/lidar/files/scan_files.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::lidar {
 namespace {

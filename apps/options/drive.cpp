@@ -1,0 +1,100 @@
+#include "canyon/apps/options/drive.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/apps/line/invocation.h"
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/mission/results.h"
+#include "canyon/report/html_report.h"
+
+namespace canyon::apps {
+
+namespace {
+
+void print_json(const mission::Results& results, const std::string& directory, const std::string& hash) {
+  nlohmann::ordered_json out = mission::summary_json(results);
+  // The contract's figures of cost stand beside the others, not under `timing`.
+  for (auto& run : out["runs"]) {
+    run["real_time_factor"] = run["timing"]["real_time_factor"];
+    run["cpu_s"] = run["timing"]["cpu_s"];
+  }
+  out["seed"] = out["mission"]["seed"];
+  out["results_dir"] = directory;
+  out["hash"] = hash;
+  // The directory's name may be of any bytes.
+  std::printf("%s\n", out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+}
+
+/// Each warning once, however many runs met it.
+void print_warnings(const mission::Results& results) {
+  std::set<std::string> told;
+  for (const auto& record : results.records)
+    for (const auto& warning : record.warnings)
+      if (told.insert(warning).second) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
+}  // namespace
+
+void declare_loop_options(Arguments& arguments, LoopOptions& options) {
+  arguments.flag("--open-loop", options.open_loop,
+                 "all runs on one true motion, whatever the autonomy asks for: errors are paired, there is no outcome; "
+                 "without --tape or --trajectory on the mission's own route, driven on truth");
+  const auto tape =
+      arguments.option("--tape", options.tape.tape, "true motion to drive on: a .tape, or a results directory")
+          .type("RUN_DIR");
+  arguments
+      .option("--trajectory", options.tape.trajectory,
+              "true motion to drive on: poses in the scene's frame (.tum, .kitti, .csv) or a geodetic reference")
+      .type("FILE")
+      .excludes(tape);
+  arguments.option("--trajectory-rate", options.tape.trajectory_rate_hz, "poses per second of a file without times")
+      .default_shown()
+      .within(1e-3, 1e4);
+}
+
+Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const mission::MissionFile& file,
+                             const std::vector<study::RunPlan>& plan) {
+  set_threads(options.common.threads);
+  const bool on_tape = !loop.tape.tape.empty() || !loop.tape.trajectory.empty();
+  if (on_tape && !loop.open_loop)
+    return Error{.file = loop.tape.tape.empty() ? "--trajectory" : "--tape",
+                 .what = "is for open loops",
+                 .expected = "--open-loop beside it"};
+  CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
+  if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
+  const std::string directory = output_directory(options, comparison.configs.front());
+  CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
+  CANYON_TRY(auto results, study::compare(comparison, !options.common.json));
+  results.command_line = invocation().command_line;
+  results.commit = invocation().commit;
+  CANYON_TRY(const std::string hash, mission::write_results(staged.staging_path(), results));
+  CANYON_TRY_STATUS(report::write_html_report(staged.staging_path(), staged.staging_path() + "/report.html"));
+  throw_if_cancelled();
+  CANYON_TRY_STATUS(staged.commit());
+
+  print_warnings(results);
+  if (options.common.json) {
+    print_json(results, staged.final_path(), hash);
+    return 0;
+  }
+  const auto& mission = *results.mission;
+  if (comparison.tape)
+    std::printf("Open loop on %s: %.1f s of true motion, the same for all runs\n", comparison.tape->source.c_str(),
+                comparison.tape->duration_s());
+  std::printf("Mission %s, seed %lld, %s: %.0f m planned, nominal %.0f s, limit %.0f s\n\n",
+              comparison.configs.front().run.name.c_str(), static_cast<long long>(comparison.configs.front().run.seed),
+              mission.start.iso(0).c_str(), mission.prior.route.length_m(), mission.nominal_s, mission.time_limit_s);
+  std::printf("%s\n", study::comparison_table(results).c_str());
+  const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
+  std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),
+              (place / "report.html").c_str());
+  return 0;
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canyon/apps/options/mission_options.h"
+#include "canyon/study/compare.h"
+
+namespace canyon::apps {
+
+/// Options of the loop: without --open-loop each run drives by itself.
+struct LoopOptions {
+  bool open_loop = false;
+  study::TapeChoice tape;
+};
+void declare_loop_options(Arguments& arguments, LoopOptions& options);
+
+/// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run
+/// share.
+Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const mission::MissionFile& file,
+                             const std::vector<study::RunPlan>& plan);
+
+}  // namespace canyon::apps

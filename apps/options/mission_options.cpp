@@ -1,0 +1,40 @@
+#include "canyon/apps/options/mission_options.h"
+
+#include <ctime>
+
+#include "canyon/core/files/files.h"
+
+namespace canyon::apps {
+
+void declare_mission_options(Arguments& arguments, MissionOptions& options) {
+  declare_common(arguments, options.common);
+  arguments.option("mission", options.mission, "mission file (TOML); without it the built-in mission")
+      .type("MISSION.toml");
+  arguments.option("--seed", options.seed, "seed of every random stream; without it the mission's")
+      .within(std::int64_t{0}, kLargestSeed);
+  arguments.option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
+  arguments.option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+  arguments.option("--out", options.out, "results directory; default results/<mission>-<seed>-<time>");
+  arguments.flag("--force", options.force,
+                 "replace the results directory if it exists; only one that canyon wrote, or an empty one");
+}
+
+Result<mission::MissionFile> load_mission(const MissionOptions& options) {
+  CANYON_TRY(auto file, mission::MissionFile::load(options.mission));
+  if (options.seed) file.set_option("run.seed", ConfigNode::of(*options.seed), "--seed");
+  if (!options.nav.empty()) file.set_option("gnss.nav_file", ConfigNode::of(options.nav), "--nav");
+  if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
+  return file;
+}
+
+std::string output_directory(const MissionOptions& options, const mission::MissionConfig& config) {
+  if (!options.out.empty()) return options.out;
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char stamp[32];
+  std::strftime(stamp, sizeof stamp, "%Y%m%d-%H%M%S", &local);
+  return free_name("results/" + config.run.name + "-" + std::to_string(config.run.seed) + "-" + stamp);
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,46 @@
+#include <algorithm>
+#include <memory>
+
+#include "canyon/apps/line/usage_errors.h"
+#include "canyon/apps/options/drive.h"
+
+namespace canyon::apps {
+
+namespace {
+
+VerbAction declare(Arguments& arguments) {
+  struct Options {
+    MissionOptions mission;
+    LoopOptions loop;
+    std::string fidelities = "low,high,paper";
+    bool no_two_by_two = false;
+  };
+  const auto options = std::make_shared<Options>();
+  declare_mission_options(arguments, options->mission);
+  declare_loop_options(arguments, options->loop);
+  arguments
+      .option("--fidelities", options->fidelities,
+              "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
+              "over first")
+      .default_shown();
+  arguments.flag("--no-2x2", options->no_two_by_two, "leave out the mixed runs low/high GNSS x low/high IMU");
+  return [options]() -> Result<int> {
+    CANYON_TRY(const auto file, load_mission(options->mission));
+    const std::vector<std::string> fidelities = split_list(options->fidelities);
+    CANYON_TRY_STATUS(file.check_fidelities(fidelities, "--fidelities"));
+    const auto has = [&](const char* name) {
+      return std::find(fidelities.begin(), fidelities.end(), name) != fidelities.end();
+    };
+    const bool square = !options->no_two_by_two && has("low") && has("high");
+    return drive_and_report(options->mission, options->loop, file, study::plan_runs(fidelities, square));
+  };
+}
+
+}  // namespace
+
+Verb compare_verb() {
+  return {"compare", "the same mission at several fidelities, side by side, on the same random numbers",
+          "canyon compare my.toml --seed 7 --nav brdc1820.10n --start 2010-07-01T13:00:00", declare};
+}
+
+}  // namespace canyon::apps

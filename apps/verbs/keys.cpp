@@ -1,0 +1,46 @@
+#include <cstdio>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/apps/line/json.h"
+#include "canyon/apps/line/verb.h"
+#include "canyon/core/config/config.h"
+#include "canyon/mission/config/key_reference.h"
+#include "canyon/mission/config/mission_config.h"
+
+namespace canyon::apps {
+
+namespace {
+
+Json keys_json() {
+  mission::MissionConfig config;
+  Json out{{"keys", Json::array()}};
+  for (const FieldDoc& row : documented_fields("", [&config](FieldVisitor& f) { visit(f, config); }))
+    out["keys"].push_back({{"key", row.key},
+                           {"unit", row.unit},
+                           {"default", row.default_value},
+                           {"range", row.range},
+                           {"meaning", row.meaning}});
+  return out;
+}
+
+VerbAction declare(Arguments& arguments) {
+  const auto options = std::make_shared<CommonOptions>();
+  declare_common(arguments, *options);
+  return [options]() -> Result<int> {
+    if (options->json)
+      std::printf("%s\n", keys_json().dump().c_str());
+    else
+      std::fputs(mission::key_reference().c_str(), stdout);
+    return 0;
+  };
+}
+
+}  // namespace
+
+Verb keys_verb() {
+  return {"keys", "all keys of a mission file, with units, defaults and ranges", "canyon keys > mission.md", declare};
+}
+
+}  // namespace canyon::apps

@@ -1,0 +1,15 @@
+#include "canyon/core/math/median.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace canyon {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+}  // namespace canyon

@@ -1,0 +1,136 @@
+#include "canyon/core/motion/rotation.h"
+
+#include <cmath>
+
+#include "canyon/core/units.h"
+
+namespace canyon {
+namespace {
+
+/// Below this angle series are used. The terms left out are of relative size angle^4 / 1920 and smaller: under 1e-19.
+constexpr double kSmallAngleRad = 1e-4;
+
+/// Left Jacobian of SO(3), the V of SE(3): the translation of Exp(xi) is V(rotation) * translation.
+Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& v) {
+  return so3_right_jacobian(-v);
+}
+
+Eigen::Matrix3d so3_left_jacobian_inverse(const Eigen::Vector3d& v) {
+  const double angle = v.norm();
+  double square_factor = 1.0 / 12.0 + angle * angle / 720.0;
+  if (angle >= kSmallAngleRad) {
+    // (1 - (a/2) cot(a/2)) / a^2, which stays finite at a = pi.
+    const double half = 0.5 * angle;
+    square_factor = (1.0 - half * std::cos(half) / std::sin(half)) / (angle * angle);
+  }
+  const Eigen::Matrix3d V = skew(v);
+  return Eigen::Matrix3d::Identity() - 0.5 * V + square_factor * V * V;
+}
+
+}  // namespace
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+Eigen::Quaterniond so3_exp(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  double w = 1.0 - angle * angle / 8.0;
+  double factor = 0.5 - angle * angle / 48.0;
+  if (angle >= kSmallAngleRad) {
+    w = std::cos(0.5 * angle);
+    factor = std::sin(0.5 * angle) / angle;
+  }
+  return {w, factor * rotation_vector.x(), factor * rotation_vector.y(), factor * rotation_vector.z()};
+}
+
+Eigen::Vector3d so3_log(const Eigen::Quaterniond& q) {
+  const double n = q.vec().norm();
+  // q and -q are the same rotation: the one with w >= 0 has the angle in [0, pi].
+  const double sign = q.w() < 0.0 ? -1.0 : 1.0;
+  const double w = std::abs(q.w());
+  if (n < 0.5 * kSmallAngleRad * w) {
+    const double ratio = n / w;
+    return (sign * 2.0 / w) * (1.0 - ratio * ratio / 3.0) * q.vec();
+  }
+  return (sign * 2.0 * std::atan2(n, w) / n) * q.vec();
+}
+
+Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& v) {
+  const double angle = v.norm();
+  double linear = 0.5 - angle * angle / 24.0;
+  double square = 1.0 / 6.0 - angle * angle / 120.0;
+  if (angle >= kSmallAngleRad) {
+    const double half_sine = std::sin(0.5 * angle) / (0.5 * angle);
+    linear = 0.5 * half_sine * half_sine;  // (1 - cos a) / a^2 without cancellation
+    square = (angle - std::sin(angle)) / (angle * angle * angle);
+  }
+  const Eigen::Matrix3d V = skew(v);
+  return Eigen::Matrix3d::Identity() - linear * V + square * V * V;
+}
+
+YawPitchRoll yaw_pitch_roll(const Eigen::Quaterniond& R_WB) {
+  const Eigen::Matrix3d R = R_WB.toRotationMatrix();
+  const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), cos_pitch);
+  // Looking straight up or down only yaw -+ roll is defined; all of it is given to yaw.
+  if (cos_pitch < 1e-12) return {std::atan2(-R(0, 1), R(1, 1)), pitch, 0.0};
+  return {std::atan2(R(1, 0), R(0, 0)), pitch, std::atan2(R(2, 1), R(2, 2))};
+}
+
+Eigen::Quaterniond rotation_from(const YawPitchRoll& angles) {
+  return Eigen::AngleAxisd(angles.yaw_rad, Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(angles.pitch_rad, Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(angles.roll_rad, Eigen::Vector3d::UnitX());
+}
+
+double heading_from_yaw(double yaw_rad) {
+  const double heading = wrap_pi(0.5 * kPi - yaw_rad);
+  if (heading >= 0.0) return heading;
+  // A tiny negative angle plus 2 pi rounds to 2 pi itself, which is outside [0, 2 pi).
+  const double turned = heading + 2.0 * kPi;
+  return turned < 2.0 * kPi ? turned : 0.0;
+}
+
+double yaw_from_heading(double heading_rad) {
+  return wrap_pi(0.5 * kPi - heading_rad);
+}
+
+double wrap_pi(double angle_rad) {
+  const double wrapped = std::remainder(angle_rad, 2.0 * kPi);
+  return wrapped <= -kPi ? kPi : wrapped;
+}
+
+Pose Pose::exp(const Vector6d& xi) {
+  const Eigen::Vector3d rotation = xi.head<3>();
+  return {so3_exp(rotation), so3_left_jacobian(rotation) * xi.tail<3>()};
+}
+
+Vector6d Pose::log() const {
+  const Eigen::Vector3d rotation = so3_log(R);
+  Vector6d xi;
+  xi << rotation, so3_left_jacobian_inverse(rotation) * p;
+  return xi;
+}
+
+Eigen::Matrix4d Pose::matrix() const {
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T.topLeftCorner<3, 3>() = R.toRotationMatrix();
+  T.topRightCorner<3, 1>() = p;
+  return T;
+}
+
+Pose Pose::from_matrix(const Eigen::Matrix4d& T) {
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  return {Eigen::Quaterniond(R).normalized(), T.topRightCorner<3, 1>()};
+}
+
+Pose interpolate(const Pose& a, const Pose& b, double s) {
+  if (s == 0.0) return a;
+  if (s == 1.0) return b;
+  return a * Pose::exp(s * (a.inverse() * b).log());
+}
+
+}  // namespace canyon

@@ -1,0 +1,86 @@
+#include "canyon/core/process/parallel.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "canyon/core/check.h"
+#include "canyon/core/process/cpu_time.h"
+#include "canyon/core/process/progress.h"
+
+namespace canyon {
+namespace {
+
+/// The arena our loops run in, and the process-wide limit that also binds what others (Embree) start on oneTBB.
+struct Pool {
+  explicit Pool(int n)
+      : count(n), limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n)), arena(n) {}
+  int count;
+  tbb::global_control limit;
+  tbb::task_arena arena;
+};
+
+int all_cores() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+std::mutex pool_mutex;
+std::shared_ptr<Pool> current_pool;
+
+std::shared_ptr<Pool> pool() {
+  const std::lock_guard lock(pool_mutex);
+  if (!current_pool) current_pool = std::make_shared<Pool>(all_cores());
+  return current_pool;
+}
+
+}  // namespace
+
+void set_threads(int threads) {
+  CANYON_CHECK(threads >= 0 && threads <= 4096, "threads = ", threads);
+  const std::lock_guard lock(pool_mutex);
+  current_pool.reset();  // the old limit must go first: the smallest of those alive counts
+  current_pool = std::make_shared<Pool>(threads == 0 ? all_cores() : threads);
+}
+
+int threads() {
+  return pool()->count;
+}
+
+void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body) {
+  CANYON_CHECK(chunk > 0, "chunk = ", chunk);
+  if (n == 0) return;
+  const std::size_t chunks = (n - 1) / chunk + 1;
+  CpuAccount* const account = charged_cpu_account();
+  const auto run_chunk = [&](std::size_t i) {
+    throw_if_cancelled();
+    const ChargeCpu charge(account);
+    body(i * chunk, i * chunk + std::min(chunk, n - i * chunk));
+  };
+  const std::shared_ptr<Pool> keep = pool();
+  if (keep->count == 1 || chunks == 1) {
+    for (std::size_t i = 0; i < chunks; ++i) run_chunk(i);
+    return;
+  }
+  // Isolated: a thread that waits for a nested loop takes up only that loop's chunks, never an unrelated one's.
+  keep->arena.execute([&] {
+    tbb::this_task_arena::isolate([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<std::size_t>(0, chunks, 1),
+          [&](const tbb::blocked_range<std::size_t>& range) {
+            for (std::size_t i = range.begin(); i < range.end(); ++i) run_chunk(i);
+          },
+          tbb::simple_partitioner());
+    });
+  });
+}
+
+void run_on_one_thread(const std::function<void()>& work) {
+  tbb::task_arena(1).execute([&] { tbb::this_task_arena::isolate([&] { work(); }); });
+}
+
+}  // namespace canyon

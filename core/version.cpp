@@ -1,9 +1,0 @@
-#include "core/version.h"
-
-namespace canyon {
-
-const char* const kVersion =
-#include "embedded/version.inc"
-    ;
-
-}  // namespace canyon

@@ -1,0 +1,157 @@
+#include "canyon/gnss/receiver/modes/receiver_fix.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/core/check.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/signal.h"
+#include "canyon/gnss/solver/velocity.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr double kLowestElevationRad =
+    5.0 * kDegree;  // models and weights are held there, wherever a poor guess puts the horizon
+
+/// Satellites as told by the pseudoranges; what has no valid ephemeris there stays NaN.
+std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, const Constellation& constellation,
+                                                           std::span<CorrectionInput> inputs,
+                                                           std::vector<RateMeasurement>& rates) {
+  std::vector<RangeMeasurement> ranges;
+  for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
+    auto& o = epoch.observations[i];
+    const auto view = transmission_from_pseudorange(constellation, o.sv, epoch.t, o.pseudorange_m);
+    CANYON_CHECK(view.has_value(), "no ephemeris for ", o.sv.str(), " that was just simulated at ", epoch.t.iso());
+    o.clock_m = kSpeedOfLight * view->state.clock_of_band_s(o.band);
+    o.v_E = view->state.v_E;
+    if (inputs[i].two)
+      inputs[i].two->measured_m = o.second.pseudorange_m + kSpeedOfLight * view->state.clock_of_band_s(o.second.band) -
+                                  o.pseudorange_m - o.clock_m;
+    ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0, o.sv.system});
+    const double carrier = carrier_hz(o.sv.system, o.band, view->state.frequency_channel);
+    rates.push_back({view->state.p_E, view->state.v_E,
+                     pseudorange_rate_m_s(o.doppler_hz, carrier) + kSpeedOfLight * view->state.clock_rate, 1.0});
+  }
+  return ranges;
+}
+
+/// Everything that depends on where the receiver believes to be.
+void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at_E, GnssEpoch& epoch,
+             std::span<CorrectionInput> inputs, std::vector<Correction>& corrections,
+             std::vector<RangeMeasurement>& ranges) {
+  const Horizon horizon(at_E);
+  for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
+    auto& o = epoch.observations[i];
+    o.p_E = turned_by_earth(ranges[i].p_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
+    SkyView& view = inputs[i].receivers_view;
+    view = horizon.view(t, o.p_E);
+    view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
+    corrections[i] = receiver.mode.correction(inputs[i]);
+    o.correction_m = corrections[i].total_m();
+    // The difference of two frequencies tells the ionosphere, but not without their noise.
+    const bool two = inputs[i].two.has_value(), lost = receiver.mode.dual_frequency() && !two;
+    const double gain = two ? inputs[i].two->gain : 0.0, modelled_m = corrections[i].modelled.ionosphere_m;
+    o.sigma_m = receiver.weighting.sigma_m({.system = o.sv.system,
+                                            .elevation_rad = view.elevation_rad,
+                                            .cn0_dbhz = o.cn0_dbhz,
+                                            .ionosphere_m = two || lost ? 0.0 : modelled_m,
+                                            .code_factor = two ? std::hypot(1.0 + gain, gain) : 1.0});
+    // Among satellites that measure their ionosphere, one that models it must not count for more: models remove about
+    // half (IS-GPS-200N 20.3.3.5.2.5), so as much as is subtracted is left.
+    if (lost) o.sigma_m = std::hypot(o.sigma_m, modelled_m);
+    ranges[i].range_m = o.corrected_m();
+    ranges[i].sigma_m = o.sigma_m;
+  }
+}
+
+/// Velocity from the Dopplers of the satellites in the fix.
+void fill_velocity(const GnssEpoch& epoch, std::span<const RateMeasurement> all, double max_gdop, GnssFix& fix) {
+  constexpr double kOutlierSigmas = 5.0;
+  std::vector<RateMeasurement> used;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (epoch.observations[i].used) used.push_back(all[i]);
+  const VelocitySolution velocity = solve_velocity(used, fix.p_A_E, {max_gdop, kOutlierSigmas});
+  if (!velocity.ok) return;
+  fix.v_A_E = velocity.v_E;
+  fix.velocity_covariance_E = velocity.covariance_E;
+}
+
+/// The filter's fix, from all satellites that there are: what it expects tells a fault better than one epoch's
+/// residuals, which need redundancy. Says why where there is none.
+void filtered_fix(PvtFilter& filter, FixStatus status, std::span<const RangeMeasurement> ranges,
+                  std::span<const RateMeasurement> rates, const Eigen::Vector3d& at_E, GnssEpoch& epoch, GnssFix& fix) {
+  const PvtFilter::Estimate estimate = filter.update(fix.t, ranges, rates, at_E);
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    epoch.observations[i].used = estimate.ranges_used[i];
+    fix.satellites += estimate.ranges_used[i] ? 1 : 0;
+  }
+  if (!estimate.ok || fix.satellites == 0) {
+    if (!estimate.ok) fix.reason = estimate.reason;
+    if (fix.reason.empty()) fix.reason = "no satellite that the filter's prediction agrees with";
+    return;
+  }
+  fix.status = status;
+  fix.reason.clear();
+  estimate.fill(fix);
+}
+
+/// The epoch by itself.
+void snapshot_fix(const PositionSolution& solution, FixStatus status, double max_gdop,
+                  std::span<const RateMeasurement> rates, GnssEpoch& epoch, GnssFix& fix) {
+  fix.status = status;
+  fix.p_A_E = solution.p_E;
+  fix.covariance_E = solution.covariance_E;
+  fix.clock_m = solution.clock_m;
+  fix.satellites = solution.satellites_used();
+  for (std::size_t i = 0; i < epoch.observations.size(); ++i) epoch.observations[i].used = solution.used[i];
+  fill_velocity(epoch, rates, max_gdop, fix);
+}
+
+}  // namespace
+
+GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
+                    std::vector<Correction>& corrections) {
+  auto& observations = epoch.observations;
+  CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
+               " observations");
+  std::vector<RateMeasurement> rates;
+  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation, inputs, rates);
+  corrections.assign(observations.size(), {});
+
+  // Uncorrected ranges tell the position to some tens of metres; corrected for elevations and heights there, to metres;
+  // a third pass would change corrections by less than a millimetre.
+  Eigen::Vector3d at_E = receiver.guess_E;
+  const auto expected_E = receiver.filter != nullptr ? receiver.filter->predicted_p_E(t) : std::nullopt;
+  if (const auto rough = receiver.solver.solve(ranges, receiver.guess_E); rough.ok)
+    at_E = rough.p_E;
+  else if (expected_E)
+    at_E = *expected_E;
+  PositionSolution solution;
+  constexpr int kPasses = 2;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    correct(receiver, t, at_E, epoch, inputs, corrections, ranges);
+    solution = receiver.solver.solve(ranges, at_E);
+    if (solution.ok) at_E = solution.p_E;
+  }
+
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    observations[i].v_E = turned_by_earth(observations[i].v_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
+
+  // Carriers are trusted in proportion to codes, 5 cm/s where the code is trusted to 0.5 m: what weakens or bends one
+  // does so to the other.
+  for (std::size_t i = 0; i < observations.size(); ++i) rates[i].sigma_m_s = 0.1 * observations[i].sigma_m;
+
+  GnssFix fix;
+  fix.t = t;
+  fix.dop = solution.dop;
+  fix.reason = solution.reason;
+  if (receiver.filter != nullptr)
+    filtered_fix(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
+  else if (solution.ok)
+    snapshot_fix(solution, receiver.mode.status(), receiver.max_gdop, rates, epoch, fix);
+  return fix;
+}
+
+}  // namespace canyon::gnss

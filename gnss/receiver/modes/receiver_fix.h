@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "canyon/core/messages.h"
+#include "canyon/gnss/receiver/modes/receiver_mode.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/solver/position_solver.h"
+#include "canyon/gnss/solver/pvt_filter.h"
+#include "canyon/gnss/solver/weighting.h"
+
+namespace canyon::gnss {
+
+/// What a receiver knows and uses.
+struct ReceiverParts {
+  const Constellation& constellation;
+  const ReceiverMode& mode;
+  const PositionSolver& solver;
+  const RangeWeighting& weighting;
+  double max_gdop = 100.0;      ///< of a velocity
+  Eigen::Vector3d guess_E;      ///< rough position, used while there is no fix; some kilometres are good enough
+  PvtFilter* filter = nullptr;  ///< of position, velocity and time; without one each epoch is solved by itself
+};
+
+/// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,
+/// clock, correction, sigma, used) and solves them. `inputs` runs parallel to epoch.observations; its receivers_view is
+/// filled in. `corrections` gets what was subtracted. The fix carries the time `t` and not the receiver clock's reading
+/// epoch.t: a receiver corrects its own time tag with the clock that it solves. With a filter the fix is the filter's:
+/// it begins with a least squares of its own, and once it runs it is given all satellites, few or many, whatever the
+/// epoch's own solution made of them, and tests each against what it expects.
+GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
+                    std::vector<Correction>& corrections);
+
+}  // namespace canyon::gnss

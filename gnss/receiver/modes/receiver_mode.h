@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "canyon/core/messages.h"
+#include "canyon/core/model_table.h"
+#include "canyon/gnss/atmosphere/ionosphere.h"
+#include "canyon/gnss/atmosphere/troposphere.h"
+
+namespace canyon::gnss {
+
+/// The delays that act on a range beside geometry, clocks, multipath and noise; m.
+struct RangeDelays {
+  double ionosphere_m = 0.0;
+  double troposphere_m = 0.0;
+  double ephemeris_m = 0.0;
+};
+
+/// What the receiver subtracts. `base_m` is the base station's own error, which comes with a differential correction;
+/// `noise_m` and `multipath_m` are what two frequencies' own errors bring into their difference.
+struct Correction {
+  RangeDelays modelled;
+  double base_m = 0.0;
+  double noise_m = 0.0, multipath_m = 0.0;
+  double total_m() const {
+    return modelled.ionosphere_m + modelled.troposphere_m + modelled.ephemeris_m + base_m + noise_m + multipath_m;
+  }
+};
+
+/// Second frequency minus first.
+struct FrequencyDifference {
+  double gain = 0.0;         ///< 1 / ((f1 / f2)^2 - 1): first frequency's ionospheric delay per metre of difference
+  double measured_m = 0.0;   ///< of the pseudoranges, satellite clocks applied: this is all that a receiver knows
+  double noise_m = 0.0;      ///< of that, what is thermal noise,
+  double multipath_m = 0.0;  ///< and what is multipath
+};
+
+/// One satellite at one epoch, for the mode.
+struct CorrectionInput {
+  SatelliteId sv;
+  GpsTime t;
+  SkyView true_view;       ///< where the satellite really stands
+  SkyView receivers_view;  ///< where the receiver believes it to stand
+  double range_m = 0.0;
+  RangeDelays acting;                      ///< what acts on the rover's range, at its own carrier
+  double ionosphere_from_l1 = 1.0;         ///< delay there per delay at L1: (L1 / carrier)^2
+  std::optional<FrequencyDifference> two;  ///< none: only the first signal is tracked
+};
+
+/// Mode of operation: which errors act on the range, and which of them the receiver removes.
+class ReceiverMode {
+ public:
+  virtual ~ReceiverMode() = default;
+  /// The part of the raw delays that acts on the range at all; all of it, but for dgps_paper.
+  virtual RangeDelays acting(const RangeDelays& raw) const { return raw; }
+  virtual Correction correction(const CorrectionInput& in) const = 0;
+  virtual FixStatus status() const = 0;
+  virtual bool dual_frequency() const { return false; }
+  /// Does it correct for the atmosphere, so that a residual is left, or do the raw delays act?
+  virtual bool corrects_atmosphere() const = 0;
+};
+
+struct ReceiverModeParameters {
+  std::uint64_t seed = 0;
+  bool ionosphere = true;  ///< that effect is switched on: only then is it corrected, or does it leave a residual
+  bool troposphere = true;
+  std::string ionosphere_correction = "half";
+  KlobucharCoefficients klobuchar;
+  double baseline_km = 5.0;
+  double ionosphere_gradient_mm_per_km = 2.0;
+  double troposphere_gradient_mm_per_km = 1.0;
+  double base_error_scale = 1.0;
+};
+
+using MakeReceiverMode = std::unique_ptr<ReceiverMode>(const ReceiverModeParameters&);
+std::span<const ModelRow<MakeReceiverMode>> receiver_modes();
+
+/// Names of what may be subtracted for the ionosphere with one frequency: in mode single, and in mode dual for a
+/// satellite whose second signal is lost.
+std::vector<std::string> ionosphere_corrections();
+/// What that correction subtracts, m.
+double modelled_ionosphere_m(const ReceiverModeParameters& p, const CorrectionInput& in);
+
+std::unique_ptr<ReceiverMode> make_single(const ReceiverModeParameters& p);
+std::unique_ptr<ReceiverMode> make_dual(const ReceiverModeParameters& p);
+std::unique_ptr<ReceiverMode> make_dgps(const ReceiverModeParameters& p);
+
+}  // namespace canyon::gnss

@@ -1,0 +1,56 @@
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
+#include "canyon/gnss/sensor/sensor_models.h"
+
+namespace canyon::gnss {
+namespace {
+
+/// The low-fidelity receiver of Durst & Goodin (2012, section 4): "the true position plus a random error of about 30 to
+/// 50 centimeters", taken as a differential fix. Each epoch draws a direction uniform on the sphere and a length
+/// uniform in [min, max], independent of every other epoch. It knows no satellites, so there is no DOP and no outage.
+class IsotropicSensor final : public GnssSensor {
+ public:
+  IsotropicSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame)
+      : config_(config),
+        frame_(frame),
+        direction_(seed, "gnss.isotropic.direction"),
+        length_(seed, "gnss.isotropic.length") {}
+
+  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d&,
+                     const scene::SceneAt&) override {
+    CANYON_CHECK(index >= 0, "index = ", index);
+    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
+    const auto sample = static_cast<std::uint64_t>(index);
+    GnssOutput out;
+    out.epoch.t = t;
+    out.truth.t = t;
+    out.truth.p_A_E = frame_.to_E(p_A_W);
+    out.fix.t = t;
+    out.fix.status = FixStatus::kDifferential;
+    const double length_m = length_.uniform(config_.isotropic_min_m, config_.isotropic_max_m, 0, sample);
+    out.fix.p_A_E = out.truth.p_A_E + length_m * direction_.direction(0, sample);
+    out.fix.covariance_E = config_.isotropic_sigma_m * config_.isotropic_sigma_m * Eigen::Matrix3d::Identity();
+    ++counters_.epochs;
+    return out;
+  }
+
+  GnssCounters counters() const override { return counters_; }
+
+ private:
+  GnssConfig config_;
+  LocalFrame frame_;
+  RandomStream direction_, length_;
+  GnssCounters counters_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime,
+                                                          GpsTime, const scene::Scene& scene) {
+  if (config.isotropic_max_m < config.isotropic_min_m)
+    return Error{"", 0, "gnss.isotropic_max_m", "is " + join_values(config.isotropic_max_m),
+                 "at least gnss.isotropic_min_m = " + join_values(config.isotropic_min_m)};
+  return std::unique_ptr<GnssSensor>(std::make_unique<IsotropicSensor>(config, seed, scene.frame()));
+}
+
+}  // namespace canyon::gnss

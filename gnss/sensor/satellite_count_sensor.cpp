@@ -1,0 +1,108 @@
+#include <algorithm>
+
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/path_model.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/sensor/satellite_source.h"
+#include "canyon/gnss/sensor/sensor_models.h"
+#include "canyon/gnss/sky_view.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr int kFewest = 4, kMany = 12;
+
+/// Balaguer & Carpin (2008), "Where am I? A simulated GPS sensor for outdoor robotic applications", as their receiver
+/// stands in USARSim (class GPSSensor, NIST, public domain): satellites above 5 deg (here mask_deg) that a ray to the
+/// sky finds unblocked are counted. Fewer than four: no fix. Else each axis errs by independent Gaussian noise, three
+/// sigmas of which fall linearly from count_noise_max_m with four satellites to count_noise_min_m with twelve (and stay
+/// there). Where the satellites stand makes no difference, so there is no DOP, and no multipath. Theirs errs in
+/// latitude and longitude only, for it has no height; here all three axes do.
+class SatelliteCountSensor final : public GnssSensor {
+ public:
+  SatelliteCountSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame, SatelliteSource source)
+      : config_(config),
+        frame_(frame),
+        source_(std::move(source)),
+        visibility_(find_model(path_models(), "visibility")->make({})),
+        noise_(seed, "gnss.satellite_count") {}
+
+  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
+                     const scene::SceneAt& scene) override {
+    CANYON_CHECK(index >= 0, "index = ", index);
+    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
+    ++counters_.epochs;
+    GnssOutput out;
+    out.epoch.t = out.truth.t = out.fix.t = t;
+    out.truth.p_A_E = frame_.to_E(p_A_W);
+    out.truth.v_A_E = frame_.R_EW() * v_A_W;
+    const int satellites = count(out.truth, p_A_W, scene);
+    if (satellites < kFewest) {
+      out.fix.reason = std::to_string(satellites) + (satellites == 1 ? " satellite" : " satellites") +
+                       ", a fix needs " + std::to_string(kFewest);
+      return out;
+    }
+    const double share = static_cast<double>(std::min(satellites, kMany) - kFewest) / (kMany - kFewest);
+    const double sigma_m =
+        (config_.count_noise_max_m + share * (config_.count_noise_min_m - config_.count_noise_max_m)) / 3.0;
+    out.fix.status = FixStatus::kSingle;
+    out.fix.satellites = satellites;
+    out.fix.p_A_E = out.truth.p_A_E + frame_.R_EW() * (sigma_m * noise_.normal3(static_cast<std::uint64_t>(index)));
+    out.fix.covariance_E = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
+    return out;
+  }
+
+  GnssCounters counters() const override { return counters_; }
+  std::vector<std::string> warnings() const override { return source_.warnings; }
+
+ private:
+  /// Fills in the truth records of the satellites above the mask; the number of those in sight.
+  int count(GnssTruth& truth, const Eigen::Vector3d& p_A_W, const scene::SceneAt& scene) {
+    const Horizon horizon(truth.p_A_E);
+    std::vector<Eigen::Vector3d> directions_W;
+    for (const SatelliteId sv : source_.constellation->satellites()) {
+      const auto signal = transmission_to(*source_.constellation, sv, truth.t, truth.p_A_E);
+      if (!signal) continue;
+      const SkyView view = horizon.view(truth.t, signal->p_E());
+      if (view.elevation_rad < config_.mask_deg * kDegree) continue;
+      GnssObservationTruth s;
+      s.sv = sv;
+      s.elevation_rad = view.elevation_rad;
+      s.azimuth_rad = view.azimuth_rad;
+      s.range_m = signal->range_m;
+      truth.satellites.push_back(s);
+      directions_W.push_back(frame_.R_EW().transpose() * (signal->p_E() - truth.p_A_E).normalized());
+    }
+    std::vector<SignalPaths> paths(directions_W.size());
+    visibility_->trace(p_A_W, directions_W, scene, paths, counters_);
+    int in_sight = 0;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      truth.satellites[i].line_of_sight = truth.satellites[i].tracked = paths[i].line_of_sight;
+      in_sight += paths[i].line_of_sight ? 1 : 0;
+    }
+    return in_sight;
+  }
+
+  GnssConfig config_;
+  LocalFrame frame_;
+  SatelliteSource source_;
+  std::unique_ptr<PathModel> visibility_;
+  RandomStream noise_;
+  GnssCounters counters_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<GnssSensor>> make_satellite_count_sensor(const GnssConfig& config, std::uint64_t seed,
+                                                                GpsTime start, GpsTime end, const scene::Scene& scene) {
+  if (config.count_noise_max_m < config.count_noise_min_m)
+    return Error{"", 0, "gnss.count_noise_max_m", "is " + join_values(config.count_noise_max_m),
+                 "at least gnss.count_noise_min_m = " + join_values(config.count_noise_min_m)};
+  CANYON_TRY(SatelliteSource source, make_satellite_source(config, start, end));
+  return std::unique_ptr<GnssSensor>(
+      std::make_unique<SatelliteCountSensor>(config, seed, scene.frame(), std::move(source)));
+}
+
+}  // namespace canyon::gnss

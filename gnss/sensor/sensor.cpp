@@ -1,0 +1,38 @@
+#include "canyon/gnss/sensor/sensor.h"
+
+#include <cmath>
+
+#include "canyon/gnss/sensor/sensor_models.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr ModelRow<MakeSensor> kSensors[] = {
+    {"pseudorange", make_pseudorange_sensor, "satellites, delays, paths in the scene, receiver and solver"},
+    {"truth_plus_isotropic", make_isotropic_sensor,
+     "truth plus a random direction times U(min, max), independent per fix"},
+    {"truth_plus_white", make_white_noise_sensor, "truth plus white Gaussian noise per axis"},
+    {"satellite_count", make_satellite_count_sensor,
+     "Balaguer & Carpin (2008): truth plus noise that falls with the number of satellites in sight"},
+};
+
+}  // namespace
+
+std::span<const ModelRow<MakeSensor>> sensor_models() {
+  return kSensors;
+}
+
+std::int64_t epoch_index(const GnssConfig& config, double t_s) {
+  return std::llround(t_s * config.rate_hz);
+}
+
+Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
+                                                     GpsTime end, const scene::Scene& scene) {
+  const auto* row = find_model(sensor_models(), config.model);
+  if (row == nullptr)
+    return Error{"", 0, "gnss.model", "\"" + config.model + "\" is not a model",
+                 "pseudorange, truth_plus_isotropic, truth_plus_white or satellite_count"};
+  return row->make(config, seed, start, end, scene);
+}
+
+}  // namespace canyon::gnss

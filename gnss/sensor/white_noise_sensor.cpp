@@ -1,0 +1,49 @@
+#include "canyon/core/check.h"
+#include "canyon/core/random/random.h"
+#include "canyon/gnss/sensor/sensor_models.h"
+
+namespace canyon::gnss {
+namespace {
+
+/// White Gaussian noise on the true position, independent from epoch to epoch and axis to axis: the receiver of most
+/// robot simulators (Player/Stage with noise added by its users; Gazebo, CARLA and Webots without correlation). It
+/// knows no satellites, so there is no DOP and no outage.
+class WhiteNoiseSensor final : public GnssSensor {
+ public:
+  WhiteNoiseSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame)
+      : config_(config), frame_(frame), noise_(seed, "gnss.white") {}
+
+  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
+                     const scene::SceneAt&) override {
+    CANYON_CHECK(index >= 0, "index = ", index);
+    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
+    const auto sample = static_cast<std::uint64_t>(index);
+    const Eigen::Vector3d sigma_m(config_.white_sigma_m, config_.white_sigma_m, config_.white_sigma_up_m);
+    GnssOutput out;
+    out.epoch.t = out.truth.t = out.fix.t = t;
+    out.truth.p_A_E = frame_.to_E(p_A_W);
+    out.truth.v_A_E = frame_.R_EW() * v_A_W;
+    out.fix.status = FixStatus::kSingle;
+    out.fix.p_A_E = out.truth.p_A_E + frame_.R_EW() * sigma_m.cwiseProduct(noise_.normal3(sample));
+    out.fix.covariance_E = frame_.R_EW() * sigma_m.cwiseAbs2().asDiagonal() * frame_.R_EW().transpose();
+    ++counters_.epochs;
+    return out;
+  }
+
+  GnssCounters counters() const override { return counters_; }
+
+ private:
+  GnssConfig config_;
+  LocalFrame frame_;
+  RandomStream noise_;
+  GnssCounters counters_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<GnssSensor>> make_white_noise_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime,
+                                                            GpsTime, const scene::Scene& scene) {
+  return std::unique_ptr<GnssSensor>(std::make_unique<WhiteNoiseSensor>(config, seed, scene.frame()));
+}
+
+}  // namespace canyon::gnss

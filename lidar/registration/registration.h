@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "canyon/core/config/config.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/result.h"
+
+namespace canyon::lidar {
+
+/// [registration] of a mission file.
+struct RegistrationConfig {
+  std::string method = "gicp";  ///< none | gicp
+  double leaf_m = 0.5;          ///< voxel size of both clouds
+  double max_correspondence_m = 1.0;
+  std::int64_t max_iterations = 20;
+  std::int64_t submap_keyframes = 10;  ///< keyframes that form the target
+  double keyframe_distance_m = 2.0;
+  double keyframe_angle_deg = 10.0;
+  // How the mapper weighs an alignment against the filter's pose; mission/mapper.h says where the figures come from.
+  double alignment_floor_m = 0.02;
+  double alignment_floor_deg = 0.05;
+  double prior_correlation_s = 10.0;
+};
+void visit(FieldVisitor& f, RegistrationConfig& c);
+
+/// kDegenerate: what was matched does not determine a pose, as points on one line do not. kDiverged: the guess or the
+/// solution is not finite. In either case, as with too few points, the guess stands and there is no covariance.
+enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints, kDegenerate, kDiverged };
+
+struct RegistrationResult {
+  RegistrationStatus status = RegistrationStatus::kNotConverged;
+  Pose X_TS;  ///< a point of source in target's frame
+  Matrix6d covariance =
+      Matrix6d::Constant(kNaN);  ///< of xi, source frame; see registration_covariance.h. Finite, or NaN as a whole
+  int iterations = 0;
+  double rms_m = kNaN;  ///< of the matched points' distances along the surface normals
+};
+
+/// A keyframe's cloud made ready for registration: thinned, with per-point covariances.
+class PreparedCloud;
+
+/// Registration of clouds. prepare() once per cloud, then align as often as wanted.
+class Registration {
+ public:
+  virtual ~Registration() = default;
+  /// `points` in the cloud's own frame, m.
+  virtual std::shared_ptr<const PreparedCloud> prepare(std::span<const Eigen::Vector3f> points) const = 0;
+  struct Placed {
+    std::shared_ptr<const PreparedCloud> cloud;
+    Pose X_TC;  ///< pose of the cloud in the target frame
+  };
+  /// Aligns `source` onto the union of `targets`, starting from `guess` = X_TS. Where targets overlap the last one
+  /// counts. Whatever the clouds and the guess are, the answer is a status.
+  virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
+                                   const Pose& guess) const = 0;
+};
+
+Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config);
+
+/// Names of the compiled-in methods.
+std::vector<std::string> registration_methods();
+
+}  // namespace canyon::lidar

@@ -1,0 +1,76 @@
+#include "canyon/lidar/registration/voxel_index.h"
+
+#include <cmath>
+
+#include "canyon/core/check.h"
+
+namespace canyon::lidar {
+namespace {
+
+constexpr int kHalf = 1 << 20;  // 21 bits per axis
+constexpr std::size_t kFewest = 64;
+
+std::uint64_t key_of(const VoxelCoordinates& v) {
+  const auto part = [](int i) { return static_cast<std::uint64_t>(i + kHalf) & 0x1fffffu; };
+  return part(v.x()) << 42 | part(v.y()) << 21 | part(v.z());
+}
+
+/// splitmix64's finalizer (Steele, Lea and Flood 2014): every bit of the key reaches the low bits, so that neighbouring
+/// voxels spread over the table.
+std::uint64_t mix(std::uint64_t key) {
+  key = (key ^ (key >> 30)) * 0xbf58476d1ce4e5b9u;
+  key = (key ^ (key >> 27)) * 0x94d049bb133111ebu;
+  return key ^ (key >> 31);
+}
+
+std::size_t power_of_two_at_least(std::size_t n) {
+  std::size_t power = kFewest;
+  while (power < n) power *= 2;
+  return power;
+}
+
+}  // namespace
+
+VoxelIndex::VoxelIndex(double leaf_m, std::size_t expected_voxels)
+    : leaf_m_(leaf_m), slots_(power_of_two_at_least(2 * expected_voxels), Slot{0, kNone}) {
+  CANYON_CHECK(leaf_m > 0 && std::isfinite(leaf_m), "leaf_m = ", leaf_m);
+}
+
+std::optional<VoxelCoordinates> VoxelIndex::coordinates(const Eigen::Vector3f& p) const {
+  const Eigen::Array3d scaled = (p.cast<double>() / leaf_m_).array().floor();
+  if (!(scaled.abs() < kHalf).all()) return std::nullopt;  // so also for NaN
+  return VoxelCoordinates(scaled.cast<int>().matrix());
+}
+
+std::size_t VoxelIndex::slot_of(std::uint64_t key) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t i = mix(key) & mask;
+  while (slots_[i].number != kNone && slots_[i].key != key) i = (i + 1) & mask;
+  return i;
+}
+
+std::uint32_t VoxelIndex::insert(const VoxelCoordinates& voxel) {
+  const std::uint64_t key = key_of(voxel);
+  std::size_t i = slot_of(key);
+  if (slots_[i].number != kNone) return slots_[i].number;
+  if (2 * (size_ + 1u) > slots_.size()) {
+    grow();
+    i = slot_of(key);
+  }
+  slots_[i] = {key, size_};
+  return size_++;
+}
+
+std::uint32_t VoxelIndex::find(const VoxelCoordinates& voxel) const {
+  return slots_[slot_of(key_of(voxel))].number;
+}
+
+void VoxelIndex::grow() {
+  std::vector<Slot> old(slots_.size() * 2, Slot{0, kNone});
+  old.swap(slots_);
+  for (const Slot& slot : old) {
+    if (slot.number != kNone) slots_[slot_of(slot.key)] = slot;
+  }
+}
+
+}  // namespace canyon::lidar

@@ -1,0 +1,38 @@
+#include "canyon/lidar/registration/voxel_map.h"
+
+namespace canyon::lidar {
+
+bool VoxelMap::insert(const MapPoint& point) {
+  const auto voxel = index_.coordinates(point.p_W);
+  if (!voxel) {
+    ++out_of_reach_;
+    return false;
+  }
+  const std::uint32_t number = index_.insert(*voxel);
+  if (number != points_.size()) return false;
+  points_.push_back(point);
+  return true;
+}
+
+std::vector<Eigen::Vector3f> voxel_centroids(std::span<const Eigen::Vector3f> points, double leaf_m) {
+  struct Sum {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int count = 0;
+  };
+  VoxelIndex index(leaf_m, points.size() / 4);
+  std::vector<Sum> sums;
+  for (const Eigen::Vector3f& p : points) {
+    const auto voxel = index.coordinates(p);
+    if (!voxel) continue;
+    const std::uint32_t number = index.insert(*voxel);
+    if (number == sums.size()) sums.emplace_back();
+    sums[number].sum += p.cast<double>();
+    ++sums[number].count;
+  }
+  std::vector<Eigen::Vector3f> centroids;
+  centroids.reserve(sums.size());
+  for (const Sum& s : sums) centroids.push_back((s.sum / s.count).cast<float>());
+  return centroids;
+}
+
+}  // namespace canyon::lidar

@@ -1,0 +1,121 @@
+#include "canyon/mission/autonomy/autonomy.h"
+
+#include "canyon/core/check.h"
+#include "canyon/mission/autonomy/reference_autonomy.h"
+#include "canyon/mission/motion/route_driver.h"
+
+namespace canyon::mission {
+
+namespace {
+
+struct Row {
+  const char* name;
+  std::unique_ptr<Autonomy> (*make)(const AutonomyConfig&, const PriorKnowledge&, GpsTime);
+};
+/// A new autonomy is one file and one row.
+constexpr Row kAutonomies[] = {
+    {"reference", make_reference_autonomy},
+    {"route_follower", make_route_follower},
+};
+
+}  // namespace
+
+void visit(FieldVisitor& f, Waypoint& w) {
+  f.text("name", w.name, "shown in reports");
+  f.vector2("p_m", w.p_m, {-1e5, 1e5}, "x and y in W, metres east and north of the scene's centre");
+  f.text("observe", w.observe, "building to stop and look at; makes it a mission waypoint");
+}
+
+void visit(FieldVisitor& f, PathChoiceConfig& c) {
+  f.number("horizon_m", c.horizon_m, {5, 100}, "how far ahead each path is checked");
+  f.number("stop_margin_m", c.stop_margin_m, {0, 20},
+           "kept free ahead of the rear axle when halting before an obstacle");
+  f.number("comfort_clearance_m", c.comfort_clearance_m, {0, 10}, "closer to an obstacle than this costs");
+  f.number("blocked_cost_1_m", c.blocked_cost_1_m, {0, 1e3}, "cost of every metre of the horizon behind an obstacle");
+  f.number("closeness_cost_1_m2", c.closeness_cost_1_m2, {0, 1e3},
+           "cost of every metre driven one metre closer to an obstacle than comfortable");
+  f.number("offset_cost_1_m", c.offset_cost_1_m, {0, 1e3}, "cost of every metre beside the centre line");
+  f.number("change_cost_1_m", c.change_cost_1_m, {0, 1e3}, "cost of every metre beside the path chosen last");
+}
+
+void visit(FieldVisitor& f, AutonomyConfig& c) {
+  f.choice("model", c.model, autonomy_models(),
+           "which autonomy drives: reference, or route_follower: the centre line, whatever stands there");
+  f.choice("map", c.map, {"prior", "registered"},
+           "pose it works with: the filter's, or corrected by the last registered keyframe");
+  f.number("rate_hz", c.rate_hz, {1, 1000}, "commands per second; each takes effect at the next master step of 10 ms");
+  f.number("cruise_m_s", c.cruise_m_s, {0.2, 30}, "speed on a free, straight street");
+  f.number("lateral_m_s2", c.lateral_m_s2, {0.1, 10}, "lateral acceleration allowed in corners");
+  f.number("braking_m_s2", c.braking_m_s2, {0.1, 10}, "deceleration it plans with");
+  f.number("corner_radius_m", c.corner_radius_m, {1, 100}, "radius of the planned turns");
+  f.number("hold_s", c.hold_s, {0, 600}, "how long it looks at a building");
+  f.number("max_offset_m", c.max_offset_m, {0, 20}, "how far it may leave the centre line of the street");
+  f.number("clearance_m", c.clearance_m, {0.1, 5}, "from its axis to an obstacle");
+  f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
+  f.group("grid", c.grid, "its picture of the surroundings: a rolling height grid");
+  f.group("choice", c.choice, "how it chooses among paths beside the centre line");
+  f.list("waypoint", c.waypoints, "places to drive through, in order");
+}
+
+const char* name(AutonomyState state) {
+  switch (state) {
+    case AutonomyState::kDriving:
+      return "driving";
+    case AutonomyState::kObserving:
+      return "observing";
+    case AutonomyState::kBlocked:
+      return "blocked";
+    case AutonomyState::kBlind:
+      return "blind";
+    case AutonomyState::kDone:
+      return "done";
+  }
+  return "unknown";
+}
+
+Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets,
+                                  const Eigen::Vector2d& start_m) {
+  std::vector<Eigen::Vector2d> polyline{start_m};
+  std::vector<std::size_t> corner;  // index into polyline of each waypoint
+  Eigen::Vector2d from = start_m;
+  for (std::size_t i = 0; i < config.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.waypoints[i];
+    const auto leg = streets.route(from, waypoint.p_m);
+    if (leg.empty())
+      return Error{.key = "autonomy.waypoint[" + std::to_string(i + 1) + "]",
+                   .what = "no street leads to waypoint \"" + waypoint.name + "\"",
+                   .expected = "a waypoint that the streets connect with the one before"};
+    polyline.insert(polyline.end(), leg.begin(), leg.end());
+    from = waypoint.p_m;
+    corner.push_back(polyline.size() - 1);
+  }
+  PriorKnowledge prior{Path(polyline, config.corner_radius_m), {}};
+  if (prior.route.empty())
+    return Error{.key = "autonomy.waypoint[1], vehicle.start_m",
+                 .what = "start and waypoints are one place",
+                 .expected = "a way to drive"};
+  // Waypoints come in order: each is looked for from the one before on, near where the unrounded streets would put it.
+  double s_m = 0.0;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < config.waypoints.size(); ++i) {
+    double leg_m = 0.0;
+    for (; at < corner[i]; ++at) leg_m += (polyline[at + 1] - polyline[at]).norm();
+    s_m = prior.route.project(config.waypoints[i].p_m, s_m, std::min(prior.route.length_m(), s_m + leg_m + 1.0));
+    prior.waypoint_s_m.push_back(s_m);
+  }
+  return prior;
+}
+
+std::unique_ptr<Autonomy> make_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
+  for (const Row& row : kAutonomies)
+    if (config.model == row.name) return row.make(config, prior, start);
+  CANYON_CHECK(false, "autonomy model ", config.model);
+}
+
+std::vector<std::string> autonomy_models() {
+  std::vector<std::string> names;
+  for (const Row& row : kAutonomies) names.emplace_back(row.name);
+  return names;
+}
+
+}  // namespace canyon::mission

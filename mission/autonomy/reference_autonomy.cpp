@@ -1,0 +1,125 @@
+#include "canyon/mission/autonomy/reference_autonomy.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/mission/autonomy/local_grid.h"
+#include "canyon/mission/motion/route_driver.h"
+
+namespace canyon::mission {
+
+namespace {
+
+constexpr double kSample = 0.5;      // m, between its checked points
+constexpr double kOffsetStep = 0.5;  // m, between candidates
+constexpr int kEnoughReturns = 100;  // fewer count as blind
+
+/// The path from arc length s0 on, moving sideways from offset d0 to d1 over `blend` metres.
+struct Candidate {
+  double s0 = 0, d0 = 0, d1 = 0, blend = 6;
+
+  Eigen::Vector2d at(const Path& route, double s) const {
+    const double x = std::clamp((s - s0) / blend, 0.0, 1.0);
+    const double d = d0 + (d1 - d0) * x * x * (3.0 - 2.0 * x);
+    const Eigen::Vector2d u = route.direction(s);
+    return route.at(s) + d * Eigen::Vector2d(-u.y(), u.x());
+  }
+};
+
+class ReferenceAutonomy final : public Autonomy {
+ public:
+  ReferenceAutonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start)
+      : config_(config), driver_(config, prior), start_(start), grid_(config.grid), last_seen_(start) {}
+
+  void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
+    if (static_cast<int>(scan.points.size()) < kEnoughReturns) return;
+    last_seen_ = scan.t;
+    points_.clear();
+    for (const LidarPoint& point : scan.points) points_.emplace_back(point.x, point.y, point.z);
+    grid_.add(points_, X_WL, estimate.X_WB, scan.t - start_);
+    grid_.update_distances();
+    plan(estimate);
+  }
+
+  DriveCommand drive(const NavEstimate& estimate) override {
+    const bool stands = driver_.update(estimate);
+    const double speed = estimate.v_WB_W.head<2>().norm();
+    DriveCommand command;
+    command.curvature_1_m = driver_.pursue(estimate, chosen_.at(driver_.route(), driver_.target_s_m(speed)));
+    if (stands) {
+      state_ = driver_.done() ? AutonomyState::kDone : AutonomyState::kObserving;
+      return command;
+    }
+    if (estimate.t - last_seen_ > config_.blind_after_s) {
+      state_ = AutonomyState::kBlind;
+      return command;
+    }
+    command.speed_m_s = allowed_speed();
+    state_ = command.speed_m_s > 0.0 ? AutonomyState::kDriving : AutonomyState::kBlocked;
+    return command;
+  }
+
+  AutonomyState state() const override { return state_; }
+  int next_waypoint() const override { return driver_.next_waypoint(); }
+
+ private:
+  void plan(const NavEstimate& estimate) {
+    const Eigen::Vector2d p = estimate.X_WB.p.head<2>();
+    const Path& route = driver_.route();
+    const double s = driver_.s_m(), here = route.offset(p, s);
+    const double speed = estimate.v_WB_W.head<2>().norm();
+    const int steps = static_cast<int>(std::floor(config_.max_offset_m / kOffsetStep));
+    const PathChoiceConfig& choice = config_.choice;
+    double best_cost = 1e300;
+    Candidate best = chosen_;
+    for (int k = -steps; k <= steps; ++k) {
+      const Candidate candidate{s, here, k * kOffsetStep, std::max(5.0, 1.6 * speed)};
+      double free_m = choice.horizon_m, closeness = 0.0;
+      for (double x = 0.0; x <= choice.horizon_m; x += kSample) {
+        const double distance = grid_.distance_m(candidate.at(route, s + x));
+        if (distance < config_.clearance_m) {
+          free_m = x;
+          break;
+        }
+        closeness += kSample * std::max(0.0, choice.comfort_clearance_m - distance);
+      }
+      const double cost = choice.blocked_cost_1_m * (choice.horizon_m - free_m) +
+                          choice.closeness_cost_1_m2 * closeness + choice.offset_cost_1_m * std::abs(candidate.d1) +
+                          choice.change_cost_1_m * std::abs(candidate.d1 - chosen_.d1);
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = candidate;
+        free_m_ = free_m;
+        free_from_s_ = s;
+      }
+    }
+    chosen_ = best;
+  }
+
+  double allowed_speed() const {
+    const double v = driver_.allowed_speed_m_s();
+    const double free_m = free_m_ - (driver_.s_m() - free_from_s_), margin_m = config_.choice.stop_margin_m;
+    if (free_m_ >= config_.choice.horizon_m) return v;
+    if (free_m < margin_m + 0.3) return 0.0;
+    return std::min(v, driver_.braking_to_m_s(free_m - margin_m));
+  }
+
+  AutonomyConfig config_;
+  RouteDriver driver_;
+  GpsTime start_;
+  LocalGrid grid_;
+  std::vector<Eigen::Vector3f> points_;
+  GpsTime last_seen_;
+  Candidate chosen_;
+  double free_m_ = 0.0, free_from_s_ = 0.0;
+  AutonomyState state_ = AutonomyState::kBlind;
+};
+
+}  // namespace
+
+std::unique_ptr<Autonomy> make_reference_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior,
+                                                  GpsTime start) {
+  return std::make_unique<ReferenceAutonomy>(config, prior, start);
+}
+
+}  // namespace canyon::mission

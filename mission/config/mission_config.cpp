@@ -1,0 +1,60 @@
+#include "canyon/mission/config/mission_config.h"
+
+namespace canyon::mission {
+
+void visit(FieldVisitor& f, TimeConfig& c) {
+  f.text("start", c.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+  f.number("limit_s", c.limit_s, {0, 1e5}, "ends the run after this time at the latest; 0 = no such limit");
+}
+
+void visit(FieldVisitor& f, SuccessConfig& c) {
+  f.number("waypoint_radius_m", c.waypoint_radius_m, {0.1, 100}, "how near the true vehicle must come to a waypoint");
+  f.number("stop_s", c.stop_s, {0, 600}, "how long it must stand at a mission waypoint");
+  f.number("stopped_speed_m_s", c.stopped_speed_m_s, {0.001, 1}, "slower than this counts as standing");
+  f.number("facade_share", c.facade_share, {0, 1}, "share of a 5 x 5 grid on the facade that must be in sight");
+  f.number("camera_height_m", c.camera_height_m, {0, 10}, "of the camera above B");
+  f.number("limit_factor", c.limit_factor, {1, 100}, "time limit as a multiple of the nominal time");
+  f.number("stuck_after_s", c.stuck_after_s, {5, 1e4}, "standing still this long without observing ends the run");
+}
+
+void visit(FieldVisitor& f, RunConfig& c) {
+  f.text("name", c.name, "name of the mission");
+  f.integer("seed", c.seed, {0, 9e15}, "of every random stream of the run");
+  f.vector3("initial_attitude_error_deg", c.initial_attitude_error_deg, {0, 180},
+            "1-sigma of the seeded initial roll, pitch and heading error");
+  f.number("map_leaf_m", c.map_leaf_m, {0.02, 10}, "one scored map point per voxel of this size");
+  f.number("map_range_m", c.map_range_m, {1, 1000}, "returns beyond are not mapped");
+  f.number("epoch_rate_hz", c.epoch_rate_hz, {0.01, 100}, "rows of epochs/RUN_nav.csv per second");
+  f.flag("record_tape", c.record_tape, "keeps the true motion as tapes/RUN.tape, for open loops");
+  f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
+  f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
+  f.number("withhold_fixes_after_s", c.withhold_fixes_after_s, {-1, 1e5},
+           "no fix reaches the filter from then on; -1 = never");
+  f.number("withhold_scans_after_s", c.withhold_scans_after_s, {-1, 1e5},
+           "no scan reaches map and autonomy from then on; -1 = never");
+}
+
+void visit(FieldVisitor& f, MissionConfig& c) {
+  f.group("scene", c.scene, "the built-in city, or a scene from files");
+  f.group("time", c.time, "start, and an early end");
+  f.group("vehicle", c.vehicle, "the ground vehicle");
+  f.group("gnss", c.gnss, "the GNSS receiver and its errors");
+  f.group("imu", c.imu, "the inertial sensor and its errors");
+  f.group("lidar", c.lidar, "the LIDAR");
+  f.group("fusion", c.fusion, "the localization filter");
+  f.group("registration", c.registration, "registration of keyframes");
+  f.group("autonomy", c.autonomy, "who drives, and where to");
+  f.group("success", c.success, "what the mission is scored by");
+  f.group("run", c.run, "seed, map and deliberate cuts");
+}
+
+Result<ImuNoise> noise_told_to_filter(const MissionConfig& config) {
+  if (config.fusion.imu.empty()) return inertial::datasheet_noise(config.imu);
+  auto noise = inertial::catalogue_noise(config.fusion.imu);
+  if (noise) return noise;
+  Error error = noise.error();
+  if (error.key == "imu.sensor") error.key = "fusion.imu";
+  return error;
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "canyon/core/config/config.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/lidar/registration/registration.h"
+#include "canyon/lidar/scanner.h"
+#include "canyon/mission/autonomy/autonomy.h"
+#include "canyon/mission/motion/vehicle.h"
+#include "canyon/scene/scene_source.h"
+
+namespace canyon::mission {
+
+/// [time]
+struct TimeConfig {
+  std::string start = "2010-11-17T13:00:00";  ///< the paper's field test
+  double limit_s = 0.0;                       ///< if > 0: ends the run after this time at the latest (short tests)
+};
+void visit(FieldVisitor& f, TimeConfig& c);
+
+/// [success]: what the mission is scored by, on truth.
+struct SuccessConfig {
+  double waypoint_radius_m = 3.0;
+  double stop_s = 5.0;
+  double stopped_speed_m_s = 0.1;
+  double facade_share = 0.5;     ///< of a 5 x 5 grid on the building's façade that must be in sight
+  double camera_height_m = 1.5;  ///< above B
+  double limit_factor = 1.5;     ///< time limit as a multiple of the nominal time
+  double stuck_after_s = 90.0;   ///< standing still this long without observing ends the run
+};
+void visit(FieldVisitor& f, SuccessConfig& c);
+
+/// [run]
+struct RunConfig {
+  std::string name = "mission";
+  std::int64_t seed = 1;
+  /// 1-sigma of the seeded error of the initial attitude: roll, pitch, heading.
+  Eigen::Vector3d initial_attitude_error_deg{0.1, 0.1, 1.0};
+  double map_leaf_m = 0.25;     ///< one scored map point per voxel of this size
+  double map_range_m = 40.0;    ///< returns beyond are not mapped
+  double epoch_rate_hz = 10.0;  ///< rows of epochs/RUN_nav.csv per second
+  bool record_tape = true;      ///< keeps the true motion, so that other models can be driven on it
+  // Couplings that a study may cut on purpose.
+  bool truth_as_pose = false;            ///< hands the true pose on; what is recorded stays the filter's
+  double estimate_up_offset_m = 0.0;     ///< added to the estimate's height
+  double withhold_fixes_after_s = -1.0;  ///< if >= 0: no fix reaches the filter from then on
+  double withhold_scans_after_s = -1.0;  ///< if >= 0: no scan reaches map and autonomy from then on
+};
+void visit(FieldVisitor& f, RunConfig& c);
+
+/// Everything one run needs, resolved. The sections of a mission file in their order.
+struct MissionConfig {
+  scene::SceneConfig scene;
+  TimeConfig time;
+  VehicleConfig vehicle;
+  gnss::GnssConfig gnss;
+  inertial::ImuConfig imu;
+  lidar::LidarConfig lidar;
+  fusion::FilterConfig fusion;
+  lidar::RegistrationConfig registration;
+  AutonomyConfig autonomy;
+  SuccessConfig success;
+  RunConfig run;
+};
+void visit(FieldVisitor& f, MissionConfig& c);
+
+/// What the filter is told of the IMU: a datasheet ([fusion] imu), never what the simulated unit really does.
+Result<ImuNoise> noise_told_to_filter(const MissionConfig& config);
+
+}  // namespace canyon::mission

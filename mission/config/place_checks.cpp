@@ -1,0 +1,127 @@
+#include "canyon/mission/config/place_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "canyon/core/config/text.h"
+#include "canyon/mission/autonomy/facade.h"
+
+namespace canyon::mission {
+
+namespace {
+
+std::string place(const Eigen::Vector2d& p) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.1f, %.1f)", p.x(), p.y());
+  return text;
+}
+
+std::string tenths(double value) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
+
+std::string waypoint_key(std::size_t i) {
+  return "autonomy.waypoint[" + std::to_string(i + 1) + "]";
+}
+
+std::string quoted(const Waypoint& waypoint) {
+  return "waypoint \"" + waypoint.name + "\"";
+}
+
+Error outside(const std::string& key, const std::string& who, const Eigen::Vector2d& p, const Eigen::Vector2d& low,
+              const Eigen::Vector2d& high) {
+  return Error{.key = key,
+               .what = who + place(p) + " lies outside the scene",
+               .expected = "x from " + number_text(low.x()) + " to " + number_text(high.x()) + ", y from " +
+                           number_text(low.y()) + " to " + number_text(high.y())};
+}
+
+/// A point where a vehicle can stand. `who` is to stand there.
+Status check_standing_place(const scene::Site& site, const Eigen::Vector2d& p, const std::string& key,
+                            const std::string& who) {
+  if (!site.contains(p)) return outside(key, who, p, site.low_W, site.high_W);
+  if (const scene::Building* building = scene::building_at(site.buildings, p))
+    return Error{
+        .key = key, .what = who + place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
+  return Ok{};
+}
+
+Status check_building(const Waypoint& waypoint, std::size_t i, const scene::Site& site) {
+  std::vector<std::string> names;
+  for (const auto& building : site.buildings) names.push_back(building.name);
+  if (std::find(names.begin(), names.end(), waypoint.observe) != names.end()) return Ok{};
+  return Error{.key = waypoint_key(i),
+               .what = quoted(waypoint) + ": no building named \"" + waypoint.observe + "\"",
+               .expected = "a building of the scene; nearest is \"" + nearest_word(waypoint.observe, names) + "\""};
+}
+
+}  // namespace
+
+Status check_places(const MissionConfig& config, const scene::Site& site) {
+  CANYON_TRY_STATUS(check_standing_place(site, config.vehicle.start_m, "vehicle.start_m", ""));
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.autonomy.waypoints[i];
+    CANYON_TRY_STATUS(check_standing_place(site, waypoint.p_m, waypoint_key(i), quoted(waypoint) + " at "));
+    if (waypoint.is_mission() && !config.scene.city.empty) CANYON_TRY_STATUS(check_building(waypoint, i, site));
+    const double radius_m = config.success.waypoint_radius_m, aside_m = site.streets.distance_to(waypoint.p_m);
+    if (std::isfinite(aside_m) && aside_m > radius_m)
+      return Error{.key = waypoint_key(i) + ", success.waypoint_radius_m",
+                   .what = quoted(waypoint) + " at " + place(waypoint.p_m) + " lies " + tenths(aside_m) +
+                           " m from the nearest street's centre line",
+                   .expected = "a place within success.waypoint_radius_m = " + number_text(radius_m) + " m of one"};
+  }
+  return scene::check_ways(config.scene.moving, site.low_W, site.high_W);
+}
+
+Status check_route(const MissionConfig& config, const PriorKnowledge& prior) {
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.autonomy.waypoints[i];
+    const double radius_m = config.success.waypoint_radius_m;
+    const double aside_m = (prior.route.at(prior.waypoint_s_m[i]) - waypoint.p_m).norm();
+    if (aside_m > radius_m)
+      return Error{.key = waypoint_key(i) + ", autonomy.corner_radius_m, success.waypoint_radius_m",
+                   .what = "the route, its corners rounded, passes " + quoted(waypoint) + " at a distance of " +
+                           tenths(aside_m) + " m",
+                   .expected = "at most success.waypoint_radius_m = " + number_text(radius_m) +
+                               " m: a place off the corner, or a smaller autonomy.corner_radius_m"};
+  }
+  return Ok{};
+}
+
+Status check_ground(const MissionConfig& config, const scene::Scene& scene) {
+  const Eigen::Vector2d low = scene.extent().min.head<2>(), high = scene.extent().max.head<2>();
+  const Eigen::Vector2d& start = config.vehicle.start_m;
+  if (!scene.ground(start.x(), start.y())) return outside("vehicle.start_m", "", start, low, high);
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.autonomy.waypoints[i];
+    if (!scene.ground(waypoint.p_m.x(), waypoint.p_m.y()))
+      return outside(waypoint_key(i), quoted(waypoint) + " at ", waypoint.p_m, low, high);
+  }
+  return Ok{};
+}
+
+Status check_sight(const MissionConfig& config, const PriorKnowledge& prior, const scene::Scene& scene) {
+  const scene::SceneAt still(scene);
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.autonomy.waypoints[i];
+    if (!waypoint.is_mission()) continue;
+    const Eigen::Vector2d stop = prior.route.at(prior.waypoint_s_m[i]);
+    const auto ground = scene.ground(stop.x(), stop.y());
+    for (const scene::Building& building : scene.buildings()) {
+      if (building.name != waypoint.observe || !ground) continue;
+      const Eigen::Vector3d camera(stop.x(), stop.y(), ground->height_m + config.success.camera_height_m);
+      const double share = visible_share(still, camera, facade_points(building, waypoint.p_m));
+      if (share < config.success.facade_share)
+        return Error{.key = waypoint_key(i) + ", success.facade_share, success.camera_height_m",
+                     .what = quoted(waypoint) + ": from its stop at " + place(stop) + " " + tenths(100.0 * share) +
+                             " % of the facade of " + building.name + " is in sight",
+                     .expected = "at least success.facade_share = " + number_text(config.success.facade_share)};
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+
+#include "canyon/core/config/config.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/truth.h"
+#include "canyon/mission/motion/road_roughness.h"
+#include "canyon/mission/motion/sprung_mass.h"
+#include "canyon/scene/scene.h"
+
+namespace canyon::mission {
+
+/// [vehicle] of a mission file: a kinematic bicycle with a sprung body on the scene's terrain.
+/// B sits at the centre of the rear axle at ground level, x forward, y left, z up.
+struct VehicleConfig {
+  Eigen::Vector2d start_m{0, 0};   ///< rear axle in W
+  double start_heading_deg = 0.0;  ///< from true north, clockwise
+  double wheelbase_m = 1.8;
+  double track_m = 1.3;
+  double length_m = 2.6;  ///< of the body, for collisions; rear overhang = (length - wheelbase) / 2
+  double width_m = 1.5;
+  double height_m = 1.6;
+  double max_speed_m_s = 6.0;
+  double max_acceleration_m_s2 = 1.5;
+  double max_deceleration_m_s2 = 3.0;
+  double max_steering_deg = 32.0;
+  double max_steering_rate_deg_s = 45.0;
+  double suspension_hz = 1.6;       ///< undamped natural frequency of heave, pitch and roll
+  double suspension_damping = 0.6;  ///< damping ratio
+  std::string roughness = "B";      ///< ISO 8608 road class, or "none"
+};
+void visit(FieldVisitor& f, VehicleConfig& c);
+
+/// The true vehicle. Its steps are its own: they depend on no sensor. Over one of them acceleration and curvature are
+/// linear in time, and heave, pitch and roll follow the ground under the wheels as sprung masses do, exactly; what lies
+/// between the ends of steps is TrueMotion's. No slip: the vertical motion does not act on the plan motion.
+class Vehicle {
+ public:
+  /// The fixed step of all true motion: the master step of a run. A road wave of 0.7 m, the shortest of ISO 8608, at
+  /// 30 m/s is sampled more than twice.
+  static constexpr std::int64_t kStep_ns = 10'000'000;
+
+  /// Stands still at the start, body settled on the terrain. `scene` must outlive the vehicle.
+  Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start);
+
+  /// Advances by one step under `command`, within the limits of speed, acceleration and steering.
+  const KinematicState& advance(const DriveCommand& command);
+
+  const KinematicState& state() const { return state_; }
+  double speed_m_s() const { return plan_.speed_0; }
+  double distance_m() const { return distance_; }
+  /// False once a wheel has left the terrain.
+  bool on_terrain() const { return on_terrain_; }
+  const VehicleConfig& config() const { return config_; }
+
+ private:
+  struct Inputs {
+    double heave_m, pitch_rad, roll_rad;
+  };
+  /// Over one step, tau from its beginning: the acceleration changes evenly, and so does the curvature.
+  struct PlanMotion {
+    double yaw_0 = 0, speed_0 = 0, curvature_0 = 0, acceleration_0 = 0, jerk = 0, curvature_rate = 0;
+
+    double acceleration(double tau) const { return acceleration_0 + jerk * tau; }
+    double speed(double tau) const { return speed_0 + (acceleration_0 + 0.5 * jerk * tau) * tau; }
+    double curvature(double tau) const { return curvature_0 + curvature_rate * tau; }
+    double yaw(double tau) const;
+    double distance(double tau) const { return (speed_0 + (0.5 * acceleration_0 + jerk * tau / 6.0) * tau) * tau; }
+    Eigen::Vector2d displacement(double tau) const;
+  };
+  PlanMotion planned(const DriveCommand& command, double dt_s) const;
+  Inputs terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw);
+  KinematicState state_at(GpsTime t, const PlanMotion& plan, double tau) const;
+
+  VehicleConfig config_;
+  const scene::Scene& scene_;
+  RoadRoughness roughness_;
+  KinematicState state_;
+  Eigen::Vector2d p_;
+  PlanMotion plan_;  ///< as the last step left it
+  double distance_ = 0;
+  bool on_terrain_ = true;
+  Inputs last_inputs_;
+  SprungMass heave_, pitch_, roll_;
+};
+
+}  // namespace canyon::mission

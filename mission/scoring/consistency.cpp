@@ -1,0 +1,100 @@
+#include "canyon/mission/scoring/consistency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "canyon/core/config/text.h"
+#include "canyon/core/units.h"
+
+namespace canyon::mission {
+
+namespace {
+
+/// A stop that the autonomy does not make cannot be scored.
+Status check_stop(double stop_s, const AutonomyConfig& autonomy) {
+  const bool stops = std::any_of(autonomy.waypoints.begin(), autonomy.waypoints.end(),
+                                 [](const Waypoint& waypoint) { return waypoint.is_mission(); });
+  if (stops && stop_s > autonomy.hold_s)
+    return Error{.key = "success.stop_s, autonomy.hold_s",
+                 .what = "a stop of " + number_text(stop_s) + " s is asked for, but the autonomy stops for " +
+                         number_text(autonomy.hold_s) + " s",
+                 .expected = "success.stop_s not above autonomy.hold_s"};
+  return Ok{};
+}
+
+/// `first` must not be above `second`; `what` says what it means that it is.
+struct Limit {
+  const char* first_key;
+  double first;
+  const char* second_key;
+  double second;
+  std::string what;
+};
+Status check_limit(const Limit& limit) {
+  if (limit.first <= limit.second) return Ok{};
+  return Error{.key = std::string(limit.first_key) + ", " + limit.second_key,
+               .what = limit.what,
+               .expected = std::string(limit.first_key) + " not above " + limit.second_key};
+}
+
+Status check_body(const VehicleConfig& vehicle) {
+  CANYON_TRY_STATUS(check_limit({"vehicle.wheelbase_m", vehicle.wheelbase_m, "vehicle.length_m", vehicle.length_m,
+                                 "a wheelbase of " + number_text(vehicle.wheelbase_m) + " m under a body of " +
+                                     number_text(vehicle.length_m) + " m"}));
+  return check_limit(
+      {"vehicle.track_m", vehicle.track_m, "vehicle.width_m", vehicle.width_m,
+       "a track of " + number_text(vehicle.track_m) + " m under a body " + number_text(vehicle.width_m) + " m wide"});
+}
+
+/// What the autonomy plans with, against what the vehicle can do.
+Status check_driving(const AutonomyConfig& autonomy, const VehicleConfig& vehicle) {
+  CANYON_TRY_STATUS(
+      check_limit({"autonomy.cruise_m_s", autonomy.cruise_m_s, "vehicle.max_speed_m_s", vehicle.max_speed_m_s,
+                   "the autonomy plans with " + number_text(autonomy.cruise_m_s) + " m/s, the vehicle drives at most " +
+                       number_text(vehicle.max_speed_m_s) + " m/s"}));
+  CANYON_TRY_STATUS(check_limit(
+      {"autonomy.braking_m_s2", autonomy.braking_m_s2, "vehicle.max_deceleration_m_s2", vehicle.max_deceleration_m_s2,
+       "the autonomy plans with " + number_text(autonomy.braking_m_s2) + " m/s^2, the vehicle brakes with at most " +
+           number_text(vehicle.max_deceleration_m_s2) + " m/s^2"}));
+  const double tightest_m = vehicle.wheelbase_m / std::tan(vehicle.max_steering_deg * kDegree);
+  if (autonomy.corner_radius_m < tightest_m) {
+    char text[96];
+    std::snprintf(text, sizeof text, "the vehicle's tightest turn has a radius of %.2f m, turns of %.2f m are planned",
+                  tightest_m, autonomy.corner_radius_m);
+    return Error{.key = "autonomy.corner_radius_m, vehicle.max_steering_deg, vehicle.wheelbase_m",
+                 .what = text,
+                 .expected = "autonomy.corner_radius_m of wheelbase_m / tan(max_steering_deg) or more"};
+  }
+  if (autonomy.clearance_m < 0.5 * vehicle.width_m)
+    return Error{.key = "autonomy.clearance_m, vehicle.width_m",
+                 .what = "a vehicle " + number_text(vehicle.width_m) + " m wide does not pass an obstacle " +
+                         number_text(autonomy.clearance_m) + " m beside its axis",
+                 .expected = "autonomy.clearance_m of half vehicle.width_m or more"};
+  return Ok{};
+}
+
+/// What the autonomy looks at, against what it is shown.
+Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
+  CANYON_TRY_STATUS(check_limit({"autonomy.choice.horizon_m", autonomy.choice.horizon_m, "autonomy.grid.half_size_m",
+                                 autonomy.grid.half_size_m,
+                                 "paths are checked " + number_text(autonomy.choice.horizon_m) +
+                                     " m ahead, the grid reaches " + number_text(autonomy.grid.half_size_m) + " m"}));
+  const double period_s = 1.0 / lidar_hz;
+  if (autonomy.blind_after_s >= period_s * (1.0 - 1e-9)) return Ok{};
+  return Error{.key = "autonomy.blind_after_s, lidar.rate_hz",
+               .what = "the autonomy takes itself for blind after " + number_text(autonomy.blind_after_s) +
+                       " s, a scan comes every " + number_text(period_s) + " s",
+               .expected = "autonomy.blind_after_s of 1 / lidar.rate_hz or more"};
+}
+
+}  // namespace
+
+Status check_consistency(const MissionConfig& config) {
+  CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
+  CANYON_TRY_STATUS(check_body(config.vehicle));
+  CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
+  return check_seeing(config.autonomy, config.lidar.rate_hz);
+}
+
+}  // namespace canyon::mission

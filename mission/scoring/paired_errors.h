@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canyon/mission/run_record.h"
+
+namespace canyon::mission {
+
+/// How much larger run b's position error is than run a's on the same true motion, epoch by epoch.
+struct PairedErrors {
+  std::string a, b;
+  int epochs = 0;  ///< of equal time in both
+  double mean_m = kNaN;
+  double low_m = kNaN, high_m = kNaN;  ///< 95 % interval of the mean; NaN with fewer than two batches
+  double worse_share = kNaN;           ///< of the epochs at which b's error is the larger one
+};
+
+/// Errors of a filter are alike for about ten seconds, so single epochs are no independent sample. The interval is
+/// Student's over means of batches of kBatch_s, whatever is left over at the end being part of the last batch (method
+/// of batch means: Law & Kelton, Simulation Modeling and Analysis, section 9.5.3).
+inline constexpr double kBatch_s = 30.0;
+
+PairedErrors paired_errors(const RunRecord& a, const RunRecord& b);
+
+/// Every run against the first; empty unless all were driven on one tape.
+std::vector<PairedErrors> paired_with_first(const std::vector<RunRecord>& records);
+
+}  // namespace canyon::mission

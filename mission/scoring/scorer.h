@@ -1,0 +1,74 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "canyon/core/truth.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/motion/vehicle.h"
+#include "canyon/scene/scene_at.h"
+
+namespace canyon::mission {
+
+/// How a mission failed, when and where.
+struct Failure {
+  std::string kind;  ///< collision, timeout, stopped, stuck, missed_waypoint, no_line_of_sight, left_scene,
+                     ///< autonomy_fault
+  double t_s = 0.0;
+  Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
+  std::string detail;
+};
+
+/// What truth says of one waypoint.
+struct WaypointScore {
+  std::string name;
+  bool mission = false;
+  bool reached = false;  ///< mission waypoint: stood long enough within the radius; else: came within the radius
+  double closest_m = 1e300;
+  double stopped_s = 0.0;          ///< longest halt within the radius
+  double facade_seen_share = 0.0;  ///< best during a halt within the radius
+};
+
+/// Scores a mission on truth while it runs. It is a success if the autonomy finished it in time without a failure on
+/// the way, having truly reached every waypoint, in whatever order: the mission waypoints with a halt of stop_s within
+/// the radius and enough of the facade in sight, the others by passing within the radius. Out of several failures the
+/// first in time counts; of those that only the end shows, that of the first waypoint.
+class Scorer {
+ public:
+  Scorer(const MissionConfig& config, const PreparedMission& mission, const scene::SceneAt& scene);
+
+  /// One true step; `observing` (the autonomy stands on purpose) excuses standing still.
+  /// Returns false once the run has to end: collision, stuck, off the terrain, out of time.
+  bool step(const KinematicState& truth, double speed_m_s, bool on_terrain, bool observing);
+  /// The autonomy gave a command that is not finite.
+  void autonomy_fault(const KinematicState& truth, const DriveCommand& command);
+  /// To be called once at the end: decides what is still open. `done` = the autonomy believes it has finished.
+  void finish(const KinematicState& truth, bool done);
+
+  const std::optional<Failure>& failure() const { return failure_; }
+  const std::vector<WaypointScore>& waypoints() const { return waypoints_; }
+  std::string outcome() const { return failure_ ? failure_->kind : "success"; }
+
+ private:
+  void fail(const char* kind, const KinematicState& truth, std::string detail);
+  /// Name of what the body touches; empty if nothing.
+  std::string collides(const KinematicState& truth) const;
+
+  SuccessConfig config_;
+  VehicleConfig vehicle_;
+  std::vector<Waypoint> places_;
+  const scene::SceneAt& scene_;
+  GpsTime start_;
+  double time_limit_s_;
+  bool stopped_on_purpose_;  ///< it is [time] limit_s, not the mission's own limit, that ends the run
+  std::vector<WaypointScore> waypoints_;
+  std::vector<std::vector<Eigen::Vector3d>> facades_;
+  std::vector<double> halt_s_;
+  std::optional<Failure> failure_;
+  Eigen::Vector2d last_checked_;
+  GpsTime last_t_;
+  double standing_s_ = 0.0;
+};
+
+}  // namespace canyon::mission

@@ -1,0 +1,225 @@
+#include "canyon/report/draw/chart.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/report/draw/format.h"
+#include "canyon/report/draw/theme.h"
+#include "canyon/report/read/decimate.h"
+
+namespace canyon::report {
+namespace {
+
+constexpr double kWidth = 1000;        // of a plot's own units; it is stretched to the page
+constexpr std::size_t kBuckets = 700;  // decimation: about one a pixel of a wide page, on a phone two
+constexpr int kLane_px = 7;
+
+/// Draws the panels of one chart.
+class ChartWriter {
+ public:
+  explicit ChartWriter(const Chart& chart) : chart_(chart) {}
+
+  std::string write() {
+    out_ = std::string("<div class=\"chart") + (chart_.solid ? " solid" : "") + "\" id=\"" + chart_.id + "\"";
+    if (chart_.time) out_ += " data-time=\"\"";
+    out_ += " data-x=\"" + axis_data(chart_.x) + "\">\n";
+    for (std::size_t i = 0; i < chart_.panels.size(); ++i) panel(chart_.panels[i], i);
+    x_axis();
+    return out_ + "</div>\n";
+  }
+
+ private:
+  /// "min max log|lin": what the read-out needs to turn places into values.
+  static std::string axis_data(const Axis& axis) {
+    return fixed(axis.min(), 9) + " " + fixed(axis.max(), 9) + (axis.is_logarithmic() ? " log" : " lin");
+  }
+
+  double x_px(double x) const { return kWidth * chart_.x.place(x); }
+  static double y_px(const Panel& panel, double y) {
+    // Far outside the frame it does not matter where; browsers clip large coordinates badly.
+    return std::clamp((1 - panel.y.place(y)) * panel.height_px, -1e4, 1e4);
+  }
+
+  void panel(const Panel& panel, std::size_t index) {
+    const std::string id = chart_.id + "-" + std::to_string(index);
+    const int lanes_px = kLane_px * static_cast<int>(panel.lanes.size());
+    const int height_px = panel.height_px + lanes_px;
+    out_ += "<div class=\"panel\"><p class=\"panel-head\"><span>" + escape_html(panel.title);
+    if (!panel.unit.empty()) out_ += "<span class=\"unit\">, " + escape_html(panel.unit) + "</span>";
+    out_ += "</span><span class=\"readout\" aria-hidden=\"true\"></span></p>\n";
+    out_ += "<div class=\"plot\" style=\"height:" + std::to_string(height_px) + "px\" data-y=\"" + axis_data(panel.y) +
+            "\" data-height=\"" + std::to_string(panel.height_px) + "\" data-unit=\"" + escape_html(panel.unit) +
+            "\">\n";
+    out_ += "<svg viewBox=\"0 0 1000 " + std::to_string(height_px) +
+            "\" preserveAspectRatio=\"none\" role=\"img\" aria-labelledby=\"" + id + "-t " + id + "-d\"><title id=\"" +
+            id + "-t\">" + escape_html(title_of(panel)) + "</title><desc id=\"" + id + "-d\">" +
+            escape_html(index == 0 ? chart_.description : describe(panel)) + "</desc>\n";
+    grid(panel, height_px);
+    for (const Band& band : panel.bands) draw_band(panel, band);
+    for (const Mark& mark : chart_.marks)
+      if (shows(panel, mark)) draw_mark(mark, height_px);
+    // The first line lies uppermost.
+    for (auto line = panel.lines.rbegin(); line != panel.lines.rend(); ++line) draw_line(panel, *line);
+    lanes(panel);
+    out_ += "</svg>\n";
+    y_labels(panel, height_px);
+    if (index == 0 || panel.marks_of) mark_labels(panel);
+    out_ += "</div>\n";
+    for (const std::string& note : panel.notes) out_ += "<p class=\"note\">" + escape_html(note) + "</p>\n";
+    out_ += "</div>\n";
+  }
+
+  std::string title_of(const Panel& panel) const {
+    return chart_.title + ": " + panel.title + (panel.unit.empty() ? "" : ", " + panel.unit);
+  }
+
+  static std::string describe(const Panel& panel) {
+    std::string text;
+    for (const Line& line : panel.lines) {
+      const Extremes e = extremes_of({line});
+      if (!text.empty()) text += "; ";
+      text += line.name +
+              (e.drawn ? " from " + show_number(e.min) + " to " + show_quantity(e.max, panel.unit) : " has no values");
+    }
+    return text.empty() ? "Nothing to draw." : text + ".";
+  }
+
+  void grid(const Panel& panel, int height_px) {
+    std::string path;
+    for (const Tick& tick : panel.y.ticks()) path += "M0 " + fixed(y_px(panel, tick.value), 2) + "H1000";
+    for (const Tick& tick : chart_.x.ticks())
+      path += "M" + fixed(x_px(tick.value), 2) + " 0V" + std::to_string(height_px);
+    out_ += "<path class=\"grid\" d=\"" + path + "\"/>\n";
+    if (panel.limit) out_ += "<path class=\"limit\" d=\"M0 " + fixed(y_px(panel, *panel.limit), 2) + "H1000\"/>\n";
+    if (panel.zero_line) out_ += "<path class=\"zero\" d=\"M0 " + fixed(y_px(panel, 0), 2) + "H1000\"/>\n";
+  }
+
+  void draw_line(const Panel& panel, const Line& line) {
+    std::string path;
+    for (const LinePiece& piece : decimate(line.x, line.y, kBuckets)) {
+      double last_y_px = 0;
+      for (std::size_t k = 0; k < piece.size(); ++k) {
+        const double px = x_px(line.x[piece[k]]);
+        const double py = y_px(panel, line.y[piece[k]]);
+        if (k > 0 && line.style == Line::Style::kStep) path += fixed(px, 1) + " " + fixed(last_y_px, 2) + " ";
+        path += (k == 0 ? "M" : "") + fixed(px, 1) + " " + fixed(py, 2) + " ";
+        last_y_px = py;
+      }
+      if (piece.size() == 1)
+        path += fixed(x_px(line.x[piece[0]]) + 0.1, 1) + " " + fixed(last_y_px, 2) + " ";  // a dot, by its round caps
+    }
+    if (!path.empty()) path.pop_back();
+    out_ += "<path class=\"line " + run_class(line.run) + (line.style == Line::Style::kThin ? " thin" : "") +
+            "\" data-name=\"" + escape_html(line.name) + "\" d=\"" + path + "\"/>\n";
+  }
+
+  void draw_band(const Panel& panel, const Band& band) {
+    // Each edge keeps its own extreme samples; both share their places, so the area closes.
+    std::string path;
+    for (const LinePiece& piece : decimate(band.x, band.high, kBuckets)) {
+      std::string forth, back;
+      for (const std::size_t i : piece) {
+        if (!std::isfinite(band.low[i])) continue;
+        const std::string x = fixed(x_px(band.x[i]), 1) + " ";
+        forth += x + fixed(y_px(panel, band.high[i]), 1) + " ";
+        back.insert(0, x + fixed(y_px(panel, band.low[i]), 1) + " ");
+      }
+      if (!forth.empty()) path += "M" + forth + back + "Z";
+    }
+    out_ += "<path class=\"band " + run_class(band.run) + "\" d=\"" + path + "\"/>\n";
+  }
+
+  void draw_mark(const Mark& mark, int height_px) {
+    out_ += "<path class=\"mark " + run_class(mark.run) + "\" d=\"M" + fixed(x_px(mark.x), 1) + " 0V" +
+            std::to_string(height_px) + "\"/>\n";
+  }
+
+  static bool shows(const Panel& panel, const Mark& mark) {
+    return std::isfinite(mark.x) && (!panel.marks_of || *panel.marks_of == mark.run);
+  }
+
+  void mark_labels(const Panel& panel) {
+    for (std::size_t i = 0; i < chart_.marks.size(); ++i) {
+      const Mark& mark = chart_.marks[i];
+      if (!shows(panel, mark)) continue;
+      const double place = chart_.x.place(mark.x);
+      // Words that would cover one another stand on lines of their own.
+      int line = 0;
+      for (std::size_t k = 0; k < i; ++k)
+        line += shows(panel, chart_.marks[k]) && std::abs(chart_.x.place(chart_.marks[k].x) - place) < 0.25 ? 1 : 0;
+      out_ += "<span class=\"mark-label " + run_class(mark.run) + (place > 0.5 ? " left" : "") +
+              "\" style=\"left:" + fixed(100 * place, 2) + "%;top:" + fixed(0.1 + line * 1.05, 2) + "rem\">" +
+              escape_html(mark.text) + "</span>\n";
+    }
+  }
+
+  void lanes(const Panel& panel) {
+    for (std::size_t i = 0; i < panel.lanes.size(); ++i) {
+      const int top_px = panel.height_px + kLane_px * static_cast<int>(i) + 1;
+      std::string path;
+      double drawn_to = -1;
+      for (const auto& [from, to] : panel.lanes[i].intervals) {
+        // At least half a pixel wide; what the bar before already covers is left out.
+        const double a = std::max(x_px(from), drawn_to), b = std::max(x_px(to), x_px(from) + 0.7);
+        if (b <= a) continue;
+        path += "M" + fixed(a, 1) + " " + std::to_string(top_px) + "H" + fixed(b, 1) + "v" +
+                std::to_string(kLane_px - 2) + "H" + fixed(a, 1) + "z";
+        drawn_to = b;
+      }
+      out_ += "<path class=\"lane " + run_class(panel.lanes[i].run) + "\" d=\"" + path + "\"><title>" +
+              escape_html(panel.lanes[i].name) + "</title></path>\n";
+    }
+  }
+
+  void y_labels(const Panel& panel, int height_px) {
+    for (const Tick& tick : panel.y.ticks()) {
+      if (tick.label.empty()) continue;
+      out_ +=
+          "<span class=\"yt\" aria-hidden=\"true\" style=\"top:" + fixed(100 * y_px(panel, tick.value) / height_px, 2) +
+          "%\">" + tick.label + "</span>\n";
+    }
+  }
+
+  void x_axis() {
+    out_ += "<div class=\"xaxis\" aria-hidden=\"true\">";
+    for (const Tick& tick : chart_.x.ticks()) {
+      if (tick.label.empty()) continue;
+      out_ += "<span class=\"xt\" style=\"left:" + fixed(100 * chart_.x.place(tick.value), 2) + "%\">" + tick.label +
+              "</span>";
+    }
+    out_ += "</div><p class=\"xlabel\" aria-hidden=\"true\">" + escape_html(chart_.x_label) + "</p>\n";
+  }
+
+  const Chart& chart_;
+  std::string out_;
+};
+
+template <class Accept>
+Extremes extremes_if(const std::vector<Line>& lines, Accept accept) {
+  Extremes e;
+  for (const Line& line : lines) {
+    for (const double y : line.y) {
+      if (!std::isfinite(y) || !accept(y)) continue;
+      if (!e.drawn) e = {y, y, true};
+      e.min = std::min(e.min, y);
+      e.max = std::max(e.max, y);
+    }
+  }
+  return e;
+}
+
+}  // namespace
+
+std::string draw(const Chart& chart) {
+  return ChartWriter(chart).write();
+}
+
+Extremes extremes_of(const std::vector<Line>& lines) {
+  return extremes_if(lines, [](double) { return true; });
+}
+
+Extremes positive_extremes_of(const std::vector<Line>& lines) {
+  return extremes_if(lines, [](double y) { return y > 0; });
+}
+
+}  // namespace canyon::report

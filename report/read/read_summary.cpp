@@ -1,0 +1,197 @@
+#include <cmath>
+
+#include "canyon/report/read/read_results.h"
+#include "canyon/report/sections/figures.h"
+
+namespace canyon::report {
+namespace {
+
+Eigen::Vector2d point(const JsonNode& node, const JsonFields& owner, const std::string& path) {
+  const std::vector<double> xy = json_numbers(node, 2, owner.file(), path, owner.error());
+  if (!owner.error() && !(std::isfinite(xy[0]) && std::isfinite(xy[1]))) {
+    owner.error() = Error{owner.file(), node.line, path, "null in a point", "a list of 2 numbers"};
+  }
+  return {xy[0], xy[1]};
+}
+
+Mission read_mission(const JsonFields& fields) {
+  Mission mission;
+  mission.name = fields.required_text("name");
+  mission.seed = fields.digits("seed");
+  mission.start = fields.text("start");
+  mission.nominal_duration_s = fields.number("nominal_duration_s");
+  mission.time_limit_s = fields.number("time_limit_s");
+  for (const auto& [node, path] : fields.list("route")) mission.route_W.push_back(point(*node, fields, path));
+  for (const auto& [node, path] : fields.list("waypoints")) {
+    const JsonFields f(node, fields.file(), path, fields.error());
+    mission.waypoints.push_back({.name = f.required_text("name"),
+                                 .p_W = {f.required_number("x_m"), f.required_number("y_m")},
+                                 .mission = f.flag("mission"),
+                                 .building = f.text("building")});
+  }
+  return mission;
+}
+
+SceneFacts read_scene_facts(const JsonFields& fields) {
+  const JsonFields origin = fields.object("origin");
+  return {.name = fields.text("name"),
+          .buildings = fields.number("buildings"),
+          .triangles = fields.number("triangles"),
+          .extent_m = fields.numbers("extent_m", 3),
+          .lat_deg = origin.number("lat_deg"),
+          .lon_deg = origin.number("lon_deg"),
+          .h_m = origin.number("h_m")};
+}
+
+/// A name that may stand in a file's name: it becomes epochs/NAME_nav.csv.
+void check_run_name(const JsonFields& fields, const std::string& name) {
+  if (name.empty() || name.find_first_of("/\\") != std::string::npos || name.find('\0') != std::string::npos ||
+      name[0] == '.') {
+    fields.fail(fields.find("fidelity"), "fidelity", "'" + name + "'", "a name that can be part of a file's name");
+  }
+}
+
+/// The figures of the table, and any further number of the run; what later versions add beside them is passed over.
+void read_figures(const JsonFields& fields, Run& run) {
+  const JsonNode::Object* object = fields.node() ? fields.node()->object() : nullptr;
+  if (!object) return;
+  for (const JsonNode& node : object->members) {
+    if (!is_known_figure(node.key) && !node.number()) continue;
+    run.figures[node.key] = node.key.ends_with("_share") ? fields.share(node.key) : fields.number(node.key);
+  }
+}
+
+std::vector<std::pair<std::string, double>> read_counters(const JsonFields& fields) {
+  std::vector<std::pair<std::string, double>> out;
+  if (fields.node() && fields.node()->object()) {
+    for (const JsonNode& member : fields.node()->object()->members) {
+      out.emplace_back(member.key, fields.number(member.key));
+    }
+  }
+  return out;
+}
+
+Run read_run(const JsonFields& fields) {
+  Run run;
+  run.fidelity = fields.required_text("fidelity");
+  check_run_name(fields, run.fidelity);
+  run.gnss = fields.has("gnss") ? fields.text("gnss") : run.fidelity;
+  run.imu = fields.has("imu") ? fields.text("imu") : run.fidelity;
+  // null in an open loop
+  if (const JsonNode* node = fields.find("outcome"); node == nullptr || !node->is_null())
+    run.outcome = fields.required_text("outcome");
+  if (fields.has("failure")) {
+    const JsonFields f = fields.object("failure");
+    run.failure = Failure{f.required_text("kind"), f.text("detail"), f.number("t_s"), f.number("x_m"), f.number("y_m")};
+  }
+  read_figures(fields, run);
+  for (const auto& [node, path] : fields.list("mission_waypoints")) {
+    const JsonFields f(node, fields.file(), path, fields.error());
+    run.mission_waypoints.push_back({f.text("name"), f.flag("reached"), f.number("closest_m"), f.number("stopped_s"),
+                                     f.share("facade_seen_share")});
+  }
+  run.counters = read_counters(fields.object("counters"));
+  const JsonFields timing = fields.object("timing");
+  run.real_time_factor = timing.number("real_time_factor");
+  run.wall_s = timing.number("wall_s");
+  run.cpu_s = timing.number("cpu_s");
+  for (const auto& [node, path] : timing.list("parts")) {
+    const JsonFields f(node, fields.file(), path, fields.error());
+    run.cpu_parts_s.emplace_back(f.required_text("name"), f.number("cpu_s"));
+  }
+  return run;
+}
+
+std::vector<std::string> read_names(const JsonFields& fields, std::string_view key) {
+  std::vector<std::string> names;
+  for (const auto& [node, path] : fields.list(key, true)) {
+    if (!node->string()) fields.fail(node, key, node->describe(), "a list of names");
+    names.push_back(node->string() ? *node->string() : std::string());
+  }
+  return names;
+}
+
+TwoByTwo read_two_by_two(const JsonFields& fields) {
+  TwoByTwo table;
+  table.gnss = read_names(fields, "gnss");
+  table.imu = read_names(fields, "imu");
+  const auto rows_of = [&](std::string_view key) {
+    auto rows = fields.list(key);
+    if (!rows.empty() && rows.size() != table.gnss.size()) {
+      fields.fail(fields.find(key), key, fields.find(key)->describe(), std::to_string(table.gnss.size()) + " rows");
+      rows.clear();
+    }
+    return rows;
+  };
+  for (const auto& [node, path] : rows_of("outcome")) {
+    std::vector<std::string> row;
+    const JsonNode::Array* cells = node->array();
+    if (!cells || cells->size() != table.imu.size()) {
+      fields.fail(node, "outcome", node->describe(), std::to_string(table.imu.size()) + " outcomes in a row");
+      break;
+    }
+    for (const JsonNode& cell : *cells) {
+      if (!cell.is_null() && !cell.string()) fields.fail(&cell, "outcome", cell.describe(), "a string or null");
+      row.push_back(cell.string() ? *cell.string() : std::string());
+    }
+    table.outcome.push_back(std::move(row));
+  }
+  const JsonNode::Object* object = fields.node()->object();
+  if (!object) return table;
+  for (const JsonNode& member : object->members) {
+    const std::string& key = member.key;
+    if (key == "gnss" || key == "imu" || key == "outcome") continue;
+    if (!is_known_figure(key) && !member.array()) continue;  // something a later version added
+    for (const auto& [node, path] : rows_of(key)) {
+      table.figures[key].push_back(json_numbers(*node, table.imu.size(), fields.file(), path, fields.error()));
+    }
+  }
+  return table;
+}
+
+OpenLoop read_open_loop(const JsonFields& fields) {
+  OpenLoop loop{.tape = fields.text("tape"), .paired = {}};
+  for (const auto& [node, path] : fields.list("paired_epochs")) {
+    const JsonFields f(node, fields.file(), path, fields.error());
+    loop.paired.push_back({f.required_text("a"), f.required_text("b"), f.number("epochs"),
+                           f.number("position_error_difference_m"), f.number("low_m"), f.number("high_m"),
+                           f.number("worse_share")});
+  }
+  return loop;
+}
+
+}  // namespace
+
+Status read_summary(std::string_view json, const std::string& file, Results& results) {
+  CANYON_TRY(const JsonNode root, parse_json(json, file));
+  std::optional<Error> error;
+  const JsonFields fields(&root, file, {}, error);
+  const double schema = fields.required_number("schema");
+  if (!error && schema != 1) fields.fail(fields.find("schema"), "schema", fields.find("schema")->describe(), "1");
+  if (!fields.has("mission")) fields.fail(nullptr, "mission", "missing", "an object");
+  results.mission = read_mission(fields.object("mission"));
+  results.scene = read_scene_facts(fields.object("scene"));
+  for (const auto& [node, path] : fields.list("runs", true)) {
+    if (node->is_null()) fields.fail(node, path, "null", "an object");
+    results.runs.push_back(read_run(JsonFields(node, file, path, error)));
+    for (std::size_t i = 0; i + 1 < results.runs.size(); ++i) {
+      if (results.runs[i].fidelity == results.runs.back().fidelity) {
+        fields.fail(node, path + ".fidelity", "'" + results.runs[i].fidelity + "' given twice", "each run once");
+      }
+    }
+  }
+  if (!error && results.runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
+  if (fields.has("two_by_two")) results.two_by_two = read_two_by_two(fields.object("two_by_two"));
+  if (fields.has("loop") && fields.object("loop").text("kind") == "open")
+    results.open_loop = read_open_loop(fields.object("loop"));
+  results.hash = fields.text("hash");
+  const JsonFields timing = fields.object("timing");
+  results.wall_s = timing.number("wall_s");
+  results.cpu_s = timing.number("cpu_s");
+  results.peak_memory_mb = timing.number("peak_memory_mb");
+  results.threads = timing.number("threads");
+  if (error) return *error;
+  return Ok{};
+}
+
+}  // namespace canyon::report

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "canyon/report/read/cloud_summary.h"
+#include "canyon/report/read/epoch_table.h"
+
+/// A results directory (docs/results.md) in memory. Undefined numbers are NaN, undefined texts empty. Positions are in
+/// W, metres.
+namespace canyon::report {
+
+struct Waypoint {
+  std::string name;
+  Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
+  bool mission = false;
+  std::string building;  ///< of interest; may be empty
+};
+
+struct Mission {
+  std::string name, seed, start;
+  double nominal_duration_s = 0.0, time_limit_s = 0.0;
+  std::vector<Eigen::Vector2d> route_W;
+  std::vector<Waypoint> waypoints;
+};
+
+struct SceneFacts {
+  std::string name;
+  double buildings = 0.0, triangles = 0.0;
+  std::vector<double> extent_m;  ///< 3 numbers, or empty
+  double lat_deg = 0.0, lon_deg = 0.0, h_m = 0.0;
+};
+
+struct Failure {
+  std::string kind, detail;
+  double t_s = 0.0, x_m = 0.0, y_m = 0.0;
+};
+
+struct MissionWaypoint {
+  std::string name;
+  bool reached = false;
+  double closest_m = 0.0, stopped_s = 0.0, facade_seen_share = 0.0;
+};
+
+/// What had to be done at a waypoint: of the run's configuration, [success]; NaN where the directory does not say.
+struct SuccessRules {
+  double waypoint_radius_m = std::nan(""), stop_s = std::nan("");
+};
+
+/// One run's summary and whatever of its epochs and clouds the directory holds.
+struct Run {
+  std::string fidelity, gnss, imu, outcome;
+  std::optional<Failure> failure;
+  std::map<std::string, double, std::less<>> figures;  ///< every other number of the run, by its key
+  std::vector<MissionWaypoint> mission_waypoints;
+  SuccessRules rules;
+  std::vector<std::pair<std::string, double>> counters;
+  double real_time_factor = 0.0, wall_s = 0.0, cpu_s = 0.0;
+  std::vector<std::pair<std::string, double>> cpu_parts_s;
+
+  std::optional<EpochTable> nav, gnss_epochs, satellites, keyframes;
+  std::optional<CloudSummary> prior_cloud, registered_cloud;
+
+  double figure(std::string_view key) const;
+  /// False where each keyframe stayed where the filter had placed it: [registration] method "none".
+  bool registers() const;
+  bool succeeded() const { return outcome == "success"; }
+  /// Both sensors of the run's own fidelity: not one of the mixed runs of the 2 x 2.
+  bool is_pure() const { return gnss == imu; }
+};
+
+/// Low and high GNSS (rows) with low and high IMU (columns).
+struct TwoByTwo {
+  std::vector<std::string> gnss, imu;
+  std::vector<std::vector<std::string>> outcome;
+  std::map<std::string, std::vector<std::vector<double>>, std::less<>> figures;
+};
+
+struct Building {
+  std::string name;
+  double base_m = 0.0, height_m = 0.0;
+  std::vector<Eigen::Vector2d> footprint_W;
+};
+
+struct Street {
+  Eigen::Vector2d a_W, b_W;
+  double width_m = 0.0;
+};
+
+struct Tree {
+  Eigen::Vector2d p_W;
+  double radius_m = 0.0;
+};
+
+/// The scene from above.
+struct SceneDrawing {
+  Eigen::Vector2d min_W = Eigen::Vector2d::Zero(), max_W = Eigen::Vector2d::Zero();
+  std::vector<Building> buildings;
+  std::vector<Street> streets;
+  std::vector<Tree> trees;
+  std::vector<Eigen::Vector2d> vehicles;
+};
+
+/// How much larger one run's position error is than another's, epoch by epoch on one true motion.
+struct PairedErrors {
+  std::string a, b;
+  double epochs = 0.0, difference_m = 0.0, low_m = 0.0, high_m = 0.0, worse_share = 0.0;
+};
+
+/// All runs on one true motion: nobody drove, so there is no outcome.
+struct OpenLoop {
+  std::string tape;  ///< where the motion is from
+  std::vector<PairedErrors> paired;
+};
+
+struct Results {
+  Mission mission;
+  std::optional<OpenLoop> open_loop;
+  SceneFacts scene;
+  SceneDrawing drawing;
+  MapGrid grid;  ///< over the scene; the clouds' cells
+  std::vector<Run> runs;
+  std::optional<TwoByTwo> two_by_two;
+  std::string hash;
+  double wall_s = 0.0, cpu_s = 0.0, peak_memory_mb = 0.0, threads = 0.0;
+  std::string version, commit, command_line, instruction_set, scene_hash;  ///< of manifest.json
+
+  const Run* run(std::string_view fidelity) const;
+};
+
+}  // namespace canyon::report

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/report/draw/format.h"
+#include "canyon/report/draw/html.h"
+#include "canyon/report/draw/time_charts.h"
+#include "canyon/report/sections/sections.h"
+
+namespace canyon::report {
+namespace {
+
+/// A panel per run: prior and registered pose error of each keyframe, and a lane of those that did not converge.
+Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
+  const Run& run = results.runs[i];
+  const EpochTable& keyframes = *run.keyframes;
+  Panel panel{.title = "Keyframe position error, run " + run.fidelity + " (logarithmic)", .unit = "m"};
+  panel.marks_of = i;
+  panel.y = y;
+  Line prior = column_line(results, i, keyframes, "prior_error_m", Line::Style::kThin);
+  prior.name = "prior";
+  Line registered = column_line(results, i, keyframes, "registered_error_m");
+  registered.name = "registered";
+  panel.lines = {std::move(registered), std::move(prior)};
+  Lane failed{.run = i, .name = "registration did not converge"};
+  double unconverged = 0;
+  for (std::size_t k = 0; k < keyframes.rows; ++k) {
+    const std::string& status = keyframes.text("status")[k];
+    if (status == "converged" || status == "not_registered") continue;
+    ++unconverged;
+    const double t_s = keyframes["t_s"][k];
+    failed.intervals.emplace_back(t_s - 0.25, t_s + 0.25);
+  }
+  if (unconverged > 0) {
+    panel.lanes.push_back(std::move(failed));
+    panel.notes.push_back("Bars at the foot: " + count_of(unconverged, "keyframe", "keyframes") + " of " +
+                          show_count(static_cast<double>(keyframes.rows)) + " whose registration did not converge.");
+  }
+  return panel;
+}
+
+std::string improvement(const Results& results, std::size_t i) {
+  const EpochTable& k = *results.runs[i].keyframes;
+  double better = 0, defined = 0;
+  for (std::size_t row = 0; row < k.rows; ++row) {
+    if (k.text("status")[row] == "not_registered") continue;  // the first one
+    const double prior = k["prior_error_m"][row], registered = k["registered_error_m"][row];
+    if (!std::isfinite(prior) || !std::isfinite(registered)) continue;
+    ++defined;
+    better += registered < prior ? 1 : 0;
+  }
+  std::string text = run_tag(results.runs, i) + " " + count_of(static_cast<double>(k.rows), "keyframe", "keyframes");
+  if (defined > 0) text += "; registration made the pose better in " + show_share(better / defined);
+  return text + ".";
+}
+
+}  // namespace
+
+std::string registration_section(const Results& results) {
+  const std::string title = "Registration";
+  Chart chart = time_chart(results, "registration-chart", "Registration error by keyframe");
+  chart.solid = true;
+  std::vector<std::size_t> drawn;
+  std::vector<Line> all;
+  std::vector<std::string> unregistered;
+  std::string missing, caption;
+  for (const std::size_t i : pure_runs(results)) {
+    const Run& run = results.runs[i];
+    if (!run.keyframes || run.keyframes->rows == 0) {
+      missing += note(missing_file(run, "keyframes", "_keyframes.csv"));
+      continue;
+    }
+    if (!run.registers()) {
+      unregistered.push_back(run.fidelity);
+      continue;
+    }
+    drawn.push_back(i);
+    all.push_back(column_line(results, i, *run.keyframes, "prior_error_m"));
+    all.push_back(column_line(results, i, *run.keyframes, "registered_error_m"));
+    caption += (caption.empty() ? "" : "<br>") + improvement(results, i);
+  }
+  if (!unregistered.empty())
+    missing += note((unregistered.size() == 1 ? "Run " : "Runs ") + listed(unregistered) +
+                    " registered nothing ([registration] method = \"none\"): each keyframe stands where the filter "
+                    "placed it.");
+  if (drawn.empty()) return section("registration", title, {}, missing);
+  const Axis y = error_axis(all);  // one scale for all runs, so that the panels can be compared
+  for (const std::size_t i : drawn) {
+    chart.panels.push_back(run_panel(results, i, y));
+    chart.description += results.runs[i].fidelity + ": prior RMS " +
+                         show_quantity(results.runs[i].figure("registration_error_prior_rms_m"), "m") +
+                         ", registered RMS " + show_quantity(results.runs[i].figure("registration_error_rms_m"), "m") +
+                         ". ";
+  }
+  return section("registration", title,
+                 "Position error of each keyframe of the map: where the filter placed it (prior, thin) and where "
+                 "registration moved it (registered, bold).",
+                 figure(draw(chart), caption) + missing);
+}
+
+}  // namespace canyon::report

@@ -1,0 +1,123 @@
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "canyon/report/draw/chart.h"
+#include "canyon/report/draw/format.h"
+#include "canyon/report/draw/html.h"
+#include "canyon/report/draw/theme.h"
+#include "canyon/report/draw/time_charts.h"
+#include "canyon/report/sections/run_story.h"
+#include "canyon/report/sections/sections.h"
+
+namespace canyon::report {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kFigures{
+    {{"position_error_rms_m", "position error, RMS"},
+     {"registration_error_rms_m", "keyframe error, registered, RMS"},
+     {"map_error_prior_rms_m", "map error, prior, RMS"}}};
+
+const double* cell_of(const TwoByTwo& table, std::string_view key, std::size_t row, std::size_t column) {
+  const auto found = table.figures.find(key);
+  return found == table.figures.end() || found->second.size() <= row ? nullptr : &found->second[row][column];
+}
+
+/// The run behind a cell, for its name and colour.
+std::optional<std::size_t> run_of(const Results& results, const std::string& gnss, const std::string& imu) {
+  for (std::size_t i = 0; i < results.runs.size(); ++i) {
+    if (results.runs[i].gnss == gnss && results.runs[i].imu == imu) return i;
+  }
+  return std::nullopt;
+}
+
+std::string cell(const Results& results, const TwoByTwo& table, std::size_t row, std::size_t column) {
+  std::string out = "<td>";
+  if (const auto i = run_of(results, table.gnss[row], table.imu[column]))
+    out += "<p>" + run_tag(results.runs, *i) + "</p>";
+  if (!results.open_loop && row < table.outcome.size()) {
+    const std::string& outcome = table.outcome[row][column];
+    const bool good = outcome == "success";
+    out += outcome.empty()
+               ? "<p class=\"undefined\">no outcome</p>"
+               : std::string("<p class=\"outcome ") + (good ? "good\">\xE2\x9C\x93 " : "bad\">\xE2\x9C\x95 ") +
+                     escape_html(outcome_label(outcome)) + "</p>";
+  }
+  out += "<dl>";
+  for (const auto& [key, label] : kFigures) {
+    const double* value = cell_of(table, key, row, column);
+    out += "<div><dt>" + std::string(label) + "</dt><dd>" + (value ? show_quantity(*value, "m") : "\xE2\x80\x93") +
+           "</dd></div>";
+  }
+  return out + "</dl></td>";
+}
+
+/// Which of the two sensors alone brings the more of the position error, if the four cells say so.
+std::string attribution(const TwoByTwo& table) {
+  if (table.gnss.size() != 2 || table.imu.size() != 2) return {};
+  const auto at = [&](std::size_t r, std::size_t c) {
+    const double* v = cell_of(table, "position_error_rms_m", r, c);
+    return v ? *v : std::nan("");
+  };
+  const double base = at(0, 0), gnss = at(1, 0), imu = at(0, 1), both = at(1, 1);
+  if (!std::isfinite(base + gnss + imu + both)) return {};
+  return "Changing the GNSS alone from " + table.gnss[0] + " to " + table.gnss[1] + " takes the position error from " +
+         show_quantity(base, "m") + " to " + show_quantity(gnss, "m") + ", changing the IMU alone to " +
+         show_quantity(imu, "m") + ", both to " + show_quantity(both, "m") + ".";
+}
+
+/// Position error of the runs of the table against time.
+std::string error_chart(const Results& results, const TwoByTwo& table) {
+  Chart chart = time_chart(results, "two-by-two-chart", "Position error of the runs of the table");
+  chart.marks.clear();
+  Panel panel{.title = "Position error, 3-D (logarithmic)", .unit = "m"};
+  panel.height_px = 190;
+  std::vector<std::size_t> drawn;
+  for (const std::string& gnss : table.gnss) {
+    for (const std::string& imu : table.imu) {
+      const auto i = run_of(results, gnss, imu);
+      if (!i || !results.runs[*i].nav || results.runs[*i].nav->rows == 0) continue;
+      const EpochTable& nav = *results.runs[*i].nav;
+      Line line{.run = *i, .name = results.runs[*i].fidelity, .x = nav["t_s"]};
+      for (std::size_t k = 0; k < nav.rows; ++k) line.y.push_back(error_norm_m(nav, k));
+      const Extremes e = extremes_of({line});
+      if (e.drawn) chart.description += line.name + ": up to " + show_quantity(e.max, "m") + ". ";
+      panel.lines.push_back(std::move(line));
+      drawn.push_back(*i);
+    }
+  }
+  if (!positive_extremes_of(panel.lines).drawn) return note("The results hold no navigation epochs of these runs.");
+  panel.y = error_axis(panel.lines);
+  chart.panels.push_back(std::move(panel));
+  return run_legend(results.runs, drawn) + figure(draw(chart), {});
+}
+
+}  // namespace
+
+std::string two_by_two_section(const Results& results) {
+  if (results.runs.size() < 2) return {};
+  const std::string title = "GNSS or IMU?";
+  if (!results.two_by_two) {
+    return section("two-by-two", title, {},
+                   note("The mixed runs (one sensor of low, the other of high fidelity) were not made."));
+  }
+  const TwoByTwo& table = *results.two_by_two;
+  std::string body =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"GNSS by IMU\"><table "
+      "class=\"two-by-two\">\n<thead><tr><td></td>";
+  for (const std::string& imu : table.imu) body += "<th scope=\"col\">IMU " + escape_html(imu) + "</th>";
+  body += "</tr></thead>\n<tbody>";
+  for (std::size_t r = 0; r < table.gnss.size(); ++r) {
+    body += "<tr><th scope=\"row\">GNSS " + escape_html(table.gnss[r]) + "</th>";
+    for (std::size_t c = 0; c < table.imu.size(); ++c) body += cell(results, table, r, c);
+    body += "</tr>\n";
+  }
+  body += "</tbody></table></div>\n";
+  const std::string loop = results.open_loop
+                               ? " All four runs are on one true motion."
+                               : " Each run drove by itself: these are four drives, and part of the difference may be "
+                                 "where each of them went (compare --open-loop takes that away).";
+  return section("two-by-two", title, escape_html(attribution(table) + loop), body + error_chart(results, table));
+}
+
+}  // namespace canyon::report

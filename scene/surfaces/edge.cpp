@@ -1,0 +1,157 @@
+#include "canyon/scene/surfaces/edge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include <Eigen/Geometry>
+
+#include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/surfaces/triangle.h"
+
+namespace canyon::scene {
+namespace {
+
+constexpr double kBlock_m = 50.0;
+constexpr double kTile_m = 2000.0;
+const double kFlat = std::cos(15.0 * kDegree);
+
+using Place = std::tuple<float, float, float>;
+
+Place place(const Eigen::Vector3f& p) {
+  return {p.x() + 0.0F, p.y() + 0.0F, p.z() + 0.0F};  // -0 becomes +0
+}
+
+/// Unit vector in the triangle's plane, across the edge, away from the third corner.
+Eigen::Vector3d away(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& third) {
+  const Eigen::Vector3d along = (b - a).normalized();
+  const Eigen::Vector3d in = third - a;
+  return (in.dot(along) * along - in).normalized();
+}
+
+/// One side of a triangle: its ends as they are passed, and the corner opposite.
+struct Side {
+  std::uint32_t triangle;
+  Eigen::Vector3d a, b, third, normal;
+};
+
+void add_edges(const Scene& scene, const std::vector<std::uint32_t>& members, double min_length_m,
+               std::vector<Edge>& out) {
+  const Mesh& mesh = scene.mesh();
+  std::map<std::pair<Place, Place>, std::vector<Side>> sides;  // both ends sorted: the two triangles pass them in turn
+  std::vector<std::pair<Place, Place>> order;
+  for (const std::uint32_t i : members) {
+    throw_if_cancelled();
+    const Triangle t = Triangle::of(mesh, i);
+    const Eigen::Vector3d corners[3] = {t.a, t.b, t.c};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t l = (k + 1) % 3, m = (k + 2) % 3;
+      Place from = place(mesh.vertices[mesh.triangles[i][k]]), to = place(mesh.vertices[mesh.triangles[i][l]]);
+      if (to < from) std::swap(from, to);
+      auto& list = sides[{from, to}];
+      if (list.empty()) order.push_back({from, to});
+      list.push_back({i, corners[k], corners[l], corners[m], t.area_normal().normalized()});
+    }
+  }
+  for (const auto& key : order) {
+    throw_if_cancelled();
+    const std::vector<Side>& list = sides[key];
+    const Side& one = list[0];
+    if ((one.b - one.a).norm() < min_length_m || list.size() > 2) continue;
+    if (list.size() == 1) {
+      out.push_back({one.a, one.b, one.normal, -one.normal, away(one.a, one.b, one.third)});
+      continue;
+    }
+    const Side& two = list[1];
+    const bool convex = one.normal.dot(two.third - one.a) < 0.0;
+    if (!convex || one.normal.dot(two.normal) > kFlat) continue;
+    const Eigen::Vector3d outward = one.normal + two.normal;
+    out.push_back({one.a, one.b, one.normal, two.normal,
+                   outward.norm() > 1e-6 ? Eigen::Vector3d(outward.normalized()) : away(one.a, one.b, one.third)});
+  }
+}
+
+}  // namespace
+
+std::vector<Edge> convex_edges(const Scene& scene, double min_length_m) {
+  const Mesh& mesh = scene.mesh();
+  std::vector<std::vector<std::uint32_t>> by_object(scene.objects().size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const ObjectKind kind = scene.objects()[mesh.object[i]].kind;
+    if (kind != ObjectKind::kTerrain && kind != ObjectKind::kTree) by_object[mesh.object[i]].push_back(i);
+  }
+  std::vector<Edge> edges;
+  for (const auto& members : by_object) add_edges(scene, members, min_length_m, edges);
+  return edges;
+}
+
+void EdgeIndex::Square::add(const Edge& e) {
+  for (const Eigen::Vector3d& p : {e.a_W, e.b_W}) {
+    reach_m = std::max(reach_m, std::hypot(p.x() - x_m, p.y() - y_m));
+    top_m = std::max(top_m, p.z());
+  }
+}
+
+EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
+  if (edges_.empty()) return;
+  Eigen::Vector3d low = edges_[0].a_W;
+  for (const Edge& e : edges_) low = low.cwiseMin(0.5 * (e.a_W + e.b_W));
+  using Cell = std::pair<int, int>;
+  std::map<Cell, std::size_t> tile_of;
+  std::map<std::pair<Cell, Cell>, std::size_t> block_of;  // by tile and place
+  for (std::uint32_t i = 0; i < edges_.size(); ++i) {
+    throw_if_cancelled();
+    const Edge& e = edges_[i];
+    const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W);
+    const Cell wide(static_cast<int>((middle.y() - low.y()) / kTile_m),
+                    static_cast<int>((middle.x() - low.x()) / kTile_m));
+    const auto [tile_at, new_tile] = tile_of.emplace(wide, tiles_.size());
+    if (new_tile)
+      tiles_.push_back(
+          {{.x_m = low.x() + (wide.second + 0.5) * kTile_m, .y_m = low.y() + (wide.first + 0.5) * kTile_m}, {}});
+    Tile& tile = tiles_[tile_at->second];
+    const Cell place(static_cast<int>(std::floor(middle.y() / kBlock_m)),
+                     static_cast<int>(std::floor(middle.x() / kBlock_m)));
+    const auto [at, fresh] = block_of.emplace(std::pair{wide, place}, tile.blocks.size());
+    if (fresh)
+      tile.blocks.push_back({{.x_m = (place.second + 0.5) * kBlock_m, .y_m = (place.first + 0.5) * kBlock_m}, {}});
+    Block& block = tile.blocks[at->second];
+    tile.add(e);
+    block.add(e);
+    block.edges.push_back(i);
+  }
+}
+
+void EdgeIndex::shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
+                        std::vector<std::uint32_t>& out) const {
+  out.clear();
+  const double rise = std::tan(std::min(elevation_rad, 0.4999 * kPi)), cosine = std::cos(elevation_rad);
+  const auto stands_out = [&](double top_m, double nearest_m, double farthest_m) {
+    // The way there is longer than its horizontal part; the widest bend is across it.
+    const double bend_m = std::sqrt(2.0 * detour_m * (farthest_m / cosine + std::abs(top_m)));
+    return top_m + bend_m / cosine >= nearest_m * rise;
+  };
+  const auto within = [&](const Square& square) {
+    const double distance_m = std::hypot(square.x_m - p_W.x(), square.y_m - p_W.y());
+    return stands_out(square.top_m - p_W.z(), std::max(distance_m - square.reach_m, 0.0), distance_m + square.reach_m);
+  };
+  for (const Tile& tile : tiles_) {
+    if (!within(tile)) continue;
+    for (const Block& block : tile.blocks) {
+      if (!within(block)) continue;
+      for (const std::uint32_t i : block.edges) {
+        const Edge& e = edges_[i];
+        const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W) - p_W;
+        const double half_m = 0.5 * (e.b_W - e.a_W).head<2>().norm();
+        const double top_m = std::max(e.a_W.z(), e.b_W.z()) - p_W.z();
+        const double distance_m = std::max(middle.head<2>().norm() - half_m, 0.0);
+        if (stands_out(top_m, distance_m, distance_m)) out.push_back(i);
+      }
+    }
+  }
+}
+
+}  // namespace canyon::scene

@@ -1,0 +1,113 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "canyon/core/units.h"
+#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/scene/scene_at.h"
+#include "canyon/tests/gnss/paths/wall_scene.h"
+
+namespace canyon::gnss {
+namespace {
+
+using testing::WallScene;
+
+const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+
+std::unique_ptr<GnssSensor> make(const GnssConfig& c, const scene::Scene& scene) {
+  auto sensor = make_gnss_sensor(c, 1, kStart, kStart + 3600.0, scene);
+  EXPECT_TRUE(sensor.ok()) << sensor.error().str();
+  return *std::move(sensor);
+}
+
+/// Errors of n fixes in east, north, up.
+std::vector<Eigen::Vector3d> errors(GnssSensor& sensor, const scene::Scene& scene, const Eigen::Vector3d& p_W, int n) {
+  std::vector<Eigen::Vector3d> out;
+  for (int k = 0; k < n; ++k) {
+    const GnssOutput o = sensor.measure(k, kStart + 0.5 * k, p_W, Eigen::Vector3d::Zero(), scene::SceneAt(scene));
+    if (o.fix.status != FixStatus::kNone)
+      out.push_back(scene.frame().R_EW().transpose() * (o.fix.p_A_E - o.truth.p_A_E));
+  }
+  return out;
+}
+
+// N = 4000 independent fixes: mean within 5 sigma / sqrt(N), mean square within 5 sqrt(2 / N).
+TEST(WhiteNoiseSensor, HasItsSigmas) {
+  const auto scene = WallScene().box({-60, -300, 0}, {-12, 300, 30}).build();
+  GnssConfig c;
+  c.model = "truth_plus_white";
+  const auto sensor = make(c, *scene);
+  constexpr int kN = 4000;
+  const auto e = errors(*sensor, *scene, {0, 0, 2}, kN);
+  ASSERT_EQ(e.size(), static_cast<std::size_t>(kN));
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero(), square = Eigen::Vector3d::Zero();
+  for (const auto& x : e) {
+    mean += x / kN;
+    square += x.cwiseAbs2() / kN;
+  }
+  const Eigen::Vector3d sigma(1.0, 1.0, 2.0);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(mean[i], 0.0, 5.0 * sigma[i] / std::sqrt(kN));
+    EXPECT_NEAR(square[i], sigma[i] * sigma[i], 5.0 * std::sqrt(2.0 / kN) * sigma[i] * sigma[i]);
+  }
+  const GnssOutput one = sensor->measure(7, kStart, {0, 0, 2}, {1, 2, 3}, scene::SceneAt(*scene));
+  const Eigen::Matrix3d covariance_W = scene->frame().R_EW().transpose() * one.fix.covariance_E * scene->frame().R_EW();
+  EXPECT_NEAR(covariance_W(2, 2), 4.0, 1e-12);
+  EXPECT_NEAR(covariance_W(0, 1), 0.0, 1e-12);
+  EXPECT_TRUE(one.truth.satellites.empty());
+  EXPECT_TRUE(one.epoch.observations.empty());
+}
+
+TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
+  const auto open = WallScene().wall({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).build();
+  GnssConfig c;
+  c.model = "satellite_count";
+  c.mask_deg = 5.0;
+  c.count_noise_max_m = 12.0;
+  c.count_noise_min_m = 4.0;
+  const auto sensor = make(c, *open);
+  for (int k = 0; k < 200; k += 20) {
+    const GnssOutput o =
+        sensor->measure(k, kStart + 17.0 * k, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
+    const int n = o.fix.satellites;
+    ASSERT_GE(n, 4);
+    EXPECT_EQ(static_cast<std::size_t>(n), o.truth.satellites.size());
+    const double sigma_m = (12.0 - std::min(n - 4, 8)) / 3.0;  // 12 m at four, 4 m at twelve, three sigmas each
+    EXPECT_NEAR(std::sqrt(o.fix.covariance_E(0, 0)), sigma_m, 1e-12);
+    EXPECT_TRUE(std::isnan(o.fix.dop.gdop));
+  }
+  constexpr int kN = 4000;
+  double square = 0.0, claimed = 0.0;
+  for (int k = 0; k < kN; ++k) {
+    const GnssOutput o = sensor->measure(k, kStart, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
+    square += (o.fix.p_A_E - o.truth.p_A_E).squaredNorm() / (3.0 * kN);
+    claimed = o.fix.covariance_E(0, 0);
+  }
+  EXPECT_NEAR(square, claimed, 5.0 * std::sqrt(2.0 / (3.0 * kN)) * claimed);
+}
+
+TEST(SatelliteCountSensor, BlockedSkyIsNoFix) {
+  const auto street = WallScene().box({-60, -300, 0}, {-3, 300, 60}).box({3, -300, 0}, {60, 300, 60}).build();
+  GnssConfig c;
+  c.model = "satellite_count";
+  const auto sensor = make(c, *street);
+  bool none = false;
+  for (int k = 0; k < 400 && !none; ++k) {
+    const GnssOutput o =
+        sensor->measure(k, kStart + 9.0 * k, {0, 0, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*street));
+    int seen = 0;
+    for (const auto& s : o.truth.satellites) seen += s.line_of_sight ? 1 : 0;
+    if (seen >= 4) continue;
+    none = true;
+    EXPECT_EQ(o.fix.status, FixStatus::kNone);
+    EXPECT_EQ(o.fix.reason, std::to_string(seen) + (seen == 1 ? " satellite" : " satellites") + ", a fix needs 4");
+  }
+  EXPECT_TRUE(none);
+  c.count_noise_min_m = 20.0;
+  const auto wrong = make_gnss_sensor(c, 1, kStart, kStart, *street);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_EQ(wrong.error().str(), "gnss.count_noise_max_m: is 10, expected at least gnss.count_noise_min_m = 20");
+}
+
+}  // namespace
+}  // namespace canyon::gnss

@@ -1,0 +1,44 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
+
+namespace canyon::gnss {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::PseudorangeSensorTest;
+
+TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
+  GnssConfig c;
+  c.model = "gps";
+  EXPECT_EQ(error_of(c),
+            "gnss.model: \"gps\" is not a model, expected pseudorange, truth_plus_isotropic, "
+            "truth_plus_white or satellite_count");
+  c = GnssConfig{};
+  c.ionosphere = "iri";
+  EXPECT_EQ(error_of(c),
+            "gnss.ionosphere: \"iri\" is not a model, expected none, single_layer, klobuchar, ionex, paper, "
+            "paper_printed");
+  c = GnssConfig{};
+  c.solver = "trilateration";
+  EXPECT_EQ(error_of(c),
+            "gnss.receiver_clock: is \"tcxo\", but solver \"trilateration\" has no unknown for it, expected \"none\"");
+}
+
+TEST(GnssConfig, ReadsAndRefuses) {
+  GnssConfig c;
+  const auto good = ConfigNode::parse("mode = \"single\"\nmultipath_rule = \"correlator\"\nrate_hz = 5\n", "m.toml");
+  ASSERT_TRUE(good.ok());
+  EXPECT_TRUE(read_config(&*good, "gnss", c).ok());
+  EXPECT_EQ(c.mode, "single");
+  EXPECT_EQ(c.rate_hz, 5.0);
+  const auto bad = ConfigNode::parse("\nmultipath_rule = \"corelator\"\n", "m.toml");
+  const auto status = read_config(&*bad, "gnss", c);
+  ASSERT_FALSE(status.ok());
+  EXPECT_THAT(status.error().str(), HasSubstr("m.toml:2: gnss.multipath_rule:"));
+  EXPECT_THAT(status.error().str(), HasSubstr("correlator"));
+}
+
+}  // namespace
+}  // namespace canyon::gnss

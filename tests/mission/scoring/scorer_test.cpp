@@ -1,0 +1,189 @@
+#include "canyon/mission/scoring/scorer.h"
+
+#include "canyon/tests/mission/screened_house.h"
+#include "canyon/tests/mission/short_mission.h"
+
+namespace canyon::mission::testing {
+namespace {
+
+/// Drives a scorer along given plan positions instead of a vehicle.
+class ScorerTest : public ::testing::Test {
+ protected:
+  ScorerTest()
+      : config_(short_config("low", "low", "[success]\nstuck_after_s = 20.0")),
+        mission_(*prepare(config_, scenes())),
+        scene_(*mission_.scene),
+        scorer_(config_, mission_, scene_) {}
+
+  KinematicState at(const Eigen::Vector2d& p, double t_s) const {
+    KinematicState state;
+    state.t = mission_.start + t_s;
+    state.X_WB = {rotation_from({1.5708, 0, 0}), {p.x(), p.y(), mission_.scene->ground(p.x(), p.y())->height_m + 0.1}};
+    return state;
+  }
+  bool step(const Eigen::Vector2d& p, double speed, bool observing = false) {
+    t_s_ += 0.5;
+    return scorer_.step(at(p, t_s_), speed, true, observing);
+  }
+
+  MissionConfig config_;
+  PreparedMission mission_;
+  scene::SceneAt scene_;
+  Scorer scorer_;
+  double t_s_ = 0;
+};
+
+TEST_F(ScorerTest, SucceedsAfterAStopInSight) {
+  step({213.9, 109.0}, 5.0);
+  for (int i = 0; i < 11; ++i) EXPECT_TRUE(step({213.9, 150.0}, 0.0, true));
+  scorer_.finish(at({213.9, 150.0}, t_s_), true);
+  EXPECT_EQ(scorer_.outcome(), "success") << (scorer_.failure() ? scorer_.failure()->detail : "");
+  EXPECT_TRUE(scorer_.waypoints()[0].reached);
+  EXPECT_NEAR(scorer_.waypoints()[1].stopped_s, 5.5, 1e-9);
+}
+
+TEST_F(ScorerTest, AStopTooFarAwayIsAMissedWaypoint) {
+  step({213.9, 109.0}, 5.0);
+  for (int i = 0; i < 20; ++i) step({213.9, 146.0}, 0.0, true);
+  scorer_.finish(at({213.9, 146.0}, t_s_), true);
+  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.failure()->detail, "house: came within 4.0 m, stood there for 0.0 s");
+}
+
+TEST_F(ScorerTest, AStopTooShortIsAMissedWaypoint) {
+  step({213.9, 109.0}, 5.0);
+  for (int i = 0; i < 8; ++i) step({213.9, 150.0}, 0.0, true);
+  scorer_.finish(at({213.9, 150.0}, t_s_), true);
+  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+}
+
+// 2026-11-22: "success" though the vehicle had come no nearer to the first waypoint than 16 m: plain ones were not
+// scored.
+TEST_F(ScorerTest, APlainWaypointThatWasNotReachedIsMissed) {
+  step({213.9, 93.9}, 5.0);
+  for (int i = 0; i < 11; ++i) step({213.9, 150.0}, 0.0, true);
+  scorer_.finish(at({213.9, 150.0}, t_s_), true);
+  EXPECT_TRUE(scorer_.waypoints()[1].reached);
+  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.failure()->detail, "crossing: came within 16.0 m");
+}
+
+TEST_F(ScorerTest, OfSeveralMissedWaypointsTheFirstIsTold) {
+  step({213.9, 60.0}, 5.0);
+  scorer_.finish(at({213.9, 60.0}, t_s_), true);
+  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.failure()->detail, "crossing: came within 49.9 m");
+}
+
+TEST_F(ScorerTest, DrivingIntoAHouseIsACollisionWithItsName) {
+  bool ended = false;
+  for (double x = 213.9; x < 245 && !ended; x += 0.3) ended = !step({x, 150.0}, 3.0);
+  EXPECT_TRUE(ended);
+  EXPECT_EQ(scorer_.outcome(), "collision");
+  EXPECT_EQ(scorer_.failure()->detail.substr(0, 4), "hit ");
+}
+
+TEST_F(ScorerTest, StandingStillWithoutReasonIsStuck) {
+  bool go_on = true;
+  for (int i = 0; i < 400 && go_on; ++i) go_on = step({213.9, 60.0}, 0.0);
+  EXPECT_FALSE(go_on);
+  EXPECT_EQ(scorer_.outcome(), "stuck");
+  EXPECT_NEAR(scorer_.failure()->t_s, config_.success.stuck_after_s, 1.0);
+}
+
+TEST_F(ScorerTest, NotBeingDoneIsATimeout) {
+  step({213.9, 60.0}, 5.0);
+  scorer_.finish(at({213.9, 60.0}, t_s_), false);
+  EXPECT_EQ(scorer_.outcome(), "timeout");
+}
+
+// 2026-11-22: a run that the user's own limit ended early was a "timeout".
+TEST(ScorerLimit, WhatTheUsersOwnLimitEndsIsStopped) {
+  const auto outcome_with = [](const std::string& extra) {
+    const MissionConfig config = short_config("low", "low", extra);
+    const auto mission = prepare(config, scenes());
+    EXPECT_TRUE(mission.ok());
+    const scene::SceneAt scene(*mission->scene);
+    Scorer scorer(config, *mission, scene);
+    KinematicState state;
+    state.t = mission->start + mission->time_limit_s;
+    state.X_WB.p = {213.9, 60.0, mission->scene->ground(213.9, 60.0)->height_m};
+    EXPECT_FALSE(scorer.step(state, 5.0, true, false)) << "the limit ends it";
+    scorer.finish(state, false);
+    return scorer.outcome() + ": " + scorer.failure()->detail;
+  };
+  EXPECT_EQ(outcome_with("[time]\nlimit_s = 20.0"), "stopped: by [time] limit_s after 20.0 s");
+  // One that is longer than the mission's own changes nothing.
+  const std::string own = outcome_with("");
+  EXPECT_EQ(own.rfind("timeout: not finished within ", 0), 0U) << own;
+  EXPECT_EQ(outcome_with("[time]\nlimit_s = 9000.0"), own);
+}
+
+/// A stop of 6 s at W's origin, before a house behind a screen of that height.
+struct ScreenedStop {
+  explicit ScreenedStop(double screen_m, double facade_share = 0.5) {
+    config.success.facade_share = facade_share;
+    config.autonomy.waypoints = {{"stop", {0.0, 0.0}, "house"}};
+    mission.scene = screened_house(screen_m);
+    mission.time_limit_s = 60.0;
+    const scene::SceneAt scene(*mission.scene);
+    Scorer scorer(config, mission, scene);
+    KinematicState standing;
+    for (int k = 1; k <= 12; ++k) {
+      standing.t = mission.start + 0.5 * k;
+      scorer.step(standing, 0.0, true, true);
+    }
+    scorer.finish(standing, true);
+    outcome = scorer.outcome();
+    detail = scorer.failure() ? scorer.failure()->detail : "";
+    seen_share = scorer.waypoints()[0].facade_seen_share;
+  }
+  MissionConfig config;
+  PreparedMission mission;
+  std::string outcome, detail;
+  double seen_share = 0.0;
+};
+
+TEST(ScorerSight, AStopThatSeesJustOverHalfOfTheFacadeSucceeds) {
+  const ScreenedStop stop(kHides12);
+  EXPECT_EQ(stop.seen_share, 13.0 / 25);
+  EXPECT_EQ(stop.outcome, "success") << stop.detail;
+  EXPECT_EQ(ScreenedStop(kHides12, 13.0 / 25).outcome, "success") << "the share asked for is enough";
+}
+
+TEST(ScorerSight, AStopThatSeesJustUnderHalfOfTheFacadeHasNoLineOfSight) {
+  const ScreenedStop stop(kHides13);
+  EXPECT_EQ(stop.seen_share, 12.0 / 25);
+  EXPECT_EQ(stop.outcome, "no_line_of_sight");
+  EXPECT_EQ(stop.detail, "stop: 48.0 % of the facade in sight");
+}
+
+TEST(ScorerScene, DrivingOverTheTerrainsEdgeLeavesTheScene) {
+  MissionConfig config;
+  config.vehicle.roughness = "none";
+  config.autonomy.waypoints = {{"beyond", {0.0, 40.0}, ""}};
+  PreparedMission mission;
+  mission.scene = screened_house(0);
+  mission.time_limit_s = 60.0;
+  const scene::SceneAt scene(*mission.scene);
+  Scorer scorer(config, mission, scene);
+  Vehicle vehicle(config.vehicle, *mission.scene, 1, mission.start);  // heads north, the edge is at y = 30 m
+  constexpr double kStep = 0.01, kSpeed = 5.0;
+  bool go_on = true;
+  for (int k = 1; k <= 1500 && go_on; ++k) {
+    vehicle.advance({kSpeed, 0.0});
+    go_on = scorer.step(vehicle.state(), vehicle.speed_m_s(), vehicle.on_terrain(), false);
+  }
+  EXPECT_FALSE(go_on);
+  scorer.finish(vehicle.state(), false);
+  EXPECT_EQ(scorer.outcome(), "left_scene");
+  ASSERT_TRUE(scorer.failure());
+  EXPECT_EQ(scorer.failure()->detail, "a wheel left the terrain");
+  // The front axle passed the edge within the last step.
+  const double front_m = scorer.failure()->p_W.y() + config.vehicle.wheelbase_m;
+  EXPECT_GT(front_m, 30.0);
+  EXPECT_LE(front_m, 30.0 + kStep * kSpeed);
+}
+
+}  // namespace
+}  // namespace canyon::mission::testing

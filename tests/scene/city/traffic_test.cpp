@@ -1,0 +1,48 @@
+#include "canyon/scene/city/traffic.h"
+
+#include <gtest/gtest.h>
+
+#include "canyon/scene/scene_at.h"
+#include "canyon/tests/scene/small_scenes.h"
+
+namespace canyon::scene::testing {
+namespace {
+
+TEST(Traffic, GoesAlongItsWayOnTheGround) {
+  SceneParts parts = empty_parts();
+  add_plane(parts, 100.0, 3.0, 0.1);  // rises 10 % to the east
+  const Scene scene(std::move(parts));
+  const auto traffic =
+      Traffic::make({{"", "car", {-20, 0, 20, 0, 20, 30}, 5.0, 2.0}, {"walker", "person", {0, 10}, 1.0, 0.0}}, scene);
+  ASSERT_TRUE(traffic.ok()) << traffic.error().str();
+  const auto place = [&](double t_s) { return traffic->at(t_s)[0].X_WS.p; };
+  EXPECT_LT((place(0.0) - Eigen::Vector3d(-20, 0, 1)).norm(), 1e-5);
+  EXPECT_LT((place(2.0) - Eigen::Vector3d(-20, 0, 1)).norm(), 1e-5);
+  EXPECT_LT((place(6.0) - Eigen::Vector3d(0, 0, 3)).norm(), 1e-5);
+  EXPECT_LT((place(14.0) - Eigen::Vector3d(20, 20, 5)).norm(), 1e-5);
+  EXPECT_LT((place(100.0) - Eigen::Vector3d(20, 30, 5)).norm(), 1e-5);  // stands at the end
+  const Pose up_hill = traffic->at(6.0)[0].X_WS;
+  EXPECT_LT((up_hill.R * Eigen::Vector3d::UnitX() - Eigen::Vector3d(1, 0, 0.1).normalized()).norm(), 1e-6);
+  EXPECT_EQ(traffic->at(0.0)[0].name, "car 1");
+  EXPECT_EQ(traffic->at(0.0)[1].name, "walker");
+
+  SceneAt at(scene);
+  at.set_instances(traffic->at(6.0));
+  const Hit hit = at.trace({{0, 10, 30}, {0, 0, -1}});
+  EXPECT_EQ(at.object(at.surface(hit.triangle).object).kind, ObjectKind::kPerson);
+  EXPECT_NEAR(30.0 - hit.range_m, 3.0 + 1.75, 1e-5);  // people stand upright on slopes
+}
+
+TEST(Traffic, MistakesAreTold) {
+  SceneParts parts = empty_parts();
+  add_plane(parts, 100.0, 0.0);
+  const Scene scene(std::move(parts));
+  EXPECT_EQ(Traffic::make({{"", "car", {1.0}, 5.0, 0.0}}, scene).error().str(),
+            "scene.moving[1].path_m: 1 numbers, expected x, y of at least one point");
+  EXPECT_EQ(Traffic::make({{"", "car", {500, 0}, 5.0, 0.0}}, scene).error().str(),
+            "scene.moving[1].path_m: (500, 0) lies outside the scene, expected a point on the terrain");
+  EXPECT_TRUE(Traffic::make({}, scene)->empty());
+}
+
+}  // namespace
+}  // namespace canyon::scene::testing
