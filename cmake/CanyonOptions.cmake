@@ -17,6 +17,13 @@ option(CANYON_WITH_PCL "Registration methods that need PCL (gicp)" ON)
 option(CANYON_WITH_ASSIMP "Scenes in glTF and what else assimp reads" ON)
 option(CANYON_WITH_CERES "Fit of noise processes to inertial logs (Ceres)" ON)
 set(CANYON_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
+# The address sanitizer takes what is both in the program and in a part that it opens for a violation of one definition.
+if(CANYON_SANITIZE)
+  set(open_late OFF)
+else()
+  set(open_late ON)
+endif()
+option(CANYON_OPEN_LATE "The program opens PCL, assimp, PROJ and Ceres at their first use" ${open_late})
 
 # Headers are included as "canyon/core/time.h", in this tree as where they are installed.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/include/canyon)
@@ -24,11 +31,15 @@ foreach(folder IN ITEMS core scene gnss inertial lidar fusion mission study repo
   file(CREATE_LINK ${CMAKE_SOURCE_DIR}/${folder} ${CMAKE_BINARY_DIR}/include/canyon/${folder} SYMBOLIC)
 endforeach()
 add_library(canyon_flags INTERFACE)
-target_include_directories(canyon_flags INTERFACE ${CMAKE_BINARY_DIR}/include ${CMAKE_BINARY_DIR}/generated)
+target_include_directories(canyon_flags INTERFACE $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/include> $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/generated>
+                                                  $<INSTALL_INTERFACE:include>)
+target_compile_features(canyon_flags INTERFACE cxx_std_20)
 # -ffp-contract=off: a result must not depend on whether the compiler found a fused multiply-add.
-target_compile_options(canyon_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+target_compile_options(canyon_flags INTERFACE -ffp-contract=off
+                                              $<BUILD_INTERFACE:-Wall> $<BUILD_INTERFACE:-Wextra> $<BUILD_INTERFACE:-Wpedantic>
+                                              $<BUILD_INTERFACE:-Wshadow> $<BUILD_INTERFACE:-Wnon-virtual-dtor>)
 if(CANYON_WERROR)
-  target_compile_options(canyon_flags INTERFACE -Werror)
+  target_compile_options(canyon_flags INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()
 if(CANYON_SANITIZE)
   # Three checks of the undefined-behaviour sanitizer are given up, since they double the time of compilation.

@@ -31,6 +31,38 @@ function(canyon_library name)
   else()
     canyon_precompile(canyon_${name} canyon_core)
   endif()
+  canyon_install(${name})
+endfunction()
+
+# canyon_install(NAME): the library canyon_NAME as canyon::NAME of the package that `cmake --install` makes.
+function(canyon_install name)
+  add_library(canyon::${name} ALIAS canyon_${name})
+  set_target_properties(canyon_${name} PROPERTIES EXPORT_NAME ${name})
+  install(TARGETS canyon_${name} EXPORT canyon ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()
+
+# The parts of canyon_part, for programs that are to have them all from the start.
+add_library(canyon_parts INTERFACE)
+
+# canyon_part(NAME OF folder SOURCES files... PRIVATE libs...): what of a folder stands on a large library, with its table of
+# functions canyon_NAME_part (core/process/library_part.h). As a static library canyon_NAME for programs that want it linked; as
+# a shared object in lib/canyon, which the program `canyon` opens when it is first used.
+function(canyon_part name)
+  cmake_parse_arguments(ARG "" "OF" "SOURCES;PRIVATE" ${ARGN})
+  add_library(canyon_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(canyon_${name} PUBLIC canyon_${ARG_OF} PRIVATE ${ARG_PRIVATE})
+  target_link_options(canyon_${name} INTERFACE LINKER:--undefined=canyon_${name}_part)
+  canyon_precompile(canyon_${name} canyon_core)
+  canyon_install(${name})
+  target_link_libraries(canyon_parts INTERFACE canyon_${name})
+  if(CANYON_OPEN_LATE)
+    file(WRITE ${CMAKE_BINARY_DIR}/generated/part.cpp "")
+    add_library(canyon_${name}_module MODULE ${CMAKE_BINARY_DIR}/generated/part.cpp)
+    target_link_libraries(canyon_${name}_module PRIVATE canyon_${name})
+    set_target_properties(canyon_${name}_module PROPERTIES OUTPUT_NAME canyon_${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/canyon)
+    install(TARGETS canyon_${name}_module LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/canyon)
+    set_property(GLOBAL APPEND PROPERTY canyon_modules canyon_${name}_module)
+  endif()
 endfunction()
 
 # canyon_embed(OUT_VARIABLE FILE...): sources that hold the files' bytes and the table that core/process/embedded.cpp reads.

@@ -47,11 +47,11 @@ LIBRARIES = [
     ("zlib", r"zlib\.h", ["core/*.cpp", "report/*.cpp"]),
     ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp", "scene/*.cpp"]),
     ("CLI11", r"CLI/", ["apps/*.cpp"]),
-    ("Ceres", r"ceres/", ["inertial/*.cpp", "fusion/*.cpp"]),
+    ("Ceres", r"ceres/", ["inertial/*ceres_*.cpp", "inertial/*ceres_*.h"]),
     ("assimp", r"assimp/", ["scene/importers/assimp.cpp"]),
     ("libxml2", r"libxml/", ["scene/importers/parsing/xml_file.cpp"]),
     ("libtiff", r"tiff\w*\.h", ["scene/elevation/geotiff.cpp"]),
-    ("PROJ", r"proj\w*\.h", ["scene/projection.cpp"]),
+    ("PROJ", r"proj\w*\.h", ["scene/proj_*.cpp"]),
     ("SQLite", r"sqlite3\.h", ["study/*.cpp"]),
 ]
 # PCL's registration headers take 18 s and 1.4 GB per file.

@@ -29,10 +29,11 @@ def packages_with_a_line(text):
 
 
 def packages_of(binary):
-    """Where the shared libraries of a binary come from, or nothing where there is no dpkg to ask."""
+    """Where the shared libraries of a binary, and of the parts that it opens late, come from, or nothing where there is no dpkg to ask."""
     if not shutil.which("dpkg-query") or not shutil.which("ldd"):
         return []
-    output = subprocess.run(["ldd", binary], capture_output=True, text=True, check=True).stdout
+    parts = sorted(pathlib.Path(binary).resolve().parent.parent.glob("lib/canyon/*.so"))
+    output = subprocess.run(["ldd", binary, *parts], capture_output=True, text=True, check=True).stdout
     found = set()
     for path in re.findall(r"=> (/\S+)", output):
         real = str(pathlib.Path(path).resolve())

@@ -12,6 +12,8 @@
 
 namespace canyon::scene {
 
+struct MapTransform;
+
 /// From the coordinates of a map to WGS84 and back: any coordinate system that PROJ knows, with the best of its
 /// transformations that need no further files. Heights are left alone: only what they mean is told.
 class Projection {
@@ -25,14 +27,12 @@ class Projection {
   std::optional<Eigen::Vector2d> from_geodetic(const Geodetic& g) const;
 
   /// What the heights are above, as the system says: "NAP height", "ellipsoid"; empty if it says nothing.
-  const std::string& vertical() const { return vertical_; }
-  bool ellipsoidal() const { return vertical_ == "ellipsoid"; }
-  const std::string& name() const { return name_; }
+  const std::string& vertical() const;
+  bool ellipsoidal() const { return vertical() == "ellipsoid"; }
+  const std::string& name() const;
 
  private:
-  struct Proj;
-  std::shared_ptr<Proj> proj_;
-  std::string name_, vertical_;
+  std::shared_ptr<const MapTransform> transform_;
 };
 
 }  // namespace canyon::scene

@@ -7,9 +7,9 @@
 #include <pcl/registration/gicp.h>
 
 #include "canyon/lidar/registration/neighbour_tree.h"
+#include "canyon/lidar/registration/pcl_part.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
 #include "canyon/lidar/registration/registration_covariance.h"
-#include "canyon/lidar/registration/registration_methods.h"
 #include "canyon/lidar/registration/voxel_index.h"
 
 namespace canyon::lidar {
@@ -240,10 +240,12 @@ class GicpRegistration final : public Registration {
   RegistrationConfig config_;
 };
 
-}  // namespace
-
-std::unique_ptr<Registration> make_gicp(const RegistrationConfig& config) {
+std::unique_ptr<Registration> make(const RegistrationConfig& config) {
   return std::make_unique<GicpRegistration>(config);
 }
+
+}  // namespace
+
+extern "C" const PclPart canyon_pcl_part{make};
 
 }  // namespace canyon::lidar

@@ -9,6 +9,6 @@
 namespace canyon::lidar {
 
 std::unique_ptr<Registration> make_no_registration(const RegistrationConfig& config);
-std::unique_ptr<Registration> make_gicp(const RegistrationConfig& config);  // lidar/registration/pcl_gicp.cpp
+std::unique_ptr<Registration> make_gicp(const RegistrationConfig& config);
 
 }  // namespace canyon::lidar

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "canyon/core/files/files.h"
+#include "canyon/scene/importers/assimp_part.h"
 #include "canyon/scene/importers/importer.h"
 #include "canyon/scene/importers/parsing/own_process.h"
 
@@ -142,11 +143,9 @@ void add(PlacedMesh mesh, RawScene& out) {
   out.meshes.push_back(std::move(raw));
 }
 
-}  // namespace
-
 /// assimp follows wild pointers in damaged Collada files and has assertions that end the program: it works in a process
 /// of its own.
-Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions&) {
+Result<RawScene> read(const std::string& path) {
   CANYON_TRY_STATUS(read_text_file(path));  // a file that is not there is told as everywhere else
   CANYON_TRY(const std::string bytes, in_a_process_of_its_own(path, [&]() -> Result<std::string> {
                CANYON_TRY(const auto meshes, meshes_of(path));
@@ -158,5 +157,9 @@ Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions&) {
   if (out.meshes.empty()) return Error{path, 0, "", "holds no mesh", "a mesh file"};
   return out;
 }
+
+}  // namespace
+
+extern "C" const AssimpPart canyon_assimp_part{read};
 
 }  // namespace canyon::scene

@@ -1,4 +1,5 @@
 #include "canyon/scene/importers/importer.h"
+#include "canyon/scene/importers/assimp_part.h"
 
 #include <cctype>
 #include <filesystem>
@@ -30,6 +31,12 @@ bool is_osm(std::string_view text) {
 bool is_mitsuba(std::string_view text) {
   return holds(text, "<scene");
 }
+
+#ifdef CANYON_WITH_ASSIMP
+Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions&) {
+  return library_part("assimp", &canyon_assimp_part).read(path);
+}
+#endif
 
 }  // namespace
 

@@ -45,7 +45,6 @@ Result<RawScene> read_citygml(const std::string& path, const ReadOptions& option
 Result<RawScene> read_geojson(const std::string& path, const ReadOptions& options);
 Result<RawScene> read_osm(const std::string& path, const ReadOptions& options);
 Result<RawScene> read_mitsuba(const std::string& path, const ReadOptions& options);
-Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions& options);
 
 /// What PROJ understands of the names that files give their coordinate system: "urn:ogc:def:crs:EPSG::6668",
 /// "http://www.opengis.net/def/crs/EPSG/0/7415", "urn:ogc:def:crs:OGC:1.3:CRS84", two EPSG codes of a compound.

@@ -1,6 +1,4 @@
-#include "canyon/inertial/cancel_callback.h"
-
-#ifdef CANYON_WITH_CERES
+#include "canyon/inertial/ceres_cancel_callback.h"
 
 #include <ceres/iteration_callback.h>
 
@@ -23,5 +21,3 @@ std::unique_ptr<ceres::IterationCallback> make_cancel_callback() {
 }
 
 }  // namespace canyon::inertial
-
-#endif

@@ -1,0 +1,39 @@
+// positions_from_rinex OBSERVATIONS NAVIGATION: position and GDOP of every epoch that has one.
+#include <cstdio>
+
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/rinex/navigation/navigation_file.h"
+#include "canyon/gnss/rinex/observation/observation_file.h"
+#include "canyon/gnss/single_point/single_point.h"
+
+namespace {
+
+canyon::Status print_positions(const char* observation_file, const char* navigation_file) {
+  using namespace canyon::gnss;
+  CANYON_TRY(const ObservationFile observations, read_observation_file(observation_file));
+  CANYON_TRY(const NavigationData navigation, read_navigation_files({navigation_file}));
+  const SinglePointConfig config;
+  const auto constellation = make_broadcast(navigation, {.systems = config.systems});
+  CANYON_TRY(const auto solved, solve_observations(observations, {*constellation, navigation}, config));
+  for (const SinglePointEpoch& epoch : solved.epochs) {
+    if (epoch.fix.status == canyon::FixStatus::kNone) continue;
+    const canyon::Geodetic at = canyon::geodetic_from_ecef(epoch.fix.p_A_E);
+    std::printf("%s  %.8f %.8f %.3f  GDOP %.2f\n", epoch.fix.t.iso(3).c_str(), at.lat_rad / canyon::kDegree,
+                at.lon_rad / canyon::kDegree, at.h_m, epoch.fix.dop.gdop);
+  }
+  std::fprintf(stderr, "%d of %zu epochs solved\n", solved.solved(), solved.epochs.size());
+  return canyon::Ok{};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s OBSERVATIONS NAVIGATION\n", argv[0]);
+    return 2;
+  }
+  const canyon::Status status = print_positions(argv[1], argv[2]);
+  if (!status.ok()) std::fprintf(stderr, "%s\n", status.error().str().c_str());
+  return status.ok() ? 0 : 2;
+}

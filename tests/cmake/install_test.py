@@ -1,0 +1,100 @@
+#!/usr/bin/env python3
+"""install_test.py BUILD_FOLDER: what `cmake --install` makes is used by a program that is not ours, from a folder that it was not
+installed in. The program reads RINEX, and neither it nor what it links knows of scenes."""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(sys.argv.pop(1))
+
+
+def run(*words, **keywords):
+    done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False, **keywords)
+    if done.returncode != 0:
+        raise AssertionError(f"{words}: exit status {done.returncode}\n{done.stdout}\n{done.stderr}")
+    return done.stdout
+
+
+class Install(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.top = pathlib.Path(cls.folder.name)
+        run("cmake", "--install", BUILD, "--prefix", cls.top / "first")
+        cls.prefix = cls.top / "moved"
+        (cls.top / "first").rename(cls.prefix)
+        cls.canyon = cls.prefix / "bin" / "canyon"
+        run(cls.canyon, "gnss", "simulate", "--at", "52.5,13.4,80", "--start", "2020-06-01", "--duration", "10", "--rate", "1",
+            "--errors", "none", "--rinex-obs", cls.top / "a.obs", "--rinex-nav", cls.top / "a.nav")
+        cls.scene = cls.top / "square.geojson"
+        cls.scene.write_text(
+            '{"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::25833"}}, "features": '
+            '[{"type": "Feature", "properties": {"height": 10}, "geometry": {"type": "Polygon", "coordinates": '
+            "[[[390000, 5820000], [390020, 5820000], [390020, 5820020], [390000, 5820020], [390000, 5820000]]]}}]}",
+            encoding="utf-8")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def example(self, package="canyon REQUIRED COMPONENTS gnss"):
+        """The example configured, with another find_package."""
+        source = self.top / "example"
+        shutil.rmtree(source, ignore_errors=True)
+        shutil.copytree(SOURCE / "examples" / "positions_from_rinex", source)
+        text = (source / "CMakeLists.txt").read_text(encoding="utf-8")
+        (source / "CMakeLists.txt").write_text(text.replace("canyon REQUIRED COMPONENTS gnss", package), encoding="utf-8")
+        return subprocess.run(["cmake", "-S", source, "-B", source / "build", "-DCMAKE_BUILD_TYPE=Release",
+                               f"-DCMAKE_PREFIX_PATH={self.prefix}"], capture_output=True, text=True, check=False)
+
+    def test_a_reader_of_rinex_links_no_scene(self):
+        done = self.example()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        built = self.top / "example" / "build"
+        run("cmake", "--build", built)
+        program = built / "positions_from_rinex"
+        lines = run(program, self.top / "a.obs", self.top / "a.nav").splitlines()
+        self.assertEqual(len(lines), 11)
+        for line in lines:
+            lat, lon, height = (float(word) for word in line.split()[1:4])
+            # One micro-degree is 0.11 m; the simulated ranges are without error, RINEX rounds them to a millimetre, and GDOP
+            # makes centimetres of it at most.
+            self.assertAlmostEqual(lat, 52.5, delta=1e-6)
+            self.assertAlmostEqual(lon, 13.4, delta=1e-6)
+            self.assertAlmostEqual(height, 80.0, delta=0.1)
+        libraries = run("ldd", program)
+        for heavy in ("libpcl", "libembree", "libassimp", "libproj", "libceres", "libxml2", "libtiff"):
+            self.assertNotIn(heavy, libraries)
+
+    def test_an_unknown_component_is_named(self):
+        done = self.example(package="canyon REQUIRED COMPONENTS gnss sonar")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("there is no component sonar", done.stderr)
+
+    def test_another_version_is_refused(self):
+        done = self.example(package="canyon 99 REQUIRED")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("99", done.stderr)
+
+    def test_the_moved_program_opens_its_parts_late(self):
+        parts = self.prefix / "lib"
+        self.assertTrue(list(parts.rglob("libcanyon_pcl.so")), "no part was installed")
+        for heavy in ("libpcl", "libassimp", "libproj", "libceres", "libcholmod"):
+            self.assertNotIn(heavy, run("ldd", self.canyon))
+        self.assertIn('"buildings":1', run(self.canyon, "scene", "info", self.scene, "--json").replace(" ", ""))
+
+    def test_a_part_that_is_missing_is_named(self):
+        done = subprocess.run([self.canyon, "scene", "info", self.scene, "--json"], capture_output=True, text=True, check=False,
+                              env={"CANYON_PART_DIR": str(self.top / "nowhere")})
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr, "canyon could not finish: libcanyon_proj.so is missing; it is looked for in "
+                         f"{self.top}/nowhere (or in CANYON_PART_DIR)\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
