@@ -6,7 +6,7 @@
 #include "canyon/gnss/sensor/sensor.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/mission/mapper.h"
-#include "canyon/mission/run_record.h"
+#include "canyon/mission/recorder/run_record.h"
 
 namespace canyon::mission {
 

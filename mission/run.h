@@ -5,7 +5,7 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
-#include "canyon/mission/run_record.h"
+#include "canyon/mission/recorder/run_record.h"
 
 namespace canyon::mission {
 

@@ -40,7 +40,7 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
   return comparison;
 }
 
-Result<mission::Results> compare(const Comparison& comparison, bool show_progress) {
+Result<Results> compare(const Comparison& comparison, bool show_progress) {
   const auto wall_start = std::chrono::steady_clock::now();
   const std::size_t count = comparison.plan.size();
   double total_s = 0.0;
@@ -62,19 +62,19 @@ Result<mission::Results> compare(const Comparison& comparison, bool show_progres
       }
     }
   });
-  mission::Results results;
+  Results results;
   for (std::size_t i = 0; i < count; ++i) {
     if (errors[i]) return *errors[i];
     records[i]->name = comparison.plan[i].name;
     records[i]->gnss = comparison.plan[i].gnss;
     records[i]->imu = comparison.plan[i].imu;
-    results.summaries.push_back(mission::summarize(*records[i]));
+    results.summaries.push_back(summarize(*records[i]));
     results.records.push_back(*std::move(records[i]));
   }
   results.mission = &comparison.missions.front();
   if (comparison.tape) results.tape_source = comparison.tape->source;
   results.threads = threads();
-  results.peak_memory_mb = mission::peak_memory_mb();
+  results.peak_memory_mb = peak_memory_mb();
   results.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   return results;
 }

@@ -7,7 +7,7 @@
 #include "canyon/core/motion/tape.h"
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
-#include "canyon/mission/results.h"
+#include "canyon/study/results/results.h"
 
 namespace canyon::study {
 
@@ -42,9 +42,9 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
 
 /// Drives all runs, each on one thread, side by side; the same seed and so the same random numbers in all.
 /// The returned Results point into `comparison`, which must outlive them.
-Result<mission::Results> compare(const Comparison& comparison, bool show_progress);
+Result<Results> compare(const Comparison& comparison, bool show_progress);
 
 /// The terminal table: one column per run, and the ratio of the second to the first.
-std::string comparison_table(const mission::Results& results);
+std::string comparison_table(const Results& results);
 
 }  // namespace canyon::study

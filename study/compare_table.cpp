@@ -3,14 +3,12 @@
 #include <functional>
 #include <limits>
 
-#include "canyon/mission/scoring/paired_errors.h"
 #include "canyon/study/compare.h"
+#include "canyon/study/results/paired_errors.h"
 
 namespace canyon::study {
 
 namespace {
-
-using mission::RunSummary;
 
 std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
@@ -107,7 +105,7 @@ std::string two_by_two(const std::vector<RunSummary>& runs) {
   for (const char* gnss : {"low", "high"}) {
     std::string row;
     for (const char* imu : {"low", "high"}) {
-      const RunSummary* found = mission::find_run(runs, gnss, imu);
+      const RunSummary* found = find_run(runs, gnss, imu);
       if (found == nullptr) return "";
       row += "  " + padded(cell(found->open_loop ? "" : found->outcome, found->position_m.rms, 2, " m"), 26, true);
     }
@@ -120,7 +118,7 @@ std::string two_by_two(const std::vector<RunSummary>& runs) {
 
 }  // namespace
 
-std::string comparison_table(const mission::Results& results) {
+std::string comparison_table(const Results& results) {
   // The mixed runs have a table of their own.
   std::vector<RunSummary> runs;
   for (const RunSummary& run : results.summaries)
@@ -143,7 +141,7 @@ std::string comparison_table(const mission::Results& results) {
   table.numbers("distance, m", 0, [](const RunSummary& r) { return r.distance_m; });
 
   table.section("position error of the estimate, m");
-  const auto axis = [&](const std::string& label, mission::ErrorStatistics RunSummary::*member) {
+  const auto axis = [&](const std::string& label, ErrorStatistics RunSummary::*member) {
     table.numbers(label + ", RMS", 3, [member](const RunSummary& r) { return (r.*member).rms; });
     table.numbers(label + ", 95 %", 3, [member](const RunSummary& r) { return (r.*member).p95; });
     table.numbers(label + ", max", 3, [member](const RunSummary& r) { return (r.*member).max; });
@@ -211,7 +209,7 @@ std::string comparison_table(const mission::Results& results) {
            ")";
   }
   if (out.back() != '\n') out += "\n";
-  for (const mission::PairedErrors& pair : mission::paired_with_first(results.records)) {
+  for (const PairedErrors& pair : paired_with_first(results.records)) {
     const std::string interval = std::isfinite(pair.low_m)
                                      ? "95 % interval " + fixed(pair.low_m, 3) + " to " + fixed(pair.high_m, 3) + " m"
                                      : "too short for an interval";

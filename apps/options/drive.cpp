@@ -10,15 +10,15 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
-#include "canyon/mission/results.h"
 #include "canyon/report/html_report.h"
+#include "canyon/study/results/results.h"
 
 namespace canyon::apps {
 
 namespace {
 
-void print_json(const mission::Results& results, const std::string& directory, const std::string& hash) {
-  nlohmann::ordered_json out = mission::summary_json(results);
+void print_json(const study::Results& results, const std::string& directory, const std::string& hash) {
+  nlohmann::ordered_json out = study::summary_json(results);
   // The contract's figures of cost stand beside the others, not under `timing`.
   for (auto& run : out["runs"]) {
     run["real_time_factor"] = run["timing"]["real_time_factor"];
@@ -32,7 +32,7 @@ void print_json(const mission::Results& results, const std::string& directory, c
 }
 
 /// Each warning once, however many runs met it.
-void print_warnings(const mission::Results& results) {
+void print_warnings(const study::Results& results) {
   std::set<std::string> told;
   for (const auto& record : results.records)
     for (const auto& warning : record.warnings)
@@ -73,7 +73,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   CANYON_TRY(auto results, study::compare(comparison, !options.common.json));
   results.command_line = invocation().command_line;
   results.commit = invocation().commit;
-  CANYON_TRY(const std::string hash, mission::write_results(staged.staging_path(), results));
+  CANYON_TRY(const std::string hash, study::write_results(staged.staging_path(), results));
   CANYON_TRY_STATUS(report::write_html_report(staged.staging_path(), staged.staging_path() + "/report.html"));
   throw_if_cancelled();
   CANYON_TRY_STATUS(staged.commit());

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "canyon/core/files/files.h"
-#include "canyon/mission/results.h"
+#include "canyon/study/results/results.h"
 #include "canyon/tests/mission/short_mission.h"
 #include "canyon/tests/support/temporary_folder.h"
 
@@ -129,13 +129,13 @@ TEST(Boundaries, AnAutonomysCommandThatIsNotFiniteIsTheMissionsOutcome) {
     EXPECT_NEAR(record->failure->t_s, 0.01 * (good_commands + 1), 1e-9);
     EXPECT_EQ(record->nav.size(), static_cast<std::size_t>(good_commands / 10));
 
-    Results results;
+    study::Results results;
     results.mission = &*mission;
     record->name = record->gnss = record->imu = "low";
-    results.summaries.push_back(summarize(*record));
+    results.summaries.push_back(study::summarize(*record));
     results.records.push_back(*std::move(record));
     const canyon::testing::TemporaryFolder folder;
-    const auto hash = write_results(folder.path().string(), results);
+    const auto hash = study::write_results(folder.path().string(), results);
     ASSERT_TRUE(hash.ok()) << hash.error().str();
     EXPECT_THAT(*read_text_file(folder.file("summary.json")), HasSubstr("autonomy_fault"));
   }

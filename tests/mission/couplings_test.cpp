@@ -5,6 +5,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/inertial/errors/error_link.h"
+#include "canyon/study/results/summary.h"
 #include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
@@ -25,7 +26,7 @@ double largest_distance_from_route(const RunRecord& record, const MissionConfig&
 TEST(Couplings, WithTruthAsPoseTheMissionSucceeds) {
   const RunRecord record = drive(short_config("high", "high", "[run]\ntruth_as_pose = true"));
   EXPECT_EQ(record.outcome, "success") << (record.failure ? record.failure->detail : "");
-  EXPECT_GT(summarize(record).fix_error_rms_m, 0.0);  // the sensors err as ever; nobody listens to them
+  EXPECT_GT(study::summarize(record).fix_error_rms_m, 0.0);  // the sensors err as ever; nobody listens to them
 }
 
 TEST(Couplings, WithFixesWithheldTheEstimateDriftsAndTheVehicleLeavesItsPath) {
@@ -145,7 +146,7 @@ TEST(Couplings, ALidarBlindedWhileDrivingStopsTheVehicle) {
 TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
   const RunRecord city = drive(short_config("high", "high"));
   const RunRecord emptied = drive(short_config("high", "high", "[scene]\nempty = true"));
-  const RunSummary in_city = summarize(city), alone = summarize(emptied);
+  const study::RunSummary in_city = study::summarize(city), alone = study::summarize(emptied);
   EXPECT_GT(in_city.nlos_share, 0.0);
   EXPECT_EQ(alone.nlos_share, 0.0);
   EXPECT_EQ(alone.multipath_share, 0.0);

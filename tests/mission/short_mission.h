@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/recorder/estimate_error.h"
 #include "canyon/mission/run.h"
-#include "canyon/mission/summary.h"
 
 namespace canyon::mission::testing {
 

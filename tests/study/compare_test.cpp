@@ -31,17 +31,17 @@ class CompareTest : public ::testing::Test {
   static void SetUpTestSuite() {
     auto file = mission::MissionFile::parse(kMission, "my.toml");
     comparison_ = new Comparison(*prepare_comparison(*file, plan_runs({"low", "high"}, true)));
-    results_ = new mission::Results(*compare(*comparison_, false));
+    results_ = new Results(*compare(*comparison_, false));
   }
   static void TearDownTestSuite() {
     delete results_;
     delete comparison_;
   }
   static Comparison* comparison_;
-  static mission::Results* results_;
+  static Results* results_;
 };
 Comparison* CompareTest::comparison_ = nullptr;
-mission::Results* CompareTest::results_ = nullptr;
+Results* CompareTest::results_ = nullptr;
 
 TEST(PlanRuns, TwoByTwoAddsTheMixedRuns) {
   const auto plan = plan_runs({"low", "high", "paper"}, true);
@@ -75,7 +75,7 @@ TEST_F(CompareTest, PairedRunsShareTheirNoise) {
 }
 
 TEST_F(CompareTest, JsonHasTheContractsKeysAndNoNaN) {
-  const auto json = mission::summary_json(*results_);
+  const auto json = summary_json(*results_);
   for (const auto& run : json["runs"]) {
     for (const char* key : {"fidelity", "outcome", "waypoints_reached", "mission_waypoints_reached", "distance_m",
                             "position_error_rms_m", "position_error_up_rms_m", "gdop_median", "gdop_max", "dop_jumps",
@@ -110,7 +110,7 @@ TEST_F(CompareTest, WithoutRegistrationNothingIsSaidOfIt) {
 
 // A distance beyond the cap is not known; neither is a ratio of two such.
 TEST_F(CompareTest, AMapErrorAtTheCapHasNoRatio) {
-  mission::Results results;
+  Results results;
   results.mission = results_->mission;
   results.summaries = results_->summaries;
   results.summaries[0].prior_map.map_error_p95_m = lidar::kMapErrorCap_m;

@@ -1,4 +1,4 @@
-#include "canyon/mission/scoring/paired_errors.h"
+#include "canyon/study/results/paired_errors.h"
 
 #include <cmath>
 
@@ -6,17 +6,17 @@
 
 #include "canyon/core/random/random.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 namespace {
 
 /// Ten rows a second whose error is `error(t_s)` to the east.
 template <class Function>
-RunRecord record_of(const std::string& name, double duration_s, Function error) {
-  RunRecord record;
+mission::RunRecord record_of(const std::string& name, double duration_s, Function error) {
+  mission::RunRecord record;
   record.name = name;
   record.open_loop = true;
   for (int k = 1; k <= static_cast<int>(10 * duration_s); ++k) {
-    NavRow row;
+    mission::NavRow row;
     row.t = tick(record.start, k, 10.0);
     row.estimate.X_WB.p.x() = error(0.1 * k);
     record.nav.push_back(row);
@@ -69,4 +69,4 @@ TEST(PairedErrors, OnlyEqualTimesCountAndAShortRunHasNoInterval) {
 }
 
 }  // namespace
-}  // namespace canyon::mission
+}  // namespace canyon::study

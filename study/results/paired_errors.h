@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "canyon/mission/run_record.h"
+#include "canyon/mission/recorder/run_record.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 
 /// How much larger run b's position error is than run a's on the same true motion, epoch by epoch.
 struct PairedErrors {
@@ -21,9 +21,9 @@ struct PairedErrors {
 /// of batch means: Law & Kelton, Simulation Modeling and Analysis, section 9.5.3).
 inline constexpr double kBatch_s = 30.0;
 
-PairedErrors paired_errors(const RunRecord& a, const RunRecord& b);
+PairedErrors paired_errors(const mission::RunRecord& a, const mission::RunRecord& b);
 
 /// Every run against the first; empty unless all were driven on one tape.
-std::vector<PairedErrors> paired_with_first(const std::vector<RunRecord>& records);
+std::vector<PairedErrors> paired_with_first(const std::vector<mission::RunRecord>& records);
 
-}  // namespace canyon::mission
+}  // namespace canyon::study

@@ -1,12 +1,12 @@
-#include "canyon/mission/summary.h"
+#include "canyon/study/results/summary.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "canyon/core/math/median.h"
-#include "canyon/core/units.h"
+#include "canyon/mission/recorder/estimate_error.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 
 ErrorStatistics error_statistics(std::vector<double> x) {
   ErrorStatistics out;
@@ -24,16 +24,12 @@ ErrorStatistics error_statistics(std::vector<double> x) {
   return out;
 }
 
-EstimateError estimate_error(const NavRow& row) {
-  return {row.estimate.X_WB.p - row.X_WB_true.p, so3_log(row.X_WB_true.R.conjugate() * row.estimate.X_WB.R) / kDegree};
-}
-
 namespace {
 
-void summarize_navigation(const RunRecord& record, RunSummary& out) {
+void summarize_navigation(const mission::RunRecord& record, RunSummary& out) {
   std::vector<double> total, east, north, up, roll, pitch, yaw;
-  for (const NavRow& row : record.nav) {
-    const EstimateError error = estimate_error(row);
+  for (const mission::NavRow& row : record.nav) {
+    const mission::EstimateError error = mission::estimate_error(row);
     total.push_back(error.position_W_m.norm());
     east.push_back(error.position_W_m.x());
     north.push_back(error.position_W_m.y());
@@ -51,14 +47,14 @@ void summarize_navigation(const RunRecord& record, RunSummary& out) {
   out.yaw_rms_deg = error_statistics(std::move(yaw)).rms;
 }
 
-void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary& out) {
+void summarize_gnss(const mission::RunRecord& record, const LocalFrame& frame, RunSummary& out) {
   std::vector<double> gdop, pdop, fix_error;
   double satellites = 0.0;
   std::int64_t tracked = 0, nlos = 0, multipath = 0;
   int dop_jumps = 0;
   bool has_dop = false, had_fix = false, first = true;
   double last_gdop = kNaN;
-  for (const GnssRow& row : record.gnss_rows) {
+  for (const mission::GnssRow& row : record.gnss_rows) {
     const bool fixed = row.fix.status != FixStatus::kNone;
     ++out.fixes_due;
     if (fixed) {
@@ -98,10 +94,10 @@ void summarize_gnss(const RunRecord& record, const LocalFrame& frame, RunSummary
   out.fix_error_rms_m = error_statistics(std::move(fix_error)).rms;
 }
 
-void summarize_registration(const RunRecord& record, RunSummary& out) {
+void summarize_registration(const mission::RunRecord& record, RunSummary& out) {
   std::vector<double> prior, registered;
   int tried = 0, converged = 0;
-  for (const KeyframeRow& row : record.keyframes) {
+  for (const mission::KeyframeRow& row : record.keyframes) {
     prior.push_back((row.X_WL_prior.p - row.X_WL_true.p).norm());
     registered.push_back((row.X_WL_registered.p - row.X_WL_true.p).norm());
     tried += row.status ? 1 : 0;
@@ -125,7 +121,7 @@ const RunSummary* find_run(const std::vector<RunSummary>& runs, std::string_view
   return found == runs.end() ? nullptr : &*found;
 }
 
-RunSummary summarize(const RunRecord& record) {
+RunSummary summarize(const mission::RunRecord& record) {
   RunSummary out;
   out.name = record.name;
   out.gnss = record.gnss;
@@ -134,7 +130,7 @@ RunSummary summarize(const RunRecord& record) {
   out.open_loop = record.open_loop;
   out.failure = record.failure;
   out.waypoints = record.waypoints;
-  for (const WaypointScore& waypoint : record.waypoints) {
+  for (const mission::WaypointScore& waypoint : record.waypoints) {
     out.waypoints_reached += waypoint.reached ? 1 : 0;
     out.mission_waypoints_reached += waypoint.reached && waypoint.mission ? 1 : 0;
   }
@@ -146,9 +142,10 @@ RunSummary summarize(const RunRecord& record) {
   out.counters = record.counters;
   out.wall_s = record.wall_s;
   out.cpu_s = record.clock.total_s();
-  for (std::size_t part = 0; part < static_cast<std::size_t>(Part::kCount); ++part)
-    out.cpu_parts_s.emplace_back(mission::name(static_cast<Part>(part)), record.clock.cpu_s(static_cast<Part>(part)));
+  for (std::size_t part = 0; part < static_cast<std::size_t>(mission::Part::kCount); ++part)
+    out.cpu_parts_s.emplace_back(mission::name(static_cast<mission::Part>(part)),
+                                 record.clock.cpu_s(static_cast<mission::Part>(part)));
   return out;
 }
 
-}  // namespace canyon::mission
+}  // namespace canyon::study

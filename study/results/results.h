@@ -8,16 +8,16 @@
 
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
-#include "canyon/mission/run_record.h"
-#include "canyon/mission/summary.h"
+#include "canyon/mission/recorder/run_record.h"
+#include "canyon/study/results/summary.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 
 /// What a results directory is made from (docs/results.md).
 struct Results {
-  const PreparedMission* mission = nullptr;  ///< scene, route and limits shared by the runs
-  std::string tape_source;                   ///< what an open loop ran on
-  std::vector<RunRecord> records;
+  const mission::PreparedMission* mission = nullptr;  ///< scene, route and limits shared by the runs
+  std::string tape_source;                            ///< what an open loop ran on
+  std::vector<mission::RunRecord> records;
   std::vector<RunSummary> summaries;  ///< same index
   double wall_s = 0.0;
   double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
@@ -37,9 +37,7 @@ double peak_memory_mb();
 /// Writes summary.json, manifest.json, scene.json, epochs/ and clouds/ into an existing directory; returns the hash.
 Result<std::string> write_results(const std::string& directory, const Results& results);
 
-/// The CSV files of one run, into directory/epochs.
-Status write_epochs(const std::string& directory, const RunRecord& record);
 /// The scene from above, for drawing.
 nlohmann::ordered_json scene_json(const scene::Scene& scene);
 
-}  // namespace canyon::mission
+}  // namespace canyon::study

@@ -2,12 +2,18 @@
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/process/parallel.h"
-#include "canyon/mission/results.h"
+#include "canyon/study/results/results.h"
 #include "canyon/tests/mission/short_mission.h"
 #include "canyon/tests/support/temporary_folder.h"
 
-namespace canyon::mission::testing {
+namespace canyon::study {
 namespace {
+
+using mission::MissionConfig;
+using mission::RunRecord;
+using mission::testing::drive;
+using mission::testing::scenes;
+using mission::testing::short_config;
 
 /// Hash of the results directory of a short registered run on `threads` threads.
 std::string hash_with(int threads, const std::string& directory) {
@@ -40,4 +46,4 @@ TEST(Determinism, AnotherSeedGivesOtherResults) {
 }
 
 }  // namespace
-}  // namespace canyon::mission::testing
+}  // namespace canyon::study

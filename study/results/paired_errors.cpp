@@ -1,11 +1,11 @@
-#include "canyon/mission/scoring/paired_errors.h"
+#include "canyon/study/results/paired_errors.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/mission/summary.h"
+#include "canyon/mission/recorder/estimate_error.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 
 namespace {
 
@@ -22,15 +22,15 @@ double student_975(int degrees) {
 
 }  // namespace
 
-PairedErrors paired_errors(const RunRecord& a, const RunRecord& b) {
+PairedErrors paired_errors(const mission::RunRecord& a, const mission::RunRecord& b) {
   PairedErrors out{.a = a.name, .b = b.name};
   std::vector<double> times_s, differences_m;
   for (std::size_t i = 0, k = 0; i < a.nav.size() && k < b.nav.size();) {
     const GpsTime ta = a.nav[i].t, tb = b.nav[k].t;
     if (ta == tb) {
       times_s.push_back(ta - a.start);
-      differences_m.push_back(estimate_error(b.nav[k]).position_W_m.norm() -
-                              estimate_error(a.nav[i]).position_W_m.norm());
+      differences_m.push_back(mission::estimate_error(b.nav[k]).position_W_m.norm() -
+                              mission::estimate_error(a.nav[i]).position_W_m.norm());
     }
     i += ta <= tb ? 1 : 0;
     k += tb <= ta ? 1 : 0;
@@ -64,11 +64,11 @@ PairedErrors paired_errors(const RunRecord& a, const RunRecord& b) {
   return out;
 }
 
-std::vector<PairedErrors> paired_with_first(const std::vector<RunRecord>& records) {
+std::vector<PairedErrors> paired_with_first(const std::vector<mission::RunRecord>& records) {
   std::vector<PairedErrors> out;
   const bool open = std::all_of(records.begin(), records.end(), [](const auto& record) { return record.open_loop; });
   for (std::size_t i = 1; open && i < records.size(); ++i) out.push_back(paired_errors(records.front(), records[i]));
   return out;
 }
 
-}  // namespace canyon::mission
+}  // namespace canyon::study

@@ -1,10 +1,12 @@
+#include "canyon/mission/recorder/epoch_files.h"
+
 #include <cmath>
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/fix_status.h"
 #include "canyon/core/units.h"
-#include "canyon/mission/csv_writer.h"
-#include "canyon/mission/results.h"
+#include "canyon/mission/recorder/csv_writer.h"
+#include "canyon/mission/recorder/estimate_error.h"
 
 namespace canyon::mission {
 

@@ -1,4 +1,4 @@
-#include "canyon/mission/results.h"
+#include "canyon/study/results/results.h"
 
 #include <sys/resource.h>
 
@@ -13,10 +13,11 @@
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/motion/route_tape.h"
-#include "canyon/mission/scoring/paired_errors.h"
+#include "canyon/mission/recorder/epoch_files.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
+#include "canyon/study/results/paired_errors.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 
 using Json = nlohmann::ordered_json;
 
@@ -41,9 +42,9 @@ void add_statistics(Json& out, const std::string& prefix, const ErrorStatistics&
   out[prefix + "_max_m"] = number(statistics.max);
 }
 
-Json waypoints_json(const MissionConfig& config) {
+Json waypoints_json(const mission::MissionConfig& config) {
   Json out = Json::array();
-  for (const Waypoint& waypoint : config.autonomy.waypoints)
+  for (const mission::Waypoint& waypoint : config.autonomy.waypoints)
     out.push_back({{"name", waypoint.name},
                    {"x_m", waypoint.p_m.x()},
                    {"y_m", waypoint.p_m.y()},
@@ -113,9 +114,9 @@ Result<std::string> results_hash(const std::string& directory, Json summary) {
 Json manifest_json(const Results& results) {
   Json runs = Json::object();
   Json files = Json::object();
-  for (const RunRecord& record : results.records) {
-    for (const InputFile& file : record.files) files[file.path] = file.sha256;
-    MissionConfig config = record.config;
+  for (const mission::RunRecord& record : results.records) {
+    for (const mission::InputFile& file : record.files) files[file.path] = file.sha256;
+    mission::MissionConfig config = record.config;
     runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
   }
   return {{"schema", 1},
@@ -194,7 +195,7 @@ Json run_json(const RunSummary& s) {
   out["map_points_capped"] = registered ? Json(s.registered_map.capped_points) : Json(nullptr);
   out["map_points_capped_prior"] = s.prior_map.capped_points;
   out["mission_waypoints"] = Json::array();
-  for (const WaypointScore& waypoint : s.waypoints) {
+  for (const mission::WaypointScore& waypoint : s.waypoints) {
     if (!waypoint.mission) continue;
     out["mission_waypoints"].push_back({{"name", waypoint.name},
                                         {"reached", waypoint.reached},
@@ -211,8 +212,8 @@ Json run_json(const RunSummary& s) {
 }
 
 Json summary_json(const Results& results) {
-  const PreparedMission& mission = *results.mission;
-  const MissionConfig& config = results.records.front().config;
+  const mission::PreparedMission& mission = *results.mission;
+  const mission::MissionConfig& config = results.records.front().config;
   const scene::Scene& scene = *mission.scene;
   Json route = Json::array();
   const auto& points = mission.prior.route.points();
@@ -293,13 +294,13 @@ Json scene_json(const scene::Scene& scene) {
 namespace {
 
 /// The run's true motion, for open loops.
-Status write_tape(const std::string& directory, const Results& results, const RunRecord& record) {
+Status write_tape(const std::string& directory, const Results& results, const mission::RunRecord& record) {
   std::error_code ignored;
   std::filesystem::create_directories(directory + "/tapes", ignored);
   std::string bytes =
       tape_header({.source = record.open_loop ? results.tape_source : record.name + " of " + record.config.run.name,
                    .scene_hash = results.mission->scene->hash(),
-                   .traffic = traffic_text(record.config),
+                   .traffic = mission::traffic_text(record.config),
                    .nodes = {}});
   for (TapeNode node : record.tape) {
     node.motion.t.ns -= record.start.ns;
@@ -314,9 +315,9 @@ Result<std::string> write_results(const std::string& directory, const Results& r
   std::error_code ignored;
   std::filesystem::create_directories(directory + "/epochs", ignored);
   std::filesystem::create_directories(directory + "/clouds", ignored);
-  for (const RunRecord& record : results.records) {
+  for (const mission::RunRecord& record : results.records) {
     throw_if_cancelled();
-    CANYON_TRY_STATUS(write_epochs(directory, record));
+    CANYON_TRY_STATUS(mission::write_epochs(directory, record));
     throw_if_cancelled();
     const std::string stem = directory + "/clouds/" + record.name;
     CANYON_TRY_STATUS(lidar::write_pcd(stem + "_prior.pcd", record.prior_map));
@@ -332,4 +333,4 @@ Result<std::string> write_results(const std::string& directory, const Results& r
   return hash;
 }
 
-}  // namespace canyon::mission
+}  // namespace canyon::study

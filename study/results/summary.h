@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "canyon/mission/run_record.h"
+#include "canyon/mission/recorder/run_record.h"
 
-namespace canyon::mission {
+namespace canyon::study {
 
 /// Statistics of an error over time; NaN without samples.
 struct ErrorStatistics {
@@ -21,8 +21,8 @@ ErrorStatistics error_statistics(std::vector<double> x);
 struct RunSummary {
   std::string name, gnss, imu, outcome;
   bool open_loop = false;  ///< neither outcome nor waypoints
-  std::optional<Failure> failure;
-  std::vector<WaypointScore> waypoints;
+  std::optional<mission::Failure> failure;
+  std::vector<mission::WaypointScore> waypoints;
   int waypoints_reached = 0, mission_waypoints_reached = 0;
   double duration_s = 0, distance_m = 0;
 
@@ -49,16 +49,9 @@ struct RunSummary {
 /// |dGDOP| beyond which consecutive epochs count as a jump.
 inline constexpr double kDopJump = 2.0;
 
-RunSummary summarize(const RunRecord& record);
+RunSummary summarize(const mission::RunRecord& record);
 
 /// The run with those sensors; null if there is none.
 const RunSummary* find_run(const std::vector<RunSummary>& runs, std::string_view gnss, std::string_view imu);
 
-/// Error of a pose in W: east, north, up and, as a rotation vector in the true body, roll, pitch, yaw in degrees.
-struct EstimateError {
-  Eigen::Vector3d position_W_m;
-  Eigen::Vector3d attitude_deg;
-};
-EstimateError estimate_error(const NavRow& row);
-
-}  // namespace canyon::mission
+}  // namespace canyon::study
