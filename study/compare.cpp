@@ -15,8 +15,9 @@ std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool 
   std::vector<RunPlan> plan;
   for (const auto& fidelity : fidelities) plan.push_back({fidelity, fidelity, fidelity});
   if (two_by_two) {
-    plan.push_back({"high_gnss_low_imu", "high", "low"});
-    plan.push_back({"low_gnss_high_imu", "low", "high"});
+    const std::string &first = fidelities.at(0), &second = fidelities.at(1);
+    plan.push_back({second + "_gnss_" + first + "_imu", second, first});
+    plan.push_back({first + "_gnss_" + second + "_imu", first, second});
   }
   return plan;
 }

@@ -17,7 +17,7 @@ struct RunPlan {
   std::string gnss, imu;
 };
 
-/// One run per fidelity; with `two_by_two` also the mixed runs low/high GNSS x low/high IMU.
+/// One run per fidelity; with `two_by_two` also the mixed runs of the first two, of which there must then be two.
 std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two);
 
 /// A comparison that has been read and checked; nothing has been driven yet.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -100,20 +101,23 @@ std::string cell(const std::string& word, double value, int decimals, const char
 }
 
 /// The 2 x 2 of GNSS and IMU fidelity as lines of text; empty unless all four runs are there.
-std::string two_by_two(const std::vector<RunSummary>& runs) {
-  std::string out;
-  for (const char* gnss : {"low", "high"}) {
-    std::string row;
-    for (const char* imu : {"low", "high"}) {
-      const RunSummary* found = find_run(runs, gnss, imu);
-      if (found == nullptr) return "";
-      row += "  " + padded(cell(found->open_loop ? "" : found->outcome, found->position_m.rms, 2, " m"), 26, true);
-    }
-    out += padded(std::string("  ") + gnss + " GNSS", 14, true) + row + "\n";
+std::string square_text(const std::vector<RunSummary>& runs) {
+  const auto square = two_by_two(runs);
+  if (!square) return "";
+  const bool open_loop = runs.front().open_loop;
+  std::size_t width = 14;
+  for (const std::string& level : square->levels) width = std::max(width, level.size() + 9);
+  std::string out = open_loop ? "2 x 2, open loop: position error RMS on one true motion\n"
+                              : "2 x 2, closed loop: outcome and position error RMS\n";
+  out += padded("", width, true) + "  " + padded(square->levels[0] + " IMU", 26, true) + "  " + square->levels[1] +
+         " IMU\n";
+  for (std::size_t g = 0; g < 2; ++g) {
+    out += padded("  " + square->levels[g] + " GNSS", width, true);
+    for (const RunSummary* run : square->runs[g])
+      out += "  " + padded(cell(open_loop ? "" : run->outcome, run->position_m.rms, 2, " m"), 26, true);
+    out += "\n";
   }
-  const char* title = runs.front().open_loop ? "2 x 2, open loop: position error RMS on one true motion\n"
-                                             : "2 x 2, closed loop: outcome and position error RMS\n";
-  return std::string(title) + padded("", 14, true) + "  " + padded("low IMU", 26, true) + "  high IMU\n" + out;
+  return out;
 }
 
 }  // namespace
@@ -217,7 +221,7 @@ std::string comparison_table(const Results& results) {
            "): 3-D error larger by " + fixed(pair.mean_m, 3) + " m on average, " + interval + "; larger at " +
            fixed(100.0 * pair.worse_share, 0) + " % of epochs\n";
   }
-  if (const std::string square = two_by_two(results.summaries); !square.empty()) out += "\n" + square;
+  if (const std::string square = square_text(results.summaries); !square.empty()) out += "\n" + square;
   return out;
 }
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 
 #include "canyon/apps/line/usage_errors.h"
@@ -23,15 +22,13 @@ VerbAction declare(Arguments& arguments) {
               "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
               "over first")
       .default_shown();
-  arguments.flag("--no-2x2", options->no_two_by_two, "leave out the mixed runs low/high GNSS x low/high IMU");
+  arguments.flag("--no-2x2", options->no_two_by_two,
+                 "leave out the runs with the GNSS of the first fidelity and the IMU of the second, and the reverse");
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
     const std::vector<std::string> fidelities = split_list(options->fidelities);
     CANYON_TRY_STATUS(file.check_fidelities(fidelities, "--fidelities"));
-    const auto has = [&](const char* name) {
-      return std::find(fidelities.begin(), fidelities.end(), name) != fidelities.end();
-    };
-    const bool square = !options->no_two_by_two && has("low") && has("high");
+    const bool square = !options->no_two_by_two && fidelities.size() > 1;
     return drive_and_report(options->mission, options->loop, file, study::plan_runs(fidelities, square));
   };
 }

@@ -53,22 +53,13 @@ Json waypoints_json(const mission::MissionConfig& config) {
   return out;
 }
 
-/// The 2 x 2 of GNSS and IMU fidelity, if all four runs are there.
-Json two_by_two(const std::vector<RunSummary>& summaries) {
-  const std::vector<std::string> levels{"low", "high"};
-  Json out{{"gnss", levels}, {"imu", levels}};
+Json two_by_two_json(const std::vector<RunSummary>& summaries) {
+  const auto square = two_by_two(summaries);
+  if (!square) return nullptr;
+  Json out{{"gnss", square->levels}, {"imu", square->levels}};
   for (const char* key : {"outcome", "position_error_rms_m", "registration_error_rms_m", "map_error_prior_rms_m"}) {
-    Json rows = Json::array();
-    for (const auto& gnss : levels) {
-      Json row = Json::array();
-      for (const auto& imu : levels) {
-        const RunSummary* found = find_run(summaries, gnss, imu);
-        if (found == nullptr) return nullptr;
-        row.push_back(run_json(*found)[key]);
-      }
-      rows.push_back(row);
-    }
-    out[key] = rows;
+    out[key] = Json::array();
+    for (const auto& row : square->runs) out[key].push_back({run_json(*row[0])[key], run_json(*row[1])[key]});
   }
   return out;
 }
@@ -245,7 +236,7 @@ Json summary_json(const Results& results) {
     out["runs"].push_back(run_json(summary));
     cpu_s += summary.cpu_s;
   }
-  out["two_by_two"] = two_by_two(results.summaries);
+  out["two_by_two"] = two_by_two_json(results.summaries);
   out["loop"] = loop_json(results);
   out["timing"] = {{"wall_s", results.wall_s},
                    {"cpu_s", cpu_s},

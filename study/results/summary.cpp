@@ -115,10 +115,22 @@ void summarize_registration(const mission::RunRecord& record, RunSummary& out) {
 
 }  // namespace
 
-const RunSummary* find_run(const std::vector<RunSummary>& runs, std::string_view gnss, std::string_view imu) {
-  const auto found =
-      std::find_if(runs.begin(), runs.end(), [&](const RunSummary& run) { return run.gnss == gnss && run.imu == imu; });
-  return found == runs.end() ? nullptr : &*found;
+std::optional<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs) {
+  const auto pure = [](const RunSummary& run) { return run.gnss == run.imu; };
+  const auto first = std::find_if(runs.begin(), runs.end(), pure);
+  const auto second =
+      std::find_if(first, runs.end(), [&](const RunSummary& run) { return pure(run) && run.gnss != first->gnss; });
+  if (second == runs.end()) return std::nullopt;
+  TwoByTwo out{{first->gnss, second->gnss}, {}};
+  for (std::size_t g = 0; g < 2; ++g)
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto found = std::find_if(runs.begin(), runs.end(), [&](const RunSummary& run) {
+        return run.gnss == out.levels[g] && run.imu == out.levels[i];
+      });
+      if (found == runs.end()) return std::nullopt;
+      out.runs[g][i] = &*found;
+    }
+  return out;
 }
 
 RunSummary summarize(const mission::RunRecord& record) {

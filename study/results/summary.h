@@ -1,9 +1,9 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "canyon/mission/recorder/run_record.h"
@@ -51,7 +51,12 @@ inline constexpr double kDopJump = 2.0;
 
 RunSummary summarize(const mission::RunRecord& record);
 
-/// The run with those sensors; null if there is none.
-const RunSummary* find_run(const std::vector<RunSummary>& runs, std::string_view gnss, std::string_view imu);
+/// The four runs of a 2 x 2: GNSS and IMU of the first and the second fidelity compared, each with each.
+struct TwoByTwo {
+  std::array<std::string, 2> levels;                     ///< the first two fidelities, in the order asked for
+  std::array<std::array<const RunSummary*, 2>, 2> runs;  ///< [level of the GNSS][level of the IMU]
+};
+/// None unless all four are among `runs`, which must outlive it.
+std::optional<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs);
 
 }  // namespace canyon::study

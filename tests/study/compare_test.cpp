@@ -50,6 +50,20 @@ TEST(PlanRuns, TwoByTwoAddsTheMixedRuns) {
   EXPECT_EQ(plan[3].gnss, "high");
   EXPECT_EQ(plan[3].imu, "low");
   EXPECT_EQ(plan_runs({"low"}, false).size(), 1U);
+  EXPECT_EQ(plan_runs({"mine", "low"}, true)[2].name, "low_gnss_mine_imu") << "of the first two, whichever they are";
+}
+
+TEST(TwoByTwoTest, IsOfTheFirstTwoFidelitiesCompared) {
+  std::vector<RunSummary> runs(5);
+  const char* sensors[][2] = {{"mine", "mine"}, {"low", "low"}, {"high", "high"}, {"low", "mine"}, {"mine", "low"}};
+  for (std::size_t i = 0; i < 5; ++i) runs[i].gnss = sensors[i][0], runs[i].imu = sensors[i][1];
+  const auto square = two_by_two(runs);
+  ASSERT_TRUE(square);
+  EXPECT_EQ(square->levels, (std::array<std::string, 2>{"mine", "low"}));
+  EXPECT_EQ(square->runs[0][1], &runs[4]);
+  EXPECT_EQ(square->runs[1][0], &runs[3]);
+  runs.pop_back();
+  EXPECT_FALSE(two_by_two(runs));
 }
 
 TEST_F(CompareTest, AllRunsShareOneScene) {
