@@ -112,21 +112,34 @@ Status Boundaries::check(const Keyframe& keyframe) const {
       .status();
 }
 
-Status Boundaries::check(const RunRecord& record) const {
-  Gate gate("the recorder", record.simulated_s);
-  gate.pass("a duration", record.simulated_s).pass("a distance", record.distance_m);
-  for (const NavRow& row : record.nav)
-    gate.pass("a true position", row.X_WB_true, kTruePlace_m)
-        .pass("a true speed", row.true_speed_m_s)
-        .pass("a position", row.estimate.X_WB, kBelieved_m)
-        .pass("a command", Eigen::Vector2d(row.command.speed_m_s, row.command.curvature_1_m));
-  for (const GnssRow& row : record.gnss_rows) gate.pass("a true position", row.p_A_W_true, 2.0 * kTruePlace_m);
-  for (const KeyframeRow& row : record.keyframes)
-    gate.pass("a true position", row.X_WL_true, 2.0 * kTruePlace_m)
-        .pass("a position", row.X_WL_registered, kBelieved_m);
-  for (const auto* map : {&record.prior_map, &record.registered_map})
-    for (const lidar::MapPoint& point : *map) gate.pass("a map point", point.p_W);
+Status Boundaries::check(const NavRow& row) const {
+  return Gate("the recorder", row.t - start_)
+      .pass("a true position", row.X_WB_true, kTruePlace_m)
+      .pass("a true speed", row.true_speed_m_s)
+      .pass("a position", row.estimate.X_WB, kBelieved_m)
+      .pass("a command", Eigen::Vector2d(row.command.speed_m_s, row.command.curvature_1_m))
+      .status();
+}
+
+Status Boundaries::check(const GnssRow& row) const {
+  return Gate("the recorder", row.fix.t - start_).pass("a true position", row.p_A_W_true, 2.0 * kTruePlace_m).status();
+}
+
+Status Boundaries::check(const KeyframeRow& row) const {
+  return Gate("the recorder", row.t - start_)
+      .pass("a true position", row.X_WL_true, 2.0 * kTruePlace_m)
+      .pass("a position", row.X_WL_registered, kBelieved_m)
+      .status();
+}
+
+Status Boundaries::check(const std::vector<lidar::MapPoint>& map, double t_s) const {
+  Gate gate("the recorder", t_s);
+  for (const lidar::MapPoint& point : map) gate.pass("a map point", point.p_W);
   return gate.status();
+}
+
+Status Boundaries::check_end(double duration_s, double distance_m) const {
+  return Gate("the recorder", duration_s).pass("a duration", duration_s).pass("a distance", distance_m).status();
 }
 
 bool is_finite(const DriveCommand& command) {

@@ -4,9 +4,10 @@
 #include "canyon/core/result.h"
 #include "canyon/core/truth.h"
 #include "canyon/gnss/sensor/sensor.h"
+#include "canyon/lidar/files/cloud_files.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/mission/mapper.h"
-#include "canyon/mission/recorder/run_record.h"
+#include "canyon/mission/recorder/rows.h"
 
 namespace canyon::mission {
 
@@ -25,8 +26,12 @@ class Boundaries {
   Status check(const lidar::LidarOutput& output) const;
   Status check(const NavEstimate& estimate) const;
   Status check(const Keyframe& keyframe) const;
-  /// All that a run leaves behind.
-  Status check(const RunRecord& record) const;
+  /// What is recorded.
+  Status check(const NavRow& row) const;
+  Status check(const GnssRow& row) const;
+  Status check(const KeyframeRow& row) const;
+  Status check(const std::vector<lidar::MapPoint>& map, double t_s) const;
+  Status check_end(double duration_s, double distance_m) const;
 
  private:
   GpsTime start_;

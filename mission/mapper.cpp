@@ -28,62 +28,64 @@ Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::R
                const Pose& X_BL)
     : config_(config), registration_(std::move(registration)), X_BL_(X_BL) {}
 
-const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate) {
-  const Pose prior = estimate.X_WB * X_BL_;
-  if (has_last_) {
-    const Pose moved_by = last_.X_WL_prior.inverse() * prior;
-    if (moved_by.p.norm() < config_.keyframe_distance_m &&
-        so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree)
-      return nullptr;
-  }
-  std::vector<Eigen::Vector3f> points;
-  points.reserve(scan.points.size());
-  for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);
+bool Mapper::wants(const NavEstimate& estimate) const {
+  if (!has_last_) return true;
+  const Pose moved_by = last_.X_WL_prior.inverse() * (estimate.X_WB * X_BL_);
+  return !(moved_by.p.norm() < config_.keyframe_distance_m &&
+           so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree);
+}
 
+const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate) {
+  if (!wants(estimate)) return nullptr;
   Keyframe keyframe;
   keyframe.t = scan.t;
-  keyframe.X_WL_prior = prior;
-  keyframe.X_WL_registered = prior;
-  keyframe.points = points.size();
-  const Matrix6d prior_covariance = moved(estimate.pose_covariance, X_BL_);
-  Matrix6d covariance = prior_covariance;
-  const auto cloud = registration_->prepare(points);
-
-  // The first one defines the map.
-  if (has_last_ && config_.method != "none") {
-    // In the frame of the last keyframe, where numbers stay small.
-    const Pose X_LW = last_.X_WL_registered.inverse();
-    std::vector<lidar::Registration::Placed> targets;
-    for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LW * placed.X_WL});
-    const Pose guess = last_.X_WL_prior.inverse() * prior;
-    const lidar::RegistrationResult result = registration_->align(*cloud, targets, guess);
-    keyframe.status = result.status;
-    keyframe.iterations = result.iterations;
-    keyframe.rms_m = result.rms_m;
-    if (result.status == lidar::RegistrationStatus::kConverged) {
-      const Pose registered = last_.X_WL_registered * result.X_TS;
-      const double floor_rad = config_.alignment_floor_deg * kDegree, floor_m = config_.alignment_floor_m;
-      Matrix6d floor = Matrix6d::Zero();
-      floor.diagonal() << Eigen::Vector3d::Constant(floor_rad * floor_rad),
-          Eigen::Vector3d::Constant(floor_m * floor_m);
-      const Matrix6d P_Z = moved(last_covariance_, result.X_TS) + result.covariance + floor;
-      const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
-      const Matrix6d P_Y = prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s);
-      const Matrix6d K = (P_Z + P_Y).transpose().partialPivLu().solve(P_Z.transpose()).transpose();
-      const Vector6d xi = (registered.inverse() * prior).log();
-      keyframe.X_WL_registered = registered * Pose::exp(K * xi);
-      const Matrix6d left = Matrix6d::Identity() - K;
-      covariance = left * P_Z * left.transpose() + K * P_Y * K.transpose();
-    }
+  keyframe.X_WL_prior = keyframe.X_WL_registered = estimate.X_WB * X_BL_;
+  keyframe.points = scan.points.size();
+  Matrix6d covariance = moved(estimate.pose_covariance, X_BL_);
+  if (config_.method != "none") {
+    std::vector<Eigen::Vector3f> points;
+    points.reserve(scan.points.size());
+    for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);
+    const auto cloud = registration_->prepare(points);
+    // The first one defines the map.
+    if (has_last_) covariance = align(*cloud, covariance, keyframe);
+    submap_.push_back({cloud, keyframe.X_WL_registered});
+    while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
   }
-
-  submap_.push_back({cloud, keyframe.X_WL_registered});
-  while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
   last_ = keyframe;
   last_covariance_ = 0.5 * (covariance + covariance.transpose());
   has_last_ = true;
   correction_ = keyframe.X_WL_registered * keyframe.X_WL_prior.inverse();
   return &last_;
+}
+
+Matrix6d Mapper::align(const lidar::PreparedCloud& cloud, const Matrix6d& prior_covariance, Keyframe& keyframe) {
+  // In the frame of the last keyframe, where numbers stay small.
+  const Pose X_LW = last_.X_WL_registered.inverse();
+  std::vector<lidar::Registration::Placed> targets;
+  for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LW * placed.X_WL});
+  const Pose guess = last_.X_WL_prior.inverse() * keyframe.X_WL_prior;
+  const lidar::RegistrationResult result = registration_->align(cloud, targets, guess);
+  keyframe.status = result.status;
+  keyframe.iterations = result.iterations;
+  keyframe.rms_m = result.rms_m;
+  ++counters_.alignments;
+  counters_.iterations += result.iterations;
+  counters_.correspondences += result.correspondences;
+  counters_.pcl_objects += result.pcl_objects;
+  if (result.status != lidar::RegistrationStatus::kConverged) return prior_covariance;
+  const Pose registered = last_.X_WL_registered * result.X_TS;
+  const double floor_rad = config_.alignment_floor_deg * kDegree, floor_m = config_.alignment_floor_m;
+  Matrix6d floor = Matrix6d::Zero();
+  floor.diagonal() << Eigen::Vector3d::Constant(floor_rad * floor_rad), Eigen::Vector3d::Constant(floor_m * floor_m);
+  const Matrix6d P_Z = moved(last_covariance_, result.X_TS) + result.covariance + floor;
+  const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
+  const Matrix6d P_Y = prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s);
+  const Matrix6d K = (P_Z + P_Y).transpose().partialPivLu().solve(P_Z.transpose()).transpose();
+  const Vector6d xi = (registered.inverse() * keyframe.X_WL_prior).log();
+  keyframe.X_WL_registered = registered * Pose::exp(K * xi);
+  const Matrix6d left = Matrix6d::Identity() - K;
+  return left * P_Z * left.transpose() + K * P_Y * K.transpose();
 }
 
 }  // namespace canyon::mission

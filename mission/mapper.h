@@ -49,6 +49,15 @@ class Mapper {
   /// became one, else nullptr. The pointer is valid until the next call.
   const Keyframe* offer(const LidarScan& scan, const NavEstimate& estimate);
 
+  /// Whether a scan there would become a keyframe, if it has returns.
+  bool wants(const NavEstimate& estimate) const;
+
+  /// Work done.
+  struct Counters {
+    std::int64_t alignments = 0, iterations = 0, correspondences = 0, pcl_objects = 0;
+  };
+  const Counters& counters() const { return counters_; }
+
   /// Correction of the last keyframe: X_WB_registered = correction * X_WB_prior.
   const Pose& correction() const { return correction_; }
 
@@ -57,6 +66,9 @@ class Mapper {
     std::shared_ptr<const lidar::PreparedCloud> cloud;
     Pose X_WL;
   };
+  /// Places `keyframe` onto those before it, together with its prior; the covariance of what came out.
+  Matrix6d align(const lidar::PreparedCloud& cloud, const Matrix6d& prior_covariance, Keyframe& keyframe);
+
   lidar::RegistrationConfig config_;
   std::unique_ptr<lidar::Registration> registration_;
   Pose X_BL_;
@@ -65,6 +77,7 @@ class Mapper {
   Matrix6d last_covariance_ = Matrix6d::Zero();
   bool has_last_ = false;
   Pose correction_;
+  Counters counters_;
 };
 
 }  // namespace canyon::mission

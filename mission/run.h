@@ -4,7 +4,9 @@
 
 #include "canyon/core/process/progress.h"
 #include "canyon/core/result.h"
+#include "canyon/mission/autonomy/autonomy.h"
 #include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/recorder/recorder.h"
 #include "canyon/mission/recorder/run_record.h"
 
 namespace canyon::mission {
@@ -12,6 +14,7 @@ namespace canyon::mission {
 /// What a run takes from its caller instead of making it from the configuration.
 struct RunParts {
   const Tape* tape = nullptr;          ///< the true motion; must outlive the run
+  Recorder* recorder = nullptr;        ///< gets what the run gives as it comes; null: nobody does
   std::unique_ptr<Autonomy> autonomy;  ///< who drives
 };
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <mutex>
+#include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/mission/recorder/run_files.h"
 #include "canyon/mission/run.h"
 
 namespace canyon::study {
@@ -41,7 +43,41 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
   return comparison;
 }
 
-Result<Results> compare(const Comparison& comparison, bool show_progress) {
+namespace {
+
+/// One run of a comparison, with what it leaves behind.
+struct DrivenRun {
+  mission::RunRecord record;
+  std::unique_ptr<RunStatistics> statistics;
+  RunSummary summary;
+};
+
+Result<DrivenRun> drive(const Comparison& comparison, std::size_t i, const std::string& directory, Progress& progress) {
+  const RunPlan& plan = comparison.plan[i];
+  const mission::PreparedMission& mission = comparison.missions[i];
+  const Tape* tape = comparison.tape ? &*comparison.tape : nullptr;
+  DrivenRun run;
+  run.statistics = std::make_unique<RunStatistics>(
+      mission.scene->frame(), directory.empty() ? std::filesystem::temp_directory_path().string() : directory);
+  std::vector<mission::Recorder*> recorders{run.statistics.get()};
+  std::unique_ptr<mission::RunFiles> files;
+  if (!directory.empty()) {
+    CANYON_TRY(files, mission::RunFiles::create(directory, plan.name, comparison.configs[i], mission, tape));
+    recorders.push_back(files.get());
+  }
+  mission::Recorders all(std::move(recorders));
+  CANYON_TRY(run.record, mission::run_mission(comparison.configs[i], mission, &progress,
+                                              {.tape = tape, .recorder = &all, .autonomy = nullptr}));
+  run.record.name = plan.name;
+  run.record.gnss = plan.gnss;
+  run.record.imu = plan.imu;
+  CANYON_TRY(run.summary, summarize(run.record, *run.statistics));
+  return run;
+}
+
+}  // namespace
+
+Result<Results> compare(const Comparison& comparison, const std::string& directory, bool show_progress) {
   const auto wall_start = std::chrono::steady_clock::now();
   const std::size_t count = comparison.plan.size();
   double total_s = 0.0;
@@ -49,28 +85,27 @@ Result<Results> compare(const Comparison& comparison, bool show_progress) {
     total_s += comparison.tape ? comparison.tape->duration_s() : std::min(mission.nominal_s, mission.time_limit_s);
   Progress progress("driving " + std::to_string(count) + (count == 1 ? " run" : " runs"), total_s, show_progress);
 
-  std::vector<std::optional<mission::RunRecord>> records(count);
-  std::vector<std::optional<Error>> errors(count);
+  std::vector<std::optional<Result<DrivenRun>>> runs(count);
   parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      auto record = mission::run_mission(comparison.configs[i], comparison.missions[i], &progress,
-                                         {.tape = comparison.tape ? &*comparison.tape : nullptr, .autonomy = nullptr});
-      if (record) {
-        records[i] = *std::move(record);
-      } else {
-        errors[i] = record.error();
-        if (errors[i]->key.empty()) errors[i]->key = "run " + comparison.plan[i].name;
-      }
-    }
+    for (std::size_t i = begin; i < end; ++i) runs[i] = drive(comparison, i, directory, progress);
   });
   Results results;
   for (std::size_t i = 0; i < count; ++i) {
-    if (errors[i]) return *errors[i];
-    records[i]->name = comparison.plan[i].name;
-    records[i]->gnss = comparison.plan[i].gnss;
-    records[i]->imu = comparison.plan[i].imu;
-    results.summaries.push_back(summarize(*records[i]));
-    results.records.push_back(*std::move(records[i]));
+    if (!runs[i]->ok()) {
+      Error error = runs[i]->error();
+      if (error.key.empty()) error.key = "run " + comparison.plan[i].name;
+      return error;
+    }
+    DrivenRun& run = **runs[i];
+    if (comparison.tape && i > 0) {
+      CANYON_TRY(PairedErrors paired,
+                 paired_errors((*runs[0])->statistics->errors(), run.statistics->errors(), run.record.start));
+      paired.a = comparison.plan[0].name;
+      paired.b = comparison.plan[i].name;
+      results.paired.push_back(std::move(paired));
+    }
+    results.summaries.push_back(std::move(run.summary));
+    results.records.push_back(std::move(run.record));
   }
   results.mission = &comparison.missions.front();
   if (comparison.tape) results.tape_source = comparison.tape->source;

@@ -40,9 +40,10 @@ Status choose_tape(const TapeChoice& choice, Comparison& comparison);
 /// Every mistake of the mission file is found here, before any time is spent.
 Result<Comparison> prepare_comparison(const mission::MissionFile& file, const std::vector<RunPlan>& plan);
 
-/// Drives all runs, each on one thread, side by side; the same seed and so the same random numbers in all.
-/// The returned Results point into `comparison`, which must outlive them.
-Result<Results> compare(const Comparison& comparison, bool show_progress);
+/// Drives all runs, each on one thread, side by side; the same seed and so the same random numbers in all. Each writes
+/// its epochs, clouds and tape into `directory` as it goes (study/results/results.h writes the rest); with an empty one
+/// there are the figures alone. The returned Results point into `comparison`, which must outlive them.
+Result<Results> compare(const Comparison& comparison, const std::string& directory, bool show_progress);
 
 /// The terminal table: one column per run, and the ratio of the second to the first.
 std::string comparison_table(const Results& results);

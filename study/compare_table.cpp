@@ -213,7 +213,7 @@ std::string comparison_table(const Results& results) {
            ")";
   }
   if (out.back() != '\n') out += "\n";
-  for (const PairedErrors& pair : paired_with_first(results.records)) {
+  for (const PairedErrors& pair : results.paired) {
     const std::string interval = std::isfinite(pair.low_m)
                                      ? "95 % interval " + fixed(pair.low_m, 3) + " to " + fixed(pair.high_m, 3) + " m"
                                      : "too short for an interval";

@@ -70,7 +70,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
-  CANYON_TRY(auto results, study::compare(comparison, !options.common.json));
+  CANYON_TRY(auto results, study::compare(comparison, staged.staging_path(), !options.common.json));
   results.command_line = invocation().command_line;
   results.commit = invocation().commit;
   CANYON_TRY(const std::string hash, study::write_results(staged.staging_path(), results));

@@ -6,12 +6,15 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <system_error>
 
 #include <openssl/evp.h>
 #include <zlib.h>
 
 #include "canyon/core/check.h"
+#include "canyon/core/files/file_hash.h"
+#include "canyon/core/files/file_writer.h"
 #include "canyon/core/process/progress.h"
 
 namespace canyon {
@@ -72,21 +75,28 @@ Result<std::string> gunzip(const std::string& path, const std::string& packed) {
   }
 }
 
-}  // namespace
-
-Result<std::string> read_text_file(const std::string& path) {
+/// Calls take(piece) for what the file holds, one piece after the other.
+template <class Take>
+Status read_pieces(const std::string& path, const Take& take) {
   std::error_code code;
   if (std::filesystem::is_directory(path, code)) return file_error(path, "is a directory", "a file");
   errno = 0;
   std::ifstream in(path, std::ios::binary);
   if (!in) return file_error(path, "cannot be read (" + system_message(errno) + ")", "a readable file");
-  std::string text;
   std::array<char, 1 << 16> buffer;
   while (in.read(buffer.data(), buffer.size()) || in.gcount() > 0) {
     throw_if_cancelled();
-    text.append(buffer.data(), static_cast<std::size_t>(in.gcount()));
+    take(std::string_view(buffer.data(), static_cast<std::size_t>(in.gcount())));
   }
   if (in.bad()) return file_error(path, "cannot be read (" + system_message(errno) + ")", "a readable file");
+  return Ok{};
+}
+
+}  // namespace
+
+Result<std::string> read_text_file(const std::string& path) {
+  std::string text;
+  CANYON_TRY_STATUS(read_pieces(path, [&text](std::string_view piece) { text += piece; }));
   return text;
 }
 
@@ -97,15 +107,53 @@ Result<std::string> read_text_or_gzip_file(const std::string& path) {
   return gunzip(path, bytes);
 }
 
-Status write_text_file(const std::string& path, std::string_view text) {
+Result<FileWriter> FileWriter::create(const std::string& path) {
   errno = 0;
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
   if (!out) return file_error(path, "cannot be written (" + system_message(errno) + ")", "a writable place");
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  if (!out)
-    return file_error(path, "cannot be written to the end (" + system_message(errno) + ")", "space on the disk", 1);
-  return Ok{};
+  return FileWriter(path, std::move(out));
+}
+
+Status FileWriter::write(std::string_view bytes) {
+  out_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (out_) return Ok{};
+  return file_error(path_, "cannot be written to the end (" + system_message(errno) + ")", "space on the disk", 1);
+}
+
+Status FileWriter::close() {
+  out_.close();
+  return write({});
+}
+
+Status write_text_file(const std::string& path, std::string_view text) {
+  CANYON_TRY(FileWriter out, FileWriter::create(path));
+  CANYON_TRY_STATUS(out.write(text));
+  return out.close();
+}
+
+namespace {
+
+std::string hexadecimal(const unsigned char* digest) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (int i = 0; i < 32; ++i) {
+    text += kDigits[digest[i] >> 4];
+    text += kDigits[digest[i] & 15];
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::string> sha256_of_file(const std::string& path) {
+  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+  CANYON_CHECK(context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1, "no SHA-256");
+  CANYON_TRY_STATUS(read_pieces(path, [&](std::string_view piece) {
+    CANYON_CHECK(EVP_DigestUpdate(context.get(), piece.data(), piece.size()) == 1, "no SHA-256");
+  }));
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  CANYON_CHECK(EVP_DigestFinal_ex(context.get(), digest.data(), nullptr) == 1, "no SHA-256");
+  return hexadecimal(digest.data());
 }
 
 std::string sha256_hex(std::string_view bytes) {
@@ -113,13 +161,7 @@ std::string sha256_hex(std::string_view bytes) {
   unsigned int size = 0;
   const int done = EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr);
   CANYON_CHECK(done == 1 && size == 32, "size = ", size);
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i) {
-    text += kDigits[digest[i] >> 4];
-    text += kDigits[digest[i] & 15];
-  }
-  return text;
+  return hexadecimal(digest.data());
 }
 
 }  // namespace canyon

@@ -15,6 +15,7 @@ class Visibility final : public PathModel {
       paths.foliage_m = paths.line_of_sight ? scene.foliage_m(p_A_W, waves.direction_W(i)) : 0.0;
     }
     counters.occlusion_rays += static_cast<std::int64_t>(out.size());
+    counters.path_searches += static_cast<std::int64_t>(out.size());
   }
 };
 

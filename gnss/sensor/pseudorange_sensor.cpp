@@ -119,6 +119,7 @@ class PseudorangeSensor final : public GnssSensor {
   }
 
   GnssCounters counters() const override { return counters_; }
+  bool has_satellites() const override { return true; }
   std::vector<std::string> warnings() const override { return parts_.warnings; }
 
  private:

@@ -55,6 +55,7 @@ class SatelliteCountSensor final : public GnssSensor {
   }
 
   GnssCounters counters() const override { return counters_; }
+  bool has_satellites() const override { return true; }
   std::vector<std::string> warnings() const override { return source_.warnings; }
 
  private:

@@ -24,6 +24,7 @@ struct GnssOutput {
 struct GnssCounters {
   std::int64_t epochs = 0;
   std::int64_t occlusion_rays = 0;
+  std::int64_t path_searches = 0;  ///< for the ways of one signal to one place of the antenna
   std::int64_t facets_tested = 0;
   std::int64_t reflected_paths = 0;
   std::int64_t diffracted_paths = 0;
@@ -43,6 +44,8 @@ class GnssSensor {
   virtual GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                              const scene::SceneAt& scene) = 0;
   virtual GnssCounters counters() const = 0;
+  /// False where fixes come without satellites: counts of them and DOP jumps are then undefined.
+  virtual bool has_satellites() const { return false; }
   /// What a user should be told once: damaged records of the navigation file that were skipped, one line each.
   virtual std::vector<std::string> warnings() const { return {}; }
 };

@@ -66,6 +66,7 @@ class Gicp final : public PclGicp {
   bool degenerate() const { return degenerate_; }
   std::size_t matched() const { return source_indices_.size(); }
   int rounds() const { return nr_iterations_; }
+  std::int64_t all_matched() const { return all_matched_; }  ///< summed over the rounds
 
   std::vector<Correspondence> correspondences(const PreparedCloud& source, const std::vector<float>& target_tilt,
                                               const Matrix4& X) const {
@@ -91,6 +92,7 @@ class Gicp final : public PclGicp {
             const pcl::Indices& target_indices, Matrix4& transform) {
     source_indices_ = source_indices;
     target_indices_ = target_indices;
+    all_matched_ += static_cast<std::int64_t>(source_indices.size());
     settled_ = false;
     if (source_indices.size() < kFewestPoints) {
       PCL_THROW_EXCEPTION(pcl::NotEnoughPointsException, "too few matches");  // caught by computeTransformation
@@ -133,6 +135,7 @@ class Gicp final : public PclGicp {
 
   pcl::Indices source_indices_, target_indices_;
   bool settled_ = false, degenerate_ = false;
+  std::int64_t all_matched_ = 0;
 };
 
 Eigen::Matrix3d plane_covariance(const Eigen::Vector3d& normal) {
@@ -158,6 +161,7 @@ class GicpRegistration final : public Registration {
     result.status = RegistrationStatus::kTooFewPoints;
 
     const Target target = unite(targets, guess);
+    result.pcl_objects = 1;  // the target's cloud
     if (source.points.size() < kFewestPoints || target.points.size() < kFewestPoints) return result;
 
     const auto source_cloud = pcl::make_shared<Cloud>();
@@ -185,6 +189,8 @@ class GicpRegistration final : public Registration {
     gicp.align(aligned);
 
     result.iterations = gicp.rounds();
+    result.correspondences = gicp.all_matched();
+    result.pcl_objects = 6;  // three clouds, two search trees, the registration
     if (gicp.matched() < kFewestPoints) return result;
     result.status = RegistrationStatus::kDegenerate;
     if (gicp.degenerate()) return result;

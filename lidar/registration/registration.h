@@ -40,7 +40,9 @@ struct RegistrationResult {
   Matrix6d covariance =
       Matrix6d::Constant(kNaN);  ///< of xi, source frame; see registration_covariance.h. Finite, or NaN as a whole
   int iterations = 0;
-  double rms_m = kNaN;  ///< of the matched points' distances along the surface normals
+  double rms_m = kNaN;               ///< of the matched points' distances along the surface normals
+  std::int64_t correspondences = 0;  ///< work done: pairs matched, summed over the iterations
+  int pcl_objects = 0;               ///< clouds, search trees and registrations of PCL that were made for it
 };
 
 /// A keyframe's cloud made ready for registration: thinned, with per-point covariances.

@@ -75,6 +75,7 @@ class Autonomy {
   virtual ~Autonomy() = default;
   /// A deskewed scan in L at its stamp, placed by the estimate at that stamp.
   virtual void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) = 0;
+  virtual bool looks() const { return true; }  ///< false: nothing it sees changes what it does
   virtual DriveCommand drive(const NavEstimate& estimate) = 0;
   virtual AutonomyState state() const = 0;
   virtual int next_waypoint() const = 0;  ///< 0-based; number of waypoints when done

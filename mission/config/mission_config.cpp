@@ -26,6 +26,9 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.number("map_range_m", c.map_range_m, {1, 1000}, "returns beyond are not mapped");
   f.number("epoch_rate_hz", c.epoch_rate_hz, {0.01, 100}, "rows of epochs/RUN_nav.csv per second");
   f.flag("record_tape", c.record_tape, "keeps the true motion as tapes/RUN.tape, for open loops");
+  f.flag(
+      "record_filter_input", c.record_filter_input,
+      "keeps IMU messages and fixes with full covariances as epochs/RUN_imu.csv and RUN_fixes.csv, for other filters");
   f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
   f.number("withhold_fixes_after_s", c.withhold_fixes_after_s, {-1, 1e5},

@@ -41,10 +41,11 @@ struct RunConfig {
   std::int64_t seed = 1;
   /// 1-sigma of the seeded error of the initial attitude: roll, pitch, heading.
   Eigen::Vector3d initial_attitude_error_deg{0.1, 0.1, 1.0};
-  double map_leaf_m = 0.25;     ///< one scored map point per voxel of this size
-  double map_range_m = 40.0;    ///< returns beyond are not mapped
-  double epoch_rate_hz = 10.0;  ///< rows of epochs/RUN_nav.csv per second
-  bool record_tape = true;      ///< keeps the true motion, so that other models can be driven on it
+  double map_leaf_m = 0.25;          ///< one scored map point per voxel of this size
+  double map_range_m = 40.0;         ///< returns beyond are not mapped
+  double epoch_rate_hz = 10.0;       ///< rows of epochs/RUN_nav.csv per second
+  bool record_tape = true;           ///< keeps the true motion, so that other models can be driven on it
+  bool record_filter_input = false;  ///< keeps what the filter was given: at 100 Hz some 55 MB an hour
   // Couplings that a study may cut on purpose.
   bool truth_as_pose = false;            ///< hands the true pose on; what is recorded stays the filter's
   double estimate_up_offset_m = 0.0;     ///< added to the estimate's height

@@ -84,6 +84,7 @@ class RouteFollower final : public Autonomy {
   RouteFollower(const AutonomyConfig& config, const PriorKnowledge& prior) : driver_(config, prior) {}
 
   void see(const LidarScan&, const Pose&, const NavEstimate&) override {}
+  bool looks() const override { return false; }
   DriveCommand drive(const NavEstimate& estimate) override {
     const bool stands = driver_.update(estimate);
     const double speed = estimate.v_WB_W.head<2>().norm();

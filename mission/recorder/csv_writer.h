@@ -8,8 +8,8 @@
 
 namespace canyon::mission {
 
-/// Builds a CSV text row by row. Numbers have a fixed number of decimals and no locale; undefined (not finite) values
-/// are empty.
+/// Builds a CSV text row by row, whole or piece by piece. Numbers have a fixed number of decimals and no locale;
+/// undefined (not finite) values are empty.
 class CsvWriter {
  public:
   explicit CsvWriter(std::string_view header) : text_(header) { text_ += '\n'; }
@@ -20,6 +20,14 @@ class CsvWriter {
     char buffer[64];
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals);
     text_.append(buffer, end.ptr);
+    return *this;
+  }
+  /// As few digits as give the same bits when they are read.
+  CsvWriter& exact(double value) {
+    separate();
+    if (!std::isfinite(value)) return *this;
+    char buffer[32];
+    text_.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
     return *this;
   }
   template <class... Values>
@@ -43,6 +51,7 @@ class CsvWriter {
     row_started_ = false;
   }
   const std::string& text() const { return text_; }
+  void clear() { text_.clear(); }  ///< what was written has been taken
 
  private:
   void separate() {

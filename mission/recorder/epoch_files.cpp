@@ -35,113 +35,122 @@ void time_columns(CsvWriter& csv, GpsTime t, GpsTime start) {
   csv.number(t.sow_s(), 3);
 }
 
-std::string nav_csv(const RunRecord& record) {
-  CsvWriter csv(
-      "t_s,gps_week,sow,true_x_m,true_y_m,true_z_m,true_yaw_deg,true_pitch_deg,true_roll_deg,true_speed_m_s,est_x_m,"
-      "est_y_m,est_z_m,"
-      "est_yaw_deg,est_pitch_deg,est_roll_deg,est_speed_m_s,sigma_e_m,sigma_n_m,sigma_u_m,sigma_yaw_deg,error_e_m,"
-      "error_n_m,"
-      "error_u_m,error_roll_deg,error_pitch_deg,error_yaw_deg,command_speed_m_s,command_curvature_1_m,waypoint,state");
-  for (const NavRow& row : record.nav) {
-    time_columns(csv, row.t, record.start);
-    const YawPitchRoll truth = yaw_pitch_roll(row.X_WB_true.R), estimate = yaw_pitch_roll(row.estimate.X_WB.R);
-    const Eigen::Matrix3d R = row.estimate.X_WB.R.toRotationMatrix();
-    const Eigen::Matrix3d position_W = R * row.estimate.pose_covariance.bottomRightCorner<3, 3>() * R.transpose();
-    const Eigen::Matrix3d attitude_W = R * row.estimate.pose_covariance.topLeftCorner<3, 3>() * R.transpose();
-    const EstimateError error = estimate_error(row);
-    const auto& p = row.X_WB_true.p;
-    const auto& q = row.estimate.X_WB.p;
-    csv.numbers(4, p.x(), p.y(), p.z(), truth.yaw_rad / kDegree, truth.pitch_rad / kDegree, truth.roll_rad / kDegree,
-                row.true_speed_m_s, q.x(), q.y(), q.z(), estimate.yaw_rad / kDegree, estimate.pitch_rad / kDegree,
-                estimate.roll_rad / kDegree, row.estimate.v_WB_W.head<2>().norm(), std::sqrt(position_W(0, 0)),
-                std::sqrt(position_W(1, 1)), std::sqrt(position_W(2, 2)), std::sqrt(attitude_W(2, 2)) / kDegree,
-                error.position_W_m.x(), error.position_W_m.y(), error.position_W_m.z(), error.attitude_deg.x(),
-                error.attitude_deg.y(), error.attitude_deg.z(), row.command.speed_m_s, row.command.curvature_1_m);
-    csv.integer(row.waypoint).word(name(row.state)).end_row();
-  }
-  return csv.text();
-}
-
-std::string gnss_csv(const RunRecord& record) {
-  CsvWriter csv(
-      "t_s,gps_week,sow,status,satellites,above_mask,tracked,nlos,reflected,gdop,pdop,hdop,vdop,fix_x_m,fix_y_m,fix_z_"
-      "m,sigma_e_m,"
-      "sigma_n_m,sigma_u_m,true_x_m,true_y_m,true_z_m,error_e_m,error_n_m,error_u_m,multipath_max_m,accepted,nis,"
-      "reason");
-  const Eigen::Matrix3d R_WE = record.frame.R_EW().transpose();
-  const bool has_satellites = record.forms_pseudoranges();
-  for (const GnssRow& row : record.gnss_rows) {
-    time_columns(csv, row.fix.t, record.start);
-    int tracked = 0, nlos = 0, reflected = 0;
-    double multipath = has_satellites ? 0.0 : kNaN;
-    for (const auto& satellite : row.truth.satellites) {
-      if (!satellite.tracked) continue;
-      ++tracked;
-      nlos += satellite.line_of_sight ? 0 : 1;
-      reflected += satellite.line_of_sight && satellite.reflections > 0 ? 1 : 0;
-      if (std::abs(satellite.multipath_m) > std::abs(multipath)) multipath = satellite.multipath_m;
-    }
-    csv.word(fix_status_name(row.fix.status));
-    for (const int count :
-         {row.fix.satellites, static_cast<int>(row.truth.satellites.size()), tracked, nlos, reflected})
-      csv.number(has_satellites ? count : kNaN, 0);
-    csv.numbers(3, row.fix.dop.gdop, row.fix.dop.pdop, row.fix.dop.hdop, row.fix.dop.vdop);
-    const bool fixed = row.fix.status != FixStatus::kNone;
-    const Eigen::Vector3d p = fixed ? record.frame.to_W(row.fix.p_A_E) : Eigen::Vector3d::Constant(kNaN);
-    const Eigen::Matrix3d covariance = R_WE * row.fix.covariance_E * R_WE.transpose();
-    const Eigen::Vector3d& truth = row.p_A_W_true;
-    csv.numbers(4, p.x(), p.y(), p.z(), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
-                std::sqrt(covariance(2, 2)), truth.x(), truth.y(), truth.z(), p.x() - truth.x(), p.y() - truth.y(),
-                p.z() - truth.z(), multipath);
-    csv.integer(row.update.accepted ? 1 : 0).number(row.update.dimension > 0 ? row.update.nis : kNaN, 4);
-    csv.word(row.withheld ? "withheld" : row.fix.reason).end_row();
-  }
-  return csv.text();
-}
-
-std::string satellites_csv(const RunRecord& record) {
-  CsvWriter csv(
-      "t_s,satellite,elevation_deg,azimuth_deg,line_of_sight,tracked,reflections,cn0_dbhz,multipath_m,ionosphere_m,"
-      "troposphere_m,"
-      "ephemeris_m,noise_m,base_m,carrier_multipath_m,range_rate_multipath_m_s");
-  for (const GnssRow& row : record.gnss_rows) {
-    for (std::size_t i = 0; i < row.truth.satellites.size(); ++i) {
-      const GnssObservationTruth& s = row.truth.satellites[i];
-      csv.number(row.fix.t - record.start, 3).word(s.sv.str());
-      csv.numbers(2, s.elevation_rad / kDegree, s.azimuth_rad / kDegree);
-      csv.integer(s.line_of_sight ? 1 : 0).integer(s.tracked ? 1 : 0).integer(s.reflections).number(row.cn0_dbhz[i], 2);
-      csv.numbers(4, s.multipath_m, s.ionosphere_m, s.troposphere_m, s.ephemeris_m, s.noise_m, s.base_m,
-                  s.carrier_multipath_m, s.range_rate_multipath_m_s);
-      csv.end_row();
-    }
-  }
-  return csv.text();
-}
-
-std::string keyframes_csv(const RunRecord& record) {
-  CsvWriter csv(
-      "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
-      "status,"
-      "iterations,rms_m");
-  for (const KeyframeRow& row : record.keyframes) {
-    const Eigen::Vector3d& p = row.X_WL_true.p;
-    const Eigen::Vector3d prior = row.X_WL_prior.p - p, registered = row.X_WL_registered.p - p;
-    csv.number(row.t - record.start, 3).integer(static_cast<std::int64_t>(row.points));
-    const double known = record.registers() ? 1.0 : kNaN;
-    csv.numbers(4, p.x(), p.y(), p.z(), prior.norm(), prior.z(), known * registered.norm(), known * registered.z());
-    csv.word(word(row.status)).integer(row.iterations).number(row.rms_m, 4).end_row();
-  }
-  return csv.text();
-}
-
 }  // namespace
 
-Status write_epochs(const std::string& directory, const RunRecord& record) {
-  const std::string stem = directory + "/epochs/" + record.name;
-  CANYON_TRY_STATUS(write_text_file(stem + "_nav.csv", nav_csv(record)));
-  CANYON_TRY_STATUS(write_text_file(stem + "_gnss.csv", gnss_csv(record)));
-  CANYON_TRY_STATUS(write_text_file(stem + "_satellites.csv", satellites_csv(record)));
-  return write_text_file(stem + "_keyframes.csv", keyframes_csv(record));
+const char* const kNavColumns =
+    "t_s,gps_week,sow,true_x_m,true_y_m,true_z_m,true_yaw_deg,true_pitch_deg,true_roll_deg,true_speed_m_s,est_x_m,"
+    "est_y_m,est_z_m,"
+    "est_yaw_deg,est_pitch_deg,est_roll_deg,est_speed_m_s,sigma_e_m,sigma_n_m,sigma_u_m,sigma_yaw_deg,error_e_m,"
+    "error_n_m,"
+    "error_u_m,error_roll_deg,error_pitch_deg,error_yaw_deg,command_speed_m_s,command_curvature_1_m,waypoint,state";
+
+void write(CsvWriter& csv, const NavRow& row, const RowPlace& run) {
+  time_columns(csv, row.t, run.start);
+  const YawPitchRoll truth = yaw_pitch_roll(row.X_WB_true.R), estimate = yaw_pitch_roll(row.estimate.X_WB.R);
+  const Eigen::Matrix3d R = row.estimate.X_WB.R.toRotationMatrix();
+  const Eigen::Matrix3d position_W = R * row.estimate.pose_covariance.bottomRightCorner<3, 3>() * R.transpose();
+  const Eigen::Matrix3d attitude_W = R * row.estimate.pose_covariance.topLeftCorner<3, 3>() * R.transpose();
+  const EstimateError error = estimate_error(row);
+  const auto& p = row.X_WB_true.p;
+  const auto& q = row.estimate.X_WB.p;
+  csv.numbers(4, p.x(), p.y(), p.z(), truth.yaw_rad / kDegree, truth.pitch_rad / kDegree, truth.roll_rad / kDegree,
+              row.true_speed_m_s, q.x(), q.y(), q.z(), estimate.yaw_rad / kDegree, estimate.pitch_rad / kDegree,
+              estimate.roll_rad / kDegree, row.estimate.v_WB_W.head<2>().norm(), std::sqrt(position_W(0, 0)),
+              std::sqrt(position_W(1, 1)), std::sqrt(position_W(2, 2)), std::sqrt(attitude_W(2, 2)) / kDegree,
+              error.position_W_m.x(), error.position_W_m.y(), error.position_W_m.z(), error.attitude_deg.x(),
+              error.attitude_deg.y(), error.attitude_deg.z(), row.command.speed_m_s, row.command.curvature_1_m);
+  csv.integer(row.waypoint).word(name(row.state)).end_row();
+}
+
+const char* const kGnssColumns =
+    "t_s,gps_week,sow,status,satellites,above_mask,tracked,nlos,reflected,gdop,pdop,hdop,vdop,fix_x_m,fix_y_m,fix_z_"
+    "m,sigma_e_m,"
+    "sigma_n_m,sigma_u_m,true_x_m,true_y_m,true_z_m,error_e_m,error_n_m,error_u_m,multipath_max_m,accepted,nis,"
+    "reason";
+
+void write(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
+  const Eigen::Matrix3d R_WE = run.frame.R_EW().transpose();
+  const bool has_satellites = row.has_satellites;
+  time_columns(csv, row.fix.t, run.start);
+  int tracked = 0, nlos = 0, reflected = 0;
+  double multipath = has_satellites ? 0.0 : kNaN;
+  for (const auto& satellite : row.truth.satellites) {
+    if (!satellite.tracked) continue;
+    ++tracked;
+    nlos += satellite.line_of_sight ? 0 : 1;
+    reflected += satellite.line_of_sight && satellite.reflections > 0 ? 1 : 0;
+    if (std::abs(satellite.multipath_m) > std::abs(multipath)) multipath = satellite.multipath_m;
+  }
+  csv.word(fix_status_name(row.fix.status));
+  for (const int count : {row.fix.satellites, static_cast<int>(row.truth.satellites.size()), tracked, nlos, reflected})
+    csv.number(has_satellites ? count : kNaN, 0);
+  csv.numbers(3, row.fix.dop.gdop, row.fix.dop.pdop, row.fix.dop.hdop, row.fix.dop.vdop);
+  const bool fixed = row.fix.status != FixStatus::kNone;
+  const Eigen::Vector3d p = fixed ? run.frame.to_W(row.fix.p_A_E) : Eigen::Vector3d::Constant(kNaN);
+  const Eigen::Matrix3d covariance = R_WE * row.fix.covariance_E * R_WE.transpose();
+  const Eigen::Vector3d& truth = row.p_A_W_true;
+  csv.numbers(4, p.x(), p.y(), p.z(), std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)),
+              std::sqrt(covariance(2, 2)), truth.x(), truth.y(), truth.z(), p.x() - truth.x(), p.y() - truth.y(),
+              p.z() - truth.z(), multipath);
+  csv.integer(row.update.accepted ? 1 : 0).number(row.update.dimension > 0 ? row.update.nis : kNaN, 4);
+  csv.word(row.withheld ? "withheld" : row.fix.reason).end_row();
+}
+
+const char* const kSatelliteColumns =
+    "t_s,satellite,elevation_deg,azimuth_deg,line_of_sight,tracked,reflections,cn0_dbhz,multipath_m,ionosphere_m,"
+    "troposphere_m,"
+    "ephemeris_m,noise_m,base_m,carrier_multipath_m,range_rate_multipath_m_s";
+
+void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
+  for (std::size_t i = 0; i < row.truth.satellites.size(); ++i) {
+    const GnssObservationTruth& s = row.truth.satellites[i];
+    csv.number(row.fix.t - run.start, 3).word(s.sv.str());
+    csv.numbers(2, s.elevation_rad / kDegree, s.azimuth_rad / kDegree);
+    csv.integer(s.line_of_sight ? 1 : 0).integer(s.tracked ? 1 : 0).integer(s.reflections).number(row.cn0_dbhz[i], 2);
+    csv.numbers(4, s.multipath_m, s.ionosphere_m, s.troposphere_m, s.ephemeris_m, s.noise_m, s.base_m,
+                s.carrier_multipath_m, s.range_rate_multipath_m_s);
+    csv.end_row();
+  }
+}
+
+const char* const kKeyframeColumns =
+    "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
+    "status,"
+    "iterations,rms_m";
+
+void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run) {
+  const Eigen::Vector3d& p = row.X_WL_true.p;
+  const Eigen::Vector3d prior = row.X_WL_prior.p - p, registered = row.X_WL_registered.p - p;
+  csv.number(row.t - run.start, 3).integer(static_cast<std::int64_t>(row.points));
+  const double known = run.registers ? 1.0 : kNaN;
+  csv.numbers(4, p.x(), p.y(), p.z(), prior.norm(), prior.z(), known * registered.norm(), known * registered.z());
+  csv.word(word(row.status)).integer(row.iterations).number(row.rms_m, 4).end_row();
+}
+
+const char* const kImuColumns = "t_ns,dt_s,gx_rad,gy_rad,gz_rad,ax_m_s,ay_m_s,az_m_s,lost";
+
+void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run) {
+  csv.integer(sample.t.ns - run.start.ns).exact(sample.dt_s);
+  for (const Eigen::Vector3d* triad : {&sample.dtheta_U, &sample.dv_U})
+    for (const double value : *triad) csv.exact(value);
+  csv.integer(sample.lost ? 1 : 0).end_row();
+}
+
+const char* const kFixColumns =
+    "t_ns,offered,status,x_m,y_m,z_m,xx_m2,xy_m2,xz_m2,yy_m2,yz_m2,zz_m2,vx_m_s,vy_m_s,vz_m_s,vxx_m2_s2,vxy_m2_s2,"
+    "vxz_m2_s2,vyy_m2_s2,vyz_m2_s2,vzz_m2_s2";
+
+void write_fix(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
+  const GnssFix& fix = row.fix;
+  csv.integer(fix.t.ns - run.start.ns).integer(row.withheld ? 0 : 1).word(fix_status_name(fix.status));
+  const auto add = [&csv](const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
+    for (const double value : mean) csv.exact(value);
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j) csv.exact(0.5 * (covariance(i, j) + covariance(j, i)));
+  };
+  add(fix.p_A_E, fix.covariance_E);
+  add(fix.v_A_E, fix.velocity_covariance_E);
+  csv.end_row();
 }
 
 }  // namespace canyon::mission

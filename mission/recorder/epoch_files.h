@@ -1,13 +1,29 @@
 #pragma once
 
-#include <string>
-
-#include "canyon/core/result.h"
-#include "canyon/mission/recorder/run_record.h"
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/messages.h"
+#include "canyon/mission/recorder/csv_writer.h"
+#include "canyon/mission/recorder/rows.h"
 
 namespace canyon::mission {
 
-/// The CSV files of one run, into directory/epochs.
-Status write_epochs(const std::string& directory, const RunRecord& record);
+/// What the columns of a run refer to.
+struct RowPlace {
+  LocalFrame frame;
+  GpsTime start;
+  bool registers = false;  ///< else the errors of registered keyframes are undefined
+};
+
+/// Columns and rows of epochs/RUN_*.csv (docs/results.md).
+extern const char *const kNavColumns, *const kGnssColumns, *const kSatelliteColumns, *const kKeyframeColumns;
+void write(CsvWriter& csv, const NavRow& row, const RowPlace& run);
+void write(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
+void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
+void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run);
+
+/// What a filter is given, to the last bit: IMU messages, and fixes in E with their covariances.
+extern const char *const kImuColumns, *const kFixColumns;
+void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run);
+void write_fix(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 
 }  // namespace canyon::mission

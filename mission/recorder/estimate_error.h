@@ -1,7 +1,7 @@
 #pragma once
 
 #include "canyon/core/units.h"
-#include "canyon/mission/recorder/run_record.h"
+#include "canyon/mission/recorder/rows.h"
 
 namespace canyon::mission {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "canyon/mission/recorder/estimate_error.h"
+#include <optional>
+#include <vector>
 
 namespace canyon::study {
 
@@ -20,39 +20,50 @@ double student_975(int degrees) {
          (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
 }
 
+/// Calls visit(time since the start, by how much b's error is the larger one) for the epochs of equal time, in order.
+template <class Visit>
+Status for_equal_times(const RowStore<EpochError>& a, const RowStore<EpochError>& b, GpsTime start,
+                       const Visit& visit) {
+  RowStore<EpochError>::Reader reader_a(a), reader_b(b);
+  CANYON_TRY(std::optional<EpochError> of_a, reader_a.next());
+  CANYON_TRY(std::optional<EpochError> of_b, reader_b.next());
+  while (of_a && of_b) {
+    const GpsTime ta = of_a->t, tb = of_b->t;
+    if (ta == tb) visit(ta - start, of_b->norm_m() - of_a->norm_m());
+    if (ta <= tb) {
+      CANYON_TRY(of_a, reader_a.next());
+    }
+    if (tb <= ta) {
+      CANYON_TRY(of_b, reader_b.next());
+    }
+  }
+  return Ok{};
+}
+
 }  // namespace
 
-PairedErrors paired_errors(const mission::RunRecord& a, const mission::RunRecord& b) {
-  PairedErrors out{.a = a.name, .b = b.name};
-  std::vector<double> times_s, differences_m;
-  for (std::size_t i = 0, k = 0; i < a.nav.size() && k < b.nav.size();) {
-    const GpsTime ta = a.nav[i].t, tb = b.nav[k].t;
-    if (ta == tb) {
-      times_s.push_back(ta - a.start);
-      differences_m.push_back(mission::estimate_error(b.nav[k]).position_W_m.norm() -
-                              mission::estimate_error(a.nav[i]).position_W_m.norm());
-    }
-    i += ta <= tb ? 1 : 0;
-    k += tb <= ta ? 1 : 0;
-  }
-  out.epochs = static_cast<int>(differences_m.size());
-  if (differences_m.empty()) return out;
+Result<PairedErrors> paired_errors(const RowStore<EpochError>& a, const RowStore<EpochError>& b, GpsTime start) {
+  PairedErrors out;
   double sum = 0.0, worse = 0.0;
-  for (const double d : differences_m) {
-    sum += d;
-    worse += d > 0.0 ? 1.0 : 0.0;
-  }
+  double first_s = 0.0, last_s = 0.0;
+  CANYON_TRY_STATUS(for_equal_times(a, b, start, [&](double t_s, double difference_m) {
+    if (out.epochs++ == 0) first_s = t_s;
+    last_s = t_s;
+    sum += difference_m;
+    worse += difference_m > 0.0 ? 1.0 : 0.0;
+  }));
+  if (out.epochs == 0) return out;
   out.mean_m = sum / out.epochs;
   out.worse_share = worse / out.epochs;
 
-  const int batches = static_cast<int>((times_s.back() - times_s.front()) / kBatch_s);
+  const int batches = static_cast<int>((last_s - first_s) / kBatch_s);
   if (batches < 2) return out;
   std::vector<double> sums(static_cast<std::size_t>(batches), 0.0), counts(sums);
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const auto batch = std::min(sums.size() - 1, static_cast<std::size_t>((times_s[i] - times_s.front()) / kBatch_s));
-    sums[batch] += differences_m[i];
+  CANYON_TRY_STATUS(for_equal_times(a, b, start, [&](double t_s, double difference_m) {
+    const auto batch = std::min(sums.size() - 1, static_cast<std::size_t>((t_s - first_s) / kBatch_s));
+    sums[batch] += difference_m;
     counts[batch] += 1.0;
-  }
+  }));
   double squares = 0.0;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double deviation = sums[i] / counts[i] - out.mean_m;
@@ -61,13 +72,6 @@ PairedErrors paired_errors(const mission::RunRecord& a, const mission::RunRecord
   const double sigma = std::sqrt(squares / (batches - 1) / batches), reach = student_975(batches - 1) * sigma;
   out.low_m = out.mean_m - reach;
   out.high_m = out.mean_m + reach;
-  return out;
-}
-
-std::vector<PairedErrors> paired_with_first(const std::vector<mission::RunRecord>& records) {
-  std::vector<PairedErrors> out;
-  const bool open = std::all_of(records.begin(), records.end(), [](const auto& record) { return record.open_loop; });
-  for (std::size_t i = 1; open && i < records.size(); ++i) out.push_back(paired_errors(records.front(), records[i]));
   return out;
 }
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "canyon/mission/recorder/run_record.h"
+#include "canyon/study/results/run_statistics.h"
 
 namespace canyon::study {
 
@@ -21,9 +20,7 @@ struct PairedErrors {
 /// of batch means: Law & Kelton, Simulation Modeling and Analysis, section 9.5.3).
 inline constexpr double kBatch_s = 30.0;
 
-PairedErrors paired_errors(const mission::RunRecord& a, const mission::RunRecord& b);
-
-/// Every run against the first; empty unless all were driven on one tape.
-std::vector<PairedErrors> paired_with_first(const std::vector<mission::RunRecord>& records);
+/// The errors of each in the order of time, of runs that began at `start`; `a`, `b` of the answer are yet to be named.
+Result<PairedErrors> paired_errors(const RowStore<EpochError>& a, const RowStore<EpochError>& b, GpsTime start);
 
 }  // namespace canyon::study

@@ -8,14 +8,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/core/files/file_hash.h"
 #include "canyon/core/files/files.h"
-#include "canyon/core/process/progress.h"
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
-#include "canyon/mission/motion/route_tape.h"
-#include "canyon/mission/recorder/epoch_files.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
-#include "canyon/study/results/paired_errors.h"
 
 namespace canyon::study {
 
@@ -68,7 +65,7 @@ Json two_by_two_json(const std::vector<RunSummary>& summaries) {
 Json loop_json(const Results& results) {
   if (!results.records.front().open_loop) return {{"kind", "closed"}};
   Json paired = Json::array();
-  for (const PairedErrors& p : paired_with_first(results.records))
+  for (const PairedErrors& p : results.paired)
     paired.push_back({{"a", p.a},
                       {"b", p.b},
                       {"epochs", p.epochs},
@@ -94,20 +91,23 @@ Result<std::string> results_hash(const std::string& directory, Json summary) {
   std::sort(files.begin(), files.end());
   std::string digest;
   for (const auto& file : files) {
-    throw_if_cancelled();
-    CANYON_TRY(const std::string bytes, read_text_file(directory + "/" + file));
-    digest += file + " " + sha256_hex(bytes) + "\n";
+    CANYON_TRY(const std::string of_file, sha256_of_file(directory + "/" + file));
+    digest += file + " " + of_file + "\n";
   }
   remove_timing(summary);
   return sha256_hex(digest + summary.dump());
 }
 
 Json manifest_json(const Results& results) {
-  Json runs = Json::object();
-  Json files = Json::object();
+  Json runs = Json::object(), files = Json::object(), initial = Json::object();
   for (const mission::RunRecord& record : results.records) {
     for (const mission::InputFile& file : record.files) files[file.path] = file.sha256;
     mission::MissionConfig config = record.config;
+    const Eigen::Vector3d &p = record.initial_X_WB.p, &v = record.initial_v_WB_W;
+    const Eigen::Quaterniond& q = record.initial_X_WB.R;
+    initial[record.name] = {{"position_m", {p.x(), p.y(), p.z()}},
+                            {"attitude_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+                            {"velocity_m_s", {v.x(), v.y(), v.z()}}};
     runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
   }
   return {{"schema", 1},
@@ -119,6 +119,7 @@ Json manifest_json(const Results& results) {
           {"instruction_set", scene::ray_tracer_instruction_set()},
           {"scene_hash", results.mission->scene->hash()},
           {"files", files},
+          {"initial_estimates", initial},
           {"configuration", runs}};
 }
 
@@ -282,39 +283,7 @@ Json scene_json(const scene::Scene& scene) {
   return out;
 }
 
-namespace {
-
-/// The run's true motion, for open loops.
-Status write_tape(const std::string& directory, const Results& results, const mission::RunRecord& record) {
-  std::error_code ignored;
-  std::filesystem::create_directories(directory + "/tapes", ignored);
-  std::string bytes =
-      tape_header({.source = record.open_loop ? results.tape_source : record.name + " of " + record.config.run.name,
-                   .scene_hash = results.mission->scene->hash(),
-                   .traffic = mission::traffic_text(record.config),
-                   .nodes = {}});
-  for (TapeNode node : record.tape) {
-    node.motion.t.ns -= record.start.ns;
-    append_tape_node(bytes, node);
-  }
-  return write_text_file(directory + "/tapes/" + record.name + ".tape", bytes);
-}
-
-}  // namespace
-
 Result<std::string> write_results(const std::string& directory, const Results& results) {
-  std::error_code ignored;
-  std::filesystem::create_directories(directory + "/epochs", ignored);
-  std::filesystem::create_directories(directory + "/clouds", ignored);
-  for (const mission::RunRecord& record : results.records) {
-    throw_if_cancelled();
-    CANYON_TRY_STATUS(mission::write_epochs(directory, record));
-    throw_if_cancelled();
-    const std::string stem = directory + "/clouds/" + record.name;
-    CANYON_TRY_STATUS(lidar::write_pcd(stem + "_prior.pcd", record.prior_map));
-    if (record.registers()) CANYON_TRY_STATUS(lidar::write_pcd(stem + "_registered.pcd", record.registered_map));
-    if (record.config.run.record_tape) CANYON_TRY_STATUS(write_tape(directory, results, record));
-  }
   Json summary = summary_json(results);
   CANYON_TRY(const std::string hash, results_hash(directory, summary));
   summary["hash"] = hash;

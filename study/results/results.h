@@ -9,6 +9,7 @@
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/recorder/run_record.h"
+#include "canyon/study/results/paired_errors.h"
 #include "canyon/study/results/summary.h"
 
 namespace canyon::study {
@@ -19,6 +20,7 @@ struct Results {
   std::string tape_source;                            ///< what an open loop ran on
   std::vector<mission::RunRecord> records;
   std::vector<RunSummary> summaries;  ///< same index
+  std::vector<PairedErrors> paired;   ///< every run against the first; of open loops alone
   double wall_s = 0.0;
   double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
   int threads = 0;
@@ -34,7 +36,8 @@ nlohmann::ordered_json summary_json(const Results& results);
 /// The largest resident memory of the process so far.
 double peak_memory_mb();
 
-/// Writes summary.json, manifest.json, scene.json, epochs/ and clouds/ into an existing directory; returns the hash.
+/// Writes summary.json, manifest.json and scene.json beside the epochs/ and clouds/ that the runs' recorders have
+/// written (mission/recorder/run_files.h); returns the hash over all.
 Result<std::string> write_results(const std::string& directory, const Results& results);
 
 /// The scene from above, for drawing.

@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "canyon/mission/recorder/run_record.h"
+#include "canyon/study/results/run_statistics.h"
 
 namespace canyon::study {
-
-/// Statistics of an error over time; NaN without samples.
-struct ErrorStatistics {
-  double rms = kNaN, p95 = kNaN, max = kNaN;
-};
-/// Of |x|; p95 by nearest rank.
-ErrorStatistics error_statistics(std::vector<double> x);
 
 /// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
 struct RunSummary {
@@ -46,10 +40,7 @@ struct RunSummary {
   double real_time_factor() const { return wall_s > 0 ? duration_s / wall_s : kNaN; }
 };
 
-/// |dGDOP| beyond which consecutive epochs count as a jump.
-inline constexpr double kDopJump = 2.0;
-
-RunSummary summarize(const mission::RunRecord& record);
+Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatistics& statistics);
 
 /// The four runs of a 2 x 2: GNSS and IMU of the first and the second fidelity compared, each with each.
 struct TwoByTwo {

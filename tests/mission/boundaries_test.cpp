@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "canyon/core/files/files.h"
+#include "canyon/mission/recorder/run_files.h"
 #include "canyon/study/results/results.h"
 #include "canyon/tests/mission/short_mission.h"
 #include "canyon/tests/support/temporary_folder.h"
@@ -84,12 +85,12 @@ TEST(Boundaries, WhatIsNotFiniteIsRefusedWithItsProducersName) {
   keyframe.X_WL_registered.R.x() = kNaN;
   EXPECT_EQ(told(boundaries.check(keyframe)), could_not + "the registration gave an attitude of nan at 3 s");
 
-  RunRecord record;
-  record.simulated_s = 9.0;
-  record.nav.emplace_back();
-  EXPECT_EQ(told(boundaries.check(record)), "passes");
-  record.nav[0].true_speed_m_s = kNaN;
-  EXPECT_EQ(told(boundaries.check(record)), could_not + "the recorder gave a true speed of nan at 9 s");
+  NavRow row;
+  row.t = kStart + 9.0;
+  EXPECT_EQ(told(boundaries.check(row)), "passes");
+  row.true_speed_m_s = kNaN;
+  EXPECT_EQ(told(boundaries.check(row)), could_not + "the recorder gave a true speed of nan at 9 s");
+  EXPECT_EQ(told(boundaries.check_end(9.0, kInfinity)), could_not + "the recorder gave a distance of inf at 9 s");
 }
 
 // 2026-11-22: both values lie in their ranges, and yet the body's spring diverged until the process was aborted.
@@ -120,22 +121,27 @@ TEST(Boundaries, AnAutonomysCommandThatIsNotFiniteIsTheMissionsOutcome) {
     const MissionConfig config = short_config("low", "low");
     const auto mission = prepare(config, scenes());
     ASSERT_TRUE(mission.ok()) << mission.error().str();
-    auto record = run_mission(config, *mission, nullptr,
-                              {.tape = nullptr, .autonomy = std::make_unique<FaultyAutonomy>(good_commands)});
+    const canyon::testing::TemporaryFolder folder;
+    const std::string directory = folder.path().string();
+    const auto files = RunFiles::create(directory, "low", config, *mission, nullptr);
+    MemoryRecorder rows;
+    Recorders both({files->get(), &rows});
+    auto record =
+        run_mission(config, *mission, nullptr,
+                    {.tape = nullptr, .recorder = &both, .autonomy = std::make_unique<FaultyAutonomy>(good_commands)});
     ASSERT_TRUE(record.ok()) << record.error().str();
     EXPECT_EQ(record->outcome, "autonomy_fault");
     ASSERT_TRUE(record->failure);
     EXPECT_EQ(record->failure->detail, "its command was nan m/s, 0.0 1/m");
     EXPECT_NEAR(record->failure->t_s, 0.01 * (good_commands + 1), 1e-9);
-    EXPECT_EQ(record->nav.size(), static_cast<std::size_t>(good_commands / 10));
+    EXPECT_EQ(rows.nav.size(), static_cast<std::size_t>(good_commands / 10));
 
     study::Results results;
     results.mission = &*mission;
     record->name = record->gnss = record->imu = "low";
-    results.summaries.push_back(study::summarize(*record));
+    results.summaries.push_back(*study::summarize(*record, study::RunStatistics(record->frame, directory)));
     results.records.push_back(*std::move(record));
-    const canyon::testing::TemporaryFolder folder;
-    const auto hash = study::write_results(folder.path().string(), results);
+    const auto hash = study::write_results(directory, results);
     ASSERT_TRUE(hash.ok()) << hash.error().str();
     EXPECT_THAT(*read_text_file(folder.file("summary.json")), HasSubstr("autonomy_fault"));
   }

@@ -5,14 +5,13 @@
 
 #include "canyon/core/units.h"
 #include "canyon/inertial/errors/error_link.h"
-#include "canyon/study/results/summary.h"
-#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/mission/summary_of.h"
 
 namespace canyon::mission::testing {
 namespace {
 
 /// How far from its route the vehicle truly came.
-double largest_distance_from_route(const RunRecord& record, const MissionConfig& config) {
+double largest_distance_from_route(const RecordedRun& record, const MissionConfig& config) {
   const auto mission = prepare(config, scenes());
   const Path& route = mission->prior.route;
   double worst = 0;
@@ -24,15 +23,15 @@ double largest_distance_from_route(const RunRecord& record, const MissionConfig&
 }
 
 TEST(Couplings, WithTruthAsPoseTheMissionSucceeds) {
-  const RunRecord record = drive(short_config("high", "high", "[run]\ntruth_as_pose = true"));
+  const RecordedRun record = drive(short_config("high", "high", "[run]\ntruth_as_pose = true"));
   EXPECT_EQ(record.outcome, "success") << (record.failure ? record.failure->detail : "");
-  EXPECT_GT(study::summarize(record).fix_error_rms_m, 0.0);  // the sensors err as ever; nobody listens to them
+  EXPECT_GT(summary_of(record).fix_error_rms_m, 0.0);  // the sensors err as ever; nobody listens to them
 }
 
 TEST(Couplings, WithFixesWithheldTheEstimateDriftsAndTheVehicleLeavesItsPath) {
   const MissionConfig with_fixes = short_config("low", "high");
   const MissionConfig without = short_config("low", "high", "[run]\nwithhold_fixes_after_s = 0.0");
-  const RunRecord aided = drive(with_fixes), coasting = drive(without);
+  const RecordedRun aided = drive(with_fixes), coasting = drive(without);
   EXPECT_EQ(aided.outcome, "success") << (aided.failure ? aided.failure->detail : "");
   EXPECT_NE(coasting.outcome, "success");
   // It keeps to its path by its own estimate, at most max_offset_m beside the centre line. With fixes, each within 0.5
@@ -49,7 +48,7 @@ TEST(Couplings, WithFixesWithheldTheEstimateDriftsAndTheVehicleLeavesItsPath) {
 TEST(Couplings, WithFixesWithheldTheDriftIsThatOfAnUnaidedStrapdown) {
   const MissionConfig config =
       short_config("low", "low", "[run]\nwithhold_fixes_after_s = 0.0\ninitial_attitude_error_deg = [0.1, 0.1, 1.0]");
-  const RunRecord record = drive(config);
+  const RecordedRun record = drive(config);
   const NavRow &first = record.nav.front(), &last = record.nav.back();
   const double t = last.t - record.start;
   ASSERT_GT(t, 10.0);
@@ -69,7 +68,7 @@ TEST(Couplings, WithFixesWithheldTheDriftIsThatOfAnUnaidedStrapdown) {
 
 // What bends around an edge does so whatever the wall is made of: satellites received that way are left out of the sum.
 TEST(Couplings, WithAbsorbingFacetsReflectionsAndMultipathVanish) {
-  const auto reflections_and_multipath = [](const RunRecord& record) {
+  const auto reflections_and_multipath = [](const RecordedRun& record) {
     double reflections = 0, multipath = 0;
     for (const GnssRow& row : record.gnss_rows) {
       for (const auto& satellite : row.truth.satellites) {
@@ -94,14 +93,14 @@ TEST(Couplings, TwoMetresAddedToTheEstimatesHeightLiftThePriorMapByTwoMetres) {
   const std::string lift = "estimate_up_offset_m = 2.0\n", bare = "[scene]\nempty = true\n";
   // Bare terrain of slope up to 8 %: the nearest surface of a point 2 m above it is 2 cos^2(slope) below, 1.987 m at
   // the least.
-  const RunRecord level = drive(short_config("low", "low", truth + bare));
-  const RunRecord lifted = drive(short_config("low", "low", truth + lift + bare));
+  const RecordedRun level = drive(short_config("low", "low", truth + bare));
+  const RecordedRun lifted = drive(short_config("low", "low", truth + lift + bare));
   EXPECT_NEAR(lifted.prior_quality.map_error_up_mean_m - level.prior_quality.map_error_up_mean_m, 2.0, 0.015);
   EXPECT_NEAR(lifted.prior_quality.map_error_up_rms_m, 2.0, 0.02);
   // In the city a lifted point often finds another level surface nearer than its own, so compare the maps themselves:
   // the same drive, the same points, each 2 m higher. 2 m are whole voxels; rounding is of heights below 64 m.
-  const RunRecord on = drive(short_config("low", "low", truth)),
-                  above = drive(short_config("low", "low", truth + lift));
+  const RecordedRun on = drive(short_config("low", "low", truth)),
+                    above = drive(short_config("low", "low", truth + lift));
   ASSERT_EQ(above.prior_map.size(), on.prior_map.size());
   ASSERT_FALSE(on.prior_map.empty());
   for (std::size_t i = 0; i < on.prior_map.size(); ++i) {
@@ -112,7 +111,7 @@ TEST(Couplings, TwoMetresAddedToTheEstimatesHeightLiftThePriorMapByTwoMetres) {
 }
 
 TEST(Couplings, WithTheLidarBlindedTheAutonomyStops) {
-  const RunRecord record = drive(short_config("low", "low", "[time]\nlimit_s = 20.0\n[lidar]\nblinded = true"));
+  const RecordedRun record = drive(short_config("low", "low", "[time]\nlimit_s = 20.0\n[lidar]\nblinded = true"));
   EXPECT_EQ(record.nav.back().state, AutonomyState::kBlind);
   // It may roll for blind_after_s at most, from standstill.
   EXPECT_LT(record.distance_m, 1.0);
@@ -124,7 +123,7 @@ TEST(Couplings, WithTheLidarBlindedTheAutonomyStops) {
 TEST(Couplings, ALidarBlindedWhileDrivingStopsTheVehicle) {
   const MissionConfig config =
       short_config("low", "low", "[time]\nlimit_s = 15.0\n[run]\nwithhold_scans_after_s = 8.0");
-  const RunRecord record = drive(config);
+  const RecordedRun record = drive(config);
   const auto at = [&](double t_s) -> const NavRow& {
     return *std::find_if(record.nav.begin(), record.nav.end(),
                          [&](const NavRow& row) { return row.t - record.start > t_s - 0.05; });
@@ -144,9 +143,9 @@ TEST(Couplings, ALidarBlindedWhileDrivingStopsTheVehicle) {
 }
 
 TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
-  const RunRecord city = drive(short_config("high", "high"));
-  const RunRecord emptied = drive(short_config("high", "high", "[scene]\nempty = true"));
-  const study::RunSummary in_city = study::summarize(city), alone = study::summarize(emptied);
+  const RecordedRun city = drive(short_config("high", "high"));
+  const RecordedRun emptied = drive(short_config("high", "high", "[scene]\nempty = true"));
+  const study::RunSummary in_city = summary_of(city), alone = summary_of(emptied);
   EXPECT_GT(in_city.nlos_share, 0.0);
   EXPECT_EQ(alone.nlos_share, 0.0);
   EXPECT_EQ(alone.multipath_share, 0.0);
@@ -155,11 +154,11 @@ TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
   // Open sky: the same receiver in the city that simply sees everything above the mask. The noise is the same, so the
   // errors of each fix are, but for where the vehicle stood: the atmosphere's residual, some centimetres over the 5 km
   // to the base station, changes by 1e-4 m over the 10 m that the two drives may be apart, times a DOP below 10.
-  const RunRecord open_sky = drive(short_config("high", "high", "[gnss]\npaths = \"none\"\ndiffraction = \"none\""));
+  const RecordedRun open_sky = drive(short_config("high", "high", "[gnss]\npaths = \"none\"\ndiffraction = \"none\""));
   const std::size_t epochs = std::min(emptied.gnss_rows.size(), open_sky.gnss_rows.size());
   ASSERT_GT(epochs, 30U);
   for (std::size_t i = 0; i < epochs; ++i) {
-    const auto error = [i](const RunRecord& record) {
+    const auto error = [i](const RecordedRun& record) {
       const GnssRow& row = record.gnss_rows[i];
       return Eigen::Vector3d(record.frame.to_W(row.fix.p_A_E) - row.p_A_W_true);
     };
@@ -171,7 +170,7 @@ TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
 // the bit, road roughness and LIDAR noise included, and only what the two sensors say may differ.
 TEST(Couplings, LowAndHighDifferOnlyThroughTheirModels) {
   const std::string truth = "[time]\nlimit_s = 15.0\n[run]\ntruth_as_pose = true\n";
-  const RunRecord low = drive(short_config("low", "low", truth)), high = drive(short_config("high", "high", truth));
+  const RecordedRun low = drive(short_config("low", "low", truth)), high = drive(short_config("high", "high", truth));
   ASSERT_EQ(low.nav.size(), high.nav.size());
   for (std::size_t i = 0; i < low.nav.size(); ++i) {
     ASSERT_EQ(low.nav[i].X_WB_true.p, high.nav[i].X_WB_true.p) << i;
@@ -213,7 +212,7 @@ TEST(Couplings, LowAndHighShareTheWhiteNoiseOfTheImu) {
 // "registered" it does.
 TEST(Couplings, RegistrationReachesTheAutonomyOnlyWhereItIsAskedFor) {
   const auto path_with = [](const std::string& map, const std::string& method) {
-    const RunRecord record = drive(short_config(
+    const RecordedRun record = drive(short_config(
         "low", "low",
         "[time]\nlimit_s = 10.0\n[registration]\nmethod = \"" + method + "\"\n[autonomy]\nmap = \"" + map + "\""));
     std::vector<double> y_m;

@@ -52,12 +52,17 @@ inline SceneCache& scenes() {
   return cache;
 }
 
-inline RunRecord drive(const MissionConfig& config, const Tape* tape = nullptr) {
+/// A run and all that it gave on the way.
+struct RecordedRun : RunRecord, MemoryRecorder {};
+
+inline RecordedRun drive(const MissionConfig& config, const Tape* tape = nullptr) {
   auto mission = prepare(config, scenes());
   EXPECT_TRUE(mission.ok()) << (mission.ok() ? "" : mission.error().str());
-  auto record = run_mission(config, *mission, nullptr, {.tape = tape, .autonomy = nullptr});
+  RecordedRun run;
+  auto record = run_mission(config, *mission, nullptr, {.tape = tape, .recorder = &run, .autonomy = nullptr});
   EXPECT_TRUE(record.ok()) << (record.ok() ? "" : record.error().str());
-  return *std::move(record);
+  static_cast<RunRecord&>(run) = *std::move(record);
+  return run;
 }
 
 inline double position_error_m(const NavRow& row) {

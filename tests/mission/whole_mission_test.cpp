@@ -2,13 +2,12 @@
 #include <cmath>
 
 #include "canyon/core/units.h"
-#include "canyon/study/results/summary.h"
-#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/mission/summary_of.h"
 
 namespace canyon::mission::testing {
 namespace {
 
-RunRecord whole(const std::string& fidelity, bool truth_as_pose) {
+RecordedRun whole(const std::string& fidelity, bool truth_as_pose) {
   MissionFile file = *MissionFile::load("");
   file.set_option("run.truth_as_pose", ConfigNode::of(truth_as_pose), "test");
   const auto config = file.resolve(fidelity);
@@ -17,8 +16,8 @@ RunRecord whole(const std::string& fidelity, bool truth_as_pose) {
 }
 
 TEST(WholeMissionNightly, WithTruthAsPoseEveryWaypointIsReached) {
-  const RunRecord record = whole("low", true);
-  const study::RunSummary summary = study::summarize(record);
+  const RecordedRun record = whole("low", true);
+  const study::RunSummary summary = summary_of(record);
   EXPECT_EQ(summary.outcome, "success") << (summary.failure ? summary.failure->detail : "");
   EXPECT_EQ(summary.waypoints_reached, 11);
   EXPECT_EQ(summary.mission_waypoints_reached, 3);
@@ -34,8 +33,8 @@ TEST(WholeMissionNightly, WithTruthAsPoseEveryWaypointIsReached) {
 // With the true pose as prior, what registration adds is its own error: the floor of the method. Asked for is a tenth
 // of the voxels that both clouds are thinned to (0.5 m); measured 2026-11-21: 0.030 m, and 0.022 m of the map.
 TEST(WholeMissionNightly, RegistrationOnTruthStaysWithinATenthOfItsVoxels) {
-  const RunRecord record = whole("low", true);
-  const study::RunSummary summary = study::summarize(record);
+  const RecordedRun record = whole("low", true);
+  const study::RunSummary summary = summary_of(record);
   EXPECT_EQ(summary.registration_prior_rms_m, 0.0);
   EXPECT_GT(summary.registration_rms_m, 0.0);
   EXPECT_LT(summary.registration_rms_m, 0.1 * record.config.registration.leaf_m);
@@ -44,8 +43,8 @@ TEST(WholeMissionNightly, RegistrationOnTruthStaysWithinATenthOfItsVoxels) {
 
 TEST(WholeMissionNightly, TheRecordOfARunReachesToItsEnd) {
   for (const char* fidelity : {"low", "high"}) {
-    const RunRecord record = whole(fidelity, false);
-    const study::RunSummary summary = study::summarize(record);
+    const RecordedRun record = whole(fidelity, false);
+    const study::RunSummary summary = summary_of(record);
     const double period_s = 1.0 / record.config.lidar.rate_hz;
     // A row for every scan, up to where the run ended.
     EXPECT_EQ(record.nav.size(), static_cast<std::size_t>(summary.duration_s / period_s + 1e-6)) << fidelity;

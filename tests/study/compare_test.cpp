@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/process/progress.h"
+#include "canyon/mission/run.h"
 
 namespace canyon::study {
 namespace {
@@ -31,7 +32,7 @@ class CompareTest : public ::testing::Test {
   static void SetUpTestSuite() {
     auto file = mission::MissionFile::parse(kMission, "my.toml");
     comparison_ = new Comparison(*prepare_comparison(*file, plan_runs({"low", "high"}, true)));
-    results_ = new Results(*compare(*comparison_, false));
+    results_ = new Results(*compare(*comparison_, "", false));
   }
   static void TearDownTestSuite() {
     delete results_;
@@ -79,8 +80,13 @@ TEST_F(CompareTest, RunsComeInTheOrderOfThePlan) {
 // first fixes, taken at nearly the same true place, have the same error to the bit of the draw.
 TEST_F(CompareTest, PairedRunsShareTheirNoise) {
   const auto error = [&](std::size_t run) {
-    const auto& row = results_->records[run].gnss_rows.front();
-    return Eigen::Vector3d(results_->records[run].frame.to_W(row.fix.p_A_E) - row.p_A_W_true);
+    mission::PreparedMission mission = comparison_->missions[run];
+    mission.time_limit_s = 1.0;
+    mission::MemoryRecorder rows;
+    const auto record = mission::run_mission(comparison_->configs[run], mission, nullptr,
+                                             {.tape = nullptr, .recorder = &rows, .autonomy = nullptr});
+    const auto& row = rows.gnss_rows.front();
+    return Eigen::Vector3d(record->frame.to_W(row.fix.p_A_E) - row.p_A_W_true);
   };
   // ECEF positions of 6e6 m carry 1e-9 m.
   EXPECT_LT((error(0) - error(3)).norm(), 1e-8);  // low and low_gnss_high_imu
@@ -149,7 +155,7 @@ TEST(Cancel, StopsARunAtOnce) {
   auto file = mission::MissionFile::parse(kMission, "my.toml");
   const auto comparison = prepare_comparison(*file, plan_runs({"low"}, false));
   set_cancel_requested(true);
-  EXPECT_THROW((void)compare(*comparison, false), Cancelled);
+  EXPECT_THROW((void)compare(*comparison, "", false), Cancelled);
   set_cancel_requested(false);
 }
 

@@ -4,8 +4,7 @@
 #include <limits>
 
 #include "canyon/core/units.h"
-#include "canyon/study/results/summary.h"
-#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/mission/summary_of.h"
 #include "canyon/tests/support/outside_program.h"
 #include "canyon/tests/support/test_data.h"
 
@@ -82,7 +81,7 @@ TEST(CityMissions, LyonsWaypointsLieOnItsStreets) {
 /// Drives a city low and high; whatever the outcome, it has a reason, and the city shows in the satellites.
 void drive_both(const City& city) {
   for (const char* fidelity : {"low", "high"}) {
-    const study::RunSummary run = study::summarize(drive(city.config(fidelity)));
+    const study::RunSummary run = summary_of(drive(city.config(fidelity)));
     std::printf(
         "  %-4s %s%s%s; %d waypoints, %.0f m in %.0f s; fix error rms %.1f m, GDOP median %.1f, NLOS share %.2f; "
         "registration %.2f m rms after %.2f m; %.1f times real time\n",

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 
 const std::string kShort = "[time]\nlimit_s = 12.0\n[registration]\nmethod = \"gicp\"\n";
 
-Tape tape_of(const RunRecord& record, const MissionConfig& config) {
+Tape tape_of(const RecordedRun& record, const MissionConfig& config) {
   Tape tape{.source = record.name,
             .scene_hash = (*scenes().get(config.scene))->hash(),
             .traffic = traffic_text(config),
@@ -20,7 +20,7 @@ Tape tape_of(const RunRecord& record, const MissionConfig& config) {
   return tape;
 }
 
-void expect_same_bits(const RunRecord& a, const RunRecord& b) {
+void expect_same_bits(const RecordedRun& a, const RecordedRun& b) {
   ASSERT_EQ(a.nav.size(), b.nav.size());
   for (std::size_t i = 0; i < a.nav.size(); ++i) {
     EXPECT_EQ(a.nav[i].X_WB_true.p, b.nav[i].X_WB_true.p) << i;
@@ -38,9 +38,9 @@ void expect_same_bits(const RunRecord& a, const RunRecord& b) {
 TEST(TapeReplay, ARunOnItsOwnTapeIsThatRun) {
   for (const char* fidelity : {"low", "high", "paper"}) {
     const MissionConfig config = short_config(fidelity, fidelity, kShort);
-    const RunRecord closed = drive(config);
+    const RecordedRun closed = drive(config);
     const Tape tape = tape_of(closed, config);
-    const RunRecord open = drive(config, &tape);
+    const RecordedRun open = drive(config, &tape);
     SCOPED_TRACE(fidelity);
     expect_same_bits(closed, open);
     EXPECT_TRUE(open.open_loop);
@@ -51,11 +51,11 @@ TEST(TapeReplay, ARunOnItsOwnTapeIsThatRun) {
 // On one tape the true motion is the same whatever the sensors; and their rates need not be multiples of one another.
 TEST(TapeReplay, RatesChangeNothingOfTheTruth) {
   const MissionConfig config = short_config("low", "low", "[time]\nlimit_s = 6.0");
-  const RunRecord closed = drive(config);
+  const RecordedRun closed = drive(config);
   const Tape tape = tape_of(closed, config);
   for (const char* rates : {"[imu]\nrate_hz = 25.0", "[imu]\nrate_hz = 333.0\n[gnss]\nrate_hz = 3.0",
                             "[lidar]\nrate_hz = 7.0\n[gnss]\nrate_hz = 4.0"}) {
-    const RunRecord open = drive(short_config("low", "low", std::string("[time]\nlimit_s = 6.0\n") + rates), &tape);
+    const RecordedRun open = drive(short_config("low", "low", std::string("[time]\nlimit_s = 6.0\n") + rates), &tape);
     ASSERT_EQ(open.nav.size(), closed.nav.size()) << rates;
     for (std::size_t i = 0; i < open.nav.size(); ++i)
       EXPECT_EQ(open.nav[i].X_WB_true.p, closed.nav[i].X_WB_true.p) << rates;
@@ -67,7 +67,7 @@ TEST(TapeReplay, RatesChangeNothingOfTheTruth) {
 // Driven on truth, the closed loop does not depend on the rates of IMU and GNSS either.
 TEST(TapeReplay, DrivenOnTruthNoRateChangesTheMotion) {
   const auto path_with = [](const std::string& rates) {
-    const RunRecord record = drive(short_config(
+    const RecordedRun record = drive(short_config(
         "high", "high",
         "[time]\nlimit_s = 8.0\n[run]\ntruth_as_pose = true\n[autonomy]\nmodel = \"route_follower\"\n" + rates));
     return record.tape;
@@ -85,7 +85,7 @@ TEST(TapeReplay, DrivenOnTruthNoRateChangesTheMotion) {
 }
 
 TEST(TapeReplay, TruthAsPoseRecordsWhatTheFilterEstimates) {
-  const RunRecord record = drive(short_config("high", "high", "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = true"));
+  const RecordedRun record = drive(short_config("high", "high", "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = true"));
   EXPECT_GT(position_error_m(record.nav.back()), 0.0);
 }
 

@@ -1,0 +1,189 @@
+#include <cmath>
+
+#include "canyon/lidar/deskew.h"
+#include "canyon/mission/mission_run.h"
+
+// What is due within a master step.
+namespace canyon::mission {
+
+NavEstimate MissionRun::estimate(GpsTime t) const {
+  NavEstimate estimate = localizer_.estimate();
+  estimate.X_WB.p += (t - localizer_.at()) * estimate.v_WB_W;  // between two IMU samples
+  if (config_.run.truth_as_pose) {
+    const KinematicState truth = truth_at(t);
+    estimate.t = t;
+    estimate.X_WB = truth.X_WB;
+    estimate.v_WB_W = truth.v_WB_W;
+  }
+  estimate.X_WB.p.z() += config_.run.estimate_up_offset_m;
+  return estimate;
+}
+
+NavEstimate MissionRun::with_correction(NavEstimate estimate) const {
+  if (config_.autonomy.map == "registered") estimate.X_WB = mapper_.correction() * estimate.X_WB;
+  return estimate;
+}
+
+Status MissionRun::perform(const Due& due) {
+  switch (due.task) {
+    case Task::kImu:
+      return take_imu(due);
+    case Task::kGnss:
+      return take_gnss(due);
+    case Task::kLidar:
+      return take_scan(due);
+    case Task::kAutonomy:
+      return ask_autonomy(due);
+    case Task::kEpoch:
+      return record_epoch(due);
+    case Task::kCount:
+      break;
+  }
+  return Ok{};
+}
+
+Status MissionRun::take_imu(const Due& due) {
+  const ImuSample sample =
+      clock_.charge(Part::kImu, [&] { return imu_->sample(due.k, motion_, localizer_.at(), due.t); });
+  CANYON_TRY_STATUS(boundaries_.check(sample));
+  ++record_.counters["imu_samples"];
+  CANYON_TRY_STATUS(recorder_.imu(sample));
+  CANYON_TRY_STATUS(localizer_.take(sample, due.t));
+  motion_.forget_before(due.t);
+  estimated_motion_.append({due.t, estimate(due.t).X_WB});
+  return Ok{};
+}
+
+Status MissionRun::take_gnss(const Due& due) {
+  const KinematicState truth = truth_at(due.t);
+  const Eigen::Vector3d lever = config_.gnss.lever_arm_m;
+  const Eigen::Vector3d p_A_W = truth.X_WB * lever;
+  const Eigen::Vector3d v_A_W = truth.v_WB_W + truth.X_WB.R * truth.w_WB_B.cross(lever);
+  gnss::GnssOutput output =
+      clock_.charge(Part::kGnss, [&] { return gnss_->measure(due.k, truth.t, p_A_W, v_A_W, scene_); });
+  CANYON_TRY_STATUS(boundaries_.check(output));
+
+  GnssRow row;
+  row.fix = output.fix;
+  row.p_A_W_true = p_A_W;
+  const double withhold = config_.run.withhold_fixes_after_s;
+  row.withheld = withhold >= 0.0 && truth.t - mission_.start >= withhold;
+  for (const GnssObservationTruth& satellite : output.truth.satellites) {
+    double cn0 = kNaN;
+    for (const GnssObservation& observation : output.epoch.observations)
+      if (observation.sv == satellite.sv) cn0 = observation.cn0_dbhz;
+    row.cn0_dbhz.push_back(cn0);
+  }
+  row.truth = std::move(output.truth);
+  row.has_satellites = gnss_->has_satellites();
+  fixes_.push_back(std::move(row));
+  return localizer_.once_at(due.t, [this] { return use_fix(); });
+}
+
+Status MissionRun::use_fix() {
+  GnssRow& row = fixes_.front();
+  if (!row.withheld) {
+    const Pose before = localizer_.estimate().X_WB;
+    CANYON_TRY(row.update, localizer_.update(row.fix));
+    // A correction is not motion: what is buffered moves with it.
+    if (row.update.accepted) estimated_motion_.move(localizer_.estimate().X_WB * before.inverse());
+    CANYON_TRY_STATUS(boundaries_.check(localizer_.estimate()));
+  }
+  return record_fix();
+}
+
+Status MissionRun::record_fix() {
+  CANYON_TRY_STATUS(boundaries_.check(fixes_.front()));
+  CANYON_TRY_STATUS(recorder_.gnss(fixes_.front()));
+  fixes_.pop_front();
+  return Ok{};
+}
+
+Status MissionRun::take_scan(const Due& due) {
+  const double period = 1.0 / config_.lidar.rate_hz;
+  true_motion_.forget_before(due.t - period);
+  estimated_motion_.forget_before(due.t - period);
+  const double withhold = config_.run.withhold_scans_after_s;
+  if (withhold >= 0.0 && due.t - mission_.start >= withhold) return Ok{};
+  if (!scan_is_wanted(due.t)) return Ok{};
+
+  lidar::Scanner::InstancesAt moving;
+  if (!mission_.traffic.empty())
+    moving = [&](double after_s) { return mission_.traffic.at(due.t - mission_.start + after_s); };
+  lidar::LidarOutput output;
+  clock_.charge(Part::kLidar, [&] { scanner_->scan(due.k, due.t, true_motion_, scene_, moving, output); });
+  CANYON_TRY_STATUS(boundaries_.check(output));
+  ++record_.counters["lidar_scans"];
+  return localizer_.once_at(due.t, [this, scan = std::move(output.scan)] { return use_scan(scan); });
+}
+
+/// An autonomy that does not look leaves the map, which takes keyframes only. Whether a scan becomes one is known
+/// before it is made, if the filter has come there.
+bool MissionRun::scan_is_wanted(GpsTime t) const {
+  return autonomy_->looks() || localizer_.at() != t || mapper_.wants(estimate(t));
+}
+
+Status MissionRun::use_scan(const LidarScan& scan) {
+  const NavEstimate now = estimate(scan.t);
+  const Trajectory& motion = config_.run.truth_as_pose ? true_motion_ : estimated_motion_;
+  Trajectory to_now;  // where the filter was divided the buffer ends before the scan
+  const bool short_of = motion.poses().back().t < scan.t;
+  if (short_of) {
+    to_now = motion;
+    to_now.append({scan.t, now.X_WB});
+  }
+  const LidarScan deskewed =
+      clock_.charge(Part::kLidar, [&] { return lidar::deskew(scan, short_of ? to_now : motion, X_BL_); });
+  record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());
+
+  const Keyframe* keyframe = nullptr;
+  if (!deskewed.points.empty())
+    keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
+  if (keyframe != nullptr) {
+    CANYON_TRY_STATUS(boundaries_.check(*keyframe));
+    CANYON_TRY_STATUS(add_keyframe(deskewed, *keyframe, true_motion_.at(scan.t).value()));
+  }
+
+  const NavEstimate seen = with_correction(now);
+  clock_.charge(Part::kAutonomy, [&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); });
+  return Ok{};
+}
+
+Status MissionRun::ask_autonomy(const Due& due) {
+  const NavEstimate seen = with_correction(estimate(due.t));
+  const DriveCommand command = clock_.charge(Part::kAutonomy, [&] { return autonomy_->drive(seen); });
+  if (is_finite(command)) {
+    command_ = command;
+  } else if (!open_loop_) {
+    scorer_.autonomy_fault(truth_at(due.t), command);
+  }
+  return Ok{};
+}
+
+Status MissionRun::record_epoch(const Due& due) {
+  const KinematicState truth = truth_at(due.t);
+  NavRow row{due.t,
+             truth.X_WB,
+             truth.v_WB_W.head<2>().norm(),
+             {},
+             command_,
+             autonomy_->next_waypoint() + 1,
+             autonomy_->state()};
+  return localizer_.once_at(due.t, [this, row]() mutable -> Status {
+    row.estimate = localizer_.estimate();
+    row.estimate.X_WB.p.z() += config_.run.estimate_up_offset_m;
+    CANYON_TRY_STATUS(boundaries_.check(row));
+    return recorder_.epoch(row);
+  });
+}
+
+Status MissionRun::add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true) {
+  const KeyframeRow row{
+      keyframe.t,      keyframe.points,     X_WB_true * X_BL_, keyframe.X_WL_prior, keyframe.X_WL_registered,
+      keyframe.status, keyframe.iterations, keyframe.rms_m};
+  CANYON_TRY_STATUS(boundaries_.check(row));
+  maps_.add(deskewed, keyframe);
+  return recorder_.keyframe(row);
+}
+
+}  // namespace canyon::mission

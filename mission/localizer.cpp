@@ -1,0 +1,51 @@
+#include "canyon/mission/localizer.h"
+
+namespace canyon::mission {
+
+namespace {
+
+/// Takes the first share (0 to 1) of an IMU sample off it: rate and force count as constant over the sample.
+ImuSample take_share(ImuSample& sample, double share) {
+  ImuSample first = sample;
+  first.dt_s *= share;
+  first.dtheta_U *= share;
+  first.dv_U *= share;
+  sample.dt_s -= first.dt_s;
+  sample.dtheta_U -= first.dtheta_U;
+  sample.dv_U -= first.dv_U;
+  first.t = sample.t - sample.dt_s;
+  return first;
+}
+
+}  // namespace
+
+Status Localizer::take(ImuSample sample, GpsTime t) {
+  while (!waiting_.empty()) {
+    const Waiting next = std::move(waiting_.front());
+    waiting_.pop_front();
+    if (next.t > at_) CANYON_TRY_STATUS(predict(take_share(sample, (next.t - at_) / (t - at_)), next.t));
+    CANYON_TRY_STATUS(next.work());
+  }
+  return predict(sample, t);
+}
+
+Status Localizer::once_at(GpsTime t, std::function<Status()> work) {
+  if (at_ == t) return work();
+  waiting_.push_back({t, std::move(work)});
+  return Ok{};
+}
+
+Status Localizer::predict(const ImuSample& sample, GpsTime t) {
+  clock_.charge(Part::kFilter, [&] { filter_.predict(sample); });
+  ++predictions_;
+  at_ = t;
+  return boundaries_.check(filter_.estimate());
+}
+
+Result<fusion::UpdateReport> Localizer::update(const GnssFix& fix) {
+  const fusion::UpdateReport report = clock_.charge(Part::kFilter, [&] { return filter_.update(fix); });
+  updates_ += report.dimension > 0 ? 1 : 0;
+  return report;
+}
+
+}  // namespace canyon::mission

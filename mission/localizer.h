@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/mission/boundaries.h"
+#include "canyon/mission/part_clock.h"
+
+namespace canyon::mission {
+
+/// The localization filter of a run in its time: brings it from IMU sample to IMU sample, and in the middle of one to
+/// where something waits for it.
+class Localizer {
+ public:
+  Localizer(fusion::ErrorStateFilter filter, GpsTime start, const Boundaries& boundaries, PartClock& clock)
+      : filter_(std::move(filter)), boundaries_(boundaries), clock_(clock), at_(start) {}
+
+  void initialize(const Pose& X_WB, const Eigen::Vector3d& v_WB_W) { filter_.initialize(at_, X_WB, v_WB_W); }
+
+  /// Time of the last IMU sample, or of the part of one, that the filter has taken in.
+  GpsTime at() const { return at_; }
+  NavEstimate estimate() const { return filter_.estimate(); }
+
+  /// Takes in the sample that ends at t; what waits for a time within it is done there, in the order it came.
+  Status take(ImuSample sample, GpsTime t);
+  /// Does `work` once the filter has come to t: at once, or within the sample that covers t, which is then divided.
+  Status once_at(GpsTime t, std::function<Status()> work);
+  Result<fusion::UpdateReport> update(const GnssFix& fix);
+
+  std::int64_t predictions() const { return predictions_; }
+  std::int64_t updates() const { return updates_; }
+
+ private:
+  Status predict(const ImuSample& sample, GpsTime t);
+
+  fusion::ErrorStateFilter filter_;
+  const Boundaries& boundaries_;
+  PartClock& clock_;
+  GpsTime at_;
+  struct Waiting {
+    GpsTime t;
+    std::function<Status()> work;
+  };
+  std::deque<Waiting> waiting_;
+  std::int64_t predictions_ = 0, updates_ = 0;
+};
+
+}  // namespace canyon::mission

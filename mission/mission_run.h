@@ -1,0 +1,89 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "canyon/core/motion/true_motion.h"
+#include "canyon/mission/boundaries.h"
+#include "canyon/mission/localizer.h"
+#include "canyon/mission/mapper.h"
+#include "canyon/mission/motion/motion_source.h"
+#include "canyon/mission/motion/schedule.h"
+#include "canyon/mission/run.h"
+#include "canyon/mission/scored_maps.h"
+
+namespace canyon::mission {
+
+/// The whole of one run while it happens; step() and perform() read as the order of events.
+class MissionRun {
+ public:
+  static Result<std::unique_ptr<MissionRun>> make(const MissionConfig& config, const PreparedMission& mission,
+                                                  RunParts given, PartClock& clock);
+
+  /// One master step: true motion, then what is due within it. False once the run has ended.
+  Result<bool> step();
+  Result<RunRecord> finish();
+  double elapsed_s() const { return source_->now().motion.t - mission_.start; }
+
+ private:
+  struct Parts {
+    std::unique_ptr<MotionSource> source;
+    std::unique_ptr<gnss::GnssSensor> gnss;
+    std::unique_ptr<inertial::ImuModel> imu;
+    ImuNoise imu_noise;  ///< that the filter is told
+    std::unique_ptr<lidar::Scanner> scanner;
+    std::unique_ptr<lidar::Registration> registration;
+    std::unique_ptr<Autonomy> autonomy;
+    bool open_loop = false;
+    Recorder* recorder = nullptr;
+  };
+  MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock);
+
+  Status perform(const Due& due);
+  Status take_imu(const Due& due);
+  Status take_gnss(const Due& due);
+  Status take_scan(const Due& due);
+  Status ask_autonomy(const Due& due);
+  Status record_epoch(const Due& due);
+  bool score();
+
+  Status use_fix();
+  Status record_fix();
+  bool scan_is_wanted(GpsTime t) const;
+  Status use_scan(const LidarScan& scan);
+  Status add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true);
+  void count_work();
+  void place_traffic(GpsTime t);
+  KinematicState truth_at(GpsTime t) const { return motion_.at(t); }
+  /// What is handed on as the estimate at t.
+  NavEstimate estimate(GpsTime t) const;
+  NavEstimate with_correction(NavEstimate estimate) const;
+
+  const MissionConfig config_;
+  const PreparedMission& mission_;
+  PartClock& clock_;
+  const bool open_loop_;
+  Boundaries boundaries_;
+  scene::SceneAt scene_;
+  std::unique_ptr<MotionSource> source_;
+  std::unique_ptr<gnss::GnssSensor> gnss_;
+  std::unique_ptr<inertial::ImuModel> imu_;
+  std::unique_ptr<lidar::Scanner> scanner_;
+  Localizer localizer_;
+  Mapper mapper_;
+  std::unique_ptr<Autonomy> autonomy_;
+  Scorer scorer_;
+  Schedule schedule_;
+  Pose X_BL_;
+  Recorder nobody_;
+  Recorder& recorder_;
+
+  DriveCommand command_;
+  TrueMotion motion_;                          // from the last IMU sample or sweep on
+  Trajectory true_motion_, estimated_motion_;  // buffers of one revolution, at master steps and at IMU samples
+  std::deque<GnssRow> fixes_;                  // measured, and not used yet
+  ScoredMaps maps_;
+  RunRecord record_;
+};
+
+}  // namespace canyon::mission

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "canyon/core/motion/tape.h"
+#include "canyon/core/result.h"
+#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/mission/recorder/rows.h"
+
+namespace canyon::mission {
+
+enum class MapKind { kPrior, kRegistered };
+
+/// Takes what a run gives as it comes, each kind in the order of its times. An Error ends the run. This one keeps
+/// nothing; others keep what they are made for.
+class Recorder {
+ public:
+  virtual ~Recorder() = default;
+  virtual Status node(const TapeNode&) { return Ok{}; }  ///< true motion, the start first; t as in GPS time
+  virtual Status imu(const ImuSample&) { return Ok{}; }
+  virtual Status epoch(const NavRow&) { return Ok{}; }
+  virtual Status gnss(const GnssRow&) { return Ok{}; }  ///< once the filter has used it, or will not any more
+  virtual Status keyframe(const KeyframeRow&) { return Ok{}; }
+  virtual Status map(MapKind, const std::vector<lidar::MapPoint>&) { return Ok{}; }  ///< scored, at the end
+  virtual Status finish() { return Ok{}; }                                           ///< nothing follows
+};
+
+/// Hands on to several.
+class Recorders final : public Recorder {
+ public:
+  explicit Recorders(std::vector<Recorder*> to) : to_(std::move(to)) {}
+  Status node(const TapeNode& node) override { return all(&Recorder::node, node); }
+  Status imu(const ImuSample& sample) override { return all(&Recorder::imu, sample); }
+  Status epoch(const NavRow& row) override { return all(&Recorder::epoch, row); }
+  Status gnss(const GnssRow& row) override { return all(&Recorder::gnss, row); }
+  Status keyframe(const KeyframeRow& row) override { return all(&Recorder::keyframe, row); }
+  Status map(MapKind kind, const std::vector<lidar::MapPoint>& map) override { return all(&Recorder::map, kind, map); }
+  Status finish() override { return all(&Recorder::finish); }
+
+ private:
+  template <class Method, class... Arguments>
+  Status all(Method method, const Arguments&... arguments) {
+    for (Recorder* recorder : to_) CANYON_TRY_STATUS((recorder->*method)(arguments...));
+    return Ok{};
+  }
+  std::vector<Recorder*> to_;
+};
+
+/// Keeps everything in memory, some 11 kB a simulated second: for short runs that are looked at afterwards.
+class MemoryRecorder : public Recorder {
+ public:
+  std::vector<TapeNode> tape;
+  std::vector<ImuSample> imu_samples;
+  std::vector<NavRow> nav;
+  std::vector<GnssRow> gnss_rows;
+  std::vector<KeyframeRow> keyframes;
+  std::vector<lidar::MapPoint> prior_map, registered_map;
+
+  Status node(const TapeNode& node) override { return keep(tape, node); }
+  Status imu(const ImuSample& sample) override { return keep(imu_samples, sample); }
+  Status epoch(const NavRow& row) override { return keep(nav, row); }
+  Status gnss(const GnssRow& row) override { return keep(gnss_rows, row); }
+  Status keyframe(const KeyframeRow& row) override { return keep(keyframes, row); }
+  Status map(MapKind kind, const std::vector<lidar::MapPoint>& map) override {
+    (kind == MapKind::kPrior ? prior_map : registered_map) = map;
+    return Ok{};
+  }
+
+ private:
+  template <class Row>
+  static Status keep(std::vector<Row>& rows, const Row& row) {
+    rows.push_back(row);
+    return Ok{};
+  }
+};
+
+}  // namespace canyon::mission

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "canyon/core/messages.h"
+#include "canyon/core/truth.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/lidar/registration/registration.h"
+#include "canyon/mission/autonomy/autonomy.h"
+
+namespace canyon::mission {
+
+/// One row per [run] epoch_rate_hz.
+struct NavRow {
+  GpsTime t;
+  Pose X_WB_true;
+  double true_speed_m_s = 0.0;
+  NavEstimate estimate;
+  DriveCommand command;
+  int waypoint = 0;  ///< 1-based number of the waypoint the autonomy heads for
+  AutonomyState state = AutonomyState::kBlind;
+};
+
+/// One row per due GNSS epoch.
+struct GnssRow {
+  GnssFix fix;
+  GnssTruth truth;
+  std::vector<double> cn0_dbhz;  ///< by satellite of the truth record; NaN where not tracked
+  Eigen::Vector3d p_A_W_true = Eigen::Vector3d::Zero();
+  bool has_satellites = false;  ///< does the sensor know any; their counts and DOP jumps are else undefined
+  bool withheld = false;
+  fusion::UpdateReport update;
+};
+
+/// One row per keyframe.
+struct KeyframeRow {
+  GpsTime t;
+  std::size_t points = 0;
+  Pose X_WL_true, X_WL_prior, X_WL_registered;
+  std::optional<lidar::RegistrationStatus> status;  ///< none: not registered
+  int iterations = 0;
+  double rms_m = kNaN;
+};
+
+}  // namespace canyon::mission

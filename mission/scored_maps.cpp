@@ -1,0 +1,49 @@
+#include "canyon/mission/scored_maps.h"
+
+#include <string>
+
+#include "canyon/lidar/map_quality.h"
+
+namespace canyon::mission {
+
+ScoredMaps::ScoredMaps(const RunConfig& config, bool registers, PartClock& clock)
+    : range2_m2_(static_cast<float>(config.map_range_m * config.map_range_m)),
+      clock_(clock),
+      prior_(config.map_leaf_m) {
+  if (registers) registered_.emplace(config.map_leaf_m);
+}
+
+void ScoredMaps::add(const LidarScan& deskewed, const Keyframe& keyframe) {
+  clock_.charge(Part::kScoring, [&] {
+    for (const LidarPoint& point : deskewed.points) {
+      const Eigen::Vector3f p_L(point.x, point.y, point.z);
+      if (p_L.squaredNorm() > range2_m2_) continue;
+      prior_->insert({(keyframe.X_WL_prior * p_L.cast<double>()).cast<float>(), point.intensity, 0.0F});
+      if (registered_)
+        registered_->insert({(keyframe.X_WL_registered * p_L.cast<double>()).cast<float>(), point.intensity, 0.0F});
+    }
+  });
+}
+
+Status ScoredMaps::finish(const scene::SceneAt& scene, const Boundaries& boundaries, RunRecord& record,
+                          Recorder& recorder) {
+  std::int64_t out_of_reach = 0;
+  const auto finish_one = [&](std::optional<lidar::VoxelMap>& map, MapKind kind, lidar::MapQuality& quality) -> Status {
+    if (!map) return Ok{};
+    out_of_reach += map->out_of_reach();
+    std::vector<lidar::MapPoint> points = std::move(*map).take();
+    map.reset();
+    quality = clock_.charge(Part::kScoring, [&] { return lidar::evaluate_map(points, scene); });
+    CANYON_TRY_STATUS(boundaries.check(points, record.simulated_s));
+    return recorder.map(kind, points);
+  };
+  CANYON_TRY_STATUS(finish_one(prior_, MapKind::kPrior, record.prior_quality));
+  CANYON_TRY_STATUS(finish_one(registered_, MapKind::kRegistered, record.registered_quality));
+  record.counters["map_cells_prior"] = record.prior_quality.points;
+  record.counters["map_cells_registered"] = record.registered_quality.points;
+  if (out_of_reach > 0)
+    record.warnings.push_back(std::to_string(out_of_reach) + " map points lay too far out for voxels of map_leaf_m");
+  return Ok{};
+}
+
+}  // namespace canyon::mission

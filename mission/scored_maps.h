@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+
+#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/mission/boundaries.h"
+#include "canyon/mission/config/mission_config.h"
+#include "canyon/mission/mapper.h"
+#include "canyon/mission/recorder/recorder.h"
+#include "canyon/mission/recorder/run_record.h"
+
+namespace canyon::mission {
+
+/// The two maps of a run's keyframes that are scored at its end: with the filter's pose alone, and registered. Without
+/// registration there is no second one.
+class ScoredMaps {
+ public:
+  ScoredMaps(const RunConfig& config, bool registers, PartClock& clock);
+
+  /// `deskewed` in L at the keyframe's time.
+  void add(const LidarScan& deskewed, const Keyframe& keyframe);
+  /// Scores the maps, hands them over and lets them go, one after the other.
+  Status finish(const scene::SceneAt& scene, const Boundaries& boundaries, RunRecord& record, Recorder& recorder);
+
+ private:
+  float range2_m2_;
+  PartClock& clock_;
+  std::optional<lidar::VoxelMap> prior_, registered_;
+};
+
+}  // namespace canyon::mission
