@@ -85,7 +85,9 @@ Matrix6d Mapper::align(const lidar::PreparedCloud& cloud, const Matrix6d& prior_
   const Vector6d xi = (registered.inverse() * keyframe.X_WL_prior).log();
   keyframe.X_WL_registered = registered * Pose::exp(K * xi);
   const Matrix6d left = Matrix6d::Identity() - K;
-  return left * P_Z * left.transpose() + K * P_Y * K.transpose();
+  Matrix6d covariance;  // assigned, not returned as an expression, which Eigen would sum in another order
+  covariance = left * P_Z * left.transpose() + K * P_Y * K.transpose();
+  return covariance;
 }
 
 }  // namespace canyon::mission
