@@ -11,16 +11,11 @@ struct PairedErrors {
   std::string a, b;
   int epochs = 0;  ///< of equal time in both
   double mean_m = kNaN;
-  double low_m = kNaN, high_m = kNaN;  ///< 95 % interval of the mean; NaN with fewer than two batches
+  double low_m = kNaN, high_m = kNaN;  ///< 95 % interval of the mean (BatchMeans); NaN with fewer than two batches
   double worse_share = kNaN;           ///< of the epochs at which b's error is the larger one
 };
 
-/// Errors of a filter are alike for about ten seconds, so single epochs are no independent sample. The interval is
-/// Student's over means of batches of kBatch_s, whatever is left over at the end being part of the last batch (method
-/// of batch means: Law & Kelton, Simulation Modeling and Analysis, section 9.5.3).
-inline constexpr double kBatch_s = 30.0;
-
-/// The errors of each in the order of time, of runs that began at `start`; `a`, `b` of the answer are yet to be named.
+/// The interval is that of batch means (study/statistics/batch_means.h). The errors of each in the order of time, of runs that began at `start`; `a`, `b` of the answer are yet to be named.
 Result<PairedErrors> paired_errors(const RowStore<EpochError>& a, const RowStore<EpochError>& b, GpsTime start);
 
 }  // namespace canyon::study
