@@ -45,7 +45,8 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
 /// there are the figures alone. The returned Results point into `comparison`, which must outlive them.
 Result<Results> compare(const Comparison& comparison, const std::string& directory, bool show_progress);
 
-/// The terminal table: one column per run, and the ratio of the second to the first.
-std::string comparison_table(const Results& results);
+/// The terminal table: one column per run, and the ratio of the second to the first; of the figures with these keys
+/// (study/results/figures.h), which must be known, or of all.
+std::string comparison_table(const Results& results, const std::vector<std::string>& keys = {});
 
 }  // namespace canyon::study

@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/apps/line/invocation.h"
+#include "canyon/apps/line/usage_errors.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
+#include "canyon/study/results/figures.h"
 #include "canyon/study/results/results.h"
 
 namespace canyon::apps {
@@ -58,9 +60,16 @@ void declare_loop_options(Arguments& arguments, LoopOptions& options) {
       .within(1e-3, 1e4);
 }
 
-Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const mission::MissionFile& file,
-                             const std::vector<study::RunPlan>& plan) {
+void declare_figures_option(Arguments& arguments, FigureOptions& options) {
+  arguments.option("--figures", options.figures,
+                   "rows of the table, by their keys with commas between (canyon keys --figures); without it all");
+}
+
+Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const FigureOptions& figures,
+                             const mission::MissionFile& file, const std::vector<study::RunPlan>& plan) {
   set_threads(options.common.threads);
+  const auto keys = figures.figures.empty() ? std::vector<std::string>() : split_list(figures.figures);
+  CANYON_TRY_STATUS(study::choose_figures(keys, "--figures"));
   const bool on_tape = !loop.tape.tape.empty() || !loop.tape.trajectory.empty();
   if (on_tape && !loop.open_loop)
     return Error{.file = loop.tape.tape.empty() ? "--trajectory" : "--tape",
@@ -90,7 +99,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   std::printf("Mission %s, seed %lld, %s: %.0f m planned, nominal %.0f s, limit %.0f s\n\n",
               comparison.configs.front().run.name.c_str(), static_cast<long long>(comparison.configs.front().run.seed),
               mission.start.iso(0).c_str(), mission.prior.route.length_m(), mission.nominal_s, mission.time_limit_s);
-  std::printf("%s\n", study::comparison_table(results).c_str());
+  std::printf("%s\n", study::comparison_table(results, keys).c_str());
   const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
   std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),
               (place / "report.html").c_str());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +17,15 @@ struct LoopOptions {
 };
 void declare_loop_options(Arguments& arguments, LoopOptions& options);
 
+/// What of the figures is asked for.
+struct FigureOptions {
+  std::string figures;                ///< keys of the rows of the table, with commas between; empty: all
+};
+void declare_figures_option(Arguments& arguments, FigureOptions& options);
+
 /// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run
 /// share.
-Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const mission::MissionFile& file,
-                             const std::vector<study::RunPlan>& plan);
+Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const FigureOptions& figures,
+                             const mission::MissionFile& file, const std::vector<study::RunPlan>& plan);
 
 }  // namespace canyon::apps

@@ -11,12 +11,14 @@ VerbAction declare(Arguments& arguments) {
   struct Options {
     MissionOptions mission;
     LoopOptions loop;
+    FigureOptions figures;
     std::string fidelities = "low,high,paper";
     bool no_two_by_two = false;
   };
   const auto options = std::make_shared<Options>();
   declare_mission_options(arguments, options->mission);
   declare_loop_options(arguments, options->loop);
+  declare_figures_option(arguments, options->figures);
   arguments
       .option("--fidelities", options->fidelities,
               "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
@@ -29,7 +31,8 @@ VerbAction declare(Arguments& arguments) {
     const std::vector<std::string> fidelities = split_list(options->fidelities);
     CANYON_TRY_STATUS(file.check_fidelities(fidelities, "--fidelities"));
     const bool square = !options->no_two_by_two && fidelities.size() > 1;
-    return drive_and_report(options->mission, options->loop, file, study::plan_runs(fidelities, square));
+    return drive_and_report(options->mission, options->loop, options->figures, file,
+                            study::plan_runs(fidelities, square));
   };
 }
 

@@ -8,6 +8,7 @@
 #include "canyon/core/config/config.h"
 #include "canyon/mission/config/key_reference.h"
 #include "canyon/mission/config/mission_config.h"
+#include "canyon/study/results/figures.h"
 
 namespace canyon::apps {
 
@@ -26,13 +27,20 @@ Json keys_json() {
 }
 
 VerbAction declare(Arguments& arguments) {
-  const auto options = std::make_shared<CommonOptions>();
-  declare_common(arguments, *options);
+  struct Options {
+    CommonOptions common;
+    bool figures = false;
+  };
+  const auto options = std::make_shared<Options>();
+  declare_common(arguments, options->common);
+  arguments.flag("--figures", options->figures, "the figures of a run in place of the keys of a mission");
   return [options]() -> Result<int> {
-    if (options->json)
-      std::printf("%s\n", keys_json().dump().c_str());
-    else
-      std::fputs(mission::key_reference().c_str(), stdout);
+    if (options->common.json) {
+      const Json json = options->figures ? Json{{"figures", study::figure_descriptions()}} : keys_json();
+      std::printf("%s\n", json.dump().c_str());
+    } else {
+      std::fputs((options->figures ? study::figure_reference() : mission::key_reference()).c_str(), stdout);
+    }
     return 0;
   };
 }
@@ -40,7 +48,8 @@ VerbAction declare(Arguments& arguments) {
 }  // namespace
 
 Verb keys_verb() {
-  return {"keys", "all keys of a mission file, with units, defaults and ranges", "canyon keys > mission.md", declare};
+  return {"keys", "all keys of a mission file, with units, defaults and ranges; or all figures of a run",
+          "canyon keys > mission.md", declare};
 }
 
 }  // namespace canyon::apps

@@ -10,17 +10,20 @@ VerbAction declare(Arguments& arguments) {
   struct Options {
     MissionOptions mission;
     LoopOptions loop;
+    FigureOptions figures;
     std::string fidelity = "high";
   };
   const auto options = std::make_shared<Options>();
   declare_mission_options(arguments, options->mission);
   declare_loop_options(arguments, options->loop);
+  declare_figures_option(arguments, options->figures);
   arguments.option("--fidelity", options->fidelity, "low, paper, high, or one of the mission file's own")
       .default_shown();
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
     CANYON_TRY_STATUS(file.check_fidelities({options->fidelity}, "--fidelity"));
-    return drive_and_report(options->mission, options->loop, file, study::plan_runs({options->fidelity}, false));
+    return drive_and_report(options->mission, options->loop, options->figures, file,
+                            study::plan_runs({options->fidelity}, false));
   };
 }
 

@@ -62,6 +62,13 @@ const Run* Results::run(std::string_view fidelity) const {
   return nullptr;
 }
 
+const Figure* Results::figure(std::string_view key) const {
+  for (const Figure& figure : figures) {
+    if (figure.key == key) return &figure;
+  }
+  return nullptr;
+}
+
 Status read_manifest(std::string_view json, const std::string& file, Results& results) {
   CANYON_TRY(const JsonNode root, parse_json(json, file));
   std::optional<Error> error;

@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "canyon/report/read/read_results.h"
-#include "canyon/report/sections/figures.h"
 
 namespace canyon::report {
 namespace {
@@ -51,13 +50,44 @@ void check_run_name(const JsonFields& fields, const std::string& name) {
   }
 }
 
-/// The figures of the table, and any further number of the run; what later versions add beside them is passed over.
-void read_figures(const JsonFields& fields, Run& run) {
-  const JsonNode::Object* object = fields.node() ? fields.node()->object() : nullptr;
-  if (!object) return;
-  for (const JsonNode& node : object->members) {
-    if (!is_known_figure(node.key) && !node.number()) continue;
-    run.figures[node.key] = node.key.ends_with("_share") ? fields.share(node.key) : fields.number(node.key);
+/// What the figures are. A directory of before they were described has its runs' numbers, under their keys.
+std::vector<Figure> read_figure_list(const JsonFields& summary) {
+  std::vector<Figure> figures;
+  for (const auto& [node, path] : summary.list("figures")) {
+    const JsonFields f(node, summary.file(), path, summary.error());
+    const std::string kind = f.text("kind");
+    figures.push_back({.key = f.required_text("key"),
+                       .group = f.text("group"),
+                       .label = f.required_text("label"),
+                       .unit = f.text("unit"),
+                       .meaning = f.text("meaning"),
+                       .better = f.text("better"),
+                       .total = f.text("total"),
+                       .kind = kind == "count"   ? Figure::Kind::kCount
+                               : kind == "share" ? Figure::Kind::kShare
+                                                 : Figure::Kind::kQuantity,
+                       .cap = f.number("cap"),
+                       .timing = f.text("under") == "timing"});
+  }
+  const auto runs = summary.list("runs");
+  if (figures.empty() && !runs.empty() && runs.front().first->object() != nullptr) {
+    for (const JsonNode& node : runs.front().first->object()->members) {
+      if (node.number() != nullptr) figures.push_back({.key = node.key, .group = "Figures", .label = node.key});
+    }
+  }
+  return figures;
+}
+
+Interval read_interval(const JsonFields& fields) {
+  return {fields.number("low"), fields.number("high")};
+}
+
+void read_figures(const JsonFields& fields, const std::vector<Figure>& figures, Run& run) {
+  const JsonFields timing = fields.object("timing"), intervals = fields.object("intervals");
+  for (const Figure& figure : figures) {
+    const JsonFields& owner = figure.timing ? timing : fields;
+    run.figures[figure.key] = figure.kind == Figure::Kind::kShare ? owner.share(figure.key) : owner.number(figure.key);
+    if (intervals.has(figure.key)) run.intervals[figure.key] = read_interval(intervals.object(figure.key));
   }
 }
 
@@ -71,7 +101,7 @@ std::vector<std::pair<std::string, double>> read_counters(const JsonFields& fiel
   return out;
 }
 
-Run read_run(const JsonFields& fields) {
+Run read_run(const JsonFields& fields, const std::vector<Figure>& figures) {
   Run run;
   run.fidelity = fields.required_text("fidelity");
   check_run_name(fields, run.fidelity);
@@ -84,7 +114,7 @@ Run read_run(const JsonFields& fields) {
     const JsonFields f = fields.object("failure");
     run.failure = Failure{f.required_text("kind"), f.text("detail"), f.number("t_s"), f.number("x_m"), f.number("y_m")};
   }
-  read_figures(fields, run);
+  read_figures(fields, figures, run);
   for (const auto& [node, path] : fields.list("mission_waypoints")) {
     const JsonFields f(node, fields.file(), path, fields.error());
     run.mission_waypoints.push_back({f.text("name"), f.flag("reached"), f.number("closest_m"), f.number("stopped_s"),
@@ -92,9 +122,6 @@ Run read_run(const JsonFields& fields) {
   }
   run.counters = read_counters(fields.object("counters"));
   const JsonFields timing = fields.object("timing");
-  run.real_time_factor = timing.number("real_time_factor");
-  run.wall_s = timing.number("wall_s");
-  run.cpu_s = timing.number("cpu_s");
   for (const auto& [node, path] : timing.list("parts")) {
     const JsonFields f(node, fields.file(), path, fields.error());
     run.cpu_parts_s.emplace_back(f.required_text("name"), f.number("cpu_s"));
@@ -141,7 +168,7 @@ TwoByTwo read_two_by_two(const JsonFields& fields) {
   for (const JsonNode& member : object->members) {
     const std::string& key = member.key;
     if (key == "gnss" || key == "imu" || key == "outcome") continue;
-    if (!is_known_figure(key) && !member.array()) continue;  // something a later version added
+    if (!member.array()) continue;  // something a later version added
     for (const auto& [node, path] : rows_of(key)) {
       table.figures[key].push_back(json_numbers(*node, table.imu.size(), fields.file(), path, fields.error()));
     }
@@ -171,9 +198,10 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   if (!fields.has("mission")) fields.fail(nullptr, "mission", "missing", "an object");
   results.mission = read_mission(fields.object("mission"));
   results.scene = read_scene_facts(fields.object("scene"));
+  results.figures = read_figure_list(fields);
   for (const auto& [node, path] : fields.list("runs", true)) {
     if (node->is_null()) fields.fail(node, path, "null", "an object");
-    results.runs.push_back(read_run(JsonFields(node, file, path, error)));
+    results.runs.push_back(read_run(JsonFields(node, file, path, error), results.figures));
     for (std::size_t i = 0; i + 1 < results.runs.size(); ++i) {
       if (results.runs[i].fidelity == results.runs.back().fidelity) {
         fields.fail(node, path + ".fidelity", "'" + results.runs[i].fidelity + "' given twice", "each run once");

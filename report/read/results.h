@@ -53,15 +53,31 @@ struct SuccessRules {
   double waypoint_radius_m = std::nan(""), stop_s = std::nan("");
 };
 
+/// What a figure of a run is: a row of summary.json's `figures`, from which the page makes its tables.
+struct Figure {
+  enum class Kind { kQuantity, kCount, kShare };
+  std::string key = {}, group = {}, label = {}, unit = {}, meaning = {};
+  std::string better = {};  ///< "lower", "higher" or neither
+  std::string total = {};   ///< key of the figure that it is a part of; may be empty
+  Kind kind = Kind::kQuantity;
+  double cap = std::nan("");  ///< values that reach it are known to be that or more
+  bool timing = false;        ///< stands under the run's `timing`
+};
+
+/// 95 %; NaN where there is none.
+struct Interval {
+  double low = std::nan(""), high = std::nan("");
+};
+
 /// One run's summary and whatever of its epochs and clouds the directory holds.
 struct Run {
   std::string fidelity, gnss, imu, outcome;
   std::optional<Failure> failure;
-  std::map<std::string, double, std::less<>> figures;  ///< every other number of the run, by its key
+  std::map<std::string, double, std::less<>> figures;  ///< by their keys, those under `timing` among them
+  std::map<std::string, Interval, std::less<>> intervals;
   std::vector<MissionWaypoint> mission_waypoints;
   SuccessRules rules;
   std::vector<std::pair<std::string, double>> counters;
-  double real_time_factor = 0.0, wall_s = 0.0, cpu_s = 0.0;
   std::vector<std::pair<std::string, double>> cpu_parts_s;
 
   std::optional<EpochTable> nav, gnss_epochs, satellites, keyframes;
@@ -121,6 +137,7 @@ struct OpenLoop {
 
 struct Results {
   Mission mission;
+  std::vector<Figure> figures;  ///< what the runs' figures are, in the order of the table
   std::optional<OpenLoop> open_loop;
   SceneFacts scene;
   SceneDrawing drawing;
@@ -132,6 +149,7 @@ struct Results {
   std::string version, commit, command_line, instruction_set, scene_hash;  ///< of manifest.json
 
   const Run* run(std::string_view fidelity) const;
+  const Figure* figure(std::string_view key) const;
 };
 
 }  // namespace canyon::report

@@ -1,35 +1,29 @@
 #pragma once
 
-#include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "canyon/report/read/results.h"
 
+/// How the page shows the figures that summary.json describes.
 namespace canyon::report {
 
-/// One line of the table: a figure of a run and how to show it.
-struct FigureRow {
-  enum class Kind { kQuantity, kCount, kShare };
-  std::string_view group;
-  std::string_view key;  ///< of summary.json's run; "timing.cpu_s" and the like inside its timing
-  std::string_view label;
-  std::string_view unit;
-  Kind kind = Kind::kQuantity;
-  std::string_view meaning;  ///< of the line, where no number of these results stands in it
-  double cap = 0.0;          ///< if > 0: values that reach it are known to be that or more
-};
-
-/// All lines in the order of the table, groups together.
-std::span<const FigureRow> figure_rows();
+/// Those that have a line of their own: all but such as only say what others are a part of.
+std::vector<const Figure*> shown_figures(const Results& results);
 
 /// What a newcomer might ask of the line, with the numbers that hold in these results; may be empty.
-std::string figure_meaning(const FigureRow& row, const Results& results);
+std::string figure_meaning(const Figure& figure, const Results& results);
 
-/// The run's figure; NaN if undefined.
-double figure_value(const Run& run, const FigureRow& row);
+/// The value as the table shows it, without its unit; an en dash where it is undefined.
+std::string show_figure(const Figure& figure, double value);
+/// "0.141 to 0.152"; empty without an interval.
+std::string show_interval(const Figure& figure, const Interval& interval);
+/// It is known to be the cap or more.
+bool at_cap(const Figure& figure, double value);
 
-/// A key that summary.json must give as a number or null.
-bool is_known_figure(std::string_view key);
+/// A cell of a table.
+std::string figure_cell(const std::string& text, bool undefined);
+/// What stands beside the values: the unit, and which of two values is better.
+std::string unit_cell(const Figure& figure);
 
 }  // namespace canyon::report

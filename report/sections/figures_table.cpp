@@ -10,36 +10,6 @@
 namespace canyon::report {
 namespace {
 
-bool at_cap(double value, const FigureRow& row) {
-  return row.cap > 0 && value >= row.cap;
-}
-
-std::string shown(double value, const FigureRow& row) {
-  const FigureRow::Kind kind = row.kind;
-  if (at_cap(value, row)) return "\xE2\x89\xA5\xC2\xA0" + show_count(row.cap);
-  if (kind == FigureRow::Kind::kCount) return show_count(value);
-  if (kind == FigureRow::Kind::kShare) {
-    const std::string share = show_share(value);  // the unit stands in its own column
-    return share.substr(0, share.find("\xC2\xA0"));
-  }
-  return show_number(value);
-}
-
-std::string cell(const std::string& text, bool undefined) {
-  return undefined ? "<td class=\"undefined\"><span aria-label=\"undefined\">\xE2\x80\x93</span></td>"
-                   : "<td>" + text + "</td>";
-}
-
-/// How many waypoints there are, beside how many were reached.
-double total_of(const FigureRow& row, const Mission& mission) {
-  if (mission.waypoints.empty()) return kNaN;
-  if (row.key == "waypoints_reached") return static_cast<double>(mission.waypoints.size());
-  if (row.key != "mission_waypoints_reached") return kNaN;
-  double n = 0;
-  for (const Waypoint& w : mission.waypoints) n += w.mission ? 1 : 0;
-  return n;
-}
-
 /// The columns: the compared pair, its ratio, then the other pure runs.
 class FiguresTable {
  public:
@@ -53,17 +23,17 @@ class FiguresTable {
         "class=\"figures\">\n<thead>" +
         head() + "</thead>\n";
     if (!results_.open_loop) out += "<tbody><tr><th scope=\"row\">outcome</th>" + outcomes() + "</tr></tbody>\n";
-    std::string_view group;
-    for (const FigureRow& row : figure_rows()) {
-      if (row.group != group) {
-        if (!group.empty()) out += "</tbody>\n";
-        group = row.group;
-        out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"" + std::to_string(columns() + 2) + "\">" +
-               escape_html(group) + "</th></tr>\n";
+    const std::string* group = nullptr;
+    for (const Figure* figure : shown_figures(results_)) {
+      if (group == nullptr || figure->group != *group) {
+        if (group != nullptr) out += "</tbody>\n";
+        group = &figure->group;
+        out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"" + std::to_string(columns() + 3) + "\">" +
+               escape_html(*group) + "</th></tr>\n";
       }
-      out += line(row);
+      out += line(*figure);
     }
-    return out + "</tbody></table></div>\n";
+    return out + (group != nullptr ? "</tbody>" : "") + "</table></div>\n";
   }
 
  private:
@@ -89,7 +59,7 @@ class FiguresTable {
     return "<tr><td></td>" +
            cells([&](std::size_t k) { return "<th scope=\"col\">" + run_tag(results_.runs, runs_[k]) + "</th>"; },
                  ratio) +
-           "<th scope=\"col\">unit</th></tr>";
+           "<th scope=\"col\">unit</th><th scope=\"col\">better</th></tr>";
   }
 
   std::string outcomes() const {
@@ -100,32 +70,33 @@ class FiguresTable {
                         escape_html(outcome_label(run(k).outcome)) + "</td>";
                },
                has_ratio() ? "<td></td>" : "") +
-           "<td></td>";
+           "<td></td><td></td>";
   }
 
-  std::string line(const FigureRow& row) const {
+  /// The value, what it is a part of, and its interval.
+  std::string value_cell(const Figure& figure, const Run& run) const {
+    const double value = run.figure(figure.key), total = run.figure(figure.total);
+    std::string text = show_figure(figure, value) + (std::isfinite(total) ? " of " + show_count(total) : "");
+    if (const auto found = run.intervals.find(figure.key); found != run.intervals.end())
+      text += "<span class=\"def\">" + show_interval(figure, found->second) + "</span>";
+    return figure_cell(text, !std::isfinite(value));
+  }
+
+  std::string line(const Figure& row) const {
     std::string label = escape_html(row.label);
     if (const std::string meaning = figure_meaning(row, results_); !meaning.empty())
       label += "<span class=\"def\">" + escape_html(meaning) + "</span>";
     std::string ratio;
     if (has_ratio()) {
-      const bool known = !at_cap(figure_value(run(0), row), row) && !at_cap(figure_value(run(1), row), row);
-      const double value = known ? figure_value(run(1), row) / figure_value(run(0), row) : kNaN;
+      const double first = run(0).figure(row.key), second = run(1).figure(row.key);
+      const double value = at_cap(row, first) || at_cap(row, second) ? kNaN : second / first;
       const bool strong = value >= 2 || value <= 0.5;
       ratio = std::isfinite(value)
                   ? std::string("<td class=\"ratio") + (strong ? " strong" : "") + "\">" + show_number(value) + "</td>"
-                  : cell({}, true);
+                  : figure_cell({}, true);
     }
     return "<tr><th scope=\"row\">" + label + "</th>" +
-           cells(
-               [&](std::size_t k) {
-                 const double value = figure_value(run(k), row);
-                 const double total = total_of(row, results_.mission);
-                 return cell(shown(value, row) + (std::isfinite(total) ? " of " + show_count(total) : ""),
-                             !std::isfinite(value));
-               },
-               ratio) +
-           "<td class=\"unit\">" + escape_html(row.unit) + "</td></tr>\n";
+           cells([&](std::size_t k) { return value_cell(row, run(k)); }, ratio) + unit_cell(row) + "</tr>\n";
   }
 
   const Results& results_;
@@ -148,9 +119,9 @@ std::string mission_waypoints(const Results& results) {
       }
       bodies += "<td class=\"text\">" + escape_html(w.name) + "</td><td class=\"outcome " +
                 (w.reached ? "good\">\xE2\x9C\x93 yes" : "bad\">\xE2\x9C\x95 no") + "</td>" +
-                cell(show_quantity(w.closest_m, "m"), !std::isfinite(w.closest_m)) +
-                cell(show_quantity(w.stopped_s, "s"), !std::isfinite(w.stopped_s)) +
-                cell(show_share(w.facade_seen_share), !std::isfinite(w.facade_seen_share)) + "</tr>\n";
+                figure_cell(show_quantity(w.closest_m, "m"), !std::isfinite(w.closest_m)) +
+                figure_cell(show_quantity(w.stopped_s, "s"), !std::isfinite(w.stopped_s)) +
+                figure_cell(show_share(w.facade_seen_share), !std::isfinite(w.facade_seen_share)) + "</tr>\n";
     }
     bodies += "</tbody>\n";
   }
@@ -167,11 +138,12 @@ std::string mission_waypoints(const Results& results) {
 
 std::string figures_section(const Results& results) {
   const bool mixed = pure_runs(results).size() < results.runs.size();
-  return section("figures", "All figures",
-                 std::string("Errors are estimate minus truth. A dash is an undefined value. Ratios of two and more, "
-                             "or one half and less, are bold.") +
-                     (mixed ? " The mixed runs are in <a href=\"#two-by-two\">GNSS or IMU?</a>" : ""),
-                 FiguresTable(results).write() + mission_waypoints(results));
+  return section(
+      "figures", "All figures",
+      std::string("Errors are estimate minus truth. A dash is an undefined value; beneath a value stands its "
+                  "95 % interval, where it has one. Ratios of two and more, or one half and less, are bold.") +
+          (mixed ? " The mixed runs are in <a href=\"#two-by-two\">GNSS or IMU?</a>" : ""),
+      FiguresTable(results).write() + mission_waypoints(results));
 }
 
 }  // namespace canyon::report

@@ -1,6 +1,4 @@
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/format.h"
@@ -12,11 +10,6 @@
 
 namespace canyon::report {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, std::string_view>, 3> kFigures{
-    {{"position_error_rms_m", "position error, RMS"},
-     {"registration_error_rms_m", "keyframe error, registered, RMS"},
-     {"map_error_prior_rms_m", "map error, prior, RMS"}}};
 
 const double* cell_of(const TwoByTwo& table, std::string_view key, std::size_t row, std::size_t column) {
   const auto found = table.figures.find(key);
@@ -44,10 +37,9 @@ std::string cell(const Results& results, const TwoByTwo& table, std::size_t row,
                      escape_html(outcome_label(outcome)) + "</p>";
   }
   out += "<dl>";
-  for (const auto& [key, label] : kFigures) {
-    const double* value = cell_of(table, key, row, column);
-    out += "<div><dt>" + std::string(label) + "</dt><dd>" + (value ? show_quantity(*value, "m") : "\xE2\x80\x93") +
-           "</dd></div>";
+  for (const Figure& figure : results.figures) {
+    if (const double* value = cell_of(table, figure.key, row, column))
+      out += "<div><dt>" + escape_html(figure.label) + "</dt><dd>" + show_quantity(*value, figure.unit) + "</dd></div>";
   }
   return out + "</dl></td>";
 }
@@ -99,7 +91,7 @@ std::string two_by_two_section(const Results& results) {
   const std::string title = "GNSS or IMU?";
   if (!results.two_by_two) {
     return section("two-by-two", title, {},
-                   note("The mixed runs (one sensor of low, the other of high fidelity) were not made."));
+                   note("The mixed runs (GNSS of one fidelity, IMU of another) were not made."));
   }
   const TwoByTwo& table = *results.two_by_two;
   std::string body =

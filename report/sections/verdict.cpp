@@ -13,10 +13,7 @@ namespace {
 constexpr double kBeforeFailure_s = 30;  // "in the 30 s before"
 
 std::string spoken(const std::string& fidelity) {
-  if (fidelity == "low") return "the low-fidelity run";
-  if (fidelity == "high") return "the high-fidelity run";
-  if (fidelity == "paper") return "the run with the paper\xE2\x80\x99s models";
-  return "run \xE2\x80\x9C" + fidelity + "\xE2\x80\x9D";
+  return "run " + fidelity;
 }
 
 std::string capitalised(std::string text) {

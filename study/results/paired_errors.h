@@ -15,7 +15,7 @@ struct PairedErrors {
   double worse_share = kNaN;           ///< of the epochs at which b's error is the larger one
 };
 
-/// The interval is that of batch means (study/statistics/batch_means.h). The errors of each in the order of time, of runs that began at `start`; `a`, `b` of the answer are yet to be named.
+/// The errors of each in the order of time, of runs that began at `start`; `a`, `b` of the answer are yet to be named.
 Result<PairedErrors> paired_errors(const RowStore<EpochError>& a, const RowStore<EpochError>& b, GpsTime start);
 
 }  // namespace canyon::study

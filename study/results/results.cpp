@@ -13,6 +13,7 @@
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
+#include "canyon/study/results/figures.h"
 
 namespace canyon::study {
 
@@ -31,12 +32,6 @@ Json known(const std::string& text) {
 
 Json point(const Eigen::Vector2d& p) {
   return Json::array({p.x(), p.y()});
-}
-
-void add_statistics(Json& out, const std::string& prefix, const ErrorStatistics& statistics) {
-  out[prefix + "_rms_m"] = number(statistics.rms);
-  out[prefix + "_p95_m"] = number(statistics.p95);
-  out[prefix + "_max_m"] = number(statistics.max);
 }
 
 Json waypoints_json(const mission::MissionConfig& config) {
@@ -141,6 +136,7 @@ Json run_json(const RunSummary& s) {
   out["fidelity"] = s.name;
   out["gnss"] = s.gnss;
   out["imu"] = s.imu;
+  out["seed"] = s.seed;
   out["outcome"] = s.open_loop ? Json(nullptr) : Json(s.outcome);
   out["failure"] = nullptr;
   if (s.failure)
@@ -149,43 +145,7 @@ Json run_json(const RunSummary& s) {
                       {"x_m", s.failure->p_W.x()},
                       {"y_m", s.failure->p_W.y()},
                       {"detail", s.failure->detail}};
-  out["waypoints_reached"] = s.open_loop ? Json(nullptr) : Json(s.waypoints_reached);
-  out["mission_waypoints_reached"] = s.open_loop ? Json(nullptr) : Json(s.mission_waypoints_reached);
-  out["duration_s"] = s.duration_s;
-  out["distance_m"] = s.distance_m;
-  add_statistics(out, "position_error", s.position_m);
-  add_statistics(out, "position_error_e", s.east_m);
-  add_statistics(out, "position_error_n", s.north_m);
-  add_statistics(out, "position_error_up", s.up_m);
-  out["attitude_error_roll_rms_deg"] = number(s.roll_rms_deg);
-  out["attitude_error_pitch_rms_deg"] = number(s.pitch_rms_deg);
-  out["attitude_error_yaw_rms_deg"] = number(s.yaw_rms_deg);
-  out["gdop_median"] = number(s.gdop_median);
-  out["gdop_max"] = number(s.gdop_max);
-  out["pdop_median"] = number(s.pdop_median);
-  out["dop_jumps"] = s.dop_jumps ? Json(*s.dop_jumps) : Json(nullptr);
-  out["satellites_mean"] = number(s.satellites_mean);
-  out["nlos_share"] = number(s.nlos_share);
-  out["multipath_share"] = number(s.multipath_share);
-  out["fix_error_rms_m"] = number(s.fix_error_rms_m);
-  out["fixes_due"] = s.fixes_due;
-  out["fixes_lost"] = s.fixes_lost;
-  out["registration_error_rms_m"] = number(s.registration_rms_m);
-  out["registration_error_prior_rms_m"] = number(s.registration_prior_rms_m);
-  out["keyframes"] = s.keyframes;
-  out["keyframes_registered"] = s.keyframes_registered ? Json(*s.keyframes_registered) : Json(nullptr);
-  out["keyframes_converged"] = s.keyframes_converged ? Json(*s.keyframes_converged) : Json(nullptr);
-  out["map_error_rms_m"] = number(s.registered_map.map_error_rms_m);
-  out["map_error_prior_rms_m"] = number(s.prior_map.map_error_rms_m);
-  out["map_error_up_rms_m"] = number(s.registered_map.map_error_up_rms_m);
-  out["map_error_up_prior_rms_m"] = number(s.prior_map.map_error_up_rms_m);
-  out["map_error_p95_m"] = number(s.registered_map.map_error_p95_m);
-  out["map_error_p95_prior_m"] = number(s.prior_map.map_error_p95_m);
-  // Without registration there is no registered map, not an empty one.
-  const bool registered = s.keyframes_registered.has_value();
-  out["map_points"] = registered ? s.registered_map.points : s.prior_map.points;
-  out["map_points_capped"] = registered ? Json(s.registered_map.capped_points) : Json(nullptr);
-  out["map_points_capped_prior"] = s.prior_map.capped_points;
+  write_figures(s, false, out);
   out["mission_waypoints"] = Json::array();
   for (const mission::WaypointScore& waypoint : s.waypoints) {
     if (!waypoint.mission) continue;
@@ -196,10 +156,10 @@ Json run_json(const RunSummary& s) {
                                         {"facade_seen_share", waypoint.facade_seen_share}});
   }
   out["counters"] = s.counters;
-  Json parts = Json::array();
+  out["timing"] = Json::object();
+  write_figures(s, true, out["timing"]);
+  Json& parts = out["timing"]["parts"] = Json::array();
   for (const auto& [part, cpu_s] : s.cpu_parts_s) parts.push_back({{"name", part}, {"cpu_s", cpu_s}});
-  out["timing"] = {
-      {"real_time_factor", number(s.real_time_factor())}, {"wall_s", s.wall_s}, {"cpu_s", s.cpu_s}, {"parts", parts}};
   return out;
 }
 
@@ -237,6 +197,7 @@ Json summary_json(const Results& results) {
     out["runs"].push_back(run_json(summary));
     cpu_s += summary.cpu_s;
   }
+  out["figures"] = figure_descriptions();
   out["two_by_two"] = two_by_two_json(results.summaries);
   out["loop"] = loop_json(results);
   out["timing"] = {{"wall_s", results.wall_s},

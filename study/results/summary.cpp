@@ -25,6 +25,7 @@ std::optional<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs) {
 Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatistics& statistics) {
   RunSummary out;
   out.name = record.name;
+  out.seed = record.config.run.seed;
   out.gnss = record.gnss;
   out.imu = record.imu;
   out.outcome = record.outcome;

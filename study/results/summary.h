@@ -8,12 +8,14 @@
 
 #include "canyon/mission/recorder/run_record.h"
 #include "canyon/study/results/run_statistics.h"
+#include "canyon/study/statistics/interval.h"
 
 namespace canyon::study {
 
 /// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
 struct RunSummary {
   std::string name, gnss, imu, outcome;
+  std::int64_t seed = 0;
   bool open_loop = false;  ///< neither outcome nor waypoints
   std::optional<mission::Failure> failure;
   std::vector<mission::WaypointScore> waypoints;
@@ -21,6 +23,7 @@ struct RunSummary {
   double duration_s = 0, distance_m = 0;
 
   ErrorStatistics position_m, east_m, north_m, up_m;
+  Interval position_rms_interval_m;  ///< of position_m.rms, by batch means of its square
   double roll_rms_deg = kNaN, pitch_rms_deg = kNaN, yaw_rms_deg = kNaN;
 
   double gdop_median = kNaN, gdop_max = kNaN, pdop_median = kNaN;

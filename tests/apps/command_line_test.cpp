@@ -116,6 +116,10 @@ TEST_F(CommandLineTest, Mistakes) {
       "file\n");
   expect_mistake("compare mission.toml --fidelities low,low --out out",
                  "--fidelities: \"low\" given twice, expected each fidelity once\n");
+  expect_mistake(
+      "compare mission.toml --figures distance_m,map_eror_rms_m --out out",
+      "--figures: \"map_eror_rms_m\" is no figure, expected nearest is \"map_error_rms_m\"; those that canyon "
+      "keys --figures lists\n");
   expect_mistake("report nowhere", "nowhere");
 }
 
@@ -173,6 +177,10 @@ TEST_F(CommandLineTest, KeysPrintsTheReference) {
   const auto json = nlohmann::json::parse(read("stdout"));
   EXPECT_GT(json["keys"].size(), 100U);
   EXPECT_EQ(json["keys"][0]["key"].get<std::string>().rfind("scene.", 0), 0U);
+  ASSERT_EQ(canyon("keys --figures"), 0);
+  EXPECT_THAT(read("stdout"), HasSubstr("| `map_error_rms_m` | map error, registered, RMS | m | lower |\n"));
+  ASSERT_EQ(canyon("keys --figures --json"), 0);
+  EXPECT_EQ(nlohmann::json::parse(read("stdout"))["figures"][0]["key"], "waypoints_reached");
 }
 
 TEST_F(CommandLineTest, HelpShowsDefaultsAndAnExample) {

@@ -182,7 +182,7 @@ TEST_F(HtmlReport, HasNoUndefinedNumbersInIt) {
 }
 
 TEST_F(HtmlReport, SaysTheVerdictFromTheNumbers) {
-  EXPECT_THAT(page(), HasSubstr("<h1>The low-fidelity run completes the mission; the high-fidelity run fails after "));
+  EXPECT_THAT(page(), HasSubstr("<h1>Run low completes the mission; run high fails after "));
   const std::string verdict = section(page(), "verdict");
   EXPECT_THAT(verdict,
               HasSubstr("<strong>low</strong> completed the mission: 11 of 11 waypoints and 3 of 3 mission waypoints"));
@@ -226,7 +226,7 @@ TEST_F(DamagedResults, FixesThatSurpriseTheFilterAreCountedAndDrawn) {
 TEST_F(DamagedResults, ASingleRunHasNoRatio) {
   edit_json(file("summary.json"), [](auto& json) { json["runs"].erase(0); });
   const std::string html = page();
-  EXPECT_THAT(html, HasSubstr("<h1>The high-fidelity run fails after "));
+  EXPECT_THAT(html, HasSubstr("<h1>Run high fails after "));
   EXPECT_THAT(html, Not(HasSubstr("class=\"ratio")));
   EXPECT_THAT(html, Not(HasSubstr("GNSS or IMU?"))) << "nothing stands beside it";
 }
@@ -237,15 +237,16 @@ TEST_F(DamagedResults, TwoEqualOutcomesAreComparedByTheirErrors) {
     json["runs"][0]["position_error_rms_m"] = 0.25;
     json["runs"][1]["position_error_rms_m"] = 3.0;
   });
-  EXPECT_THAT(page(),
-              HasSubstr("<h1>The low-fidelity run and the high-fidelity run both complete the mission; the position "
-                        "error is 12.0 times as large in the high-fidelity run.</h1>"));
+  EXPECT_THAT(
+      page(),
+      HasSubstr("<h1>Run low and run high both complete the mission; the position error is 12.0 times as large in "
+                "run high.</h1>"));
 }
 
 TEST_F(DamagedResults, RunsStandInTheOrderAskedFor) {
   edit_json(file("summary.json"), [](auto& json) { std::swap(json["runs"][0], json["runs"][1]); });
   const std::string html = page();
-  EXPECT_THAT(html, HasSubstr("<h1>The high-fidelity run fails after "));
+  EXPECT_THAT(html, HasSubstr("<h1>Run high fails after "));
   const std::string verdict = section(html, "verdict");
   EXPECT_LT(verdict.find("<strong>high</strong>"), verdict.find("<strong>low</strong>"));
   EXPECT_THAT(section(html, "figures"), HasSubstr("<th scope=\"col\">low\xE2\x80\x89/\xE2\x80\x89high</th>"));
@@ -335,7 +336,7 @@ TEST_F(DamagedResults, WithoutEpochsAndCloudsItSaysSo) {
   EXPECT_THAT(html, HasSubstr("Run low: the results hold no prior and registered map cloud with points."));
   EXPECT_THAT(html,
               HasSubstr("Run high is not drawn: the results hold no keyframes of it (epochs/high_keyframes.csv)."));
-  EXPECT_THAT(html, HasSubstr("The mixed runs (one sensor of low, the other of high fidelity) were not made."));
+  EXPECT_THAT(html, HasSubstr("The mixed runs (GNSS of one fidelity, IMU of another) were not made."));
   EXPECT_THAT(html, HasSubstr("<dt>Canyon version</dt><dd><span class=\"undefined\">not recorded</span>"));
 }
 
@@ -356,7 +357,7 @@ TEST_F(DamagedResults, EveryFigureMayBeNull) {
   });
   const std::string html = page();
   EXPECT_THAT(html, HasSubstr("<td class=\"undefined\"><span aria-label=\"undefined\">"));
-  EXPECT_THAT(html, HasSubstr("; the high-fidelity run fails.</h1>"));
+  EXPECT_THAT(html, HasSubstr("; run high fails.</h1>"));
   EXPECT_THAT(html, HasSubstr("failed: it got stuck."));
   EXPECT_THAT(html, HasSubstr("The results hold no CPU times of the parts."));
 }
@@ -525,7 +526,7 @@ TEST_F(DamagedResults, NumbersTooSmallToBeAreNothing) {
 // 2026-11-22: the page said "within 3 m" whatever the mission asked for.
 TEST_F(DamagedResults, TheRadiusIsThatOfTheMission) {
   EXPECT_THAT(section(page(), "figures"),
-              HasSubstr("on truth within the radius asked for, with a stop of the length "));
+              HasSubstr("on truth within [success] waypoint_radius_m, with a stop of [success] stop_s<"));
   const auto configure = [&](const char* run, double radius_m, double stop_s) {
     edit_json(file("manifest.json"), [&](auto& json) {
       json["configuration"][run]["success"] = {{"waypoint_radius_m", radius_m}, {"stop_s", stop_s}};
@@ -536,7 +537,42 @@ TEST_F(DamagedResults, TheRadiusIsThatOfTheMission) {
   EXPECT_THAT(section(page(), "figures"), HasSubstr("on truth within 40\xC2\xA0m, with a stop of 7\xC2\xA0s<"));
   configure("high", 2.0, 7.0);
   EXPECT_THAT(section(page(), "figures"), HasSubstr("within 2\xC2\xA0m to 40\xC2\xA0m, with a stop of 7\xC2\xA0s<"));
-  EXPECT_THAT(section(page(), "figures"), Not(HasSubstr("within 3")));
+  EXPECT_THAT(section(page(), "figures"), Not(HasSubstr("within 3\xC2\xA0m")));
+}
+
+TEST_F(DamagedResults, AnIntervalStandsBeneathItsValue) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["runs"][0]["position_error_rms_m"] = 0.25;
+    json["runs"][0]["intervals"] = {{"position_error_rms_m", {{"low", 0.2}, {"high", 0.31}}}};
+  });
+  EXPECT_THAT(section(page(), "figures"), HasSubstr("<td>0.250<span class=\"def\">0.200 to 0.310</span></td>"));
+  edit_json(file("summary.json"), [](auto& json) { json["runs"][0]["intervals"]["position_error_rms_m"] = 3; });
+  EXPECT_THAT(error(), ::testing::MatchesRegex("summary.json:[0-9]+: runs\\[0\\].intervals.position_error_rms_m: .*"));
+}
+
+// A figure that this program has never heard of has its line as soon as the results describe it.
+TEST_F(DamagedResults, AFigureIsShownAsTheResultsDescribeIt) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["figures"].push_back({{"key", "bumps"},
+                               {"group", "Road"},
+                               {"label", "bumps met"},
+                               {"unit", "1/km"},
+                               {"kind", "quantity"},
+                               {"better", "lower"},
+                               {"meaning", "higher than 5 cm"}});
+    for (auto& run : json["runs"]) run["bumps"] = 42.0;
+  });
+  EXPECT_THAT(section(page(), "figures"),
+              HasSubstr("Road</th></tr>\n<tr><th scope=\"row\">bumps met<span class=\"def\">higher than 5 "
+                        "cm</span></th><td>42.0</td><td>42.0</td><td class=\"ratio\">1.00</td><td "
+                        "class=\"unit\">1/km</td><td class=\"unit\">lower</td></tr>"));
+}
+
+TEST_F(DamagedResults, ResultsOfBeforeFiguresWereDescribedShowTheirKeys) {
+  edit_json(file("summary.json"), [](auto& json) { json.erase("figures"); });
+  const std::string figures = section(page(), "figures");
+  EXPECT_THAT(figures, HasSubstr("<th scope=\"row\">position_error_rms_m</th>"));
+  EXPECT_THAT(section(page(), "verdict"), HasSubstr("<strong>high</strong> failed: it hit an obstacle after "));
 }
 
 TEST(HtmlReportErrors, AMissingDirectoryIsTold) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "canyon/core/check.h"
+#include "canyon/study/results/figures.h"
 #include "canyon/tests/report/synthetic_city.h"
 #include "canyon/tests/report/synthetic_run.h"
 
@@ -49,6 +50,7 @@ void write_synthetic_results(const std::string& directory, const SyntheticOption
                       {"triangles", 523412},
                       {"extent_m", {1000.0, 1000.0, 115.0}},
                       {"origin", {{"lat_deg", 32.35}, {"lon_deg", -90.88}, {"h_m", 60.0}}}};
+  summary["figures"] = study::figure_descriptions();
   summary["runs"] = ordered_json::array();
   for (const Wanted& w : wanted) {
     const SyntheticRun run(city, options, w.fidelity, w.gnss, w.imu);

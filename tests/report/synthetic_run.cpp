@@ -273,6 +273,8 @@ nlohmann::ordered_json SyntheticRun::summary() const {
   }
   out["waypoints_reached"] = reached;
   out["mission_waypoints_reached"] = mission_reached;
+  out["waypoints_planned"] = city_.waypoints.size();
+  out["mission_waypoints_planned"] = 3;
   out["duration_s"] = last.t_s;
   out["distance_m"] = last.along_m;
 
@@ -332,6 +334,7 @@ nlohmann::ordered_json SyntheticRun::summary() const {
   out["registration_error_rms_m"] = rms(registered);
   out["registration_error_prior_rms_m"] = rms(prior);
   out["keyframes"] = keyframes_.size();
+  out["keyframes_registered"] = keyframes_.size() - 1;
   out["keyframes_converged"] = converged;
   for (const bool is_prior : {false, true}) {
     std::vector<double> errors;
@@ -363,7 +366,8 @@ nlohmann::ordered_json SyntheticRun::summary() const {
   const double s = last.t_s;
   out["timing"] = {{"real_time_factor", sky ? 11.3 : 17.9},
                    {"wall_s", s / (sky ? 11.3 : 17.9)},
-                   {"cpu_s", 1.6 * s / (sky ? 11.3 : 17.9)}};
+                   {"cpu_s", 1.6 * s / (sky ? 11.3 : 17.9)},
+                   {"cpu_per_simulated_s", 1.6 / (sky ? 11.3 : 17.9)}};
   out["timing"]["parts"] = {{{"name", "lidar"}, {"cpu_s", 0.061 * s}},
                             {{"name", "registration"}, {"cpu_s", 0.042 * s}},
                             {{"name", "gnss"}, {"cpu_s", (sky ? 0.033 : 0.0002) * s}},

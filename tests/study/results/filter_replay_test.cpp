@@ -1,0 +1,150 @@
+// What a run records of its filter's input is enough to run the filter again, or another one.
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/core/files/files.h"
+#include "canyon/mission/run.h"
+#include "canyon/study/compare.h"
+#include "canyon/tests/support/temporary_folder.h"
+
+namespace canyon::study {
+namespace {
+
+constexpr const char* kMission = R"(
+base = "vicksburg"
+[time]
+limit_s = 6.0
+[vehicle]
+start_m = [213.9, 30.0]
+start_heading_deg = 0.0
+[registration]
+method = "none"
+[run]
+record_filter_input = true
+withhold_fixes_after_s = 5.0
+[autonomy]
+[[autonomy.waypoint]]
+name = "house"
+p_m = [213.9, 150.0]
+observe = "building 273"
+)";
+
+/// Rows of a CSV file by column; empty fields are NaN, words too.
+std::vector<std::map<std::string, double>> read_csv(const std::string& path) {
+  std::ifstream in(path);
+  std::string line, field;
+  std::vector<std::string> columns;
+  std::getline(in, line);
+  for (std::istringstream names(line); std::getline(names, field, ',');) columns.push_back(field);
+  std::vector<std::map<std::string, double>> rows;
+  while (std::getline(in, line)) {
+    rows.emplace_back();
+    std::istringstream fields(line);
+    for (const std::string& column : columns) {
+      field.clear();
+      std::getline(fields, field, ',');
+      char* end = nullptr;
+      const double value = std::strtod(field.c_str(), &end);
+      rows.back()[column] = end != field.c_str() ? value : kNaN;
+    }
+  }
+  return rows;
+}
+
+Eigen::Vector3d vector_of(const std::map<std::string, double>& row, const char* a, const char* b, const char* c) {
+  return {row.at(a), row.at(b), row.at(c)};
+}
+
+GpsTime time_of(const std::map<std::string, double>& row, GpsTime start) {
+  start.ns += static_cast<std::int64_t>(row.at("t_ns"));
+  return start;
+}
+
+ImuSample sample_of(const std::map<std::string, double>& row, GpsTime start) {
+  ImuSample sample;
+  sample.t = time_of(row, start);
+  sample.dt_s = row.at("dt_s");
+  sample.dtheta_U = vector_of(row, "gx_rad", "gy_rad", "gz_rad");
+  sample.dv_U = vector_of(row, "ax_m_s", "ay_m_s", "az_m_s");
+  sample.lost = row.at("lost") != 0.0;
+  return sample;
+}
+
+GnssFix fix_of(const std::map<std::string, double>& row, GpsTime start) {
+  GnssFix fix;
+  fix.t = time_of(row, start);
+  fix.p_A_E = vector_of(row, "x_m", "y_m", "z_m");
+  fix.status = fix.p_A_E.allFinite() ? FixStatus::kSingle : FixStatus::kNone;
+  const char* names[3][3] = {{"xx_m2", "xy_m2", "xz_m2"}, {"xy_m2", "yy_m2", "yz_m2"}, {"xz_m2", "yz_m2", "zz_m2"}};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) fix.covariance_E(i, j) = row.at(names[i][j]);
+  return fix;
+}
+
+fusion::ErrorStateFilter filter_of(const mission::MissionConfig& config, const mission::PreparedMission& mission,
+                                   const nlohmann::json& initial) {
+  fusion::ErrorStateFilter filter(config.fusion, *noise_told_to_filter(config), mission.scene->frame(),
+                                  config.imu.lever_arm_m, config.gnss.lever_arm_m);
+  const auto numbers = [&](const char* key) { return initial.at(key).get<std::vector<double>>(); };
+  const auto p = numbers("position_m"), q = numbers("attitude_wxyz"), v = numbers("velocity_m_s");
+  const Pose X_WB{Eigen::Quaterniond(q[0], q[1], q[2], q[3]), Eigen::Vector3d(p[0], p[1], p[2])};
+  filter.initialize(mission.start, X_WB, Eigen::Vector3d(v[0], v[1], v[2]));
+  return filter;
+}
+
+// Bit for bit: the numbers are written with as many digits as they need, and the built-in rates are multiples of one
+// another, so that no fix divides an IMU sample.
+TEST(FilterReplay, TheRecordedInputGivesTheRunsEstimates) {
+  const auto file = mission::MissionFile::parse(kMission, "my.toml");
+  for (const char* fidelity : {"low", "high"}) {
+    const auto comparison = prepare_comparison(*file, plan_runs({fidelity}, false));
+    ASSERT_TRUE(comparison.ok()) << comparison.error().str();
+    const canyon::testing::TemporaryFolder folder;
+    const auto results = compare(*comparison, folder.path().string(), false);
+    ASSERT_TRUE(results.ok()) << results.error().str();
+    ASSERT_TRUE(write_results(folder.path().string(), *results).ok());
+    mission::MemoryRecorder run;
+    const mission::PreparedMission& mission = comparison->missions[0];
+    ASSERT_TRUE(mission::run_mission(comparison->configs[0], mission, nullptr,
+                                     {.tape = nullptr, .recorder = &run, .autonomy = nullptr})
+                    .ok());
+
+    const std::string stem = std::string("epochs/") + fidelity;
+    const auto samples = read_csv(folder.file(stem + "_imu.csv")), fixes = read_csv(folder.file(stem + "_fixes.csv"));
+    ASSERT_EQ(samples.size(), run.imu_samples.size());
+    ASSERT_EQ(fixes.size(), run.gnss_rows.size());
+    ASSERT_EQ(run.nav.size(), 60U);
+    const auto manifest = nlohmann::json::parse(*read_text_file(folder.file("manifest.json")));
+    fusion::ErrorStateFilter filter =
+        filter_of(comparison->configs[0], mission, manifest["initial_estimates"][fidelity]);
+    std::size_t fix = 0, epoch = 0, withheld = 0;
+    for (const auto& row : samples) {
+      const ImuSample sample = sample_of(row, mission.start);
+      filter.predict(sample);
+      for (; fix < fixes.size() && time_of(fixes[fix], mission.start) <= sample.t; ++fix) {
+        ASSERT_EQ(time_of(fixes[fix], mission.start), sample.t);
+        if (fixes[fix].at("offered") != 0.0)
+          filter.update(fix_of(fixes[fix], mission.start));
+        else
+          ++withheld;
+      }
+      for (; epoch < run.nav.size() && run.nav[epoch].t == sample.t; ++epoch) {
+        const NavEstimate got = filter.estimate(), &expected = run.nav[epoch].estimate;
+        ASSERT_EQ(got.X_WB.p, expected.X_WB.p) << fidelity << ", epoch " << epoch;
+        ASSERT_EQ(got.X_WB.R.coeffs(), expected.X_WB.R.coeffs()) << fidelity << ", epoch " << epoch;
+        ASSERT_EQ(got.v_WB_W, expected.v_WB_W) << fidelity << ", epoch " << epoch;
+        ASSERT_EQ(got.pose_covariance, expected.pose_covariance) << fidelity << ", epoch " << epoch;
+      }
+    }
+    EXPECT_EQ(epoch, run.nav.size());
+    EXPECT_EQ(fix, fixes.size());
+    EXPECT_GT(withheld, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace canyon::study
