@@ -32,8 +32,10 @@ std::string run_boxes(const Results& results) {
   return boxes + "<div class=\"runbar\"><span class=\"runbar-title\">Show</span>\n" + labels + "</div>\n";
 }
 
-std::string contents(bool two_by_two) {
-  return "<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> <a href=\"#figures\">Figures</a> <a "
+std::string contents(bool seeds, bool two_by_two) {
+  return "<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> " +
+         std::string(seeds ? "<a href=\"#seeds\">Over seeds</a> " : "") +
+         "<a href=\"#figures\">Figures</a> <a "
          "href=\"#scene-section\">From above</a> <a "
          "href=\"#errors\">Error</a> <a href=\"#satellites\">Satellites</a> <a href=\"#multipath\">Multipath</a> <a "
          "href=\"#maps\">Maps</a> <a "
@@ -53,9 +55,10 @@ std::string page(const Results& results) {
          asset("report/assets/report.css") + "</style>\n</head>\n<body>\n" + run_boxes(results) +
          "<main>\n<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
          (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) + "</p>\n<h1>" +
-         escape_html(headline(results)) + "</h1>\n" + contents(!two_by_two.empty()) + "</header>\n";
-  for (const auto part : {verdict_section, figures_section, scene_section, error_section, satellites_section,
-                          multipath_section, maps_section, registration_section}) {
+         escape_html(headline(results)) + "</h1>\n" + contents(results.over_seeds.has_value(), !two_by_two.empty()) +
+         "</header>\n";
+  for (const auto part : {verdict_section, seeds_section, figures_section, scene_section, error_section,
+                          satellites_section, multipath_section, maps_section, registration_section}) {
     throw_if_cancelled();
     out += part(results);
   }

@@ -12,8 +12,9 @@
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
-#include "canyon/study/results/figures.h"
 #include "canyon/study/results/results.h"
+#include "canyon/study/seeds/further_seeds.h"
+#include "canyon/study/seeds/over_seeds.h"
 
 namespace canyon::apps {
 
@@ -76,10 +77,13 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
                  .what = "is for open loops",
                  .expected = "--open-loop beside it"};
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
+  if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
   if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
   CANYON_TRY(auto results, study::compare(comparison, staged.staging_path(), !options.common.json));
+  if (figures.seeds)
+    CANYON_TRY_STATUS(study::add_further_seeds(comparison, *figures.seeds - 1, !options.common.json, results));
   results.command_line = invocation().command_line;
   results.commit = invocation().commit;
   CANYON_TRY(const std::string hash, study::write_results(staged.staging_path(), results));
@@ -99,7 +103,9 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   std::printf("Mission %s, seed %lld, %s: %.0f m planned, nominal %.0f s, limit %.0f s\n\n",
               comparison.configs.front().run.name.c_str(), static_cast<long long>(comparison.configs.front().run.seed),
               mission.start.iso(0).c_str(), mission.prior.route.length_m(), mission.nominal_s, mission.time_limit_s);
-  std::printf("%s\n", study::comparison_table(results, keys).c_str());
+  const std::string table = figures.seeds ? study::over_seeds_table(study::over_seeds(runs_by_seed(results)), keys)
+                                          : study::comparison_table(results, keys);
+  std::printf("%s\n", table.c_str());
   const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
   std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),
               (place / "report.html").c_str());

@@ -20,6 +20,7 @@ void declare_loop_options(Arguments& arguments, LoopOptions& options);
 /// What of the figures is asked for.
 struct FigureOptions {
   std::string figures;                ///< keys of the rows of the table, with commas between; empty: all
+  std::optional<std::int64_t> seeds;  ///< so many, the mission's own the first
 };
 void declare_figures_option(Arguments& arguments, FigureOptions& options);
 

@@ -20,6 +20,11 @@ VerbAction declare(Arguments& arguments) {
   declare_loop_options(arguments, options->loop);
   declare_figures_option(arguments, options->figures);
   arguments
+      .option("--seeds", options->figures.seeds,
+              "every run with so many seeds, from the mission's own on: shares of success, medians and paired "
+              "differences with their intervals; epochs and clouds are kept of the first seed only")
+      .within(std::int64_t{2}, std::int64_t{100'000});
+  arguments
       .option("--fidelities", options->fidelities,
               "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
               "over first")

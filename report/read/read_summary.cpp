@@ -187,6 +187,39 @@ OpenLoop read_open_loop(const JsonFields& fields) {
   return loop;
 }
 
+OverSeeds read_over_seeds(const JsonFields& summary) {
+  OverSeeds out;
+  const auto seeds = summary.list("seeds");
+  out.count = static_cast<double>(seeds.size());
+  for (const auto& [node, path] : seeds) {
+    if (node->number() == nullptr || node->text.empty()) summary.fail(node, path, node->describe(), "a seed");
+    (out.first.empty() ? out.first : out.last) = node->text;
+  }
+  for (const auto& [node, path] : summary.list("shares")) {
+    const JsonFields f(node, summary.file(), path, summary.error());
+    out.shares.push_back({f.required_text("fidelity"), f.number("success"), f.number("n"), read_interval(f),
+                          read_counters(f.object("outcomes"))});
+  }
+  for (const auto& [node, path] : summary.list("paired")) {
+    const JsonFields f(node, summary.file(), path, summary.error());
+    out.paired.push_back({f.required_text("a"), f.required_text("b"), f.text("figure"), f.number("n"),
+                          f.number("difference"), read_interval(f), f.number("p")});
+  }
+  for (const auto& [node, path] : summary.list("over_seeds")) {
+    const JsonFields f(node, summary.file(), path, summary.error());
+    auto& of_run = out.medians.emplace_back(f.required_text("fidelity"), std::map<std::string, Median, std::less<>>());
+    for (const char* part : {"figures", "timing"}) {
+      const JsonFields rows = f.object(part);
+      if (rows.node() == nullptr || rows.node()->object() == nullptr) continue;
+      for (const JsonNode& member : rows.node()->object()->members) {
+        const JsonFields row = rows.object(member.key);
+        of_run.second[member.key] = {row.number("median"), read_interval(row), row.number("min"), row.number("max")};
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 Status read_summary(std::string_view json, const std::string& file, Results& results) {
@@ -201,7 +234,10 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   results.figures = read_figure_list(fields);
   for (const auto& [node, path] : fields.list("runs", true)) {
     if (node->is_null()) fields.fail(node, path, "null", "an object");
-    results.runs.push_back(read_run(JsonFields(node, file, path, error), results.figures));
+    const JsonFields run(node, file, path, error);
+    // Runs of further seeds speak through what is said over all seeds.
+    if (run.has("seed") && run.digits("seed") != results.mission.seed) continue;
+    results.runs.push_back(read_run(run, results.figures));
     for (std::size_t i = 0; i + 1 < results.runs.size(); ++i) {
       if (results.runs[i].fidelity == results.runs.back().fidelity) {
         fields.fail(node, path + ".fidelity", "'" + results.runs[i].fidelity + "' given twice", "each run once");
@@ -209,6 +245,7 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
     }
   }
   if (!error && results.runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
+  if (fields.has("seeds")) results.over_seeds = read_over_seeds(fields);
   if (fields.has("two_by_two")) results.two_by_two = read_two_by_two(fields.object("two_by_two"));
   if (fields.has("loop") && fields.object("loop").text("kind") == "open")
     results.open_loop = read_open_loop(fields.object("loop"));

@@ -135,9 +135,42 @@ struct OpenLoop {
   std::vector<PairedErrors> paired;
 };
 
+/// How often a run succeeds over several seeds.
+struct SuccessShare {
+  std::string fidelity;
+  double success = 0.0, n = 0.0;
+  Interval interval;
+  std::vector<std::pair<std::string, double>> outcomes;
+};
+
+/// One run against another, seed by seed.
+struct PairedSeeds {
+  std::string a, b, figure;  ///< "success" or a figure's key
+  double n = 0.0, difference = 0.0;
+  Interval interval;
+  double p = 0.0;
+};
+
+/// A figure of a run over seeds.
+struct Median {
+  double value = std::nan("");
+  Interval interval;
+  double lowest = std::nan(""), highest = std::nan("");
+};
+
+/// What the same runs with several seeds say. Epochs and clouds are those of the first seed.
+struct OverSeeds {
+  std::string first, last;  ///< seeds
+  double count = 0.0;
+  std::vector<SuccessShare> shares;
+  std::vector<PairedSeeds> paired;
+  std::vector<std::pair<std::string, std::map<std::string, Median, std::less<>>>> medians;  ///< by fidelity
+};
+
 struct Results {
   Mission mission;
   std::vector<Figure> figures;  ///< what the runs' figures are, in the order of the table
+  std::optional<OverSeeds> over_seeds;
   std::optional<OpenLoop> open_loop;
   SceneFacts scene;
   SceneDrawing drawing;

@@ -18,6 +18,7 @@ std::string multipath_section(const Results& results);
 std::string maps_section(const Results& results);  ///< the maps' point errors
 std::string registration_section(const Results& results);
 std::string two_by_two_section(const Results& results);  ///< empty for one run, which nothing stands beside
+std::string seeds_section(const Results& results);       ///< empty for a single seed
 std::string cost_section(const Results& results);
 std::string provenance_section(const Results& results);  ///< how it was made, and the words used
 

@@ -14,6 +14,7 @@
 #include "canyon/core/units.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
 #include "canyon/study/results/figures.h"
+#include "canyon/study/seeds/over_seeds.h"
 
 namespace canyon::study {
 
@@ -197,7 +198,13 @@ Json summary_json(const Results& results) {
     out["runs"].push_back(run_json(summary));
     cpu_s += summary.cpu_s;
   }
+  for (const auto& runs : results.further_seeds)
+    for (const RunSummary& summary : runs) {
+      out["runs"].push_back(run_json(summary));
+      cpu_s += summary.cpu_s;
+    }
   out["figures"] = figure_descriptions();
+  if (!results.further_seeds.empty()) write_over_seeds(over_seeds(runs_by_seed(results)), out);
   out["two_by_two"] = two_by_two_json(results.summaries);
   out["loop"] = loop_json(results);
   out["timing"] = {{"wall_s", results.wall_s},

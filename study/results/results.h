@@ -21,6 +21,8 @@ struct Results {
   std::vector<mission::RunRecord> records;
   std::vector<RunSummary> summaries;  ///< same index
   std::vector<PairedErrors> paired;   ///< every run against the first; of open loops alone
+  /// The same runs with the seeds that follow, one element per seed: summaries are all that is kept of them.
+  std::vector<std::vector<RunSummary>> further_seeds;
   double wall_s = 0.0;
   double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
   int threads = 0;

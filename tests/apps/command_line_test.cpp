@@ -81,6 +81,59 @@ TEST_F(CommandLineTest, CompareWritesACompleteDirectoryAndOneJsonObject) {
   EXPECT_GT(fs::file_size(folder_ / "out" / "report.html"), 0U);
 }
 
+TEST_F(CommandLineTest, SeveralSeedsGiveSharesAndDifferences) {
+  const std::string call = "compare mission.toml --fidelities low,high --no-2x2 --seed 5 --seeds 3 ";
+  ASSERT_EQ(canyon(call + "--out out --json"), 0) << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  ASSERT_EQ(json["runs"].size(), 6U);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(json["runs"][i]["seed"], 5 + i / 2);
+    EXPECT_EQ(json["runs"][i]["fidelity"], i % 2 == 0 ? "low" : "high");
+    EXPECT_TRUE(json["runs"][i].contains("cpu_s"));
+  }
+  EXPECT_EQ(json["seed"], 5);
+  EXPECT_EQ(json["seeds"], (std::vector<int>{5, 6, 7}));
+  ASSERT_EQ(json["shares"].size(), 2U);
+  EXPECT_EQ(json["shares"][0]["n"], 3);
+  EXPECT_EQ(json["shares"][0]["outcomes"]["stopped"], 3);  // the limit of 4 s
+  ASSERT_EQ(json["paired"].size(), 1U);
+  EXPECT_EQ(json["paired"][0]["b"], "high");
+  EXPECT_EQ(json["paired"][0]["difference"], 0.0);
+  EXPECT_EQ(json["paired"][0]["p"], 1.0);
+  // Rows are kept of the first seed.
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "out/clouds"), {}), 2);
+  EXPECT_THAT(read("out/report.html"), HasSubstr("Over 3 seeds"));
+
+  // Another number of threads: the same bits. The table for people.
+  ASSERT_EQ(canyon(call + "--out again --threads 1 --figures position_error_rms_m"), 0) << read("stderr");
+  EXPECT_EQ(nlohmann::json::parse(read("again/summary.json"))["hash"], json["hash"]);
+  const std::string table = read("stdout");
+  EXPECT_THAT(table, HasSubstr("median over 3 seeds, 5 to 7"));
+  EXPECT_THAT(table, HasSubstr("  position error, RMS, m"));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("GDOP")));
+  EXPECT_THAT(table, HasSubstr("0 of 3"));
+}
+
+TEST_F(CommandLineTest, SeedsInAnOpenLoopMeetOneTrueMotion) {
+  ASSERT_EQ(canyon("compare mission.toml --open-loop --fidelities low,high --no-2x2 --seeds 2 --out out --json"), 0)
+      << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_TRUE(json["shares"].is_null());
+  EXPECT_EQ(json["runs"][0]["distance_m"], json["runs"][2]["distance_m"]);
+  EXPECT_NE(json["runs"][0]["position_error_rms_m"], json["runs"][2]["position_error_rms_m"]);
+  double difference = 0.0;
+  for (const std::size_t seed : {0U, 1U})
+    difference += json["runs"][2 * seed + 1]["position_error_rms_m"].get<double>() -
+                  json["runs"][2 * seed]["position_error_rms_m"].get<double>();
+  bool found = false;
+  for (const auto& pair : json["paired"])
+    if (pair["figure"] == "position_error_rms_m") {
+      found = true;
+      EXPECT_NEAR(pair["difference"].get<double>(), difference / 2, 1e-12);
+    }
+  EXPECT_TRUE(found);
+}
+
 TEST_F(CommandLineTest, ExistingOutputIsRefusedWithoutForce) {
   fs::create_directories(folder_ / "given_out");
   expect_mistake("run mission.toml --out given_out", "given_out: ");
@@ -120,6 +173,11 @@ TEST_F(CommandLineTest, Mistakes) {
       "compare mission.toml --figures distance_m,map_eror_rms_m --out out",
       "--figures: \"map_eror_rms_m\" is no figure, expected nearest is \"map_error_rms_m\"; those that canyon "
       "keys --figures lists\n");
+  for (const char* seeds : {"0", "1", "-3", "2.5", "many"})
+    expect_mistake("compare mission.toml --out out --seeds " + std::string(seeds), "--seeds: ");
+  expect_mistake("compare mission.toml --out out --seed 9000000000000000 --seeds 2",
+                 "--seeds: 2 seeds from 9000000000000000 on, expected none beyond 9000000000000000\n");
+  expect_mistake("compare mission.toml --out out --seeds 2 --open-loop --tape nowhere.tape", "nowhere.tape");
   expect_mistake("report nowhere", "nowhere");
 }
 

@@ -114,7 +114,7 @@ TEST(Figures, TheDocumentedListIsWhatTheBinaryWrites) {
   const auto page = read_text_file(std::string(CANYON_SOURCE_DIR) + "/docs/results.md");
   ASSERT_TRUE(page.ok()) << page.error().str();
   EXPECT_THAT(*page, HasSubstr("<!-- canyon:figures -->\n" + figure_reference() + "<!-- /canyon:figures -->"))
-      << "run: canyon keys --figures";
+      << "run: canyon keys --figures, between the markers";
 }
 
 TEST(Figures, UndefinedIsNullAndAnOpenLoopHasNoWaypoints) {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "canyon/core/result.h"
+#include "canyon/study/compare.h"
+
+namespace canyon::study {
+
+/// An Error if a comparison with that many seeds, the mission's own the first, asked for one that is too large.
+Status check_seeds(const Comparison& comparison, std::int64_t seeds);
+
+/// Every run of the comparison again with each of the `count` seeds that follow its own, into results.further_seeds.
+/// Only the summaries are kept, so that memory does not grow with the rows of the runs. Runs go side by side as in
+/// compare(); of an open loop all are on the same true motion.
+Status add_further_seeds(const Comparison& comparison, std::int64_t count, bool show_progress, Results& results);
+
+}  // namespace canyon::study
