@@ -43,6 +43,19 @@ bool is_total(const Figure& figure) {
                      [key](const Figure& other) { return other.total != nullptr && other.total == key; });
 }
 
+/// By edit distance, else the first that has the longest beginning in common: "map" is near "map_error_rms_m".
+std::string nearest_key(const std::string& key) {
+  std::vector<std::string> known;
+  for (const Figure& figure : figures()) known.emplace_back(figure.key);
+  const std::string nearest = nearest_word(key, known);
+  if (!nearest.empty()) return nearest;
+  const auto common = [&key](const std::string& other) {
+    return std::mismatch(key.begin(), key.end(), other.begin(), other.end()).first - key.begin();
+  };
+  return *std::max_element(known.begin(), known.end(),
+                           [&](const auto& a, const auto& b) { return common(a) < common(b); });
+}
+
 Json interval_json(const Interval& interval) {
   return {{"low", interval.low}, {"high", interval.high}};
 }
@@ -60,13 +73,9 @@ Result<std::vector<const Figure*>> choose_figures(const std::vector<std::string>
   for (const std::string& key : keys) {
     const Figure* found = find_figure(key);
     if (found == nullptr) {
-      std::vector<std::string> known;
-      for (const Figure& figure : figures()) known.emplace_back(figure.key);
-      const std::string nearest = nearest_word(key, known);
       return Error{.file = option,
                    .what = "\"" + key + "\" is no figure",
-                   .expected = (nearest.empty() ? "" : "nearest is \"" + nearest + "\"; ") +
-                               std::string("those that canyon keys --figures lists")};
+                   .expected = "one that canyon keys --figures lists; nearest is \"" + nearest_key(key) + "\""};
     }
     chosen.push_back(found);
   }

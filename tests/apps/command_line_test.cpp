@@ -169,10 +169,9 @@ TEST_F(CommandLineTest, Mistakes) {
       "file\n");
   expect_mistake("compare mission.toml --fidelities low,low --out out",
                  "--fidelities: \"low\" given twice, expected each fidelity once\n");
-  expect_mistake(
-      "compare mission.toml --figures distance_m,map_eror_rms_m --out out",
-      "--figures: \"map_eror_rms_m\" is no figure, expected nearest is \"map_error_rms_m\"; those that canyon "
-      "keys --figures lists\n");
+  expect_mistake("compare mission.toml --figures distance_m,map_eror_rms_m --out out",
+                 "--figures: \"map_eror_rms_m\" is no figure, expected one that canyon keys "
+                 "--figures lists; nearest is \"map_error_rms_m\"\n");
   for (const char* seeds : {"0", "1", "-3", "2.5", "many"})
     expect_mistake("compare mission.toml --out out --seeds " + std::string(seeds), "--seeds: ");
   expect_mistake("compare mission.toml --out out --seed 9000000000000000 --seeds 2",

@@ -135,9 +135,10 @@ TEST(ChooseFigures, AnUnknownOneNamesTheNearest) {
   const auto found = choose_figures({"cpu_s", "map_eror_rms_m"}, "--figures");
   ASSERT_FALSE(found.ok());
   EXPECT_EQ(found.error().str(),
-            "--figures: \"map_eror_rms_m\" is no figure, expected nearest is \"map_error_rms_m\"; those that canyon "
-            "keys --figures lists");
+            "--figures: \"map_eror_rms_m\" is no figure, expected one that canyon keys "
+            "--figures lists; nearest is \"map_error_rms_m\"");
   EXPECT_EQ(found.error().exit_code, 2);
+  EXPECT_THAT(choose_figures({"map_eror"}, "").error().str(), HasSubstr("nearest is \"map_error_prior_rms_m\""));
   ASSERT_TRUE(choose_figures({"cpu_s", "keyframes"}, "--figures").ok());
   EXPECT_STREQ((*choose_figures({"keyframes"}, "--figures"))[0]->key, "keyframes");
 }
