@@ -20,10 +20,5 @@ struct MapPoint {
 
 /// Binary PCD v0.7 with fields x y z intensity error.
 Status write_pcd(const std::string& path, std::span<const MapPoint> points);
-/// Binary PCD that has x, y, z in single precision
-/// (https://pointclouds.org/documentation/tutorials/pcd_file_format.html); other fields than the five are passed over,
-/// what stands behind the last point too. Points that are not finite, as PCL marks missing returns, are kept. Text,
-/// compressed data and damaged headers are errors.
-Result<std::vector<MapPoint>> read_pcd(const std::string& path);
 
 }  // namespace canyon::lidar

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "canyon/core/check.h"
+#include "canyon/core/files/pcd.h"
 #include "canyon/lidar/scanner.h"
 
 namespace canyon::lidar {
@@ -45,11 +46,14 @@ void put_point(Bytes& out, const LidarPoint& p) {
 }
 
 std::string pcd_text(GpsTime, std::span<const LidarPoint> points) {
-  const std::string n = std::to_string(points.size());
-  Bytes out(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity time ring return\n"
-      "SIZE 4 4 4 4 4 2 1\nTYPE F F F F F U U\nCOUNT 1 1 1 1 1 1 1\nWIDTH " +
-      n + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + n + "\nDATA binary\n");
+  static const std::vector<PcdField> kFields{{.name = "x"},
+                                             {.name = "y"},
+                                             {.name = "z"},
+                                             {.name = "intensity"},
+                                             {.name = "time"},
+                                             {.name = "ring", .type = 'U', .size = 2},
+                                             {.name = "return", .type = 'U', .size = 1}};
+  Bytes out(pcd_header(kFields, points.size()));
   for (const LidarPoint& p : points) put_point(out, p);
   return out.take();
 }

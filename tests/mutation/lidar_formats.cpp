@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/pcd.h"
 #include "canyon/lidar/beam/beam_table.h"
-#include "canyon/lidar/files/cloud_files.h"
 #include "canyon/lidar/velodyne/packet_reader.h"
 #include "canyon/lidar/velodyne/pcap.h"
 #include "canyon/tests/mutation/format.h"
@@ -93,9 +93,8 @@ std::vector<Seed> clouds() {
   }
   std::string bytes(sizeof points, '\0');
   std::memcpy(bytes.data(), points.data(), bytes.size());
-  const std::string ours =
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity error\nSIZE 4 4 4 4 4\n"
-      "TYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 12\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 12\nDATA binary\n";
+  const std::string ours = pcd_header(
+      {{.name = "x"}, {.name = "y"}, {.name = "z"}, {.name = "intensity"}, {.name = "error"}}, points.size());
   const std::string theirs =
       "VERSION .7\nFIELDS _ x y z normal\nSIZE 1 4 4 4 4\nTYPE U F F F F\nCOUNT 8 1 1 1 3\nWIDTH 7\nHEIGHT 1\n"
       "POINTS 7\nDATA binary\n";
@@ -143,8 +142,15 @@ std::vector<Format> lidar_formats() {
            .command = {},
            .read =
                [](const std::string& path) {
-                 const auto cloud = lidar::read_pcd(path);
-                 return cloud ? 0 : status_of(cloud.error());
+                 auto cloud = PcdReader::open(path);
+                 if (!cloud) return status_of(cloud.error());
+                 for (const char* field : {"x", "y", "z"})
+                   if (const auto at = cloud->float_at(field); !at) return status_of(at.error());
+                 for (;;) {
+                   const auto bytes = cloud->next();
+                   if (!bytes) return status_of(bytes.error());
+                   if (bytes->empty()) return 0;
+                 }
                },
            .seeds = clouds}};
 }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 
+#include "canyon/core/files/pcd.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 
@@ -449,12 +450,8 @@ std::string SyntheticRun::keyframes_csv() const {
 
 std::string SyntheticRun::cloud_pcd(bool registered) const {
   const std::vector<Point>& points = registered ? registered_points_ : prior_points_;
-  const std::string n = std::to_string(points.size());
-  std::string out =
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity error\nSIZE 4 4 4 4 4\nTYPE F F "
-      "F F F\n"
-      "COUNT 1 1 1 1 1\nWIDTH " +
-      n + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + n + "\nDATA binary\n";
+  std::string out = pcd_header({{.name = "x"}, {.name = "y"}, {.name = "z"}, {.name = "intensity"}, {.name = "error"}},
+                               points.size());
   static_assert(sizeof(Point) == 20);
   out.append(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(Point));
   return out;
