@@ -9,10 +9,10 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/scene/importers/far_points.h"
 #include "canyon/scene/importers/importer.h"
-#include "canyon/scene/importers/parsing/json_text.h"
 
 namespace canyon::scene {
 namespace {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 
 namespace canyon {
 namespace {
@@ -85,13 +86,12 @@ Result<Tape> read_tape(const std::string& path) {
   const auto header = nlohmann::json::parse(bytes.substr(0, end == std::string::npos ? 0 : end), nullptr, false);
   if (!header.is_object() || header.value("kind", nlohmann::json()) != kKind)
     return no_tape(path, "does not begin as a tape");
-  const auto text = [&](const char* key) {
-    const auto found = header.find(key);
-    return found != header.end() && found->is_string() ? found->get<std::string>() : std::string();
-  };
   const std::size_t rest = bytes.size() - end - 1;
   if (rest % kNodeBytes != 0) return no_tape(path, "ends within a node");
-  Tape tape{.source = text("source"), .scene_hash = text("scene_hash"), .traffic = text("traffic"), .nodes = {}};
+  Tape tape{.source = json_string(header, "source"),
+            .scene_hash = json_string(header, "scene_hash"),
+            .traffic = json_string(header, "traffic"),
+            .nodes = {}};
   tape.nodes.reserve(rest / kNodeBytes);
   for (std::size_t at = end + 1; at < bytes.size(); at += kNodeBytes) tape.nodes.push_back(parse_node(&bytes[at]));
   CANYON_TRY_STATUS(check_nodes(path, tape.nodes));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include <nlohmann/json.hpp>
+
 #include "canyon/core/files/files.h"
 #include "canyon/core/messages.h"
 
@@ -70,9 +72,9 @@ const Figure* Results::figure(std::string_view key) const {
 }
 
 Status read_manifest(std::string_view json, const std::string& file, Results& results) {
-  CANYON_TRY(const JsonNode root, parse_json(json, file));
+  CANYON_TRY(const JsonFile tree, JsonFile::parse(json, file));
   std::optional<Error> error;
-  const JsonFields fields(&root, file, {}, error);
+  const JsonFields fields(&tree.root(), tree, {}, error);
   results.version = fields.text("version");
   results.commit = fields.text("commit");
   results.command_line = fields.text("command_line");

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "canyon/report/read/json_node.h"
+#include "canyon/report/read/json_fields.h"
 #include "canyon/report/read/results.h"
 
 namespace canyon::report {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "canyon/report/read/read_results.h"
 
 namespace canyon::report {
@@ -12,7 +14,7 @@ Eigen::VectorXd defined_numbers(const JsonNode& node, std::size_t size, const Js
   Eigen::VectorXd out(static_cast<Eigen::Index>(size));
   for (std::size_t i = 0; i < size; ++i) {
     if (!owner.error() && !std::isfinite(values[i])) {
-      owner.error() = Error{owner.file(), node.line, path, "null in a list of numbers", "numbers"};
+      owner.error() = owner.file().mistake(node, path, "null in a list of numbers", "numbers");
     }
     out[static_cast<Eigen::Index>(i)] = values[i];
   }
@@ -34,9 +36,9 @@ Eigen::Vector2d required_point(const JsonFields& f, std::string_view key) {
 }  // namespace
 
 Status read_scene_drawing(std::string_view json, const std::string& file, SceneDrawing& drawing) {
-  CANYON_TRY(const JsonNode root, parse_json(json, file));
+  CANYON_TRY(const JsonFile tree, JsonFile::parse(json, file));
   std::optional<Error> error;
-  const JsonFields fields(&root, file, {}, error);
+  const JsonFields fields(&tree.root(), tree, {}, error);
   if (!fields.has("extent_m")) fields.fail(nullptr, "extent_m", "missing", "an object with min and max");
   const JsonFields extent = fields.object("extent_m");
   drawing.min_W = corner(extent, "min");
@@ -45,7 +47,7 @@ Status read_scene_drawing(std::string_view json, const std::string& file, SceneD
     fields.fail(fields.find("extent_m"), "extent_m", "max is not above min", "a rectangle");
   }
   for (const auto& [node, path] : fields.list("buildings")) {
-    const JsonFields f(node, file, path, error);
+    const JsonFields f(node, tree, path, error);
     Building building{f.text("name"), f.number("base_m"), f.required_number("height_m"), {}};
     for (const auto& [corner_node, corner_path] : f.list("footprint", true)) {
       building.footprint_W.emplace_back(defined_numbers(*corner_node, 2, f, corner_path));
@@ -53,7 +55,7 @@ Status read_scene_drawing(std::string_view json, const std::string& file, SceneD
     drawing.buildings.push_back(std::move(building));
   }
   for (const auto& [node, path] : fields.list("streets")) {
-    const JsonFields f(node, file, path, error);
+    const JsonFields f(node, tree, path, error);
     drawing.streets.push_back({required_point(f, "a"), required_point(f, "b"), f.required_number("width_m")});
   }
   for (const auto& [node, path] : fields.list("trees")) {

@@ -1,5 +1,7 @@
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "canyon/report/read/read_results.h"
 
 namespace canyon::report {
@@ -8,7 +10,7 @@ namespace {
 Eigen::Vector2d point(const JsonNode& node, const JsonFields& owner, const std::string& path) {
   const std::vector<double> xy = json_numbers(node, 2, owner.file(), path, owner.error());
   if (!owner.error() && !(std::isfinite(xy[0]) && std::isfinite(xy[1]))) {
-    owner.error() = Error{owner.file(), node.line, path, "null in a point", "a list of 2 numbers"};
+    owner.error() = owner.file().mistake(node, path, "null in a point", "a list of 2 numbers");
   }
   return {xy[0], xy[1]};
 }
@@ -70,9 +72,9 @@ std::vector<Figure> read_figure_list(const JsonFields& summary) {
                        .timing = f.text("under") == "timing"});
   }
   const auto runs = summary.list("runs");
-  if (figures.empty() && !runs.empty() && runs.front().first->object() != nullptr) {
-    for (const JsonNode& node : runs.front().first->object()->members) {
-      if (node.number() != nullptr) figures.push_back({.key = node.key, .group = "Figures", .label = node.key});
+  if (figures.empty() && !runs.empty() && runs.front().first->is_object()) {
+    for (const auto& [key, node] : runs.front().first->items()) {
+      if (node.is_number()) figures.push_back({.key = key, .group = "Figures", .label = key});
     }
   }
   return figures;
@@ -93,11 +95,8 @@ void read_figures(const JsonFields& fields, const std::vector<Figure>& figures, 
 
 std::vector<std::pair<std::string, double>> read_counters(const JsonFields& fields) {
   std::vector<std::pair<std::string, double>> out;
-  if (fields.node() && fields.node()->object()) {
-    for (const JsonNode& member : fields.node()->object()->members) {
-      out.emplace_back(member.key, fields.number(member.key));
-    }
-  }
+  if (!fields.node()) return out;
+  for (const auto& member : fields.node()->items()) out.emplace_back(member.key(), fields.number(member.key()));
   return out;
 }
 
@@ -132,8 +131,8 @@ Run read_run(const JsonFields& fields, const std::vector<Figure>& figures) {
 std::vector<std::string> read_names(const JsonFields& fields, std::string_view key) {
   std::vector<std::string> names;
   for (const auto& [node, path] : fields.list(key, true)) {
-    if (!node->string()) fields.fail(node, key, node->describe(), "a list of names");
-    names.push_back(node->string() ? *node->string() : std::string());
+    if (!node->is_string()) fields.fail(node, key, describe(*node), "a list of names");
+    names.push_back(node->is_string() ? node->get<std::string>() : std::string());
   }
   return names;
 }
@@ -145,30 +144,27 @@ TwoByTwo read_two_by_two(const JsonFields& fields) {
   const auto rows_of = [&](std::string_view key) {
     auto rows = fields.list(key);
     if (!rows.empty() && rows.size() != table.gnss.size()) {
-      fields.fail(fields.find(key), key, fields.find(key)->describe(), std::to_string(table.gnss.size()) + " rows");
+      fields.fail(fields.find(key), key, describe(*fields.find(key)), std::to_string(table.gnss.size()) + " rows");
       rows.clear();
     }
     return rows;
   };
   for (const auto& [node, path] : rows_of("outcome")) {
     std::vector<std::string> row;
-    const JsonNode::Array* cells = node->array();
-    if (!cells || cells->size() != table.imu.size()) {
-      fields.fail(node, "outcome", node->describe(), std::to_string(table.imu.size()) + " outcomes in a row");
+    if (!node->is_array() || node->size() != table.imu.size()) {
+      fields.fail(node, "outcome", describe(*node), std::to_string(table.imu.size()) + " outcomes in a row");
       break;
     }
-    for (const JsonNode& cell : *cells) {
-      if (!cell.is_null() && !cell.string()) fields.fail(&cell, "outcome", cell.describe(), "a string or null");
-      row.push_back(cell.string() ? *cell.string() : std::string());
+    for (const JsonNode& cell : *node) {
+      if (!cell.is_null() && !cell.is_string()) fields.fail(&cell, "outcome", describe(cell), "a string or null");
+      row.push_back(cell.is_string() ? cell.get<std::string>() : std::string());
     }
     table.outcome.push_back(std::move(row));
   }
-  const JsonNode::Object* object = fields.node()->object();
-  if (!object) return table;
-  for (const JsonNode& member : object->members) {
-    const std::string& key = member.key;
+  if (!fields.node()) return table;
+  for (const auto& [key, member] : fields.node()->items()) {
     if (key == "gnss" || key == "imu" || key == "outcome") continue;
-    if (!member.array()) continue;  // something a later version added
+    if (!member.is_array()) continue;  // something a later version added
     for (const auto& [node, path] : rows_of(key)) {
       table.figures[key].push_back(json_numbers(*node, table.imu.size(), fields.file(), path, fields.error()));
     }
@@ -210,10 +206,10 @@ OverSeeds read_over_seeds(const JsonFields& summary) {
     auto& of_run = out.medians.emplace_back(f.required_text("fidelity"), std::map<std::string, Median, std::less<>>());
     for (const char* part : {"figures", "timing"}) {
       const JsonFields rows = f.object(part);
-      if (rows.node() == nullptr || rows.node()->object() == nullptr) continue;
-      for (const JsonNode& member : rows.node()->object()->members) {
-        const JsonFields row = rows.object(member.key);
-        of_run.second[member.key] = {row.number("median"), read_interval(row), row.number("min"), row.number("max")};
+      if (rows.node() == nullptr || !rows.node()->is_object()) continue;
+      for (const auto& [key, member] : rows.node()->items()) {
+        const JsonFields row = rows.object(key);
+        of_run.second[key] = {row.number("median"), read_interval(row), row.number("min"), row.number("max")};
       }
     }
   }
@@ -223,18 +219,18 @@ OverSeeds read_over_seeds(const JsonFields& summary) {
 }  // namespace
 
 Status read_summary(std::string_view json, const std::string& file, Results& results) {
-  CANYON_TRY(const JsonNode root, parse_json(json, file));
+  CANYON_TRY(const JsonFile tree, JsonFile::parse(json, file));
   std::optional<Error> error;
-  const JsonFields fields(&root, file, {}, error);
+  const JsonFields fields(&tree.root(), tree, {}, error);
   const double schema = fields.required_number("schema");
-  if (!error && schema != 1) fields.fail(fields.find("schema"), "schema", fields.find("schema")->describe(), "1");
+  if (!error && schema != 1) fields.fail(fields.find("schema"), "schema", describe(*fields.find("schema")), "1");
   if (!fields.has("mission")) fields.fail(nullptr, "mission", "missing", "an object");
   results.mission = read_mission(fields.object("mission"));
   results.scene = read_scene_facts(fields.object("scene"));
   results.figures = read_figure_list(fields);
   for (const auto& [node, path] : fields.list("runs", true)) {
     if (node->is_null()) fields.fail(node, path, "null", "an object");
-    const JsonFields run(node, file, path, error);
+    const JsonFields run(node, tree, path, error);
     // Runs of further seeds speak through what is said over all seeds.
     if (run.has("seed") && run.digits("seed") != results.mission.seed) continue;
     results.runs.push_back(read_run(run, results.figures));

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/scene/importers/importer.h"
-#include "canyon/scene/importers/parsing/json_text.h"
 
 namespace canyon::scene {
 namespace {
@@ -60,16 +60,17 @@ class CityJsonReader {
     const bool sequence =
         first_end != std::string::npos && Json::accept(first) && text.find("\"CityJSONFeature\"") != std::string::npos;
     if (!sequence) {
-      CANYON_TRY(const Json document, parse_json(text, path_));
+      std::vector<JsonMember> members;
+      CANYON_TRY(const Json document, parse_json(text, path_, {.key = "CityObjects", .members = &members}));
       CANYON_TRY_STATUS(header(document));
-      for (const JsonMember& member : members_of(text, "CityObjects")) line_of_[member.name] = member.line;
+      for (const JsonMember& member : members) line_of_[member.name] = member.line;
       CANYON_TRY_STATUS(city_objects(document, 0));
     }
     while (sequence && begin < text.size()) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
       const std::string_view record = std::string_view(text).substr(begin, end - begin);
       if (record.find_first_not_of(" \t\r") != std::string_view::npos) {
-        CANYON_TRY(const Json document, parse_json(record, path_, line));
+        CANYON_TRY(const Json document, parse_json(record, path_, {.first_line = line}));
         if (line == 1) CANYON_TRY_STATUS(header(document));
         CANYON_TRY_STATUS(city_objects(document, line));
       }
@@ -86,9 +87,9 @@ class CityJsonReader {
 
  private:
   Status header(const Json& document) {
-    if (!document.is_object() || text_of(document, "type") != "CityJSON")
+    if (!document.is_object() || json_string(document, "type") != "CityJSON")
       return Error{path_, 0, "type", "not a CityJSON file", "\"type\": \"CityJSON\""};
-    const std::string version = text_of(document, "version");
+    const std::string version = json_string(document, "version");
     if (version.rfind("1.", 0) != 0 && version.rfind("2.", 0) != 0)
       return Error{path_, 0, "version", "\"" + version + "\" is not known", "1.0, 1.1 or 2.0"};
     if (const auto transform = document.find("transform"); transform != document.end()) {
@@ -140,11 +141,11 @@ class CityJsonReader {
       throw_if_cancelled();
       if (const auto list = object.find("geometry"); list != object.end() && list->is_array())
         templates_ += static_cast<int>(std::count_if(
-            list->begin(), list->end(), [](const Json& g) { return text_of(g, "type") == "GeometryInstance"; }));
+            list->begin(), list->end(), [](const Json& g) { return json_string(g, "type") == "GeometryInstance"; }));
       const std::string root = root_of(*objects, id);
       for (const Json* g : geometries_of(object))
         if (level_of_detail(*g) == finest[root]) {
-          CANYON_TRY_STATUS(add(root, id, text_of(object, "type"), *g, line));
+          CANYON_TRY_STATUS(add(root, id, json_string(object, "type"), *g, line));
           break;
         }
     }
@@ -157,7 +158,7 @@ class CityJsonReader {
     const auto geometry = object.find("geometry");
     if (geometry == object.end() || !geometry->is_array()) return out;
     for (const Json& g : *geometry)
-      if (g.is_object() && g.contains("boundaries") && text_of(g, "type") != "GeometryInstance") out.push_back(&g);
+      if (g.is_object() && g.contains("boundaries") && json_string(g, "type") != "GeometryInstance") out.push_back(&g);
     return out;
   }
 
@@ -195,7 +196,7 @@ class CityJsonReader {
     const Json none;
     const Json::json_pointer values("/semantics/values"), surfaces("/semantics/surfaces");
     surfaces_ = geometry.contains(surfaces) ? &geometry[surfaces] : nullptr;
-    const std::string type = text_of(geometry, "type");
+    const std::string type = json_string(geometry, "type");
     const int depth = type == "Solid" ? 1 : type == "MultiSolid" || type == "CompositeSolid" ? 2 : 0;
     if (type != "Solid" && type != "MultiSolid" && type != "CompositeSolid" && type != "MultiSurface" &&
         type != "CompositeSurface")
@@ -225,7 +226,7 @@ class CityJsonReader {
     polygon.from.line = static_cast<std::uint32_t>(line_);
     if (surfaces_ != nullptr && surfaces_->is_array() && value.is_number_unsigned() &&
         value.get<std::size_t>() < surfaces_->size()) {
-      const std::string type = text_of((*surfaces_)[value.get<std::size_t>()], "type");
+      const std::string type = json_string((*surfaces_)[value.get<std::size_t>()], "type");
       polygon.ground_surface = type == "GroundSurface";
       for (const Surface& s : kSurfaces)
         if (type == s.type) polygon.material = scene_.material(s.material);

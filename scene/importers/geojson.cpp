@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/scene/importers/importer.h"
-#include "canyon/scene/importers/parsing/json_text.h"
 
 namespace canyon::scene {
 namespace {
@@ -90,11 +90,10 @@ class GeoJsonReader {
 
   Result<RawScene> read() {
     CANYON_TRY(const std::string text, read_text_or_gzip_file(path_));
-    CANYON_TRY(const Json document, parse_json(text, path_));
-    if (!document.is_object() || text_of(document, "type") != "FeatureCollection" || !document.contains("features") ||
-        !document["features"].is_array())
+    CANYON_TRY(const Json document, parse_json(text, path_, {.key = "features", .members = &members_}));
+    if (!document.is_object() || json_string(document, "type") != "FeatureCollection" ||
+        !document.contains("features") || !document["features"].is_array())
       return Error{path_, 0, "type", "not a collection of features", "\"type\": \"FeatureCollection\""};
-    members_ = members_of(text, "features");
     const Json::json_pointer crs("/crs/properties/name");
     scene_.frame =
         frame_by_name(document.contains(crs) && document[crs].is_string() ? document[crs].get<std::string>() : "CRS84");
@@ -128,7 +127,7 @@ class GeoJsonReader {
     const Json none = Json::object();
     const auto found = feature.find("properties");
     const Json& properties = found != feature.end() && found->is_object() ? *found : none;
-    const std::string type = text_of(geometry, "type");
+    const std::string type = json_string(geometry, "type");
     if (!geometry.is_object() || !geometry.contains("coordinates") || !geometry["coordinates"].is_array())
       return mistake("geometry", "no coordinates", "a list");
     const Json& coordinates = geometry["coordinates"];

@@ -284,7 +284,7 @@ TEST_F(Import, MistakesAreTold) {
       message("a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nend_header\n1234"),
       "a.ply: ends in the middle, expected as many elements as the header says");
   EXPECT_EQ(message("a.geojson", "{\"type\": \"FeatureCollection\",\n\"features\": [}"),
-            "a.geojson:2: not valid JSON, expected JSON text");
+            "a.geojson:2: not JSON near '\"features\": [}', expected a JSON value");
   EXPECT_EQ(message("a.geojson", "{\"type\": \"FeatureCollection\", \"features\": []}"),
             "a.geojson: features: no footprint, surface or street, expected features with polygons or lines");
   EXPECT_EQ(message("a.city.json", "{\"type\":\"CityJSON\",\"version\":\"3.0\",\"CityObjects\":{},\"vertices\":[]}"),
