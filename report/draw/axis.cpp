@@ -19,6 +19,14 @@ std::string tick_label(double value, double step) {
   return text;
 }
 
+/// "10⁻³".
+std::string power_of_ten(int exponent) {
+  static constexpr std::array<const char*, 10> kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string out = exponent < 0 ? "10⁻" : "10";
+  for (const char digit : std::to_string(std::abs(exponent))) out += kDigits[static_cast<std::size_t>(digit - '0')];
+  return out;
+}
+
 }  // namespace
 
 double nice_step(double range, int target) {
@@ -99,6 +107,20 @@ Axis Axis::logarithmic(double min, double max) {
     const bool labelled = !decades_only || i % per_decade == 0;
     axis.ticks_.push_back({tick(i), labelled ? tick_label(tick(i), tick(i)) : std::string()});
   }
+  return axis;
+}
+
+Axis Axis::decades(double min, double max) {
+  CANYON_CHECK(min > 0 && max >= min && std::isfinite(max), "min = ", min, ", max = ", max);
+  const int first = static_cast<int>(std::floor(std::log10(min)));
+  const int last = std::max(first + 1, static_cast<int>(std::ceil(std::log10(max))));
+  Axis axis;
+  axis.logarithmic_ = true;
+  axis.min_ = std::pow(10.0, first);
+  axis.max_ = std::pow(10.0, last);
+  for (int decade = first; decade <= last; ++decade)
+    for (int k = 1; k < 10 && (k == 1 || decade < last); ++k)
+      axis.ticks_.push_back({k * std::pow(10.0, decade), k == 1 ? power_of_ten(decade) : std::string()});
   return axis;
 }
 

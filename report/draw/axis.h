@@ -23,6 +23,8 @@ class Axis {
   /// 0 < min <= max; widened to ticks at 1, 2 and 5 times the powers of ten (1, 1.5, 2, 3, 4, 5 and 7 times
   /// within one decade); labels at the powers of ten alone if there are more than three.
   static Axis logarithmic(double min, double max);
+  /// 0 < min <= max; widened to whole decades, each with its nine ticks; labels at the powers of ten, as such: "10⁻³".
+  static Axis decades(double min, double max);
 
   double min() const { return min_; }
   double max() const { return max_; }

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "canyon/report/draw/format.h"
+#include "canyon/report/draw/plot_area.h"
 #include "canyon/report/draw/theme.h"
-#include "canyon/report/read/decimate.h"
 
 namespace canyon::report {
 namespace {
@@ -34,11 +34,15 @@ class ChartWriter {
     return fixed(axis.min(), 9) + " " + fixed(axis.max(), 9) + (axis.is_logarithmic() ? " log" : " lin");
   }
 
-  double x_px(double x) const { return kWidth * chart_.x.place(x); }
-  static double y_px(const Panel& panel, double y) {
-    // Far outside the frame it does not matter where; browsers clip large coordinates badly.
-    return std::clamp((1 - panel.y.place(y)) * panel.height_px, -1e4, 1e4);
+  PlotArea area_of(const Panel& panel) const {
+    return {.x = chart_.x,
+            .y = panel.y,
+            .width = kWidth,
+            .height = static_cast<double>(panel.height_px),
+            .beyond = 1e4,
+            .foot = static_cast<double>(kLane_px) * static_cast<double>(panel.lanes.size())};
   }
+  double x_px(double x) const { return kWidth * chart_.x.place(x); }
 
   void panel(const Panel& panel, std::size_t index) {
     const std::string id = chart_.id + "-" + std::to_string(index);
@@ -54,15 +58,17 @@ class ChartWriter {
             "\" preserveAspectRatio=\"none\" role=\"img\" aria-labelledby=\"" + id + "-t " + id + "-d\"><title id=\"" +
             id + "-t\">" + escape_html(title_of(panel)) + "</title><desc id=\"" + id + "-d\">" +
             escape_html(index == 0 ? chart_.description : describe(panel)) + "</desc>\n";
-    grid(panel, height_px);
-    for (const Band& band : panel.bands) draw_band(panel, band);
+    const PlotArea area = area_of(panel);
+    grid(panel, area);
+    for (const Band& band : panel.bands)
+      out_ += "<path class=\"band " + run_class(band.run) + "\" d=\"" + band_path(area, band, kBuckets) + "\"/>\n";
     for (const Mark& mark : chart_.marks)
       if (shows(panel, mark)) draw_mark(mark, height_px);
     // The first line lies uppermost.
-    for (auto line = panel.lines.rbegin(); line != panel.lines.rend(); ++line) draw_line(panel, *line);
+    for (auto line = panel.lines.rbegin(); line != panel.lines.rend(); ++line) draw_line(area, *line);
     lanes(panel);
     out_ += "</svg>\n";
-    y_labels(panel, height_px);
+    y_labels(area, height_px);
     if (index == 0 || panel.marks_of) mark_labels(panel);
     out_ += "</div>\n";
     for (const std::string& note : panel.notes) out_ += "<p class=\"note\">" + escape_html(note) + "</p>\n";
@@ -84,49 +90,18 @@ class ChartWriter {
     return text.empty() ? "Nothing to draw." : text + ".";
   }
 
-  void grid(const Panel& panel, int height_px) {
-    std::string path;
-    for (const Tick& tick : panel.y.ticks()) path += "M0 " + fixed(y_px(panel, tick.value), 2) + "H1000";
-    for (const Tick& tick : chart_.x.ticks())
-      path += "M" + fixed(x_px(tick.value), 2) + " 0V" + std::to_string(height_px);
-    out_ += "<path class=\"grid\" d=\"" + path + "\"/>\n";
-    if (panel.limit) out_ += "<path class=\"limit\" d=\"M0 " + fixed(y_px(panel, *panel.limit), 2) + "H1000\"/>\n";
-    if (panel.zero_line) out_ += "<path class=\"zero\" d=\"M0 " + fixed(y_px(panel, 0), 2) + "H1000\"/>\n";
+  void grid(const Panel& panel, const PlotArea& area) {
+    const auto level = [&](const char* name, double y) {
+      out_ += std::string("<path class=\"") + name + "\" d=\"M0 " + fixed(area.y_px(y), 2) + "H1000\"/>\n";
+    };
+    out_ += "<path class=\"grid\" d=\"" + grid_path(area, GridTicks::kAll) + "\"/>\n";
+    if (panel.limit) level("limit", *panel.limit);
+    if (panel.zero_line) level("zero", 0);
   }
 
-  void draw_line(const Panel& panel, const Line& line) {
-    std::string path;
-    for (const LinePiece& piece : decimate(line.x, line.y, kBuckets)) {
-      double last_y_px = 0;
-      for (std::size_t k = 0; k < piece.size(); ++k) {
-        const double px = x_px(line.x[piece[k]]);
-        const double py = y_px(panel, line.y[piece[k]]);
-        if (k > 0 && line.style == Line::Style::kStep) path += fixed(px, 1) + " " + fixed(last_y_px, 2) + " ";
-        path += (k == 0 ? "M" : "") + fixed(px, 1) + " " + fixed(py, 2) + " ";
-        last_y_px = py;
-      }
-      if (piece.size() == 1)
-        path += fixed(x_px(line.x[piece[0]]) + 0.1, 1) + " " + fixed(last_y_px, 2) + " ";  // a dot, by its round caps
-    }
-    if (!path.empty()) path.pop_back();
+  void draw_line(const PlotArea& area, const Line& line) {
     out_ += "<path class=\"line " + run_class(line.run) + (line.style == Line::Style::kThin ? " thin" : "") +
-            "\" data-name=\"" + escape_html(line.name) + "\" d=\"" + path + "\"/>\n";
-  }
-
-  void draw_band(const Panel& panel, const Band& band) {
-    // Each edge keeps its own extreme samples; both share their places, so the area closes.
-    std::string path;
-    for (const LinePiece& piece : decimate(band.x, band.high, kBuckets)) {
-      std::string forth, back;
-      for (const std::size_t i : piece) {
-        if (!std::isfinite(band.low[i])) continue;
-        const std::string x = fixed(x_px(band.x[i]), 1) + " ";
-        forth += x + fixed(y_px(panel, band.high[i]), 1) + " ";
-        back.insert(0, x + fixed(y_px(panel, band.low[i]), 1) + " ");
-      }
-      if (!forth.empty()) path += "M" + forth + back + "Z";
-    }
-    out_ += "<path class=\"band " + run_class(band.run) + "\" d=\"" + path + "\"/>\n";
+            "\" data-name=\"" + escape_html(line.name) + "\" d=\"" + line_path(area, line, kBuckets) + "\"/>\n";
   }
 
   void draw_mark(const Mark& mark, int height_px) {
@@ -171,11 +146,11 @@ class ChartWriter {
     }
   }
 
-  void y_labels(const Panel& panel, int height_px) {
-    for (const Tick& tick : panel.y.ticks()) {
+  void y_labels(const PlotArea& area, int height_px) {
+    for (const Tick& tick : area.y.ticks()) {
       if (tick.label.empty()) continue;
       out_ +=
-          "<span class=\"yt\" aria-hidden=\"true\" style=\"top:" + fixed(100 * y_px(panel, tick.value) / height_px, 2) +
+          "<span class=\"yt\" aria-hidden=\"true\" style=\"top:" + fixed(100 * area.y_px(tick.value) / height_px, 2) +
           "%\">" + tick.label + "</span>\n";
     }
   }

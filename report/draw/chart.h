@@ -16,7 +16,7 @@ struct Line {
   std::size_t run = 0;    ///< gives the colour
   std::string name = {};  ///< in the read-out: "high", "high, prior"
   std::vector<double> x = {}, y = {};
-  enum class Style { kNormal, kThin, kStep } style = Style::kNormal;
+  enum class Style { kNormal, kThin, kStep, kPoints } style = Style::kNormal;
 };
 
 /// The area between two lines.

@@ -87,5 +87,16 @@ TEST(Axis, RefusesWhatIsNoRange) {
   EXPECT_THROW(Axis::linear(std::nan(""), 1), ProgramError);
 }
 
+TEST(Axis, WholeDecades) {
+  const Axis axis = Axis::decades(0.02, 3);
+  EXPECT_EQ(axis.min(), 0.01);
+  EXPECT_EQ(axis.max(), 10);
+  ASSERT_EQ(axis.ticks().size(), 28u);
+  EXPECT_EQ(axis.ticks()[0].label, "10⁻²");
+  EXPECT_EQ(axis.ticks()[1].label, "");
+  EXPECT_EQ(axis.ticks()[27].label, "10¹");
+  EXPECT_EQ(Axis::decades(10, 10).max(), 100) << "never empty";
+}
+
 }  // namespace
 }  // namespace canyon::report

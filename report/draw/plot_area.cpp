@@ -1,0 +1,80 @@
+#include "canyon/report/draw/plot_area.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/report/draw/format.h"
+#include "canyon/report/read/decimate.h"
+
+namespace canyon::report {
+namespace {
+
+bool shows(GridTicks ticks, const Tick& tick) {
+  return ticks == GridTicks::kAll || (ticks == GridTicks::kLabelled) != tick.label.empty();
+}
+
+}  // namespace
+
+double PlotArea::x_px(double value) const {
+  return left + width * x.place(value);
+}
+
+double PlotArea::y_px(double value) const {
+  // Far outside the frame it does not matter where; browsers clip large coordinates badly.
+  return std::clamp(top + (1 - y.place(value)) * height, top - beyond, top + height + beyond);
+}
+
+std::string line_path(const PlotArea& area, const Line& line, std::size_t buckets) {
+  std::string path;
+  const auto point = [&](std::size_t i) {
+    return fixed(area.x_px(line.x[i]), 1) + " " + fixed(area.y_px(line.y[i]), 2) + " ";
+  };
+  for (const LinePiece& piece : decimate(line.x, line.y, buckets)) {
+    double last_y_px = 0;
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      const std::size_t i = piece[k];
+      if (k > 0 && line.style == Line::Style::kStep)
+        path += fixed(area.x_px(line.x[i]), 1) + " " + fixed(last_y_px, 2) + " ";
+      const bool begins = k == 0 || line.style == Line::Style::kPoints;
+      path += (begins ? "M" : "") + point(i);
+      if (line.style == Line::Style::kPoints) path.back() = 'h', path += "0 ";
+      last_y_px = area.y_px(line.y[i]);
+    }
+    if (piece.size() == 1 && line.style != Line::Style::kPoints)
+      path +=
+          fixed(area.x_px(line.x[piece[0]]) + 0.1, 1) + " " + fixed(last_y_px, 2) + " ";  // a dot, by its round caps
+  }
+  if (!path.empty()) path.pop_back();
+  return path;
+}
+
+std::string band_path(const PlotArea& area, const Band& band, std::size_t buckets) {
+  // Each edge keeps its own extreme samples; both share their places, so the area closes.
+  std::string path;
+  for (const LinePiece& piece : decimate(band.x, band.high, buckets)) {
+    std::string forth, back;
+    for (const std::size_t i : piece) {
+      if (!std::isfinite(band.low[i])) continue;
+      const std::string x = fixed(area.x_px(band.x[i]), 1) + " ";
+      forth += x + fixed(area.y_px(band.high[i]), 1) + " ";
+      back.insert(0, x + fixed(area.y_px(band.low[i]), 1) + " ");
+    }
+    if (!forth.empty()) path += "M" + forth + back + "Z";
+  }
+  return path;
+}
+
+std::string grid_path(const PlotArea& area, GridTicks ticks) {
+  std::string path;
+  for (const Tick& tick : area.y.ticks())
+    if (shows(ticks, tick))
+      path +=
+          "M" + fixed(area.left, 2) + " " + fixed(area.y_px(tick.value), 2) + "H" + fixed(area.left + area.width, 2);
+  for (const Tick& tick : area.x.ticks())
+    if (shows(ticks, tick))
+      path += "M" + fixed(area.x_px(tick.value), 2) + " " + fixed(area.top, 2) + "V" +
+              fixed(area.top + area.height + area.foot, 2);
+  return path;
+}
+
+}  // namespace canyon::report
