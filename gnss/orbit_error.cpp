@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <set>
 
 #include "canyon/core/math/median.h"
@@ -87,6 +89,40 @@ OrbitErrors orbit_errors(const Constellation& broadcast, const PreciseOrbits& pr
   remove_median(out.samples, &OrbitErrorSample::range_m);
   std::sort(out.samples.begin(), out.samples.end(),
             [](const auto& a, const auto& b) { return a.t != b.t ? a.t < b.t : a.sv < b.sv; });
+  return out;
+}
+
+OrbitErrorFigures OrbitErrors::of_satellite(SatelliteId sv) const {
+  std::vector<OrbitErrorSample> chosen;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(chosen), [sv](const auto& s) { return s.sv == sv; });
+  return figures_of(chosen);
+}
+
+OrbitErrorFigures OrbitErrors::of_system(char letter) const {
+  std::vector<OrbitErrorSample> chosen;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(chosen),
+               [letter](const auto& s) { return system_letter(s.sv.system) == letter; });
+  return figures_of(chosen);
+}
+
+std::map<char, std::vector<SatelliteId>> OrbitErrors::satellites() const {
+  std::map<char, std::vector<SatelliteId>> out;
+  for (const auto& s : samples) {
+    auto& known = out[system_letter(s.sv.system)];
+    if (std::find(known.begin(), known.end(), s.sv) == known.end()) known.push_back(s.sv);
+  }
+  for (auto& [letter, known] : out) std::sort(known.begin(), known.end());
+  return out;
+}
+
+std::string orbit_error_csv(const OrbitErrors& errors) {
+  std::string out = "gps_week,sow,satellite,radial_m,along_m,cross_m,clock_m\n";
+  char line[128];
+  for (const auto& s : errors.samples) {
+    std::snprintf(line, sizeof line, "%d,%.3f,%s,%.4f,%.4f,%.4f,%.4f\n", s.t.week(), s.t.sow_s(), s.sv.str().c_str(),
+                  s.radial_m, s.along_m, s.cross_m, s.clock_m);
+    out += line;
+  }
   return out;
 }
 

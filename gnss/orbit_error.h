@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "canyon/gnss/products/precise_orbits.h"
@@ -34,15 +36,11 @@ struct OrbitErrors {
   std::vector<OrbitErrorSample> samples;  ///< by epoch, then by satellite
   int without_clock = 0;                  ///< precise positions left out because their clock is not known
 
-  /// Figures of the samples of which `wanted` holds.
-  template <class Wanted>
-  OrbitErrorFigures figures(Wanted wanted) const {
-    std::vector<OrbitErrorSample> chosen;
-    for (const auto& s : samples)
-      if (wanted(s.sv)) chosen.push_back(s);
-    return figures_of(chosen);
-  }
   OrbitErrorFigures figures() const { return figures_of(samples); }
+  OrbitErrorFigures of_satellite(SatelliteId sv) const;
+  OrbitErrorFigures of_system(char letter) const;
+  /// Those of which there are samples, ascending, by the letter of their system.
+  std::map<char, std::vector<SatelliteId>> satellites() const;
 
  private:
   static OrbitErrorFigures figures_of(const std::vector<OrbitErrorSample>& samples);
@@ -55,5 +53,8 @@ struct OrbitErrors {
 /// state and do not count.
 OrbitErrors orbit_errors(const Constellation& broadcast, const PreciseOrbits& precise,
                          const PreciseOptions& options = {});
+
+/// One row per sample: gps_week,sow,satellite,radial_m,along_m,cross_m,clock_m.
+std::string orbit_error_csv(const OrbitErrors& errors);
 
 }  // namespace canyon::gnss

@@ -8,7 +8,9 @@
 #include <optional>
 #include <set>
 
+#include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/scene/surfaces/triangle.h"
 
 namespace canyon::scene {
@@ -213,6 +215,31 @@ SensorNeeds sensor_needs(const Scene& scene) {
   say(out.lidar, out.transparent, "second returns through glass", "second returns through glass: there is none");
   say(out.lidar, false, "", "mirrors and edges");
   return out;
+}
+
+Grid heights_from_above(const Scene& scene, double cell_m) {
+  Grid grid;
+  const Extent& extent = scene.extent();
+  grid.cell_m = std::max(cell_m, (extent.max - extent.min).head<2>().maxCoeff() / 4000.0);
+  grid.west_m = extent.min.x(), grid.south_m = extent.min.y();
+  grid.columns = std::max(1, static_cast<int>(std::ceil((extent.max.x() - extent.min.x()) / grid.cell_m)));
+  grid.rows = std::max(1, static_cast<int>(std::ceil((extent.max.y() - extent.min.y()) / grid.cell_m)));
+  grid.values.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), std::nan(""));
+  const SceneAt at(scene);
+  const double top_m = extent.max.z() + 10.0;
+  parallel_for(static_cast<std::size_t>(grid.rows), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        const double x = grid.west_m + (column + 0.5) * grid.cell_m,
+                     y = grid.south_m + (static_cast<double>(row) + 0.5) * grid.cell_m;
+        const auto hit = at.trace({Eigen::Vector3d(x, y, top_m), {0, 0, -1}});
+        if (!hit.hit()) continue;
+        const auto ground = scene.ground(x, y);
+        grid.at(column, static_cast<int>(row)) = top_m - hit.range_m - (ground ? ground->height_m : extent.min.z());
+      }
+    }
+  });
+  return grid;
 }
 
 }  // namespace canyon::scene

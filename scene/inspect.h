@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "canyon/core/files/ascii_grid.h"
 #include "canyon/scene/scene.h"
 
 namespace canyon::scene {
@@ -39,5 +40,9 @@ struct SensorNeeds {
 std::vector<MaterialArea> material_areas(const Scene& scene);
 Soundness soundness(const Scene& scene);
 SensorNeeds sensor_needs(const Scene& scene);
+
+/// Height above the ground of what is seen from above, by rays down in cells of `cell_m`, larger where there would be
+/// more than 4000 to a side; NaN where there is nothing. The scene has triangles.
+Grid heights_from_above(const Scene& scene, double cell_m);
 
 }  // namespace canyon::scene

@@ -69,6 +69,14 @@ void declare_common(Arguments& arguments, CommonOptions& options) {
   arguments.flag("--json", options.json, "print one JSON object on stdout and nothing else");
 }
 
+void print_warning(const std::string& line) {
+  std::fprintf(stderr, "warning: %s\n", line.c_str());
+}
+
+void print_warnings(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) print_warning(line);
+}
+
 namespace {
 
 /// Parses the arguments and runs the verb.

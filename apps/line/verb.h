@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "canyon/apps/line/arguments.h"
 #include "canyon/core/result.h"
@@ -47,5 +49,9 @@ struct CommonOptions {
   bool json = false;
 };
 void declare_common(Arguments& arguments, CommonOptions& options);
+
+/// "warning: " and the line, on stderr.
+void print_warning(const std::string& line);
+void print_warnings(const std::vector<std::string>& lines);
 
 }  // namespace canyon::apps

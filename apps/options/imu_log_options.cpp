@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "canyon/apps/line/verb.h"
 #include "canyon/core/units.h"
 
 namespace canyon::apps {
@@ -29,7 +30,7 @@ Result<inertial::ImuLog> read_log(const ImuLogOptions& options, bool live) {
 }
 
 void tell_doubts(const inertial::ImuLog& log) {
-  for (const std::string& doubt : log.doubts) std::fprintf(stderr, "warning: %s\n", doubt.c_str());
+  print_warnings(log.doubts);
 }
 
 void tell_motion(const std::string& path, const inertial::MotionFound& motion) {
@@ -51,10 +52,6 @@ void tell_motion(const std::string& path, const inertial::MotionFound& motion) {
                 gyro ? "deg/s" : "m/s^2");
   std::fprintf(stderr, "warning: %s moves from %s of its time (%s): the figures are of noise and motion together\n",
                path.c_str(), where.c_str(), text);
-}
-
-const char* channel_unit(int channel) {
-  return channel < 3 ? "rad/s" : "m/s^2";
 }
 
 }  // namespace canyon::apps

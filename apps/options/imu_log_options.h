@@ -25,7 +25,4 @@ void tell_doubts(const inertial::ImuLog& log);
 /// Warns on stderr where a log that ought to rest moves.
 void tell_motion(const std::string& path, const inertial::MotionFound& motion);
 
-/// "rad/s" or "m/s^2": of channel 0..5.
-const char* channel_unit(int channel);
-
 }  // namespace canyon::apps

@@ -6,9 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/apps/line/json.h"
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/gnss/antenna_height.h"

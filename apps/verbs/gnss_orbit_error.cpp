@@ -1,14 +1,14 @@
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/apps/line/json.h"
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/orbit_error.h"
+#include "canyon/gnss/products/precise_products.h"
 #include "canyon/gnss/rinex/navigation/navigation_file.h"
 
 namespace canyon::apps {
@@ -22,37 +22,11 @@ struct Options {
   bool force = false;
 };
 
-struct Input {
-  gnss::NavigationData nav;
-  gnss::PreciseOrbits precise;
-  std::optional<gnss::ClockFile> clocks;
-  std::optional<gnss::AntexFile> antennas;
-};
-
-Result<Input> read(const Options& options) {
-  Input in;
-  CANYON_TRY_STATUS(gnss::check_systems(options.systems, "--systems"));
-  CANYON_TRY(in.nav, gnss::read_navigation_files(options.nav));
-  CANYON_TRY(in.precise, gnss::read_sp3_files(options.sp3));
-  if (!options.clk.empty()) {
-    CANYON_TRY(in.clocks, gnss::read_clock_file(options.clk));
-  }
-  if (options.antex != "none") {
-    CANYON_TRY(in.antennas, gnss::read_antex_file(options.antex));
-  }
-  return in;
-}
-
-void print_warnings(const Input& in) {
-  const auto print = [](const std::vector<std::string>& warnings) {
-    for (const auto& w : warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
-  };
-  print(in.nav.warnings);
-  if (const std::string skipped = in.nav.skipped(); !skipped.empty())
-    print({in.nav.names() + ": records that are not used: " + skipped});
-  print(in.precise.warnings);
-  if (in.clocks) print(in.clocks->warnings);
-  if (in.antennas) print(in.antennas->warnings);
+void tell_warnings(const gnss::NavigationData& nav, const gnss::PreciseProducts& precise) {
+  print_warnings(nav.warnings);
+  if (const std::string skipped = nav.skipped(); !skipped.empty())
+    print_warning(nav.names() + ": records that are not used: " + skipped);
+  print_warnings(precise.warnings());
 }
 
 Json json_of(const gnss::OrbitErrorFigures& f) {
@@ -75,43 +49,14 @@ void print_row(const std::string& name, const gnss::OrbitErrorFigures& f) {
               f.sisre_m, f.sisre_unbiased_m, f.sisre_receiver_m);
 }
 
-std::string csv_of(const gnss::OrbitErrors& errors) {
-  std::string out = "gps_week,sow,satellite,radial_m,along_m,cross_m,clock_m\n";
-  char line[128];
-  for (const auto& s : errors.samples) {
-    std::snprintf(line, sizeof line, "%d,%.3f,%s,%.4f,%.4f,%.4f,%.4f\n", s.t.week(), s.t.sow_s(), s.sv.str().c_str(),
-                  s.radial_m, s.along_m, s.cross_m, s.clock_m);
-    out += line;
-  }
-  return out;
-}
-
-/// Satellites of which there are samples, ascending, by the letter of their system.
-std::map<char, std::vector<SatelliteId>> satellites_of(const gnss::OrbitErrors& errors) {
-  std::map<char, std::vector<SatelliteId>> out;
-  for (const auto& s : errors.samples) {
-    auto& known = out[system_letter(s.sv.system)];
-    if (std::find(known.begin(), known.end(), s.sv) == known.end()) known.push_back(s.sv);
-  }
-  for (auto& [letter, known] : out) std::sort(known.begin(), known.end());
-  return out;
-}
-
-gnss::OrbitErrorFigures figures_of(const gnss::OrbitErrors& errors, SatelliteId sv) {
-  return errors.figures([sv](SatelliteId other) { return other == sv; });
-}
-gnss::OrbitErrorFigures figures_of(const gnss::OrbitErrors& errors, char letter) {
-  return errors.figures([letter](SatelliteId other) { return system_letter(other.system) == letter; });
-}
-
 void print_json(const gnss::OrbitErrors& errors) {
   Json out = json_of(errors.figures());
   out["without_clock"] = errors.without_clock;
   out["by_system"] = Json::object();
   out["by_satellite"] = Json::object();
-  for (const auto& [letter, known] : satellites_of(errors)) {
-    out["by_system"][std::string(1, letter)] = json_of(figures_of(errors, letter));
-    for (const SatelliteId sv : known) out["by_satellite"][sv.str()] = json_of(figures_of(errors, sv));
+  for (const auto& [letter, known] : errors.satellites()) {
+    out["by_system"][std::string(1, letter)] = json_of(errors.of_system(letter));
+    for (const SatelliteId sv : known) out["by_satellite"][sv.str()] = json_of(errors.of_satellite(sv));
   }
   std::printf("%s\n", out.dump().c_str());
 }
@@ -123,10 +68,10 @@ void print_text(const gnss::OrbitErrors& errors, const Options& options) {
   std::printf("                           radial  radial   along   cross     3-D   clock   SISRE    SISRE    SISRE\n");
   std::printf("           sats samples      mean     RMS     RMS     RMS     RMS     RMS          unbiased receiver\n");
   std::printf("                                m       m       m       m       m       m       m        m        m\n");
-  const auto by_system = satellites_of(errors);
+  const auto by_system = errors.satellites();
   for (const auto& [letter, known] : by_system) {
-    for (const SatelliteId sv : known) print_row(sv.str(), figures_of(errors, sv));
-    print_row(std::string("all ") + letter, figures_of(errors, letter));
+    for (const SatelliteId sv : known) print_row(sv.str(), errors.of_satellite(sv));
+    print_row(std::string("all ") + letter, errors.of_system(letter));
   }
   if (by_system.size() > 1) print_row("all", errors.figures());
   if (errors.without_clock > 0)
@@ -139,21 +84,22 @@ void print_text(const gnss::OrbitErrors& errors, const Options& options) {
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
-  CANYON_TRY(const Input in, read(options));
+  CANYON_TRY_STATUS(gnss::check_systems(options.systems, "--systems"));
+  CANYON_TRY(const auto nav, gnss::read_navigation_files(options.nav));
+  CANYON_TRY(const auto precise,
+             gnss::read_precise_products(options.sp3, options.clk, options.antex == "none" ? "" : options.antex));
   const gnss::BroadcastOptions broadcast{
       .systems = options.systems,
       .choice = options.choice == "nearest" ? gnss::EphemerisChoice::kNearestToe : gnss::EphemerisChoice::kTransmitted};
-  const gnss::OrbitErrors errors = orbit_errors(*make_broadcast(in.nav, broadcast), in.precise,
-                                                {.systems = options.systems,
-                                                 .clocks = in.clocks ? &*in.clocks : nullptr,
-                                                 .antennas = in.antennas ? &*in.antennas : nullptr});
-  print_warnings(in);
+  const gnss::OrbitErrors errors =
+      orbit_errors(*make_broadcast(nav, broadcast), precise.orbits, precise.options(options.systems));
+  tell_warnings(nav, precise);
   if (errors.samples.empty())
-    return Error{in.nav.names(), 0, "", "no satellite has a broadcast ephemeris at an epoch of " + in.precise.names(),
+    return Error{nav.names(), 0, "", "no satellite has a broadcast ephemeris at an epoch of " + precise.orbits.names(),
                  "files of the same day"};
   if (!options.out.empty()) {
     CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
-    CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/orbit_error.csv", csv_of(errors)));
+    CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/orbit_error.csv", gnss::orbit_error_csv(errors)));
     CANYON_TRY_STATUS(staged.commit());
   }
   if (options.common.json)

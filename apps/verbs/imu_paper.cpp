@@ -4,13 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/apps/line/json.h"
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/json.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/random/random.h"
 #include "canyon/inertial/paper_figures.h"
-#include "canyon/report/draw/time_plot.h"
+#include "canyon/report/draw/picture.h"
 
 namespace canyon::apps {
 
@@ -46,12 +46,15 @@ std::string csv_of(const PaperDrift& d) {
 
 std::string picture_of(const inertial::PaperFigure& figure, const Form& form, const PaperDrift& d) {
   const auto panel = [&](const char* title, const char* unit, const std::array<std::vector<double>, 3>& y) {
-    return report::TimePanel{title, unit, {{"x", d.t_s, y[0]}, {"y", d.t_s, y[1]}, {"z", d.t_s, y[2]}}};
+    report::Panel out{.title = title, .unit = unit};
+    for (std::size_t i = 0; i < 3; ++i)
+      out.lines.push_back({.run = i, .name = std::string(1, "xyz"[i]), .x = d.t_s, .y = y[i]});
+    return out;
   };
-  return report::time_plot_svg(
+  return report::picture_svg(report::time_picture(
       std::string(figure.doc) + ", " + form.words,
       {panel("Angular rate", "deg/s", d.rate_deg_s), panel("Integral of each gyroscope (heading)", "deg", d.angle_deg),
-       panel("Position", "m", d.position_m)});
+       panel("Position", "m", d.position_m)}));
 }
 
 /// One figure in one of its forms.

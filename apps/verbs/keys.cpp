@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/apps/line/json.h"
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/config/config.h"
+#include "canyon/core/output/json.h"
 #include "canyon/mission/config/key_reference.h"
 #include "canyon/mission/config/mission_config.h"
 #include "canyon/study/results/figures.h"

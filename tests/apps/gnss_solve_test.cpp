@@ -1,4 +1,5 @@
 // canyon gnss solve: as a user calls it, on files that canyon gnss simulate wrote.
+#include <cmath>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -52,6 +53,31 @@ TEST_F(GnssSolveTest, SolvesWhatWasSimulated) {
   EXPECT_THAT(read("dir/positions.csv"), HasSubstr(",single,"));
   // Without a truth there are no errors to tell: null, never 0.
   EXPECT_TRUE(nlohmann::json::parse(read("dir/summary.json"))["rms_3d_m"].is_null());
+}
+
+// What the simulated receiver said of the same observations: without errors both are at the same place, to the rounding
+// of NMEA (0.2 mm, 1 mm in height) and of RINEX's pseudoranges (1 mm, times a PDOP of 5 at most).
+TEST_F(GnssSolveTest, ComparesWithTheReceiverItself) {
+  ASSERT_EQ(canyon("gnss simulate --force --at 32.35,-90.88,60 --duration 60 --errors none --rinex-obs given.rnx "
+                   "--rinex-nav given.nav --nmea given.nmea"),
+            0)
+      << read("stderr");
+  const std::string solve = "gnss solve --obs given.rnx --nav given.nav --systems G --config vacuum.toml --compare ";
+  ASSERT_EQ(canyon(solve + "given.nmea --json"), 0) << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_TRUE(json["rms_3d_m"].is_null()) << "there is no truth";
+  const auto& compare = json["compare"];
+  EXPECT_EQ(compare["file"], "given.nmea");
+  EXPECT_EQ(compare["positions"], 61);
+  EXPECT_EQ(compare["compared"], 61);
+  for (const char* key : {"mean_e_m", "mean_n_m", "mean_u_m", "std_e_m", "std_n_m", "std_u_m", "h50_m", "h95_m"})
+    EXPECT_LT(std::abs(compare[key].get<double>()), 0.006) << key;
+  ASSERT_EQ(canyon(solve + "given.nmea"), 0);
+  EXPECT_THAT(read("stdout"),
+              HasSubstr("  against given.nmea: 61 of its 61 positions are at times of ours; ours minus its "
+                        "own:\n  diff., m     mean     std\n  east "));
+  expect_mistake(solve + "missing.nmea", "missing.nmea: ");
+  expect_mistake(solve + "given.rnx", "given.rnx: no GGA or RMC sentence in it, expected an NMEA 0183 log");
 }
 
 /// A constellation seen at its centres of mass, `offset_m` further out than the antennas.

@@ -97,7 +97,8 @@ TEST_F(Pcd, MistakesAreNamed) {
   EXPECT_EQ(error_of(head + "DATA binary\n"), ":6: DATA: \"DATA binary\", expected POINTS N before it");
   EXPECT_EQ(error_of(head + "POINTS two\n"), ":6: POINTS: \"POINTS two\", expected POINTS N");
   EXPECT_EQ(error_of(head + "POINTS 2\nDATA ascii\n"), ":7: DATA: \"DATA ascii\", expected DATA binary");
-  EXPECT_EQ(error_of(head + "POINTS 2\nDATA binary\n0123456789ab"), ": POINTS: the file holds 1 points, expected 2 as its header says");
+  EXPECT_EQ(error_of(head + "POINTS 2\nDATA binary\n0123456789ab"),
+            ": POINTS: the file holds 1 points, expected 2 as its header says");
   EXPECT_EQ(error_of(head + "POINTS 99999999999999999\nDATA binary\n"),
             ": POINTS: the file holds 0 points, expected 99999999999999999 as its header says");
   EXPECT_EQ(error_of("FIELDS x y\nSIZE 4 4\nTYPE F F\nCOUNT 1 1\nPOINTS 0\nDATA binary\n"),

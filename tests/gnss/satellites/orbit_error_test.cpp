@@ -71,10 +71,10 @@ TEST(OrbitError, KnownShifts) {
   EXPECT_NEAR(f.sisre_unbiased_m, std::sqrt(13.0 / 49.0), 3e-3);
   // The common 0.98 m goes, the two clocks stay.
   EXPECT_NEAR(f.sisre_receiver_m, std::sqrt(18.0 / 8.0 + 13.0 / 49.0), 3e-3);
-  const auto one = errors.figures([](SatelliteId sv) { return sv.prn == 7; });
+  const auto one = errors.of_satellite({GnssSystem::kGps, 7});
   EXPECT_EQ(one.samples, 4);
   EXPECT_NEAR(one.clock_rms_m, 3.0, 2e-3);
-  EXPECT_TRUE(std::isnan(errors.figures([](SatelliteId) { return false; }).sisre_m));
+  EXPECT_TRUE(std::isnan(errors.of_satellite({GnssSystem::kGps, 63}).sisre_m));
 }
 
 TEST(OrbitError, UnknownClocksAreCounted) {
@@ -131,9 +131,7 @@ TEST(OrbitError, FourSystemsAgainstPreciseOrbits) {
   CANYON_REAL_DATA(nav_r, "gnss/urban_berlin/brdc1580.16g");
   CANYON_REAL_DATA(nav_m, "gnss/urban_berlin/BRDC00WRD_U_20161580000_01D_MN.rnx");
   CANYON_REAL_DATA(gbm, "gnss/urban_berlin/gbm19001.sp3.gz");
-  const auto of = [](const OrbitErrors& errors, char letter) {
-    return errors.figures([letter](SatelliteId sv) { return system_letter(sv.system) == letter; });
-  };
+  const auto of = [](const OrbitErrors& errors, char letter) { return errors.of_system(letter); };
   const auto esbc = read_navigation_file(nav);
   const auto grg = read_sp3_file(sp3);
   ASSERT_TRUE(esbc.ok() && grg.ok());

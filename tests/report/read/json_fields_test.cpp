@@ -32,7 +32,7 @@ TEST(JsonFields, KeepsTheDigitsOfIntegers) {
   const JsonFields fields(&root->root(), *root, "", error);
   EXPECT_EQ(fields.digits("seed"), "18446744073709551615");
   EXPECT_EQ(fields.digits("x"), "");
-  EXPECT_EQ(error->str(), "f.json:1: x: number 1.5, expected an integer or null");
+  EXPECT_EQ(error->str(), "f.json:1: x: number 1.50000, expected an integer or null");
 }
 
 TEST(JsonFields, ReadsWhatIsThereAndTakesNullForUndefined) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "canyon/apps/options/scene_options.h"
+#include "canyon/lidar/scan_drive.h"
+
+namespace canyon::apps {
+
+/// Options that say which LIDAR scans what from where, for the verb that scans by itself.
+struct LidarDriveOptions {
+  SceneOptions scene;
+  std::string fidelity = "high";
+  std::string at, trajectory, beams, model, detector, returns, see_through, start;
+  std::optional<double> rate_hz;
+  std::optional<std::int64_t> azimuth_steps;
+  std::int64_t scans = 1;
+};
+void declare_lidar_drive(Arguments& arguments, LidarDriveOptions& options);
+
+Result<lidar::ScanDrive> lidar_drive(const LidarDriveOptions& options);
+
+}  // namespace canyon::apps

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "canyon/core/messages.h"
+#include "canyon/core/result.h"
+#include "canyon/fusion/strapdown.h"
+
+namespace canyon::study {
+
+/// A recorded IMU as what it put out: increments over the interval that ends at each stamp, in forward-left-up.
+struct ImuRecording {
+  std::string path;
+  std::vector<ImuSample> samples;
+  bool kf_gins = false;  ///< the file is the KF-GINS text format
+  std::size_t gaps = 0;
+};
+
+struct ImuRecordingFormat {
+  std::string columns;              ///< as ImuLogFormat; empty: the file's header, or KF-GINS text if it has none
+  bool forward_right_down = false;  ///< axes of the file; KF-GINS text has its own
+  int gps_week = 0;                 ///< of which the stamps are seconds
+};
+
+/// The first interval and those after gaps are as long as usual. A channel that is dead or saturated can still be
+/// integrated: `warn` gets a line on that, as on units that look mistaken. All six channels must be there, and the
+/// stamps within the 292 years that nanoseconds in 64 bits hold.
+Result<ImuRecording> read_imu_recording(const std::string& path, const ImuRecordingFormat& format,
+                                        const std::function<void(const std::string&)>& warn);
+
+/// Gravity must pull down in the first second after `initial`, or as long as the unit keeps its attitude by half a
+/// radian; an axis convention mistaken turns it round. `advice`: what the error expects.
+Status check_axes(const ImuRecording& recording, const fusion::NavState& initial, const std::string& advice);
+
+}  // namespace canyon::study
