@@ -12,24 +12,36 @@ struct BandChoice {
 };
 using Choices = std::vector<BandChoice>;
 
-const Choices& single_choices(GnssSystem system) {
-  static const Choices gps{{'1', "CPWYMXLSN"}}, glonass{{'1', "CP"}}, galileo{{'1', "CXBAZ"}},
-      beidou{{'2', "IXQ"}, {'1', "PXD"}}, qzss{{'1', "CXLSZ"}}, sbas{{'1', "C"}};
-  switch (system) {
-    case GnssSystem::kGps:
-      return gps;
-    case GnssSystem::kGlonass:
-      return glonass;
-    case GnssSystem::kGalileo:
-      return galileo;
-    case GnssSystem::kBeidou:
-      return beidou;
-    case GnssSystem::kQzss:
-      return qzss;
-    case GnssSystem::kSbas:
-      return sbas;
+struct BySystem {
+  Choices gps, glonass, galileo, beidou, qzss, sbas;
+
+  const Choices& of(GnssSystem system) const {
+    switch (system) {
+      case GnssSystem::kGps:
+        return gps;
+      case GnssSystem::kGlonass:
+        return glonass;
+      case GnssSystem::kGalileo:
+        return galileo;
+      case GnssSystem::kBeidou:
+        return beidou;
+      case GnssSystem::kQzss:
+        return qzss;
+      case GnssSystem::kSbas:
+        return sbas;
+    }
+    return gps;
   }
-  return gps;
+};
+
+const Choices& single_choices(GnssSystem system) {
+  static const BySystem choices{.gps = {{'1', "CPWYMXLSN"}},
+                                .glonass = {{'1', "CP"}},
+                                .galileo = {{'1', "CXBAZ"}},
+                                .beidou = {{'2', "IXQ"}, {'1', "PXD"}},
+                                .qzss = {{'1', "CXLSZ"}},
+                                .sbas = {{'1', "C"}}};
+  return choices.of(system);
 }
 
 const Choices& dual_first(GnssSystem system) {
@@ -40,24 +52,13 @@ const Choices& dual_first(GnssSystem system) {
 }
 
 const Choices& dual_second(GnssSystem system) {
-  static const Choices gps{{'2', "WPYLXSCDMN"}, {'5', "QXI"}}, glonass{{'2', "PC"}},
-      galileo{{'5', "QXI"}, {'7', "QXI"}}, beidou{{'6', "IXQ"}, {'7', "IXQ"}, {'5', "PXD"}},
-      qzss{{'2', "LXS"}, {'5', "QXI"}}, sbas{{'5', "IXQ"}};
-  switch (system) {
-    case GnssSystem::kGps:
-      return gps;
-    case GnssSystem::kGlonass:
-      return glonass;
-    case GnssSystem::kGalileo:
-      return galileo;
-    case GnssSystem::kBeidou:
-      return beidou;
-    case GnssSystem::kQzss:
-      return qzss;
-    case GnssSystem::kSbas:
-      return sbas;
-  }
-  return gps;
+  static const BySystem choices{.gps = {{'2', "WPYLXSCDMN"}, {'5', "QXI"}},
+                                .glonass = {{'2', "PC"}},
+                                .galileo = {{'5', "QXI"}, {'7', "QXI"}},
+                                .beidou = {{'6', "IXQ"}, {'7', "IXQ"}, {'5', "PXD"}},
+                                .qzss = {{'2', "LXS"}, {'5', "QXI"}},
+                                .sbas = {{'5', "IXQ"}}};
+  return choices.of(system);
 }
 
 const ObservationValue* find(const std::vector<ObservationCode>& codes, const SatelliteObservations& s,

@@ -1,7 +1,5 @@
 #include <sstream>
 
-#include <zlib.h>
-
 #include "canyon/core/check.h"
 #include "canyon/gnss/nmea/nmea_reader.h"
 #include "canyon/gnss/rinex/navigation/navigation_file.h"
@@ -9,6 +7,7 @@
 #include "canyon/tests/gnss/atmosphere/product_text.h"
 #include "canyon/tests/gnss/rinex/hatanaka_compress.h"
 #include "canyon/tests/gnss/rinex/nav_text.h"
+#include "canyon/tests/mutation/deflated.h"
 #include "canyon/tests/mutation/format.h"
 
 namespace canyon::testing {
@@ -89,20 +88,6 @@ std::string hatanaka(const std::string& rinex, bool modern) {
                   "CRINEX VERS   / TYPE") +
       header_line("a test", "CRINEX PROG / DATE");
   return gnss::HatanakaCompressor(modern).compress(rinex, two_lines);
-}
-
-std::string gzip(const std::string& text) {
-  z_stream stream = {};
-  CANYON_CHECK(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY) == Z_OK, "zlib");
-  std::string out(deflateBound(&stream, text.size()) + 64, '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  CANYON_CHECK(deflate(&stream, Z_FINISH) == Z_STREAM_END, "zlib");
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
 }
 
 std::string navigation2() {
@@ -247,8 +232,8 @@ std::vector<Format> observation_formats() {
            .read = {},
            .seeds =
                [] {
-                 return std::vector<Seed>{{"obs.rnx.gz", gzip(observations())},
-                                          {"obs.crx.gz", gzip(hatanaka(observations(), true))}};
+                 return std::vector<Seed>{{"obs.rnx.gz", gzipped(observations())},
+                                          {"obs.crx.gz", gzipped(hatanaka(observations(), true))}};
                },
            .beside = nav_beside}};
 }

@@ -15,6 +15,7 @@
 #include "canyon/tests/mutation/format.h"
 #include "canyon/tests/report/synthetic_results.h"
 #include "canyon/tests/report/temporary_directory.h"
+#include "canyon/tests/scene/importers/citygml_text.h"
 
 namespace canyon::testing {
 namespace {
@@ -74,17 +75,6 @@ constexpr const char* kGeoJson =
 {"type":"Feature","properties":{"id":7,"levels":2,"ground_height":200},"geometry":{"type":"MultiPolygon","coordinates":[
 [[[5.0005,45.0],[5.0006,45.0],[5.0006,45.0001],[5.0005,45.0]]]]}},
 {"type":"Feature","properties":{"highway":"residential"},"geometry":{"type":"LineString","coordinates":[[4.9999,44.9999],[5.0007,44.9999]]}}]})";
-
-constexpr const char* kCityGml =
-    R"(<?xml version="1.0" encoding="UTF-8"?>
-<core:CityModel xmlns:core="c" xmlns:bldg="b" xmlns:gml="g"><gml:boundedBy><gml:Envelope srsName="http://www.opengis.net/def/crs/EPSG/0/6697"/></gml:boundedBy>
-<core:cityObjectMember><bldg:Building gml:id="B1"><bldg:lod0RoofEdge><gml:Polygon><gml:exterior><gml:LinearRing>
-<gml:posList>35.54 139.77 0 35.54 139.7701 0 35.5401 139.7701 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></bldg:lod0RoofEdge>
-<bldg:lod1Solid><gml:Solid><gml:Polygon><gml:exterior><gml:LinearRing>
-<gml:posList>35.54 139.77 3 35.5401 139.77 3 35.5401 139.7701 3 35.54 139.7701 3 35.54 139.77 3</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>
-<gml:Polygon><gml:exterior><gml:LinearRing>
-<gml:posList>35.54 139.77 13 35.54 139.7701 13 35.5401 139.7701 13 35.5401 139.77 13 35.54 139.77 13</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:Solid></bldg:lod1Solid>
-</bldg:Building></core:cityObjectMember></core:CityModel>)";
 
 constexpr const char* kOsm = R"(<?xml version="1.0"?>
 <osm version="0.6">
@@ -257,7 +247,7 @@ std::vector<Format> scene_formats() {
                   }),
       of_one_file("CityGml",
                   [] {
-                    return std::vector<Seed>{{"one.gml", kCityGml}};
+                    return std::vector<Seed>{{"one.gml", kOneBuildingCityGml}};
                   }),
       of_one_file("Osm",
                   [] {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include <unistd.h>
@@ -41,6 +43,15 @@ class TemporaryFolder {
 inline std::string temporary_file(const std::string& name) {
   static const TemporaryFolder folder;
   return folder.file(name);
+}
+
+inline void write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file) << text;
+}
+inline std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace canyon::testing

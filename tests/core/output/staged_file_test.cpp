@@ -17,14 +17,9 @@ namespace canyon {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::read;
 using testing::TemporaryFolder;
-
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream(file) << text;
-}
-std::string read(const fs::path& file) {
-  return *read_text_file(file.string());
-}
+using testing::write;
 
 TEST(StagedFile, AppearsOnlyWhenCommitted) {
   const TemporaryFolder folder;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "canyon/scene/scene_at.h"
+#include "canyon/tests/scene/importers/citygml_text.h"
 #include "canyon/tests/scene/importers/import_fixture.h"
 
 namespace canyon::scene::testing {
@@ -99,16 +100,7 @@ TEST_F(Import, CityJsonWithSemantics) {
 }
 
 TEST_F(Import, CityGmlReadsLatitudeFirst) {
-  const SceneParts made = parts(
-      "one.gml",
-      R"(<core:CityModel xmlns:core="c" xmlns:bldg="b" xmlns:gml="g"><gml:boundedBy><gml:Envelope srsName="http://www.opengis.net/def/crs/EPSG/0/6697"/></gml:boundedBy>
-<core:cityObjectMember><bldg:Building gml:id="B1"><bldg:lod0RoofEdge><gml:Polygon><gml:exterior><gml:LinearRing>
-<gml:posList>35.54 139.77 0 35.54 139.7701 0 35.5401 139.7701 0</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></bldg:lod0RoofEdge>
-<bldg:lod1Solid><gml:Solid><gml:Polygon><gml:exterior><gml:LinearRing>
-<gml:posList>35.54 139.77 3 35.5401 139.77 3 35.5401 139.7701 3 35.54 139.7701 3 35.54 139.77 3</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>
-<gml:Polygon><gml:exterior><gml:LinearRing>
-<gml:posList>35.54 139.77 13 35.54 139.7701 13 35.5401 139.7701 13 35.5401 139.77 13 35.54 139.77 13</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon></gml:Solid></bldg:lod1Solid>
-</bldg:Building></core:cityObjectMember></core:CityModel>)");
+  const SceneParts made = parts("one.gml", canyon::testing::kOneBuildingCityGml);
   ASSERT_EQ(made.buildings.size(), 1u);
   EXPECT_EQ(made.buildings[0].name, "B1");
   EXPECT_NEAR(made.buildings[0].height_m, 10.0, 1e-5);
