@@ -19,7 +19,7 @@ struct ImuRecording {
 };
 
 struct ImuRecordingFormat {
-  std::string columns;              ///< as ImuLogFormat; empty: the file's header, or KF-GINS text if it has none
+  std::string columns = {};         ///< as ImuLogFormat; empty: the file's header, or KF-GINS text if it has none
   bool forward_right_down = false;  ///< axes of the file; KF-GINS text has its own
   int gps_week = 0;                 ///< of which the stamps are seconds
 };

@@ -64,7 +64,7 @@ TEST(LogFits, AtRestTheBiasIsWhatIsLeft) {
   const NamedLog log{log_of(0.0, 0.01, 20000,
                             [&](std::size_t c, double) {
                               const double still = c < 3 ? 0.02 : c == 5 ? kStandardGravity + 0.05 : 0.0;
-                              return still + 0.01 * noise.normal(k++);
+                              return still + 0.01 * noise.normal(0, k++);
                             }),
                      "folder/mine.csv"};
   const auto unit = fit_at_rest(log, {});
