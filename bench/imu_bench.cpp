@@ -83,7 +83,7 @@ std::unique_ptr<ErrorChain> make_chain(bool full) {
                    .leave_out = {},
                    .environment = testing::warming_up()};
   if (!full) {
-    for (const std::string& name : error_link_names()) {
+    for (const std::string& name : model_names(error_links())) {
       if (name != "white_noise" && name != "in_run_bias") setup.leave_out.push_back(name);
     }
   }

@@ -49,12 +49,16 @@ Eigen::Matrix3d fix_covariance(const GnssFix& fix, double floor_m) {
   return R;
 }
 
+constexpr ModelRow<ImuGains> kImuGains[] = {
+    {"estimate", ImuGains::kEstimate, "beside the 15 states, if the IMU is said to have any"},
+    {"ignore", ImuGains::kIgnore, "strictly 15 states"},
+};
+
 bool estimates_gains(const FilterConfig& config, const ImuNoise& noise) {
-  CANYON_CHECK(config.imu_gains == "estimate" || config.imu_gains == "ignore", "imu_gains = ", config.imu_gains);
   const auto has_gain_errors = [](const TriadNoise& n) {
     return n.scale_sigma > 0.0 || n.misalignment_sigma_rad > 0.0;
   };
-  return config.imu_gains == "estimate" && (has_gain_errors(noise.gyro) || has_gain_errors(noise.accel));
+  return config.imu_gains == ImuGains::kEstimate && (has_gain_errors(noise.gyro) || has_gain_errors(noise.accel));
 }
 
 }  // namespace
@@ -73,7 +77,7 @@ void visit(FieldVisitor& f, FilterConfig& c) {
            "fixes less likely than a deviation of this many sigma are refused; 0 accepts every fix");
   f.number("fix_sigma_floor_m", c.fix_sigma_floor_m, {0, 1e3}, "lower bound on a fix's 1-sigma per axis");
   f.choice("integrator", c.integrator, strapdown_names(), "strapdown integrator");
-  f.choice("imu_gains", c.imu_gains, {"estimate", "ignore"}, "scale factors and misalignments of the IMU");
+  f.choice("imu_gains", c.imu_gains, ModelTable<ImuGains>(kImuGains), "scale factors and misalignments of the IMU");
   f.number("imu_gain_tau_s", c.imu_gain_tau_s, {0, 1e9}, "their correlation time; 0: constant over a run");
 }
 

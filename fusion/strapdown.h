@@ -54,16 +54,16 @@ class Strapdown {
 
 /// One row of the table of integrators. The orders are those of the global error in the interval, for smooth motion
 /// and exact increments, once the integrator has seen the increments it looks back to.
-struct StrapdownRow {
-  const char* name;
+struct StrapdownModel {
   std::unique_ptr<Strapdown> (*make)(GravityFunction gravity);
-  int order;  ///< of position, the lowest
-  int velocity_order, attitude_order;
-  const char* doc;
+  int velocity_order, attitude_order;  ///< the row's `order` is that of position, the lowest
 };
+using StrapdownRow = ModelRow<StrapdownModel>;
 
-std::span<const StrapdownRow> strapdown_models();
-std::vector<std::string> strapdown_names();
+ModelTable<StrapdownModel> strapdown_models();
+inline std::vector<std::string> strapdown_names() {
+  return model_names(strapdown_models());
+}
 /// A model by name; throws ProgramError for a name that is not in the table (check user input against
 /// strapdown_names()). Why gravity is exchangeable is told in core/earth/gravity.h.
 std::unique_ptr<Strapdown> make_strapdown(std::string_view name, GravityFunction gravity = gravity_E);

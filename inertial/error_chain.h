@@ -8,6 +8,7 @@
 
 #include "canyon/core/imu_noise.h"
 #include "canyon/core/messages.h"
+#include "canyon/core/model_table.h"
 #include "canyon/core/result.h"
 #include "canyon/inertial/catalogue.h"
 #include "canyon/inertial/environment.h"
@@ -45,16 +46,11 @@ struct ChainSetup {
   Environment environment{};
 };
 
-/// One row of the table of error chains.
-struct ErrorChainRow {
-  const char* name;
+struct ErrorChainModel {
   Result<std::unique_ptr<ErrorChain>> (*make)(const ChainSetup& setup);
   bool has_links;  ///< made of the links of inertial/errors, any of which can be left out
-  const char* doc;
 };
-
-std::span<const ErrorChainRow> error_chains();
-std::vector<std::string> error_chain_names();
+ModelTable<ErrorChainModel> error_chains();
 
 /// The chain of that name. Errors: an unknown name; a link to leave out that the chain does not have; what the row's
 /// maker refuses.

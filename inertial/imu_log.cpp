@@ -358,7 +358,7 @@ std::string layout_names() {
 Result<std::vector<Column>> asked_columns(const ImuLogFormat& format) {
   std::string names = format.columns;
   for (const ImuLogLayout& layout : kLayouts)
-    if (names == layout.name) names = layout.columns;
+    if (names == layout.name) names = layout.make;
   const Error at{"--columns", 0, "", "", ""};
   CANYON_TRY(auto columns, columns_of(names, at));
   CANYON_TRY_STATUS(check_columns(columns, format.rate_hz, at));
@@ -367,7 +367,7 @@ Result<std::vector<Column>> asked_columns(const ImuLogFormat& format) {
 
 }  // namespace
 
-std::span<const ImuLogLayout> imu_log_layouts() {
+ModelTable<const char*> imu_log_layouts() {
   return kLayouts;
 }
 
@@ -381,8 +381,7 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
   ImuLog log;
   Places places{path, {}};
   std::string_view line;
-  const bool a_layout = std::any_of(std::begin(kLayouts), std::end(kLayouts),
-                                    [&](const ImuLogLayout& layout) { return format.columns == layout.name; });
+  const bool a_layout = find_model(imu_log_layouts(), format.columns) != nullptr;
   bool named_units = !format.columns.empty() && !a_layout;
   for (bool first = true; in.next(line); first = false) {
     if (log.size() % kSamplesPerLook == 0) throw_if_cancelled();

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "canyon/core/model_table.h"
 #include "canyon/core/result.h"
 
 namespace canyon::inertial {
@@ -38,12 +39,8 @@ struct ImuLogFormat {
 };
 
 /// A layout that is in use elsewhere, by name.
-struct ImuLogLayout {
-  const char* name;
-  const char* columns;
-  const char* doc;
-};
-std::span<const ImuLogLayout> imu_log_layouts();
+using ImuLogLayout = ModelRow<const char*>;  ///< makes the names of the columns
+ModelTable<const char*> imu_log_layouts();
 
 /// Reads CSV, or columns apart by blanks, plain or gzip. Errors name the line: missing columns, fields that are not
 /// numbers or beyond 1e12 rad/s or m/s^2, time that does not increase, channels stuck at one value or saturated, and

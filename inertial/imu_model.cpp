@@ -38,13 +38,14 @@ class StrapdownImu final : public ImuModel {
 void visit(FieldVisitor& f, ImuConfig& c) {
   f.file("sensor", c.sensor, ".toml", "entry of the sensor catalogue, or a TOML file of your own sensor");
   f.file("gyroscope", c.gyroscope, ".toml", "entry whose gyroscope goes with a sensor that is an accelerometer alone");
-  f.choice("errors", c.errors, error_chain_names(), "error chain");
+  f.choice("errors", c.errors, model_names(error_chains()), "error chain");
   f.texts("leave_out", c.leave_out, "links of the error chain that are switched off, by name (docs/inertial.md)");
   f.number("rate_hz", c.rate_hz, {10, 5000}, "samples per second");
   f.vector3("lever_arm_m", c.lever_arm_m, {-100, 100}, "IMU in the body frame; axes parallel to the body's");
   f.numbers("temperature_times_s", c.temperature_times_s, 0, {0, 1e9},
             "corners of the unit's temperature over the run; empty: the temperature its figures hold for");
   f.numbers("temperatures_c", c.temperatures_c, 0, {-100, 200}, "temperatures at these times, constant outside");
+  f.old_key("vibration_g", "imu.vibration_m_s2, in m/s^2 (1 g = 9.80665 m/s^2)");
   f.vector3("vibration_m_s2", c.vibration_m_s2, {0, 1000}, "RMS of vibration too fast for the samples, per axis");
 }
 

@@ -77,7 +77,7 @@ std::unique_ptr<ErrorChain> link_chain(const ChainSetup& setup, const UnitFigure
   const LinkSetup link_setup{
       .figures = figures, .environment = setup.environment, .seed = setup.seed, .dt_s = 1.0 / setup.rate_hz};
   std::vector<std::unique_ptr<ErrorLink>> links;
-  for (const ErrorLinkRow& row : error_links()) {
+  for (const auto& row : error_links()) {
     if (contains(setup.leave_out, row.name) || (!only.empty() && !contains(only, row.name))) continue;
     if (auto link = row.make(link_setup)) links.push_back(std::move(link));
   }

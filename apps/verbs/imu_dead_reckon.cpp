@@ -92,7 +92,7 @@ Result<int> run(const Options& options) {
 std::string integrators_help() {
   std::string out = "strapdown model:";
   for (const fusion::StrapdownRow& row : fusion::strapdown_models())
-    out += std::string("\n") + row.name + ", order " + std::to_string(row.order) + ": " + row.doc;
+    out += std::string("\n") + row.name + ", order " + std::to_string(static_cast<int>(*row.order)) + ": " + row.doc;
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "canyon/core/model_table.h"
 #include "canyon/core/result.h"
 
 namespace canyon {
@@ -87,6 +89,17 @@ class FieldVisitor {
   /// A list of numbers; `size` > 0 demands exactly that many.
   virtual void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char* doc) = 0;
   virtual void texts(const char* key, std::vector<std::string>& value, const char* doc) = 0;
+  /// A key of earlier versions: an error that names `instead`, what took its place. Neither read nor documented.
+  virtual void old_key(const char* /*key*/, const char* /*instead*/) {}
+  /// A value of an enumeration, by its name in the table.
+  template <class Value>
+  void choice(const char* key, Value& value, std::span<const ModelRow<Value>> rows, const char* doc) {
+    std::string name = row_of(rows, value).name;
+    choice(key, name, model_names(rows), doc);
+    value = model_row(rows, name).make;
+  }
+  /// A number that may be not set, which is written as `unset`.
+  void optional_number(const char* key, std::optional<double>& value, double unset, Range range, const char* doc);
   void vector3(const char* key, Eigen::Vector3d& value, Range range, const char* doc);
   void vector2(const char* key, Eigen::Vector2d& value, Range range, const char* doc);
 

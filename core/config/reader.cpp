@@ -67,16 +67,14 @@ class Reader final : public FieldVisitor {
   void choice(const char* key, std::string& value, const std::vector<std::string>& allowed, const char*) override {
     const ConfigNode* node = take(key);
     if (!node) return;
-    const std::string expected = "one of " + quoted_list(allowed);
-    const auto v = typed<std::string>(*node, path(key), expected);
+    const auto v = typed<std::string>(*node, path(key), "one of " + quoted_list(allowed));
     if (!v) return;
     if (std::find(allowed.begin(), allowed.end(), *v) != allowed.end()) {
       value = *v;
       return;
     }
-    const std::string nearest = nearest_word(*v, allowed);
-    fail(*node, path(key), "unknown name \"" + *v + "\"",
-         expected + (nearest.empty() ? "" : "; nearest is \"" + nearest + "\""));
+    Error error = unknown_name(path(key), *v, allowed);
+    fail(*node, error.key, std::move(error.what), std::move(error.expected));
   }
 
   void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char*) override {
@@ -113,11 +111,20 @@ class Reader final : public FieldVisitor {
     read_texts(key, value, resolved);
   }
 
+  void old_key(const char* key, const char* instead) override {
+    if (!table_) return;
+    const auto it = table_->find(key);
+    if (it == table_->end()) return;
+    old_.emplace_back(key);
+    fail(it->second, path(key), "is a key of an earlier version", instead);
+  }
+
   /// Every key of the table that no field asked for is a mistake.
   void refuse_unknown_keys() {
     if (!table_) return;
     for (const auto& [key, node] : *table_) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
+      if (std::find(old_.begin(), old_.end(), key) != old_.end()) continue;
       const std::string nearest = nearest_word(key, known_);
       std::string expected = "one of the documented keys";
       if (!nearest.empty()) {
@@ -238,7 +245,7 @@ class Reader final : public FieldVisitor {
   const ConfigNode::Table* table_;
   std::string prefix_;
   Mistakes& mistakes_;
-  std::vector<std::string> known_;
+  std::vector<std::string> known_, old_;
 };
 
 /// All that is missing, in one message: the first by its own, the others by name.
@@ -251,6 +258,16 @@ Error all_missing(Error first, const std::vector<Error>& errors) {
 }
 
 }  // namespace
+
+void FieldVisitor::optional_number(const char* key, std::optional<double>& value, double unset, Range range,
+                                   const char* doc) {
+  double number_or_unset = value.value_or(unset);
+  number(key, number_or_unset, range, doc);
+  if (number_or_unset == unset)
+    value.reset();
+  else
+    value = number_or_unset;
+}
 
 void FieldVisitor::vector3(const char* key, Eigen::Vector3d& value, Range range, const char* doc) {
   std::vector<double> list{value.x(), value.y(), value.z()};

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "canyon/core/check.h"
 #include "canyon/core/earth/earth.h"
 
 namespace canyon {
@@ -26,22 +25,8 @@ constexpr GravityModel kModels[] = {
 
 }  // namespace
 
-std::span<const GravityModel> gravity_models() {
+ModelTable<GravityFunction> gravity_models() {
   return kModels;
-}
-
-std::vector<std::string> gravity_names() {
-  std::vector<std::string> names;
-  for (const GravityModel& model : kModels) names.emplace_back(model.name);
-  return names;
-}
-
-GravityFunction gravity_by_name(std::string_view name) {
-  for (const GravityModel& model : kModels) {
-    if (name == model.name) return model.at;
-  }
-  CANYON_CHECK(false, "no gravity model \"", name, "\"");
-  return nullptr;
 }
 
 }  // namespace canyon

@@ -6,6 +6,7 @@
 
 #include "canyon/core/check.h"
 #include "canyon/core/math/chi_square.h"
+#include "canyon/core/model_table.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/inertial/allan/degrees_of_freedom.h"
@@ -88,23 +89,20 @@ SquareSum total(std::span<const double> x, std::int64_t m) {
   return sum_squares(n - 2, [=](std::int64_t k) { return extended(k + 1 - m) - 2.0 * p[k + 1] + extended(k + 1 + m); });
 }
 
-struct Row {
-  const char* name;
+struct Deviation {
   Kernel* kernel;
   std::int64_t reach;  ///< averages that a difference spans
   DegreesOfFreedom* degrees_of_freedom;
   double (*bias)(NoiseType, double samples, double m) = nullptr;  ///< of the variance, as a factor; none: 1
 };
-constexpr Row kRows[] = {{"overlapping", overlapping, 2, overlapping_degrees},
-                         {"modified", modified, 3, modified_degrees},
-                         {"hadamard", hadamard, 3, hadamard_degrees},
-                         {"total", total, 2, total_degrees, total_bias}};
+constexpr ModelRow<Deviation> kRows[] = {
+    {"overlapping", {overlapping, 2, overlapping_degrees}, "Allan deviation, all overlapping differences"},
+    {"modified", {modified, 3, modified_degrees}, "the same of phase averaged over tau"},
+    {"hadamard", {hadamard, 3, hadamard_degrees}, "second differences of the rate, blind to a linear drift"},
+    {"total", {total, 2, total_degrees, total_bias}, "overlapping on data extended by reflection"}};
 
-const Row& row_of(const std::string& kind) {
-  for (const Row& row : kRows)
-    if (kind == row.name) return row;
-  CANYON_CHECK(false, "no deviation of that name: ", kind);
-  return kRows[0];
+ModelTable<Deviation> deviations() {
+  return kRows;
 }
 
 /// Rate integrated within each segment, in units of rate x sample; the mean is taken off, which no deviation sees, so
@@ -124,7 +122,7 @@ std::vector<std::vector<double>> phases(std::span<const double> rate, const std:
 }
 
 /// Each segment estimates by itself: degrees of freedom add up.
-void add_intervals(std::vector<DeviationPoint>& points, const Row& row, const std::vector<Segment>& segments,
+void add_intervals(std::vector<DeviationPoint>& points, const Deviation& row, const std::vector<Segment>& segments,
                    double confidence) {
   const double outside_each_side = 0.5 * (1.0 - confidence);
   bool still_quantized = true;  // it falls fastest, so once another noise rules it does not come back
@@ -211,15 +209,13 @@ std::vector<std::int64_t> averaging_factors(std::int64_t samples, int per_octave
 }
 
 std::vector<std::string> deviation_kinds() {
-  std::vector<std::string> names;
-  for (const Row& row : kRows) names.emplace_back(row.name);
-  return names;
+  return model_names(deviations());
 }
 
 std::vector<DeviationPoint> deviation(const std::string& kind, std::span<const double> rate, const Sampling& sampling,
                                       std::span<const std::int64_t> factors, double confidence) {
   CANYON_CHECK(confidence > 0.0 && confidence < 1.0, "confidence = ", confidence);
-  const Row& row = row_of(kind);
+  const Deviation& row = model_row(deviations(), kind).make;
   for (const Segment& s : sampling.segments)
     CANYON_CHECK(s.begin < s.end && s.end <= rate.size(), "segment ", s.begin, " to ", s.end, " of ", rate.size());
   const auto x = phases(rate, sampling.segments);

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "canyon/core/model_table.h"
 #include "canyon/inertial/environment.h"
 #include "canyon/inertial/errors/error_figures.h"
 #include "canyon/inertial/errors/imu_block.h"
@@ -38,16 +39,10 @@ struct LinkSetup {
   double dt_s = 0.01;  ///< nominal interval of the samples
 };
 
-/// One row of the table of links.
-struct ErrorLinkRow {
-  const char* name;
-  std::unique_ptr<ErrorLink> (*make)(const LinkSetup& setup);  ///< null where the unit has no such error
-  const char* doc;
-};
-
+/// Gives null where the unit has no such error.
+using MakeErrorLink = std::unique_ptr<ErrorLink>(const LinkSetup& setup);
 /// All links, in the order in which they act.
-std::span<const ErrorLinkRow> error_links();
-std::vector<std::string> error_link_names();
+ModelTable<MakeErrorLink> error_links();
 
 /// Makers of the rows, each in the file of its model.
 std::unique_ptr<ErrorLink> make_latency(const LinkSetup& setup);

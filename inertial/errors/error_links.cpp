@@ -3,7 +3,7 @@
 namespace canyon::inertial {
 namespace {
 
-constexpr ErrorLinkRow kRows[] = {
+constexpr ModelRow<MakeErrorLink> kRows[] = {
     // What reaches the elements.
     {"latency", make_latency, "the motion of a fixed time before the stamp"},
     // The elements: errors of the true input, added up.
@@ -33,14 +33,8 @@ constexpr ErrorLinkRow kRows[] = {
 
 }  // namespace
 
-std::span<const ErrorLinkRow> error_links() {
+ModelTable<MakeErrorLink> error_links() {
   return kRows;
-}
-
-std::vector<std::string> error_link_names() {
-  std::vector<std::string> names;
-  for (const ErrorLinkRow& row : kRows) names.emplace_back(row.name);
-  return names;
 }
 
 }  // namespace canyon::inertial

@@ -27,7 +27,7 @@ void add_electronics(const ElementFigures& f, double unit, ElementModel& out) {
 }  // namespace
 
 Result<ElementModel> accelerometer_model(const ElementFigures& f, double temperature_k) {
-  const std::shared_ptr<const PickOff> pick_off = make_pick_off(f.pick_off, f.pick_off_figures);
+  const std::shared_ptr<const PickOff> pick_off = model_row(pick_offs(), f.pick_off).make(f.pick_off_figures);
   const double w0 = 2.0 * kPi * f.resonance_hz;
   const double stiffness = f.mass_kg * w0 * w0 + pick_off->added_stiffness_n_m();
   if (!(stiffness > 0.0))
@@ -52,7 +52,7 @@ Result<ElementModel> accelerometer_model(const ElementFigures& f, double tempera
 }
 
 Result<ElementModel> gyroscope_model(const ElementFigures& f, double temperature_k) {
-  const std::shared_ptr<const PickOff> pick_off = make_pick_off(f.pick_off, f.pick_off_figures);
+  const std::shared_ptr<const PickOff> pick_off = model_row(pick_offs(), f.pick_off).make(f.pick_off_figures);
   const double w = 2.0 * kPi * f.resonance_hz, g = w / (2.0 * f.quality_factor), d = 2.0 * kPi * f.split_hz;
   const double density =
       kBoltzmann * temperature_k / (f.mass_kg * w * f.quality_factor * f.drive_amplitude_m * f.drive_amplitude_m);

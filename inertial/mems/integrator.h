@@ -1,26 +1,14 @@
 #pragma once
 
-#include <span>
-#include <string>
-#include <vector>
-
+#include "canyon/core/model_table.h"
 #include "canyon/inertial/mems/linear_plant.h"
 
 namespace canyon::inertial {
 
 /// How a plant is carried over a step: one row of the table of integrators. A linear plant makes each of them a matrix,
 /// so that what a scheme does to resonance and noise can be read off.
-struct IntegratorRow {
-  const char* name;
-  DiscretePlant (*discretize)(const LinearPlant& plant, double step_s);
-  int order;  ///< of the error over a fixed time in the step; 0: no error
-  const char* doc;
-};
-
-std::span<const IntegratorRow> integrators();
-std::vector<std::string> integrator_names();
-/// The row of a name that is in the table.
-const IntegratorRow& integrator_row(const std::string& name);
+using DiscretizePlant = DiscretePlant(const LinearPlant& plant, double step_s);
+ModelTable<DiscretizePlant> integrators();
 
 /// Models, each in its own file.
 DiscretePlant exact_step(const LinearPlant& plant, double step_s);

@@ -15,14 +15,14 @@ void visit(FieldVisitor& f, ElementFigures& c) {
   f.number("bandwidth_hz", c.bandwidth_hz, {0, 1e6},
            "corner of the anti-alias filter; 0 = of the sheet, else 0.4 of the sample rate");
   f.integer("filter_order", c.filter_order, {0, 4}, "Butterworth order; 0 = none, samples are taken as they come");
-  f.choice("pick_off", c.pick_off, pick_off_names(), "how the displacement is read");
+  f.choice("pick_off", c.pick_off, model_names(pick_offs()), "how the displacement is read");
   f.group("pick_off_figures", c.pick_off_figures, "of the pick-off");
 }
 
 void visit(FieldVisitor& f, MemsFigures& c) {
   f.flag("given", c.given, "this entry can be used with the errors \"physics\"");
   f.number("temperature_k", c.temperature_k, {1, 1000}, "of the elements: thermal noise");
-  f.choice("integrator", c.integrator, integrator_names(), "how the proof masses are carried over a sample");
+  f.choice("integrator", c.integrator, model_names(integrators()), "how the proof masses are carried over a sample");
   f.group("gyro", c.gyro, "gyroscope's sense mode");
   f.group("accel", c.accel, "accelerometer");
   f.text("source", c.source, "where these figures come from");

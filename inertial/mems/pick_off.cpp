@@ -1,11 +1,9 @@
 #include "canyon/inertial/mems/pick_off.h"
 
-#include "canyon/core/check.h"
-
 namespace canyon::inertial {
 namespace {
 
-constexpr PickOffRow kRows[] = {
+constexpr ModelRow<MakePickOff> kRows[] = {
     {"capacitive", make_capacitive, "differential electrodes, charge amplifier: reads at rest, softens the spring"},
     {"piezoresistive", make_piezoresistive, "strained resistors in a bridge: reads at rest, noise of the resistors"},
     {"piezoelectric", make_piezoelectric, "charge of a strained crystal: does not read at rest, as charge leaks away"},
@@ -29,21 +27,8 @@ void visit(FieldVisitor& f, PickOffFigures& c) {
   f.number("loss_tangent", c.loss_tangent, {0, 1}, "piezoelectric: of the crystal");
 }
 
-std::span<const PickOffRow> pick_offs() {
+ModelTable<MakePickOff> pick_offs() {
   return kRows;
-}
-
-std::vector<std::string> pick_off_names() {
-  std::vector<std::string> names;
-  for (const PickOffRow& row : kRows) names.emplace_back(row.name);
-  return names;
-}
-
-std::unique_ptr<PickOff> make_pick_off(const std::string& name, const PickOffFigures& figures) {
-  for (const PickOffRow& row : kRows)
-    if (name == row.name) return row.make(figures);
-  CANYON_CHECK(false, "no pick-off of that name: ", name);
-  return nullptr;
 }
 
 }  // namespace canyon::inertial

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <span>
-#include <string>
-#include <vector>
 
 #include "canyon/core/config/config.h"
+#include "canyon/core/model_table.h"
 
 namespace canyon::inertial {
 
@@ -43,14 +41,8 @@ class PickOff {
   virtual double added_stiffness_n_m() const { return 0.0; }
 };
 
-struct PickOffRow {
-  const char* name;
-  std::unique_ptr<PickOff> (*make)(const PickOffFigures& figures);
-  const char* doc;
-};
-std::span<const PickOffRow> pick_offs();
-std::vector<std::string> pick_off_names();
-std::unique_ptr<PickOff> make_pick_off(const std::string& name, const PickOffFigures& figures);
+using MakePickOff = std::unique_ptr<PickOff>(const PickOffFigures& figures);
+ModelTable<MakePickOff> pick_offs();
 
 /// Models, each in its own file.
 std::unique_ptr<PickOff> make_capacitive(const PickOffFigures& figures);

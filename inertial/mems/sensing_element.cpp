@@ -51,7 +51,7 @@ SensingElement::SensingElement(ElementModel model, double electronics_n, const s
   CANYON_CHECK(step_s > 0.0 && electronics_n >= 0.0, "step ", step_s, " s, electronics ", electronics_n);
   CANYON_CHECK(model_.filter_order > 0 || model_.low_corner_hz == 0.0, "a leaking pick-off needs a filter");
   const LinearPlant whole = joined(model_, filter_);
-  whole_ = integrator_row(integrator).discretize(whole, step_s);
+  whole_ = model_row(integrators(), integrator).make(whole, step_s);
   whole_root_ = noise_root(whole_.covariance);
   short_steps_ = std::max(32, static_cast<int>(std::ceil(kShortStepsToAPeriod * model_.fastest_hz * step_s)));
   const double short_s = step_s / short_steps_;

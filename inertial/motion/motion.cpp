@@ -7,7 +7,7 @@
 namespace canyon::inertial {
 namespace {
 
-constexpr MotionRow kRows[] = {
+constexpr ModelRow<MakeMotion> kRows[] = {
     {"stationary", make_stationary, "at rest at W's origin: heading_deg, pitch_deg, roll_deg"},
     {"straight", make_straight,
      "ahead at a speed that goes smoothly through profile_s, profile_m_s, or at speed_m_s: heading_deg"},
@@ -41,7 +41,7 @@ void visit(FieldVisitor& f, VibrationConfig& c) {
 }
 
 void visit(FieldVisitor& f, MotionConfig& c) {
-  f.choice("path", c.path, motion_names(), "which motion");
+  f.choice("path", c.path, model_names(motion_models()), "which motion");
   f.number("lat_deg", c.lat_deg, {-90, 90}, "origin of W, geodetic");
   f.number("lon_deg", c.lon_deg, {-360, 360}, "origin of W");
   f.number("height_m", c.height_m, {-1e4, 1e6}, "origin of W, above the ellipsoid");
@@ -66,14 +66,8 @@ void visit(FieldVisitor& f, MotionConfig& c) {
   f.group("vibration", c.vibration, "vibration of the IMU against the body");
 }
 
-std::span<const MotionRow> motion_models() {
+ModelTable<MakeMotion> motion_models() {
   return kRows;
-}
-
-std::vector<std::string> motion_names() {
-  std::vector<std::string> names;
-  for (const MotionRow& row : kRows) names.emplace_back(row.name);
-  return names;
 }
 
 LocalFrame frame_of(const MotionConfig& config) {
@@ -81,14 +75,9 @@ LocalFrame frame_of(const MotionConfig& config) {
 }
 
 Result<PlacedMotion> make_motion(const MotionConfig& config, std::uint64_t seed) {
-  for (const MotionRow& row : kRows) {
-    if (config.path != row.name) continue;
-    CANYON_TRY(PlacedMotion placed, row.make(config));
-    CANYON_TRY(placed.motion, with_vibration(placed.motion, config.vibration, seed));
-    return placed;
-  }
-  CANYON_CHECK(false, "no motion \"", config.path, "\"");
-  return PlacedMotion{};
+  CANYON_TRY(PlacedMotion placed, model_row(motion_models(), config.path).make(config));
+  CANYON_TRY(placed.motion, with_vibration(placed.motion, config.vibration, seed));
+  return placed;
 }
 
 KinematicState PlacedMotion::imu_at(double t_s) const {

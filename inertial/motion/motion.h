@@ -71,15 +71,9 @@ struct PlacedMotion {
   KinematicState imu_at(double t_s) const;
 };
 
-/// One row of the table of motions.
-struct MotionRow {
-  const char* name;
-  Result<PlacedMotion> (*make)(const MotionConfig& config);
-  const char* doc;  ///< with the parameters it uses
-};
-
-std::span<const MotionRow> motion_models();
-std::vector<std::string> motion_names();
+/// The documentation of a row names the parameters that it uses.
+using MakeMotion = Result<PlacedMotion>(const MotionConfig& config);
+ModelTable<MakeMotion> motion_models();
 
 /// The motion that the configuration names, with its vibration; the IMU at the body's origin. Random vibration draws
 /// its phases from the streams "imu.vibration.*".

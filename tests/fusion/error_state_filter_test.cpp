@@ -213,7 +213,7 @@ TEST(ErrorStateFilter, CovarianceSurvivesExtremeNoiseRatios) {
   noise.gyro.white_per_sqrt_hz = 1e-9;
   noise.accel.white_per_sqrt_hz = 1e-9;
   noise.accel.turn_on_bias_sigma = 10.0;
-  for (const char* gains : {"ignore", "estimate"}) {
+  for (const ImuGains gains : {ImuGains::kIgnore, ImuGains::kEstimate}) {
     c.imu_gains = gains;
     ErrorStateFilter filter = started(c, noise);
     double smallest = 1.0;
@@ -227,10 +227,12 @@ TEST(ErrorStateFilter, CovarianceSurvivesExtremeNoiseRatios) {
       const ErrorStateFilter::StateVector scale = P.diagonal().cwiseSqrt().cwiseInverse();
       const ErrorStateFilter::StateMatrix unit = scale.asDiagonal() * P * scale.asDiagonal();
       const Eigen::LLT<ErrorStateFilter::StateMatrix> llt(unit);
-      ASSERT_EQ(llt.info(), Eigen::Success) << gains << ": not positive definite after " << k << " steps";
+      ASSERT_EQ(llt.info(), Eigen::Success)
+          << static_cast<int>(gains) << ": not positive definite after " << k << " steps";
       smallest = std::min(smallest, ErrorStateFilter::StateMatrix(llt.matrixL()).diagonal().minCoeff());
     }
-    std::printf("imu_gains %s: smallest Cholesky pivot of the scaled covariance %.1e\n", gains, smallest);
+    std::printf("imu_gains %s: smallest Cholesky pivot of the scaled covariance %.1e\n",
+                gains == ImuGains::kIgnore ? "ignore" : "estimate", smallest);
   }
 }
 

@@ -152,7 +152,7 @@ void leador(const Unit& unit) {
   // error.
   EXPECT_LT(s.position_rms_m, 1.05 * unit.kf_gins_position_rms_m);
 
-  config.imu_gains = "ignore";
+  config.imu_gains = ImuGains::kIgnore;
   print("  strictly 15 states", run_filter(run, config, unit.noise, antenna, 60.0));
 }
 

@@ -167,9 +167,9 @@ TEST(Closure, IntegratorsHaveTheirOrder) {
         const double velocity = std::log2(before.velocity_rms_m_s / d.velocity_rms_m_s);
         const double attitude = std::log2(before.attitude_rms_rad / d.attitude_rms_rad);
         std::printf("; orders %.2f, %.2f, %.2f", position, velocity, attitude);
-        EXPECT_NEAR(position, row.order, 0.2) << row.name << " at " << rate_hz << " Hz";
-        EXPECT_NEAR(velocity, row.velocity_order, 0.2) << row.name << " at " << rate_hz << " Hz";
-        EXPECT_NEAR(attitude, row.attitude_order, 0.2) << row.name << " at " << rate_hz << " Hz";
+        EXPECT_NEAR(position, *row.order, 0.2) << row.name << " at " << rate_hz << " Hz";
+        EXPECT_NEAR(velocity, row.make.velocity_order, 0.2) << row.name << " at " << rate_hz << " Hz";
+        EXPECT_NEAR(attitude, row.make.attitude_order, 0.2) << row.name << " at " << rate_hz << " Hz";
       }
       std::printf("\n");
       before = d;

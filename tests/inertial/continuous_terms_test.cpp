@@ -28,7 +28,7 @@ class LinkRun {
     setup.figures.gyro = figures;
     setup.seed = seed;
     setup.dt_s = 1.0 / rate_hz;
-    for (const ErrorLinkRow& row : error_links()) {
+    for (const auto& row : error_links()) {
       if (std::string_view(row.name) == name) link_ = row.make(setup);
     }
     EXPECT_NE(link_, nullptr) << name;

@@ -140,10 +140,10 @@ TEST(ErrorChain, WhiteOnlyIsTheDatasheetsWhiteNoise) {
 }
 
 TEST(ErrorChain, ASampleDependsOnItsNumberNotOnTheWayThere) {
-  for (const ErrorChainRow& row : error_chains()) {
+  for (const auto& row : error_chains()) {
     const CatalogueEntry e = *load_catalogue_entry("high_grade_mems");
-    auto in_order = *row.make(setup(e, 3, 100.0));
-    auto jumping = *row.make(setup(e, 3, 100.0));
+    auto in_order = *row.make.make(setup(e, 3, 100.0));
+    auto jumping = *row.make.make(setup(e, 3, 100.0));
     std::vector<ImuSample> samples;
     for (int k = 0; k < 60; ++k) samples.push_back(added(*in_order, k, 100.0));
     for (std::size_t k : {59u, 10u, 11u, 0u, 42u}) {
@@ -241,7 +241,7 @@ TEST(PaperChain, NeedsItsParameters) {
 TEST(MakeImu, BuildsEveryChainAndTellsTheFilter) {
   const LocalFrame frame(Geodetic{0.56, -1.58, 60.0});
   const testing::SmoothPath path(GpsTime::from_week_sow(1590, 0.0));
-  for (const std::string& name : error_chain_names()) {
+  for (const std::string& name : model_names(error_chains())) {
     ImuConfig config;
     config.errors = name;
     const auto imu = make_imu(config, 1, frame);
@@ -257,7 +257,10 @@ TEST(MakeImu, BuildsEveryChainAndTellsTheFilter) {
   config.errors = "datashet";
   const auto misspelt = make_imu(config, 1, frame);
   ASSERT_FALSE(misspelt.ok());
-  EXPECT_EQ(misspelt.error().str(), "imu.errors: no error chain \"datashet\", expected \"datasheet\"?");
+  EXPECT_EQ(
+      misspelt.error().str(),
+      "imu.errors: unknown name \"datashet\", expected one of \"datasheet\", \"full\", \"physics\", \"white_only\", "
+      "\"paper\", \"paper_as_printed\", \"none\"; nearest is \"datasheet\"");
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::unique_ptr<ErrorChain> only(const std::vector<std::string>& names, Catalogu
                                  std::uint64_t seed = 4) {
   ChainSetup setup{
       .entry = entry, .seed = seed, .rate_hz = kRate_hz, .leave_out = {}, .environment = testing::warming_up()};
-  for (const std::string& name : error_link_names()) {
+  for (const std::string& name : model_names(error_links())) {
     if (std::find(names.begin(), names.end(), name) == names.end()) setup.leave_out.push_back(name);
   }
   return *make_error_chain("full", setup);
@@ -69,7 +69,7 @@ void expect_same(const ImuSample& a, const ImuSample& b, std::int64_t k) {
 }
 
 TEST(ErrorLinks, EveryNameHasALinkInTheFullChain) {
-  for (const std::string& name : error_link_names()) {
+  for (const std::string& name : model_names(error_links())) {
     auto chain = only({name});
     std::vector<ImuSample> samples = motion(0, 400);
     chain->corrupt_batch(0, samples);
@@ -134,7 +134,7 @@ TEST(ErrorLinks, ShardsMakeTheSameRun) {
 /// Links of the elements add up: their sum is the sum of each alone (rounding: 32 eps of the increment).
 TEST(ErrorLinks, ElementLinksAddUp) {
   std::vector<std::string> element;
-  for (const std::string& name : error_link_names()) {
+  for (const std::string& name : model_names(error_links())) {
     if (name == "cross_talk") break;
     if (name != "latency") element.push_back(name);
   }
@@ -394,7 +394,8 @@ TEST(ImuConfig, MistakesAreNamed) {
     return imu.ok() ? std::string("accepted") : imu.error().str();
   };
   EXPECT_EQ(refusal([](ImuConfig& c) { c.leave_out = {"fliker"}; }),
-            "imu.leave_out: no link \"fliker\", expected \"flicker\"?");
+            "imu.leave_out: " + unknown_name("", "fliker", model_names(error_links())).str());
+  EXPECT_THAT(refusal([](ImuConfig& c) { c.leave_out = {"fliker"}; }), ::testing::EndsWith("; nearest is \"flicker\""));
   EXPECT_EQ(refusal([](ImuConfig& c) {
               c.errors = "paper";
               c.leave_out = {"flicker"};

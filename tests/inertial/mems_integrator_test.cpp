@@ -73,19 +73,19 @@ TEST(MemsIntegrator, OrdersAreThoseOfTheTable) {
   const LinearPlant plant = proof_mass(2.0).mechanics;
   const double period = 1.0 / 5000.0;
   const DiscretePlant truth = exact_step(plant, period);
-  const auto error = [&](const IntegratorRow& row, int steps) {
-    const DiscretePlant step = row.discretize(plant, period / steps);
+  const auto error = [&](const ModelRow<DiscretizePlant>& row, int steps) {
+    const DiscretePlant step = row.make(plant, period / steps);
     Eigen::Vector2d state(1.0, 0.0);
     for (int k = 0; k < steps; ++k) state = (step.phi * state).eval();
     return (state - truth.phi.col(0)).norm();
   };
-  for (const IntegratorRow& row : integrators()) {
-    if (row.order == 0) {
+  for (const ModelRow<DiscretizePlant>& row : integrators()) {
+    if (!row.order) {
       EXPECT_LT(error(row, 64), 1e-12) << row.name;
       continue;
     }
     const double order = std::log2(error(row, 200) / error(row, 400));
-    EXPECT_NEAR(order, row.order, 0.1) << row.name;
+    EXPECT_NEAR(order, *row.order, 0.1) << row.name;
   }
 }
 

@@ -258,10 +258,10 @@ TEST(SensingElement, CapacitiveBiasSoftensTheSpring) {
 
 TEST(PickOff, NoiseByHand) {
   const PickOffFigures f;
-  EXPECT_NEAR(make_pick_off("capacitive", f)->noise_m_sqrt_hz(300.0), 2e-6 * 5e-9 * 2.2e-12 / (2e-13 * 0.5), 1e-25);
+  EXPECT_NEAR(make_capacitive(f)->noise_m_sqrt_hz(300.0), 2e-6 * 5e-9 * 2.2e-12 / (2e-13 * 0.5), 1e-25);
   // sqrt(4 k_B 300 K 5 kOhm) = 9.1 nV / sqrt(Hz).
-  EXPECT_NEAR(make_pick_off("piezoresistive", f)->noise_m_sqrt_hz(300.0) * 0.5 * 100.0 * 100.0, 9.103e-9, 2e-12);
-  EXPECT_NEAR(make_pick_off("piezoelectric", f)->noise_m_sqrt_hz(300.0),
+  EXPECT_NEAR(make_piezoresistive(f)->noise_m_sqrt_hz(300.0) * 0.5 * 100.0 * 100.0, 9.103e-9, 2e-12);
+  EXPECT_NEAR(make_piezoelectric(f)->noise_m_sqrt_hz(300.0),
               std::sqrt(4.0 * kBoltzmann * 300.0 * 1e-13 * 0.002 / (2.0 * kPi * 10.0) +
                         // of the leak, R = 1 / (2 pi 0.1 Hz 0.1 pF): a current, over w a charge
                         4.0 * kBoltzmann * 300.0 * 2.0 * kPi * 0.1 * 1e-13 / std::pow(2.0 * kPi * 10.0, 2)) /
