@@ -86,10 +86,10 @@ void model(benchmark::State& state, const char* paths, const char* diffraction, 
   const auto sky = satellites();
   const auto points = street_points(scene);
   const canyon::gnss::PathParameters p;
-  std::unique_ptr<PathModel> tracer = find_model(canyon::gnss::path_models(), paths)->make(p);
+  std::unique_ptr<PathModel> tracer = find_model(canyon::gnss::path_models(), paths)->make({}, p);
   if (ground || std::string(diffraction) != "none")
-    tracer = make_propagation(std::move(tracer), find_model(canyon::gnss::diffraction_models(), diffraction)->make(p),
-                              ground, p);
+    tracer = make_propagation(std::move(tracer),
+                              find_model(canyon::gnss::diffraction_models(), diffraction)->make({}, p), ground, p);
   std::vector<SignalPaths> out(sky.size());
   GnssCounters counters;
   std::size_t k = 0;

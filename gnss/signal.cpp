@@ -39,4 +39,21 @@ int first_band(GnssSystem system) {
   return system == GnssSystem::kBeidou ? 2 : 1;
 }
 
+int second_band(GnssSystem system, SecondFrequency second) {
+  const bool l5 = second == SecondFrequency::kL5;
+  switch (system) {
+    case GnssSystem::kGlonass:
+      return 2;
+    case GnssSystem::kGalileo:
+      return l5 ? 5 : 7;
+    case GnssSystem::kBeidou:
+      return l5 ? 5 : 6;  // B3I: only BeiDou-2 sends B2I
+    case GnssSystem::kGps:
+    case GnssSystem::kQzss:
+    case GnssSystem::kSbas:
+      break;
+  }
+  return l5 || system == GnssSystem::kSbas ? 5 : 2;
+}
+
 }  // namespace canyon::gnss

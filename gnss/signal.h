@@ -22,5 +22,8 @@ inline constexpr int kUnknownChannel = 99;
 double carrier_hz(GnssSystem system, int band, int channel = 0);
 /// Band of the system's first open single-frequency signal: 1 (L1, E1, G1), but 2 (B1I) for BeiDou.
 int first_band(GnssSystem system);
+/// The other band that a dual-frequency receiver measures: L2 and its like (Galileo E5b, BeiDou B3I), or L5, E5a, B2a.
+enum class SecondFrequency { kL2, kL5 };
+int second_band(GnssSystem system, SecondFrequency second);
 
 }  // namespace canyon::gnss

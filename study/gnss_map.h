@@ -5,7 +5,7 @@
 #include "canyon/core/files/ascii_grid.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/result.h"
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 
 namespace canyon::study {
 

@@ -3,38 +3,38 @@
 #include <algorithm>
 #include <set>
 
+#include "canyon/gnss/sensor/gnss_config.h"
+
 namespace canyon::apps {
 
 namespace {
 
-/// One error and how it is switched off.
-struct Switch {
-  const char* name;
-  void (*off)(gnss::GnssConfig&);
-};
+/// Switches one error off.
+using SwitchOff = void(gnss::GnssConfig&);
 
-constexpr Switch kSwitches[] = {
-    {"ionosphere", [](gnss::GnssConfig& c) { c.ionosphere = "none"; }},
-    {"troposphere", [](gnss::GnssConfig& c) { c.troposphere = "none"; }},
-    {"ephemeris", [](gnss::GnssConfig& c) { c.ephemeris_error = "none"; }},
-    {"receiver_clock", [](gnss::GnssConfig& c) { c.receiver_clock = "none"; }},
+constexpr ModelRow<SwitchOff> kSwitches[] = {
+    {"ionosphere", [](gnss::GnssConfig& c) { c.ionosphere.name = "none"; }, "delay of the ionosphere"},
+    {"troposphere", [](gnss::GnssConfig& c) { c.troposphere.name = "none"; }, "delay of the troposphere"},
+    {"ephemeris", [](gnss::GnssConfig& c) { c.ephemeris_error.name = "none"; }, "broadcast orbit and clock"},
+    {"receiver_clock", [](gnss::GnssConfig& c) { c.receiver_clock.name = "none"; }, "the receiver's clock"},
     {"multipath",
      [](gnss::GnssConfig& c) {
-       if (c.paths != "none") c.paths = "visibility";
-       c.diffraction = "none";
-       c.ground_reflection = false;
-     }},
-    {"noise", [](gnss::GnssConfig& c) { c.thermal_noise_scale = 0.0; }},
-    {"antenna", [](gnss::GnssConfig& c) { c.antenna_phase_centre = false; }},
-    {"base_station", [](gnss::GnssConfig& c) { c.base_error_scale = 0.0; }},
+       if (c.propagation.paths.name != "none") c.propagation.paths.name = "visibility";
+       c.propagation.diffraction.name = "none";
+       c.propagation.ground_reflection = false;
+     },
+     "reflections and diffraction"},
+    {"noise", [](gnss::GnssConfig& c) { c.tracking.thermal_noise_scale = 0.0; }, "thermal noise"},
+    {"antenna", [](gnss::GnssConfig& c) { c.link.antenna_phase_centre = false; }, "phase centre"},
+    {"base_station", [](gnss::GnssConfig& c) { c.mode.own.get<gnss::DgpsParameters>().base_error_scale = 0.0; },
+     "the base station's own error"},
 };
+const ModelTable<SwitchOff> kTable(kSwitches);
 
 }  // namespace
 
 std::vector<std::string> gnss_error_names() {
-  std::vector<std::string> names;
-  for (const Switch& s : kSwitches) names.emplace_back(s.name);
-  return names;
+  return model_names(kTable);
 }
 
 Status keep_errors(const std::string& list, gnss::GnssConfig& config) {
@@ -43,7 +43,7 @@ Status keep_errors(const std::string& list, gnss::GnssConfig& config) {
   for (std::size_t begin = 0; list != "none" && begin <= list.size();) {
     const std::size_t end = std::min(list.find(',', begin), list.size());
     const std::string name = list.substr(begin, end - begin);
-    if (std::none_of(std::begin(kSwitches), std::end(kSwitches), [&](const Switch& s) { return name == s.name; })) {
+    if (find_model(kTable, name) == nullptr) {
       std::string all = "none, all, or of";
       for (const std::string& known : gnss_error_names()) all += " " + known;
       return Error{"--errors", 0, "", "\"" + name + "\" is not an error", all};
@@ -51,8 +51,8 @@ Status keep_errors(const std::string& list, gnss::GnssConfig& config) {
     keep.insert(name);
     begin = end + 1;
   }
-  for (const Switch& s : kSwitches)
-    if (!keep.contains(s.name)) s.off(config);
+  for (const auto& row : kTable)
+    if (!keep.contains(row.name)) row.make(config);
   return Ok{};
 }
 

@@ -43,8 +43,8 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
   GnssSetup out;
   out.config = config.gnss;
   if (!options.nav.empty()) {
-    out.config.nav_file.clear();
-    out.config.nav_files = options.nav;
+    out.config.satellites.nav_file.clear();
+    out.config.satellites.nav_files = options.nav;
   }
   out.seed = static_cast<std::uint64_t>(options.seed);
   const auto start = mission::start_time(config);

@@ -8,7 +8,7 @@
 
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/earth/earth.h"
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/scene/scene.h"
 
 namespace canyon::apps {

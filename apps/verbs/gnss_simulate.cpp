@@ -81,7 +81,7 @@ Result<int> run(const Options& options) {
   }
   if (rinex_nav != nullptr) {
     std::vector<std::string> warnings;
-    const auto text = rinex_navigation(source, setup.config.systems, drive.start, receiver.end(), warnings);
+    const auto text = rinex_navigation(source, setup.config.satellites.systems, drive.start, receiver.end(), warnings);
     print_warnings(warnings);
     if (!text) return text.error();
     CANYON_TRY_STATUS(rinex_nav->write(*text));

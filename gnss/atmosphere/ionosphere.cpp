@@ -8,24 +8,34 @@ namespace {
 class NoIonosphere final : public IonosphereModel {
  public:
   double delay_m(const SkyView&) const override { return 0.0; }
+  bool acts() const override { return false; }
 };
 
-std::unique_ptr<IonosphereModel> make_none(const IonosphereParameters&) {
-  return std::make_unique<NoIonosphere>();
+Result<std::unique_ptr<IonosphereModel>> make_none(const ModelParameters&, const IonosphereSetup&) {
+  return std::unique_ptr<IonosphereModel>(std::make_unique<NoIonosphere>());
+}
+Result<std::unique_ptr<IonosphereModel>> make_layer(const ModelParameters& own, const IonosphereSetup&) {
+  return make_single_layer(own.get<ElectronContent>().vtec_tecu);
 }
 
 constexpr ModelRow<MakeIonosphere> kModels[] = {
     {"none", make_none, "no delay"},
-    {"single_layer", make_single_layer, "thin shell at 350 km times the zenith delay of vtec_tecu"},
+    {"single_layer", make_layer, "thin shell at 350 km times the zenith delay of vtec_tecu",
+     parameters_of<ElectronContent>},
     {"klobuchar", make_klobuchar, "the broadcast model, with the navigation file's coefficients"},
-    {"ionex", make_ionex, "global maps of the vertical electron content, of ionex_file"},
-    {"paper", make_paper_ionosphere, "Lear's mapping (Durst & Goodin 2012) times the zenith delay of vtec_tecu"},
+    {"ionex", make_ionex, "global maps of the vertical electron content, of ionex_file", ionex_parameters},
+    {"paper", make_paper_ionosphere, "Lear's mapping (Durst & Goodin 2012) times the zenith delay of vtec_tecu",
+     parameters_of<ElectronContent>},
     {"paper_printed", make_paper_printed_ionosphere, "as printed: the bare mapping, taken as metres"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeIonosphere>> ionosphere_models() {
+void visit(FieldVisitor& f, ElectronContent& c) {
+  f.number("vtec_tecu", c.vtec_tecu, {0.0, 500.0}, "vertical total electron content");
+}
+
+ModelTable<MakeIonosphere> ionosphere_models() {
   return kModels;
 }
 

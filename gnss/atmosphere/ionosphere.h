@@ -3,13 +3,11 @@
 #include <memory>
 #include <span>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/gnss/atmosphere/klobuchar.h"
 #include "canyon/gnss/sky_view.h"
 
 namespace canyon::gnss {
-
-struct IonexMaps;
 
 /// Group delay of the ionosphere at L1 along the line of sight.
 class IonosphereModel {
@@ -17,22 +15,33 @@ class IonosphereModel {
   virtual ~IonosphereModel() = default;
   /// m, >= 0, for elevations in [0, pi/2].
   virtual double delay_m(const SkyView& view) const = 0;
+  /// False if there is none: then nothing is corrected, and none is left.
+  virtual bool acts() const { return true; }
 };
 
-struct IonosphereParameters {
-  double vtec_tecu = 0.0;                   ///< vertical total electron content, 1 TECU = 1e16 electrons/m^2
-  KlobucharCoefficients klobuchar;          ///< of the navigation file
-  std::shared_ptr<const IonexMaps> maps{};  ///< model ionex
+/// Key of the models that scale a mapping by it.
+struct ElectronContent {
+  double vtec_tecu = 12.0;  ///< vertical total electron content, 1 TECU = 1e16 electrons/m^2
+};
+void visit(FieldVisitor& f, ElectronContent& c);
+
+/// What models are built from beside their own keys.
+struct IonosphereSetup {
+  KlobucharCoefficients klobuchar;  ///< of the navigation file
+  GpsTime start{}, end{};           ///< that a model must know
+  std::vector<std::string>* warnings = nullptr;
 };
 
-using MakeIonosphere = std::unique_ptr<IonosphereModel>(const IonosphereParameters&);
-std::span<const ModelRow<MakeIonosphere>> ionosphere_models();
+using MakeIonosphere = Result<std::unique_ptr<IonosphereModel>>(const ModelParameters& own, const IonosphereSetup& at);
+ModelTable<MakeIonosphere> ionosphere_models();
 
-std::unique_ptr<IonosphereModel> make_single_layer(const IonosphereParameters& p);
-std::unique_ptr<IonosphereModel> make_klobuchar(const IonosphereParameters& p);
-std::unique_ptr<IonosphereModel> make_ionex(const IonosphereParameters& p);
-std::unique_ptr<IonosphereModel> make_paper_ionosphere(const IonosphereParameters& p);
-std::unique_ptr<IonosphereModel> make_paper_printed_ionosphere(const IonosphereParameters& p);
+std::unique_ptr<IonosphereModel> make_single_layer(double vtec_tecu);
+Result<std::unique_ptr<IonosphereModel>> make_klobuchar(const ModelParameters& own, const IonosphereSetup& at);
+Result<std::unique_ptr<IonosphereModel>> make_ionex(const ModelParameters& own, const IonosphereSetup& at);
+void ionex_parameters(ModelParameters& section);
+Result<std::unique_ptr<IonosphereModel>> make_paper_ionosphere(const ModelParameters& own, const IonosphereSetup& at);
+Result<std::unique_ptr<IonosphereModel>> make_paper_printed_ionosphere(const ModelParameters& own,
+                                                                       const IonosphereSetup& at);
 
 /// Vertical delay at L1, m: 40.3 m^3/s^2 x electrons / f^2.
 double vertical_ionosphere_m(double vtec_tecu);

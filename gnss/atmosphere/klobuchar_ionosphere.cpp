@@ -17,8 +17,8 @@ class KlobucharIonosphere final : public IonosphereModel {
 
 }  // namespace
 
-std::unique_ptr<IonosphereModel> make_klobuchar(const IonosphereParameters& p) {
-  return std::make_unique<KlobucharIonosphere>(p.klobuchar);
+Result<std::unique_ptr<IonosphereModel>> make_klobuchar(const ModelParameters&, const IonosphereSetup& at) {
+  return std::unique_ptr<IonosphereModel>(std::make_unique<KlobucharIonosphere>(at.klobuchar));
 }
 
 }  // namespace canyon::gnss

@@ -24,12 +24,13 @@ double lear_mapping(double elevation_rad) {
   return 2.037 / (std::sqrt(s * s + 0.076) + s);
 }
 
-std::unique_ptr<IonosphereModel> make_paper_ionosphere(const IonosphereParameters& p) {
-  return std::make_unique<LearIonosphere>(vertical_ionosphere_m(p.vtec_tecu));
+Result<std::unique_ptr<IonosphereModel>> make_paper_ionosphere(const ModelParameters& own, const IonosphereSetup&) {
+  const double zenith_m = vertical_ionosphere_m(own.get<ElectronContent>().vtec_tecu);
+  return std::unique_ptr<IonosphereModel>(std::make_unique<LearIonosphere>(zenith_m));
 }
 
-std::unique_ptr<IonosphereModel> make_paper_printed_ionosphere(const IonosphereParameters&) {
-  return std::make_unique<LearIonosphere>(1.0);
+Result<std::unique_ptr<IonosphereModel>> make_paper_printed_ionosphere(const ModelParameters&, const IonosphereSetup&) {
+  return std::unique_ptr<IonosphereModel>(std::make_unique<LearIonosphere>(1.0));
 }
 
 }  // namespace canyon::gnss

@@ -22,8 +22,8 @@ double single_layer_obliquity(double elevation_rad) {
   return 1.0 / std::sqrt(1.0 - sin_zenith * sin_zenith);
 }
 
-std::unique_ptr<IonosphereModel> make_single_layer(const IonosphereParameters& p) {
-  return std::make_unique<SingleLayer>(vertical_ionosphere_m(p.vtec_tecu));
+std::unique_ptr<IonosphereModel> make_single_layer(double vtec_tecu) {
+  return std::make_unique<SingleLayer>(vertical_ionosphere_m(vtec_tecu));
 }
 
 }  // namespace canyon::gnss

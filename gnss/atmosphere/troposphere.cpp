@@ -6,6 +6,7 @@ namespace {
 class NoTroposphere final : public TroposphereModel {
  public:
   double delay_m(const SkyView&) const override { return 0.0; }
+  bool acts() const override { return false; }
 };
 
 /// What a receiver without weather sensors assumes, taken for the truth.
@@ -14,28 +15,43 @@ class StandardTroposphere final : public TroposphereModel {
   double delay_m(const SkyView& view) const override { return standard_troposphere_m(view); }
 };
 
-std::unique_ptr<TroposphereModel> make_standard(const MeasuredWeather&) {
+std::unique_ptr<TroposphereModel> make_standard(const ModelParameters&) {
   return std::make_unique<StandardTroposphere>();
 }
 
-std::unique_ptr<TroposphereModel> make_none(const MeasuredWeather&) {
+std::unique_ptr<TroposphereModel> make_none(const ModelParameters&) {
   return std::make_unique<NoTroposphere>();
+}
+
+template <auto Make>
+std::unique_ptr<TroposphereModel> of_weather(const ModelParameters& own) {
+  return Make(own.get<SiteWeather>().measured);
 }
 
 constexpr ModelRow<MakeTroposphere> kModels[] = {
     {"none", make_none, "no delay"},
     {"standard", make_standard, "Saastamoinen and Niell for the ICAO standard atmosphere at the receiver's height"},
-    {"saastamoinen_niell", make_saastamoinen_niell,
-     "Saastamoinen zenith delays of the weather, carried to the receiver's height; Niell (1996) mappings"},
-    {"paper_printed", make_paper_printed_troposphere,
-     "as printed: bare wet mapping as metres, dry delay without mapping"},
-    {"paper_corrected", make_paper_corrected_troposphere,
-     "the paper's terms with zenith delay, mapping and units put right"},
+    {"saastamoinen_niell", of_weather<make_saastamoinen_niell>,
+     "Saastamoinen zenith delays of the weather, carried to the receiver's height; Niell (1996) mappings",
+     parameters_of<SiteWeather>},
+    {"paper_printed", of_weather<make_paper_printed_troposphere>,
+     "as printed: bare wet mapping as metres, dry delay without mapping", parameters_of<SiteWeather>},
+    {"paper_corrected", of_weather<make_paper_corrected_troposphere>,
+     "the paper's terms with zenith delay, mapping and units put right", parameters_of<SiteWeather>},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeTroposphere>> troposphere_models() {
+void visit(FieldVisitor& f, SiteWeather& c) {
+  Weather& air = c.measured.weather;
+  f.number("pressure_hpa", air.pressure_hpa, {100.0, 1100.0}, "air pressure at weather_height_m");
+  f.number("temperature_c", air.temperature_c, {-80.0, 60.0}, "air temperature there");
+  f.number("relative_humidity", air.relative_humidity, {0.0, 1.0}, "relative humidity there");
+  f.number("weather_height_m", c.measured.height_m, {-500.0, 9000.0},
+           "height at which the weather was measured; the standard atmosphere carries it to the receiver's");
+}
+
+ModelTable<MakeTroposphere> troposphere_models() {
   return kModels;
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <span>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/gnss/atmosphere/weather.h"
 #include "canyon/gnss/sky_view.h"
 
@@ -15,10 +15,18 @@ class TroposphereModel {
   virtual ~TroposphereModel() = default;
   /// m, for elevations in [0, pi/2].
   virtual double delay_m(const SkyView& view) const = 0;
+  /// False if there is none: then nothing is corrected, and none is left.
+  virtual bool acts() const { return true; }
 };
 
-using MakeTroposphere = std::unique_ptr<TroposphereModel>(const MeasuredWeather& measured);
-std::span<const ModelRow<MakeTroposphere>> troposphere_models();
+/// Keys of the models that take the weather.
+struct SiteWeather {
+  MeasuredWeather measured{{1022.0, 12.8, 0.80}, 0.0};
+};
+void visit(FieldVisitor& f, SiteWeather& c);
+
+using MakeTroposphere = std::unique_ptr<TroposphereModel>(const ModelParameters& own);
+ModelTable<MakeTroposphere> troposphere_models();
 
 std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const MeasuredWeather& measured);
 std::unique_ptr<TroposphereModel> make_paper_printed_troposphere(const MeasuredWeather& measured);

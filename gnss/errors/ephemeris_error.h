@@ -2,9 +2,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
+#include <string>
+#include <vector>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/gnss/satellites/constellation.h"
 
 namespace canyon::gnss {
@@ -20,22 +21,28 @@ class EphemerisError {
                          GpsTime t) const = 0;
 };
 
-struct EphemerisErrorParameters {
+/// What models are built from beside their own keys.
+struct EphemerisErrorSetup {
   std::uint64_t seed = 0;
-  double sigma_m = 1.0;   ///< gauss_markov
-  double tau_s = 3600.0;  ///< gauss_markov
-  /// broadcast_minus_sp3: what is compared.
-  std::shared_ptr<const Constellation> broadcast{}, precise{};
+  std::shared_ptr<const Constellation> satellites{};  ///< those of the sensor
+  std::string systems{};                              ///< their systems' RINEX letters
+  bool broadcast = false;                             ///< they are of navigation files
+  std::vector<std::string>* warnings = nullptr;
 };
 
-using MakeEphemerisError = std::unique_ptr<EphemerisError>(const EphemerisErrorParameters&);
-std::span<const ModelRow<MakeEphemerisError>> ephemeris_error_models();
+using MakeEphemerisError = Result<std::unique_ptr<EphemerisError>>(const ModelParameters& own,
+                                                                   const EphemerisErrorSetup& at);
+ModelTable<MakeEphemerisError> ephemeris_error_models();
 
-std::unique_ptr<EphemerisError> make_gauss_markov_ephemeris(const EphemerisErrorParameters& p);
-std::unique_ptr<EphemerisError> make_orbit_clock_2010(const EphemerisErrorParameters& p);
-std::unique_ptr<EphemerisError> make_orbit_clock_2021(const EphemerisErrorParameters& p);
-std::unique_ptr<EphemerisError> make_measured_ephemeris(const EphemerisErrorParameters& p);
-std::unique_ptr<EphemerisError> make_paper_printed_ephemeris(const EphemerisErrorParameters& p);
-std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris(const EphemerisErrorParameters& p);
+std::unique_ptr<EphemerisError> make_gauss_markov_ephemeris(std::uint64_t seed, double sigma_m, double tau_s);
+std::unique_ptr<EphemerisError> make_orbit_clock_2010(std::uint64_t seed);
+std::unique_ptr<EphemerisError> make_orbit_clock_2021(std::uint64_t seed);
+std::unique_ptr<EphemerisError> make_paper_printed_ephemeris();
+std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris();
+Result<std::unique_ptr<EphemerisError>> make_gauss_markov(const ModelParameters& own, const EphemerisErrorSetup& at);
+void gauss_markov_parameters(ModelParameters& section);
+Result<std::unique_ptr<EphemerisError>> make_broadcast_minus_sp3(const ModelParameters& own,
+                                                                 const EphemerisErrorSetup& at);
+void broadcast_minus_sp3_parameters(ModelParameters& section);
 
 }  // namespace canyon::gnss

@@ -7,16 +7,30 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/errors/ephemeris_error.h"
 #include "canyon/gnss/products/clock_datum.h"
+#include "canyon/gnss/products/precise_orbits.h"
 
 namespace canyon::gnss {
 namespace {
+
+struct PreciseParameters {
+  std::vector<std::string> sp3_files;
+  std::string antex_file;
+};
+void visit(FieldVisitor& f, PreciseParameters& c) {
+  f.files("sp3_files", c.sp3_files, "ephemeris_error broadcast_minus_sp3: precise orbits and clocks, SP3");
+  f.file(
+      "antex_file", c.antex_file, "",
+      "ephemeris_error broadcast_minus_sp3: ANTEX file with the satellites' antennas; without it their offsets count "
+      "as error");
+}
 
 /// What the broadcast of the day really erred by: broadcast minus precise orbit and clock. The clocks' difference is
 /// taken against its median over the system's satellites, for the two time scales may differ; both clocks refer to the
 /// two-frequency combination. Satellites and times that the precise product does not have err by nothing.
 class MeasuredEphemeris final : public EphemerisError {
  public:
-  explicit MeasuredEphemeris(const EphemerisErrorParameters& p) : broadcast_(p.broadcast), precise_(p.precise) {
+  MeasuredEphemeris(std::shared_ptr<const Constellation> broadcast, std::shared_ptr<const Constellation> precise)
+      : broadcast_(std::move(broadcast)), precise_(std::move(precise)) {
     CANYON_CHECK(broadcast_ && precise_, "broadcast and precise constellation are needed");
   }
 
@@ -60,8 +74,34 @@ class MeasuredEphemeris final : public EphemerisError {
 
 }  // namespace
 
-std::unique_ptr<EphemerisError> make_measured_ephemeris(const EphemerisErrorParameters& p) {
-  return std::make_unique<MeasuredEphemeris>(p);
+void broadcast_minus_sp3_parameters(ModelParameters& section) {
+  section.add<PreciseParameters>();
+}
+
+Result<std::unique_ptr<EphemerisError>> make_broadcast_minus_sp3(const ModelParameters& own,
+                                                                 const EphemerisErrorSetup& at) {
+  const auto& p = own.get<PreciseParameters>();
+  if (!at.broadcast)
+    return Error{"", 0, "gnss.ephemeris_error", "is \"broadcast_minus_sp3\", but there is no broadcast",
+                 "gnss.nav_file"};
+  if (p.sp3_files.empty())
+    return Error{"", 0, "gnss.ephemeris_error", "is \"broadcast_minus_sp3\", but there are no precise orbits",
+                 "gnss.sp3_files"};
+  const auto warn = [&at](const std::vector<std::string>& lines) {
+    if (at.warnings != nullptr) at.warnings->insert(at.warnings->end(), lines.begin(), lines.end());
+  };
+  CANYON_TRY(const PreciseOrbits orbits, read_sp3_files(p.sp3_files));
+  warn(orbits.warnings);
+  AntexFile antennas;
+  PreciseOptions options;
+  options.systems = at.systems;
+  if (!p.antex_file.empty()) {
+    CANYON_TRY(antennas, read_antex_file(p.antex_file));
+    warn(antennas.warnings);
+    options.antennas = &antennas;
+  }
+  return std::unique_ptr<EphemerisError>(
+      std::make_unique<MeasuredEphemeris>(at.satellites, make_precise(orbits, options)));
 }
 
 }  // namespace canyon::gnss

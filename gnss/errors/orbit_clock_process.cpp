@@ -63,11 +63,11 @@ class OrbitClockProcess final : public EphemerisError {
 
 }  // namespace
 
-std::unique_ptr<EphemerisError> make_orbit_clock_2010(const EphemerisErrorParameters& p) {
-  return std::make_unique<OrbitClockProcess>(p.seed, k2010, 1.0);
+std::unique_ptr<EphemerisError> make_orbit_clock_2010(std::uint64_t seed) {
+  return std::make_unique<OrbitClockProcess>(seed, k2010, 1.0);
 }
-std::unique_ptr<EphemerisError> make_orbit_clock_2021(const EphemerisErrorParameters& p) {
-  return std::make_unique<OrbitClockProcess>(p.seed, k2010, k2021Scale);
+std::unique_ptr<EphemerisError> make_orbit_clock_2021(std::uint64_t seed) {
+  return std::make_unique<OrbitClockProcess>(seed, k2010, k2021Scale);
 }
 
 }  // namespace canyon::gnss

@@ -30,10 +30,10 @@ class PaperEphemeris final : public EphemerisError {
 
 }  // namespace
 
-std::unique_ptr<EphemerisError> make_paper_printed_ephemeris(const EphemerisErrorParameters&) {
+std::unique_ptr<EphemerisError> make_paper_printed_ephemeris() {
   return std::make_unique<PaperEphemeris>(0.0, 0.918);
 }
-std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris(const EphemerisErrorParameters&) {
+std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris() {
   return std::make_unique<PaperEphemeris>(1.0, 0.0918);
 }
 

@@ -18,17 +18,17 @@ std::unique_ptr<PathModel> make_none(const PathParameters&) {
 }
 
 constexpr ModelRow<MakePathModel> kModels[] = {
-    {"none", make_none, "every satellite above the mask is clear, nothing reflects"},
-    {"visibility", make_visibility, "occlusion rays against the scene, nothing reflects"},
-    {"specular1", make_specular1, "occlusion and single specular reflections off the scene's facets"},
-    {"specular2", make_specular2, "occlusion and up to two specular reflections"},
-    {"specular3", make_specular3, "occlusion and up to three specular reflections"},
-    {"launching", make_launching, "rays launched from the antenna, up to two reflections; approximate"},
+    {"none", without_keys<make_none>, "every satellite above the mask is clear, nothing reflects"},
+    {"visibility", without_keys<make_visibility>, "occlusion rays against the scene, nothing reflects"},
+    {"specular1", without_keys<make_specular1>, "occlusion and single specular reflections off the scene's facets"},
+    {"specular2", without_keys<make_specular2>, "occlusion and up to two specular reflections"},
+    {"specular3", without_keys<make_specular3>, "occlusion and up to three specular reflections"},
+    {"launching", without_keys<make_launching>, "rays launched from the antenna, up to two reflections; approximate"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakePathModel>> path_models() {
+ModelTable<MakePathModel> path_models() {
   return kModels;
 }
 

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/gnss/paths/diffraction/fresnel.h"
 #include "canyon/gnss/paths/plane_waves.h"
 #include "canyon/gnss/sensor/sensor.h"
@@ -72,8 +72,8 @@ struct PathParameters {
   bool exhaustive = false;
 };
 
-using MakePathModel = std::unique_ptr<PathModel>(const PathParameters&);
-std::span<const ModelRow<MakePathModel>> path_models();
+using MakePathModel = std::unique_ptr<PathModel>(const ModelParameters& own, const PathParameters& p);
+ModelTable<MakePathModel> path_models();
 
 /// Direct ways only: is each blocked, how far does it pass through foliage. One occlusion ray per satellite, outward
 /// from the antenna; tree crowns do not block.

@@ -33,6 +33,22 @@ class Propagation final : public PathModel {
 
 }  // namespace
 
+void visit(FieldVisitor& f, PropagationConfig& c) {
+  visit_choice(f, "paths", c.paths, "propagation in the scene");
+  visit_choice(f, "diffraction", c.diffraction, "what roofs and corners bend");
+  f.flag("ground_reflection", c.ground_reflection, "the terrain around the antenna reflects");
+  f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
+           "standard deviation of the reflecting surfaces' height");
+}
+
+Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits) {
+  limits.roughness_m = config.surface_roughness_m;
+  CANYON_TRY(auto paths, config.paths.make("gnss.paths", limits));
+  CANYON_TRY(auto diffraction, config.diffraction.make("gnss.diffraction", limits));
+  if (!diffraction->bends() && !config.ground_reflection) return paths;
+  return make_propagation(std::move(paths), std::move(diffraction), config.ground_reflection, limits);
+}
+
 std::unique_ptr<PathModel> make_propagation(std::unique_ptr<PathModel> paths,
                                             std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
                                             const PathParameters& p) {

@@ -8,6 +8,18 @@
 
 namespace canyon::gnss {
 
+/// Keys of what happens to signals in the scene.
+struct PropagationConfig {
+  ModelChoice<path_models> paths{"specular1"};
+  ModelChoice<diffraction_models> diffraction{"none"};
+  bool ground_reflection = false;
+  double surface_roughness_m = 0.0;  ///< standard deviation of the reflecting surfaces' height
+};
+void visit(FieldVisitor& f, PropagationConfig& c);
+
+/// All of it. `limits`: what the receiver can notice; the roughness is the configuration's.
+Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits);
+
 /// A path model with diffraction and the reflection off the ground added to what it finds; echoes by growing excess.
 std::unique_ptr<PathModel> make_propagation(std::unique_ptr<PathModel> paths,
                                             std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,

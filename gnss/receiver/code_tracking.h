@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "canyon/core/config/config.h"
 #include "canyon/gnss/receiver/code_correlation.h"
+#include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 
@@ -30,6 +32,26 @@ struct CorrelatorDesign {
   double carrier_loop_hz = 15.0;
   double integration_s = 0.020;  ///< predetection
 };
+
+/// Keys of a receiver's channels, alike for all signals.
+struct TrackingConfig {
+  enum class Correlator { kEarlyLate, kDoubleDelta };
+  enum class Discriminator { kPower, kCoherent };
+
+  std::optional<Modulation> modulation;  ///< of all signals; none: each system's open signal
+  SecondFrequency second_frequency = SecondFrequency::kL2;
+  Correlator correlator = Correlator::kEarlyLate;
+  Discriminator discriminator = Discriminator::kPower;
+  double correlator_spacing_chips = 0.5;
+  double front_end_mhz = 0.0;  ///< 0 = infinite; a channel is given at least the main lobes of its signal
+  double code_loop_hz = 0.13;  ///< carrier-aided: 0.3 m of noise at 45 dB-Hz and half a chip
+  double carrier_loop_hz = 15.0;
+  double integration_ms = 20.0;
+  double thermal_noise_scale = 1.0;  ///< of code, carrier and Doppler, 1 = physical
+
+  CorrelatorDesign channel(Modulation modulation_of_channel) const;
+};
+void visit(FieldVisitor& f, TrackingConfig& c);
 
 /// Where the loops settle.
 struct CodeLock {

@@ -42,6 +42,8 @@ class Correlator final : public MultipathRule {
     return r;
   }
 
+  double reach_m() const override { return late_arm_m(tracking_.design()); }
+
  private:
   double threshold_dbhz_;
   CodeTracking tracking_;

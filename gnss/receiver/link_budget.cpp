@@ -34,4 +34,18 @@ ReceivedSignal receive(const SignalPath& path, const LinkBudget& link, const Eig
   return r;
 }
 
+void visit(FieldVisitor& f, LinkConfig& c) {
+  f.number("foliage_db_per_m", c.foliage_db_per_m, {0.0, 10.0}, "specific attenuation of tree crowns");
+  f.number("foliage_max_db", c.foliage_max_db, {0.1, 100.0}, "largest attenuation by foliage");
+  f.number("cn0_zenith_dbhz", c.cn0_zenith_dbhz, {20.0, 60.0}, "C/N0 of a clear satellite at the zenith");
+  visit_choice(f, "antenna", c.antenna, "gain pattern and phase centre of the antenna");
+  f.flag("antenna_phase_centre", c.antenna_phase_centre, "the antenna's phase centre is off its nominal point");
+}
+
+Result<LinkBudget> LinkConfig::budget() const {
+  LinkBudget link{cn0_zenith_dbhz, foliage_db_per_m, foliage_max_db, nullptr};
+  CANYON_TRY(link.antenna, antenna.make("gnss.antenna"));
+  return link;
+}
+
 }  // namespace canyon::gnss

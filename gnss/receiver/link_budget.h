@@ -23,6 +23,18 @@ struct LinkBudget {
   double direct_cn0_dbhz(double elevation_rad, double foliage_m, double field = 1.0) const;
 };
 
+/// Keys of the link.
+struct LinkConfig {
+  double cn0_zenith_dbhz = 45.0;
+  double foliage_db_per_m = 0.25;
+  double foliage_max_db = 28.0;
+  ModelChoice<antenna_models> antenna{"sine"};
+  bool antenna_phase_centre = false;  ///< the antenna's phase centre is off its nominal point
+
+  Result<LinkBudget> budget() const;
+};
+void visit(FieldVisitor& f, LinkConfig& c);
+
 /// A signal, direct, reflected or diffracted, as the receiver gets it.
 struct ReceivedSignal {
   double excess_m = 0.0;  ///< longer than the straight way by this

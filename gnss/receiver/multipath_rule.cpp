@@ -1,12 +1,16 @@
 #include "canyon/gnss/receiver/multipath_rule.h"
 
+#include "canyon/core/units.h"
+#include "canyon/gnss/signal.h"
+
 namespace canyon::gnss {
 namespace {
 
 /// Only unblocked satellites are tracked, and reflections do not disturb them.
 class NoMultipath final : public MultipathRule {
  public:
-  explicit NoMultipath(const MultipathParameters& p) : threshold_dbhz_(p.threshold_dbhz) {}
+  explicit NoMultipath(const MultipathParameters& p)
+      : threshold_dbhz_(p.threshold_dbhz), reach_m_(late_arm_m(p.design)) {}
   Reception receive(const std::optional<ReceivedSignal>& direct, std::span<const ReceivedSignal>,
                     double) const override {
     if (!direct || direct->cn0_dbhz < threshold_dbhz_) return {};
@@ -16,8 +20,10 @@ class NoMultipath final : public MultipathRule {
     return r;
   }
 
+  double reach_m() const override { return reach_m_; }
+
  private:
-  double threshold_dbhz_;
+  double threshold_dbhz_, reach_m_;
 };
 
 std::unique_ptr<MultipathRule> make_none(const MultipathParameters& p) {
@@ -25,15 +31,29 @@ std::unique_ptr<MultipathRule> make_none(const MultipathParameters& p) {
 }
 
 constexpr ModelRow<MakeMultipathRule> kRules[] = {
-    {"none", make_none, "reflections are ignored; blocked satellites are not tracked"},
-    {"paper_first_return", make_paper_first_return,
+    {"none", without_keys<make_none>, "reflections are ignored; blocked satellites are not tracked"},
+    {"paper_first_return", without_keys<make_paper_first_return>,
      "the paper's: the first reflected range if it comes within the cut-off"},
-    {"correlator", make_correlator, "early-minus-late tracking of the composite of direct and reflected signals"},
+    {"correlator", without_keys<make_correlator>,
+     "early-minus-late tracking of the composite of direct and reflected signals"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeMultipathRule>> multipath_rules() {
+double late_arm_m(const CorrelatorDesign& design) {
+  return (1.0 + 0.5 * design.spacing_chips) * kCaChipM;
+}
+
+double ReceptionConfig::cutoff_m() const {
+  return cutoff_ns * 1e-9 * kSpeedOfLight;
+}
+
+void visit(FieldVisitor& f, ReceptionConfig& c) {
+  visit_choice(f, "multipath_rule", c.multipath_rule, "range error from direct and reflected signals");
+  f.number("cutoff_ns", c.cutoff_ns, {0.0, 10000.0}, "reflections later than this do not disturb a direct signal");
+}
+
+ModelTable<MakeMultipathRule> multipath_rules() {
   return kRules;
 }
 

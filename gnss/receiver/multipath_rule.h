@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/gnss/receiver/code_tracking.h"
 #include "canyon/gnss/receiver/link_budget.h"
 
@@ -27,6 +27,8 @@ class MultipathRule {
   /// `direct`: nullopt if it is blocked. Echoes by growing excess.
   virtual Reception receive(const std::optional<ReceivedSignal>& direct, std::span<const ReceivedSignal> echoes,
                             double wavelength_m) const = 0;
+  /// Echoes of a direct signal that are later than this by way, m, make no difference.
+  virtual double reach_m() const = 0;
 };
 
 struct MultipathParameters {
@@ -35,8 +37,20 @@ struct MultipathParameters {
   CorrelatorDesign design;  ///< correlator
 };
 
-using MakeMultipathRule = std::unique_ptr<MultipathRule>(const MultipathParameters&);
-std::span<const ModelRow<MakeMultipathRule>> multipath_rules();
+using MakeMultipathRule = std::unique_ptr<MultipathRule>(const ModelParameters& own, const MultipathParameters& p);
+ModelTable<MakeMultipathRule> multipath_rules();
+
+/// Keys of the reception.
+struct ReceptionConfig {
+  ModelChoice<multipath_rules> multipath_rule{"paper_first_return"};
+  double cutoff_ns = 150.0;  ///< reflections later than this do not disturb a direct signal, nor are they counted
+
+  double cutoff_m() const;
+};
+void visit(FieldVisitor& f, ReceptionConfig& c);
+
+/// Where an echo's peak leaves the late arm of a correlator; BPSK(1) has the longest chip.
+double late_arm_m(const CorrelatorDesign& design);
 
 std::unique_ptr<MultipathRule> make_paper_first_return(const MultipathParameters& p);
 std::unique_ptr<MultipathRule> make_correlator(const MultipathParameters& p);

@@ -29,6 +29,8 @@ class PaperFirstReturn final : public MultipathRule {
     return {true, 0.0, direct->cn0_dbhz, 0.0, 0.0, -1};
   }
 
+  double reach_m() const override { return p_.cutoff_m; }
+
  private:
   MultipathParameters p_;
 };

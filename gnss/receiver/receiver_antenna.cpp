@@ -11,13 +11,13 @@ namespace {
 
 class SineAntenna final : public ReceiverAntenna {
  public:
-  explicit SineAntenna(const AntennaParameters& p) : p_(p) {}
+  explicit SineAntenna(const SineAntennaParameters& p) : p_(p) {}
   double rhcp_db(double elevation_rad) const override { return -p_.horizon_loss_db * (1.0 - std::sin(elevation_rad)); }
   double lhcp_db(double elevation_rad) const override { return rhcp_db(elevation_rad) - p_.lhcp_rejection_db; }
   double phase_centre_m(const Eigen::Vector3d&) const override { return 0.0; }
 
  private:
-  AntennaParameters p_;
+  SineAntennaParameters p_;
 };
 
 /// Gains every 15 deg from -90 to 90, phase-centre variation every 5 deg from 0 to 90; linear between.
@@ -89,21 +89,22 @@ constexpr PatternTable kChokeRing{{-35, -34, -33, -31, -27, -20, -11.5, -7.2, -4
                                   {14.88, 9.56, 4.79, 0.87, -2.20, -4.54, -6.27, -7.46, -8.14, -8.30, -7.97, -7.19,
                                    -6.05, -4.69, -3.28, -1.97, -0.92, -0.24, 0.00}};
 
-std::shared_ptr<const ReceiverAntenna> make_isotropic(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_isotropic(const ModelParameters&) {
   return std::make_shared<TabulatedAntenna>(kIsotropic);
 }
-std::shared_ptr<const ReceiverAntenna> make_patch(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_patch(const ModelParameters&) {
   return std::make_shared<TabulatedAntenna>(kPatch);
 }
-std::shared_ptr<const ReceiverAntenna> make_survey(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_survey(const ModelParameters&) {
   return std::make_shared<TabulatedAntenna>(kSurvey);
 }
-std::shared_ptr<const ReceiverAntenna> make_choke_ring(const AntennaParameters&) {
+std::shared_ptr<const ReceiverAntenna> make_choke_ring(const ModelParameters&) {
   return std::make_shared<TabulatedAntenna>(kChokeRing);
 }
 
 constexpr ModelRow<MakeAntenna> kModels[] = {
-    {"sine", make_sine_antenna, "antenna_horizon_loss_db (1 - sin e), left hand lhcp_rejection_db lower"},
+    {"sine", [](const ModelParameters& own) { return make_sine_antenna(own.get<SineAntennaParameters>()); },
+     "antenna_horizon_loss_db (1 - sin e), left hand lhcp_rejection_db lower", parameters_of<SineAntennaParameters>},
     {"isotropic", make_isotropic, "0 dB everywhere, right-hand only"},
     {"patch", make_patch, "active patch on a car roof"},
     {"survey", make_survey, "slot array for surveying, NOV702GG"},
@@ -112,11 +113,18 @@ constexpr ModelRow<MakeAntenna> kModels[] = {
 
 }  // namespace
 
-std::span<const ModelRow<MakeAntenna>> antenna_models() {
+void visit(FieldVisitor& f, SineAntennaParameters& c) {
+  f.number("antenna_horizon_loss_db", c.horizon_loss_db, {0.0, 40.0},
+           "antenna sine: gain at the horizon below that at the zenith");
+  f.number("lhcp_rejection_db", c.lhcp_rejection_db, {0.0, 60.0},
+           "antenna sine: gain for left-hand below right-hand polarization");
+}
+
+ModelTable<MakeAntenna> antenna_models() {
   return kModels;
 }
 
-std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const AntennaParameters& p) {
+std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const SineAntennaParameters& p) {
   return std::make_shared<SineAntenna>(p);
 }
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 
 namespace canyon::gnss {
 
@@ -23,16 +23,18 @@ class ReceiverAntenna {
   virtual double phase_centre_m(const Eigen::Vector3d& to_satellite_enu) const = 0;
 };
 
-struct AntennaParameters {
-  double horizon_loss_db = 7.0;     ///< model sine
-  double lhcp_rejection_db = 10.0;  ///< model sine
+/// Keys of the model sine.
+struct SineAntennaParameters {
+  double horizon_loss_db = 7.0;
+  double lhcp_rejection_db = 10.0;
 };
+void visit(FieldVisitor& f, SineAntennaParameters& c);
 
-using MakeAntenna = std::shared_ptr<const ReceiverAntenna>(const AntennaParameters&);
-std::span<const ModelRow<MakeAntenna>> antenna_models();
+using MakeAntenna = std::shared_ptr<const ReceiverAntenna>(const ModelParameters& own);
+ModelTable<MakeAntenna> antenna_models();
 
 /// Right-hand: -loss (1 - sin e), so arrivals from below lose up to twice the loss; left-hand the rejection below that
 /// at every elevation; one phase centre.
-std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const AntennaParameters& p);
+std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const SineAntennaParameters& p);
 
 }  // namespace canyon::gnss

@@ -7,6 +7,7 @@ class PerfectClock final : public ReceiverClock {
  public:
   double offset_m(std::int64_t) override { return 0.0; }
   double rate_m_s(std::int64_t) override { return 0.0; }
+  bool perfect() const override { return true; }
 };
 
 std::unique_ptr<ReceiverClock> make_none(const ReceiverClockParameters&) {
@@ -14,13 +15,13 @@ std::unique_ptr<ReceiverClock> make_none(const ReceiverClockParameters&) {
 }
 
 constexpr ModelRow<MakeReceiverClock> kModels[] = {
-    {"none", make_none, "the receiver knows GPS time exactly"},
-    {"tcxo", make_tcxo, "two-state clock of a temperature-compensated crystal"},
+    {"none", without_keys<make_none>, "the receiver knows GPS time exactly"},
+    {"tcxo", without_keys<make_tcxo>, "two-state clock of a temperature-compensated crystal"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeReceiverClock>> receiver_clock_models() {
+ModelTable<MakeReceiverClock> receiver_clock_models() {
   return kModels;
 }
 

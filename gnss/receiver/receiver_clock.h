@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 
 namespace canyon::gnss {
 
@@ -16,6 +16,8 @@ class ReceiverClock {
   virtual double offset_m(std::int64_t index) = 0;
   /// Its rate there, m/s.
   virtual double rate_m_s(std::int64_t index) = 0;
+  /// True if it is GPS time, so that a solver needs no unknown for it.
+  virtual bool perfect() const { return false; }
 };
 
 struct ReceiverClockParameters {
@@ -23,8 +25,8 @@ struct ReceiverClockParameters {
   double interval_s = 1.0;  ///< between epochs
 };
 
-using MakeReceiverClock = std::unique_ptr<ReceiverClock>(const ReceiverClockParameters&);
-std::span<const ModelRow<MakeReceiverClock>> receiver_clock_models();
+using MakeReceiverClock = std::unique_ptr<ReceiverClock>(const ModelParameters& own, const ReceiverClockParameters& at);
+ModelTable<MakeReceiverClock> receiver_clock_models();
 
 /// Two-state clock (bias and frequency, both with white noise; Brown & Hwang 1997, section 10) of a
 /// temperature-compensated crystal, h0 = 2e-19 s, h-2 = 2e-20 1/s; starts within about 1 microsecond and 0.1 ppm

@@ -95,4 +95,12 @@ SignalLocks::State SignalLocks::update(SatelliteId sv, double cn0_dbhz, std::uin
   return out;
 }
 
+void visit(FieldVisitor& f, LockConfig& c) {
+  f.number("tracking_threshold_dbhz", c.tracking_threshold_dbhz, {0.0, 60.0},
+           "signals weaker than this are not tracked");
+  f.number("reacquisition_margin_db", c.reacquisition_margin_db, {0.0, 40.0},
+           "a lost signal is found again only above the threshold by this");
+  f.number("reacquisition_s", c.reacquisition_s, {0.0, 600.0}, "and after it has been there for so long");
+}
+
 }  // namespace canyon::gnss

@@ -3,10 +3,19 @@
 #include <cstdint>
 #include <map>
 
+#include "canyon/core/config/config.h"
 #include "canyon/core/messages.h"
 #include "canyon/core/random/random.h"
 
 namespace canyon::gnss {
+
+/// Keys of when signals are lost and found.
+struct LockConfig {
+  double tracking_threshold_dbhz = 25.0;
+  double reacquisition_margin_db = 3.0;
+  double reacquisition_s = 1.0;
+};
+void visit(FieldVisitor& f, LockConfig& c);
 
 struct SignalLockParameters {
   std::uint64_t seed = 0;

@@ -5,12 +5,23 @@
 namespace canyon::gnss {
 namespace {
 
+struct IsotropicParameters {
+  double min_m = 0.3;
+  double max_m = 0.5;
+  double sigma_m = 0.23;  ///< what the fix claims per axis: sqrt(mean square / 3)
+};
+void visit(FieldVisitor& f, IsotropicParameters& c) {
+  f.number("isotropic_min_m", c.min_m, {0.0, 1e4}, "truth_plus_isotropic: shortest error");
+  f.number("isotropic_max_m", c.max_m, {0.0, 1e4}, "truth_plus_isotropic: longest error");
+  f.number("isotropic_sigma_m", c.sigma_m, {1e-6, 1e4}, "truth_plus_isotropic: 1-sigma per axis that the fix claims");
+}
+
 /// The low-fidelity receiver of Durst & Goodin (2012, section 4): "the true position plus a random error of about 30 to
 /// 50 centimeters", taken as a differential fix. Each epoch draws a direction uniform on the sphere and a length
 /// uniform in [min, max], independent of every other epoch. It knows no satellites, so there is no DOP and no outage.
 class IsotropicSensor final : public GnssSensor {
  public:
-  IsotropicSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame)
+  IsotropicSensor(const IsotropicParameters& config, std::uint64_t seed, const LocalFrame& frame)
       : config_(config),
         frame_(frame),
         direction_(seed, "gnss.isotropic.direction"),
@@ -27,9 +38,9 @@ class IsotropicSensor final : public GnssSensor {
     out.truth.p_A_E = frame_.to_E(p_A_W);
     out.fix.t = t;
     out.fix.status = FixStatus::kDifferential;
-    const double length_m = length_.uniform(config_.isotropic_min_m, config_.isotropic_max_m, 0, sample);
+    const double length_m = length_.uniform(config_.min_m, config_.max_m, 0, sample);
     out.fix.p_A_E = out.truth.p_A_E + length_m * direction_.direction(0, sample);
-    out.fix.covariance_E = config_.isotropic_sigma_m * config_.isotropic_sigma_m * Eigen::Matrix3d::Identity();
+    out.fix.covariance_E = config_.sigma_m * config_.sigma_m * Eigen::Matrix3d::Identity();
     ++counters_.epochs;
     return out;
   }
@@ -37,7 +48,7 @@ class IsotropicSensor final : public GnssSensor {
   GnssCounters counters() const override { return counters_; }
 
  private:
-  GnssConfig config_;
+  IsotropicParameters config_;
   LocalFrame frame_;
   RandomStream direction_, length_;
   GnssCounters counters_;
@@ -45,12 +56,16 @@ class IsotropicSensor final : public GnssSensor {
 
 }  // namespace
 
-Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime,
-                                                          GpsTime, const scene::Scene& scene) {
-  if (config.isotropic_max_m < config.isotropic_min_m)
-    return Error{"", 0, "gnss.isotropic_max_m", "is " + join_values(config.isotropic_max_m),
-                 "at least gnss.isotropic_min_m = " + join_values(config.isotropic_min_m)};
-  return std::unique_ptr<GnssSensor>(std::make_unique<IsotropicSensor>(config, seed, scene.frame()));
+void isotropic_parameters(ModelParameters& section) {
+  section.add<IsotropicParameters>();
+}
+
+Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const ModelParameters& own, const SensorSetup& at) {
+  const auto& p = own.get<IsotropicParameters>();
+  if (p.max_m < p.min_m)
+    return Error{"", 0, "gnss.isotropic_max_m", "is " + join_values(p.max_m),
+                 "at least gnss.isotropic_min_m = " + join_values(p.min_m)};
+  return std::unique_ptr<GnssSensor>(std::make_unique<IsotropicSensor>(p, at.seed, at.scene.frame()));
 }
 
 }  // namespace canyon::gnss

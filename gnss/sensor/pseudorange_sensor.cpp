@@ -10,13 +10,35 @@
 #include "canyon/gnss/receiver/loop_noise.h"
 #include "canyon/gnss/receiver/modes/receiver_fix.h"
 #include "canyon/gnss/satellites/transmission.h"
-#include "canyon/gnss/sensor/pseudorange_parts.h"
-#include "canyon/gnss/sensor/sensor_models.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/gnss/solver/velocity.h"
 
 namespace canyon::gnss {
 namespace {
+
+/// One kind of signal in the receiver: how it is tracked, and how noisy that is.
+struct Channel {
+  std::unique_ptr<MultipathRule> multipath;
+  std::unique_ptr<CodeTracking> tracking;
+};
+
+/// All that a pseudorange is made of; one model per effect.
+struct PseudorangeParts {
+  std::shared_ptr<const Constellation> constellation;
+  std::unique_ptr<IonosphereModel> ionosphere;
+  std::unique_ptr<TroposphereModel> troposphere;
+  std::unique_ptr<EphemerisError> ephemeris_error;
+  std::unique_ptr<PathModel> paths;
+  std::array<Channel, kModulations> channels;  ///< by Modulation
+  std::unique_ptr<ReceiverClock> clock;
+  std::unique_ptr<ReceiverMode> mode;
+  std::unique_ptr<PositionSolver> solver;
+  std::unique_ptr<RangeWeighting> weighting;
+  LinkBudget link;
+  SignalLockParameters locks;
+  std::vector<std::string> warnings;
+};
 
 /// Which signal's peak is tracked, as a number that stays the same from epoch to epoch.
 std::uint64_t identity(const SignalPaths& paths, int source) {
@@ -32,7 +54,7 @@ std::uint64_t identity(const SignalPaths& paths, int source) {
 
 /// Streams of one of the receiver's signals, and what it is locked to.
 struct SignalStreams {
-  SignalStreams(const std::string& prefix, const GnssConfig& config, const SignalLockParameters& lock_parameters)
+  SignalStreams(const std::string& prefix, const TrackingConfig& config, const SignalLockParameters& lock_parameters)
       : code(lock_parameters.seed, prefix + "code_noise", config.code_loop_hz, lock_parameters.interval_s),
         carrier(lock_parameters.seed, prefix + "carrier_noise"),
         doppler(lock_parameters.seed, prefix + "doppler_noise"),
@@ -60,14 +82,12 @@ class PseudorangeSensor final : public GnssSensor {
       : config_(config),
         frame_(frame),
         parts_(std::move(parts)),
-        first_("gnss.", config, parts_.locks),
-        second_("gnss.second.", config, parts_.locks) {
-    if (config_.estimator != "kalman") return;
+        first_("gnss.", config.tracking, parts_.locks),
+        second_("gnss.second.", config.tracking, parts_.locks) {
+    if (config_.position.estimator != Estimator::kKalman) return;
     PvtFilterParameters p;
-    p.acceleration_m_s2 = config_.estimator_acceleration_m_s2;
-    p.start.max_gdop = config_.max_gdop;
-    p.start.fault_exclusion = config_.raim;
-    p.start.false_alarm = config_.raim_false_alarm;
+    p.acceleration_m_s2 = config_.position.estimator_acceleration_m_s2;
+    p.start = config_.position.parameters();
     filter_.emplace(p);
   }
 
@@ -93,7 +113,8 @@ class PseudorangeSensor final : public GnssSensor {
     std::vector<SignalPaths> second_paths;
     if (parts_.mode->dual_frequency())
       second_paths = trace(
-          p_A_W, sights, [this](GnssSystem system) { return second_band(system, config_.second_frequency); }, scene);
+          p_A_W, sights, [this](GnssSystem system) { return second_band(system, config_.tracking.second_frequency); },
+          scene);
     std::vector<CorrectionInput> inputs;
     std::vector<std::size_t> truth_of;  // index of the truth record of each observation
     for (std::size_t i = 0; i < sights.size(); ++i) {
@@ -108,7 +129,7 @@ class PseudorangeSensor final : public GnssSensor {
                                  *parts_.mode,
                                  *parts_.solver,
                                  *parts_.weighting,
-                                 config_.max_gdop,
+                                 config_.position.max_gdop,
                                  frame_.origin_E(),
                                  filter_ ? &*filter_ : nullptr};
     std::vector<Correction> corrections;
@@ -196,7 +217,7 @@ class PseudorangeSensor final : public GnssSensor {
     truth.elevation_rad = sight.view.elevation_rad;
     truth.azimuth_rad = sight.view.azimuth_rad;
     truth.line_of_sight = paths.line_of_sight;
-    const double cutoff_m = config_.cutoff_ns * 1e-9 * kSpeedOfLight;
+    const double cutoff_m = config_.reception.cutoff_m();
     for (const SignalPath& p : paths.echoes) {
       truth.reflections += p.reflections > 0 && p.excess_m < cutoff_m ? 1 : 0;
       truth.diffractions += p.diffractions > 0 ? 1 : 0;
@@ -209,9 +230,7 @@ class PseudorangeSensor final : public GnssSensor {
   }
 
   const Channel& channel(GnssSystem system, int band) const {
-    const Modulation modulation =
-        config_.modulation == "auto" ? modulation_of(system, band) : modulation_of(config_.modulation);
-    return parts_.channels[static_cast<std::size_t>(modulation)];
+    return parts_.channels[static_cast<std::size_t>(config_.tracking.modulation.value_or(modulation_of(system, band)))];
   }
 
   Reception receive_signals(const Epoch& epoch, const Sight& sight, const SignalPaths& paths, const Channel& channel,
@@ -249,7 +268,8 @@ class PseudorangeSensor final : public GnssSensor {
     m.multipath_m = r.error_m;
     const std::uint32_t entity = sight.sv.entity();
     const auto sample = static_cast<std::uint64_t>(epoch.index);
-    const double scale = config_.thermal_noise_scale, T = 1e-3 * config_.integration_ms;
+    const TrackingConfig& tracking = config_.tracking;
+    const double scale = tracking.thermal_noise_scale, T = 1e-3 * tracking.integration_ms;
     m.noise_m = scale * own.tracking->noise_m(r.cn0_dbhz) * streams.code.at(entity, epoch.index);
 
     const double ratio = sight.carrier_hz(first_band(sight.sv.system)) / carrier;
@@ -258,14 +278,14 @@ class PseudorangeSensor final : public GnssSensor {
                             kSpeedOfLight * state.clock_of_band_s(band) + acting.troposphere_m + acting.ephemeris_m +
                             truth.phase_centre_m;
     m.pseudorange_m = common_m + ionosphere_m + r.error_m + m.noise_m;
-    const double phase_noise = scale * carrier_phase_noise_rad(r.cn0_dbhz, config_.carrier_loop_hz, T) / (2.0 * kPi) *
+    const double phase_noise = scale * carrier_phase_noise_rad(r.cn0_dbhz, tracking.carrier_loop_hz, T) / (2.0 * kPi) *
                                streams.carrier.normal(entity, sample);
     m.carrier_phase_cycles =
         (common_m - ionosphere_m + r.carrier_error_m) / wavelength_m + phase_noise + lock.ambiguity_cycles;
     const double rate_m_s = truth.range_rate_m_s + epoch.out.truth.receiver_clock_rate_m_s -
                             kSpeedOfLight * state.clock_rate * (1.0 - truth.range_rate_m_s / kSpeedOfLight) +
                             r.range_rate_error_m_s;
-    m.doppler_hz = -rate_m_s / wavelength_m + scale * doppler_noise_hz(r.cn0_dbhz, config_.carrier_loop_hz, T) *
+    m.doppler_hz = -rate_m_s / wavelength_m + scale * doppler_noise_hz(r.cn0_dbhz, tracking.carrier_loop_hz, T) *
                                                   streams.doppler.normal(entity, sample);
     CANYON_CHECK(std::isfinite(m.pseudorange_m) && std::isfinite(m.cn0_dbhz) && std::isfinite(m.carrier_phase_cycles) &&
                      std::isfinite(m.doppler_hz),
@@ -285,13 +305,13 @@ class PseudorangeSensor final : public GnssSensor {
         from_l1 * from_l1 * parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
         parts_.ephemeris_error->range_m(sight.sv, sight.signal.state, epoch.out.truth.p_A_E, epoch.t)};
     const RangeDelays acting = parts_.mode->acting(raw);
-    truth.phase_centre_m = config_.antenna_phase_centre
+    truth.phase_centre_m = config_.link.antenna_phase_centre
                                ? parts_.link.antenna->phase_centre_m(epoch.horizon.R_E_enu().transpose() *
                                                                      (frame_.R_EW() * sight.direction_W))
                                : 0.0;
 
     const Measured first = measure_signal(epoch, sight, paths, band, first_, truth, acting);
-    const int other_band = second_band(sight.sv.system, config_.second_frequency);
+    const int other_band = second_band(sight.sv.system, config_.tracking.second_frequency);
     Measured second;
     if (second_paths != nullptr)
       second = measure_signal(epoch, sight, *second_paths, other_band, second_, truth, acting);
@@ -353,15 +373,83 @@ class PseudorangeSensor final : public GnssSensor {
   GnssCounters counters_;
 };
 
+/// What the receiver can notice of the ways that a signal takes.
+PathParameters path_limits(const GnssConfig& c, const MultipathRule& multipath) {
+  PathParameters p;
+  p.cutoff_m = multipath.reach_m();
+  p.weakest_nlos_db = c.locks.tracking_threshold_dbhz - c.link.cn0_zenith_dbhz;
+  p.weakest_db = std::min(p.weakest_db, p.weakest_nlos_db);
+  return p;
+}
+
+SignalLockParameters lock_parameters(const GnssConfig& c, std::uint64_t seed) {
+  return {.seed = seed,
+          .interval_s = 1.0 / c.rate_hz,
+          .threshold_dbhz = c.locks.tracking_threshold_dbhz,
+          .reacquisition_margin_db = c.locks.reacquisition_margin_db,
+          .reacquisition_s = c.locks.reacquisition_s,
+          .carrier_loop_hz = c.tracking.carrier_loop_hz,
+          .integration_s = 1e-3 * c.tracking.integration_ms,
+          .slips = c.tracking.thermal_noise_scale > 0.0};
+}
+
+/// Satellites, and what acts on their signals outside the scene.
+Result<KlobucharCoefficients> add_sky(const SensorSetup& at, PseudorangeParts& parts) {
+  const GnssConfig& c = at.config;
+  CANYON_TRY(const SatelliteSource source, make_satellite_source(c.satellites, at.start, at.end));
+  parts.constellation = source.constellation;
+  parts.warnings = source.warnings;
+  CANYON_TRY(parts.ionosphere, c.ionosphere.make("gnss.ionosphere",
+                                                 IonosphereSetup{source.klobuchar, at.start, at.end, &parts.warnings}));
+  CANYON_TRY(parts.troposphere, c.troposphere.make("gnss.troposphere"));
+  CANYON_TRY(parts.ephemeris_error,
+             c.ephemeris_error.make("gnss.ephemeris_error",
+                                    EphemerisErrorSetup{at.seed, source.constellation, c.satellites.systems,
+                                                        source.navigation.has_ephemeris(), &parts.warnings}));
+  return source.klobuchar;
+}
+
+/// Builds the models that the configuration names; an Error names the key.
+Result<PseudorangeParts> make_parts(const SensorSetup& at) {
+  const GnssConfig& c = at.config;
+  PseudorangeParts parts;
+  CANYON_TRY(const KlobucharCoefficients klobuchar, add_sky(at, parts));
+  for (std::size_t i = 0; i < kModulations; ++i) {
+    const CorrelatorDesign design = c.tracking.channel(static_cast<Modulation>(i));
+    CANYON_TRY(parts.channels[i].multipath,
+               c.reception.multipath_rule.make(
+                   "gnss.multipath_rule",
+                   MultipathParameters{c.reception.cutoff_m(), c.locks.tracking_threshold_dbhz, design}));
+    parts.channels[i].tracking = std::make_unique<CodeTracking>(design);
+  }
+  CANYON_TRY(parts.paths, make_propagation(c.propagation, path_limits(c, *parts.channels[0].multipath)));
+  CANYON_TRY(parts.clock,
+             c.receiver_clock.make("gnss.receiver_clock", ReceiverClockParameters{at.seed, 1.0 / c.rate_hz}));
+  CANYON_TRY(parts.mode, c.mode.make("gnss.mode", ReceiverModeSetup{at.seed, parts.ionosphere->acts(),
+                                                                    parts.troposphere->acts(), klobuchar}));
+  CANYON_TRY(parts.solver, c.position.solver.make("gnss.solver", c.position.parameters()));
+  CANYON_TRY(parts.weighting,
+             c.position.weighting.make("gnss.weighting", RangeWeightingParameters{c.position.solver_sigma_m}));
+  CANYON_TRY(parts.link, c.link.budget());
+  parts.locks = lock_parameters(c, at.seed);
+  if (!parts.solver->solves_clock() && !parts.clock->perfect())
+    return Error{
+        "", 0, "gnss.receiver_clock",
+        "is \"" + c.receiver_clock.name + "\", but solver \"" + c.position.solver.name + "\" has no unknown for it",
+        "\"none\""};
+  if (!parts.solver->solves_clock() && c.position.estimator == Estimator::kKalman)
+    return Error{"", 0, "gnss.estimator",
+                 "is \"kalman\", but the solver " + c.position.solver.name + " has no receiver clock",
+                 "solver \"least_squares\""};
+  return parts;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const GnssConfig& c, std::uint64_t seed, GpsTime start,
-                                                            GpsTime end, const scene::Scene& scene) {
-  CANYON_TRY(PseudorangeParts parts, make_pseudorange_parts(c, seed, start, end));
-  if (c.estimator == "kalman" && !parts.solver->solves_clock())
-    return Error{"", 0, "gnss.estimator", "is \"kalman\", but the solver " + c.solver + " has no receiver clock",
-                 "solver \"least_squares\""};
-  return std::unique_ptr<GnssSensor>(std::make_unique<PseudorangeSensor>(c, scene.frame(), std::move(parts)));
+Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const ModelParameters&, const SensorSetup& at) {
+  CANYON_TRY(PseudorangeParts parts, make_parts(at));
+  return std::unique_ptr<GnssSensor>(
+      std::make_unique<PseudorangeSensor>(at.config, at.scene.frame(), std::move(parts)));
 }
 
 }  // namespace canyon::gnss

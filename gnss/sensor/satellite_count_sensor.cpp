@@ -5,14 +5,24 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/satellites/transmission.h"
-#include "canyon/gnss/sensor/satellite_source.h"
-#include "canyon/gnss/sensor/sensor_models.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sky_view.h"
 
 namespace canyon::gnss {
 namespace {
 
 constexpr int kFewest = 4, kMany = 12;
+
+/// Three sigmas per axis.
+struct SatelliteCountParameters {
+  double noise_max_m = 10.0;  ///< with four satellites
+  double noise_min_m = 2.0;   ///< with twelve or more
+};
+void visit(FieldVisitor& f, SatelliteCountParameters& c) {
+  f.number("count_noise_max_m", c.noise_max_m, {0.0, 1e4},
+           "satellite_count: three sigmas per axis with four satellites");
+  f.number("count_noise_min_m", c.noise_min_m, {0.0, 1e4}, "satellite_count: the same with twelve or more");
+}
 
 /// Balaguer & Carpin (2008), "Where am I? A simulated GPS sensor for outdoor robotic applications", as their receiver
 /// stands in USARSim (class GPSSensor, NIST, public domain): satellites above 5 deg (here mask_deg) that a ray to the
@@ -22,11 +32,13 @@ constexpr int kFewest = 4, kMany = 12;
 /// latitude and longitude only, for it has no height; here all three axes do.
 class SatelliteCountSensor final : public GnssSensor {
  public:
-  SatelliteCountSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame, SatelliteSource source)
+  SatelliteCountSensor(const SatelliteCountParameters& config, double mask_rad, std::uint64_t seed,
+                       const LocalFrame& frame, SatelliteSource source)
       : config_(config),
+        mask_rad_(mask_rad),
         frame_(frame),
         source_(std::move(source)),
-        visibility_(find_model(path_models(), "visibility")->make({})),
+        visibility_(make_visibility({})),
         noise_(seed, "gnss.satellite_count") {}
 
   GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
@@ -45,8 +57,7 @@ class SatelliteCountSensor final : public GnssSensor {
       return out;
     }
     const double share = static_cast<double>(std::min(satellites, kMany) - kFewest) / (kMany - kFewest);
-    const double sigma_m =
-        (config_.count_noise_max_m + share * (config_.count_noise_min_m - config_.count_noise_max_m)) / 3.0;
+    const double sigma_m = (config_.noise_max_m + share * (config_.noise_min_m - config_.noise_max_m)) / 3.0;
     out.fix.status = FixStatus::kSingle;
     out.fix.satellites = satellites;
     out.fix.p_A_E = out.truth.p_A_E + frame_.R_EW() * (sigma_m * noise_.normal3(static_cast<std::uint64_t>(index)));
@@ -67,7 +78,7 @@ class SatelliteCountSensor final : public GnssSensor {
       const auto signal = transmission_to(*source_.constellation, sv, truth.t, truth.p_A_E);
       if (!signal) continue;
       const SkyView view = horizon.view(truth.t, signal->p_E());
-      if (view.elevation_rad < config_.mask_deg * kDegree) continue;
+      if (view.elevation_rad < mask_rad_) continue;
       GnssObservationTruth s;
       s.sv = sv;
       s.elevation_rad = view.elevation_rad;
@@ -86,7 +97,8 @@ class SatelliteCountSensor final : public GnssSensor {
     return in_sight;
   }
 
-  GnssConfig config_;
+  SatelliteCountParameters config_;
+  double mask_rad_;
   LocalFrame frame_;
   SatelliteSource source_;
   std::unique_ptr<PathModel> visibility_;
@@ -96,14 +108,18 @@ class SatelliteCountSensor final : public GnssSensor {
 
 }  // namespace
 
-Result<std::unique_ptr<GnssSensor>> make_satellite_count_sensor(const GnssConfig& config, std::uint64_t seed,
-                                                                GpsTime start, GpsTime end, const scene::Scene& scene) {
-  if (config.count_noise_max_m < config.count_noise_min_m)
-    return Error{"", 0, "gnss.count_noise_max_m", "is " + join_values(config.count_noise_max_m),
-                 "at least gnss.count_noise_min_m = " + join_values(config.count_noise_min_m)};
-  CANYON_TRY(SatelliteSource source, make_satellite_source(config, start, end));
-  return std::unique_ptr<GnssSensor>(
-      std::make_unique<SatelliteCountSensor>(config, seed, scene.frame(), std::move(source)));
+void satellite_count_parameters(ModelParameters& section) {
+  section.add<SatelliteCountParameters>();
+}
+
+Result<std::unique_ptr<GnssSensor>> make_satellite_count_sensor(const ModelParameters& own, const SensorSetup& at) {
+  const auto& p = own.get<SatelliteCountParameters>();
+  if (p.noise_max_m < p.noise_min_m)
+    return Error{"", 0, "gnss.count_noise_max_m", "is " + join_values(p.noise_max_m),
+                 "at least gnss.count_noise_min_m = " + join_values(p.noise_min_m)};
+  CANYON_TRY(SatelliteSource source, make_satellite_source(at.config.satellites, at.start, at.end));
+  return std::unique_ptr<GnssSensor>(std::make_unique<SatelliteCountSensor>(p, at.config.mask_deg * kDegree, at.seed,
+                                                                            at.scene.frame(), std::move(source)));
 }
 
 }  // namespace canyon::gnss

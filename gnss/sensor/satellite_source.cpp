@@ -5,7 +5,15 @@
 
 namespace canyon::gnss {
 
-Result<SatelliteSource> make_satellite_source(const GnssConfig& config, GpsTime start, GpsTime end) {
+void visit(FieldVisitor& f, SatelliteSourceConfig& c) {
+  f.text("systems", c.systems, "satellite systems received, of G R E C J");
+  f.file("nav_file", c.nav_file, "",
+         "RINEX 2, 3 or 4 navigation file, plain or gzip; without any, the built-in constellation");
+  f.files("nav_files", c.nav_files, "further navigation files, read as one with nav_file");
+  f.file("almanac_file", c.almanac_file, "", "YUMA or SEM almanac, alone or beside navigation files");
+}
+
+Result<SatelliteSource> make_satellite_source(const SatelliteSourceConfig& config, GpsTime start, GpsTime end) {
   CANYON_TRY_STATUS(check_systems(config.systems, "gnss.systems"));
   SatelliteSource source;
   std::vector<std::string> files = config.nav_files;

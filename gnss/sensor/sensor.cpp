@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "canyon/gnss/sensor/sensor_models.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 
 namespace canyon::gnss {
 namespace {
@@ -10,15 +10,16 @@ namespace {
 constexpr ModelRow<MakeSensor> kSensors[] = {
     {"pseudorange", make_pseudorange_sensor, "satellites, delays, paths in the scene, receiver and solver"},
     {"truth_plus_isotropic", make_isotropic_sensor,
-     "truth plus a random direction times U(min, max), independent per fix"},
-    {"truth_plus_white", make_white_noise_sensor, "truth plus white Gaussian noise per axis"},
+     "truth plus a random direction times U(min, max), independent per fix", isotropic_parameters},
+    {"truth_plus_white", make_white_noise_sensor, "truth plus white Gaussian noise per axis", white_noise_parameters},
     {"satellite_count", make_satellite_count_sensor,
-     "Balaguer & Carpin (2008): truth plus noise that falls with the number of satellites in sight"},
+     "Balaguer & Carpin (2008): truth plus noise that falls with the number of satellites in sight",
+     satellite_count_parameters},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeSensor>> sensor_models() {
+ModelTable<MakeSensor> sensor_models() {
   return kSensors;
 }
 
@@ -28,11 +29,7 @@ std::int64_t epoch_index(const GnssConfig& config, double t_s) {
 
 Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
                                                      GpsTime end, const scene::Scene& scene) {
-  const auto* row = find_model(sensor_models(), config.model);
-  if (row == nullptr)
-    return Error{"", 0, "gnss.model", "\"" + config.model + "\" is not a model",
-                 "pseudorange, truth_plus_isotropic, truth_plus_white or satellite_count"};
-  return row->make(config, seed, start, end, scene);
+  return config.model.make("gnss.model", SensorSetup{config, seed, start, end, scene});
 }
 
 }  // namespace canyon::gnss

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "canyon/core/config/config.h"
 #include "canyon/core/messages.h"
 #include "canyon/core/result.h"
 #include "canyon/core/truth.h"
@@ -50,93 +49,7 @@ class GnssSensor {
   virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-/// [gnss] of a mission file. Each `choice` names a row of that effect's table.
-struct GnssConfig {
-  std::string model = "pseudorange";  ///< a row of sensor_models(); truth_plus_isotropic is the paper's low fidelity
-  double rate_hz = 2.0;
-  double mask_deg = 10.0;
-  Eigen::Vector3d lever_arm_m{-0.3, 0.0, 1.2};  ///< antenna in B
-
-  // truth_plus_isotropic
-  double isotropic_min_m = 0.3;
-  double isotropic_max_m = 0.5;
-  double isotropic_sigma_m = 0.23;  ///< what the fix claims per axis: sqrt(mean square / 3)
-
-  // truth_plus_white
-  double white_sigma_m = 1.0;     ///< per horizontal axis
-  double white_sigma_up_m = 2.0;  ///< vertical
-
-  // satellite_count: three sigmas per axis
-  double count_noise_max_m = 10.0;  ///< with four satellites
-  double count_noise_min_m = 2.0;   ///< with twelve or more
-
-  // pseudorange: what acts on the range, and what the receiver corrects
-  std::string mode = "dgps";                    ///< a row of receiver_modes()
-  double baseline_km = 5.0;                     ///< distance of the base station, dgps
-  double ionosphere_gradient_mm_per_km = 2.0;   ///< 1-sigma of the vertical delay's difference to the base, dgps
-  double troposphere_gradient_mm_per_km = 1.0;  ///< the same for the zenith wet delay
-  double base_error_scale = 1.0;                ///< base station's own code noise and multipath, 1 = GAD-B; dgps
-  std::string ionosphere = "single_layer";
-  double vtec_tecu = 12.0;
-  std::string ionosphere_correction = "half";  ///< what the receiver subtracts in mode single
-  std::string troposphere = "saastamoinen_niell";
-  double pressure_hpa = 1022.0;
-  double temperature_c = 12.8;
-  double relative_humidity = 0.80;
-  double weather_height_m = 0.0;  ///< where these three hold
-  std::string ephemeris_error = "gauss_markov";
-  double ephemeris_sigma_m = 1.0;
-  double ephemeris_tau_s = 3600.0;
-  std::string receiver_clock = "tcxo";
-
-  // pseudorange: propagation in the scene and reception
-  std::string paths = "specular1";   ///< none | visibility | specular1 | specular2 | specular3 | launching
-  std::string diffraction = "none";  ///< none | knife_edge | double_knife_edge
-  bool ground_reflection = false;
-  double surface_roughness_m = 0.0;  ///< standard deviation of the reflecting surfaces' height
-  double foliage_db_per_m = 0.25;
-  double foliage_max_db = 28.0;
-  std::string multipath_rule = "paper_first_return";
-  double cutoff_ns = 150.0;
-
-  // pseudorange: antenna and receiver
-  double cn0_zenith_dbhz = 45.0;
-  std::string antenna = "sine";
-  double antenna_horizon_loss_db = 7.0;
-  double lhcp_rejection_db = 10.0;
-  bool antenna_phase_centre = false;
-  std::string modulation = "auto";        ///< auto | a name of modulation_names()
-  std::string second_frequency = "L2";    ///< mode dual: L2 | L5
-  std::string correlator = "early_late";  ///< early_late | double_delta
-  std::string discriminator = "power";    ///< power | coherent
-  double correlator_spacing_chips = 0.5;
-  double front_end_mhz = 0.0;
-  double code_loop_hz = 0.13;  ///< carrier-aided: 0.3 m of noise at 45 dB-Hz and half a chip
-  double carrier_loop_hz = 15.0;
-  double integration_ms = 20.0;
-  double thermal_noise_scale = 1.0;
-  double tracking_threshold_dbhz = 25.0;
-  double reacquisition_margin_db = 3.0;
-  double reacquisition_s = 1.0;
-
-  // pseudorange: position
-  std::string solver = "least_squares";
-  std::string weighting = "elevation";  ///< a row of range_weightings()
-  std::string raim = "none";            ///< a row of fault_exclusions()
-  double raim_false_alarm = 1e-3;
-  double solver_sigma_m = 0.5;  ///< assumed 1-sigma of a corrected pseudorange at zenith
-  double max_gdop = 100.0;
-  std::string estimator = "least_squares";   ///< least_squares | kalman
-  double estimator_acceleration_m_s2 = 2.0;  ///< kalman: white acceleration per axis, m/s^2/sqrt(Hz)
-  std::string systems = "G";                 ///< RINEX letters of the systems received
-  std::string nav_file;                      ///< RINEX navigation file; none at all = built-in constellation
-  std::vector<std::string> nav_files;        ///< further ones
-  std::string almanac_file;                  ///< YUMA or SEM, for satellites that have no ephemeris
-  std::string ionex_file;                    ///< maps, for ionosphere ionex
-  std::vector<std::string> sp3_files;        ///< precise orbits, for ephemeris_error broadcast_minus_sp3
-  std::string antex_file;                    ///< satellite antennas, for the same
-};
-void visit(FieldVisitor& f, GnssConfig& c);
+struct GnssConfig;  // gnss/sensor/gnss_config.h
 
 /// Index of the epoch `t_s` after the start, in steps of the configured rate. Epochs looked at hours apart are not
 /// consecutive, so each finds the receiver running, not still to regain what was hidden an hour ago.

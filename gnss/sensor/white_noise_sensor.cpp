@@ -5,12 +5,21 @@
 namespace canyon::gnss {
 namespace {
 
+struct WhiteNoiseParameters {
+  double sigma_m = 1.0;     ///< per horizontal axis
+  double sigma_up_m = 2.0;  ///< vertical
+};
+void visit(FieldVisitor& f, WhiteNoiseParameters& c) {
+  f.number("white_sigma_m", c.sigma_m, {0.0, 1e4}, "truth_plus_white: 1-sigma per horizontal axis");
+  f.number("white_sigma_up_m", c.sigma_up_m, {0.0, 1e4}, "truth_plus_white: 1-sigma of the height");
+}
+
 /// White Gaussian noise on the true position, independent from epoch to epoch and axis to axis: the receiver of most
 /// robot simulators (Player/Stage with noise added by its users; Gazebo, CARLA and Webots without correlation). It
 /// knows no satellites, so there is no DOP and no outage.
 class WhiteNoiseSensor final : public GnssSensor {
  public:
-  WhiteNoiseSensor(const GnssConfig& config, std::uint64_t seed, const LocalFrame& frame)
+  WhiteNoiseSensor(const WhiteNoiseParameters& config, std::uint64_t seed, const LocalFrame& frame)
       : config_(config), frame_(frame), noise_(seed, "gnss.white") {}
 
   GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
@@ -18,7 +27,7 @@ class WhiteNoiseSensor final : public GnssSensor {
     CANYON_CHECK(index >= 0, "index = ", index);
     CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
     const auto sample = static_cast<std::uint64_t>(index);
-    const Eigen::Vector3d sigma_m(config_.white_sigma_m, config_.white_sigma_m, config_.white_sigma_up_m);
+    const Eigen::Vector3d sigma_m(config_.sigma_m, config_.sigma_m, config_.sigma_up_m);
     GnssOutput out;
     out.epoch.t = out.truth.t = out.fix.t = t;
     out.truth.p_A_E = frame_.to_E(p_A_W);
@@ -33,7 +42,7 @@ class WhiteNoiseSensor final : public GnssSensor {
   GnssCounters counters() const override { return counters_; }
 
  private:
-  GnssConfig config_;
+  WhiteNoiseParameters config_;
   LocalFrame frame_;
   RandomStream noise_;
   GnssCounters counters_;
@@ -41,9 +50,13 @@ class WhiteNoiseSensor final : public GnssSensor {
 
 }  // namespace
 
-Result<std::unique_ptr<GnssSensor>> make_white_noise_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime,
-                                                            GpsTime, const scene::Scene& scene) {
-  return std::unique_ptr<GnssSensor>(std::make_unique<WhiteNoiseSensor>(config, seed, scene.frame()));
+void white_noise_parameters(ModelParameters& section) {
+  section.add<WhiteNoiseParameters>();
+}
+
+Result<std::unique_ptr<GnssSensor>> make_white_noise_sensor(const ModelParameters& own, const SensorSetup& at) {
+  return std::unique_ptr<GnssSensor>(
+      std::make_unique<WhiteNoiseSensor>(own.get<WhiteNoiseParameters>(), at.seed, at.scene.frame()));
 }
 
 }  // namespace canyon::gnss

@@ -1,11 +1,17 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "canyon/core/config/config.h"
+#include "canyon/gnss/satellites/navigation_data.h"
+#include "canyon/gnss/single_point/group_delay.h"
+#include "canyon/gnss/single_point/range_corrections.h"
+#include "canyon/gnss/solver/pvt_filter.h"
 
 namespace canyon::gnss {
+
+/// One band alone, or the ionosphere-free combination of two.
+enum class Frequencies { kSingle, kDual };
 
 /// How recorded observations become positions. Each `choice` names a row of that effect's table. The defaults are what
 /// Canyon recommends for one frequency.
@@ -14,16 +20,16 @@ struct SinglePointConfig {
   double mask_deg = 10.0;
   double max_gdop = 30.0;
 
-  std::string frequencies = "single";     ///< single | dual (ionosphere-free combination)
-  std::string ephemeris = "nearest_toe";  ///< nearest_toe | transmitted
-  std::string group_delay = "broadcast";  ///< none | broadcast | rtklib
-  std::string ionosphere = "klobuchar";   ///< none | klobuchar | klobuchar_own | ionex
-  std::string troposphere = "saastamoinen_niell";
+  Frequencies frequencies = Frequencies::kSingle;
+  EphemerisChoice ephemeris = EphemerisChoice::kNearestToe;
+  GroupDelayModel group_delay = GroupDelayModel::kBroadcast;
+  IonosphereCorrection ionosphere = IonosphereCorrection::kKlobuchar;
+  std::string troposphere = "saastamoinen_niell";  ///< a row of troposphere_corrections()
   double shared_ionosphere = 0.5;  ///< 1-sigma of the modelled ionosphere's scale, an unknown; 0 = not solved
   double smoothing_s = 300.0;      ///< time constant of carrier smoothing; 0 = off
 
-  std::string estimator = "least_squares";  ///< least_squares | kalman
-  double acceleration_m_s2 = 1.0;           ///< kalman: white acceleration, m/s^2/sqrt(Hz)
+  Estimator estimator = Estimator::kLeastSquares;
+  double acceleration_m_s2 = 1.0;  ///< kalman: white acceleration, m/s^2/sqrt(Hz)
 
   std::string weighting = "budget";
   double sigma_m = 0.5;

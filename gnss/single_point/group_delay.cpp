@@ -20,8 +20,17 @@ std::array<double, 10> rtklib_bands_s(const KeplerEphemeris& r) {
 
 }  // namespace
 
-GroupDelays::GroupDelays(std::string model, const NavigationData& navigation) : model_(std::move(model)) {
-  if (model_ != "rtklib") return;
+ModelTable<GroupDelayModel> group_delay_models() {
+  static constexpr ModelRow<GroupDelayModel> kRows[] = {
+      {"none", GroupDelayModel::kNone, "nothing"},
+      {"broadcast", GroupDelayModel::kBroadcast, "TGD, BGD and ISC of the record in use"},
+      {"rtklib", GroupDelayModel::kRtklib, "as RTKLIB 2.4.3 does"},
+  };
+  return kRows;
+}
+
+GroupDelays::GroupDelays(GroupDelayModel model, const NavigationData& navigation) : model_(model) {
+  if (model_ != GroupDelayModel::kRtklib) return;
   std::map<SatelliteId, const KeplerEphemeris*> first;
   const auto order = [](const KeplerEphemeris& r) { return std::pair(r.transmitted.value_or(r.toe), r.toe); };
   for (const auto& r : navigation.kepler) {
@@ -32,9 +41,9 @@ GroupDelays::GroupDelays(std::string model, const NavigationData& navigation) : 
 }
 
 std::array<double, 10> GroupDelays::by_band_s(const SatelliteState& state, SatelliteId sv) const {
-  if (model_ == "none") return {};
+  if (model_ == GroupDelayModel::kNone) return {};
   auto out = state.group_delay_s;
-  if (model_ != "rtklib") return out;
+  if (model_ != GroupDelayModel::kRtklib) return out;
   if (const auto known = rtklib_s_.find(sv); known != rtklib_s_.end()) out = known->second;
   if (sv.system == GnssSystem::kGlonass) {
     // delta tau = G2 - G1; with the combination's clock, G1 is early by delta tau / (gamma - 1).
@@ -55,7 +64,7 @@ double GroupDelays::delay_s(const SatelliteState& state, SatelliteId sv, int ban
 
 double GroupDelays::sigma_m(const SatelliteState& state, SatelliteId sv, int band,
                             std::optional<int> second_band) const {
-  if (model_ == "none") return 0.0;
+  if (model_ == GroupDelayModel::kNone) return 0.0;
   const auto of_band = [&](int b) {
     return (state.borrowed_delay_bands >> b & 1u) != 0 ? kSpeedOfLight * kLentDelayS : 0.0;
   };

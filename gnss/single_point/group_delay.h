@@ -3,13 +3,17 @@
 #include <array>
 #include <map>
 #include <optional>
-#include <string>
 
+#include "canyon/core/model_table.h"
 #include "canyon/gnss/satellites/navigation_data.h"
 
 namespace canyon::gnss {
 
+enum class GroupDelayModel { kNone, kBroadcast, kRtklib };
 /// What a user of one band, or of the ionosphere-free combination of two, subtracts from the satellite clock.
+ModelTable<GroupDelayModel> group_delay_models();
+
+/// Group delays after one of these models.
 ///
 ///   none       nothing
 ///   broadcast  TGD, BGD and ISC of the record in use
@@ -18,7 +22,7 @@ namespace canyon::gnss {
 ///              and GLONASS clocks are read as those of an ionosphere-free combination, while its ICD refers them to G1
 class GroupDelays {
  public:
-  GroupDelays(std::string model, const NavigationData& navigation);
+  GroupDelays(GroupDelayModel model, const NavigationData& navigation);
 
   /// s. `second_band`: of the combination with `band`.
   double delay_s(const SatelliteState& state, SatelliteId sv, int band, std::optional<int> second_band) const;
@@ -28,7 +32,7 @@ class GroupDelays {
  private:
   std::array<double, 10> by_band_s(const SatelliteState& state, SatelliteId sv) const;
 
-  std::string model_;
+  GroupDelayModel model_;
   std::map<SatelliteId, std::array<double, 10>> rtklib_s_;
 };
 

@@ -32,10 +32,28 @@ int digit(char band) {
   return band - '0';
 }
 
+double no_troposphere_m(const SkyView&) {
+  return 0.0;
+}
+
+/// At no lower elevation than kLowestRad.
+template <auto Delay_m>
+double not_below(const SkyView& view) {
+  SkyView above = view;
+  above.elevation_rad = std::max(above.elevation_rad, kLowestRad);
+  return Delay_m(above);
+}
+
 }  // namespace
 
-std::vector<std::string> ionosphere_corrections_of_observations() {
-  return {"none", "klobuchar", "klobuchar_own", "ionex"};
+ModelTable<IonosphereCorrection> ionosphere_corrections() {
+  static constexpr ModelRow<IonosphereCorrection> kRows[] = {
+      {"none", IonosphereCorrection::kNone, "nothing"},
+      {"klobuchar", IonosphereCorrection::kKlobuchar, "GPS's coefficients for all"},
+      {"klobuchar_own", IonosphereCorrection::kKlobucharOwn, "each system's own where it sends some"},
+      {"ionex", IonosphereCorrection::kIonex, "maps"},
+  };
+  return kRows;
 }
 
 double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& coefficients, const SkyView& view) {
@@ -49,15 +67,14 @@ double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& co
                            held.elevation_rad);
 }
 
-std::vector<std::string> troposphere_corrections_of_observations() {
-  return {"none", "saastamoinen_niell", "saastamoinen_cosecant"};
-}
-
-double troposphere_correction_m(const std::string& model, const SkyView& view) {
-  if (model == "none") return 0.0;
-  SkyView held = view;
-  held.elevation_rad = std::max(held.elevation_rad, kLowestRad);
-  return model == "saastamoinen_cosecant" ? saastamoinen_cosecant_m(held) : standard_troposphere_m(held);
+ModelTable<TroposphereCorrection> troposphere_corrections() {
+  static constexpr ModelRow<TroposphereCorrection> kRows[] = {
+      {"none", no_troposphere_m, "nothing"},
+      {"saastamoinen_niell", not_below<standard_troposphere_m>, "standard atmosphere, ladder of gnss/atmosphere"},
+      {"saastamoinen_cosecant", not_below<saastamoinen_cosecant_m>,
+       "zenith delays of a standard atmosphere with 70 % humidity over sin(elevation), as RTKLIB has it"},
+  };
+  return kRows;
 }
 
 CodeMeasurement single_measurement(const SignalObservation& signal, SatelliteId sv, int frequency_channel) {

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
+#include "canyon/core/model_table.h"
 #include "canyon/gnss/atmosphere/klobuchar.h"
 #include "canyon/gnss/satellites/constellation.h"
 #include "canyon/gnss/single_point/code_choice.h"
@@ -10,16 +8,17 @@
 
 namespace canyon::gnss {
 
-/// Names of the models of the ionosphere.
-std::vector<std::string> ionosphere_corrections_of_observations();
+/// What is subtracted for the ionosphere: nothing, GPS's coefficients for all, each system's own where it sends some,
+/// or maps.
+enum class IonosphereCorrection { kNone, kKlobuchar, kKlobucharOwn, kIonex };
+ModelTable<IonosphereCorrection> ionosphere_corrections();
 /// Klobuchar's delay at L1, m, with the coefficients of a system by that system's own formula: BeiDou's
 /// (gnss/atmosphere/beidou_klobuchar.h), else that of GPS. Elevations below 5 deg are held there.
 double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& coefficients, const SkyView& view);
 
-/// none | saastamoinen_niell (standard atmosphere, ladder of gnss/atmosphere) | saastamoinen_cosecant: zenith delays of
-/// a standard atmosphere with 70 % humidity over sin(elevation), as RTKLIB has it.
-std::vector<std::string> troposphere_corrections_of_observations();
-double troposphere_correction_m(const std::string& model, const SkyView& view);
+/// What is subtracted for the troposphere, m.
+using TroposphereCorrection = double(const SkyView& view);
+ModelTable<TroposphereCorrection> troposphere_corrections();
 
 /// Pseudorange and satellite clock of what is used: one signal, or the ionosphere-free combination of two.
 struct CodeMeasurement {

@@ -13,7 +13,7 @@ Result<std::unique_ptr<Constellation>> constellation_of(const RecordedFiles& fil
   if (files.sp3.empty()) {
     BroadcastOptions broadcast;
     broadcast.systems = config.systems;
-    if (config.ephemeris == "transmitted") broadcast.choice = EphemerisChoice::kTransmitted;
+    broadcast.choice = config.ephemeris;
     return make_broadcast(navigation, broadcast);
   }
   CANYON_TRY(const auto products, read_precise_products(files.sp3, "", files.antex));

@@ -22,6 +22,10 @@
 namespace canyon::gnss {
 namespace {
 
+bool is_klobuchar(IonosphereCorrection model) {
+  return model == IonosphereCorrection::kKlobuchar || model == IonosphereCorrection::kKlobucharOwn;
+}
+
 constexpr double kOutlierSigmas = 5.0;  // of Dopplers
 
 /// One satellite of an epoch on its way to a range.
@@ -100,9 +104,8 @@ class SinglePoint {
         lent_delay_(file.name,
                     "the navigation message does not tell this band's group delay; that of the band beside it is used, "
                     "and its ranges count for less") {
-    const auto* weighting = find_model(range_weightings(), config.weighting);
-    CANYON_CHECK(weighting != nullptr, "weighting ", config.weighting);
-    weighting_ = weighting->make({config.sigma_m});
+    troposphere_m_ = model_row(troposphere_corrections(), config.troposphere).make;
+    weighting_ = model_row(range_weightings(), config.weighting).make({}, {config.sigma_m});
     PositionSolverParameters p;
     p.max_gdop = config.max_gdop;
     rough_ = make_least_squares(p);
@@ -112,7 +115,7 @@ class SinglePoint {
     solver_ = make_least_squares(p);
     p.false_alarm = 1e-6;
     rough_robust_ = make_least_squares(p);
-    if (config.estimator == "kalman") {
+    if (config.estimator == Estimator::kKalman) {
       PvtFilterParameters f;
       f.acceleration_m_s2 = config.acceleration_m_s2;
       f.start.max_gdop = config.max_gdop;
@@ -201,7 +204,7 @@ class SinglePoint {
       const auto& codes = file_.codes(epoch, s.sv.system);
       std::optional<SignalPair> pair;
       std::optional<SignalObservation> signal;
-      if (config_.frequencies == "dual") {
+      if (config_.frequencies == Frequencies::kDual) {
         pair = dual_frequency_signals(codes, s);
         if (pair) signal = pair->first;
       } else {
@@ -234,10 +237,12 @@ class SinglePoint {
     return out;
   }
 
-  bool uses_klobuchar() const { return config_.frequencies == "single" && config_.ionosphere.starts_with("klobuchar"); }
+  bool uses_klobuchar() const {
+    return config_.frequencies == Frequencies::kSingle && is_klobuchar(config_.ionosphere);
+  }
 
   BroadcastKlobuchar coefficients(GnssSystem system, GpsTime t) const {
-    if (config_.ionosphere == "klobuchar_own")
+    if (config_.ionosphere == IonosphereCorrection::kKlobucharOwn)
       if (const auto own = inputs_.navigation.klobuchar_at(system, t)) return {system, t, *own};
     return {GnssSystem::kGps, t,
             inputs_.navigation.klobuchar_at(GnssSystem::kGps, t).value_or(KlobucharCoefficients{})};
@@ -259,11 +264,11 @@ class SinglePoint {
   }
 
   double ionosphere_m(const Candidate& c, const SkyView& view) const {
-    if (config_.frequencies != "single" || config_.ionosphere == "none") return 0.0;
+    if (config_.frequencies != Frequencies::kSingle || config_.ionosphere == IonosphereCorrection::kNone) return 0.0;
     // A GLONASS channel that nobody tells changes the delay by less than 1 %.
     const double hz = std::isnan(c.code.hz) ? carrier_hz(c.sv.system, c.signal.code.band - '0') : c.code.hz;
     const double scale = kL1Hz / hz;
-    if (config_.ionosphere == "ionex") {
+    if (config_.ionosphere == IonosphereCorrection::kIonex) {
       SkyView held = view;
       held.elevation_rad = std::max(held.elevation_rad, 5.0 * kDegree);
       const double delay_m = ionosphere_map_delay_m(*inputs_.ionosphere_maps, held);
@@ -303,7 +308,7 @@ class SinglePoint {
       o.doppler_hz = carrier_known ? c.signal.doppler_hz : kNaN;
       o.cn0_dbhz = c.signal.cn0_dbhz;
       o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
-      o.correction_m = delay_m + troposphere_correction_m(config_.troposphere, view);
+      o.correction_m = delay_m + troposphere_m_(view);
       o.sigma_m = std::hypot(weighting_->sigma_m({.system = c.sv.system,
                                                   .elevation_rad = view.elevation_rad,
                                                   .cn0_dbhz = o.cn0_dbhz,
@@ -383,6 +388,7 @@ class SinglePoint {
   std::unique_ptr<PositionSolver> rough_, rough_robust_, solver_;
   std::optional<PvtFilter> filter_;
   Eigen::Vector3d guess_E_ = Eigen::Vector3d::Zero();
+  TroposphereCorrection* troposphere_m_;
   GroupDelays group_delays_;
   CarrierSmoothing smoothing_;
   MissingEphemerides missing_;
@@ -400,8 +406,8 @@ int SinglePointResult::solved() const {
 Result<SinglePointResult> solve_observations(const ObservationFile& observations, const SinglePointInputs& inputs,
                                              const SinglePointConfig& config) {
   CANYON_TRY_STATUS(check_systems(config.systems, "systems"));
-  const bool single = config.frequencies == "single";
-  if (single && config.ionosphere == "ionex") {
+  const bool single = config.frequencies == Frequencies::kSingle;
+  if (single && config.ionosphere == IonosphereCorrection::kIonex) {
     const IonexMaps* maps = inputs.ionosphere_maps;
     if (maps == nullptr || maps->maps.empty())
       return Error{"", 0, "ionosphere", "\"ionex\" needs ionosphere maps", "an IONEX file (--ionex)"};
@@ -412,9 +418,10 @@ Result<SinglePointResult> solve_observations(const ObservationFile& observations
                        observations.epochs.back().t.iso(0),
                    "maps of the same day"};
   }
-  if (single && config.ionosphere.starts_with("klobuchar") && inputs.navigation.klobuchar.empty())
+  if (single && is_klobuchar(config.ionosphere) && inputs.navigation.klobuchar.empty())
     return Error{inputs.navigation.names(), 0, "ionosphere",
-                 "\"" + config.ionosphere + "\" needs Klobuchar coefficients, and there are none in it",
+                 std::string("\"") + row_of(ionosphere_corrections(), config.ionosphere).name +
+                     "\" needs Klobuchar coefficients, and there are none in it",
                  "a navigation file with them, or ionosphere = \"none\""};
   return SinglePoint(observations, inputs, config).run();
 }

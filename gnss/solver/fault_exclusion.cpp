@@ -1,6 +1,5 @@
 #include "canyon/gnss/solver/fault_exclusion.h"
 
-#include "canyon/core/check.h"
 #include "canyon/core/math/chi_square.h"
 
 namespace canyon::gnss {
@@ -48,23 +47,25 @@ RangeSubset exclude_best_of_all(const RangeSubset& failed, const SubsetFitter& f
   return best;
 }
 
-constexpr ModelRow<ExcludeNext> kModels[] = {
-    {"none", exclude_none, "no test of the residuals"},
-    {"detect", exclude_none, "chi-square test; an epoch that fails has no fix"},
-    {"greedy", exclude_largest, "chi-square test; the largest standardised residual is excluded until it passes"},
-    {"leave_one_out", exclude_best_of_all,
+constexpr ModelRow<FaultExclusion> kModels[] = {
+    {"none", {exclude_none, false}, "no test of the residuals"},
+    {"detect", {exclude_none, true}, "chi-square test; an epoch that fails has no fix"},
+    {"greedy",
+     {exclude_largest, true},
+     "chi-square test; the largest standardised residual is excluded until it passes"},
+    {"leave_one_out",
+     {exclude_best_of_all, true},
      "chi-square test; of all fits without one satellite the best is kept, until it passes"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<ExcludeNext>> fault_exclusions() {
+ModelTable<FaultExclusion> fault_exclusions() {
   return kModels;
 }
 
 IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, const PositionSolverParameters& p) {
-  const auto* model = find_model(fault_exclusions(), p.fault_exclusion);
-  CANYON_CHECK(model != nullptr, "no fault exclusion named ", p.fault_exclusion);
+  const FaultExclusion& model = model_row(fault_exclusions(), p.fault_exclusion).make;
   IntegrityTest test;
   const auto passes = [&](const RangeFit& fit) {
     test.statistic = fit.statistic;
@@ -73,7 +74,7 @@ IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, co
     return test.statistic <= test.threshold;
   };
 
-  if (p.fault_exclusion == "none" || tested.fit.degrees_of_freedom < 1) return test;
+  if (!model.tests || tested.fit.degrees_of_freedom < 1) return test;
   if (passes(tested.fit)) {
     test.status = IntegrityTest::Status::kPassed;
     return test;
@@ -81,7 +82,7 @@ IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, co
   const IntegrityTest of_all = test;
   RangeSubset now = tested;
   for (int k = 0; k < p.max_exclusions; ++k) {
-    now = model->make(now, fitter);
+    now = model.next(now, fitter);
     if (now.members.empty() || !now.fit.ok || now.fit.degrees_of_freedom < 1) break;
     if (passes(now.fit)) {
       test.status = IntegrityTest::Status::kRepaired;

@@ -35,7 +35,11 @@ using ExcludeNext = RangeSubset(const RangeSubset& failed, const SubsetFitter& f
 ///                the linearised problem that is the one whose absence lowers the statistic most
 ///   leave_one_out  every subset of one range less is solved anew, and the one with the smallest statistic kept
 /// An exclusion is accepted only where the remaining ranges pass the test with at least one degree of freedom left.
-std::span<const ModelRow<ExcludeNext>> fault_exclusions();
+struct FaultExclusion {
+  ExcludeNext* next;
+  bool tests;  ///< false: no test at all
+};
+ModelTable<FaultExclusion> fault_exclusions();
 
 /// Tests and, where the model allows, repairs. `tested` starts as the fit of all ranges.
 IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, const PositionSolverParameters& p);

@@ -115,13 +115,14 @@ class Trilateration final : public PositionSolver {
 };
 
 constexpr ModelRow<MakePositionSolver> kSolvers[] = {
-    {"least_squares", make_least_squares, "iterated weighted least squares for position and receiver clocks"},
-    {"trilateration", make_trilateration, "the paper's: ranges only, no receiver clock"},
+    {"least_squares", without_keys<make_least_squares>,
+     "iterated weighted least squares for position and receiver clocks"},
+    {"trilateration", without_keys<make_trilateration>, "the paper's: ranges only, no receiver clock"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakePositionSolver>> position_solvers() {
+ModelTable<MakePositionSolver> position_solvers() {
   return kSolvers;
 }
 

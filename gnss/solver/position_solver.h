@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "canyon/core/messages.h"
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 
 namespace canyon::gnss {
 
@@ -75,8 +75,9 @@ struct PositionSolverParameters {
   int max_exclusions = 8;
 };
 
-using MakePositionSolver = std::unique_ptr<PositionSolver>(const PositionSolverParameters&);
-std::span<const ModelRow<MakePositionSolver>> position_solvers();
+using MakePositionSolver = std::unique_ptr<PositionSolver>(const ModelParameters& own,
+                                                           const PositionSolverParameters& p);
+ModelTable<MakePositionSolver> position_solvers();
 
 /// Iterated weighted least squares for position and one receiver clock per system: three satellites and one more for
 /// each system's clock.

@@ -223,4 +223,12 @@ std::optional<Eigen::Vector3d> PvtFilter::predicted_p_E(GpsTime t) const {
   return Eigen::Vector3d(x_.segment<3>(kP) + (t - t_) * x_.segment<3>(kV));
 }
 
+ModelTable<Estimator> estimators() {
+  static constexpr ModelRow<Estimator> kRows[] = {
+      {"least_squares", Estimator::kLeastSquares, "each epoch by itself"},
+      {"kalman", Estimator::kKalman, "position, velocity and time filtered"},
+  };
+  return kRows;
+}
+
 }  // namespace canyon::gnss

@@ -11,6 +11,10 @@
 
 namespace canyon::gnss {
 
+/// How a receiver's epochs hang together.
+enum class Estimator { kLeastSquares, kKalman };
+ModelTable<Estimator> estimators();
+
 /// Process noise as spectral densities, and the gates.
 struct PvtFilterParameters {
   double acceleration_m_s2 = 1.0;    ///< white acceleration per axis, m/s^2/sqrt(Hz)

@@ -108,7 +108,7 @@ class Rtklib final : public Weighting {
 };
 
 template <class Model>
-std::unique_ptr<RangeWeighting> make(const RangeWeightingParameters& p) {
+std::unique_ptr<RangeWeighting> make(const ModelParameters&, const RangeWeightingParameters& p) {
   return std::make_unique<Model>(p);
 }
 
@@ -123,7 +123,7 @@ constexpr ModelRow<MakeRangeWeighting> kModels[] = {
 
 }  // namespace
 
-std::span<const ModelRow<MakeRangeWeighting>> range_weightings() {
+ModelTable<MakeRangeWeighting> range_weightings() {
   return kModels;
 }
 

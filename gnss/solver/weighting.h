@@ -4,7 +4,7 @@
 #include <span>
 
 #include "canyon/core/messages.h"
-#include "canyon/core/model_table.h"
+#include "canyon/core/model_choice.h"
 
 namespace canyon::gnss {
 
@@ -29,7 +29,8 @@ struct RangeWeightingParameters {
   double sigma_m = 0.5;  ///< of a clear satellite at the zenith, 45 dB-Hz
 };
 
-using MakeRangeWeighting = std::unique_ptr<RangeWeighting>(const RangeWeightingParameters&);
-std::span<const ModelRow<MakeRangeWeighting>> range_weightings();
+using MakeRangeWeighting = std::unique_ptr<RangeWeighting>(const ModelParameters& own,
+                                                           const RangeWeightingParameters& p);
+ModelTable<MakeRangeWeighting> range_weightings();
 
 }  // namespace canyon::gnss

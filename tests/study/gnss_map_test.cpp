@@ -67,7 +67,7 @@ TEST_F(GnssMapTest, ADayIsItsHours) {
   empty.empty = true;
   const scene::Scene field(scene::make_city(empty));
   GnssMapConfig c = config();
-  c.gnss.raim = "none";  // what it excludes depends on the noise
+  c.gnss.position.raim = "none";  // what it excludes depends on the noise
   c.cell_m = 1000.0;
   c.step_s = 3600.0;
   c.epochs = 11;
@@ -90,7 +90,7 @@ TEST_F(GnssMapTest, UnreadableNavigationFileIsTold) {
   empty.empty = true;
   const scene::Scene field(scene::make_city(empty));
   GnssMapConfig c = config();
-  c.gnss.nav_file = "/nowhere/x.nav";
+  c.gnss.satellites.nav_file = "/nowhere/x.nav";
   EXPECT_FALSE(map_gnss(c, field, nullptr).ok());
 }
 

@@ -7,6 +7,7 @@ class Shadows final : public DiffractionModel {
  public:
   void trace(const Eigen::Vector3d&, const PlaneWaves&, const scene::SceneAt&, std::span<SignalPaths>,
              GnssCounters&) const override {}
+  bool bends() const override { return false; }
 };
 
 std::unique_ptr<DiffractionModel> make_none(const PathParameters&) {
@@ -14,14 +15,14 @@ std::unique_ptr<DiffractionModel> make_none(const PathParameters&) {
 }
 
 constexpr ModelRow<MakeDiffractionModel> kModels[] = {
-    {"none", make_none, "shadows are sharp"},
-    {"knife_edge", make_knife_edge, "ITU-R P.526 knife edges at roofs and corners"},
-    {"double_knife_edge", make_double_knife_edge, "also over two edges after each other"},
+    {"none", without_keys<make_none>, "shadows are sharp"},
+    {"knife_edge", without_keys<make_knife_edge>, "ITU-R P.526 knife edges at roofs and corners"},
+    {"double_knife_edge", without_keys<make_double_knife_edge>, "also over two edges after each other"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeDiffractionModel>> diffraction_models() {
+ModelTable<MakeDiffractionModel> diffraction_models() {
   return kModels;
 }
 

@@ -15,10 +15,12 @@ class DiffractionModel {
   /// `out` has line_of_sight; adds echoes (not sorted) and changes `direct`.
   virtual void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
                      std::span<SignalPaths> out, GnssCounters& counters) const = 0;
+  /// False if shadows are sharp: then trace() need not be called.
+  virtual bool bends() const { return true; }
 };
 
-using MakeDiffractionModel = std::unique_ptr<DiffractionModel>(const PathParameters&);
-std::span<const ModelRow<MakeDiffractionModel>> diffraction_models();
+using MakeDiffractionModel = std::unique_ptr<DiffractionModel>(const ModelParameters& own, const PathParameters& p);
+ModelTable<MakeDiffractionModel> diffraction_models();
 
 /// Knife edges of ITU-R P.526-15: each convex edge of the scene (roof, corner of a house) that the satellite's wave
 /// passes or is cut off by. The point of the edge follows exactly from the law of diffraction (equal angles with the

@@ -26,20 +26,21 @@ namespace {
 /// The base's clock is common to all satellites and goes into the receiver clock.
 class Dgps final : public ReceiverMode {
  public:
-  explicit Dgps(const ReceiverModeParameters& p)
+  Dgps(const DgpsParameters& p, const ReceiverModeSetup& at)
       : p_(p),
-        ionosphere_(p.seed, "gnss.dgps.ionosphere", 1800.0),
-        troposphere_(p.seed, "gnss.dgps.troposphere", 3600.0),
-        base_(p.seed, "gnss.dgps.base", 100.0) {}
+        at_(at),
+        ionosphere_(at.seed, "gnss.dgps.ionosphere", 1800.0),
+        troposphere_(at.seed, "gnss.dgps.troposphere", 3600.0),
+        base_(at.seed, "gnss.dgps.base", 100.0) {}
 
   Correction correction(const CorrectionInput& in) const override {
     const double elevation_rad = in.true_view.elevation_rad;
     RangeDelays residual;
-    if (p_.ionosphere)
+    if (at_.ionosphere)
       residual.ionosphere_m = 1e-3 * p_.ionosphere_gradient_mm_per_km * p_.baseline_km *
                               ionosphere_.at(in.sv.entity(), in.t) * single_layer_obliquity(elevation_rad) *
                               in.ionosphere_from_l1;
-    if (p_.troposphere)
+    if (at_.troposphere)
       residual.troposphere_m = 1e-3 * p_.troposphere_gradient_mm_per_km * p_.baseline_km * troposphere_.at(0, in.t) *
                                niell_wet(elevation_rad, in.true_view.receiver.lat_rad);
     residual.ephemeris_m = in.acting.ephemeris_m * 1e3 * p_.baseline_km / in.range_m;
@@ -56,14 +57,25 @@ class Dgps final : public ReceiverMode {
   bool corrects_atmosphere() const override { return true; }
 
  private:
-  ReceiverModeParameters p_;
+  DgpsParameters p_;
+  ReceiverModeSetup at_;
   GaussMarkov ionosphere_, troposphere_, base_;
 };
 
 }  // namespace
 
-std::unique_ptr<ReceiverMode> make_dgps(const ReceiverModeParameters& p) {
-  return std::make_unique<Dgps>(p);
+void visit(FieldVisitor& f, DgpsParameters& c) {
+  f.number("baseline_km", c.baseline_km, {0.0, 500.0}, "dgps: distance of the base station");
+  f.number("ionosphere_gradient_mm_per_km", c.ionosphere_gradient_mm_per_km, {0.0, 1000.0},
+           "dgps: 1-sigma of the difference of the vertical ionospheric delay to the base");
+  f.number("troposphere_gradient_mm_per_km", c.troposphere_gradient_mm_per_km, {0.0, 1000.0},
+           "dgps: 1-sigma of the difference of the zenith wet delay to the base");
+  f.number("base_error_scale", c.base_error_scale, {0.0, 100.0},
+           "dgps: base station's own error, 1 = ground accuracy designator B");
+}
+
+std::unique_ptr<ReceiverMode> make_dgps(const ModelParameters& own, const ReceiverModeSetup& at) {
+  return std::make_unique<Dgps>(own.get<DgpsParameters>(), at);
 }
 
 }  // namespace canyon::gnss

@@ -12,7 +12,7 @@ namespace {
 /// whole.
 class Dual final : public ReceiverMode {
  public:
-  explicit Dual(const ReceiverModeParameters& p) : p_(p) {}
+  Dual(const SingleFrequencyParameters& p, const ReceiverModeSetup& at) : p_(p), at_(at) {}
 
   Correction correction(const CorrectionInput& in) const override {
     Correction c;
@@ -21,9 +21,9 @@ class Dual final : public ReceiverMode {
       c.multipath_m = in.two->gain * in.two->multipath_m;
       c.modelled.ionosphere_m = in.two->gain * in.two->measured_m - c.noise_m - c.multipath_m;
     } else {
-      c.modelled.ionosphere_m = modelled_ionosphere_m(p_, in);
+      c.modelled.ionosphere_m = modelled_ionosphere_m(p_.ionosphere_correction, at_, in);
     }
-    if (p_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
+    if (at_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
     return c;
   }
   FixStatus status() const override { return FixStatus::kSingle; }
@@ -31,13 +31,14 @@ class Dual final : public ReceiverMode {
   bool corrects_atmosphere() const override { return true; }
 
  private:
-  ReceiverModeParameters p_;
+  SingleFrequencyParameters p_;
+  ReceiverModeSetup at_;
 };
 
 }  // namespace
 
-std::unique_ptr<ReceiverMode> make_dual(const ReceiverModeParameters& p) {
-  return std::make_unique<Dual>(p);
+std::unique_ptr<ReceiverMode> make_dual(const ModelParameters& own, const ReceiverModeSetup& at) {
+  return std::make_unique<Dual>(own.get<SingleFrequencyParameters>(), at);
 }
 
 }  // namespace canyon::gnss

@@ -30,34 +30,37 @@ class DgpsPaper final : public ReceiverMode {
   bool corrects_atmosphere() const override { return false; }
 };
 
-std::unique_ptr<ReceiverMode> make_single_uncorrected(const ReceiverModeParameters&) {
+std::unique_ptr<ReceiverMode> make_single_uncorrected(const ModelParameters&, const ReceiverModeSetup&) {
   return std::make_unique<SingleUncorrected>();
 }
-std::unique_ptr<ReceiverMode> make_dual_paper(const ReceiverModeParameters&) {
+std::unique_ptr<ReceiverMode> make_dual_paper(const ModelParameters&, const ReceiverModeSetup&) {
   return std::make_unique<DualPaper>();
 }
-std::unique_ptr<ReceiverMode> make_dgps_paper(const ReceiverModeParameters&) {
+std::unique_ptr<ReceiverMode> make_dgps_paper(const ModelParameters&, const ReceiverModeSetup&) {
   return std::make_unique<DgpsPaper>();
 }
 
 constexpr ModelRow<MakeReceiverMode> kModes[] = {
     {"single", make_single,
-     "stand-alone: subtracts an ionosphere model and a standard troposphere (residual atmosphere)"},
+     "stand-alone: subtracts an ionosphere model and a standard troposphere (residual atmosphere)",
+     parameters_of<SingleFrequencyParameters>},
     {"single_uncorrected", make_single_uncorrected,
      "stand-alone as in the paper: every delay acts in full (raw atmosphere)"},
     {"dual", make_dual,
      "two frequencies: ionosphere-free combination with its noise, standard troposphere subtracted (residual "
-     "atmosphere)"},
+     "atmosphere)",
+     parameters_of<SingleFrequencyParameters>},
     {"dual_paper", make_dual_paper, "the paper's dual band: no ionosphere, the rest acts in full (raw atmosphere)"},
     {"dgps", make_dgps,
-     "differential: what the base station sees is subtracted, residuals grow with the baseline (residual atmosphere)"},
+     "differential: what the base station sees is subtracted, residuals grow with the baseline (residual atmosphere)",
+     parameters_of<DgpsParameters>},
     {"dgps_paper", make_dgps_paper,
      "the paper's differential mode: only the troposphere acts, in full (raw atmosphere)"},
 };
 
 }  // namespace
 
-std::span<const ModelRow<MakeReceiverMode>> receiver_modes() {
+ModelTable<MakeReceiverMode> receiver_modes() {
   return kModes;
 }
 

@@ -63,29 +63,39 @@ class ReceiverMode {
   virtual bool corrects_atmosphere() const = 0;
 };
 
-struct ReceiverModeParameters {
+/// What modes are built from beside their own keys.
+struct ReceiverModeSetup {
   std::uint64_t seed = 0;
   bool ionosphere = true;  ///< that effect is switched on: only then is it corrected, or does it leave a residual
   bool troposphere = true;
-  std::string ionosphere_correction = "half";
-  KlobucharCoefficients klobuchar;
-  double baseline_km = 5.0;
-  double ionosphere_gradient_mm_per_km = 2.0;
-  double troposphere_gradient_mm_per_km = 1.0;
-  double base_error_scale = 1.0;
+  KlobucharCoefficients klobuchar{};
 };
 
-using MakeReceiverMode = std::unique_ptr<ReceiverMode>(const ReceiverModeParameters&);
-std::span<const ModelRow<MakeReceiverMode>> receiver_modes();
+using MakeReceiverMode = std::unique_ptr<ReceiverMode>(const ModelParameters& own, const ReceiverModeSetup& at);
+ModelTable<MakeReceiverMode> receiver_modes();
 
-/// Names of what may be subtracted for the ionosphere with one frequency: in mode single, and in mode dual for a
-/// satellite whose second signal is lost.
-std::vector<std::string> ionosphere_corrections();
+/// Key of what is subtracted for the ionosphere with one frequency: in mode single, and in mode dual for a satellite
+/// whose second signal is lost.
+struct SingleFrequencyParameters {
+  enum class Ionosphere { kNone, kHalf, kKlobuchar };
+  Ionosphere ionosphere_correction = Ionosphere::kHalf;
+};
+void visit(FieldVisitor& f, SingleFrequencyParameters& c);
 /// What that correction subtracts, m.
-double modelled_ionosphere_m(const ReceiverModeParameters& p, const CorrectionInput& in);
+double modelled_ionosphere_m(SingleFrequencyParameters::Ionosphere correction, const ReceiverModeSetup& at,
+                             const CorrectionInput& in);
 
-std::unique_ptr<ReceiverMode> make_single(const ReceiverModeParameters& p);
-std::unique_ptr<ReceiverMode> make_dual(const ReceiverModeParameters& p);
-std::unique_ptr<ReceiverMode> make_dgps(const ReceiverModeParameters& p);
+/// Keys of mode dgps.
+struct DgpsParameters {
+  double baseline_km = 5.0;                     ///< distance of the base station
+  double ionosphere_gradient_mm_per_km = 2.0;   ///< 1-sigma of the vertical delay's difference to the base
+  double troposphere_gradient_mm_per_km = 1.0;  ///< the same for the zenith wet delay
+  double base_error_scale = 1.0;                ///< base station's own code noise and multipath, 1 = GAD-B
+};
+void visit(FieldVisitor& f, DgpsParameters& c);
+
+std::unique_ptr<ReceiverMode> make_single(const ModelParameters& own, const ReceiverModeSetup& at);
+std::unique_ptr<ReceiverMode> make_dual(const ModelParameters& own, const ReceiverModeSetup& at);
+std::unique_ptr<ReceiverMode> make_dgps(const ModelParameters& own, const ReceiverModeSetup& at);
 
 }  // namespace canyon::gnss

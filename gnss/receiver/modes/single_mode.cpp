@@ -1,12 +1,15 @@
-#include "canyon/core/check.h"
 #include "canyon/gnss/receiver/modes/receiver_mode.h"
 
 namespace canyon::gnss {
 namespace {
 
-constexpr const char* kNone = "none";
-constexpr const char* kHalf = "half";
-constexpr const char* kKlobuchar = "klobuchar";
+using Ionosphere = SingleFrequencyParameters::Ionosphere;
+
+constexpr ModelRow<Ionosphere> kCorrections[] = {
+    {"none", Ionosphere::kNone, "nothing"},
+    {"half", Ionosphere::kHalf, "half of the true delay"},
+    {"klobuchar", Ionosphere::kKlobuchar, "the broadcast model"},
+};
 
 /// A stand-alone single-frequency receiver.
 ///
@@ -17,39 +20,40 @@ constexpr const char* kKlobuchar = "klobuchar";
 /// clock errors remain whole.
 class Single final : public ReceiverMode {
  public:
-  explicit Single(const ReceiverModeParameters& p) : p_(p) {}
+  Single(const SingleFrequencyParameters& p, const ReceiverModeSetup& at) : p_(p), at_(at) {}
 
   Correction correction(const CorrectionInput& in) const override {
     Correction c;
-    c.modelled.ionosphere_m = modelled_ionosphere_m(p_, in);
-    if (p_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
+    c.modelled.ionosphere_m = modelled_ionosphere_m(p_.ionosphere_correction, at_, in);
+    if (at_.troposphere) c.modelled.troposphere_m = standard_troposphere_m(in.receivers_view);
     return c;
   }
   FixStatus status() const override { return FixStatus::kSingle; }
   bool corrects_atmosphere() const override { return true; }
 
  private:
-  ReceiverModeParameters p_;
+  SingleFrequencyParameters p_;
+  ReceiverModeSetup at_;
 };
 
 }  // namespace
 
-std::vector<std::string> ionosphere_corrections() {
-  return {kNone, kHalf, kKlobuchar};
+void visit(FieldVisitor& f, SingleFrequencyParameters& c) {
+  f.choice("ionosphere_correction", c.ionosphere_correction, ModelTable<Ionosphere>(kCorrections),
+           "mode single, and of mode dual satellites whose second signal is lost: what the receiver subtracts for the "
+           "ionosphere");
 }
 
-double modelled_ionosphere_m(const ReceiverModeParameters& p, const CorrectionInput& in) {
-  const std::string& model = p.ionosphere_correction;
-  CANYON_CHECK(model == kNone || model == kHalf || model == kKlobuchar, "ionosphere_correction = ", model);
+double modelled_ionosphere_m(Ionosphere correction, const ReceiverModeSetup& at, const CorrectionInput& in) {
   const SkyView& v = in.receivers_view;
-  if (!p.ionosphere || model == kNone) return 0.0;
-  if (model == kHalf) return 0.5 * in.acting.ionosphere_m;
+  if (!at.ionosphere || correction == Ionosphere::kNone) return 0.0;
+  if (correction == Ionosphere::kHalf) return 0.5 * in.acting.ionosphere_m;
   return in.ionosphere_from_l1 *
-         klobuchar_delay_m(p.klobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad, v.azimuth_rad, v.elevation_rad);
+         klobuchar_delay_m(at.klobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad, v.azimuth_rad, v.elevation_rad);
 }
 
-std::unique_ptr<ReceiverMode> make_single(const ReceiverModeParameters& p) {
-  return std::make_unique<Single>(p);
+std::unique_ptr<ReceiverMode> make_single(const ModelParameters& own, const ReceiverModeSetup& at) {
+  return std::make_unique<Single>(own.get<SingleFrequencyParameters>(), at);
 }
 
 }  // namespace canyon::gnss

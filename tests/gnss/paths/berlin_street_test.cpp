@@ -38,8 +38,8 @@ struct Prediction {
 
 std::vector<Prediction> predict(const Street& street, const char* paths, const char* diffraction,
                                 const PathParameters& p) {
-  const auto model = make_propagation(find_model(path_models(), paths)->make(p),
-                                      find_model(diffraction_models(), diffraction)->make(p), false, p);
+  const auto model = make_propagation(find_model(path_models(), paths)->make({}, p),
+                                      find_model(diffraction_models(), diffraction)->make({}, p), false, p);
   const scene::SceneAt at(*street.scene);
   const LinkBudget link;
   std::vector<Prediction> out;

@@ -9,7 +9,6 @@
 #include "canyon/gnss/paths/propagation.h"
 #include "canyon/gnss/receiver/link_budget.h"
 #include "canyon/gnss/satellites/transmission.h"
-#include "canyon/gnss/sensor/pseudorange_parts.h"
 #include "canyon/gnss/sensor/satellite_source.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
@@ -68,7 +67,7 @@ TEST(CarrierBand, TwoRaysOffAPaneHaveTheClosedFormOfTheirBand) {
   for (const char* name : {"specular1", "specular2", "launching"}) {
     p.launched_rays = 200000;  // 100 of them meet the pane
     const bool exact = std::string(name) != "launching";
-    const auto paths = trace(*find_model(path_models(), name)->make(p), *scene, direction(90, 30));
+    const auto paths = trace(*find_model(path_models(), name)->make({}, p), *scene, direction(90, 30));
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const Band band = bands()[i];
       const double wavelength_m = kSpeedOfLight / band.hz;
@@ -110,7 +109,7 @@ TEST(CarrierBand, TwoRaysOffTheGroundHaveTheClosedFormOfTheirBand) {
   const scene::Scene scene(parts);
   const scene::Material& material = parts.materials[grass];
   const auto model =
-      make_propagation(make_visibility({}), find_model(diffraction_models(), "none")->make({}), true, {});
+      make_propagation(make_visibility({}), find_model(diffraction_models(), "none")->make({}, {}), true, {});
   const double elevation_rad = 20.0 * kDegree, cosine = std::sin(elevation_rad), excess_m = 4.0 * cosine;
   const auto paths = trace(*model, scene, direction(130, 20));
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -131,7 +130,7 @@ TEST(CarrierBand, TwoRaysOffTheGroundHaveTheClosedFormOfTheirBand) {
 TEST(CarrierBand, AnEdgeBendsEachBandByItsOwnWavelength) {
   const auto scene = WallScene().box({-30, -500, 0}, {-20, 500, 22}).build();
   const auto model = [](const char* name) {
-    return make_propagation(make_visibility({}), find_model(diffraction_models(), name)->make({}), false, {});
+    return make_propagation(make_visibility({}), find_model(diffraction_models(), name)->make({}, {}), false, {});
   };
   // The roof's edge stands 20 m above the antenna at 20 m: 45 deg.
   const auto detour_m = [](double elevation_deg) {
@@ -167,7 +166,7 @@ TEST(CarrierBand, EachBandHasItsOwnLimit) {
   PathParameters p;
   p.weakest_nlos_db = -20.0;
   const auto model =
-      make_propagation(make_visibility(p), find_model(diffraction_models(), "knife_edge")->make(p), false, p);
+      make_propagation(make_visibility(p), find_model(diffraction_models(), "knife_edge")->make({}, p), false, p);
   int some = 0;
   for (double elevation_deg = 35.0; elevation_deg < 40.0; elevation_deg += 0.05) {
     const auto paths = trace(*model, *scene, direction(270, elevation_deg));
@@ -189,17 +188,17 @@ TEST(CarrierBand, EachBandHasItsOwnLimit) {
 TEST_F(PseudorangeSensorTest, BothBandsAreAsStrongAsTheirOwnWavelengthBendsThem) {
   scene = WallScene().box({-60, -3000, 0}, {-12, 3000, 60}, "absorber").build();
   GnssConfig c = testing::errors_off();
-  c.mode = "dual";
-  c.systems = "GREC";
-  c.paths = "visibility";
-  c.diffraction = "knife_edge";
-  c.multipath_rule = "correlator";
-  c.tracking_threshold_dbhz = 25.0;
+  c.mode.name = "dual";
+  c.satellites.systems = "GREC";
+  c.propagation.paths.name = "visibility";
+  c.propagation.diffraction.name = "knife_edge";
+  c.reception.multipath_rule.name = "correlator";
+  c.locks.tracking_threshold_dbhz = 25.0;
   const auto sensor = make(c);
   auto source = make_satellite_source(c, testing::kStart, testing::kStart + 480.0);
   ASSERT_TRUE(source.ok());
   const auto model =
-      make_propagation(make_visibility({}), find_model(diffraction_models(), "knife_edge")->make({}), false, {});
+      make_propagation(make_visibility({}), find_model(diffraction_models(), "knife_edge")->make({}, {}), false, {});
   const LocalFrame& frame = scene->frame();
   int compared = 0;
   std::set<GnssSystem> systems;
@@ -237,7 +236,7 @@ TEST_F(PseudorangeSensorTest, BothBandsAreAsStrongAsTheirOwnWavelengthBendsThem)
 // The ionosphere delays each first signal by its own carrier's square: B1I's 1.8 % more than L1's, G1's 3 % less.
 TEST_F(PseudorangeSensorTest, FirstBandsHaveTheirOwnIonosphere) {
   GnssConfig c = testing::open_sky("single_uncorrected");
-  c.systems = "GRC";
+  c.satellites.systems = "GRC";
   const auto sensor = make(c);
   const auto parts = make_pseudorange_parts(c, 1, testing::kStart, testing::kStart + 480.0);
   ASSERT_TRUE(parts.ok());

@@ -21,8 +21,8 @@ const Eigen::Vector3d kAntenna(0.0, 0.0, 2.0);
 
 SignalPaths trace(const scene::Scene& scene, const Eigen::Vector3d& s, const char* diffraction,
                   const PathParameters& p = {}, bool ground = false) {
-  const auto model = make_propagation(find_model(path_models(), "visibility")->make(p),
-                                      find_model(diffraction_models(), diffraction)->make(p), ground, p);
+  const auto model = make_propagation(find_model(path_models(), "visibility")->make({}, p),
+                                      find_model(diffraction_models(), diffraction)->make({}, p), ground, p);
   std::vector<SignalPaths> out(1);
   GnssCounters counters;
   model->trace(kAntenna, std::vector{s}, scene::SceneAt(scene), out, counters);

@@ -166,7 +166,7 @@ void compare(const RandomBoxes& boxes, int order, const PathParameters& paramete
     directions.push_back(testing::direction(random.uniform(0, 360, 0, i), random.uniform(3, 85, 1, i)));
   const Eigen::Vector3d antenna(random.uniform(-10, 10, 2, 0), random.uniform(-10, 10, 3, 0), 1.5);
   const char* const kNames[] = {"specular1", "specular2", "specular3"};
-  const auto model = find_model(path_models(), kNames[order - 1])->make(parameters);
+  const auto model = find_model(path_models(), kNames[order - 1])->make({}, parameters);
   std::vector<SignalPaths> found(directions.size());
   GnssCounters counters;
   model->trace(antenna, directions, scene::SceneAt(boxes.scene()), found, counters);
@@ -289,7 +289,7 @@ TEST(Launching, AWayIsOneEcho) {
   GnssCounters counters;
   PathParameters p = everything();
   p.launched_rays = 50000;
-  find_model(path_models(), "launching")->make(p)->trace({0.0, 0.0, 1.5}, directions, at, launched, counters);
+  find_model(path_models(), "launching")->make({}, p)->trace({0.0, 0.0, 1.5}, directions, at, launched, counters);
   int echoes = 0;
   for (const auto& paths : launched) {
     std::set<decltype(SignalPath::facets)> ways;
@@ -315,14 +315,14 @@ TEST(Launching, ComesNearerToTheExactWaysWithMoreRays) {
   PathParameters p = everything();
   GnssCounters counters;
   std::vector<SignalPaths> exact(directions.size()), launched(directions.size());
-  find_model(path_models(), "specular2")->make(p)->trace(antenna, directions, at, exact, counters);
+  find_model(path_models(), "specular2")->make({}, p)->trace(antenna, directions, at, exact, counters);
   double last_error_m = 1e9;
   std::size_t last_missed = 1000000, all = 0;
   for (const auto& paths : exact) all += paths.echoes.size();
   ASSERT_GT(all, 30u);
   for (const int rays : {2000, 20000, 200000}) {
     p.launched_rays = rays;
-    find_model(path_models(), "launching")->make(p)->trace(antenna, directions, at, launched, counters);
+    find_model(path_models(), "launching")->make({}, p)->trace(antenna, directions, at, launched, counters);
     double error_m = 0.0;
     std::size_t missed = 0, both = 0;
     for (std::size_t k = 0; k < directions.size(); ++k) {

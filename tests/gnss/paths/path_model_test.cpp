@@ -35,7 +35,7 @@ WallScene west_wall(double distance_m, double half_width_m = 400.0, double heigh
 TEST(PathModel, NoneSeesEverything) {
   const auto scene = west_wall(5.0).build();
   for (const auto& p :
-       trace(*find_model(path_models(), "none")->make({}), *scene, {direction(270, 20), direction(90, 20)})) {
+       trace(*find_model(path_models(), "none")->make({}, {}), *scene, {direction(270, 20), direction(90, 20)})) {
     EXPECT_TRUE(p.line_of_sight);
     EXPECT_TRUE(p.echoes.empty());
   }

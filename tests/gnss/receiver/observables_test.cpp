@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-#include "canyon/gnss/sensor/pseudorange_parts.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
 
@@ -18,7 +17,7 @@ using testing::PseudorangeSensorTest;
 // Doppler and carrier against differences of what they stand for: the true range's derivative, and the pseudorange.
 TEST_F(PseudorangeSensorTest, DopplerIsTheRateOfTheRange) {
   GnssConfig c = errors_off();
-  c.thermal_noise_scale = 0.0;
+  c.tracking.thermal_noise_scale = 0.0;
   const auto sensor = make(c);
   const Eigen::Vector3d v_W{11.0, -7.0, 0.5};
   const double dt_s = 0.5;
@@ -81,13 +80,13 @@ TEST_F(PseudorangeSensorTest, CarrierFollowsTheRangeWithTheIonosphereReversed) {
 // sqrt(2.546^2 + 1.546^2) = 2.978 for L1 and L2 of equal noise, sqrt(2.261^2 + 1.261^2) = 2.588 for L5 of equal noise.
 TEST_F(PseudorangeSensorTest, DualFrequencyRemovesTheIonosphereAndAmplifiesNoise) {
   GnssConfig c = open_sky("dual");
-  c.troposphere = c.ephemeris_error = "none";
-  c.vtec_tecu = 100.0;
-  c.thermal_noise_scale = 0.0;
+  c.troposphere.name = c.ephemeris_error.name = "none";
+  c.ionosphere.own.get<ElectronContent>().vtec_tecu = 100.0;
+  c.tracking.thermal_noise_scale = 0.0;
   EXPECT_LT((measure(*make(c), 4).fix.p_A_E - truth_E()).norm(), 1e-4);
-  c.thermal_noise_scale = 1.0;
+  c.tracking.thermal_noise_scale = 1.0;
   const auto dual = make(c);
-  c.mode = "single";
+  c.mode.name = "single";
   const auto single = make(c);
   double both = 0.0, one = 0.0;
   int n = 0;
@@ -111,22 +110,22 @@ TEST_F(PseudorangeSensorTest, DualFrequencyRemovesTheIonosphereAndAmplifiesNoise
 TEST_F(PseudorangeSensorTest, SecondFrequencies) {
   EXPECT_EQ(error_of([] {
               GnssConfig c;
-              c.mode = "dual";
-              c.second_frequency = "L5";
+              c.mode.name = "dual";
+              c.tracking.second_frequency = SecondFrequency::kL5;
               return c;
             }()),
             "no error");
   // B3I, which every BeiDou satellite sends; B2I is of BeiDou-2 alone.
-  EXPECT_EQ(second_band(GnssSystem::kBeidou, "L2"), 6);
-  EXPECT_EQ(second_band(GnssSystem::kBeidou, "L5"), 5);
+  EXPECT_EQ(second_band(GnssSystem::kBeidou, SecondFrequency::kL2), 6);
+  EXPECT_EQ(second_band(GnssSystem::kBeidou, SecondFrequency::kL5), 5);
 }
 
 // Mean square of the code noise at 45 dB-Hz everywhere against the loop formula, epochs 20 s apart so that they are
 // independent: B = 0.13 Hz forgets within 2 s.
 TEST_F(PseudorangeSensorTest, CodeNoiseHasItsSigma) {
   GnssConfig c = errors_off();
-  c.thermal_noise_scale = 1.0;
-  c.antenna = "isotropic";
+  c.tracking.thermal_noise_scale = 1.0;
+  c.link.antenna.name = "isotropic";
   const auto sensor = make(c);
   double sum = 0.0;
   int n = 0;

@@ -10,7 +10,7 @@ namespace canyon::gnss {
 namespace {
 
 std::shared_ptr<const ReceiverAntenna> antenna(const char* name) {
-  return find_model(antenna_models(), name)->make({7.0, 10.0});
+  return *ModelChoice<antenna_models>(name).make("gnss.antenna");
 }
 
 TEST(Antenna, SineIsItsFormula) {

@@ -40,8 +40,8 @@ class ReceiverFixTest : public ::testing::Test {
 
   std::unique_ptr<Constellation> constellation_ = make_broadcast(synthetic_navigation());
   SyntheticReceiver sky_{*constellation_};
-  std::unique_ptr<ReceiverMode> mode_ = find_model(receiver_modes(), "single_uncorrected")->make({});
-  std::unique_ptr<RangeWeighting> weighting_ = find_model(range_weightings(), "uniform")->make({1.0});
+  std::unique_ptr<ReceiverMode> mode_ = find_model(receiver_modes(), "single_uncorrected")->make({}, {});
+  std::unique_ptr<RangeWeighting> weighting_ = find_model(range_weightings(), "uniform")->make({}, {1.0});
 };
 
 const auto kUnspoilt = [](std::vector<GnssObservation>&) {};

@@ -50,10 +50,10 @@ TEST_F(PseudorangeSensorTest, ModesLeaveWhatTheySay) {
 
 TEST_F(PseudorangeSensorTest, DgpsResidualsGrowWithTheBaseline) {
   GnssConfig c = open_sky("dgps");
-  c.base_error_scale = 0.0;
-  c.thermal_noise_scale = 0.0;
+  c.mode.own.get<DgpsParameters>().base_error_scale = 0.0;
+  c.tracking.thermal_noise_scale = 0.0;
   const auto error_at = [&](double baseline_km) {
-    c.baseline_km = baseline_km;
+    c.mode.own.get<DgpsParameters>().baseline_km = baseline_km;
     const auto sensor = make(c);
     return (measure(*sensor, 1).fix.p_A_E - truth_E()).norm();
   };
@@ -65,7 +65,7 @@ TEST_F(PseudorangeSensorTest, DgpsResidualsGrowWithTheBaseline) {
 
 TEST(GnssConfig, ModesSayWhetherTheyCorrectTheAtmosphere) {
   for (const auto& row : receiver_modes()) {
-    const auto mode = row.make({});
+    const auto mode = *ModelChoice<receiver_modes>(row.name).make("gnss.mode", ReceiverModeSetup{});
     EXPECT_THAT(row.doc, HasSubstr(mode->corrects_atmosphere() ? "residual atmosphere" : "raw atmosphere")) << row.name;
   }
 }
@@ -74,9 +74,9 @@ TEST(GnssConfig, ModesSayWhetherTheyCorrectTheAtmosphere) {
 // epoch alone has none.
 TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
   GnssConfig c = errors_off();
-  c.thermal_noise_scale = 1.0;
-  c.code_loop_hz = 5.0;  // independent from epoch to epoch, 2 m
-  c.solver_sigma_m = 2.0;
+  c.tracking.thermal_noise_scale = 1.0;
+  c.tracking.code_loop_hz = 5.0;  // independent from epoch to epoch, 2 m
+  c.position.solver_sigma_m = 2.0;
   const auto rms = [&](GnssSensor& sensor) {
     double square = 0.0;
     for (std::int64_t k = 0; k < 120; ++k) {
@@ -87,15 +87,15 @@ TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
     return std::sqrt(square / 100.0);
   };
   const auto plain = make(c);
-  c.estimator = "kalman";
-  c.estimator_acceleration_m_s2 = 0.05;
+  c.position.estimator = Estimator::kKalman;
+  c.position.estimator_acceleration_m_s2 = 0.05;
   const auto filtered = make(c);
   const double filtered_m = rms(*filtered);
   EXPECT_LT(filtered_m, 0.7 * rms(*plain));
   EXPECT_EQ(rms(*filtered), filtered_m);  // index 0 does not follow 119: switched on anew
 
   // A shaft closes around the antenna: of all satellites a few near the zenith are left.
-  c.paths = "visibility";
+  c.propagation.paths.name = "visibility";
   const auto shaft = WallScene()
                          .box({-20, -20, 0}, {-6, 20, 12})
                          .box({6, -20, 0}, {20, 20, 12})
@@ -104,7 +104,7 @@ TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
                          .build();
   const auto sensor = make(c);
   for (std::int64_t k = 0; k < 10; ++k) measure(*sensor, k);
-  c.estimator = "least_squares";
+  c.position.estimator = Estimator::kLeastSquares;
   const GnssOutput alone = make(c)->measure(10, kStart + 5.0, antenna_W, still, scene::SceneAt(*shaft));
   const GnssOutput bridged = sensor->measure(10, kStart + 5.0, antenna_W, still, scene::SceneAt(*shaft));
   ASSERT_GT(alone.epoch.observations.size(), 0u);
@@ -120,14 +120,14 @@ TEST_F(PseudorangeSensorTest, AFilteringReceiverIsQuieterAndBridges) {
 // 2026-11-22: a satellite whose second signal was lost was dropped as a whole.
 TEST_F(PseudorangeSensorTest, ASatelliteWhoseSecondSignalIsLostStays) {
   GnssConfig c = open_sky("single");
-  c.paths = "specular1";
-  c.diffraction = "knife_edge";
-  c.multipath_rule = "correlator";
-  c.tracking_threshold_dbhz = 28.0;
-  c.thermal_noise_scale = 0.0;
-  c.receiver_clock = "none";
+  c.propagation.paths.name = "specular1";
+  c.propagation.diffraction.name = "knife_edge";
+  c.reception.multipath_rule.name = "correlator";
+  c.locks.tracking_threshold_dbhz = 28.0;
+  c.tracking.thermal_noise_scale = 0.0;
+  c.receiver_clock.name = "none";
   const auto single = make(c);
-  c.mode = "dual";
+  c.mode.name = "dual";
   const auto dual = make(c);
   int lost = 0, used = 0;
   for (std::int64_t k = 0; k < 900; ++k) {
@@ -165,9 +165,9 @@ TEST_F(PseudorangeSensorTest, ASatelliteWhoseSecondSignalIsLostStays) {
 
 TEST_F(PseudorangeSensorTest, AFilterNeedsAReceiverClock) {
   GnssConfig c;
-  c.estimator = "kalman";
-  c.solver = "trilateration";
-  c.receiver_clock = "none";
+  c.position.estimator = Estimator::kKalman;
+  c.position.solver.name = "trilateration";
+  c.receiver_clock.name = "none";
   EXPECT_EQ(error_of(c),
             "gnss.estimator: is \"kalman\", but the solver trilateration has no receiver clock, expected "
             "solver \"least_squares\"");

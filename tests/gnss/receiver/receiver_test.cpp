@@ -70,7 +70,7 @@ ReceivedSignal direct(double cn0_dbhz) {
 }
 
 TEST(MultipathRule, NoneTracksOnlyWhatIsClear) {
-  const auto rule = find_model(multipath_rules(), "none")->make(kRule);
+  const auto rule = find_model(multipath_rules(), "none")->make({}, kRule);
   const ReceivedSignal strong{20.0, 40.0, 0.0, 0.0};
   EXPECT_FALSE(rule->receive(std::nullopt, {&strong, 1}, kL1WavelengthM).tracked);
   EXPECT_FALSE(rule->receive(direct(24.9), {&strong, 1}, kL1WavelengthM).tracked);
@@ -101,7 +101,7 @@ TEST(MultipathRule, NlosOnlyTracksTheStrongest) {
   // The two weaker ones come more than a chip before or after, so that they leave the strongest alone.
   const ReceivedSignal echoes[] = {{5.0, 20.0, 0.0, 0.0}, {20.0, 30.0, 0.0, 0.0}, {900.0, 35.0, 0.0, 2.0}};
   for (const char* name : {"paper_first_return", "correlator"}) {
-    const auto rule = find_model(multipath_rules(), name)->make(kRule);
+    const auto rule = find_model(multipath_rules(), name)->make({}, kRule);
     const Reception r = rule->receive(std::nullopt, echoes, kL1WavelengthM);
     EXPECT_TRUE(r.tracked) << name;
     EXPECT_EQ(r.error_m, 900.0) << name;  // whole, beyond the cut-off too: nothing else is there to lock on to
@@ -167,7 +167,7 @@ TEST(ReceiverClock, IsAFunctionOfTheEpoch) {
   EXPECT_EQ(a->offset_m(100), at_100_m);
   EXPECT_EQ(b->offset_m(100), at_100_m);
   EXPECT_NE(make_tcxo({8, 0.5})->offset_m(100), at_100_m);
-  EXPECT_EQ(find_model(receiver_clock_models(), "none")->make({7, 0.5})->offset_m(100), 0.0);
+  EXPECT_EQ(find_model(receiver_clock_models(), "none")->make({}, {7, 0.5})->offset_m(100), 0.0);
 }
 
 // Second differences of the bias over T: variance of the two-state model is 2 S_f T + 2/3 S_g T^3, S_f = h0/2, S_g = 2

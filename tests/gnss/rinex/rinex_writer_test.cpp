@@ -169,7 +169,8 @@ TEST(NavigationWriter, RealDayOfAllSystems) {
 SinglePointConfig without_atmosphere(const char* systems) {
   SinglePointConfig c;
   c.systems = systems;
-  c.ionosphere = c.troposphere = "none";
+  c.ionosphere = IonosphereCorrection::kNone;
+  c.troposphere = "none";
   c.smoothing_s = c.shared_ionosphere = 0.0;
   return c;
 }
@@ -182,15 +183,16 @@ TEST(WrittenFiles, OurOwnSolverFindsThePlace) {
   ASSERT_TRUE(observations.ok() && navigation.ok());
   const auto constellation = make_broadcast(*navigation);
   for (const char* systems : {"G", "GR", "GE", "GC", "GREC", "E"})
-    for (const char* frequencies : {"single", "dual"}) {
+    for (const Frequencies frequencies : {Frequencies::kSingle, Frequencies::kDual}) {
       auto config = without_atmosphere(systems);
       config.frequencies = frequencies;
       const auto r = solve_observations(*observations, {*constellation, *navigation}, config);
       ASSERT_TRUE(r.ok()) << r.error().str();
       ASSERT_EQ(r->solved(), 40) << systems;
       for (const auto& e : r->epochs) {
-        EXPECT_LT((e.fix.p_A_E - kPlace).norm(), 0.001 * (config.frequencies == "dual" ? 3.0 : 1.0) * e.fix.dop.pdop)
-            << systems << " " << frequencies;
+        EXPECT_LT((e.fix.p_A_E - kPlace).norm(),
+                  0.001 * (config.frequencies == Frequencies::kDual ? 3.0 : 1.0) * e.fix.dop.pdop)
+            << systems << (frequencies == Frequencies::kDual ? " dual" : " single");
         EXPECT_EQ(e.excluded, 0);
       }
     }

@@ -19,8 +19,7 @@ SatelliteState at(const Eigen::Vector3d& p_E) {
 }
 
 TEST(EphemerisError, PaperAsPrintedAndCorrected) {
-  const EphemerisErrorParameters p;
-  const auto printed = make_paper_printed_ephemeris(p), corrected = make_paper_corrected_ephemeris(p);
+  const auto printed = make_paper_printed_ephemeris(), corrected = make_paper_corrected_ephemeris();
   const SatelliteId sv{GnssSystem::kGps, 1};
   const double r = 26550e3;
   const Eigen::Vector3d equator(r, 0, 0);
@@ -36,12 +35,11 @@ TEST(EphemerisError, PaperAsPrintedAndCorrected) {
 }
 
 TEST(EphemerisError, GaussMarkovScalesWithSigma) {
-  const auto one = make_gauss_markov_ephemeris({3, 1.0, 3600.0}), two = make_gauss_markov_ephemeris({3, 2.0, 3600.0});
+  const auto one = make_gauss_markov_ephemeris(3, 1.0, 3600.0), two = make_gauss_markov_ephemeris(3, 2.0, 3600.0);
   const SatelliteId sv{GnssSystem::kGps, 7};
   EXPECT_DOUBLE_EQ(two->range_m(sv, at(Eigen::Vector3d::Ones()), Eigen::Vector3d::UnitZ(), kStart),
                    2.0 * one->range_m(sv, at(Eigen::Vector3d::Ones()), Eigen::Vector3d::UnitZ(), kStart));
-  EXPECT_EQ(find_model(ephemeris_error_models(), "none")
-                ->make({})
+  EXPECT_EQ((*ModelChoice<ephemeris_error_models>("none").make("gnss.ephemeris_error", EphemerisErrorSetup{}))
                 ->range_m(sv, at(Eigen::Vector3d::Ones()), Eigen::Vector3d::UnitZ(), kStart),
             0.0);
 }
@@ -58,7 +56,7 @@ TEST(EphemerisError, OrbitClockHasItsMoments) {
   const double earth_m = 6371e3, cos_horizon = earth_m / 26560e3;
   double zenith = 0.0, horizon = 0.0, everywhere = 0.0;
   for (int k = 0; k < kN; ++k) {
-    const auto model = make_orbit_clock_2010({static_cast<std::uint64_t>(k), 0.0, 1.0});
+    const auto model = make_orbit_clock_2010(static_cast<std::uint64_t>(k));
     zenith += std::pow(model->range_m(sv, satellite, {earth_m, 0, 0}, kStart), 2) / kN;
     const double rim = std::sqrt(1.0 - cos_horizon * cos_horizon);
     horizon += std::pow(model->range_m(sv, satellite, {earth_m * cos_horizon, earth_m * rim, 0}, kStart), 2) / kN;
@@ -80,7 +78,7 @@ TEST(EphemerisError, OrbitClockOf2021AndInTime) {
   s.p_E = {26560e3, 0.0, 0.0};
   s.v_E = {0.0, 1900.0, 2300.0};
   const Eigen::Vector3d here(6371e3, 0, 0);
-  const auto then = make_orbit_clock_2010({3, 0.0, 1.0}), now = make_orbit_clock_2021({3, 0.0, 1.0});
+  const auto then = make_orbit_clock_2010(3), now = make_orbit_clock_2021(3);
   EXPECT_DOUBLE_EQ(now->range_m(sv, s, here, kStart), 0.89 / 1.11 * then->range_m(sv, s, here, kStart));
   EXPECT_NE(then->range_m(sv, s, here, kStart), then->range_m(other, s, here, kStart));
   // Hours of correlation: half a second changes it by millimetres at most.

@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
+#include "canyon/tests/gnss/sensor/gnss_keys.h"
 
 namespace canyon::gnss {
 namespace {
@@ -13,7 +14,7 @@ const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 class IsotropicSensorTest : public ::testing::Test {
  protected:
-  IsotropicSensorTest() { config.model = "truth_plus_isotropic"; }
+  IsotropicSensorTest() { config.model.name = "truth_plus_isotropic"; }
 
   std::unique_ptr<GnssSensor> make(std::uint64_t seed = 1) {
     auto sensor = make_gnss_sensor(config, seed, kStart, kStart + 60.0, *scene);
@@ -79,7 +80,7 @@ TEST_F(IsotropicSensorTest, DependsOnSeedAndIndexOnly) {
 }
 
 TEST_F(IsotropicSensorTest, MaximumBelowMinimumIsAnError) {
-  config.isotropic_max_m = 0.2;
+  testing::set_keys(config, "isotropic_max_m = 0.2");
   const auto sensor = make_gnss_sensor(config, 1, kStart, kStart, *scene);
   ASSERT_FALSE(sensor.ok());
   EXPECT_EQ(

@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/units.h"
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
+#include "canyon/tests/gnss/sensor/gnss_keys.h"
 
 namespace canyon::gnss {
 namespace {
@@ -35,7 +36,7 @@ std::vector<Eigen::Vector3d> errors(GnssSensor& sensor, const scene::Scene& scen
 TEST(WhiteNoiseSensor, HasItsSigmas) {
   const auto scene = WallScene().box({-60, -300, 0}, {-12, 300, 30}).build();
   GnssConfig c;
-  c.model = "truth_plus_white";
+  c.model.name = "truth_plus_white";
   const auto sensor = make(c, *scene);
   constexpr int kN = 4000;
   const auto e = errors(*sensor, *scene, {0, 0, 2}, kN);
@@ -61,10 +62,9 @@ TEST(WhiteNoiseSensor, HasItsSigmas) {
 TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
   const auto open = WallScene().wall({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).build();
   GnssConfig c;
-  c.model = "satellite_count";
+  c.model.name = "satellite_count";
   c.mask_deg = 5.0;
-  c.count_noise_max_m = 12.0;
-  c.count_noise_min_m = 4.0;
+  testing::set_keys(c, "count_noise_max_m = 12.0\ncount_noise_min_m = 4.0");
   const auto sensor = make(c, *open);
   for (int k = 0; k < 200; k += 20) {
     const GnssOutput o =
@@ -89,7 +89,7 @@ TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
 TEST(SatelliteCountSensor, BlockedSkyIsNoFix) {
   const auto street = WallScene().box({-60, -300, 0}, {-3, 300, 60}).box({3, -300, 0}, {60, 300, 60}).build();
   GnssConfig c;
-  c.model = "satellite_count";
+  c.model.name = "satellite_count";
   const auto sensor = make(c, *street);
   bool none = false;
   for (int k = 0; k < 400 && !none; ++k) {
@@ -103,7 +103,7 @@ TEST(SatelliteCountSensor, BlockedSkyIsNoFix) {
     EXPECT_EQ(o.fix.reason, std::to_string(seen) + (seen == 1 ? " satellite" : " satellites") + ", a fix needs 4");
   }
   EXPECT_TRUE(none);
-  c.count_noise_min_m = 20.0;
+  testing::set_keys(c, "count_noise_min_m = 20.0");
   const auto wrong = make_gnss_sensor(c, 1, kStart, kStart, *street);
   ASSERT_FALSE(wrong.ok());
   EXPECT_EQ(wrong.error().str(), "gnss.count_noise_max_m: is 10, expected at least gnss.count_noise_min_m = 20");

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/units.h"
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 
@@ -26,11 +26,11 @@ struct Offsets {
 /// The mean offset over a circle of 30 ft at Vicksburg under one error; all else is switched off.
 Offsets mean_offset(GnssConfig c) {
   const auto scene = testing::WallScene().wall({0, 0, -5}, {1, 0, 0}, {0, 1, 0}).build();
-  c.paths = c.multipath_rule = "none";
-  c.receiver_clock = "none";
-  c.thermal_noise_scale = 0.0;
-  c.weighting = "uniform";  // a generic algorithm has no weights
-  c.mask_deg = 18.0;        // leaves seven satellites, as many as the paper had
+  c.propagation.paths.name = c.reception.multipath_rule.name = "none";
+  c.receiver_clock.name = "none";
+  c.tracking.thermal_noise_scale = 0.0;
+  c.position.weighting.name = "uniform";  // a generic algorithm has no weights
+  c.mask_deg = 18.0;                      // leaves seven satellites, as many as the paper had
   auto sensor = make_gnss_sensor(c, 1, kStart, kStart + 3600.0, *scene);
   EXPECT_TRUE(sensor.ok()) << sensor.error().str();
   Offsets out;
@@ -49,9 +49,9 @@ Offsets mean_offset(GnssConfig c) {
 
 GnssConfig errors_off(const char* mode, const char* solver) {
   GnssConfig c;
-  c.mode = mode;
-  c.solver = solver;
-  c.ionosphere = c.troposphere = c.ephemeris_error = "none";
+  c.mode.name = mode;
+  c.position.solver.name = solver;
+  c.ionosphere.name = c.troposphere.name = c.ephemeris_error.name = "none";
   return c;
 }
 
@@ -73,18 +73,18 @@ TEST(PaperTable1, WhichPairingComesNearest) {
     for (const char* mode : {"single_uncorrected", "single"}) {
       for (const char* model : {"paper_printed", "paper_corrected", "saastamoinen_niell"}) {
         GnssConfig c = errors_off(mode, solver);
-        c.troposphere = model;
+        c.troposphere.name = model;
         row(std::string("troposphere ") + model + " " + mode, c);
       }
       for (const char* model : {"paper_printed", "paper", "single_layer"}) {
         GnssConfig c = errors_off(mode, solver);
-        c.ionosphere = model;
+        c.ionosphere.name = model;
         row(std::string("ionosphere ") + model + " " + mode, c);
       }
     }
     for (const char* model : {"paper_printed", "paper_corrected"}) {
       GnssConfig c = errors_off("single_uncorrected", solver);
-      c.ephemeris_error = model;
+      c.ephemeris_error.name = model;
       row(std::string("satellite ") + model, c);
     }
   }

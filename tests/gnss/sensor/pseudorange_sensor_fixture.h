@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 
@@ -16,10 +16,10 @@ inline const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 /// Every error off, clocks and Earth rotation on.
 inline GnssConfig errors_off() {
   GnssConfig c;
-  c.mode = "single_uncorrected";
-  c.ionosphere = c.troposphere = c.ephemeris_error = "none";
-  c.paths = c.multipath_rule = "none";
-  c.thermal_noise_scale = 0.0;
+  c.mode.name = "single_uncorrected";
+  c.ionosphere.name = c.troposphere.name = c.ephemeris_error.name = "none";
+  c.propagation.paths.name = c.reception.multipath_rule.name = "none";
+  c.tracking.thermal_noise_scale = 0.0;
   c.mask_deg = 5.0;
   return c;
 }
@@ -27,8 +27,8 @@ inline GnssConfig errors_off() {
 /// Errors on, open sky.
 inline GnssConfig open_sky(const std::string& mode) {
   GnssConfig c;
-  c.mode = mode;
-  c.paths = c.multipath_rule = "none";
+  c.mode.name = mode;
+  c.propagation.paths.name = c.reception.multipath_rule.name = "none";
   return c;
 }
 

@@ -18,7 +18,7 @@ using testing::WallScene;
 TEST_F(PseudorangeSensorTest, WithoutErrorsTheFixIsTheTruth) {
   for (const char* clock : {"none", "tcxo"}) {
     GnssConfig c = errors_off();
-    c.receiver_clock = clock;
+    c.receiver_clock.name = clock;
     const auto sensor = make(c);
     for (const std::int64_t k : {0, 1, 100, 100000}) {
       const GnssOutput out = measure(*sensor, k);
@@ -34,8 +34,8 @@ TEST_F(PseudorangeSensorTest, WithoutErrorsTheFixIsTheTruth) {
 
 TEST_F(PseudorangeSensorTest, TrilaterationWithoutErrorsIsTheTruth) {
   GnssConfig c = errors_off();
-  c.solver = "trilateration";
-  c.receiver_clock = "none";
+  c.position.solver.name = "trilateration";
+  c.receiver_clock.name = "none";
   const GnssOutput out = measure(*make(c), 7);
   ASSERT_EQ(out.fix.status, FixStatus::kSingle) << out.fix.reason;
   EXPECT_LT((out.fix.p_A_E - truth_E()).norm(), 1e-4);
@@ -46,10 +46,10 @@ TEST_F(PseudorangeSensorTest, TrilaterationWithoutErrorsIsTheTruth) {
 TEST_F(PseudorangeSensorTest, ErrorsOfTheTruthRecordAddUp) {
   for (const char* mode : {"single", "single_uncorrected", "dual", "dual_paper", "dgps", "dgps_paper"}) {
     GnssConfig c;
-    c.mode = mode;
-    c.multipath_rule = "correlator";
-    c.antenna = "survey";
-    c.antenna_phase_centre = true;
+    c.mode.name = mode;
+    c.reception.multipath_rule.name = "correlator";
+    c.link.antenna.name = "survey";
+    c.link.antenna_phase_centre = true;
     const auto sensor = make(c);
     int checked = 0;
     for (std::int64_t k = 0; k < 20; ++k) {
@@ -89,7 +89,7 @@ bool same_bits(const GnssOutput& a, const GnssOutput& b) {
 // alone, whatever was measured before.
 TEST_F(PseudorangeSensorTest, SameSeedSameBits) {
   GnssConfig c;
-  c.multipath_rule = "correlator";
+  c.reception.multipath_rule.name = "correlator";
   const auto a = make(c), b = make(c);
   std::vector<GnssOutput> forward;
   for (std::int64_t k = 0; k < 8; ++k) forward.push_back(measure(*a, k));
@@ -133,22 +133,22 @@ TEST_F(PseudorangeSensorTest, EffectsDrawFromTheirOwnStreams) {
     }
   };
   GnssConfig c = base;
-  c.thermal_noise_scale = 0.0;
+  c.tracking.thermal_noise_scale = 0.0;
   compare(c, "noise");
   c = base;
-  c.ephemeris_error = "none";
+  c.ephemeris_error.name = "none";
   compare(c, "ephemeris");
   c = base;
-  c.ionosphere = "none";
+  c.ionosphere.name = "none";
   compare(c, "ionosphere");
   c = base;
-  c.troposphere = "none";
+  c.troposphere.name = "none";
   compare(c, "troposphere");
   c = base;
-  c.receiver_clock = "none";
+  c.receiver_clock.name = "none";
   compare(c, "clock");
   c = base;
-  c.paths = "visibility";  // fewer satellites tracked, the same draws for those that are
+  c.propagation.paths.name = "visibility";  // fewer satellites tracked, the same draws for those that are
   const GnssOutput street = measure(*make(c), 5);
   for (std::size_t i = 0; i < street.truth.satellites.size(); ++i)
     if (street.truth.satellites[i].tracked) {

@@ -11,17 +11,18 @@ using testing::PseudorangeSensorTest;
 
 TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
   GnssConfig c;
-  c.model = "gps";
+  c.model.name = "gps";
   EXPECT_EQ(error_of(c),
-            "gnss.model: \"gps\" is not a model, expected pseudorange, truth_plus_isotropic, "
-            "truth_plus_white or satellite_count");
+            "gnss.model: unknown name \"gps\", expected one of \"pseudorange\", \"truth_plus_isotropic\", "
+            "\"truth_plus_white\", \"satellite_count\"");
   c = GnssConfig{};
-  c.ionosphere = "iri";
-  EXPECT_EQ(error_of(c),
-            "gnss.ionosphere: \"iri\" is not a model, expected none, single_layer, klobuchar, ionex, paper, "
-            "paper_printed");
+  c.ionosphere.name = "iri";
+  EXPECT_EQ(
+      error_of(c),
+      "gnss.ionosphere: unknown name \"iri\", expected one of \"none\", \"single_layer\", \"klobuchar\", \"ionex\", "
+      "\"paper\", \"paper_printed\"");
   c = GnssConfig{};
-  c.solver = "trilateration";
+  c.position.solver.name = "trilateration";
   EXPECT_EQ(error_of(c),
             "gnss.receiver_clock: is \"tcxo\", but solver \"trilateration\" has no unknown for it, expected \"none\"");
 }
@@ -31,7 +32,7 @@ TEST(GnssConfig, ReadsAndRefuses) {
   const auto good = ConfigNode::parse("mode = \"single\"\nmultipath_rule = \"correlator\"\nrate_hz = 5\n", "m.toml");
   ASSERT_TRUE(good.ok());
   EXPECT_TRUE(read_config(&*good, "gnss", c).ok());
-  EXPECT_EQ(c.mode, "single");
+  EXPECT_EQ(c.mode.name, "single");
   EXPECT_EQ(c.rate_hz, 5.0);
   const auto bad = ConfigNode::parse("\nmultipath_rule = \"corelator\"\n", "m.toml");
   const auto status = read_config(&*bad, "gnss", c);

@@ -13,7 +13,7 @@ using testing::WallScene;
 
 TEST_F(PseudorangeSensorTest, StreetCanyonBlocksAndReflects) {
   GnssConfig c;
-  c.multipath_rule = "correlator";
+  c.reception.multipath_rule.name = "correlator";
   const auto sensor = make(c);
   int blocked = 0, reflected = 0, nlos = 0;
   double worst_m = 0.0;
@@ -49,7 +49,7 @@ TEST_F(PseudorangeSensorTest, AbsorbingWallsLeaveNoMultipath) {
       WallScene().box({-60, -300, 0}, {-12, 300, 30}, "absorber").box({9, -300, 0}, {60, 300, 18}, "absorber").build();
   for (const char* rule : {"paper_first_return", "correlator"}) {
     GnssConfig c;
-    c.multipath_rule = rule;
+    c.reception.multipath_rule.name = rule;
     const auto sensor = make(c);
     int blocked = 0;
     for (std::int64_t k = 0; k < 500; k += 25) {
@@ -100,11 +100,11 @@ TEST_F(PseudorangeSensorTest, FewSatellitesAreAStatusAndStillObserved) {
 
 TEST_F(PseudorangeSensorTest, FaultExclusionMeetsNlos) {
   GnssConfig c;
-  c.multipath_rule = "correlator";
-  c.raim = "greedy";
-  c.weighting = "elevation_cn0";
+  c.reception.multipath_rule.name = "correlator";
+  c.position.raim = "greedy";
+  c.position.weighting.name = "elevation_cn0";
   const auto with = make(c);
-  c.raim = "none";
+  c.position.raim = "none";
   const auto without = make(c);
   int excluded = 0;
   for (std::int64_t k = 0; k < 20000; k += 20) {

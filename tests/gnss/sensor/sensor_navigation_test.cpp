@@ -8,6 +8,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/units.h"
 #include "canyon/tests/gnss/rinex/nav_text.h"
+#include "canyon/tests/gnss/sensor/gnss_keys.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
 #include "canyon/tests/support/temporary_folder.h"
 #include "canyon/tests/support/test_data.h"
@@ -27,7 +28,7 @@ TEST_F(PseudorangeSensorTest, NavigationFileFromDisk) {
   text.resize(text.size() - 100);
   ASSERT_TRUE(write_text_file(path, text).ok());
   GnssConfig c = errors_off();
-  c.nav_file = path;
+  c.satellites.nav_file = path;
   const auto sensor = make(c, 1, day);
   for (const std::int64_t k : {0, 60, 960}) {
     const GnssOutput out = measure(*sensor, k, day);
@@ -51,7 +52,7 @@ TEST_F(PseudorangeSensorTest, EphemeridesExpireGracefully) {
   const std::string path = canyon::testing::temporary_file("expiry.10n");
   ASSERT_TRUE(write_text_file(path, testing::navigation_text(day, 31, 1, false)).ok());
   GnssConfig c = errors_off();
-  c.nav_file = path;
+  c.satellites.nav_file = path;
   const auto sensor = make(c, 1, day);
   std::size_t before = 99;
   for (double dt_s = 0.060; dt_s < 0.095; dt_s += 2e-5) {
@@ -66,7 +67,7 @@ TEST_F(PseudorangeSensorTest, RealNavigationFile) {
   CANYON_REAL_DATA(path, "gnss/orbit_2010_182/brdc1820.10n");
   const GpsTime start = GpsTime::from_calendar(2010, 7, 1, 13, 0, 0.0);
   GnssConfig c = errors_off();
-  c.nav_file = path;
+  c.satellites.nav_file = path;
   const auto sensor = make(c, 1, start);
   std::set<std::size_t> counts;
   for (std::int64_t k = 0; k <= 960; k += 60) {
@@ -85,8 +86,8 @@ TEST_F(PseudorangeSensorTest, RealMultiGnss) {
   scene = WallScene(Geodetic{55.5 * kDegree, 8.46 * kDegree, 60.0}).wall({0, 0, -5}, {1, 0, 0}, {0, 1, 0}).build();
   const GpsTime start = GpsTime::from_calendar(2020, 6, 25, 12, 0, 0.0);
   GnssConfig c = errors_off();
-  c.nav_file = path;
-  c.systems = "GREC";
+  c.satellites.nav_file = path;
+  c.satellites.systems = "GREC";
   const auto sensor = make(c, 1, start);
   std::set<GnssSystem> systems;
   for (const std::int64_t k : {0, 400, 900}) {
@@ -100,7 +101,7 @@ TEST_F(PseudorangeSensorTest, RealMultiGnss) {
     }
   }
   EXPECT_EQ(systems.size(), 4u);
-  c.mode = "dual";
+  c.mode.name = "dual";
   const GnssOutput dual = measure(*make(c, 1, start), 0, start);
   EXPECT_LT((dual.fix.p_A_E - truth_E()).norm(), 1e-3);
 }
@@ -112,10 +113,9 @@ TEST_F(PseudorangeSensorTest, RealOrbitErrors) {
   CANYON_REAL_DATA(antex, "gnss/antex/igs05.atx.gz");
   const GpsTime start = GpsTime::from_calendar(2010, 7, 1, 4, 0, 0.0);
   GnssConfig c = errors_off();
-  c.nav_file = nav;
-  c.sp3_files = {sp3};
-  c.antex_file = antex;
-  c.ephemeris_error = "broadcast_minus_sp3";
+  c.satellites.nav_file = nav;
+  testing::set_keys(c, "sp3_files = [\"" + sp3 + "\"]\nantex_file = \"" + antex + "\"");
+  c.ephemeris_error.name = "broadcast_minus_sp3";
   auto sensor = make_gnss_sensor(c, 1, start, start + 14.0 * 3600.0, *scene);
   ASSERT_TRUE(sensor.ok()) << sensor.error().str();
   double square = 0.0;
@@ -142,7 +142,7 @@ TEST_F(PseudorangeSensorTest, RealOrbitErrors) {
 
 TEST_F(PseudorangeSensorTest, SystemsOfTheBuiltInConstellation) {
   GnssConfig c = errors_off();
-  c.systems = "GRECJ";
+  c.satellites.systems = "GRECJ";
   const GnssOutput out = measure(*make(c), 0);
   std::set<GnssSystem> systems;
   for (const auto& o : out.epoch.observations) systems.insert(o.sv.system);
@@ -152,10 +152,10 @@ TEST_F(PseudorangeSensorTest, SystemsOfTheBuiltInConstellation) {
 
 TEST_F(PseudorangeSensorTest, IonosphereMaps) {
   GnssConfig c;
-  c.ionosphere = "ionex";
+  c.ionosphere.name = "ionex";
   EXPECT_EQ(error_of(c), "gnss.ionosphere: is \"ionex\", but there are no maps, expected gnss.ionex_file");
   CANYON_REAL_DATA(path, "gnss/orbit_2010_182/igrg3380.10i");
-  c.ionex_file = path;
+  testing::set_keys(c, "ionex_file = \"" + path + "\"");
   EXPECT_THAT(error_of(c), HasSubstr("igrg3380.10i: gnss.ionex_file: covers 2010-12-04T00:00:1"));
   const GpsTime start = GpsTime::from_calendar(2010, 12, 4, 13, 0, 0.0);
   const GnssOutput out = measure(*make(c, 1, start), 0, start);
@@ -164,11 +164,11 @@ TEST_F(PseudorangeSensorTest, IonosphereMaps) {
 
 TEST_F(PseudorangeSensorTest, MeasuredOrbitErrorsNeedTheirFiles) {
   GnssConfig c;
-  c.ephemeris_error = "broadcast_minus_sp3";
+  c.ephemeris_error.name = "broadcast_minus_sp3";
   EXPECT_EQ(error_of(c),
             "gnss.ephemeris_error: is \"broadcast_minus_sp3\", but there is no broadcast, expected gnss.nav_file");
   c = GnssConfig{};
-  c.systems = "GX";
+  c.satellites.systems = "GX";
   EXPECT_THAT(error_of(c), HasSubstr("gnss.systems: "));
 }
 

@@ -115,7 +115,7 @@ TEST(SinglePoint, UsnoLikeForLikeAndRecommended) {
 TEST(SinglePoint, UsnoDualFrequencyHasNoBiasInHeight) {
   CANYON_USNO(usno);
   auto config = recommended("G");
-  config.frequencies = "dual";
+  config.frequencies = Frequencies::kDual;
   const auto s = solve(usno, config).statistics;
   EXPECT_EQ(s.solved, 2880);
   EXPECT_LE(std::abs(s.mean_enu_m.z()), 1.5);
@@ -147,7 +147,7 @@ TEST(SinglePoint, EsbcLikeForLikeAndRecommended) {
 TEST(SinglePoint, EsbcIsInEtrs89) {
   CANYON_ESBC(esbc);
   auto config = recommended("GREC");
-  config.frequencies = "dual";
+  config.frequencies = Frequencies::kDual;
   const auto etrs = solve(esbc, config).statistics;
   const auto itrf = solve({esbc.observations, esbc.navigation, antenna_of_esbc_itrf()}, config).statistics;
   EXPECT_GT(etrs.mean_enu_m.head<2>().norm(), 0.5);

@@ -50,7 +50,8 @@ class SyntheticDay : public ::testing::Test {
   }
   static SinglePointConfig plain() {
     SinglePointConfig c;
-    c.ionosphere = c.troposphere = "none";
+    c.ionosphere = IonosphereCorrection::kNone;
+    c.troposphere = "none";
     c.smoothing_s = c.shared_ionosphere = 0.0;
     return c;
   }
@@ -106,14 +107,14 @@ TEST_F(SyntheticDay, TheFilterIsBetterThanEpochsByThemselves) {
   auto c = plain();
   c.sigma_m = 2.0;
   c.acceleration_m_s2 = 0.01;
-  const auto rms = [&](const char* estimator) {
+  const auto rms = [&](Estimator estimator) {
     c.estimator = estimator;
     const auto r = solve_file(f, c);
     double square = 0.0;
     for (std::size_t k = 10; k < 40; ++k) square += (r->epochs[k].fix.p_A_E - place_).squaredNorm();
     return std::sqrt(square / 30.0);
   };
-  EXPECT_LT(rms("kalman"), 0.6 * rms("least_squares"));
+  EXPECT_LT(rms(Estimator::kKalman), 0.6 * rms(Estimator::kLeastSquares));
 }
 
 // Three satellites make no fix, but keep a running filter from drifting; none at all make none in either.
@@ -125,7 +126,7 @@ TEST_F(SyntheticDay, TheFilterBridgesEpochsWithFewSatellites) {
   c.systems = "G";
   c.acceleration_m_s2 = 0.01;
   const auto by_itself = solve_file(f, c);
-  c.estimator = "kalman";
+  c.estimator = Estimator::kKalman;
   const auto filtered = solve_file(f, c);
   ASSERT_TRUE(by_itself.ok() && filtered.ok());
   EXPECT_EQ(by_itself->solved(), 37);
@@ -154,7 +155,7 @@ TEST_F(SyntheticDay, TheFilterBridgesEpochsThatContradictThemselves) {
   c.systems = "G";
   c.acceleration_m_s2 = 0.01;
   c.fault_exclusion = "detect";
-  c.estimator = "kalman";
+  c.estimator = Estimator::kKalman;
   const auto filtered = solve_file(f, c);
   ASSERT_TRUE(filtered.ok());
   EXPECT_EQ(filtered->solved(), 40);
@@ -257,7 +258,7 @@ TEST_F(SyntheticDay, OwnKlobucharOfBeidou) {
     }
   });
   auto c = plain();
-  c.ionosphere = "klobuchar_own";
+  c.ionosphere = IonosphereCorrection::kKlobucharOwn;
   c.max_gdop = 100.0;
   for (const char* systems : {"C", "GREC"}) {
     c.systems = systems;
@@ -318,7 +319,7 @@ TEST_F(SyntheticDay, BadConfigurationsAreErrorsWordForWord) {
   auto without = navigation_;
   without.klobuchar.clear();
   auto klobuchar = plain();
-  klobuchar.ionosphere = "klobuchar";
+  klobuchar.ionosphere = IonosphereCorrection::kKlobuchar;
   EXPECT_EQ(solve_observations(f, {*make_broadcast(without), without}, klobuchar).error().str(),
             "synthetic: ionosphere: \"klobuchar\" needs Klobuchar coefficients, and there are none in it, expected a "
             "navigation file with them, or ionosphere = \"none\"");

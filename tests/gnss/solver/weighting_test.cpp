@@ -10,7 +10,7 @@ namespace canyon::gnss {
 namespace {
 
 double sigma_m(const char* model, const RangeQuality& q, double size_m = 0.5) {
-  return find_model(range_weightings(), model)->make({size_m})->sigma_m(q);
+  return find_model(range_weightings(), model)->make({}, {size_m})->sigma_m(q);
 }
 
 RangeQuality at(double elevation_deg, double cn0_dbhz) {
