@@ -251,7 +251,8 @@ std::vector<RayPacket> driving_rays(const canyon::lidar::LidarConfig& config, co
       path.placements(
           sweep.start_s + pattern.step_s() * static_cast<double>(cycle) + pattern.table().beams[laser].firing_s,
           pattern.step_s(), hint, placements);
-      canyon::lidar::place_shots(aim, placements, 0.0f, static_cast<float>(config.max_range_m), packets.emplace_back());
+      canyon::lidar::place_shots(aim, placements, 0.0f, static_cast<float>(config.report.max_range_m),
+                                 packets.emplace_back());
       for (std::size_t lane = sweep.cycles - cycle; lane < kLanes; ++lane) packets.back().max_m[lane] = -1.0f;
     }
   }
@@ -314,7 +315,7 @@ void footprint_scan(benchmark::State& state) {
   canyon::set_threads(1);
   const canyon::scene::SceneAt scene(city());
   canyon::lidar::LidarConfig config = at_origin();
-  config.model = "footprint";
+  config.model.name = "footprint";
   const canyon::Trajectory motion = driving();
   const auto middle = driving_rays(config, motion);
   const auto offsets = canyon::lidar::footprint_offsets(0.75e-3, 0.375e-3);
@@ -365,13 +366,13 @@ void cost_of(benchmark::State& state, void (*change)(canyon::lidar::LidarConfig&
 }
 using Config = canyon::lidar::LidarConfig;
 BENCHMARK_CAPTURE(
-    cost_of, footprint, [](Config& c) { c.model = "footprint"; }, 0)
+    cost_of, footprint, [](Config& c) { c.model.name = "footprint"; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
-    cost_of, radiometric, [](Config& c) { c.detector = "radiometric"; }, 0)
+    cost_of, radiometric, [](Config& c) { c.detector.name = "radiometric"; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
-    cost_of, dual_returns, [](Config& c) { c.returns = "dual"; }, 0)
+    cost_of, dual_returns, [](Config& c) { c.report.returns = canyon::lidar::ReturnMode::kDual; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
     cost_of, rain, [](Config& c) { c.weather.rain_mm_h = 10; }, 0)
@@ -380,7 +381,7 @@ BENCHMARK_CAPTURE(
     cost_of, fog, [](Config& c) { c.weather.fog_visibility_m = 100; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
-    cost_of, crosstalk, [](Config& c) { c.crosstalk = 1e-3; }, 0)
+    cost_of, crosstalk, [](Config& c) { c.crosstalk.probability = 1e-3; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
     cost_of, angle_noise, [](Config& c) { c.angle_noise_deg = 0.05; }, 0)
@@ -388,15 +389,15 @@ BENCHMARK_CAPTURE(
 BENCHMARK_CAPTURE(
     cost_of, ego_mask,
     [](Config& c) {
-      c.ego_min_m = {-1, -1, -2}, c.ego_max_m = {3, 1, -0.5};
+      c.ego.min_m = {-1, -1, -2}, c.ego.max_m = {3, 1, -0.5};
     },
     0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
-    cost_of, glass, [](Config& c) { c.see_through = "glass"; }, 0)
+    cost_of, glass, [](Config& c) { c.see_through = {.panes = true}; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
-    cost_of, leaves, [](Config& c) { c.see_through = "leaves"; }, 0)
+    cost_of, leaves, [](Config& c) { c.see_through = {.leaves = true}; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
     cost_of, twenty_cars, [](Config&) {}, 20)

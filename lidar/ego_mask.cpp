@@ -5,6 +5,11 @@
 
 namespace canyon::lidar {
 
+void visit(FieldVisitor& f, EgoConfig& c) {
+  f.vector3("ego_min_m", c.min_m, {-100, 100}, "box in the body that hides the vehicle itself: lowest corner");
+  f.vector3("ego_max_m", c.max_m, {-100, 100}, "its highest corner; the same as ego_min_m = no box");
+}
+
 void EgoMask::hide(const AimPacket& aim, scene::RayPacket& rays) const {
   for (std::size_t i = 0; i < AimPacket::kShots; ++i) {
     const Eigen::Vector3d o = X_BL_ * Eigen::Vector3d(aim.origin_x[i], aim.origin_y[i], aim.origin_z[i]);

@@ -1,16 +1,23 @@
 #pragma once
 
+#include "canyon/core/config/config.h"
 #include "canyon/core/motion/rotation.h"
 #include "canyon/lidar/beam/aim.h"
 
 namespace canyon::lidar {
 
+/// Keys of the box.
+struct EgoConfig {
+  Eigen::Vector3d min_m{0, 0, 0}, max_m{0, 0, 0};  ///< corners in B of what the sensor sees of its own vehicle
+};
+void visit(FieldVisitor& f, EgoConfig& c);
+
 /// The sensor's own vehicle as a box in B: shots that would meet it report nothing, as drivers of real sensors have
 /// them dropped. A box without volume hides nothing.
 class EgoMask {
  public:
-  EgoMask(const Eigen::Vector3d& min_B, const Eigen::Vector3d& max_B, const Pose& X_BL)
-      : min_B_(min_B), max_B_(max_B), X_BL_(X_BL), any_(((max_B - min_B).array() > 0).all()) {}
+  EgoMask(const EgoConfig& box, const Pose& X_BL)
+      : min_B_(box.min_m), max_B_(box.max_m), X_BL_(X_BL), any_(((box.max_m - box.min_m).array() > 0).all()) {}
 
   bool any() const { return any_; }
   /// Sets max_m of hidden shots to -1.

@@ -5,10 +5,6 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
-#include "canyon/lidar/beam/echo_model.h"
-#include "canyon/lidar/beam/see_through.h"
-#include "canyon/lidar/receiver/detector.h"
-#include "canyon/lidar/receiver/return_choice.h"
 #include "canyon/lidar/volley_scanner.h"
 
 namespace canyon::lidar {
@@ -18,28 +14,15 @@ Error config_error(const char* key, std::string what, std::string expected) {
   return Error{"", 0, std::string("lidar.") + key, std::move(what), std::move(expected)};
 }
 
-/// The row that a key names.
-template <class Row>
-Result<const Row*> row_of(const std::vector<Row>& rows, const char* key, const std::string& name) {
-  std::string known;
-  for (const Row& row : rows) {
-    if (name == row.name) return &row;
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
-  }
-  std::string what = "unknown ";
-  what.append(key).append(" \"").append(name).append("\"");
-  return config_error(key, std::move(what), "one of " + known);
-}
-
 Status validate(const LidarConfig& c, const BeamTable& table) {
-  if (!(c.min_range_m < c.max_range_m)) {
-    return config_error("min_range_m", number_text(c.min_range_m),
-                        "less than max_range_m, " + number_text(c.max_range_m));
+  if (!(c.report.min_range_m < c.report.max_range_m)) {
+    return config_error("min_range_m", number_text(c.report.min_range_m),
+                        "less than max_range_m, " + number_text(c.report.max_range_m));
   }
-  if (((c.ego_max_m - c.ego_min_m).array() < 0).any()) {
+  if (((c.ego.max_m - c.ego.min_m).array() < 0).any()) {
     return config_error("ego_max_m", "a corner lower than ego_min_m", "ego_min_m or more along each axis");
   }
-  const bool inside = ((c.mount_m - c.ego_min_m).array() > 0).all() && ((c.ego_max_m - c.mount_m).array() > 0).all();
+  const bool inside = ((c.mount_m - c.ego.min_m).array() > 0).all() && ((c.ego.max_m - c.mount_m).array() > 0).all();
   if (inside) {
     return config_error("ego_min_m", "the sensor itself is in the box that hides its own vehicle",
                         "a box that leaves out mount_m");
@@ -74,12 +57,9 @@ Pose sensor_in_body(const LidarConfig& config) {
 Result<std::unique_ptr<Scanner>> make_scanner(const LidarConfig& config, std::uint64_t seed) {
   CANYON_TRY(BeamTable table, load_beam_table(config.beams));
   CANYON_TRY_STATUS(validate(config, table));
-  CANYON_TRY(const EchoModelRow* model, row_of(echo_models(), "model", config.model));
-  CANYON_TRY(const DetectorRow* detector, row_of(detectors(), "detector", config.detector));
-  CANYON_TRY(const ReturnModeRow* returns, row_of(return_modes(), "returns", config.returns));
-  CANYON_TRY_STATUS(row_of(see_through_rows(), "see_through", config.see_through));
-  return make_volley_scanner(config, std::move(table), model->make(config, seed), detector->make(config, seed),
-                             returns->mode, seed);
+  CANYON_TRY(auto model, config.model.make("lidar.model", config, seed));
+  CANYON_TRY(auto detector, config.detector.make("lidar.detector", config, seed));
+  return make_volley_scanner(config, std::move(table), std::move(model), std::move(detector), seed);
 }
 
 }  // namespace canyon::lidar

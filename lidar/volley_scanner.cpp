@@ -21,26 +21,26 @@ namespace canyon::lidar {
 namespace {
 
 /// Noise and bias may bring a surface just beyond the limit into view: eight standard deviations of each.
-double reach_m(const LidarConfig& config) {
-  const double edge_m = config.detector == "radiometric" ? config.pulse_m / (2.0 * config.threshold_snr) : 0.0;
-  return config.max_range_m + 8.0 * (config.range_noise_m + config.range_bias_m + edge_m);
+double reach_m(const LidarConfig& config, const Detector& detector) {
+  return config.report.max_range_m +
+         8.0 * (config.range_noise_m + config.report.range_bias_m + detector.weakest_edge_m());
 }
 
 class VolleyScanner final : public Scanner {
  public:
   VolleyScanner(const LidarConfig& config, BeamTable table, std::unique_ptr<EchoModel> model,
-                std::unique_ptr<Detector> detector, ReturnMode returns, std::uint64_t seed)
+                std::unique_ptr<Detector> detector, std::uint64_t seed)
       : config_(config),
         period_s_(1.0 / config.rate_hz),
-        reach_m_(reach_m(config)),
+        reach_m_(reach_m(config, *detector)),
         X_BL_(sensor_in_body(config)),
         pattern_(std::move(table), config.rate_hz, static_cast<std::size_t>(config.azimuth_steps)),
         model_(std::move(model)),
         detector_(std::move(detector)),
         weather_(config, seed),
         crosstalk_(config, seed),
-        report_(config, returns, pattern_, seed),
-        ego_(config.ego_min_m, config.ego_max_m, X_BL_),
+        report_(config.report, config.signal, pattern_, seed),
+        ego_(config.ego, X_BL_),
         angle_noise_(seed, "lidar.angle") {}
 
   using Scanner::scan;
@@ -122,7 +122,7 @@ class VolleyScanner final : public Scanner {
     out.resize(pattern_.lasers() * sweep.cycles);
     // Laser by laser over many cycles: long runs of neighbouring rays.
     constexpr std::size_t kPackets = 16, kCycles = kPackets * Volley::kLanes;
-    const auto max_m = static_cast<float>(config_.max_range_m);
+    const auto max_m = static_cast<float>(config_.report.max_range_m);
     const bool plain = !(config_.angle_noise_deg > 0) && !ego_.any();
     parallel_for((sweep.cycles + kCycles - 1) / kCycles, 1, [&](std::size_t stripe, std::size_t) {
       const std::size_t first = stripe * kCycles, cycles = std::min(kCycles, sweep.cycles - first);
@@ -296,9 +296,8 @@ class VolleyScanner final : public Scanner {
 
 std::unique_ptr<Scanner> make_volley_scanner(const LidarConfig& config, BeamTable table,
                                              std::unique_ptr<EchoModel> model, std::unique_ptr<Detector> detector,
-                                             ReturnMode returns, std::uint64_t seed) {
-  return std::make_unique<VolleyScanner>(config, std::move(table), std::move(model), std::move(detector), returns,
-                                         seed);
+                                             std::uint64_t seed) {
+  return std::make_unique<VolleyScanner>(config, std::move(table), std::move(model), std::move(detector), seed);
 }
 
 }  // namespace canyon::lidar

@@ -6,7 +6,6 @@
 #include "canyon/lidar/beam/beam_table.h"
 #include "canyon/lidar/beam/echo_model.h"
 #include "canyon/lidar/receiver/detector.h"
-#include "canyon/lidar/receiver/return_choice.h"
 #include "canyon/lidar/scanner.h"
 
 namespace canyon::lidar {
@@ -14,6 +13,6 @@ namespace canyon::lidar {
 /// The scanner: volley by volley through the chain of its models, volleys side by side on all threads.
 std::unique_ptr<Scanner> make_volley_scanner(const LidarConfig& config, BeamTable table,
                                              std::unique_ptr<EchoModel> model, std::unique_ptr<Detector> detector,
-                                             ReturnMode returns, std::uint64_t seed);
+                                             std::uint64_t seed);
 
 }  // namespace canyon::lidar

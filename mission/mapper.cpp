@@ -42,7 +42,7 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
   keyframe.X_WL_prior = keyframe.X_WL_registered = estimate.X_WB * X_BL_;
   keyframe.points = scan.points.size();
   Matrix6d covariance = moved(estimate.pose_covariance, X_BL_);
-  if (config_.method != "none") {
+  if (registers(config_)) {
     std::vector<Eigen::Vector3f> points;
     points.reserve(scan.points.size());
     for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);

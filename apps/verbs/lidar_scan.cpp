@@ -80,7 +80,7 @@ Result<int> run(const Options& options) {
                    {"start", drive.start.iso(9)},
                    {"rate_hz", drive.lidar.rate_hz},
                    {"beams", drive.lidar.beams},
-                   {"model", drive.lidar.model},
+                   {"model", drive.lidar.model.name},
                    {"timing",
                     {{"scanning_s", cost.scanning_s},
                      {"ms_per_scan", 1e3 * cost.scanning_s / static_cast<double>(drive.scans)},
@@ -89,7 +89,7 @@ Result<int> run(const Options& options) {
     return 0;
   }
   std::printf("%lld scans with %s, %s: %lld rays, %lld points\n", static_cast<long long>(drive.scans),
-              drive.lidar.beams.c_str(), drive.lidar.model.c_str(), static_cast<long long>(cost.rays),
+              drive.lidar.beams.c_str(), drive.lidar.model.name.c_str(), static_cast<long long>(cost.rays),
               static_cast<long long>(cost.points));
   std::printf("Scanned in %.3f s: %.2f ms per scan, %.1f million rays per second\n", cost.scanning_s,
               1e3 * cost.scanning_s / static_cast<double>(drive.scans),

@@ -2,10 +2,11 @@
 
 namespace canyon::lidar {
 
-const std::vector<EchoModelRow>& echo_models() {
-  static const std::vector<EchoModelRow> kRows{
-      {"single_ray", &make_single_ray, "one infinitely thin ray per shot"},
-      {"footprint", &make_footprint, "a beam of `divergence_mrad`, 16 rays: mixed pixels, several returns"},
+ModelTable<MakeEchoModel> echo_models() {
+  static constexpr ModelRow<MakeEchoModel> kRows[] = {
+      {"single_ray", make_single_ray, "one infinitely thin ray per shot"},
+      {"footprint", make_footprint, "a beam of `divergence_mrad`, 16 rays: mixed pixels, several returns",
+       footprint_parameters},
   };
   return kRows;
 }

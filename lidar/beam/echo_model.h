@@ -1,16 +1,16 @@
 #pragma once
 
 #include <memory>
-#include <string>
-#include <vector>
 
+#include "canyon/core/model_choice.h"
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/surfaces.h"
 #include "canyon/lidar/beam/volley.h"
-#include "canyon/lidar/lidar_config.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::lidar {
+
+struct LidarConfig;
 
 /// How a beam meets the scene. Const and thread-safe: volleys are traced side by side.
 class EchoModel {
@@ -22,15 +22,13 @@ class EchoModel {
   virtual std::size_t rays_per_shot() const = 0;
 };
 
-/// One row per model: `[lidar] model`.
-struct EchoModelRow {
-  const char* name;
-  std::unique_ptr<EchoModel> (*make)(const LidarConfig& config, std::uint64_t seed);
-  const char* doc;
-};
-const std::vector<EchoModelRow>& echo_models();
+/// `[lidar] model`.
+using MakeEchoModel = std::unique_ptr<EchoModel>(const ModelParameters& own, const LidarConfig& config,
+                                                 std::uint64_t seed);
+ModelTable<MakeEchoModel> echo_models();
 
-std::unique_ptr<EchoModel> make_single_ray(const LidarConfig& config, std::uint64_t seed);
-std::unique_ptr<EchoModel> make_footprint(const LidarConfig& config, std::uint64_t seed);
+std::unique_ptr<EchoModel> make_single_ray(const ModelParameters& own, const LidarConfig& config, std::uint64_t seed);
+std::unique_ptr<EchoModel> make_footprint(const ModelParameters& own, const LidarConfig& config, std::uint64_t seed);
+void footprint_parameters(ModelParameters& section);
 
 }  // namespace canyon::lidar

@@ -4,13 +4,21 @@
 #include <span>
 
 #include "canyon/core/units.h"
-#include "canyon/lidar/beam/echo_model.h"
 #include "canyon/lidar/beam/footprint_rays.h"
 #include "canyon/lidar/beam/see_through.h"
+#include "canyon/lidar/lidar_config.h"
 #include "canyon/lidar/receiver/glint_sum.h"
 
 namespace canyon::lidar {
 namespace {
+
+struct FootprintParameters {
+  Eigen::Vector2d divergence_mrad{3.0, 1.5};  ///< VLP-16 manual: full width, across and along the spin axis
+};
+void visit(FieldVisitor& f, FootprintParameters& c) {
+  f.vector2("divergence_mrad", c.divergence_mrad, {0, 100},
+            "full width of the beam at 1/e^2 of its middle: along the turn of the head and along its axis (footprint)");
+}
 
 constexpr int kSubRays = FootprintOffsets::kRays;
 
@@ -23,11 +31,11 @@ constexpr int kSubRays = FootprintOffsets::kRays;
 /// panes and leaves (`see_through`) a sub-ray goes on by itself.
 class Footprint final : public EchoModel {
  public:
-  Footprint(const LidarConfig& config, std::uint64_t seed)
-      : pulse_m_(static_cast<float>(config.pulse_m)),
-        overlap_m2_(full_overlap_m2(config)),
-        see_through_(config, seed),
-        offsets_(footprint_offsets(1e-3 * config.divergence_mrad[0] / 4.0, 1e-3 * config.divergence_mrad[1] / 4.0)) {}
+  Footprint(const FootprintParameters& p, const LidarConfig& config, std::uint64_t seed)
+      : pulse_m_(static_cast<float>(config.signal.pulse_m)),
+        overlap_m2_(full_overlap_m2(config.signal)),
+        see_through_(config.see_through, seed),
+        offsets_(footprint_offsets(1e-3 * p.divergence_mrad[0] / 4.0, 1e-3 * p.divergence_mrad[1] / 4.0)) {}
 
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
     constexpr std::size_t kBeams = 16;  // at once: what they need stays in the nearest cache
@@ -123,8 +131,12 @@ class Footprint final : public EchoModel {
 
 }  // namespace
 
-std::unique_ptr<EchoModel> make_footprint(const LidarConfig& config, std::uint64_t seed) {
-  return std::make_unique<Footprint>(config, seed);
+void footprint_parameters(ModelParameters& section) {
+  section.add<FootprintParameters>();
+}
+
+std::unique_ptr<EchoModel> make_footprint(const ModelParameters& own, const LidarConfig& config, std::uint64_t seed) {
+  return std::make_unique<Footprint>(own.get<FootprintParameters>(), config, seed);
 }
 
 }  // namespace canyon::lidar

@@ -28,20 +28,18 @@ bool is_crown_leaf(std::uint32_t triangle, const scene::SceneAt::Surface& surfac
 
 }  // namespace
 
-const std::vector<SeeThroughRow>& see_through_rows() {
-  static const std::vector<SeeThroughRow> kRows{
-      {"nothing", false, false, "every surface stops the light"},
-      {"glass", true, false, "light goes on behind panes"},
-      {"leaves", false, true, "light goes on through the gaps of tree crowns"},
-      {"both", true, true, "behind panes and through crowns"},
+ModelTable<Transparent> see_through_rows() {
+  static constexpr ModelRow<Transparent> kRows[] = {
+      {"nothing", {false, false}, "every surface stops the light"},
+      {"glass", {true, false}, "light goes on behind panes"},
+      {"leaves", {false, true}, "light goes on through the gaps of tree crowns"},
+      {"both", {true, true}, "behind panes and through crowns"},
   };
   return kRows;
 }
 
-SeeThrough::SeeThrough(const LidarConfig& config, std::uint64_t seed) : stream_(seed, "lidar.leaves") {
-  for (const SeeThroughRow& row : see_through_rows())
-    if (config.see_through == row.name) panes_ = row.panes, leaves_ = row.leaves;
-}
+SeeThrough::SeeThrough(Transparent through, std::uint64_t seed)
+    : panes_(through.panes), leaves_(through.leaves), stream_(seed, "lidar.leaves") {}
 
 void SeeThrough::follow(const Shot& shot, const scene::HitPacket& first, std::size_t lane, const scene::SceneAt& scene,
                         const Surfaces& surfaces, std::vector<Echo>& out) const {

@@ -4,21 +4,20 @@
 #include <string>
 #include <vector>
 
+#include "canyon/core/model_table.h"
 #include "canyon/core/random/random.h"
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/surfaces.h"
-#include "canyon/lidar/lidar_config.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::lidar {
 
 /// What light goes on behind: `[lidar] see_through`.
-struct SeeThroughRow {
-  const char* name;
-  bool panes, leaves;
-  const char* doc;
+struct Transparent {
+  bool panes = false, leaves = false;
+  bool operator==(const Transparent&) const = default;
 };
-const std::vector<SeeThroughRow>& see_through_rows();
+ModelTable<Transparent> see_through_rows();
 
 /// One ray of a packet whose origins are relative to origin_W.
 inline scene::Ray ray_of(const scene::RayPacket& p, std::size_t lane, const Eigen::Vector3d& origin_W) {
@@ -42,7 +41,7 @@ inline scene::Ray ray_of(const scene::RayPacket& p, std::size_t lane, const Eige
 /// + 1: tilt. Const and thread-safe.
 class SeeThrough {
  public:
-  SeeThrough(const LidarConfig& config, std::uint64_t seed);
+  SeeThrough(Transparent through, std::uint64_t seed);
 
   bool any() const { return panes_ || leaves_; }
   bool leaves() const { return leaves_; }

@@ -1,12 +1,11 @@
-#include "canyon/lidar/beam/echo_model.h"
-#include "canyon/lidar/beam/see_through.h"
+#include "canyon/lidar/lidar_config.h"
 
 namespace canyon::lidar {
 namespace {
 
 class SingleRay final : public EchoModel {
  public:
-  SingleRay(const LidarConfig& config, std::uint64_t seed) : see_through_(config, seed) {}
+  SingleRay(const LidarConfig& config, std::uint64_t seed) : see_through_(config.see_through, seed) {}
 
   void trace(const Volley& volley, const scene::SceneAt& scene, const Surfaces& surfaces, Echoes& out) const override {
     thread_local std::vector<scene::HitPacket> hits;
@@ -39,7 +38,7 @@ class SingleRay final : public EchoModel {
 
 }  // namespace
 
-std::unique_ptr<EchoModel> make_single_ray(const LidarConfig& config, std::uint64_t seed) {
+std::unique_ptr<EchoModel> make_single_ray(const ModelParameters&, const LidarConfig& config, std::uint64_t seed) {
   return std::make_unique<SingleRay>(config, seed);
 }
 

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/core/check.h"
 #include "canyon/core/units.h"
-#include "canyon/lidar/receiver/detector.h"
+#include "canyon/lidar/lidar_config.h"
 
 namespace canyon::lidar {
 namespace {
@@ -33,17 +32,10 @@ double by_visibility(double visibility_m, double wavelength_nm, double exponent)
   return 3.912 / visibility_m * std::pow(wavelength_nm / 550.0, -exponent);  // 2 % contrast at 550 nm
 }
 
-/// Rows by name; the configuration has checked it.
-const ExtinctionLaw& law(const std::vector<ExtinctionLaw>& laws, const std::string& name) {
-  for (const ExtinctionLaw& row : laws)
-    if (name == row.name) return row;
-  throw ProgramError("no law " + name);
-}
-
 }  // namespace
 
-const std::vector<ExtinctionLaw>& rain_laws() {
-  static const std::vector<ExtinctionLaw> kRows{
+ModelTable<ExtinctionLaw> rain_laws() {
+  static constexpr ModelRow<ExtinctionLaw> kRows[] = {
       {"marshall_palmer", [](double r, double) { return 3.6e-4 * std::pow(r, 0.63); },
        "3.6e-4 R^0.63 1/m: drops of Marshall and Palmer 1948 with twice their cross-section"},
       {"carbonneau", [](double r, double) { return 1.076 * kPerDbPerKm * std::pow(r, 0.67); },
@@ -54,8 +46,8 @@ const std::vector<ExtinctionLaw>& rain_laws() {
   return kRows;
 }
 
-const std::vector<ExtinctionLaw>& fog_laws() {
-  static const std::vector<ExtinctionLaw> kRows{
+ModelTable<ExtinctionLaw> fog_laws() {
+  static constexpr ModelRow<ExtinctionLaw> kRows[] = {
       {"kruse", [](double v, double l) { return by_visibility(v, l, kruse_exponent(1e-3 * v)); },
        "Kruse 1962, as for haze"},
       {"kim", [](double v, double l) { return by_visibility(v, l, kim_exponent(1e-3 * v)); },
@@ -64,8 +56,8 @@ const std::vector<ExtinctionLaw>& fog_laws() {
   return kRows;
 }
 
-const std::vector<ExtinctionLaw>& snow_laws() {
-  static const std::vector<ExtinctionLaw> kRows{
+ModelTable<ExtinctionLaw> snow_laws() {
+  static constexpr ModelRow<ExtinctionLaw> kRows[] = {
       {"wet", [](double s, double l) { return (1.023e-4 * l + 3.7855466) * kPerDbPerKm * std::pow(s, 0.72); },
        "ITU-R P.1817-1 table 2, wet snow"},
       {"dry", [](double s, double l) { return (5.42e-5 * l + 5.4958776) * kPerDbPerKm * std::pow(s, 1.38); },
@@ -80,34 +72,45 @@ double dust_extinction_1_m(double visibility_m) {
   return 52.0 * kPerDbPerKm * std::pow(1e-3 * visibility_m, -1.05);  // dB/km by km
 }
 
-Weather::Weather(const LidarConfig& config, std::uint64_t seed) : config_(config), stream_(seed, "lidar.weather") {
+void visit(FieldVisitor& f, WeatherConfig& c) {
+  f.number("rain_mm_h", c.rain_mm_h, {0, 500}, "rain rate; 0 = none");
+  f.choice("rain_law", c.rain_law, model_names(rain_laws()), with_rows("extinction by rain", rain_laws()).c_str());
+  f.number("fog_visibility_m", c.fog_visibility_m, {0, 1e5}, "visibility in fog or haze (2 % contrast); 0 = none");
+  f.choice("fog_law", c.fog_law, model_names(fog_laws()),
+           with_rows("how extinction depends on visibility and wavelength", fog_laws()).c_str());
+  f.number("snow_mm_h", c.snow_mm_h, {0, 100}, "snowfall as water; 0 = none");
+  f.choice("snow_law", c.snow_law, model_names(snow_laws()), with_rows("extinction by snow", snow_laws()).c_str());
+  f.number("dust_visibility_m", c.dust_visibility_m, {0, 1e5}, "visibility in dust; 0 = none");
+  f.flag("false_returns", c.false_returns, "drops, flakes and dust also send light back");
+}
+
+Weather::Weather(const LidarConfig& config, std::uint64_t seed)
+    : signal_(config.signal), min_range_m_(config.report.min_range_m), stream_(seed, "lidar.weather") {
   const WeatherConfig& w = config.weather;
   const auto add = [this](double extinction_1_m, double ratio_sr) {
     extinction_1_m_ += extinction_1_m;
     backscatter_1_m_sr_ += extinction_1_m / ratio_sr;
   };
-  if (w.rain_mm_h > 0)
-    add(law(rain_laws(), w.rain_law).extinction_1_m(w.rain_mm_h, config.wavelength_nm), kWaterRatio_sr);
+  if (w.rain_mm_h > 0) add(model_row(rain_laws(), w.rain_law).make(w.rain_mm_h, config.wavelength_nm), kWaterRatio_sr);
   if (w.fog_visibility_m > 0)
-    add(law(fog_laws(), w.fog_law).extinction_1_m(w.fog_visibility_m, config.wavelength_nm), kWaterRatio_sr);
-  if (w.snow_mm_h > 0)
-    add(law(snow_laws(), w.snow_law).extinction_1_m(w.snow_mm_h, config.wavelength_nm), kSnowRatio_sr);
+    add(model_row(fog_laws(), w.fog_law).make(w.fog_visibility_m, config.wavelength_nm), kWaterRatio_sr);
+  if (w.snow_mm_h > 0) add(model_row(snow_laws(), w.snow_law).make(w.snow_mm_h, config.wavelength_nm), kSnowRatio_sr);
   if (w.dust_visibility_m > 0) add(dust_extinction_1_m(w.dust_visibility_m), kDustRatio_sr);
   if (clear() || !w.false_returns) return;
   double silent = 1.0;
-  for (double cell_m = config.min_range_m; cell_m < config.max_range_m; cell_m += config.pulse_m) {
-    silent *= 1.0 - std::exp(-1.0 / mean_signal(cell_m + 0.5 * config.pulse_m));
+  for (double cell_m = min_range_m_; cell_m < config.report.max_range_m; cell_m += signal_.pulse_m) {
+    silent *= 1.0 - std::exp(-1.0 / mean_signal(cell_m + 0.5 * signal_.pulse_m));
     answered_.push_back(1.0 - silent);
   }
 }
 
 double Weather::mean_signal(double range_m) const {
-  const double reflectivity = kPi * backscatter_1_m_sr_ * config_.pulse_m;
-  return reflectivity * signal_gain(config_, range_m) * std::exp(-2.0 * extinction_1_m_ * range_m);
+  const double reflectivity = kPi * backscatter_1_m_sr_ * signal_.pulse_m;
+  return reflectivity * signal_gain(signal_, range_m) * std::exp(-2.0 * extinction_1_m_ * range_m);
 }
 
 double Weather::false_return_probability(double range_m) const {
-  const double cells = (range_m - config_.min_range_m) / config_.pulse_m;
+  const double cells = (range_m - min_range_m_) / signal_.pulse_m;
   if (answered_.empty() || cells <= 0) return 0.0;
   const auto k = static_cast<std::size_t>(cells);
   if (k >= answered_.size()) return answered_.back();
@@ -119,12 +122,11 @@ Echo Weather::false_return(std::uint32_t laser, std::uint64_t draw, double surfa
   const double u = stream_.uniform(laser, draw, 0);
   if (u >= answered_.back()) return {};
   const auto cell = std::upper_bound(answered_.begin(), answered_.end(), u) - answered_.begin();
-  const double range_m =
-      config_.min_range_m + config_.pulse_m * (static_cast<double>(cell) + stream_.uniform(laser, draw, 1));
+  const double range_m = min_range_m_ + signal_.pulse_m * (static_cast<double>(cell) + stream_.uniform(laser, draw, 1));
   if (range_m >= surface_m) return {};
   const double signal = 1.0 - mean_signal(range_m) * std::log(1.0 - stream_.uniform(laser, draw, 2));
   return {{static_cast<float>(range_m), 1.0f, kNoMaterial, kNoObject},
-          static_cast<float>(signal / signal_gain(config_, range_m))};
+          static_cast<float>(signal / signal_gain(signal_, range_m))};
 }
 
 void Weather::apply(const Volley& volley, Echoes& echoes) const {

@@ -1,27 +1,38 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "canyon/core/model_table.h"
 #include "canyon/core/random/random.h"
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/volley.h"
-#include "canyon/lidar/lidar_config.h"
+#include "canyon/lidar/receiver/detector.h"
 
 namespace canyon::lidar {
 
-/// Extinction by one kind of particle, 1/m.
-struct ExtinctionLaw {
-  const char* name;
-  double (*extinction_1_m)(double amount, double wavelength_nm);
-  const char* doc;
+/// [lidar.weather]: what is in the air between sensor and surfaces. Several may be at once; 0 = none.
+struct WeatherConfig {
+  double rain_mm_h = 0.0;
+  std::string rain_law = "marshall_palmer";
+  double fog_visibility_m = 0.0;
+  std::string fog_law = "kruse";
+  double snow_mm_h = 0.0;  ///< as water
+  std::string snow_law = "wet";
+  double dust_visibility_m = 0.0;
+  bool false_returns = true;  ///< drops, flakes and dust also send light back
 };
+void visit(FieldVisitor& f, WeatherConfig& c);
+
+/// Extinction by one kind of particle, 1/m.
+using ExtinctionLaw = double(double amount, double wavelength_nm);
 /// By rain rate, mm/h.
-const std::vector<ExtinctionLaw>& rain_laws();
+ModelTable<ExtinctionLaw> rain_laws();
 /// By visibility, m.
-const std::vector<ExtinctionLaw>& fog_laws();
+ModelTable<ExtinctionLaw> fog_laws();
 /// By snowfall as water, mm/h.
-const std::vector<ExtinctionLaw>& snow_laws();
+ModelTable<ExtinctionLaw> snow_laws();
 /// By visibility, m.
 double dust_extinction_1_m(double visibility_m);
 
@@ -51,7 +62,8 @@ class Weather {
   Echo false_return(std::uint32_t laser, std::uint64_t draw, double surface_m) const;
   double mean_signal(double range_m) const;
 
-  LidarConfig config_;
+  SignalConfig signal_;
+  double min_range_m_;
   double extinction_1_m_ = 0.0, backscatter_1_m_sr_ = 0.0;
   std::vector<double> answered_;  ///< probability that one of cells 0..k answers
   RandomStream stream_;

@@ -1,5 +1,5 @@
 #include "canyon/core/process/vector_clones.h"
-#include "canyon/lidar/receiver/detector.h"
+#include "canyon/lidar/lidar_config.h"
 
 namespace canyon::lidar {
 namespace {
@@ -39,7 +39,7 @@ class IdealDetector final : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> make_ideal_detector(const LidarConfig& config, std::uint64_t seed) {
+std::unique_ptr<Detector> make_ideal_detector(const ModelParameters&, const LidarConfig& config, std::uint64_t seed) {
   return std::make_unique<IdealDetector>(config, seed);
 }
 

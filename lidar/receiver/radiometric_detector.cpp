@@ -1,10 +1,22 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/lidar/receiver/detector.h"
+#include "canyon/lidar/lidar_config.h"
 
 namespace canyon::lidar {
 namespace {
+
+struct RadiometricParameters {
+  double threshold_snr = 6.0;
+  double saturation = 1000.0;
+  double saturation_walk_m = 0.0;
+};
+void visit(FieldVisitor& f, RadiometricParameters& c) {
+  f.number("threshold_snr", c.threshold_snr, {0.1, 1e3}, "detection threshold over the receiver's noise (radiometric)");
+  f.number("saturation", c.saturation, {1, 1e9}, "signal over threshold from which the receiver clips (radiometric)");
+  f.number("saturation_walk_m", c.saturation_walk_m, {0, 10},
+           "how much a clipped range reads short, for every factor of ten (radiometric)");
+}
 
 /// The radar equation of a target that fills the beam: received energy is proportional to apparent reflectivity /
 /// range^2. It is counted in units of the detection threshold, and scaled so that a Lambertian target of 10 % square to
@@ -22,8 +34,12 @@ namespace {
 /// Streams "lidar.signal" and "lidar.range", entity = laser, index = firing cycle, n = echo of the shot.
 class RadiometricDetector final : public Detector {
  public:
-  RadiometricDetector(const LidarConfig& config, std::uint64_t seed)
-      : config_(config), range_noise_(seed, "lidar.range"), signal_noise_(seed, "lidar.signal") {}
+  RadiometricDetector(const RadiometricParameters& p, const LidarConfig& config, std::uint64_t seed)
+      : p_(p),
+        signal_(config.signal),
+        sigma_m_(config.range_noise_m),
+        range_noise_(seed, "lidar.range"),
+        signal_noise_(seed, "lidar.signal") {}
 
   void detect(const Volley& volley, Echoes& echoes) const override {
     thread_local std::vector<double> range_normals, signal_normals;
@@ -37,32 +53,41 @@ class RadiometricDetector final : public Detector {
     }
   }
 
+  double weakest_edge_m() const override { return signal_.pulse_m / (2.0 * p_.threshold_snr); }
+
  private:
   void detect(EchoPacket& echoes, std::size_t lane, double signal_normal, double range_normal) const {
     echoes.measured_m[lane] = 0;
     echoes.intensity[lane] = 0;
     const float range_m = echoes.range_m[lane];
     if (range_m == Echo{}.truth.range_m) return;
-    const double gain = signal_gain(config_, range_m);
+    const double gain = signal_gain(signal_, range_m);
     const double signal = echoes.reflectivity[lane] * gain;
-    const double received = signal + signal_normal / config_.threshold_snr;
+    const double received = signal + signal_normal / p_.threshold_snr;
     if (!(received > 1.0)) return;
-    const double edge_m = config_.pulse_m / (2.0 * config_.threshold_snr * std::max(signal, 1.0));
-    const double sigma_m = std::sqrt(config_.range_noise_m * config_.range_noise_m + edge_m * edge_m);
+    const double edge_m = signal_.pulse_m / (2.0 * p_.threshold_snr * std::max(signal, 1.0));
+    const double sigma_m = std::sqrt(sigma_m_ * sigma_m_ + edge_m * edge_m);
     double measured_m = range_m + sigma_m * range_normal;
-    if (signal > config_.saturation) measured_m -= config_.saturation_walk_m * std::log10(signal / config_.saturation);
+    if (signal > p_.saturation) measured_m -= p_.saturation_walk_m * std::log10(signal / p_.saturation);
     echoes.measured_m[lane] = static_cast<float>(measured_m);
     echoes.intensity[lane] = static_cast<float>(std::clamp(received / gain, 0.0, 1.0));
   }
 
-  LidarConfig config_;
+  RadiometricParameters p_;
+  SignalConfig signal_;
+  double sigma_m_;  ///< of the range of a bright echo
   RandomStream range_noise_, signal_noise_;
 };
 
 }  // namespace
 
-std::unique_ptr<Detector> make_radiometric_detector(const LidarConfig& config, std::uint64_t seed) {
-  return std::make_unique<RadiometricDetector>(config, seed);
+void radiometric_parameters(ModelParameters& section) {
+  section.add<RadiometricParameters>();
+}
+
+std::unique_ptr<Detector> make_radiometric_detector(const ModelParameters& own, const LidarConfig& config,
+                                                    std::uint64_t seed) {
+  return std::make_unique<RadiometricDetector>(own.get<RadiometricParameters>(), config, seed);
 }
 
 }  // namespace canyon::lidar

@@ -12,8 +12,8 @@ const DetectedEcho* strongest(const DetectedEcho* begin, const DetectedEcho* end
 
 }  // namespace
 
-const std::vector<ReturnModeRow>& return_modes() {
-  static const std::vector<ReturnModeRow> kRows{
+ModelTable<ReturnMode> return_modes() {
+  static constexpr ModelRow<ReturnMode> kRows[] = {
       {"strongest", ReturnMode::kStrongest, "the one of most energy"},
       {"first", ReturnMode::kFirst, "the nearest"},
       {"last", ReturnMode::kLast, "the farthest"},

@@ -1,21 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
+
+#include "canyon/core/model_table.h"
 
 namespace canyon::lidar {
 
 /// Which of a shot's detected echoes the sensor reports: `[lidar] returns`.
 enum class ReturnMode : std::uint8_t { kStrongest, kFirst, kLast, kDual, kAll };
 
-/// Rows of the configuration's list.
-struct ReturnModeRow {
-  const char* name;
-  ReturnMode mode;
-  const char* doc;
-};
-const std::vector<ReturnModeRow>& return_modes();
+ModelTable<ReturnMode> return_modes();
 
 /// A detected echo of a shot: its layer, and the energy received (full_overlap_m2()).
 struct DetectedEcho {

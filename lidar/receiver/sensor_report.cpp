@@ -55,12 +55,22 @@ CANYON_VECTOR_CLONES void place_points(const float* ranges, const AimPacket& aim
 
 }  // namespace
 
-SensorReport::SensorReport(const LidarConfig& config, ReturnMode mode, const FiringPattern& pattern, std::uint64_t seed)
-    : mode_(mode),
+void visit(FieldVisitor& f, ReportConfig& c) {
+  f.choice("returns", c.returns, return_modes(),
+           with_rows("which echoes of a shot are reported", return_modes()).c_str());
+  f.number("min_range_m", c.min_range_m, {0, 1e4}, "shorter measured ranges are not reported");
+  f.number("max_range_m", c.max_range_m, {0, 1e4}, "longer measured ranges are not reported");
+  f.number("range_quantum_m", c.range_quantum_m, {0, 1}, "step of the reported range; 0 = continuous");
+  f.number("range_bias_m", c.range_bias_m, {0, 10}, "1-sigma of the constant range bias of each laser");
+}
+
+SensorReport::SensorReport(const ReportConfig& config, const SignalConfig& signal, const FiringPattern& pattern,
+                           std::uint64_t seed)
+    : mode_(config.returns),
       quantum_m_(config.range_quantum_m),
       min_m_(config.min_range_m),
       max_m_(config.max_range_m),
-      overlap_m2_(full_overlap_m2(config)),
+      overlap_m2_(full_overlap_m2(signal)),
       firing_order_(pattern.firing_order()) {
   const RandomStream bias(seed, "lidar.range_bias");
   for (std::uint32_t laser = 0; laser < pattern.lasers(); ++laser) {

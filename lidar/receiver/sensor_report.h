@@ -8,7 +8,7 @@
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/firing_pattern.h"
 #include "canyon/lidar/beam/volley.h"
-#include "canyon/lidar/lidar_config.h"
+#include "canyon/lidar/receiver/detector.h"
 #include "canyon/lidar/receiver/return_choice.h"
 
 namespace canyon::lidar {
@@ -33,11 +33,22 @@ struct VolleyReturns {
   std::size_t total = 0;  ///< of returns
 };
 
+/// Keys of what the sensor reports.
+struct ReportConfig {
+  ReturnMode returns = ReturnMode::kStrongest;
+  double min_range_m = 0.9;
+  double max_range_m = 100.0;
+  double range_quantum_m = 0.002;
+  double range_bias_m = 0.0;  ///< 1-sigma of each laser's constant bias
+};
+void visit(FieldVisitor& f, ReportConfig& c);
+
 /// The sensor's last steps: which of the detected echoes it reports, with the bias of their laser, in whole quanta,
 /// within its limits, where the sensor believes it pointed.
 class SensorReport {
  public:
-  SensorReport(const LidarConfig& config, ReturnMode mode, const FiringPattern& pattern, std::uint64_t seed);
+  SensorReport(const ReportConfig& config, const SignalConfig& signal, const FiringPattern& pattern,
+               std::uint64_t seed);
 
   void choose(const Volley& volley, const Echoes& echoes, VolleyReturns& out) const;
   /// The most returns that a shot has; 0: any number.

@@ -3,8 +3,8 @@
 
 namespace canyon::lidar {
 
-std::unique_ptr<Registration> make_gicp(const RegistrationConfig& config) {
-  return library_part("pcl", &canyon_pcl_part).make_gicp(config);
+std::unique_ptr<Registration> make_gicp(const ModelParameters& own) {
+  return library_part("pcl", &canyon_pcl_part).make_gicp(own.get<MatchingParameters>());
 }
 
 }  // namespace canyon::lidar

@@ -20,7 +20,7 @@ class NoRegistration final : public Registration {
 
 }  // namespace
 
-std::unique_ptr<Registration> make_no_registration(const RegistrationConfig&) {
+std::unique_ptr<Registration> make_no_registration(const ModelParameters&) {
   return std::make_unique<NoRegistration>();
 }
 

@@ -144,7 +144,7 @@ Eigen::Matrix3d plane_covariance(const Eigen::Vector3d& normal) {
 
 class GicpRegistration final : public Registration {
  public:
-  explicit GicpRegistration(const RegistrationConfig& config) : config_(config) {}
+  explicit GicpRegistration(const MatchingParameters& config) : config_(config) {}
 
   std::shared_ptr<const PreparedCloud> prepare(std::span<const Eigen::Vector3f> points) const override {
     return std::make_shared<PreparedCloud>(prepare_cloud(points, config_.leaf_m));
@@ -243,10 +243,10 @@ class GicpRegistration final : public Registration {
     return target;
   }
 
-  RegistrationConfig config_;
+  MatchingParameters config_;
 };
 
-std::unique_ptr<Registration> make(const RegistrationConfig& config) {
+std::unique_ptr<Registration> make(const MatchingParameters& config) {
   return std::make_unique<GicpRegistration>(config);
 }
 

@@ -9,7 +9,7 @@ namespace canyon::lidar {
 
 /// What stands on PCL (core/process/library_part.h).
 struct PclPart {
-  std::unique_ptr<Registration> (*make_gicp)(const RegistrationConfig& config);
+  std::unique_ptr<Registration> (*make_gicp)(const MatchingParameters& config);
 };
 extern "C" [[gnu::weak]] const PclPart canyon_pcl_part;
 

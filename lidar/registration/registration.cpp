@@ -1,37 +1,33 @@
 #include "canyon/lidar/registration/registration.h"
 
-#include "canyon/core/config/text.h"
 #include "canyon/lidar/registration/registration_methods.h"
 
 namespace canyon::lidar {
 namespace {
 
-struct Row {
-  const char* name;
-  std::unique_ptr<Registration> (*make)(const RegistrationConfig&);  ///< nullptr: left out when Canyon was built
-  const char* needs;                                                 ///< the build option
-  const char* doc;
-};
-
-constexpr Row kMethods[] = {
-    {"none", &make_no_registration, "", "believes the prior pose"},
+constexpr ModelRow<RegistrationMethod> kMethods[] = {
+    {"none", {make_no_registration, "", false}, "believes the prior pose"},
 #ifdef CANYON_WITH_PCL
-    {"gicp", &make_gicp, "CANYON_WITH_PCL", "generalized ICP, plane to plane (PCL)"},
+    {"gicp",
+     {make_gicp, "CANYON_WITH_PCL"},
+     "generalized ICP, plane to plane (PCL)",
+     parameters_of<MatchingParameters>},
 #else
-    {"gicp", nullptr, "CANYON_WITH_PCL", "generalized ICP, plane to plane (PCL)"},
+    {"gicp", {nullptr, "CANYON_WITH_PCL"}, "generalized ICP, plane to plane (PCL)", parameters_of<MatchingParameters>},
 #endif
 };
 
 }  // namespace
 
-void visit(FieldVisitor& f, RegistrationConfig& c) {
-  // Every known method is a valid choice here; make_registration says what this build can do.
-  std::vector<std::string> known;
-  for (const Row& row : kMethods) known.emplace_back(row.name);
-  f.choice("method", c.method, known, "how keyframes are registered onto the map");
+void visit(FieldVisitor& f, MatchingParameters& c) {
   f.number("leaf_m", c.leaf_m, {0.01, 100}, "voxel size to which both clouds are thinned");
   f.number("max_correspondence_m", c.max_correspondence_m, {0.01, 100}, "points farther apart are not matched");
   f.integer("max_iterations", c.max_iterations, {1, 1000}, "rounds of matching");
+}
+
+void visit(FieldVisitor& f, RegistrationConfig& c) {
+  // Every known method is a valid choice here; make_registration says what this build can do.
+  visit_choice(f, "method", c.method, "how keyframes are registered onto the map");
   f.integer("submap_keyframes", c.submap_keyframes, {1, 1000}, "keyframes that form the target");
   f.number("keyframe_distance_m", c.keyframe_distance_m, {0, 1e4}, "a new keyframe after this way");
   f.number("keyframe_angle_deg", c.keyframe_angle_deg, {0, 360}, "or after this turn");
@@ -42,23 +38,19 @@ void visit(FieldVisitor& f, RegistrationConfig& c) {
            "how long the error of the filter's pose stays alike: so long it counts as one piece of knowledge");
 }
 
-Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config) {
-  for (const Row& row : kMethods) {
-    if (config.method != row.name) continue;
-    if (row.make) return row.make(config);
-    return Error{"", 0, "registration.method", '"' + config.method + "\" was not compiled in",
-                 "one of " + plain_list(registration_methods()) + " (build with " + row.needs + "=ON)"};
-  }
-  return Error{"", 0, "registration.method", "unknown method \"" + config.method + '"',
-               "one of " + plain_list(registration_methods())};
+ModelTable<RegistrationMethod> registration_methods() {
+  return kMethods;
 }
 
-std::vector<std::string> registration_methods() {
-  std::vector<std::string> names;
-  for (const Row& row : kMethods) {
-    if (row.make) names.emplace_back(row.name);
-  }
-  return names;
+bool registers(const RegistrationConfig& config) {
+  return model_row(registration_methods(), config.method.name).make.registers;
+}
+
+Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config) {
+  CANYON_TRY(const auto* row, config.method.row("registration.method"));
+  if (row->make.make != nullptr) return row->make.make(config.method.own);
+  return Error{"", 0, "registration.method", '"' + config.method.name + "\" was not compiled in",
+               std::string("a build with ") + row->make.build_option + "=ON"};
 }
 
 }  // namespace canyon::lidar

@@ -9,17 +9,34 @@
 
 #include "canyon/core/config/config.h"
 #include "canyon/core/messages.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/core/motion/rotation.h"
 #include "canyon/core/result.h"
 
 namespace canyon::lidar {
 
-/// [registration] of a mission file.
-struct RegistrationConfig {
-  std::string method = "gicp";  ///< none | gicp
-  double leaf_m = 0.5;          ///< voxel size of both clouds
+class Registration;
+
+/// One way to register.
+struct RegistrationMethod {
+  std::unique_ptr<Registration> (*make)(const ModelParameters& own);  ///< nullptr: left out when Canyon was built
+  const char* build_option;                                           ///< that puts it in
+  bool registers = true;                                              ///< false: the prior pose stands
+};
+/// Every known method, whether it was compiled in or not.
+ModelTable<RegistrationMethod> registration_methods();
+
+/// Keys of the methods that match points.
+struct MatchingParameters {
+  double leaf_m = 0.5;  ///< voxel size of both clouds
   double max_correspondence_m = 1.0;
   std::int64_t max_iterations = 20;
+};
+void visit(FieldVisitor& f, MatchingParameters& c);
+
+/// [registration] of a mission file.
+struct RegistrationConfig {
+  ModelChoice<registration_methods> method{"gicp"};
   std::int64_t submap_keyframes = 10;  ///< keyframes that form the target
   double keyframe_distance_m = 2.0;
   double keyframe_angle_deg = 10.0;
@@ -29,6 +46,8 @@ struct RegistrationConfig {
   double prior_correlation_s = 10.0;
 };
 void visit(FieldVisitor& f, RegistrationConfig& c);
+/// False with a method that believes the prior pose: nothing is then known of registered keyframes and their map.
+bool registers(const RegistrationConfig& config);
 
 /// kDegenerate: what was matched does not determine a pose, as points on one line do not. kDiverged: the guess or the
 /// solution is not finite. In either case, as with too few points, the guess stands and there is no covariance.
@@ -65,8 +84,5 @@ class Registration {
 };
 
 Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config);
-
-/// Names of the compiled-in methods.
-std::vector<std::string> registration_methods();
 
 }  // namespace canyon::lidar

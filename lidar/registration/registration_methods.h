@@ -8,7 +8,7 @@
 /// lidar/registration/registration.cpp.
 namespace canyon::lidar {
 
-std::unique_ptr<Registration> make_no_registration(const RegistrationConfig& config);
-std::unique_ptr<Registration> make_gicp(const RegistrationConfig& config);
+std::unique_ptr<Registration> make_no_registration(const ModelParameters& own);
+std::unique_ptr<Registration> make_gicp(const ModelParameters& own);
 
 }  // namespace canyon::lidar

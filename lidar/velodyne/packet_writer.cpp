@@ -8,6 +8,12 @@
 namespace canyon::lidar::velodyne {
 namespace {
 
+/// By beam table.
+constexpr ModelRow<Packet::Product> kProducts[] = {
+    {"vlp16", Packet::Product::kVlp16, "VLP-16"},
+    {"hdl32e", Packet::Product::kHdl32e, "HDL-32E"},
+};
+
 Packet::Channel channel_of(const LidarPoint& p, double origin_up_m) {
   const double range_m = std::hypot(p.x, p.y, p.z - origin_up_m);
   const double quanta = std::round(range_m / Packet::kRangeQuantum_m);
@@ -20,24 +26,22 @@ Packet::Channel channel_of(const LidarPoint& p, double origin_up_m) {
 
 Result<PacketWriter> PacketWriter::create(const LidarConfig& config) {
   CANYON_TRY(BeamTable table, load_beam_table(config.beams));
-  Packet::Product product{};
-  if (config.beams == "vlp16")
-    product = Packet::Product::kVlp16;
-  else if (config.beams == "hdl32e")
-    product = Packet::Product::kHdl32e;
-  else
+  const auto* product = find_model(ModelTable<Packet::Product>(kProducts), config.beams);
+  if (product == nullptr)
     return Error{"", 0, "lidar.beams", '"' + config.beams + "\" has no packets", "vlp16 or hdl32e"};
   Packet::Mode mode{};
-  if (config.returns == "strongest")
+  if (config.report.returns == ReturnMode::kStrongest)
     mode = Packet::Mode::kStrongest;
-  else if (config.returns == "last")
+  else if (config.report.returns == ReturnMode::kLast)
     mode = Packet::Mode::kLast;
-  else if (config.returns == "dual")
+  else if (config.report.returns == ReturnMode::kDual)
     mode = Packet::Mode::kDual;
   else
-    return Error{"", 0, "lidar.returns", '"' + config.returns + "\" does not fit into packets",
-                 "strongest, last or dual"};
-  return PacketWriter(config, std::move(table), mode, product);
+    return Error{
+        "", 0, "lidar.returns",
+        std::string("\"") + row_of(return_modes(), config.report.returns).name + "\" does not fit into packets",
+        "strongest, last or dual"};
+  return PacketWriter(config, std::move(table), mode, product->make);
 }
 
 PacketWriter::PacketWriter(const LidarConfig& config, BeamTable table, Packet::Mode mode, Packet::Product product)

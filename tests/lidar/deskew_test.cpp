@@ -63,7 +63,7 @@ TEST_F(WallSeenWhileTurning, IsBentBeforeAndFlatAfter) {
 TEST_F(WallSeenWhileTurning, IsFlatToTheNoise) {
   LidarConfig config;
   config.range_noise_m = 0.02;
-  config.range_quantum_m = 0;
+  config.report.range_quantum_m = 0;
   const LidarOutput out = scan(config);
   const LidarScan flat = deskew(out.scan, motion_, sensor_in_body(config));
   const std::vector<double> d = departures(flat, config);

@@ -15,6 +15,14 @@
 /// Scenes with closed forms, and motions through them.
 namespace canyon::lidar::testing {
 
+/// Lays keys of [lidar] over a configuration, as a mission file does: parameters that only a model's own file knows.
+inline void set_keys(LidarConfig& config, const std::string& toml) {
+  const auto node = ConfigNode::parse(toml, "keys.toml");
+  CANYON_CHECK(node.ok(), node.error().str());
+  const Status status = read_config(&*node, "lidar", config);
+  CANYON_CHECK(status.ok(), status.error().str());
+}
+
 inline scene::SceneParts empty_parts() {
   scene::SceneParts parts;
   parts.name = "test";
@@ -86,7 +94,7 @@ inline LidarConfig ideal_lidar() {
   LidarConfig config;
   config.mount_m.setZero();
   config.range_noise_m = 0;
-  config.range_quantum_m = 0;
+  config.report.range_quantum_m = 0;
   return config;
 }
 

@@ -221,9 +221,9 @@ TEST(SingleRay, NoiseBelongsToLaserAndRevolution) {
 TEST(SingleRay, RangesComeInStepsAndWithinTheLimits) {
   LidarConfig config = ideal_lidar();
   config.range_noise_m = 0.02;
-  config.range_quantum_m = 0.002;
-  config.min_range_m = 20.5;
-  config.max_range_m = 25.0;
+  config.report.range_quantum_m = 0.002;
+  config.report.min_range_m = 20.5;
+  config.report.max_range_m = 25.0;
   const LidarOutput out = scan_of(four_walls(20), config, testing::standing(Pose{}));
   ASSERT_GT(out.scan.points.size(), 1000u);
   ASSERT_LT(out.scan.points.size(), 28800u);
@@ -317,16 +317,14 @@ TEST(LidarConfig, MistakesAreNamed) {
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "mid360"; }),
             "lidar.azimuth_steps: 1800, expected 0 (mid360 has a path of its own, at its own rate)");
   EXPECT_EQ(error_of([](LidarConfig& c) {
-              c.ego_min_m = {-1, -1, 0}, c.ego_max_m = {3, 1, 2};
+              c.ego.min_m = {-1, -1, 0}, c.ego.max_m = {3, 1, 2};
             }),
             "lidar.ego_min_m: the sensor itself is in the box that hides its own vehicle, expected a box that leaves "
             "out mount_m");
-  EXPECT_EQ(error_of([](LidarConfig& c) { c.see_through = "walls"; }),
-            "lidar.see_through: unknown see_through \"walls\", expected one of nothing, glass, leaves, both");
-  EXPECT_EQ(error_of([](LidarConfig& c) { c.min_range_m = 100; }),
+  EXPECT_EQ(error_of([](LidarConfig& c) { c.report.min_range_m = 100; }),
             "lidar.min_range_m: 100, expected less than max_range_m, 100");
-  EXPECT_EQ(error_of([](LidarConfig& c) { c.model = "two_ray"; }),
-            "lidar.model: unknown model \"two_ray\", expected one of single_ray, footprint");
+  EXPECT_EQ(error_of([](LidarConfig& c) { c.model.name = "two_ray"; }),
+            "lidar.model: unknown name \"two_ray\", expected one of \"single_ray\", \"footprint\"");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "os1"; }),
             "lidar.beams: unknown beam table \"os1\" (did you mean \"os1_64\"?), expected one of grid16, hdl32e, "
             "hdl64e, mid360, "
@@ -346,10 +344,10 @@ TEST(LidarConfig, EveryFieldIsReadFromTheMissionFile) {
   EXPECT_EQ(c.beams, "grid16");
   EXPECT_EQ(c.rate_hz, 5);
   EXPECT_EQ(c.azimuth_steps, 900);
-  EXPECT_EQ(c.min_range_m, 0.5);
-  EXPECT_EQ(c.max_range_m, 50);
+  EXPECT_EQ(c.report.min_range_m, 0.5);
+  EXPECT_EQ(c.report.max_range_m, 50);
   EXPECT_EQ(c.range_noise_m, 0.01);
-  EXPECT_EQ(c.range_quantum_m, 0.004);
+  EXPECT_EQ(c.report.range_quantum_m, 0.004);
   EXPECT_TRUE(c.blinded);
   // A point ahead of the sensor, which looks left, lies to the left of the body.
   EXPECT_LT((sensor_in_body(c) * Eigen::Vector3d(10, 0, 0) - Eigen::Vector3d(1, 12, 3)).norm(), 1e-12);
@@ -382,7 +380,7 @@ TEST(TrueRanges, AreThoseOfTheScansTruth) {
     config.angle_noise_deg = 0.05;
     expect_same(config, 10000);
     config.angle_noise_deg = 0;
-    config.ego_min_m = {0.5, -30, -30}, config.ego_max_m = {30, 30, 30};  // what lies ahead
+    config.ego.min_m = {0.5, -30, -30}, config.ego.max_m = {30, 30, 30};  // what lies ahead
     expect_same(config, 5000);
   }
 }

@@ -36,7 +36,7 @@ LidarConfig free_running(const std::string& beams, double rpm) {
   config.beams = beams;
   config.azimuth_steps = 0;
   config.rate_hz = rpm / 60.0;
-  config.range_quantum_m = 0.002;
+  config.report.range_quantum_m = 0.002;
   return config;
 }
 
@@ -183,8 +183,8 @@ INSTANTIATE_TEST_SUITE_P(Both, Packets, ::testing::Values("vlp16", "hdl32e"));
 
 TEST(Packets, OfTwoReturnsTheLastComesFirst) {
   LidarConfig config = free_running("vlp16", 600);
-  config.model = "footprint";
-  config.returns = "dual";
+  config.model.name = "footprint";
+  config.report.returns = ReturnMode::kDual;
   const Stream stream = stream_of(config, 1);
   ASSERT_GT(stream.packets.size(), 100u);
   std::size_t differ = 0, equal = 0;
@@ -209,7 +209,7 @@ TEST(Packets, OnlyForSensorsAndModesThatHaveThem) {
   EXPECT_EQ(PacketWriter::create(config).error().str(),
             "lidar.beams: \"os1_64\" has no packets, expected vlp16 or hdl32e");
   config.beams = "vlp16";
-  config.returns = "first";
+  config.report.returns = ReturnMode::kFirst;
   EXPECT_EQ(PacketWriter::create(config).error().str(),
             "lidar.returns: \"first\" does not fit into packets, expected strongest, last or dual");
 }

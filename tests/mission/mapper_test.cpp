@@ -53,7 +53,7 @@ Matrix6d diagonal(double rotation_rad, double translation_m) {
 class MapperTest : public ::testing::Test {
  protected:
   MapperTest() {
-    config_.method = "gicp";  // any but "none"; the script is what aligns
+    config_.method.name = "gicp";  // any but "none"; the script is what aligns
     script_.result.status = lidar::RegistrationStatus::kConverged;
     script_.result.covariance = diagonal(1e-3, 0.01);
     script_.result.iterations = 7;
@@ -103,7 +103,7 @@ TEST_F(MapperTest, TheFirstKeyframeAndMethodNoneAreNotRegistered) {
   EXPECT_EQ(first->X_WL_registered.p, first->X_WL_prior.p);
   EXPECT_EQ(script_.alignments, 0);
 
-  config_.method = "none";
+  config_.method.name = "none";
   script_.error = at(0.5);
   Mapper believing = mapper();
   offer(believing, 0.0, at(0));

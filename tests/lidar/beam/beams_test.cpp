@@ -116,8 +116,8 @@ TEST(Extremes, DefinedResults) {
   };
   for (const char* model : {"single_ray", "footprint"}) {
     LidarConfig config = ideal_lidar();
-    config.model = model;
-    config.detector = "radiometric";
+    config.model.name = model;
+    config.detector.name = "radiometric";
     config.weather.rain_mm_h = 10;
     // Inside a wall: a closed box of 10 cm around the sensor; everything is nearer than min_range_m.
     scene::SceneParts inside = testing::empty_parts();

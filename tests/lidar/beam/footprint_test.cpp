@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canyon/core/config/text.h"
 #include "canyon/lidar/beam/footprint_rays.h"
 #include "canyon/tests/lidar/beam/screens.h"
 
@@ -15,6 +16,7 @@ using testing::add_material;
 using testing::add_screen;
 using testing::level_laser;
 using testing::scan_of;
+using testing::set_keys;
 using testing::yaw_deg;
 
 TEST(Footprint, OffsetsHaveTheBeamsMoments) {
@@ -47,9 +49,9 @@ TEST(Footprint, OnATiltedPlaneTheEchoIsTheEnergyWeightedMean) {
     const auto corner = [&](double y, double z) { return Eigen::Vector3d(d - y * tangent, y, z); };
     mesh.quad(corner(3, -5), corner(-3, -5), corner(-3, 5), corner(3, 5), mesh.material("grey"));
     LidarConfig config = level_laser();
-    config.model = "footprint";
-    config.divergence_mrad = {8.0, 4.0};
-    config.pulse_m = 5.0;
+    config.model.name = "footprint";
+    set_keys(config, "divergence_mrad = [8.0, 4.0]");
+    config.signal.pulse_m = 5.0;
     const LidarOutput out = scan_of(parts, config);
     std::size_t compared = 0;
     for (std::size_t i = 0; i < out.truth.size(); ++i) {
@@ -77,10 +79,11 @@ TEST(Footprint, TheSpreadOnATiltedPlaneIsTheFootprints) {
   const auto corner = [&](double y, double z) { return Eigen::Vector3d(d - y * tangent, y, z); };
   mesh.quad(corner(3, -5), corner(-3, -5), corner(-3, 5), corner(3, 5), mesh.material("concrete"));
   LidarConfig config = level_laser();
-  config.model = "footprint";
-  config.returns = "all";
-  config.divergence_mrad = {4e3 * sigma, 4e3 * sigma};
-  config.pulse_m = 1e-3;  // every sub-ray an echo of its own
+  config.model.name = "footprint";
+  config.report.returns = ReturnMode::kAll;
+  const std::string width = number_text(4e3 * sigma);
+  set_keys(config, "divergence_mrad = [" + width + ", " + width + "]");
+  config.signal.pulse_m = 1e-3;  // every sub-ray an echo of its own
   const LidarOutput out = scan_of(parts, config);
   std::map<float, std::vector<double>> shots;
   for (std::size_t i = 0; i < out.truth.size(); ++i)
@@ -105,9 +108,9 @@ TEST(Footprint, AtAnEdgeTheEchoesMixWithinAPulseAndPartBeyondIt) {
     add_screen(parts, 20.0, 2.0, "grey", 0.0);
     add_screen(parts, 20.0 + gap_m, 4.0, "grey");
     LidarConfig config = level_laser();
-    config.model = "footprint";
-    config.returns = "dual";
-    config.divergence_mrad = {3.0, 3.0};
+    config.model.name = "footprint";
+    config.report.returns = ReturnMode::kDual;
+    set_keys(config, "divergence_mrad = [3.0, 3.0]");
     const LidarOutput out = scan_of(parts, config);
     std::vector<double> at_edge;
     for (std::size_t i = 0; i < out.truth.size(); ++i)
@@ -133,10 +136,11 @@ TEST(Returns, EachModeReportsWhatItSays) {
   add_screen(parts, 20.0, 1.0, "dark", 0.0);
   add_screen(parts, 25.0, 4.0, "bright");
   std::map<std::string, std::vector<double>> ranges_m;
-  for (const std::string mode : {"strongest", "first", "last", "dual", "all"}) {
+  for (const auto& row : return_modes()) {
+    const std::string mode = row.name;
     LidarConfig config = level_laser();
-    config.model = "footprint";
-    config.returns = mode;
+    config.model.name = "footprint";
+    config.report.returns = row.make;
     const LidarOutput out = scan_of(parts, config);
     for (std::size_t i = 0; i < out.truth.size(); ++i) {
       if (std::abs(yaw_deg(out.scan.points[i])) > 0.02) continue;
@@ -161,7 +165,7 @@ TEST(Returns, StrengthIsWhatTheReceiverGets) {
   add_screen(parts, 1.0, 0.2, "veil", 0.0);
   add_screen(parts, 20.0, 4.0, "wall");
   LidarConfig config = level_laser();
-  config.model = "footprint";
+  config.model.name = "footprint";
   // Half of the beam each: 0.01 / 5^2 against 0.5 / 20^2.
   const LidarOutput out = scan_of(parts, config);
   std::size_t compared = 0;

@@ -42,7 +42,7 @@ inline LidarConfig level_laser() {
   LidarConfig config = ideal_lidar();
   config.beams = "grid:1:0:0";
   config.azimuth_steps = 3600;
-  config.max_range_m = 1000;
+  config.report.max_range_m = 1000;
   return config;
 }
 

@@ -19,6 +19,7 @@ using testing::add_screen;
 using testing::kStart;
 using testing::level_laser;
 using testing::scan_of;
+using testing::set_keys;
 using testing::yaw_deg;
 
 constexpr double kThrough = 0.8;
@@ -62,11 +63,11 @@ TEST_P(Panes, EachIsPassedTwice) {
   add_screen(parts, 14.0, 1.4, "pane");
   add_screen(parts, 20.0, 2.0, "wall");
   LidarConfig config = level_laser();
-  config.model = GetParam();
-  config.returns = "all";
-  config.divergence_mrad = {0.2, 0.2};
+  config.model.name = GetParam();
+  config.report.returns = ReturnMode::kAll;
+  set_keys(config, "divergence_mrad = [0.2, 0.2]");
   EXPECT_EQ(along_x(parts, config, 0.2).front().ranges_m.size(), 1u) << "nothing is seen through unless asked for";
-  config.see_through = "glass";
+  config.see_through = {.panes = true};
   const auto shots = along_x(parts, config, 0.2);
   ASSERT_GE(shots.size(), 3u);
   const double t2 = kThrough * kThrough;
@@ -81,7 +82,7 @@ TEST_P(Panes, EachIsPassedTwice) {
     EXPECT_NEAR(shot.intensities[2], 0.5 * t2 * t2, 0.5 * 2e-5);
     EXPECT_EQ(shot.materials, (std::vector<std::string>{"pane", "pane", "wall"}));
   }
-  config.returns = "dual";
+  config.report.returns = ReturnMode::kDual;
   for (const Seen& shot : along_x(parts, config, 0.2))
     EXPECT_EQ(shot.materials, (std::vector<std::string>{"pane", "wall"})) << "the strongest, 0.06 / 10^2, and the last";
 }
@@ -130,7 +131,7 @@ TEST(Crowns, GapsFollowBeerAndLambert) {
   constexpr double kHalf_m = 2.0, kDensity = 0.6, kRate = 0.5 * kDensity, kChord_m = 2 * kHalf_m;
   const auto parts = crown_and_wall(kHalf_m, kDensity);
   LidarConfig config = level_laser();
-  config.see_through = "leaves";
+  config.see_through = {.leaves = true};
   config.azimuth_steps = 36000;
   const LidarOutput out = scan_of(parts, config);
   double n = 0, clear = 0, depth = 0, leaves = 0, cosine = 0;
@@ -162,9 +163,9 @@ TEST(Crowns, ABeamIsSharedBetweenLeavesAndWhatIsBehind) {
   constexpr double kHalf_m = 1.0, kDensity = 1.0;
   const auto parts = crown_and_wall(kHalf_m, kDensity);
   LidarConfig config = level_laser();
-  config.model = "footprint";
-  config.returns = "all";
-  config.see_through = "leaves";
+  config.model.name = "footprint";
+  config.report.returns = ReturnMode::kAll;
+  config.see_through = {.leaves = true};
   config.azimuth_steps = 36000;
   const LidarOutput out = scan_of(parts, config);
   double shots = 0, energy = 0, both = 0;
@@ -199,7 +200,7 @@ TEST(Crowns, LeavesOfTheMeshAreLeftOut) {
   };
   EXPECT_EQ(material_at(0.2), "foliage");
   EXPECT_EQ(material_at(-1.0), "foliage");
-  config.see_through = "leaves";
+  config.see_through = {.leaves = true};
   EXPECT_EQ(material_at(0.2), "bark");
   EXPECT_EQ(material_at(-1.0), "wall");
 }
@@ -207,9 +208,9 @@ TEST(Crowns, LeavesOfTheMeshAreLeftOut) {
 TEST(SeeThroughModes, SameBitsForAnyNumberOfThreads) {
   const scene::Scene scene(crown_and_wall(2.0, 0.6));
   LidarConfig config = level_laser();
-  config.model = "footprint";
-  config.returns = "all";
-  config.see_through = "both";
+  config.model.name = "footprint";
+  config.report.returns = ReturnMode::kAll;
+  config.see_through = {.panes = true, .leaves = true};
   std::vector<LidarOutput> outputs;
   for (const int n : {1, 2, 8}) {
     set_threads(n);

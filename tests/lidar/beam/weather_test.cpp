@@ -27,20 +27,20 @@ TEST(Weather, MarshallPalmerRainIsTheIntegralOverItsDrops) {
       extinction += drops * 2.0 * 0.25 * kPi * d_mm * d_mm * 1e-6;
     }
     // The coefficient is printed as 3.6e-4; the integral gives 3.65e-4.
-    EXPECT_NEAR(rain_laws()[0].extinction_1_m(rate, 905) / extinction, 1.0, 0.015) << rate;
-    EXPECT_DOUBLE_EQ(rain_laws()[0].extinction_1_m(rate, 905), 3.6e-4 * std::pow(rate, 0.63));
+    EXPECT_NEAR(rain_laws()[0].make(rate, 905) / extinction, 1.0, 0.015) << rate;
+    EXPECT_DOUBLE_EQ(rain_laws()[0].make(rate, 905), 3.6e-4 * std::pow(rate, 0.63));
   }
-  EXPECT_GT(rain_laws()[2].extinction_1_m(10, 905), 20 * rain_laws()[0].extinction_1_m(10, 905))
+  EXPECT_GT(rain_laws()[2].make(10, 905), 20 * rain_laws()[0].make(10, 905))
       << "the strong empirical form goes by its own name";
 }
 
 TEST(Weather, LawsAtValuesComputedByHand) {
   // 3.912 / 1000 m * (905 / 550)^-0.585 and, of thick fog, no wavelength at all.
-  EXPECT_NEAR(fog_laws()[0].extinction_1_m(1000, 905), 3.912e-3 * std::pow(905.0 / 550.0, -0.585), 1e-12);
-  EXPECT_DOUBLE_EQ(fog_laws()[1].extinction_1_m(200, 905), 3.912 / 200);
-  EXPECT_DOUBLE_EQ(fog_laws()[1].extinction_1_m(200, 1550), 3.912 / 200);
+  EXPECT_NEAR(fog_laws()[0].make(1000, 905), 3.912e-3 * std::pow(905.0 / 550.0, -0.585), 1e-12);
+  EXPECT_DOUBLE_EQ(fog_laws()[1].make(200, 905), 3.912 / 200);
+  EXPECT_DOUBLE_EQ(fog_laws()[1].make(200, 1550), 3.912 / 200);
   // 3.878 dB/km for 1 mm/h of wet snow at 905 nm: 8.93e-4 per metre.
-  EXPECT_NEAR(snow_laws()[0].extinction_1_m(1, 905), (1.023e-4 * 905 + 3.7855466) / 4342.944819, 1e-12);
+  EXPECT_NEAR(snow_laws()[0].make(1, 905), (1.023e-4 * 905 + 3.7855466) / 4342.944819, 1e-12);
   EXPECT_NEAR(dust_extinction_1_m(1000), 52.0 / 4342.944819, 1e-9);
 }
 
@@ -67,8 +67,8 @@ TEST(Weather, RainDimsAnEchoByItsExtinction) {
 TEST(Weather, FalseReturnsFollowTheirLaw) {
   LidarConfig config = ideal_lidar();
   config.weather.fog_visibility_m = 60;
-  config.max_range_m = 60;
-  const double a = fog_laws()[0].extinction_1_m(60, 905);
+  config.report.max_range_m = 60;
+  const double a = fog_laws()[0].make(60, 905);
   const auto mean = [&](double r) {
     const double ratio = 50.0 / std::max(r, 5.0);
     return kPi * a / 18.8 * 0.75 * 10 * ratio * ratio * std::exp(-2 * a * r);
@@ -79,7 +79,7 @@ TEST(Weather, FalseReturnsFollowTheirLaw) {
     silent *= 1 - std::exp(-1 / mean(0.9 + 0.75 * (k + 0.5)));
     EXPECT_NEAR(weather.false_return_probability(0.9 + 0.75 * (k + 1)), 1 - silent, 1e-9) << k;
   }
-  config.detector = "ideal";
+  config.detector.name = "ideal";
   const LidarOutput out = scan_of(testing::empty_parts(), config);
   double sum = 0, n = 0;
   for (std::size_t i = 0; i < out.truth.size(); ++i) {
@@ -95,7 +95,7 @@ TEST(Weather, FalseReturnsFollowTheirLaw) {
 TEST(Weather, ThickFogAnswersAsOftenAsItsProbabilitySays) {
   LidarConfig config = ideal_lidar();
   config.weather.fog_visibility_m = 60;
-  config.max_range_m = 60;
+  config.report.max_range_m = 60;
   scene::SceneParts parts = testing::empty_parts();
   const LidarOutput out = scan_of(parts, config);  // nothing but fog
   const Weather weather(config, 1);

@@ -43,7 +43,7 @@ TEST(PclGicp, UnchangedPclFindsTheSamePose) {
   pcl::GeneralizedIterativeClosestPoint<pcl::PointXYZ, pcl::PointXYZ, double> gicp;
   gicp.setInputSource(pcl_cloud(source->points));
   gicp.setInputTarget(pcl_cloud(target->points));
-  gicp.setMaxCorrespondenceDistance(config.max_correspondence_m);
+  gicp.setMaxCorrespondenceDistance(config.method.own.get<MatchingParameters>().max_correspondence_m);
   gicp.setMaximumIterations(50);
   gicp.setTransformationEpsilon(1e-5);
   gicp.setRotationEpsilon(1e-6);

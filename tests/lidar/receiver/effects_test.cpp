@@ -24,7 +24,7 @@ using testing::yaw_deg;
 
 TEST(Effects, CrosstalkIsAsFrequentAsSaid) {
   LidarConfig config = ideal_lidar();
-  config.crosstalk = 0.02;
+  config.crosstalk.probability = 0.02;
   const LidarOutput out = scan_of(testing::empty_parts(), config);
   const double n = 28800;
   EXPECT_NEAR(static_cast<double>(out.truth.size()) / n, 0.02, 4.5 * std::sqrt(0.02 * 0.98 / n));
@@ -35,7 +35,7 @@ TEST(Effects, BiasBelongsToTheLaserAndStays) {
   scene::SceneParts parts = testing::empty_parts();
   testing::add_wall(parts, {20, -200}, {20, 200}, 60);
   LidarConfig config = ideal_lidar();
-  config.range_bias_m = 0.03;
+  config.report.range_bias_m = 0.03;
   std::map<int, double> bias_m;
   double squares = 0;
   for (const std::int64_t index : {0, 5}) {
@@ -103,7 +103,7 @@ TEST(Effects, TheOwnVehicleIsHidden) {
   LidarConfig config = ideal_lidar();
   config.mount_m = {0.3, 0, 1.8};
   const std::size_t all = scan_of(parts, config).truth.size();
-  config.ego_min_m = {-1, -0.9, 0.2}, config.ego_max_m = {3, 0.9, 1.5};
+  config.ego.min_m = {-1, -0.9, 0.2}, config.ego.max_m = {3, 0.9, 1.5};
   const LidarOutput out = scan_of(parts, config);
   EXPECT_LT(out.truth.size(), all);
   const BeamTable table = *load_beam_table("vlp16");
@@ -114,7 +114,7 @@ TEST(Effects, TheOwnVehicleIsHidden) {
     for (int k = 0; k <= 1000; ++k) {
       const Eigen::Vector3d at = origin + way * (k / 1000.0);
       const bool inside =
-          ((at - config.ego_min_m).array() > 1e-6).all() && ((config.ego_max_m - at).array() > 1e-6).all();
+          ((at - config.ego.min_m).array() > 1e-6).all() && ((config.ego.max_m - at).array() > 1e-6).all();
       ASSERT_FALSE(inside);
     }
   }
@@ -126,13 +126,13 @@ TEST(Models, SameBitsForAnyNumberOfThreads) {
   twist << 0, 0, 0.5, 8, 0, 0;
   const Trajectory motion = testing::twisting(pose_at(-10, 1, 0, 10), twist);
   LidarConfig config;
-  config.model = "footprint";
-  config.detector = "radiometric";
-  config.returns = "dual";
+  config.model.name = "footprint";
+  config.detector.name = "radiometric";
+  config.report.returns = ReturnMode::kDual;
   config.weather.rain_mm_h = 20;
-  config.crosstalk = 0.001;
+  config.crosstalk.probability = 0.001;
   config.angle_noise_deg = 0.05;
-  config.range_bias_m = 0.01;
+  config.report.range_bias_m = 0.01;
   std::vector<LidarOutput> outputs;
   for (const int n : {1, 2, 8}) {
     set_threads(n);

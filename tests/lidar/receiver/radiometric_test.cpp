@@ -15,7 +15,10 @@ using testing::add_screen;
 using testing::level_laser;
 using testing::position;
 using testing::scan_of;
+using testing::set_keys;
 using testing::yaw_deg;
+
+constexpr double kThresholdSnr = 6.0;  // the default
 
 /// A screen of 10 % at the range where it is at the threshold, and at others: the share detected is Phi(snr (s - 1)).
 TEST(Radiometric, DetectionFollowsTheRadarEquation) {
@@ -25,13 +28,13 @@ TEST(Radiometric, DetectionFollowsTheRadarEquation) {
     add_material(parts, "ten percent", 0.1);
     add_screen(parts, range_m, 2.0, "ten percent");
     LidarConfig config = level_laser();
-    config.detector = "radiometric";
+    config.detector.name = "radiometric";
     config.azimuth_steps = 36000;  // a narrow fan: the screen's middle is square to it
     std::size_t fired = 0, detected = 0;
     for (std::int64_t index = 0; index < 10; ++index) {
       const LidarOutput ideal = [&] {
         LidarConfig all = config;
-        all.detector = "ideal";
+        all.detector.name = "ideal";
         return scan_of(parts, all, Pose{}, index);
       }();
       const LidarOutput out = scan_of(parts, config, Pose{}, index);
@@ -41,7 +44,7 @@ TEST(Radiometric, DetectionFollowsTheRadarEquation) {
     }
     ASSERT_GE(fired, 1900u);
     const auto n = static_cast<double>(fired);
-    const double expected = 0.5 * std::erfc(-config.threshold_snr * (signal - 1.0) / std::sqrt(2.0));
+    const double expected = 0.5 * std::erfc(-kThresholdSnr * (signal - 1.0) / std::sqrt(2.0));
     // 4.5 sigma: false alarm 7e-6; and within 1 deg the signal falls by cos^3, 0.05 %: times snr and the density 0.4.
     EXPECT_NEAR(detected / n, expected, 4.5 * std::sqrt(expected * (1 - expected) / n + 1e-9) + 5e-4 * 6 * 0.4);
   }
@@ -54,7 +57,7 @@ TEST(Radiometric, SignalFallsWithTheSquareOfRangeAndNoiseGrowsWithIt) {
     add_material(parts, "ten percent", 0.1);
     add_screen(parts, range_m, 2.0, "ten percent");
     LidarConfig config = level_laser();
-    config.detector = "radiometric";
+    config.detector.name = "radiometric";
     config.range_noise_m = 0.02;
     config.azimuth_steps = 36000;
     double squares = 0, sum = 0;
@@ -89,9 +92,8 @@ TEST(Radiometric, ARetroreflectorSaturates) {
   parts.materials.push_back(sign);
   add_screen(parts, 30.0, 2.0, "sign");
   LidarConfig config = level_laser();
-  config.detector = "radiometric";
-  config.saturation = 100;
-  config.saturation_walk_m = 0.03;
+  config.detector.name = "radiometric";
+  set_keys(config, "saturation = 100\nsaturation_walk_m = 0.03");
   const LidarOutput out = scan_of(parts, config);
   ASSERT_GT(out.truth.size(), 5u);
   for (std::size_t i = 0; i < out.truth.size(); ++i) {

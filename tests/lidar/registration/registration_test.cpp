@@ -22,8 +22,7 @@ using testing::kStart;
 using testing::pose_at;
 
 bool has_gicp() {
-  const auto names = registration_methods();
-  return std::find(names.begin(), names.end(), "gicp") != names.end();
+  return model_row(registration_methods(), "gicp").make.make != nullptr;
 }
 
 #define CANYON_NEEDS_GICP() \
@@ -31,7 +30,7 @@ bool has_gicp() {
 
 std::unique_ptr<Registration> registration(const std::string& method, const RegistrationConfig& base = {}) {
   RegistrationConfig config = base;
-  config.method = method;
+  config.method.name = method;
   auto made = make_registration(config);
   EXPECT_TRUE(made.ok()) << made.error().str();
   return *std::move(made);
@@ -70,14 +69,13 @@ TEST(Registration, NoneBelievesTheGuess) {
 
 TEST(Registration, UnknownMethodsAndMethodsLeftOut) {
   RegistrationConfig config;
-  config.method = "icp";
-  EXPECT_EQ(make_registration(config).error().str(), "registration.method: unknown method \"icp\", expected one of " +
-                                                         std::string(has_gicp() ? "none, gicp" : "none"));
+  config.method.name = "icp";
+  EXPECT_EQ(make_registration(config).error().str(),
+            "registration.method: unknown name \"icp\", expected one of \"none\", \"gicp\"; nearest is \"gicp\"");
   if (!has_gicp()) {
-    config.method = "gicp";
-    EXPECT_EQ(
-        make_registration(config).error().str(),
-        "registration.method: \"gicp\" was not compiled in, expected one of none (build with CANYON_WITH_PCL=ON)");
+    config.method.name = "gicp";
+    EXPECT_EQ(make_registration(config).error().str(),
+              "registration.method: \"gicp\" was not compiled in, expected a build with CANYON_WITH_PCL=ON");
   }
 }
 
@@ -188,7 +186,7 @@ TEST(Gicp, SaysWhenItDidNotConverge) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
   RegistrationConfig config;
-  config.max_iterations = 1;
+  config.method.own.get<MatchingParameters>().max_iterations = 1;
   const auto gicp = registration("gicp", config);
   const Pose X_WS = pose_at(0, 0, 1.8, 0);
   const Registration::Placed placed{gicp->prepare(views.from(X_WS, 0)), Pose{}};
@@ -321,10 +319,11 @@ TEST(RegistrationConfig, EveryFieldIsReadFromTheMissionFile) {
   RegistrationConfig c;
   const Status status = read_config(&*root, "registration", c);
   ASSERT_TRUE(status.ok()) << status.error().str();
-  EXPECT_EQ(c.method, "none");
-  EXPECT_EQ(c.leaf_m, 0.25);
-  EXPECT_EQ(c.max_correspondence_m, 2);
-  EXPECT_EQ(c.max_iterations, 7);
+  EXPECT_EQ(c.method.name, "none");
+  const auto& matching = c.method.own.get<MatchingParameters>();
+  EXPECT_EQ(matching.leaf_m, 0.25);
+  EXPECT_EQ(matching.max_correspondence_m, 2);
+  EXPECT_EQ(matching.max_iterations, 7);
   EXPECT_EQ(c.submap_keyframes, 3);
   EXPECT_EQ(c.keyframe_distance_m, 1);
   EXPECT_EQ(c.keyframe_angle_deg, 5);
