@@ -24,6 +24,22 @@
 #include "canyon/scene/written_scene.h"
 
 namespace canyon::scene {
+namespace {
+
+constexpr ModelRow<HeightDatum> kHeights[] = {
+    {"auto", HeightDatum::kAuto, "as the coordinate system says, else orthometric"},
+    {"orthometric", HeightDatum::kOrthometric, "above the geoid"},
+    {"ellipsoidal", HeightDatum::kEllipsoidal, "above the ellipsoid"},
+};
+constexpr ModelRow<UpAxis> kUpAxes[] = {
+    {"auto", UpAxis::kAuto, "y of glTF, z of all else"}, {"y", UpAxis::kY, "y"}, {"z", UpAxis::kZ, "z"}};
+constexpr ModelRow<StreetSource> kStreets[] = {
+    {"auto", StreetSource::kAuto, "of the file if it has any"},
+    {"file", StreetSource::kFile, "of the file"},
+    {"free_space", StreetSource::kFreeSpace, "the middle lines of the free space"},
+};
+
+}  // namespace
 
 void visit(FieldVisitor& f, ImportConfig& c) {
   f.file("file", c.file, "", "scene file, in place of the built-in city (docs/scenes.md lists the formats)");
@@ -31,10 +47,10 @@ void visit(FieldVisitor& f, ImportConfig& c) {
   f.file("terrain", c.terrain, "",
          "elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII grid; else what the files say of the ground");
   f.text("crs", c.crs, "coordinate system, as PROJ knows it, in place of the file's own; axes east, north");
-  f.choice("heights", c.heights, {"auto", "orthometric", "ellipsoidal"},
+  f.choice("heights", c.heights, ModelTable<HeightDatum>(kHeights),
            "what heights in the files are above; auto: as the coordinate system says, else orthometric");
-  f.number(
-      "undulation_m", c.undulation_m, {-1000.0, 200.0},
+  f.optional_number(
+      "undulation_m", c.undulation_m, -1000.0, {-1000.0, 200.0},
       "geoid above the ellipsoid; -1000: of the finest of GeographicLib's geoids that is installed, else of EGM96");
   f.numbers("center_deg", c.center_deg, 0, {-360.0, 360.0},
             "latitude, longitude of W's origin; empty: the middle of the scene");
@@ -47,13 +63,13 @@ void visit(FieldVisitor& f, ImportConfig& c) {
   f.text("storeys_property", c.storeys_property, "property with the number of storeys");
   f.number("storey_m", c.storey_m, {1.0, 10.0}, "height of a storey where only their number is known");
   f.number("default_height_m", c.default_height_m, {0.0, 500.0}, "of buildings that say nothing; 0: they are left out");
-  f.choice("up_axis", c.up_axis, {"auto", "y", "z"}, "of mesh files; auto: y of glTF, z of all else");
+  f.choice("up_axis", c.up_axis, ModelTable<UpAxis>(kUpAxes), "of mesh files; auto: y of glTF, z of all else");
   f.text("wall_material", c.wall_material, "of walls that say nothing");
   f.text("roof_material", c.roof_material, "of roofs that say nothing");
   f.text("ground_material", c.ground_material, "of ground that says nothing");
   f.files("materials", c.materials, "the user's own material tables, over the built-in one");
   f.choice(
-      "streets", c.streets, {"auto", "file", "free_space"},
+      "streets", c.streets, ModelTable<StreetSource>(kStreets),
       "streets for the route: of the file, or the middle lines of the free space; auto: of the file if it has any");
 }
 
@@ -150,14 +166,14 @@ class Import {
     Geodetic middle = local ? origin_ : Geodetic{0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), 0.0};
     if (!local && config_.center_deg.size() == 2)
       middle = {config_.center_deg[0] * kDegree, config_.center_deg[1] * kDegree, 0.0};
-    ellipsoidal_ =
-        config_.heights == "ellipsoidal" || (config_.heights == "auto" && out_.report.vertical == "ellipsoid");
+    ellipsoidal_ = config_.heights == HeightDatum::kEllipsoidal ||
+                   (config_.heights == HeightDatum::kAuto && out_.report.vertical == "ellipsoid");
     if (out_.report.vertical.empty()) out_.report.vertical = ellipsoidal_ ? "ellipsoid" : "orthometric (assumed)";
     undulation_m_ = 0.0;
     out_.report.undulation_source = "none";
     if (!ellipsoidal_) {
-      if (config_.undulation_m > ImportConfig::kUndulationUnknown) {
-        undulation_m_ = config_.undulation_m;
+      if (config_.undulation_m) {
+        undulation_m_ = *config_.undulation_m;
         out_.report.undulation_source = "stated";
       } else {
         const GeoidHeight geoid = geoid_height(middle);
@@ -414,7 +430,7 @@ class Import {
 
   void make_streets() {
     const bool of_file = !out_.parts.streets.edges.empty();
-    if (config_.streets == "file" || (config_.streets == "auto" && of_file)) {
+    if (config_.streets == StreetSource::kFile || (config_.streets == StreetSource::kAuto && of_file)) {
       out_.report.streets = of_file ? "of the file" : "none";
       return;
     }

@@ -1,14 +1,21 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "canyon/core/config/config.h"
 #include "canyon/core/result.h"
+#include "canyon/scene/importers/importer.h"
 #include "canyon/scene/scene.h"
 #include "canyon/scene/scene_cost.h"
 
 namespace canyon::scene {
+
+/// What heights in files are above; kAuto: as the coordinate system says, else the geoid.
+enum class HeightDatum { kAuto, kOrthometric, kEllipsoidal };
+/// Streets for the route; kAuto: of the file if it has any, else the middle lines of the free space.
+enum class StreetSource { kAuto, kFile, kFreeSpace };
 
 /// The part of [scene] that says how a scene is read from files.
 struct ImportConfig {
@@ -16,21 +23,19 @@ struct ImportConfig {
   std::vector<std::string> more_files;  ///< bridges, streets, ... of the same place
   std::string terrain;                  ///< elevation model; empty: what the files say of the ground
   std::string crs;                      ///< over what the file says
-  std::string heights = "auto";
-  double undulation_m = kUndulationUnknown;
-  std::vector<double> center_deg;  ///< latitude, longitude of W's origin; empty: the middle of the scene
-  double radius_m = 0.0;           ///< > 0: only what is that near to W's origin
+  HeightDatum heights = HeightDatum::kAuto;
+  std::optional<double> undulation_m;  ///< none: of a geoid
+  std::vector<double> center_deg;      ///< latitude, longitude of W's origin; empty: the middle of the scene
+  double radius_m = 0.0;               ///< > 0: only what is that near to W's origin
   double ground_cell_m = 5.0;
   double margin_m = 60.0;  ///< of terrain in full detail around the buildings
   std::string height_property, ground_property, storeys_property;
   double storey_m = 3.0;
   double default_height_m = 9.0;
-  std::string up_axis = "auto";
+  UpAxis up_axis = UpAxis::kAuto;
   std::string wall_material = "concrete", roof_material = "roofing", ground_material = "asphalt";
   std::vector<std::string> materials;  ///< the user's own tables
-  std::string streets = "auto";
-
-  static constexpr double kUndulationUnknown = -1000.0;
+  StreetSource streets = StreetSource::kAuto;
 };
 void visit(FieldVisitor& f, ImportConfig& c);
 

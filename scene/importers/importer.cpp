@@ -40,34 +40,26 @@ Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions&) {
 
 }  // namespace
 
-const std::vector<SceneFormat>& scene_formats() {
+ModelTable<SceneReader> scene_formats() {
   static const std::vector<SceneFormat> formats = {
-      {"OBJ", {".obj"}, read_obj, "Wavefront OBJ; groups and objects become objects, usemtl names materials"},
-      {"PLY", {".ply"}, read_ply, "Stanford PLY, ascii and both binary forms"},
+      {"OBJ", {{".obj"}, read_obj}, "Wavefront OBJ; groups and objects become objects, usemtl names materials"},
+      {"PLY", {{".ply"}, read_ply}, "Stanford PLY, ascii and both binary forms"},
       {"CityJSON",
-       {".city.json", ".city.jsonl", ".jsonl", ".json"},
-       read_cityjson,
-       "CityJSON 1.0, 1.1 and 2.0, and CityJSONSeq",
-       is_cityjson},
+       {{".city.json", ".city.jsonl", ".jsonl", ".json"}, read_cityjson, is_cityjson},
+       "CityJSON 1.0, 1.1 and 2.0, and CityJSONSeq"},
       {"GeoJSON",
-       {".geojson", ".json"},
-       read_geojson,
-       "footprints with heights, surfaces with heights of their own, streets as lines",
-       is_geojson},
+       {{".geojson", ".json"}, read_geojson, is_geojson},
+       "footprints with heights, surfaces with heights of their own, streets as lines"},
       {"CityGML",
-       {".gml", ".citygml", ".xml"},
-       read_citygml,
-       "CityGML 1.0 and 2.0, PLATEAU's i-UR included",
-       is_citygml},
-      {"OSM", {".osm", ".xml"}, read_osm, "OpenStreetMap XML: buildings and streets", is_osm},
+       {{".gml", ".citygml", ".xml"}, read_citygml, is_citygml},
+       "CityGML 1.0 and 2.0, PLATEAU's i-UR included"},
+      {"OSM", {{".osm", ".xml"}, read_osm, is_osm}, "OpenStreetMap XML: buildings and streets"},
       {"Mitsuba",
-       {".xml"},
-       read_mitsuba,
-       "Mitsuba and Sionna scenes of PLY and OBJ meshes with ITU materials",
-       is_mitsuba},
+       {{".xml"}, read_mitsuba, is_mitsuba},
+       "Mitsuba and Sionna scenes of PLY and OBJ meshes with ITU materials"},
 #ifdef CANYON_WITH_ASSIMP
-      {"glTF", {".gltf", ".glb"}, read_with_assimp, "glTF 2.0, y up (assimp)"},
-      {"assimp", {".dae", ".fbx", ".stl", ".3ds"}, read_with_assimp, "what else assimp reads"},
+      {"glTF", {{".gltf", ".glb"}, read_with_assimp}, "glTF 2.0, y up (assimp)"},
+      {"assimp", {{".dae", ".fbx", ".stl", ".3ds"}, read_with_assimp}, "what else assimp reads"},
 #endif
   };
   return formats;
@@ -80,7 +72,7 @@ Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& opt
   std::string endings;
   for (const SceneFormat& format : scene_formats()) {
     bool fits = false;
-    for (const char* ending : format.endings) {
+    for (const char* ending : format.make.endings) {
       fits = fits || name.ends_with(ending);
       if ((" " + endings).find(" " + std::string(ending) + " ") == std::string::npos)
         endings += std::string(ending) + " ";
@@ -96,21 +88,21 @@ Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& opt
     return Error{path, 0, "", "a scene format that is not known", "a file that ends with " + endings};
   }
   const auto read = [&](const SceneFormat& format) -> Result<RawScene> {
-    CANYON_TRY(RawScene scene, format.read(path, options));
+    CANYON_TRY(RawScene scene, format.make.read(path, options));
     scene.files[0] = path;
-    if (options.up_axis != "auto") scene.y_up = options.up_axis == "y";
+    if (options.up_axis != UpAxis::kAuto) scene.y_up = options.up_axis == UpAxis::kY;
     return scene;
   };
   const Error empty{path, 0, "", "is empty", "a scene"};
   std::error_code unknown_size;
   if (std::filesystem::file_size(path, unknown_size) == 0 && !unknown_size) return empty;
-  if (candidates.size() == 1 && candidates[0]->looks_like == nullptr) return read(*candidates[0]);
+  if (candidates.size() == 1 && candidates[0]->make.looks_like == nullptr) return read(*candidates[0]);
 
   CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) return empty;
   std::string expected;
   for (const SceneFormat* format : candidates) {
-    if (format->looks_like == nullptr || format->looks_like(text)) return read(*format);
+    if (format->make.looks_like == nullptr || format->make.looks_like(text)) return read(*format);
     expected += (expected.empty() ? "" : " or ") + std::string(format->name);
   }
   return Error{path, 0, "", "does not look like a scene", expected};

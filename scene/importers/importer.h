@@ -6,33 +6,36 @@
 #include <vector>
 
 #include "canyon/core/config/config.h"
+#include "canyon/core/model_table.h"
 #include "canyon/core/result.h"
 #include "canyon/scene/importers/raw_scene.h"
 
 namespace canyon::scene {
+
+/// Of mesh files; kAuto: y of glTF, z of all else.
+enum class UpAxis { kAuto, kY, kZ };
 
 /// What a reader is told beside the file.
 struct ReadOptions {
   /// Properties of a footprint or building that hold its height above ground, the height of the ground, and its number
   /// of storeys; empty: those of the known layouts.
   std::string height_property, ground_property, storeys_property;
-  std::string up_axis = "auto";   ///< of mesh files: "z", "y", or "auto": y of glTF, z of all else
+  UpAxis up_axis = UpAxis::kAuto;
   double storey_m = 3.0;          ///< height of one storey, where only storeys are known
   double default_height_m = 9.0;  ///< of buildings that say nothing, which are counted; 0 leaves them out
 };
 
 /// One file format. Adding one = one file and one row in importer.cpp.
-struct SceneFormat {
-  const char* name;
+struct SceneReader {
   std::vector<const char*> endings;  ///< of file names, lower case; a trailing .gz is looked through
   Result<RawScene> (*read)(const std::string& path, const ReadOptions& options);
-  const char* doc;
   /// For endings that several formats share: does this text look like a file of this one?
   bool (*looks_like)(std::string_view text) = nullptr;
 };
 
 /// In the order in which they are tried.
-const std::vector<SceneFormat>& scene_formats();
+using SceneFormat = ModelRow<SceneReader>;
+ModelTable<SceneReader> scene_formats();
 
 /// Reads a file of any known format, chosen by its ending and, where formats share one, by what is in it.
 Result<RawScene> read_scene_file(const std::string& path, const ReadOptions& options);

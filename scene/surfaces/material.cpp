@@ -28,8 +28,8 @@ void visit(FieldVisitor& f, Material& m) {
   f.number("thickness_m", m.thickness_m, {0.0, 100.0}, "of the slab that radio meets; 0: nothing comes through");
   f.number("roughness_m", m.roughness_m, {0.0, 10.0}, "standard deviation of the surface's height, for radio");
   f.number("lidar_reflectance", m.lidar_reflectance, {0.0, 1.0}, "diffuse reflectance at 905 nm");
-  const auto other = [&](const char* key, double& value, const char* doc) {
-    double filled = value < 0.0 ? m.lidar_reflectance : value;
+  const auto other = [&](const char* key, std::optional<double>& value, const char* doc) {
+    double filled = value.value_or(m.lidar_reflectance);
     f.number(key, filled, {0.0, 1.0}, doc);
     value = filled;
   };
@@ -61,8 +61,8 @@ std::complex<double> Material::permittivity(double frequency_hz) const {
 
 double Material::reflectance(double wavelength_nm) const {
   CANYON_CHECK(wavelength_nm > 0.0, "wavelength_nm = ", wavelength_nm);
-  const double at_850 = lidar_reflectance_850 < 0.0 ? lidar_reflectance : lidar_reflectance_850;
-  const double at_1550 = lidar_reflectance_1550 < 0.0 ? lidar_reflectance : lidar_reflectance_1550;
+  const double at_850 = lidar_reflectance_850.value_or(lidar_reflectance);
+  const double at_1550 = lidar_reflectance_1550.value_or(lidar_reflectance);
   if (wavelength_nm <= 905.0) {
     const double s = std::clamp((wavelength_nm - 850.0) / (905.0 - 850.0), 0.0, 1.0);
     return at_850 + s * (lidar_reflectance - at_850);
@@ -87,7 +87,8 @@ Result<std::vector<Material>> parse_materials(std::string_view toml, const std::
     if (m.name.empty()) return mistake("name", "missing", "a name");
     if (!(m.itu_a >= 1.0)) return mistake("itu", join_values("a = ", m.itu_a), "a permittivity of at least 1");
     if (!(m.itu_c >= 0.0)) return mistake("itu", join_values("c = ", m.itu_c), "a conductivity of at least 0");
-    const double diffuse = std::max({m.lidar_reflectance, m.lidar_reflectance_850, m.lidar_reflectance_1550});
+    const double diffuse =
+        std::max({m.lidar_reflectance, m.lidar_reflectance_850.value_or(0.0), m.lidar_reflectance_1550.value_or(0.0)});
     const double share = diffuse + m.lidar_specular + m.lidar_transmittance;
     if (share > 1.0 + 1e-9)
       return mistake("lidar_reflectance",

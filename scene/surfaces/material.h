@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +24,8 @@ struct Material {
   double roughness_m = 0.0;   ///< standard deviation of the surface's height, for radio
 
   double lidar_reflectance = 0.3;  ///< diffuse (Lambertian) reflectance at 905 nm, 0..1
-  /// The same at 850 and 1550 nm; below 0: as at 905 nm.
-  double lidar_reflectance_850 = -1.0, lidar_reflectance_1550 = -1.0;
+  /// The same at 850 and 1550 nm; none: as at 905 nm.
+  std::optional<double> lidar_reflectance_850, lidar_reflectance_1550;
   double lidar_specular = 0.0;           ///< share of the light that is reflected as by a mirror, 0..1
   double lidar_specular_lobe_deg = 2.0;  ///< standard deviation of the mirror's slope
   /// Coefficient of retroreflection R_A, cd/(lx m^2), that is 1/sr: light sent back to where it came from. A white

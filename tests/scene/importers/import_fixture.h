@@ -24,7 +24,7 @@ class Import : public ::testing::Test {
 
   Result<ImportedScene> import(const std::string& path) {
     config_.file = path;
-    if (config_.undulation_m == ImportConfig::kUndulationUnknown) config_.undulation_m = 40.0;
+    if (!config_.undulation_m) config_.undulation_m = 40.0;
     return import_scene(config_, {45.0 * kDegree, 5.0 * kDegree, 100.0});
   }
 

@@ -61,7 +61,7 @@ TEST(ImportRealScenes, LyonIsTheSameFromBothCoordinateSystems) {
   CANYON_REAL_DATA(cc46, "scenes/lyon1/buildings_lyon1_epsg3946.geojson.gz");
   ImportConfig config;
   config.undulation_m = 50.0;
-  config.streets = "file";
+  config.streets = StreetSource::kFile;
   config.center_deg = {45.76983, 4.82597};
   config.file = wgs84;
   const ImportedScene one = import(config);
@@ -112,7 +112,7 @@ TEST(ImportRealScenes, CityJsonZurich) {
   ImportConfig config;
   config.file = path;
   config.undulation_m = 47.0;
-  config.streets = "file";
+  config.streets = StreetSource::kFile;
   config.ground_cell_m = 50.0;  // 49 buildings over 9 x 11 km
   const ImportedScene made = import(config);
   expect_counts(made.parts, 49, 808.694);
