@@ -20,7 +20,7 @@ NavEstimate MissionRun::estimate(GpsTime t) const {
 }
 
 NavEstimate MissionRun::with_correction(NavEstimate estimate) const {
-  if (config_.autonomy.map == "registered") estimate.X_WB = mapper_.correction() * estimate.X_WB;
+  if (config_.autonomy.map == MapPose::kRegistered) estimate.X_WB = mapper_.correction() * estimate.X_WB;
   return estimate;
 }
 
@@ -66,8 +66,8 @@ Status MissionRun::take_gnss(const Due& due) {
   GnssRow row;
   row.fix = output.fix;
   row.p_A_W_true = p_A_W;
-  const double withhold = config_.run.withhold_fixes_after_s;
-  row.withheld = withhold >= 0.0 && truth.t - mission_.start >= withhold;
+  const auto withhold_s = config_.run.withhold_fixes_after_s;
+  row.withheld = withhold_s && truth.t - mission_.start >= *withhold_s;
   for (const GnssObservationTruth& satellite : output.truth.satellites) {
     double cn0 = kNaN;
     for (const GnssObservation& observation : output.epoch.observations)
@@ -103,8 +103,8 @@ Status MissionRun::take_scan(const Due& due) {
   const double period = 1.0 / config_.lidar.rate_hz;
   true_motion_.forget_before(due.t - period);
   estimated_motion_.forget_before(due.t - period);
-  const double withhold = config_.run.withhold_scans_after_s;
-  if (withhold >= 0.0 && due.t - mission_.start >= withhold) return Ok{};
+  const auto withhold_s = config_.run.withhold_scans_after_s;
+  if (withhold_s && due.t - mission_.start >= *withhold_s) return Ok{};
   if (!scan_is_wanted(due.t)) return Ok{};
 
   lidar::Scanner::InstancesAt moving;

@@ -31,7 +31,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
                                 config.run.epoch_rate_hz}),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
-      maps_(config.run, config.registration.method != "none", clock) {
+      maps_(config.run, lidar::registers(config.registration), clock) {
   record_.config = config;
   record_.files = mission.files;
   record_.frame = mission.scene->frame();

@@ -8,14 +8,18 @@ namespace canyon::mission {
 
 namespace {
 
-struct Row {
-  const char* name;
-  std::unique_ptr<Autonomy> (*make)(const AutonomyConfig&, const PriorKnowledge&, GpsTime);
+constexpr ModelRow<MakeAutonomy> kAutonomies[] = {
+    {"reference", make_reference_autonomy, "keeps clear of what its local grid shows",
+     parameters_of<ReferenceParameters>},
+    {"route_follower",
+     [](const ModelParameters&, const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
+       return make_route_follower(config, prior, start);
+     },
+     "the centre line, whatever stands there"},
 };
-/// A new autonomy is one file and one row.
-constexpr Row kAutonomies[] = {
-    {"reference", make_reference_autonomy},
-    {"route_follower", make_route_follower},
+constexpr ModelRow<MapPose> kMapPoses[] = {
+    {"prior", MapPose::kPrior, "the filter's"},
+    {"registered", MapPose::kRegistered, "corrected by the last registered keyframe"},
 };
 
 }  // namespace
@@ -26,22 +30,10 @@ void visit(FieldVisitor& f, Waypoint& w) {
   f.text("observe", w.observe, "building to stop and look at; makes it a mission waypoint");
 }
 
-void visit(FieldVisitor& f, PathChoiceConfig& c) {
-  f.number("horizon_m", c.horizon_m, {5, 100}, "how far ahead each path is checked");
-  f.number("stop_margin_m", c.stop_margin_m, {0, 20},
-           "kept free ahead of the rear axle when halting before an obstacle");
-  f.number("comfort_clearance_m", c.comfort_clearance_m, {0, 10}, "closer to an obstacle than this costs");
-  f.number("blocked_cost_1_m", c.blocked_cost_1_m, {0, 1e3}, "cost of every metre of the horizon behind an obstacle");
-  f.number("closeness_cost_1_m2", c.closeness_cost_1_m2, {0, 1e3},
-           "cost of every metre driven one metre closer to an obstacle than comfortable");
-  f.number("offset_cost_1_m", c.offset_cost_1_m, {0, 1e3}, "cost of every metre beside the centre line");
-  f.number("change_cost_1_m", c.change_cost_1_m, {0, 1e3}, "cost of every metre beside the path chosen last");
-}
-
 void visit(FieldVisitor& f, AutonomyConfig& c) {
-  f.choice("model", c.model, autonomy_models(),
-           "which autonomy drives: reference, or route_follower: the centre line, whatever stands there");
-  f.choice("map", c.map, {"prior", "registered"},
+  visit_choice(f, "model", c.model,
+               "which autonomy drives: reference, or route_follower: the centre line, whatever stands there");
+  f.choice("map", c.map, ModelTable<MapPose>(kMapPoses),
            "pose it works with: the filter's, or corrected by the last registered keyframe");
   f.number("rate_hz", c.rate_hz, {1, 1000}, "commands per second; each takes effect at the next master step of 10 ms");
   f.number("cruise_m_s", c.cruise_m_s, {0.2, 30}, "speed on a free, straight street");
@@ -49,11 +41,6 @@ void visit(FieldVisitor& f, AutonomyConfig& c) {
   f.number("braking_m_s2", c.braking_m_s2, {0.1, 10}, "deceleration it plans with");
   f.number("corner_radius_m", c.corner_radius_m, {1, 100}, "radius of the planned turns");
   f.number("hold_s", c.hold_s, {0, 600}, "how long it looks at a building");
-  f.number("max_offset_m", c.max_offset_m, {0, 20}, "how far it may leave the centre line of the street");
-  f.number("clearance_m", c.clearance_m, {0.1, 5}, "from its axis to an obstacle");
-  f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
-  f.group("grid", c.grid, "its picture of the surroundings: a rolling height grid");
-  f.group("choice", c.choice, "how it chooses among paths beside the centre line");
   f.list("waypoint", c.waypoints, "places to drive through, in order");
 }
 
@@ -106,16 +93,12 @@ Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::Str
   return prior;
 }
 
-std::unique_ptr<Autonomy> make_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
-  for (const Row& row : kAutonomies)
-    if (config.model == row.name) return row.make(config, prior, start);
-  CANYON_CHECK(false, "autonomy model ", config.model);
+ModelTable<MakeAutonomy> autonomy_models() {
+  return kAutonomies;
 }
 
-std::vector<std::string> autonomy_models() {
-  std::vector<std::string> names;
-  for (const Row& row : kAutonomies) names.emplace_back(row.name);
-  return names;
+std::unique_ptr<Autonomy> make_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
+  return model_row(autonomy_models(), config.model.name).make(config.model.own, config, prior, start);
 }
 
 }  // namespace canyon::mission

@@ -8,8 +8,8 @@
 
 #include "canyon/core/config/config.h"
 #include "canyon/core/messages.h"
+#include "canyon/core/model_choice.h"
 #include "canyon/core/result.h"
-#include "canyon/mission/autonomy/local_grid.h"
 #include "canyon/mission/autonomy/path.h"
 #include "canyon/scene/city/street_graph.h"
 
@@ -24,35 +24,26 @@ struct Waypoint {
 };
 void visit(FieldVisitor& f, Waypoint& w);
 
-/// [autonomy.choice] of a mission file: how the reference autonomy chooses among paths beside the centre line. The one
-/// of least cost is driven; it halts where none is free.
-struct PathChoiceConfig {
-  double horizon_m = 18.0;           ///< how far ahead each is checked
-  double stop_margin_m = 3.0;        ///< kept free ahead of the rear axle when halting before an obstacle
-  double comfort_clearance_m = 2.0;  ///< closer to an obstacle than this costs
-  double blocked_cost_1_m = 4.0;     ///< for every metre of the horizon behind the first obstacle
-  double closeness_cost_1_m2 = 1.0;  ///< for every metre driven a metre closer than the comfortable clearance
-  double offset_cost_1_m = 0.6;      ///< for every metre beside the centre line
-  double change_cost_1_m = 0.8;      ///< for every metre away from the path chosen last
-};
-void visit(FieldVisitor& f, PathChoiceConfig& c);
+/// The pose that the autonomy works with: the filter's, or that corrected by the last registered keyframe.
+enum class MapPose { kPrior, kRegistered };
+
+class Autonomy;
+struct AutonomyConfig;
+struct PriorKnowledge;
+using MakeAutonomy = std::unique_ptr<Autonomy>(const ModelParameters& own, const AutonomyConfig& config,
+                                               const PriorKnowledge& prior, GpsTime start);
+ModelTable<MakeAutonomy> autonomy_models();
 
 /// [autonomy] of a mission file.
 struct AutonomyConfig {
-  std::string model = "reference";
-  std::string map =
-      "prior";  ///< pose it works with: the filter's ("prior") or corrected by the last keyframe ("registered")
+  ModelChoice<autonomy_models> model{"reference"};
+  MapPose map = MapPose::kPrior;
   double rate_hz = 100.0;  ///< commands per second
   double cruise_m_s = 5.0;
   double lateral_m_s2 = 1.2;  ///< lateral acceleration in corners
   double braking_m_s2 = 1.2;
   double corner_radius_m = 6.5;
-  double hold_s = 6.0;         ///< how long it looks at a building
-  double max_offset_m = 3.5;   ///< how far it may leave the street's centre line
-  double clearance_m = 1.0;    ///< from its axis to an obstacle
-  double blind_after_s = 0.5;  ///< stops when no scan with returns came for this long
-  LocalGridConfig grid;
-  PathChoiceConfig choice;
+  double hold_s = 6.0;  ///< how long it looks at a building
   std::vector<Waypoint> waypoints;
 };
 void visit(FieldVisitor& f, AutonomyConfig& c);
@@ -82,6 +73,5 @@ class Autonomy {
 };
 
 std::unique_ptr<Autonomy> make_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start);
-std::vector<std::string> autonomy_models();
 
 }  // namespace canyon::mission

@@ -28,8 +28,9 @@ struct Candidate {
 
 class ReferenceAutonomy final : public Autonomy {
  public:
-  ReferenceAutonomy(const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start)
-      : config_(config), driver_(config, prior), start_(start), grid_(config.grid), last_seen_(start) {}
+  ReferenceAutonomy(const ReferenceParameters& own, const AutonomyConfig& config, const PriorKnowledge& prior,
+                    GpsTime start)
+      : own_(own), driver_(config, prior), start_(start), grid_(own.grid), last_seen_(start) {}
 
   void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
     if (static_cast<int>(scan.points.size()) < kEnoughReturns) return;
@@ -50,7 +51,7 @@ class ReferenceAutonomy final : public Autonomy {
       state_ = driver_.done() ? AutonomyState::kDone : AutonomyState::kObserving;
       return command;
     }
-    if (estimate.t - last_seen_ > config_.blind_after_s) {
+    if (estimate.t - last_seen_ > own_.blind_after_s) {
       state_ = AutonomyState::kBlind;
       return command;
     }
@@ -68,8 +69,8 @@ class ReferenceAutonomy final : public Autonomy {
     const Path& route = driver_.route();
     const double s = driver_.s_m(), here = route.offset(p, s);
     const double speed = estimate.v_WB_W.head<2>().norm();
-    const int steps = static_cast<int>(std::floor(config_.max_offset_m / kOffsetStep));
-    const PathChoiceConfig& choice = config_.choice;
+    const int steps = static_cast<int>(std::floor(own_.max_offset_m / kOffsetStep));
+    const PathChoiceConfig& choice = own_.choice;
     double best_cost = 1e300;
     Candidate best = chosen_;
     for (int k = -steps; k <= steps; ++k) {
@@ -77,7 +78,7 @@ class ReferenceAutonomy final : public Autonomy {
       double free_m = choice.horizon_m, closeness = 0.0;
       for (double x = 0.0; x <= choice.horizon_m; x += kSample) {
         const double distance = grid_.distance_m(candidate.at(route, s + x));
-        if (distance < config_.clearance_m) {
+        if (distance < own_.clearance_m) {
           free_m = x;
           break;
         }
@@ -98,13 +99,13 @@ class ReferenceAutonomy final : public Autonomy {
 
   double allowed_speed() const {
     const double v = driver_.allowed_speed_m_s();
-    const double free_m = free_m_ - (driver_.s_m() - free_from_s_), margin_m = config_.choice.stop_margin_m;
-    if (free_m_ >= config_.choice.horizon_m) return v;
+    const double free_m = free_m_ - (driver_.s_m() - free_from_s_), margin_m = own_.choice.stop_margin_m;
+    if (free_m_ >= own_.choice.horizon_m) return v;
     if (free_m < margin_m + 0.3) return 0.0;
     return std::min(v, driver_.braking_to_m_s(free_m - margin_m));
   }
 
-  AutonomyConfig config_;
+  ReferenceParameters own_;
   RouteDriver driver_;
   GpsTime start_;
   LocalGrid grid_;
@@ -117,9 +118,29 @@ class ReferenceAutonomy final : public Autonomy {
 
 }  // namespace
 
-std::unique_ptr<Autonomy> make_reference_autonomy(const AutonomyConfig& config, const PriorKnowledge& prior,
-                                                  GpsTime start) {
-  return std::make_unique<ReferenceAutonomy>(config, prior, start);
+void visit(FieldVisitor& f, PathChoiceConfig& c) {
+  f.number("horizon_m", c.horizon_m, {5, 100}, "how far ahead each path is checked");
+  f.number("stop_margin_m", c.stop_margin_m, {0, 20},
+           "kept free ahead of the rear axle when halting before an obstacle");
+  f.number("comfort_clearance_m", c.comfort_clearance_m, {0, 10}, "closer to an obstacle than this costs");
+  f.number("blocked_cost_1_m", c.blocked_cost_1_m, {0, 1e3}, "cost of every metre of the horizon behind an obstacle");
+  f.number("closeness_cost_1_m2", c.closeness_cost_1_m2, {0, 1e3},
+           "cost of every metre driven one metre closer to an obstacle than comfortable");
+  f.number("offset_cost_1_m", c.offset_cost_1_m, {0, 1e3}, "cost of every metre beside the centre line");
+  f.number("change_cost_1_m", c.change_cost_1_m, {0, 1e3}, "cost of every metre beside the path chosen last");
+}
+
+void visit(FieldVisitor& f, ReferenceParameters& c) {
+  f.number("max_offset_m", c.max_offset_m, {0, 20}, "how far it may leave the centre line of the street");
+  f.number("clearance_m", c.clearance_m, {0.1, 5}, "from its axis to an obstacle");
+  f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
+  f.group("grid", c.grid, "its picture of the surroundings: a rolling height grid");
+  f.group("choice", c.choice, "how it chooses among paths beside the centre line");
+}
+
+std::unique_ptr<Autonomy> make_reference_autonomy(const ModelParameters& own, const AutonomyConfig& config,
+                                                  const PriorKnowledge& prior, GpsTime start) {
+  return std::make_unique<ReferenceAutonomy>(own.get<ReferenceParameters>(), config, prior, start);
 }
 
 }  // namespace canyon::mission

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "canyon/core/config/config.h"
 #include "canyon/fusion/error_state_filter.h"
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/inertial/imu_model.h"
 #include "canyon/lidar/registration/registration.h"
 #include "canyon/lidar/scanner.h"
@@ -47,10 +47,10 @@ struct RunConfig {
   bool record_tape = true;           ///< keeps the true motion, so that other models can be driven on it
   bool record_filter_input = false;  ///< keeps what the filter was given: at 100 Hz some 55 MB an hour
   // Couplings that a study may cut on purpose.
-  bool truth_as_pose = false;            ///< hands the true pose on; what is recorded stays the filter's
-  double estimate_up_offset_m = 0.0;     ///< added to the estimate's height
-  double withhold_fixes_after_s = -1.0;  ///< if >= 0: no fix reaches the filter from then on
-  double withhold_scans_after_s = -1.0;  ///< if >= 0: no scan reaches map and autonomy from then on
+  bool truth_as_pose = false;                    ///< hands the true pose on; what is recorded stays the filter's
+  double estimate_up_offset_m = 0.0;             ///< added to the estimate's height
+  std::optional<double> withhold_fixes_after_s;  ///< no fix reaches the filter from then on
+  std::optional<double> withhold_scans_after_s;  ///< no scan reaches map and autonomy from then on
 };
 void visit(FieldVisitor& f, RunConfig& c);
 

@@ -99,8 +99,8 @@ Result<Tape> drive_route(const MissionConfig& config, const PreparedMission& mis
   }
   scorer.finish(source->now().motion, follower->state() == AutonomyState::kDone);
   // A tape that [time] limit_s cuts is as long as was asked for.
-  if (const auto& failure = scorer.failure(); failure && failure->kind != "stopped")
-    return Error{.what = "the route cannot be driven on truth: " + scorer.outcome() + " " +
+  if (const auto& failure = scorer.failure(); failure && failure->kind != Outcome::kStopped)
+    return Error{.what = "the route cannot be driven on truth: " + std::string(name(failure->kind)) + " " +
                          place(failure->t_s, failure->p_W) + " (" + failure->detail + ")",
                  .expected = "a route that is free, or --tape or --trajectory",
                  .exit_code = 1};

@@ -21,7 +21,7 @@ Status RunFiles::Table::flush(std::size_t at_least) {
 
 RunFiles::RunFiles(std::string cloud_stem, const MissionConfig& config, const PreparedMission& mission)
     : cloud_stem_(std::move(cloud_stem)),
-      place_{mission.scene->frame(), mission.start, config.registration.method != "none"} {}
+      place_{mission.scene->frame(), mission.start, lidar::registers(config.registration)} {}
 
 Status RunFiles::open(std::size_t table, const std::string& path, const char* columns) {
   CANYON_TRY(FileWriter file, FileWriter::create(path));

@@ -27,7 +27,7 @@ struct RunRecord {
   bool open_loop = false;  ///< on a tape: no outcome, no waypoints
   double simulated_s = 0.0;
   double distance_m = 0.0;
-  std::string outcome;
+  std::optional<Outcome> outcome;  ///< none in an open loop
   std::optional<Failure> failure;
   std::vector<WaypointScore> waypoints;
 
@@ -40,8 +40,7 @@ struct RunRecord {
   PartClock clock;
   double wall_s = 0.0;
 
-  /// False with [registration] method "none": nothing is then known of registered keyframes and of their map.
-  bool registers() const { return config.registration.method != "none"; }
+  bool registers() const { return lidar::registers(config.registration); }
 };
 
 }  // namespace canyon::mission

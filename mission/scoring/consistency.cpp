@@ -6,6 +6,7 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
+#include "canyon/mission/autonomy/reference_autonomy.h"
 
 namespace canyon::mission {
 
@@ -66,16 +67,17 @@ Status check_driving(const AutonomyConfig& autonomy, const VehicleConfig& vehicl
                  .what = text,
                  .expected = "autonomy.corner_radius_m of wheelbase_m / tan(max_steering_deg) or more"};
   }
-  if (autonomy.clearance_m < 0.5 * vehicle.width_m)
+  const ReferenceParameters& reference = autonomy.model.own.get<ReferenceParameters>();
+  if (reference.clearance_m < 0.5 * vehicle.width_m)
     return Error{.key = "autonomy.clearance_m, vehicle.width_m",
                  .what = "a vehicle " + number_text(vehicle.width_m) + " m wide does not pass an obstacle " +
-                         number_text(autonomy.clearance_m) + " m beside its axis",
+                         number_text(reference.clearance_m) + " m beside its axis",
                  .expected = "autonomy.clearance_m of half vehicle.width_m or more"};
   return Ok{};
 }
 
 /// What the autonomy looks at, against what it is shown.
-Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
+Status check_seeing(const ReferenceParameters& autonomy, double lidar_hz) {
   CANYON_TRY_STATUS(check_limit({"autonomy.choice.horizon_m", autonomy.choice.horizon_m, "autonomy.grid.half_size_m",
                                  autonomy.grid.half_size_m,
                                  "paths are checked " + number_text(autonomy.choice.horizon_m) +
@@ -94,7 +96,7 @@ Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
   CANYON_TRY_STATUS(check_body(config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
-  return check_seeing(config.autonomy, config.lidar.rate_hz);
+  return check_seeing(config.autonomy.model.own.get<ReferenceParameters>(), config.lidar.rate_hz);
 }
 
 }  // namespace canyon::mission

@@ -40,7 +40,7 @@ Scorer::Scorer(const MissionConfig& config, const PreparedMission& mission, cons
   halt_s_.assign(places_.size(), 0.0);
 }
 
-void Scorer::fail(const char* kind, const KinematicState& truth, std::string detail) {
+void Scorer::fail(Outcome kind, const KinematicState& truth, std::string detail) {
   if (failure_) return;
   failure_ = Failure{kind, truth.t - start_, truth.X_WB.p, std::move(detail)};
 }
@@ -98,26 +98,26 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
   }
 
   if (!on_terrain) {
-    fail("left_scene", truth, "a wheel left the terrain");
+    fail(Outcome::kLeftScene, truth, "a wheel left the terrain");
     return false;
   }
   if ((p - last_checked_).norm() >= kCollisionStep) {
     last_checked_ = p;
     if (const std::string object = collides(truth); !object.empty()) {
-      fail("collision", truth, "hit " + object);
+      fail(Outcome::kCollision, truth, "hit " + object);
       return false;
     }
   }
   standing_s_ = standing && !observing ? standing_s_ + dt : 0.0;
   if (standing_s_ > config_.stuck_after_s) {
-    fail("stuck", truth, "stood still for " + number(standing_s_, "s"));
+    fail(Outcome::kStuck, truth, "stood still for " + number(standing_s_, "s"));
     return false;
   }
   return t_s < time_limit_s_;  // finish() says what that means
 }
 
 void Scorer::autonomy_fault(const KinematicState& truth, const DriveCommand& command) {
-  fail("autonomy_fault", truth,
+  fail(Outcome::kAutonomyFault, truth,
        "its command was " + number(command.speed_m_s, "m/s") + ", " + number(command.curvature_1_m, "1/m"));
 }
 
@@ -126,9 +126,9 @@ void Scorer::finish(const KinematicState& truth, bool done) {
   if (!done) {
     const std::string after = number(truth.t - start_, "s");
     if (stopped_on_purpose_) {
-      fail("stopped", truth, "by [time] limit_s after " + after);
+      fail(Outcome::kStopped, truth, "by [time] limit_s after " + after);
     } else {
-      fail("timeout", truth, "not finished within " + after);
+      fail(Outcome::kTimeout, truth, "not finished within " + after);
     }
     return;
   }
@@ -136,11 +136,12 @@ void Scorer::finish(const KinematicState& truth, bool done) {
     const WaypointScore& score = waypoints_[i];
     const std::string who = score.name.empty() ? "waypoint " + std::to_string(i + 1) : score.name;
     if (!score.reached) {
-      fail("missed_waypoint", truth,
+      fail(Outcome::kMissedWaypoint, truth,
            who + ": came within " + number(score.closest_m, "m") +
                (score.mission ? ", stood there for " + number(score.stopped_s, "s") : ""));
     } else if (score.mission && !facades_[i].empty() && score.facade_seen_share < config_.facade_share) {
-      fail("no_line_of_sight", truth, who + ": " + number(100.0 * score.facade_seen_share, "% of the facade in sight"));
+      fail(Outcome::kNoLineOfSight, truth,
+           who + ": " + number(100.0 * score.facade_seen_share, "% of the facade in sight"));
     }
   }
 }

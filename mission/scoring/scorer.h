@@ -7,14 +7,14 @@
 #include "canyon/core/truth.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/motion/vehicle.h"
+#include "canyon/mission/scoring/outcome.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::mission {
 
 /// How a mission failed, when and where.
 struct Failure {
-  std::string kind;  ///< collision, timeout, stopped, stuck, missed_waypoint, no_line_of_sight, left_scene,
-                     ///< autonomy_fault
+  Outcome kind = Outcome::kTimeout;  ///< never kSuccess
   double t_s = 0.0;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   std::string detail;
@@ -48,10 +48,10 @@ class Scorer {
 
   const std::optional<Failure>& failure() const { return failure_; }
   const std::vector<WaypointScore>& waypoints() const { return waypoints_; }
-  std::string outcome() const { return failure_ ? failure_->kind : "success"; }
+  Outcome outcome() const { return failure_ ? failure_->kind : Outcome::kSuccess; }
 
  private:
-  void fail(const char* kind, const KinematicState& truth, std::string detail);
+  void fail(Outcome kind, const KinematicState& truth, std::string detail);
   /// Name of what the body touches; empty if nothing.
   std::string collides(const KinematicState& truth) const;
 

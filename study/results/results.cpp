@@ -138,10 +138,10 @@ Json run_json(const RunSummary& s) {
   out["gnss"] = s.gnss;
   out["imu"] = s.imu;
   out["seed"] = s.seed;
-  out["outcome"] = s.open_loop ? Json(nullptr) : Json(s.outcome);
+  out["outcome"] = s.outcome ? Json(mission::name(*s.outcome)) : Json(nullptr);
   out["failure"] = nullptr;
   if (s.failure)
-    out["failure"] = {{"kind", s.failure->kind},
+    out["failure"] = {{"kind", mission::name(s.failure->kind)},
                       {"t_s", s.failure->t_s},
                       {"x_m", s.failure->p_W.x()},
                       {"y_m", s.failure->p_W.y()},

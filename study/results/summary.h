@@ -14,7 +14,8 @@ namespace canyon::study {
 
 /// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
 struct RunSummary {
-  std::string name, gnss, imu, outcome;
+  std::string name, gnss, imu;
+  std::optional<mission::Outcome> outcome;  ///< none in an open loop
   std::int64_t seed = 0;
   bool open_loop = false;  ///< neither outcome nor waypoints
   std::optional<mission::Failure> failure;

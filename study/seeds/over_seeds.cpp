@@ -15,7 +15,7 @@ namespace {
 using Seeds = std::vector<std::vector<RunSummary>>;
 
 bool succeeded(const RunSummary& run) {
-  return run.outcome == "success";
+  return run.outcome == mission::Outcome::kSuccess;
 }
 
 Share share_of(const Seeds& seeds, std::size_t run) {
@@ -23,7 +23,7 @@ Share share_of(const Seeds& seeds, std::size_t run) {
   for (const auto& runs : seeds) {
     ++out.n;
     out.success += succeeded(runs[run]) ? 1 : 0;
-    ++out.outcomes[runs[run].outcome];
+    ++out.outcomes[mission::name(*runs[run].outcome)];
   }
   out.interval = wilson_interval(out.success, out.n);
   return out;

@@ -31,7 +31,7 @@ std::string square_text(const std::vector<RunSummary>& runs) {
   for (std::size_t g = 0; g < 2; ++g) {
     out += left("  " + square->levels[g] + " GNSS", width);
     for (const RunSummary* run : square->runs[g])
-      out += "  " + left(cell(open_loop ? "" : run->outcome, run->position_m.rms, 2, " m"), 26);
+      out += "  " + left(cell(run->outcome ? mission::name(*run->outcome) : "", run->position_m.rms, 2, " m"), 26);
     out += "\n";
   }
   return out;
@@ -56,7 +56,7 @@ std::string comparison_table(const Results& results, const std::vector<std::stri
   std::vector<std::string> names, outcomes;
   for (const RunSummary& run : runs) {
     names.push_back(run.name);
-    outcomes.push_back(run.outcome);
+    outcomes.emplace_back(run.outcome ? mission::name(*run.outcome) : "");
   }
   TextTable table(names, runs.size() > 1 ? names[1] + "/" + names[0] : "");
   if (results.summaries.front().open_loop) {
@@ -73,7 +73,7 @@ std::string comparison_table(const Results& results, const std::vector<std::stri
   std::string out = table.str();
   for (const RunSummary& run : results.summaries) {
     if (!run.failure) continue;
-    out += "\n" + run.name + ": " + run.failure->kind + " at " + fixed(run.failure->t_s, 1) + " s, x " +
+    out += "\n" + run.name + ": " + mission::name(run.failure->kind) + " at " + fixed(run.failure->t_s, 1) + " s, x " +
            fixed(run.failure->p_W.x(), 1) + " m, y " + fixed(run.failure->p_W.y(), 1) + " m (" + run.failure->detail +
            ")";
   }

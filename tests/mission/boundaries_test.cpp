@@ -97,7 +97,7 @@ TEST(Boundaries, WhatIsNotFiniteIsRefusedWithItsProducersName) {
 TEST(Boundaries, AStiffSuspensionIsDriven) {
   const MissionConfig config =
       short_config("low", "low", "[time]\nlimit_s = 3.0\n[vehicle]\nsuspension_hz = 5.0\nsuspension_damping = 2.0");
-  EXPECT_EQ(drive(config).outcome, "stopped");
+  EXPECT_EQ(drive(config).outcome, Outcome::kStopped);
 }
 
 /// Drives well for a while, then does not.
@@ -130,7 +130,7 @@ TEST(Boundaries, AnAutonomysCommandThatIsNotFiniteIsTheMissionsOutcome) {
         run_mission(config, *mission, nullptr,
                     {.tape = nullptr, .recorder = &both, .autonomy = std::make_unique<FaultyAutonomy>(good_commands)});
     ASSERT_TRUE(record.ok()) << record.error().str();
-    EXPECT_EQ(record->outcome, "autonomy_fault");
+    EXPECT_EQ(record->outcome, Outcome::kAutonomyFault);
     ASSERT_TRUE(record->failure);
     EXPECT_EQ(record->failure->detail, "its command was nan m/s, 0.0 1/m");
     EXPECT_NEAR(record->failure->t_s, 0.01 * (good_commands + 1), 1e-9);

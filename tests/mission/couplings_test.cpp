@@ -5,6 +5,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/inertial/errors/error_link.h"
+#include "canyon/mission/autonomy/reference_autonomy.h"
 #include "canyon/tests/mission/summary_of.h"
 
 namespace canyon::mission::testing {
@@ -24,7 +25,7 @@ double largest_distance_from_route(const RecordedRun& record, const MissionConfi
 
 TEST(Couplings, WithTruthAsPoseTheMissionSucceeds) {
   const RecordedRun record = drive(short_config("high", "high", "[run]\ntruth_as_pose = true"));
-  EXPECT_EQ(record.outcome, "success") << (record.failure ? record.failure->detail : "");
+  EXPECT_EQ(record.outcome, Outcome::kSuccess) << (record.failure ? record.failure->detail : "");
   EXPECT_GT(summary_of(record).fix_error_rms_m, 0.0);  // the sensors err as ever; nobody listens to them
 }
 
@@ -32,12 +33,14 @@ TEST(Couplings, WithFixesWithheldTheEstimateDriftsAndTheVehicleLeavesItsPath) {
   const MissionConfig with_fixes = short_config("low", "high");
   const MissionConfig without = short_config("low", "high", "[run]\nwithhold_fixes_after_s = 0.0");
   const RecordedRun aided = drive(with_fixes), coasting = drive(without);
-  EXPECT_EQ(aided.outcome, "success") << (aided.failure ? aided.failure->detail : "");
-  EXPECT_NE(coasting.outcome, "success");
+  EXPECT_EQ(aided.outcome, Outcome::kSuccess) << (aided.failure ? aided.failure->detail : "");
+  EXPECT_NE(coasting.outcome, Outcome::kSuccess);
   // It keeps to its path by its own estimate, at most max_offset_m beside the centre line. With fixes, each within 0.5
   // m of the truth, it truly keeps to it; alone, what it drifts, it drives beside the street.
-  EXPECT_LE(largest_distance_from_route(aided, with_fixes), with_fixes.autonomy.max_offset_m + 0.5);
-  EXPECT_GT(largest_distance_from_route(coasting, without), without.autonomy.max_offset_m + 0.5);
+  EXPECT_LE(largest_distance_from_route(aided, with_fixes),
+            with_fixes.autonomy.model.own.get<ReferenceParameters>().max_offset_m + 0.5);
+  EXPECT_GT(largest_distance_from_route(coasting, without),
+            without.autonomy.model.own.get<ReferenceParameters>().max_offset_m + 0.5);
 }
 
 // How it drifts: an attitude error phi, in W, turns the specific force and adds phi x f to the estimated acceleration;
@@ -129,7 +132,7 @@ TEST(Couplings, ALidarBlindedWhileDrivingStopsTheVehicle) {
                          [&](const NavRow& row) { return row.t - record.start > t_s - 0.05; });
   };
   const double braking = config.vehicle.max_deceleration_m_s2, step_s = 1.0 / config.imu.rate_hz;
-  const double noticed_s = 7.9 + config.autonomy.blind_after_s + 2 * step_s;
+  const double noticed_s = 7.9 + config.autonomy.model.own.get<ReferenceParameters>().blind_after_s + 2 * step_s;
   EXPECT_EQ(at(8.0).state, AutonomyState::kDriving);
   const double speed = at(noticed_s).true_speed_m_s;
   EXPECT_GT(at(8.0).true_speed_m_s, 3.0) << "it must be moving to stop";
@@ -149,7 +152,7 @@ TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
   EXPECT_GT(in_city.nlos_share, 0.0);
   EXPECT_EQ(alone.nlos_share, 0.0);
   EXPECT_EQ(alone.multipath_share, 0.0);
-  EXPECT_EQ(emptied.outcome, "success") << (emptied.failure ? emptied.failure->detail : "");
+  EXPECT_EQ(emptied.outcome, Outcome::kSuccess) << (emptied.failure ? emptied.failure->detail : "");
   EXPECT_LT(alone.fix_error_rms_m, in_city.fix_error_rms_m);
   // Open sky: the same receiver in the city that simply sees everything above the mask. The noise is the same, so the
   // errors of each fix are, but for where the vehicle stood: the atmosphere's residual, some centimetres over the 5 km
@@ -188,7 +191,7 @@ TEST(Couplings, LowAndHighDifferOnlyThroughTheirModels) {
 TEST(Couplings, LowAndHighShareTheWhiteNoiseOfTheImu) {
   const MissionConfig low = short_config("low", "low"), high = short_config("high", "high");
   inertial::ImuConfig white = high.imu;
-  for (const std::string& link : inertial::error_link_names())
+  for (const std::string& link : model_names(inertial::error_links()))
     if (link != "white_noise") white.leave_out.push_back(link);
   const auto& scene = **scenes().get(low.scene);
   const auto imu = [&](const inertial::ImuConfig& config) { return *inertial::make_imu(config, 1, scene.frame()); };

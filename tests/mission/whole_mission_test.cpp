@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "canyon/core/units.h"
+#include "canyon/mission/autonomy/reference_autonomy.h"
 #include "canyon/tests/mission/summary_of.h"
 
 namespace canyon::mission::testing {
@@ -18,7 +19,7 @@ RecordedRun whole(const std::string& fidelity, bool truth_as_pose) {
 TEST(WholeMissionNightly, WithTruthAsPoseEveryWaypointIsReached) {
   const RecordedRun record = whole("low", true);
   const study::RunSummary summary = summary_of(record);
-  EXPECT_EQ(summary.outcome, "success") << (summary.failure ? summary.failure->detail : "");
+  EXPECT_EQ(summary.outcome, Outcome::kSuccess) << (summary.failure ? summary.failure->detail : "");
   EXPECT_EQ(summary.waypoints_reached, 11);
   EXPECT_EQ(summary.mission_waypoints_reached, 3);
   // Driving d beside a path changes its length by d times the angle that the path turns through.
@@ -26,7 +27,8 @@ TEST(WholeMissionNightly, WithTruthAsPoseEveryWaypointIsReached) {
   double turning_rad = 0.0;
   constexpr double kStep = 0.25;
   for (double s = 0.0; s < route.length_m(); s += kStep) turning_rad += std::abs(route.curvature(s)) * kStep;
-  EXPECT_NEAR(summary.distance_m, route.length_m(), record.config.autonomy.max_offset_m * turning_rad);
+  EXPECT_NEAR(summary.distance_m, route.length_m(),
+              record.config.autonomy.model.own.get<ReferenceParameters>().max_offset_m * turning_rad);
   EXPECT_LT(summary.duration_s, 480);  // what the mission was laid out for: about eight minutes at most
 }
 
@@ -37,8 +39,10 @@ TEST(WholeMissionNightly, RegistrationOnTruthStaysWithinATenthOfItsVoxels) {
   const study::RunSummary summary = summary_of(record);
   EXPECT_EQ(summary.registration_prior_rms_m, 0.0);
   EXPECT_GT(summary.registration_rms_m, 0.0);
-  EXPECT_LT(summary.registration_rms_m, 0.1 * record.config.registration.leaf_m);
-  EXPECT_LT(summary.registered_map.map_error_rms_m, 0.1 * record.config.registration.leaf_m);
+  EXPECT_LT(summary.registration_rms_m,
+            0.1 * record.config.registration.method.own.get<lidar::MatchingParameters>().leaf_m);
+  EXPECT_LT(summary.registered_map.map_error_rms_m,
+            0.1 * record.config.registration.method.own.get<lidar::MatchingParameters>().leaf_m);
 }
 
 TEST(WholeMissionNightly, TheRecordOfARunReachesToItsEnd) {

@@ -85,10 +85,10 @@ void drive_both(const City& city) {
     std::printf(
         "  %-4s %s%s%s; %d waypoints, %.0f m in %.0f s; fix error rms %.1f m, GDOP median %.1f, NLOS share %.2f; "
         "registration %.2f m rms after %.2f m; %.1f times real time\n",
-        fidelity, run.outcome.c_str(), run.failure ? ": " : "", run.failure ? run.failure->detail.c_str() : "",
+        fidelity, name(*run.outcome), run.failure ? ": " : "", run.failure ? run.failure->detail.c_str() : "",
         run.waypoints_reached, run.distance_m, run.duration_s, run.fix_error_rms_m, run.gdop_median, run.nlos_share,
         run.registration_rms_m, run.registration_prior_rms_m, run.real_time_factor());
-    EXPECT_TRUE(run.outcome == "success" || (run.failure && !run.failure->detail.empty())) << fidelity;
+    EXPECT_TRUE(run.outcome == Outcome::kSuccess || (run.failure && !run.failure->detail.empty())) << fidelity;
     EXPECT_GT(run.distance_m, 20.0) << fidelity;
     EXPECT_GT(run.fixes_due, 10) << fidelity;
     if (std::string(fidelity) == "high") {

@@ -236,6 +236,13 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
       "autonomy.blind_after_s of 1 / lidar.rate_hz or more");
 }
 
+// Keys of earlier versions are told by name, with what took their place.
+TEST(MissionFileMessages, AnOldKey) {
+  EXPECT_EQ(message("base = \"vicksburg\"\n[imu]\nvibration_g = [0.0, 0.0, 1.0]\n"),
+            "my.toml:3: imu.vibration_g: is a key of an earlier version, expected imu.vibration_m_s2, in m/s^2 (1 g = "
+            "9.80665 m/s^2)");
+}
+
 TEST(MissionFileMessages, UnknownBuilding) {
   EXPECT_THAT(message("base = \"vicksburg\"\n[[autonomy.waypoint]]\nname = \"x\"\np_m = [213.9, 100.0]\nobserve = "
                       "\"buildin 247\"\n"),

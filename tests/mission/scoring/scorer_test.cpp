@@ -37,7 +37,7 @@ TEST_F(ScorerTest, SucceedsAfterAStopInSight) {
   step({213.9, 109.0}, 5.0);
   for (int i = 0; i < 11; ++i) EXPECT_TRUE(step({213.9, 150.0}, 0.0, true));
   scorer_.finish(at({213.9, 150.0}, t_s_), true);
-  EXPECT_EQ(scorer_.outcome(), "success") << (scorer_.failure() ? scorer_.failure()->detail : "");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kSuccess) << (scorer_.failure() ? scorer_.failure()->detail : "");
   EXPECT_TRUE(scorer_.waypoints()[0].reached);
   EXPECT_NEAR(scorer_.waypoints()[1].stopped_s, 5.5, 1e-9);
 }
@@ -46,7 +46,7 @@ TEST_F(ScorerTest, AStopTooFarAwayIsAMissedWaypoint) {
   step({213.9, 109.0}, 5.0);
   for (int i = 0; i < 20; ++i) step({213.9, 146.0}, 0.0, true);
   scorer_.finish(at({213.9, 146.0}, t_s_), true);
-  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kMissedWaypoint);
   EXPECT_EQ(scorer_.failure()->detail, "house: came within 4.0 m, stood there for 0.0 s");
 }
 
@@ -54,7 +54,7 @@ TEST_F(ScorerTest, AStopTooShortIsAMissedWaypoint) {
   step({213.9, 109.0}, 5.0);
   for (int i = 0; i < 8; ++i) step({213.9, 150.0}, 0.0, true);
   scorer_.finish(at({213.9, 150.0}, t_s_), true);
-  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kMissedWaypoint);
 }
 
 // 2026-11-22: "success" though the vehicle had come no nearer to the first waypoint than 16 m: plain ones were not
@@ -64,14 +64,14 @@ TEST_F(ScorerTest, APlainWaypointThatWasNotReachedIsMissed) {
   for (int i = 0; i < 11; ++i) step({213.9, 150.0}, 0.0, true);
   scorer_.finish(at({213.9, 150.0}, t_s_), true);
   EXPECT_TRUE(scorer_.waypoints()[1].reached);
-  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kMissedWaypoint);
   EXPECT_EQ(scorer_.failure()->detail, "crossing: came within 16.0 m");
 }
 
 TEST_F(ScorerTest, OfSeveralMissedWaypointsTheFirstIsTold) {
   step({213.9, 60.0}, 5.0);
   scorer_.finish(at({213.9, 60.0}, t_s_), true);
-  EXPECT_EQ(scorer_.outcome(), "missed_waypoint");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kMissedWaypoint);
   EXPECT_EQ(scorer_.failure()->detail, "crossing: came within 49.9 m");
 }
 
@@ -79,7 +79,7 @@ TEST_F(ScorerTest, DrivingIntoAHouseIsACollisionWithItsName) {
   bool ended = false;
   for (double x = 213.9; x < 245 && !ended; x += 0.3) ended = !step({x, 150.0}, 3.0);
   EXPECT_TRUE(ended);
-  EXPECT_EQ(scorer_.outcome(), "collision");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kCollision);
   EXPECT_EQ(scorer_.failure()->detail.substr(0, 4), "hit ");
 }
 
@@ -87,14 +87,14 @@ TEST_F(ScorerTest, StandingStillWithoutReasonIsStuck) {
   bool go_on = true;
   for (int i = 0; i < 400 && go_on; ++i) go_on = step({213.9, 60.0}, 0.0);
   EXPECT_FALSE(go_on);
-  EXPECT_EQ(scorer_.outcome(), "stuck");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kStuck);
   EXPECT_NEAR(scorer_.failure()->t_s, config_.success.stuck_after_s, 1.0);
 }
 
 TEST_F(ScorerTest, NotBeingDoneIsATimeout) {
   step({213.9, 60.0}, 5.0);
   scorer_.finish(at({213.9, 60.0}, t_s_), false);
-  EXPECT_EQ(scorer_.outcome(), "timeout");
+  EXPECT_EQ(scorer_.outcome(), Outcome::kTimeout);
 }
 
 // 2026-11-22: a run that the user's own limit ended early was a "timeout".
@@ -110,7 +110,7 @@ TEST(ScorerLimit, WhatTheUsersOwnLimitEndsIsStopped) {
     state.X_WB.p = {213.9, 60.0, mission->scene->ground(213.9, 60.0)->height_m};
     EXPECT_FALSE(scorer.step(state, 5.0, true, false)) << "the limit ends it";
     scorer.finish(state, false);
-    return scorer.outcome() + ": " + scorer.failure()->detail;
+    return std::string(name(scorer.outcome())) + ": " + scorer.failure()->detail;
   };
   EXPECT_EQ(outcome_with("[time]\nlimit_s = 20.0"), "stopped: by [time] limit_s after 20.0 s");
   // One that is longer than the mission's own changes nothing.
@@ -140,21 +140,22 @@ struct ScreenedStop {
   }
   MissionConfig config;
   PreparedMission mission;
-  std::string outcome, detail;
+  Outcome outcome = Outcome::kSuccess;
+  std::string detail;
   double seen_share = 0.0;
 };
 
 TEST(ScorerSight, AStopThatSeesJustOverHalfOfTheFacadeSucceeds) {
   const ScreenedStop stop(kHides12);
   EXPECT_EQ(stop.seen_share, 13.0 / 25);
-  EXPECT_EQ(stop.outcome, "success") << stop.detail;
-  EXPECT_EQ(ScreenedStop(kHides12, 13.0 / 25).outcome, "success") << "the share asked for is enough";
+  EXPECT_EQ(stop.outcome, Outcome::kSuccess) << stop.detail;
+  EXPECT_EQ(ScreenedStop(kHides12, 13.0 / 25).outcome, Outcome::kSuccess) << "the share asked for is enough";
 }
 
 TEST(ScorerSight, AStopThatSeesJustUnderHalfOfTheFacadeHasNoLineOfSight) {
   const ScreenedStop stop(kHides13);
   EXPECT_EQ(stop.seen_share, 12.0 / 25);
-  EXPECT_EQ(stop.outcome, "no_line_of_sight");
+  EXPECT_EQ(stop.outcome, Outcome::kNoLineOfSight);
   EXPECT_EQ(stop.detail, "stop: 48.0 % of the facade in sight");
 }
 
@@ -176,7 +177,7 @@ TEST(ScorerScene, DrivingOverTheTerrainsEdgeLeavesTheScene) {
   }
   EXPECT_FALSE(go_on);
   scorer.finish(vehicle.state(), false);
-  EXPECT_EQ(scorer.outcome(), "left_scene");
+  EXPECT_EQ(scorer.outcome(), Outcome::kLeftScene);
   ASSERT_TRUE(scorer.failure());
   EXPECT_EQ(scorer.failure()->detail, "a wheel left the terrain");
   // The front axle passed the edge within the last step.

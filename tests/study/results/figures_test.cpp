@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 RunSummary full_run() {
   RunSummary run;
   run.name = run.gnss = run.imu = "high";
-  run.outcome = "success";
+  run.outcome = mission::Outcome::kSuccess;
   run.waypoints.resize(5);
   run.waypoints[0].mission = run.waypoints[1].mission = true;
   run.waypoints_reached = 4;

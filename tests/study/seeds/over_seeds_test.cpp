@@ -16,9 +16,10 @@
 namespace canyon::study {
 namespace {
 
+using mission::Outcome;
 using ::testing::HasSubstr;
 
-RunSummary run_of(const char* name, std::int64_t seed, const char* outcome, double error_m) {
+RunSummary run_of(const char* name, std::int64_t seed, Outcome outcome, double error_m) {
   RunSummary run;
   run.name = run.gnss = run.imu = name;
   run.seed = seed;
@@ -32,11 +33,9 @@ RunSummary run_of(const char* name, std::int64_t seed, const char* outcome, doub
 std::vector<std::vector<RunSummary>> twenty_seeds(bool open_loop) {
   std::vector<std::vector<RunSummary>> seeds;
   for (int seed = 7; seed < 27; ++seed) {
-    seeds.push_back({run_of("low", seed, "success", 0.5), run_of("high", seed,
-                                                                 seed < 10       ? "success"
-                                                                 : seed % 2 == 0 ? "stuck"
-                                                                                 : "collision",
-                                                                 seed == 10 ? kNaN : seed)});
+    const Outcome of_high = seed < 10 ? Outcome::kSuccess : seed % 2 == 0 ? Outcome::kStuck : Outcome::kCollision;
+    seeds.push_back(
+        {run_of("low", seed, Outcome::kSuccess, 0.5), run_of("high", seed, of_high, seed == 10 ? kNaN : seed)});
     for (RunSummary& run : seeds.back()) run.open_loop = open_loop;
   }
   return seeds;
