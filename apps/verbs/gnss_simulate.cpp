@@ -55,7 +55,7 @@ Result<int> run(const Options& options) {
   CANYON_TRY(StagedFile* const rinex_obs, outputs.file(options.rinex_obs));
   CANYON_TRY(StagedFile* const rinex_nav, outputs.file(options.rinex_nav));
   CANYON_TRY(StagedFile* const nmea, outputs.file(options.nmea));
-  CANYON_TRY(const auto source, make_satellite_source(setup.config, drive.start, receiver.end()));
+  CANYON_TRY(const auto source, make_satellite_source(setup.config.satellites, drive.start, receiver.end()));
   Progress progress("simulating", static_cast<double>(drive.epochs()), !options.setup.common.json);
   gnss::DriveFiles files(setup.scene->parts().undulation_m);
   CANYON_TRY(const gnss::DriveTotals totals,

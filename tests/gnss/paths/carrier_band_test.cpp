@@ -195,7 +195,7 @@ TEST_F(PseudorangeSensorTest, BothBandsAreAsStrongAsTheirOwnWavelengthBendsThem)
   c.reception.multipath_rule.name = "correlator";
   c.locks.tracking_threshold_dbhz = 25.0;
   const auto sensor = make(c);
-  auto source = make_satellite_source(c, testing::kStart, testing::kStart + 480.0);
+  auto source = make_satellite_source(c.satellites, testing::kStart, testing::kStart + 480.0);
   ASSERT_TRUE(source.ok());
   const auto model =
       make_propagation(make_visibility({}), find_model(diffraction_models(), "knife_edge")->make({}, {}), false, {});
@@ -238,16 +238,18 @@ TEST_F(PseudorangeSensorTest, FirstBandsHaveTheirOwnIonosphere) {
   GnssConfig c = testing::open_sky("single_uncorrected");
   c.satellites.systems = "GRC";
   const auto sensor = make(c);
-  const auto parts = make_pseudorange_parts(c, 1, testing::kStart, testing::kStart + 480.0);
-  ASSERT_TRUE(parts.ok());
+  const auto source = make_satellite_source(c.satellites, testing::kStart, testing::kStart + 480.0);
+  ASSERT_TRUE(source.ok());
+  const auto ionosphere = c.ionosphere.make("gnss.ionosphere", IonosphereSetup{});
+  ASSERT_TRUE(ionosphere.ok());
   const auto output = measure(*sensor, 0);
   const Horizon horizon(truth_E());
   std::set<GnssSystem> systems;
   for (const GnssObservationTruth& s : output.truth.satellites) {
     if (!s.tracked) continue;
-    const auto signal = transmission_to(*parts->constellation, s.sv, testing::kStart, truth_E());
+    const auto signal = transmission_to(*source->constellation, s.sv, testing::kStart, truth_E());
     const double hz = carrier_hz(s.sv.system, first_band(s.sv.system), signal->state.frequency_channel);
-    const double at_l1_m = parts->ionosphere->delay_m(horizon.view(testing::kStart, signal->p_E()));
+    const double at_l1_m = (*ionosphere)->delay_m(horizon.view(testing::kStart, signal->p_E()));
     EXPECT_NEAR(s.ionosphere_delay_m, at_l1_m * std::pow(kL1Hz / hz, 2), 1e-9) << s.sv.str();
     if (s.sv.system == GnssSystem::kGps) {
       EXPECT_EQ(s.ionosphere_delay_m, at_l1_m);
