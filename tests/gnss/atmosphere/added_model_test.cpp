@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "canyon/core/messages.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/atmosphere/ionosphere.h"
 

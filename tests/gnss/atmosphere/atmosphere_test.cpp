@@ -6,6 +6,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/atmosphere/ionosphere.h"
+#include "canyon/gnss/atmosphere/ionosphere_map.h"
 #include "canyon/gnss/atmosphere/niell.h"
 #include "canyon/gnss/atmosphere/troposphere.h"
 #include "canyon/gnss/atmosphere/zenith_delay.h"
