@@ -1,4 +1,4 @@
-// A model that nobody planned, as somebody would add it: this file, and one row in added_model_test.cpp.
+// A model that nobody planned, as somebody would add it: this file, and one row.
 #include <algorithm>
 #include <cmath>
 
