@@ -62,8 +62,11 @@ start_heading_deg = 0.0
 blinded = true
 [registration]
 method = "none"
+[success]
+facade_share = 0.0
 [run]
 record_filter_input = true
+truth_as_pose = true
 [autonomy]
 model = "route_follower"
 hold_s = 600.0
