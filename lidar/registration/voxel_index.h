@@ -22,7 +22,7 @@ class VoxelIndex {
 
   double leaf_m() const { return leaf_m_; }
   /// Voxels met so far.
-  std::uint32_t size() const { return size_; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(keys_.size()); }
 
   /// Of the voxel that p lies in; none if p is not finite or too far out.
   std::optional<VoxelCoordinates> coordinates(const Eigen::Vector3f& p) const;
@@ -32,16 +32,12 @@ class VoxelIndex {
   std::uint32_t find(const VoxelCoordinates& voxel) const;
 
  private:
-  struct Slot {
-    std::uint64_t key;
-    std::uint32_t number;
-  };
   std::size_t slot_of(std::uint64_t key) const;
   void grow();
 
   double leaf_m_;
-  std::uint32_t size_ = 0;
-  std::vector<Slot> slots_;  // open addressing, a power of two, at most half full
+  std::vector<std::uint64_t> keys_;   // of the voxels, by number
+  std::vector<std::uint32_t> slots_;  // numbers; open addressing, a power of two, at most half full
 };
 
 }  // namespace canyon::lidar
