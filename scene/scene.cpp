@@ -70,12 +70,24 @@ const FacetIndex& Scene::facets() const {
 }
 
 const EdgeIndex& Scene::edges() const {
-  std::call_once(edges_once_, [this] { edges_ = EdgeIndex(convex_edges(*this, kMinEdge_m)); });
+  std::call_once(edges_once_, [this] {
+    edges_ = EdgeIndex(convex_edges(*this, kMinEdge_m));
+    edges_built_.store(true, std::memory_order_release);
+  });
   return edges_;
 }
 
 bool Scene::facets_built() const {
   return facets_built_.load(std::memory_order_acquire);
+}
+
+Scene::Made Scene::made() const {
+  Made made;
+  made.tiles = static_cast<std::int64_t>(tracer_->tiles_made());
+  made.acceleration_structures = made.tiles + instance_sets_.load();
+  if (facets_built()) made.facets = static_cast<std::int64_t>(facets_.facets().size());
+  if (edges_built_.load(std::memory_order_acquire)) made.edges = static_cast<std::int64_t>(edges_.edges().size());
+  return made;
 }
 
 std::optional<Scene::Ground> Scene::ground(double x, double y) const {

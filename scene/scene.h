@@ -93,6 +93,13 @@ class Scene {
   static constexpr double kMinFacetArea_m2 = 1.0;
   const FacetIndex& facets() const;
   bool facets_built() const;
+  /// What was made so far; how much of it is asked for depends on the sensors alone, not on threads.
+  struct Made {
+    std::int64_t acceleration_structures = 0;  ///< trees over triangles, and over instances at one time
+    std::int64_t tiles = 0;                    ///< of those, over a tile each; one in a scene without tiles
+    std::int64_t facets = 0, edges = 0;        ///< in their indices; none where nobody asked for the index
+  };
+  Made made() const;
   /// Convex edges of at least kMinEdge_m with their spatial index; built on first use. Thread-safe.
   static constexpr double kMinEdge_m = 0.5;
   const EdgeIndex& edges() const;
@@ -126,6 +133,8 @@ class Scene {
   mutable FacetIndex facets_;
   mutable std::once_flag edges_once_;
   mutable EdgeIndex edges_;
+  mutable std::atomic<bool> edges_built_{false};
+  mutable std::atomic<std::int64_t> instance_sets_{0};
 };
 
 }  // namespace canyon::scene

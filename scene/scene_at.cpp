@@ -22,6 +22,7 @@ void SceneAt::set_instances(std::vector<Instance> instances) {
   if (instances.empty()) return;
   const Eigen::Vector3d center_W = packet_origin(instances.front().X_WS.p);
   instances_ = std::make_shared<const InstanceSet>(std::move(instances), center_W);
+  ++scene_->instance_sets_;
 }
 
 const std::vector<Instance>& SceneAt::instances() const {

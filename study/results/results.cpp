@@ -94,6 +94,14 @@ Result<std::string> results_hash(const std::string& directory, Json summary) {
   return sha256_hex(digest + summary.dump());
 }
 
+Json made_json(const scene::Scene& scene) {
+  const scene::Scene::Made made = scene.made();
+  return {{"acceleration_structures", made.acceleration_structures},
+          {"tiles", made.tiles},
+          {"facets_indexed", made.facets},
+          {"edges_indexed", made.edges}};
+}
+
 Json manifest_json(const Results& results) {
   Json runs = Json::object(), files = Json::object(), initial = Json::object();
   for (const mission::RunRecord& record : results.records) {
@@ -187,6 +195,7 @@ Json summary_json(const Results& results) {
   out["scene"] = {{"name", scene.name()},
                   {"buildings", scene.buildings().size()},
                   {"triangles", scene.mesh().triangles.size()},
+                  {"counters", made_json(scene)},
                   {"extent_m", {extent.x(), extent.y(), extent.z()}},
                   {"origin",
                    {{"lat_deg", scene.frame().origin().lat_rad / kDegree},

@@ -140,6 +140,20 @@ TEST_F(CompareTest, AMapErrorAtTheCapHasNoRatio) {
   EXPECT_THAT(comparison_table(results), ::testing::ContainsRegex("map error, prior, 95 %, m +2.000 +4.000 +2.00\n"));
 }
 
+// What no GNSS model asks for is not made.
+TEST(SceneCounters, FixesWithoutSatellitesNeedNoIndexOfFacetsOrEdges) {
+  auto file = mission::MissionFile::parse(kMission, "my.toml");
+  for (const char* fidelity : {"low", "high"}) {
+    const auto comparison = prepare_comparison(*file, plan_runs({fidelity}, false));
+    const auto results = compare(*comparison, "", false);
+    const auto counters = summary_json(*results)["scene"]["counters"];
+    EXPECT_EQ(counters["facets_indexed"] > 0, std::string(fidelity) == "high") << counters;
+    EXPECT_EQ(counters["edges_indexed"], 0) << "no diffraction";
+    EXPECT_EQ(counters["tiles"], 1);
+    EXPECT_EQ(counters["acceleration_structures"], 1) << "nothing moves";
+  }
+}
+
 TEST(PrepareComparison, ANameCannotStandForTwoRuns) {
   auto file = mission::MissionFile::parse(std::string(kMission) + "[fidelity.high_gnss_low_imu.gnss]\nrate_hz = 1.0\n",
                                           "my.toml");
