@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/apps/line/json.h"
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/earth/earth.h"
+#include "canyon/core/output/json.h"
 #include "canyon/core/units.h"
 
 namespace canyon::apps {
