@@ -15,7 +15,7 @@ namespace {
 
 std::string paths_help() {
   std::string out = "a motion in closed form, or a TOML file of one:";
-  for (const inertial::MotionRow& row : inertial::motion_models()) out += std::string("\n") + row.name + ": " + row.doc;
+  for (const auto& row : inertial::motion_models()) out += std::string("\n") + row.name + ": " + row.doc;
   return out;
 }
 

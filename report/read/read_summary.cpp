@@ -188,8 +188,8 @@ OverSeeds read_over_seeds(const JsonFields& summary) {
   const auto seeds = summary.list("seeds");
   out.count = static_cast<double>(seeds.size());
   for (const auto& [node, path] : seeds) {
-    if (node->number() == nullptr || node->text.empty()) summary.fail(node, path, node->describe(), "a seed");
-    (out.first.empty() ? out.first : out.last) = node->text;
+    if (!node->is_number_integer()) summary.fail(node, path, describe(*node), "a seed");
+    (out.first.empty() ? out.first : out.last) = node->dump();
   }
   for (const auto& [node, path] : summary.list("shares")) {
     const JsonFields f(node, summary.file(), path, summary.error());

@@ -16,7 +16,9 @@ Result<RawScene> read_boxes(const std::string& path, const ReadOptions&) {
     const auto words = split(line, " \t", true);
     if (words.size() != 5) return in.error(std::to_string(words.size()) + " numbers", "x y width depth height");
     double v[5];
-    for (std::size_t i = 0; i < 5; ++i) CANYON_TRY(v[i], parse_coordinate(in, words[i]));
+    for (std::size_t i = 0; i < 5; ++i) {
+      CANYON_TRY(v[i], parse_coordinate(in, words[i]));
+    }
     if (v[2] <= 0.0 || v[3] <= 0.0 || v[4] <= 0.0) return in.error("a box without extent", "sizes above zero");
     RawFootprint box;
     box.object = scene.add_object("box " + std::to_string(in.number()), ObjectKind::kBuilding);

@@ -11,7 +11,7 @@ namespace {
 ScanDrive drive() {
   ScanDrive out;
   out.lidar.azimuth_steps = 90;
-  out.lidar.model = "single_ray";
+  out.lidar.model.name = "single_ray";
   scene::SceneParts parts = testing::empty_parts();
   testing::add_ground(parts, 20.0);
   testing::add_wall(parts, {-20, -20}, {20, -20}, 8.0);

@@ -586,7 +586,7 @@ std::vector<std::vector<study::RunSummary>> ten_seeds(bool open_loop) {
       run.name = run.gnss = run.imu = name;
       run.seed = 42 + k;
       run.open_loop = open_loop;
-      run.outcome = run.name == "low" || k == 2 ? "success" : "collision";
+      run.outcome = run.name == "low" || k == 2 ? mission::Outcome::kSuccess : mission::Outcome::kCollision;
       run.position_m.rms = run.name == "low" ? 0.1 : 4.0 + k;
       runs.push_back(run);
     }

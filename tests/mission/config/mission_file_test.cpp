@@ -49,8 +49,8 @@ TEST(MissionFile, LayersWinInTheirOrder) {
   MissionFile file = parse("base = \"vicksburg\"\n[gnss]\nrate_hz = 5.0\n[fidelity.low.gnss]\nrate_hz = 4.0\n");
   EXPECT_EQ(file.resolve("high")->gnss.rate_hz, 5.0);
   EXPECT_EQ(file.resolve("low")->gnss.rate_hz, 4.0);
-  EXPECT_EQ(file.resolve("low")->gnss.model, "truth_plus_isotropic");
-  EXPECT_EQ(file.resolve("high")->gnss.model, "pseudorange");
+  EXPECT_EQ(file.resolve("low")->gnss.model.name, "truth_plus_isotropic");
+  EXPECT_EQ(file.resolve("high")->gnss.model.name, "pseudorange");
   file.set_option("gnss.rate_hz", ConfigNode::of(1.0), "--rate");
   EXPECT_EQ(file.resolve("low")->gnss.rate_hz, 1.0);
 }
@@ -58,14 +58,14 @@ TEST(MissionFile, LayersWinInTheirOrder) {
 TEST(MissionFile, MixedRunsTakeTheImuAndItsAlignmentFromTheOther) {
   const MissionFile file = parse("base = \"vicksburg\"\n");
   const auto mixed = file.resolve_mixed("high", "low");
-  EXPECT_EQ(mixed->gnss.model, "pseudorange");
+  EXPECT_EQ(mixed->gnss.model.name, "pseudorange");
   EXPECT_EQ(mixed->imu.errors, "white_only");
   EXPECT_EQ(mixed->run.initial_attitude_error_deg, Eigen::Vector3d::Zero());
 }
 
 TEST(MissionFile, AFidelityOfOnesOwn) {
   const MissionFile file = parse("base = \"vicksburg\"\n[fidelity.mine.gnss]\nmode = \"single\"\n");
-  EXPECT_EQ(file.resolve("mine")->gnss.mode, "single");
+  EXPECT_EQ(file.resolve("mine")->gnss.mode.name, "single");
   EXPECT_EQ(file.resolve("nobody").error().str(),
             "my.toml: fidelity.nobody: unknown fidelity, expected one of high, low, paper, mine");
 }

@@ -152,10 +152,10 @@ nlohmann::ordered_json without_timing(const RunSummary& run) {
 // A further seed gives what a comparison of that seed gives, for any number of threads.
 TEST(FurtherSeeds, AreTheRunsOfThoseSeeds) {
   const Comparison comparison = comparison_of_seed(5);
-  const Results alone = *compare(comparison_of_seed(7), false);
+  const Results alone = *compare(comparison_of_seed(7), "", false);
   for (const int threads : {1, 2, 8}) {
     set_threads(threads);
-    Results results = *compare(comparison, false);
+    Results results = *compare(comparison, "", false);
     ASSERT_TRUE(add_further_seeds(comparison, 2, false, results).ok());
     const auto seeds = runs_by_seed(results);
     ASSERT_EQ(seeds.size(), 3U);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/gnss/rinex/observation/observation_file.h"
+#include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sensor/simulation/drive_files.h"
 #include "canyon/gnss/sensor/simulation/sky.h"
 #include "canyon/scene/mesh_builder.h"
