@@ -1,8 +1,6 @@
-// positions_from_rinex OBSERVATIONS NAVIGATION: position and GDOP of every epoch that has one.
+// positions_from_rinex OBSERVATIONS NAVIGATION: position (ECEF, m) and GDOP of every epoch that has one.
 #include <cstdio>
 
-#include "canyon/core/earth/earth.h"
-#include "canyon/core/units.h"
 #include "canyon/gnss/rinex/navigation/navigation_file.h"
 #include "canyon/gnss/rinex/observation/observation_file.h"
 #include "canyon/gnss/single_point/single_point.h"
@@ -18,9 +16,9 @@ canyon::Status print_positions(const char* observation_file, const char* navigat
   CANYON_TRY(const auto solved, solve_observations(observations, {*constellation, navigation}, config));
   for (const SinglePointEpoch& epoch : solved.epochs) {
     if (epoch.fix.status == canyon::FixStatus::kNone) continue;
-    const canyon::Geodetic at = canyon::geodetic_from_ecef(epoch.fix.p_A_E);
-    std::printf("%s  %.8f %.8f %.3f  GDOP %.2f\n", epoch.fix.t.iso(3).c_str(), at.lat_rad / canyon::kDegree,
-                at.lon_rad / canyon::kDegree, at.h_m, epoch.fix.dop.gdop);
+    const Eigen::Vector3d& p_E = epoch.fix.p_A_E;
+    std::printf("%s  %.4f %.4f %.4f  GDOP %.2f\n", epoch.fix.t.iso(3).c_str(), p_E.x(), p_E.y(), p_E.z(),
+                epoch.fix.dop.gdop);
   }
   std::fprintf(stderr, "%d of %zu epochs solved\n", solved.solved(), solved.epochs.size());
   return canyon::Ok{};

@@ -120,6 +120,7 @@ TEST(Figures, TheDocumentedListIsWhatTheBinaryWrites) {
 TEST(Figures, UndefinedIsNullAndAnOpenLoopHasNoWaypoints) {
   RunSummary run = full_run();
   run.open_loop = true;
+  run.outcome = std::nullopt;
   run.gdop_median = kNaN;
   run.keyframes_registered = run.keyframes_converged = std::nullopt;
   run.position_rms_interval_m = {};
