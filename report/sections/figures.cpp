@@ -34,7 +34,12 @@ std::vector<const Figure*> shown_figures(const Results& results) {
   for (const Figure& figure : results.figures) {
     const bool is_total = std::any_of(results.figures.begin(), results.figures.end(),
                                       [&](const Figure& other) { return other.total == figure.key; });
-    if (!is_total) out.push_back(&figure);
+    const bool defined = std::any_of(results.runs.begin(), results.runs.end(), [&](const Run& run) {
+      const auto found = run.figures.find(figure.key);
+      return found != run.figures.end() && std::isfinite(found->second);
+    });
+    // In an open loop nobody reaches waypoints: no row for what no run has.
+    if (!is_total && (defined || !results.open_loop)) out.push_back(&figure);
   }
   return out;
 }

@@ -65,7 +65,12 @@ std::string comparison_table(const Results& results, const std::vector<std::stri
     table.heading("closed loop: each run drives by itself");
     table.line("outcome", outcomes);
   }
-  const auto chosen = *choose_figures(keys, "figures");
+  auto chosen = *choose_figures(keys, "figures");
+  // In an open loop nobody reaches waypoints: no row for what no run has.
+  if (keys.empty() && results.summaries.front().open_loop)
+    std::erase_if(chosen, [&](const Figure* figure) {
+      return std::none_of(runs.begin(), runs.end(), [&](const auto& run) { return std::isfinite(figure->get(run)); });
+    });
   add_figures(
       table, chosen, runs.size(), [&](const Figure& figure, std::size_t k) { return estimate(figure, runs[k]); }, true);
   if (keys.empty() && !runs.empty()) add_cpu_parts(table, runs);
