@@ -50,6 +50,13 @@ Status only_status(bool good) {
   return Ok{};
 }
 
+// 2026-11-22: a damaged mission named a scene file of 100,000 brackets, and all of them were printed.
+TEST(Error, AFileNameThatNoFileCanHaveIsShortened) {
+  const auto text = [](std::size_t length) { return Error{.file = std::string(length, '['), .what = "missing"}.str(); };
+  EXPECT_EQ(text(4096), std::string(4096, '[') + ": missing");
+  EXPECT_EQ(text(100000), std::string(60, '[') + "..." + std::string(40, '[') + ": missing");
+}
+
 TEST(Result, TryPassesValuesAndErrorsOn) {
   ASSERT_TRUE(twice(true).ok());
   EXPECT_EQ(*twice(true), 10);
