@@ -11,6 +11,7 @@
 #include "canyon/apps/line/standard_streams.h"
 #include "canyon/apps/line/usage_errors.h"
 #include "canyon/apps/line/verb.h"
+#include "canyon/core/printable_text.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/process/version.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
@@ -70,7 +71,7 @@ void declare_common(Arguments& arguments, CommonOptions& options) {
 }
 
 void print_warning(const std::string& line) {
-  std::fprintf(stderr, "warning: %s\n", line.c_str());
+  std::fprintf(stderr, "warning: %s\n", escaped_text(line).c_str());
 }
 
 void print_warnings(const std::vector<std::string>& lines) {

@@ -8,6 +8,7 @@
 
 #include "canyon/apps/line/invocation.h"
 #include "canyon/apps/line/usage_errors.h"
+#include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
@@ -39,7 +40,7 @@ void print_warnings(const study::Results& results) {
   std::set<std::string> told;
   for (const auto& record : results.records)
     for (const auto& warning : record.warnings)
-      if (told.insert(warning).second) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+      if (told.insert(warning).second) print_warning(warning);
 }
 
 }  // namespace

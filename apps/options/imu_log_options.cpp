@@ -50,8 +50,8 @@ void tell_motion(const std::string& path, const inertial::MotionFound& motion) {
   std::snprintf(text, sizeof text, "%s %s by %.3g %s", inertial::kChannelNames[worst.channel],
                 worst.shakes ? "shakes" : "differs from rest", worst.amount / (gyro ? kDegree : 1.0),
                 gyro ? "deg/s" : "m/s^2");
-  std::fprintf(stderr, "warning: %s moves from %s of its time (%s): the figures are of noise and motion together\n",
-               path.c_str(), where.c_str(), text);
+  print_warning(path + " moves from " + where + " of its time (" + text +
+                "): the figures are of noise and motion together");
 }
 
 }  // namespace canyon::apps
