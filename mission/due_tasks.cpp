@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/lidar/deskew.h"
@@ -100,9 +101,7 @@ Status MissionRun::record_fix() {
 }
 
 Status MissionRun::take_scan(const Due& due) {
-  const double period = 1.0 / config_.lidar.rate_hz;
-  true_motion_.forget_before(due.t - period);
-  estimated_motion_.forget_before(due.t - period);
+  forget_motion_before(std::min(due.t, localizer_.at()) - 1.0 / config_.lidar.rate_hz);  // scans may wait for it
   const auto withhold_s = config_.run.withhold_scans_after_s;
   if (withhold_s && due.t - mission_.start >= *withhold_s) return Ok{};
   if (!scan_is_wanted(due.t)) return Ok{};
@@ -115,6 +114,11 @@ Status MissionRun::take_scan(const Due& due) {
   CANYON_TRY_STATUS(boundaries_.check(output));
   ++record_.counters["lidar_scans"];
   return localizer_.once_at(due.t, [this, scan = std::move(output.scan)] { return use_scan(scan); });
+}
+
+void MissionRun::forget_motion_before(GpsTime t) {
+  true_motion_.forget_before(t);
+  estimated_motion_.forget_before(t);
 }
 
 /// An autonomy that does not look leaves the map, which takes keyframes only. Whether a scan becomes one is known

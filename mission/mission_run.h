@@ -50,6 +50,7 @@ class MissionRun {
   Status use_fix();
   Status record_fix();
   bool scan_is_wanted(GpsTime t) const;
+  void forget_motion_before(GpsTime t);
   Status use_scan(const LidarScan& scan);
   Status add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true);
   void count_work();
