@@ -65,6 +65,7 @@ class Header {
 
   Status read_by_field(const std::vector<std::string>& parts) {
     constexpr std::size_t kMostValues = 65536;  // of one field
+    if (fields.empty()) return expected("FIELDS before it");
     if (parts.size() != fields.size() + 1) return expected("one value per field");
     for (std::size_t i = 1; i < parts.size(); ++i) {
       PcdField& field = fields[i - 1];

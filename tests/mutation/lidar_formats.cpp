@@ -98,7 +98,9 @@ std::vector<Seed> clouds() {
   const std::string theirs =
       "VERSION .7\nFIELDS _ x y z normal\nSIZE 1 4 4 4 4\nTYPE U F F F F\nCOUNT 8 1 1 1 3\nWIDTH 7\nHEIGHT 1\n"
       "POINTS 7\nDATA binary\n";
-  return {{"a.pcd", ours + bytes}, {"b.pcd", theirs + bytes.substr(0, 7 * 32)}};
+  return {{"a.pcd", ours + bytes},
+          {"b.pcd", theirs + bytes.substr(0, 7 * 32)},
+          {.name = "c.pcd", .bytes = "SIZE\nTYPE\nCOUNT\n" + theirs, .fits = false}};
 }
 
 constexpr const char* kBeams =

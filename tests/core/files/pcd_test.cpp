@@ -127,6 +127,14 @@ TEST_F(Pcd, NoEntryComesTwice) {
   EXPECT_EQ(error_of(head + "FIELDS x\n"), ":4: FIELDS: \"FIELDS x\", expected each entry once");
 }
 
+// 2026-11-22: SIZE, TYPE and COUNT without values, before FIELDS, agreed with no fields: a stride of 0.
+TEST_F(Pcd, WhatGoesByFieldComesAfterTheFields) {
+  for (const char* entry : {"SIZE", "TYPE", "COUNT"})
+    EXPECT_EQ(
+        error_of(std::string(entry) + "\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA binary\n0123456789ab"),
+        std::string(":1: ") + entry + ": \"" + entry + "\", expected FIELDS before it");
+}
+
 // 2026-11-22: a header without fields made a stride of 0; sizes, types and shapes were not looked at.
 TEST_F(Pcd, DamagedHeadersAreNamed) {
   const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\n";
@@ -134,7 +142,7 @@ TEST_F(Pcd, DamagedHeadersAreNamed) {
   EXPECT_EQ(error_of("FIELDS\n"), ":1: FIELDS: \"FIELDS\", expected names of fields");
   EXPECT_EQ(error_of("FIELDS x y z\nPOINTS 1\nDATA binary\n0123456789ab"),
             ":3: DATA: \"DATA binary\", expected SIZE before it");
-  EXPECT_EQ(error_of("SIZE 4\n"), ":1: SIZE: \"SIZE 4\", expected one value per field");
+  EXPECT_EQ(error_of("SIZE 4\n"), ":1: SIZE: \"SIZE 4\", expected FIELDS before it");
   EXPECT_EQ(error_of("FIELDS x y z\nSIZE 4 3 4\n"),
             ":2: SIZE: \"SIZE 4 3 4\", expected 1, 2, 4 or 8 bytes for each field");
   EXPECT_EQ(error_of("FIELDS x y z\nTYPE F FF F\n"), ":2: TYPE: \"TYPE F FF F\", expected F, I or U for each field");
