@@ -17,8 +17,9 @@ class CsvWriter {
   CsvWriter& number(double value, int decimals) {
     separate();
     if (!std::isfinite(value)) return *this;
-    char buffer[64];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals);
+    char buffer[64];  // of anything a run measures; what is longer has a power of ten
+    auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals);
+    if (end.ec != std::errc()) end = std::to_chars(buffer, buffer + sizeof buffer, value);
     text_.append(buffer, end.ptr);
     return *this;
   }
