@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -57,8 +56,7 @@ Result<DrivenRun> drive(const Comparison& comparison, std::size_t i, const std::
   const mission::PreparedMission& mission = comparison.missions[i];
   const Tape* tape = comparison.tape ? &*comparison.tape : nullptr;
   DrivenRun run;
-  run.statistics = std::make_unique<RunStatistics>(
-      mission.scene->frame(), directory.empty() ? std::filesystem::temp_directory_path().string() : directory);
+  run.statistics = std::make_unique<RunStatistics>(mission.scene->frame(), directory);
   std::vector<mission::Recorder*> recorders{run.statistics.get()};
   std::unique_ptr<mission::RunFiles> files;
   if (!directory.empty()) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 
 #include <fcntl.h>
@@ -33,6 +34,8 @@ Status ByteStore::append(const void* bytes, std::size_t size) {
 
 Status ByteStore::spill() {
   if (descriptor_ < 0) {
+    std::error_code unknown;
+    if (directory_.empty()) directory_ = std::filesystem::temp_directory_path(unknown).string();
     std::string name = directory_ + "/.rows-XXXXXX";
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
     if (descriptor_ < 0) return store_error(directory_, "a temporary file cannot be made");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -18,7 +19,7 @@ namespace canyon {
 /// its owner goes, however the program ends. Few bytes never touch the disk.
 class ByteStore {
  public:
-  /// The file, if there must be one, is made in this directory.
+  /// The file, if there must be one, is made in this directory; in the system's for temporary files if it is empty.
   explicit ByteStore(std::string directory) : directory_(std::move(directory)) {}
   ~ByteStore();
   ByteStore(const ByteStore&) = delete;
@@ -83,8 +84,8 @@ class RowStore {
     }
   }
 
-  /// The k-th smallest (k from 0) of value(row), exactly, without holding them: values must be 0 or more, whose bits
-  /// as an integer then have the same order, and are found byte by byte from the highest.
+  /// The k-th smallest (k from 0) of value(row), exactly, without holding them: its bits are found byte by byte from
+  /// the highest. Values must not be negative (throws): only then do bits, as integers, have the order of the numbers.
   template <class Value>
   Result<double> ranked(std::size_t k, const Value& value) const {
     CANYON_CHECK(k < size(), k, " of ", size());
@@ -92,7 +93,9 @@ class RowStore {
     for (int shift = 56; shift >= 0; shift -= 8) {
       std::size_t counts[256] = {};
       CANYON_TRY_STATUS(for_each([&](const Row& row) {
-        const auto bits = std::bit_cast<std::uint64_t>(static_cast<double>(value(row)));
+        const auto x = static_cast<double>(value(row));
+        CANYON_CHECK(!std::signbit(x), x);
+        const auto bits = std::bit_cast<std::uint64_t>(x);
         if (shift == 56 || bits >> (shift + 8) == found >> (shift + 8)) ++counts[bits >> shift & 255];
       }));
       std::uint64_t byte = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <optional>
 
 #include "canyon/core/process/parallel.h"
@@ -15,12 +14,13 @@ namespace {
 
 constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;  // of [run] seed
 
-Result<RunSummary> drive(const Comparison& comparison, std::size_t run, std::int64_t further, Progress& progress) {
+Result<RunSummary> drive(const Comparison& comparison, std::size_t run, std::int64_t further,
+                         const std::string& scratch, Progress& progress) {
   mission::MissionConfig config = comparison.configs[run];
   config.run.seed += further;
   config.run.record_tape = false;  // nobody keeps it
   const mission::PreparedMission& mission = comparison.missions[run];
-  RunStatistics statistics(mission.scene->frame(), std::filesystem::temp_directory_path().string());
+  RunStatistics statistics(mission.scene->frame(), scratch);
   CANYON_TRY(auto record, mission::run_mission(config, mission, &progress,
                                                {.tape = comparison.tape ? &*comparison.tape : nullptr,
                                                 .recorder = &statistics,
@@ -42,7 +42,8 @@ Status check_seeds(const Comparison& comparison, std::int64_t seeds) {
   return Ok{};
 }
 
-Status add_further_seeds(const Comparison& comparison, std::int64_t count, bool show_progress, Results& results) {
+Status add_further_seeds(const Comparison& comparison, std::int64_t count, const std::string& scratch,
+                         bool show_progress, Results& results) {
   const auto wall_start = std::chrono::steady_clock::now();
   const std::size_t runs = comparison.plan.size(), total = runs * static_cast<std::size_t>(count);
   double seed_s = 0.0;
@@ -55,7 +56,7 @@ Status add_further_seeds(const Comparison& comparison, std::int64_t count, bool 
   std::vector<std::optional<Error>> errors(total);
   parallel_for(total, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      auto summary = drive(comparison, i % runs, static_cast<std::int64_t>(i / runs) + 1, progress);
+      auto summary = drive(comparison, i % runs, static_cast<std::int64_t>(i / runs) + 1, scratch, progress);
       if (summary) {
         summaries[i / runs][i % runs] = *std::move(summary);
       } else {

@@ -156,7 +156,7 @@ TEST(FurtherSeeds, AreTheRunsOfThoseSeeds) {
   for (const int threads : {1, 2, 8}) {
     set_threads(threads);
     Results results = *compare(comparison, "", false);
-    ASSERT_TRUE(add_further_seeds(comparison, 2, false, results).ok());
+    ASSERT_TRUE(add_further_seeds(comparison, 2, "", false, results).ok());
     const auto seeds = runs_by_seed(results);
     ASSERT_EQ(seeds.size(), 3U);
     EXPECT_EQ(seeds[1][0].seed, 6);
@@ -180,7 +180,7 @@ TEST(FurtherSeeds, StopAtOnceWhenAsked) {
   const Comparison comparison = comparison_of_seed(5);
   Results results;
   set_cancel_requested(true);
-  EXPECT_THROW((void)add_further_seeds(comparison, 2, false, results), Cancelled);
+  EXPECT_THROW((void)add_further_seeds(comparison, 2, "", false, results), Cancelled);
   set_cancel_requested(false);
 }
 
