@@ -98,7 +98,7 @@ std::string materials_text(const std::vector<Material>& materials) {
     const auto line = [&](const char* key, double value) {
       out += std::string(key) + " = " + number_text(value) + "\n";
     };
-    out += "[[material]]\nname = " + Json(m.name).dump() + "\nitu = [" + number_text(m.itu_a) + ", " +
+    out += "[[material]]\nname = " + json_text(Json(m.name)) + "\nitu = [" + number_text(m.itu_a) + ", " +
            number_text(m.itu_b) + ", " + number_text(m.itu_c) + ", " + number_text(m.itu_d) + "]\n";
     out += std::string("rf_absorbing = ") + (m.rf_absorbing ? "true" : "false") + "\n";
     line("thickness_m", m.thickness_m);
@@ -110,7 +110,7 @@ std::string materials_text(const std::vector<Material>& materials) {
     line("lidar_specular_lobe_deg", m.lidar_specular_lobe_deg);
     line("lidar_retro_1_sr", m.lidar_retro_1_sr);
     line("lidar_transmittance", m.lidar_transmittance);
-    out += "source = " + Json(m.source).dump() + "\n\n";
+    out += "source = " + json_text(Json(m.source)) + "\n\n";
   }
   return out;
 }
@@ -163,7 +163,7 @@ Status write_scene(const SceneParts& parts, const std::string& directory) {
   CANYON_TRY_STATUS(write_text_file(directory + "/scene.obj", obj_text(parts)));
   CANYON_TRY_STATUS(write_text_file(directory + "/scene.mtl", mtl_text(parts.materials)));
   CANYON_TRY_STATUS(write_text_file(directory + "/materials.toml", materials_text(parts.materials)));
-  return write_text_file(directory + "/scene.json", scene_json(parts).dump(1) + "\n");
+  return write_text_file(directory + "/scene.json", json_text(scene_json(parts), 1) + "\n");
 }
 
 bool is_written_scene(std::string_view beginning) {

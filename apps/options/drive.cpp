@@ -10,6 +10,7 @@
 #include "canyon/apps/line/usage_errors.h"
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
@@ -31,8 +32,7 @@ void print_json(const study::Results& results, const std::string& directory, con
   out["seed"] = out["mission"]["seed"];
   out["results_dir"] = directory;
   out["hash"] = hash;
-  // The directory's name may be of any bytes.
-  std::printf("%s\n", out.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  std::printf("%s\n", json_text(out).c_str());
 }
 
 /// Each warning once, however many runs met it.
@@ -79,12 +79,13 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
                  .expected = "--open-loop beside it"};
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
-  if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
+  if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
   CANYON_TRY(auto results, study::compare(comparison, staged.staging_path(), !options.common.json));
   if (figures.seeds)
-    CANYON_TRY_STATUS(study::add_further_seeds(comparison, *figures.seeds - 1, !options.common.json, results));
+    CANYON_TRY_STATUS(
+        study::add_further_seeds(comparison, *figures.seeds - 1, staged.staging_path(), !options.common.json, results));
   results.command_line = invocation().command_line;
   results.commit = invocation().commit;
   CANYON_TRY(const std::string hash, study::write_results(staged.staging_path(), results));

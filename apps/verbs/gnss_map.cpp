@@ -8,6 +8,7 @@
 
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
@@ -106,7 +107,7 @@ Result<int> run(const Options& options) {
     for (const Layer& layer : layers())
       json[layer.file] = {{"median", or_null(quantile(map.*layer.grid, 0.5))},
                           {"p95", or_null(quantile(map.*layer.grid, 0.95))}};
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", json_text(json).c_str());
     return 0;
   }
   std::printf("%d x %d cells of %g m, %s\n\n", map.visible.columns, map.visible.rows, map.visible.cell_m,

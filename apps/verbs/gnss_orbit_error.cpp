@@ -5,6 +5,7 @@
 
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/orbit_error.h"
@@ -58,7 +59,7 @@ void print_json(const gnss::OrbitErrors& errors) {
     out["by_system"][std::string(1, letter)] = json_of(errors.of_system(letter));
     for (const SatelliteId sv : known) out["by_satellite"][sv.str()] = json_of(errors.of_satellite(sv));
   }
-  std::printf("%s\n", out.dump().c_str());
+  std::printf("%s\n", json_text(out).c_str());
 }
 
 void print_text(const gnss::OrbitErrors& errors, const Options& options) {

@@ -6,6 +6,7 @@
 #include "canyon/apps/options/antenna_way.h"
 #include "canyon/apps/options/gnss_errors.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/output/printed.h"
 #include "canyon/core/process/parallel.h"
@@ -30,7 +31,7 @@ void tell(const Options& options, const gnss::DriveTotals& totals, const GnssSet
                     {"nlos_share", or_null(totals.nlos_share())},
                     {"gdop_median", or_null(totals.gdop_median())},
                     {"rms_3d_m", or_null(totals.rms_m())}};
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", json_text(json).c_str());
     return;
   }
   std::printf("%lld epochs from %s GPS time, scene: %s\n", static_cast<long long>(totals.epochs),

@@ -6,6 +6,7 @@
 #include "canyon/apps/answers/sky.h"
 #include "canyon/apps/options/antenna_way.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/antenna_height.h"
 
@@ -69,7 +70,7 @@ Result<int> run(const Options& options) {
   if (folder != nullptr) CANYON_TRY_STATUS(write_folder(folder->staging_path(), answer));
   CANYON_TRY_STATUS(outputs.commit());
   if (options.setup.common.json) {
-    std::printf("%s\n", sky_json(answer).dump().c_str());
+    std::printf("%s\n", json_text(sky_json(answer)).c_str());
     return 0;
   }
   print_sky(answer);

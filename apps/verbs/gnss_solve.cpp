@@ -6,6 +6,7 @@
 #include "canyon/apps/answers/single_point.h"
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/files/place_files.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/antenna_height.h"
@@ -63,7 +64,7 @@ Result<gnss::Truth> truth_of(const Options& options) {
 
 Status write_folder(const std::string& path, const gnss::SinglePointResult& result, const Json& json) {
   CANYON_TRY_STATUS(write_text_file(path + "/positions.csv", gnss::solution_csv(result)));
-  return write_text_file(path + "/summary.json", json.dump(2) + "\n");
+  return write_text_file(path + "/summary.json", json_text(json, 2) + "\n");
 }
 
 Result<int> run(const Options& options) {
@@ -92,7 +93,7 @@ Result<int> run(const Options& options) {
   print_warnings(result.warnings);
   if (answer.comparison) print_warnings(answer.comparison->warnings);
   if (options.common.json)
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", json_text(json).c_str());
   else
     print_single_point(answer);
   return 0;

@@ -9,6 +9,7 @@
 #include "canyon/apps/line/verb.h"
 #include "canyon/apps/options/imu_log_options.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/parallel.h"
 
 namespace canyon::apps {
@@ -55,7 +56,7 @@ Status write_files(const inertial::LogAnalysis& a, const Options& options) {
   CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
   const std::string folder = staged.staging_path();
   CANYON_TRY_STATUS(write_text_file(folder + "/allan.csv", inertial::deviations_csv(a)));
-  CANYON_TRY_STATUS(write_text_file(folder + "/allan.json", allan_json(a).dump(1) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(folder + "/allan.json", json_text(allan_json(a), 1) + "\n"));
   CANYON_TRY_STATUS(write_text_file(folder + "/allan.svg", allan_svg(a, options.log.log)));
   return staged.commit();
 }
@@ -67,7 +68,7 @@ Result<int> run(const Options& options) {
   tell_motion(options.log.log, a.motion);
   if (!options.out.empty()) CANYON_TRY_STATUS(write_files(a, options));
   if (options.common.json)
-    std::printf("%s\n", allan_json(a).dump().c_str());
+    std::printf("%s\n", json_text(allan_json(a)).c_str());
   else
     print_allan(a, options.log.log);
   return 0;

@@ -7,6 +7,7 @@
 #include "canyon/apps/line/verb.h"
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
 #include "canyon/study/dead_reckoning/files.h"
@@ -83,7 +84,7 @@ Result<int> run(const Options& options) {
   const auto result = study::dead_reckon(std::move(recording), reference, options.integrator, gravity);
   CANYON_TRY_STATUS(write_output(options, result));
   if (options.common.json)
-    std::printf("%s\n", study::dead_reckoning_json(result).dump().c_str());
+    std::printf("%s\n", json_text(study::dead_reckoning_json(result)).c_str());
   else
     print_dead_reckoning(result);
   return 0;

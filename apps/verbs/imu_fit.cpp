@@ -7,6 +7,7 @@
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/apps/options/imu_log_options.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
@@ -93,7 +94,7 @@ Result<int> run(const Options& options) {
     Json out = {{"entry", toml}};
     if (gyro) out["gyro"] = json_of(*gyro);
     if (accel) out["accel"] = json_of(*accel);
-    std::printf("%s\n", out.dump().c_str());
+    std::printf("%s\n", json_text(out).c_str());
     return 0;
   }
   if (gyro) print_triad("Gyroscope", *gyro, kDegree / kHour, "deg/h");

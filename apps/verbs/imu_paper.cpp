@@ -6,6 +6,7 @@
 
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/random/random.h"
@@ -90,7 +91,7 @@ Status write_output(const Options& options, const std::vector<Drawn>& all) {
     CANYON_TRY_STATUS(write_text_file(path + ".csv", csv_of(d.drift)));
     CANYON_TRY_STATUS(write_text_file(path + ".svg", picture_of(*d.figure, *d.form, d.drift)));
   }
-  CANYON_TRY_STATUS(write_text_file(folder + "summary.json", json_of(all).dump(2) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(folder + "summary.json", json_text(json_of(all), 2) + "\n"));
   return staged.commit();
 }
 
@@ -116,7 +117,7 @@ Result<int> run(const Options& options) {
     }
   if (!options.out.empty()) CANYON_TRY_STATUS(write_output(options, all));
   if (options.common.json)
-    std::printf("%s\n", json_of(all).dump().c_str());
+    std::printf("%s\n", json_text(json_of(all)).c_str());
   else
     tell(all);
   return 0;

@@ -8,6 +8,7 @@
 #include "canyon/apps/options/imu_simulation.h"
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
@@ -96,11 +97,11 @@ Result<int> run(const Options& options) {
     CANYON_TRY_STATUS(log->write(options.out.ends_with(".csv") ? inertial::rates_csv(s) : inertial::kf_gins_text(s)));
   if (folder != nullptr) {
     CANYON_TRY_STATUS(inertial::write_simulated_log(folder->staging_path(), s));
-    CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/summary.json", summary.dump(2) + "\n"));
+    CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/summary.json", json_text(summary, 2) + "\n"));
   }
   CANYON_TRY_STATUS(outputs.commit());
   if (options.common.json) {
-    std::printf("%s\n", summary.dump().c_str());
+    std::printf("%s\n", json_text(summary).c_str());
     return 0;
   }
   std::printf("%zu samples at %g Hz, %g s, %s with errors %s, seed %lld\n", s.truth.size(), s.rate_hz,

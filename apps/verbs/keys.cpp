@@ -5,6 +5,7 @@
 
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/config/config.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/mission/config/key_reference.h"
 #include "canyon/mission/config/mission_config.h"
@@ -37,7 +38,7 @@ VerbAction declare(Arguments& arguments) {
   return [options]() -> Result<int> {
     if (options->common.json) {
       const Json json = options->figures ? Json{{"figures", study::figure_descriptions()}} : keys_json();
-      std::printf("%s\n", json.dump().c_str());
+      std::printf("%s\n", json_text(json).c_str());
     } else {
       std::fputs((options->figures ? study::figure_reference() : mission::key_reference()).c_str(), stdout);
     }

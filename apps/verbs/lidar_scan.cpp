@@ -7,6 +7,7 @@
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/apps/options/lidar_drive.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/output/printed.h"
 #include "canyon/core/process/parallel.h"
@@ -85,7 +86,7 @@ Result<int> run(const Options& options) {
                     {{"scanning_s", cost.scanning_s},
                      {"ms_per_scan", 1e3 * cost.scanning_s / static_cast<double>(drive.scans)},
                      {"million_rays_per_s", 1e-6 * static_cast<double>(cost.rays) / cost.scanning_s}}}};
-    std::printf("%s\n", out.dump().c_str());
+    std::printf("%s\n", json_text(out).c_str());
     return 0;
   }
   std::printf("%lld scans with %s, %s: %lld rays, %lld points\n", static_cast<long long>(drive.scans),

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/apps/line/verb.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/report/html_report.h"
 
 namespace canyon::apps {
@@ -24,7 +25,7 @@ VerbAction declare(Arguments& arguments) {
     CANYON_TRY_STATUS(report::write_html_report(options->directory, file));
     if (options->common.json) {
       const nlohmann::json json{{"report", file}};
-      std::printf("%s\n", json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+      std::printf("%s\n", json_text(json).c_str());
     } else {
       std::printf("Report: %s\n", std::filesystem::absolute(file).lexically_normal().c_str());
     }

@@ -7,6 +7,7 @@
 #include "canyon/apps/line/verb.h"
 #include "canyon/apps/options/scene_options.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/parallel.h"
 
 namespace canyon::apps {
@@ -34,7 +35,7 @@ Result<int> run(const Options& options) {
     CANYON_TRY_STATUS(outputs.commit());
   }
   if (options.common.json)
-    std::printf("%s\n", scene_json(facts).dump().c_str());
+    std::printf("%s\n", json_text(scene_json(facts)).c_str());
   else
     print_scene(facts);
   return 0;

@@ -6,6 +6,7 @@
 #include "canyon/apps/line/verb.h"
 #include "canyon/apps/options/scene_options.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/scene/written_scene.h"
 
@@ -36,7 +37,7 @@ Result<int> run(const Options& options) {
   if (options.common.json) {
     const nlohmann::ordered_json json{
         {"name", parts.name}, {"buildings", buildings}, {"triangles", triangles}, {"directory", staged.final_path()}};
-    std::printf("%s\n", json.dump().c_str());
+    std::printf("%s\n", json_text(json).c_str());
     return 0;
   }
   std::printf(

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/config/config.h"
+#include "canyon/core/files/json_text.h"
 
 namespace canyon {
 namespace {
@@ -55,7 +56,7 @@ std::string fields_as_json(const VisitFunction& visit_fields) {
   JsonWriter writer(object);
   visit_fields(writer);
   // Numbers come out in the shortest form that reads back to the same bits: at most 17 significant digits.
-  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(object);
 }
 
 }  // namespace canyon

@@ -160,6 +160,14 @@ Result<nlohmann::ordered_json> parse_ordered_json(std::string_view text, const s
   return parse<nlohmann::ordered_json>(text, path, reading);
 }
 
+std::string json_text(const nlohmann::json& tree, int indent) {
+  return tree.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string json_text(const nlohmann::ordered_json& tree, int indent) {
+  return tree.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 std::string json_string(const nlohmann::json& object, const char* key) {
   const auto member = object.is_object() ? object.find(key) : object.end();
   return member != object.end() && member->is_string() ? member->get<std::string>() : std::string();

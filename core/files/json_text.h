@@ -34,6 +34,11 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& path
 Result<nlohmann::ordered_json> parse_ordered_json(std::string_view text, const std::string& path,
                                                   const JsonReading& reading = {});
 
+/// The tree as text: on one line, or indented by so many blanks a level. What is no UTF-8, as the names of files may
+/// be, becomes U+FFFD.
+std::string json_text(const nlohmann::json& tree, int indent = -1);
+std::string json_text(const nlohmann::ordered_json& tree, int indent = -1);
+
 /// A member that is a text; empty if there is none, or something else.
 std::string json_string(const nlohmann::json& object, const char* key);
 

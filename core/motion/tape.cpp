@@ -66,7 +66,7 @@ std::string tape_header(const Tape& tape) {
                                       {"scene_hash", tape.scene_hash},
                                       {"traffic", tape.traffic},
                                       {"node_bytes", kNodeBytes}};
-  return header.dump() + "\n";
+  return json_text(header) + "\n";
 }
 
 void append_tape_node(std::string& out, const TapeNode& node) {

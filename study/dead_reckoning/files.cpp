@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/files/navigation_file.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/units.h"
@@ -103,7 +104,7 @@ Status write_dead_reckoning(const DeadReckoning& o, const PlainIntegrals& plain,
   CANYON_TRY_STATUS(write_navigation_file(folder + "/estimate.nav", path));
   CANYON_TRY_STATUS(write_text_file(folder + "/heading.csv", heading_csv(o, plain)));
   if (!o.errors.empty()) CANYON_TRY_STATUS(write_text_file(folder + "/drift.csv", drift_csv(o)));
-  return write_text_file(folder + "/summary.json", dead_reckoning_json(o).dump(2) + "\n");
+  return write_text_file(folder + "/summary.json", json_text(dead_reckoning_json(o), 2) + "\n");
 }
 
 }  // namespace canyon::study

@@ -10,6 +10,7 @@
 
 #include "canyon/core/files/file_hash.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
@@ -91,7 +92,7 @@ Result<std::string> results_hash(const std::string& directory, Json summary) {
     digest += file + " " + of_file + "\n";
   }
   remove_timing(summary);
-  return sha256_hex(digest + summary.dump());
+  return sha256_hex(digest + json_text(summary));
 }
 
 Json made_json(const scene::Scene& scene) {
@@ -125,11 +126,6 @@ Json manifest_json(const Results& results) {
           {"files", files},
           {"initial_estimates", initial},
           {"configuration", runs}};
-}
-
-/// The command line and the paths in it may be of any bytes; what is no UTF-8 is replaced.
-std::string json_text(const Json& json) {
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -264,9 +260,9 @@ Result<std::string> write_results(const std::string& directory, const Results& r
   Json summary = summary_json(results);
   CANYON_TRY(const std::string hash, results_hash(directory, summary));
   summary["hash"] = hash;
-  CANYON_TRY_STATUS(write_text_file(directory + "/summary.json", summary.dump(1) + "\n"));
-  CANYON_TRY_STATUS(write_text_file(directory + "/manifest.json", json_text(manifest_json(results))));
-  CANYON_TRY_STATUS(write_text_file(directory + "/scene.json", scene_json(*results.mission->scene).dump() + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory + "/summary.json", json_text(summary, 1) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory + "/manifest.json", json_text(manifest_json(results), 1) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory + "/scene.json", json_text(scene_json(*results.mission->scene)) + "\n"));
   return hash;
 }
 

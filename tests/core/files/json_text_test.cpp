@@ -22,6 +22,13 @@ TEST(JsonText, IsTheTreeThatItsLibraryMakes) {
   EXPECT_EQ(ordered->dump(), nlohmann::ordered_json::parse(text).dump());
 }
 
+// 2026-11-22: a file's name that is no UTF-8 ended the program where it was written to a summary or a tape.
+TEST(JsonText, WhatIsNoUtf8IsReplaced) {
+  const nlohmann::ordered_json tree{{"file", "d\xff.tum"}, {"n", 1}};
+  EXPECT_EQ(json_text(tree), "{\"file\":\"d\xef\xbf\xbd.tum\",\"n\":1}");
+  EXPECT_EQ(json_text(nlohmann::json(tree), 1), "{\n \"file\": \"d\xef\xbf\xbd.tum\",\n \"n\": 1\n}");
+}
+
 TEST(JsonText, TellsTheLineOfEveryValue) {
   std::vector<int> lines;
   ASSERT_TRUE(
