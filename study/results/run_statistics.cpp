@@ -112,8 +112,9 @@ Status RunStatistics::fill_gnss(RunSummary& out) const {
 
 Status RunStatistics::fill(RunSummary& out, bool registers) const {
   CANYON_TRY(out.position_m, statistics_of(position_m_, errors_, [](const EpochError& e) { return e.norm_m(); }));
-  if (const Interval square = position_square_m2_.interval(); square.defined())
-    out.position_rms_interval_m = {std::sqrt(std::max(0.0, square.low)), std::sqrt(square.high)};
+  // Where the interval of the mean square reaches zero, batches are too few and too unlike to say anything.
+  if (const Interval square = position_square_m2_.interval(); square.defined() && square.low > 0.0)
+    out.position_rms_interval_m = {std::sqrt(square.low), std::sqrt(square.high)};
   CANYON_TRY(out.east_m, statistics_of(east_m_, errors_, [](const EpochError& e) { return e.east_m; }));
   CANYON_TRY(out.north_m, statistics_of(north_m_, errors_, [](const EpochError& e) { return e.north_m; }));
   CANYON_TRY(out.up_m, statistics_of(up_m_, errors_, [](const EpochError& e) { return e.up_m; }));

@@ -24,7 +24,7 @@ struct RunSummary {
   double duration_s = 0, distance_m = 0;
 
   ErrorStatistics position_m, east_m, north_m, up_m;
-  Interval position_rms_interval_m;  ///< of position_m.rms, by batch means of its square
+  Interval position_rms_interval_m;  ///< of position_m.rms, by batch means of its square; none where those reach zero
   double roll_rms_deg = kNaN, pitch_rms_deg = kNaN, yaw_rms_deg = kNaN;
 
   double gdop_median = kNaN, gdop_max = kNaN, pdop_median = kNaN;
