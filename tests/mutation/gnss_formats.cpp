@@ -1,7 +1,6 @@
 #include <sstream>
 
 #include "canyon/core/check.h"
-#include "canyon/gnss/nmea/nmea_reader.h"
 #include "canyon/gnss/rinex/navigation/navigation_file.h"
 #include "canyon/gnss/satellites/constellation.h"
 #include "canyon/tests/gnss/atmosphere/product_text.h"
@@ -173,11 +172,6 @@ std::vector<Companion> both() {
 }
 std::vector<Companion> nav_beside() {
   return {{"nav.rnx", navigation()}};
-}
-
-int status_of(const Error& error) {
-  std::fprintf(stderr, "%s\n", error.str().c_str());
-  return error.exit_code;
 }
 
 const std::vector<std::string> kSolve{"gnss", "solve", "--obs", "@", "--nav", "nav.rnx", "--systems", "GREC"};
@@ -401,20 +395,16 @@ std::vector<Format> solution_formats() {
                },
            .beside = both},
           {.name = "Nmea",
-           .command = {},
-           .read =
-               [](const std::string& path) {
-                 const auto log = gnss::read_nmea_file(path);
-                 if (!log) return status_of(log.error());
-                 const auto dated = gnss::read_nmea_file(path, kStart);
-                 return dated ? 0 : status_of(dated.error());
-               },
+           .command = {"gnss", "solve", "--obs", "obs.rnx", "--nav", "nav.rnx", "--compare", "@"},
+           .read = {},
            .seeds =
                [] {
-                 return with(
-                     {simulated()[2]},
-                     excerpt("gnss/google_mtv_2020/MTV.Local1.ublox-F9K.20200206-181434.nmea.gz", "real.nmea", 80));
-               }}};
+                 auto recorded =
+                     excerpt("gnss/google_mtv_2020/MTV.Local1.ublox-F9K.20200206-181434.nmea.gz", "real.nmea", 80);
+                 for (Seed& seed : recorded) seed.fits = false;  // of another day
+                 return with({simulated()[2]}, recorded);
+               },
+           .beside = both}};
 }
 
 }  // namespace
