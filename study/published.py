@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every number that README.md and docs/ state about built-in missions, measured again and written between its markers.
+"""What README.md and docs/ state about missions between markers, measured again and written there.
 
     study/published.py                          writes them all
     study/published.py --only closed-table,gate writes these
@@ -22,7 +22,7 @@ import time
 import tomllib
 
 MARKER = re.compile(r"<!-- (/?)canyon:([a-z0-9-]+) -->")
-PLACEHOLDER = re.compile(r"\{([A-Za-z0-9_.]+)(?::([^{}]*))?\}")
+FIELD = re.compile(r"\{([A-Za-z0-9_.]+)(?::([^{}]*))?\}")
 
 
 class Mistake(Exception):
@@ -80,7 +80,9 @@ class Made:
         loop = summary.get("loop") or {}
         self.values["against"] = {pair["b"]: pair for pair in loop.get("paired_epochs", [])}
         self.values["share"] = {share["fidelity"]: share for share in summary.get("shares") or []}
-        self.values["paired"] = {pair["b"]: pair for pair in summary.get("paired") or []}
+        self.values["paired"] = {}
+        for pair in summary.get("paired") or []:
+            self.values["paired"].setdefault(pair["b"], {})[pair["figure"]] = pair
         self.values["median"] = {run["fidelity"]: {key: row["median"] for key, row in run["figures"].items()}
                                  for run in summary.get("over_seeds") or []}
 
@@ -109,9 +111,12 @@ class Made:
             value = self.look_up(match[1], name)
             if value is None:
                 return "undefined"
-            return format(value, match[2] or "")
+            try:
+                return format(value, match[2] or "")
+            except (TypeError, ValueError) as error:
+                raise Mistake(f"published.toml: text.{name}: {match[0]}: {error}") from error
 
-        return PLACEHOLDER.sub(formatted, row["text"])
+        return FIELD.sub(formatted, row["text"])
 
 
 def load(root):
@@ -153,7 +158,10 @@ def run(canyon, name, row, seeds):
         if drives:
             arguments += ["--out", "results"]
         start = time.monotonic()
-        done = subprocess.run([canyon, *arguments], cwd=folder, stdout=subprocess.PIPE, text=True, check=False)
+        try:
+            done = subprocess.run([canyon, *arguments], cwd=folder, stdout=subprocess.PIPE, text=True, check=False)
+        except OSError as error:
+            raise Mistake(f"--canyon: {canyon}: {error.strerror}") from error
         if done.returncode != 0:
             raise Mistake(f"command.{name}: canyon {' '.join(arguments)} ended with status {done.returncode}")
         summary = json.loads((pathlib.Path(folder) / "results" / "summary.json").read_text(encoding="utf-8")) if drives else {}
@@ -170,6 +178,8 @@ def chosen_texts(texts, options):
                 raise Mistake(f"--only: \"{name}\" is not in published.toml, expected one of {', '.join(sorted(texts))}")
     if options.check:
         names = [name for name in names if not texts[name].get("timing")]
+        if not names:
+            raise Mistake("--check: nothing to compare: the texts chosen depend on the machine")
     if options.tenth:
         seed = int(time.time() // 86400) if options.tenth == "today" else int(options.tenth)
         names = sorted(random.Random(seed).sample(names, max(1, round(len(names) / 10))))

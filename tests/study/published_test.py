@@ -25,6 +25,7 @@ out.mkdir()
 (out / "summary.json").write_text(json.dumps({{
     "mission": {{"seed": 1}}, "runs": runs, "shares": [{{"fidelity": "low", "success": 2, "n": 2}}],
     "loop": {{"kind": "open", "paired_epochs": [{{"b": "high", "low_m": 3.84}}]}},
+    "paired": [{{"b": "high", "figure": "error_m", "p": 0.25}}, {{"b": "high", "figure": "gdop", "p": 0.5}}],
     "over_seeds": [{{"fidelity": "low", "figures": {{"error_m": {{"median": 2.0}}}}}}]}}))
 print("Mission small\\n\\n      low\\nclosed loop\\n  error, m  " + str(error + 1) + "\\n\\n2 x 2\\n  a b\\n\\nDriven in 3 s.")
 '''
@@ -37,7 +38,7 @@ mission = "base = 1"
 arguments = ["keys"]
 [text.number]
 command = "one"
-text = "{low.error_m:.2f} m, {share.low.success} of {share.low.n}, {against.high.low_m:.1f}, {median.low.error_m:.0f}, {low.gdop:.1f}, {low.outcome}"
+text = "{low.error_m:.2f} m, {share.low.success} of {share.low.n}, {against.high.low_m:.1f}, {median.low.error_m:.0f}, {paired.high.error_m.p:.2f}, {low.gdop:.1f}, {low.outcome}"
 [text.block]
 command = "one"
 paragraphs = ["closed loop", "2 x 2"]
@@ -93,7 +94,7 @@ class Published(unittest.TestCase):
     def test_writes_numbers_blocks_and_lists_between_their_markers(self):
         self.assertEqual(self.call().returncode, 0)
         self.assertEqual(self.read("README.md"), """\
-It is <!-- canyon:number -->1.15 m, 2 of 2, 3.8, 2, undefined, success<!-- /canyon:number --> off and takes <!-- canyon:cost -->3.25 s<!-- /canyon:cost -->.
+It is <!-- canyon:number -->1.15 m, 2 of 2, 3.8, 2, 0.25, undefined, success<!-- /canyon:number --> off and takes <!-- canyon:cost -->3.25 s<!-- /canyon:cost -->.
 <!-- canyon:block -->
 ```
       low
@@ -142,6 +143,12 @@ closed loop
     def test_mistakes(self):
         self.mistake('--tenth: "x", expected a whole number or today', "--check", "--tenth", "x")
         self.mistake('--only: "nmber" is not in published.toml, expected one of block, cost, list, number', "--only", "nmber")
+        self.mistake("--check: nothing to compare: the texts chosen depend on the machine", "--check", "--only", "cost")
+        self.mistake("--check: nothing to compare: the texts chosen depend on the machine", "--check", "--tenth", "1", "--only", "cost")
+        self.mistake("--canyon: /no/canyon: No such file or directory", "--canyon", "/no/canyon")
+        self.write("study/published.toml", ENTRIES.replace("{low.outcome}", "{low.outcome:.1f}"))
+        self.mistake("published.toml: text.number: {low.outcome:.1f}: Unknown format code 'f' for object of type 'str'", "--only", "number")
+        self.write("study/published.toml", ENTRIES)
         self.write("docs/page.md", PAGE + "<!-- canyon:block -->")
         self.mistake("docs/page.md:3: <!-- canyon:block --> without its other half", "--markers")
         self.write("docs/page.md", PAGE + "<!-- canyon:new -->1<!-- /canyon:new -->")
