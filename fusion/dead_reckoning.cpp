@@ -33,7 +33,7 @@ std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavS
       continue;
     }
     const double elapsed_s = s.t - state.t;
-    // Where the start lies within the sample's interval, only what is behind it counts.
+    // Where the start lies within the sample's interval, only what is after it counts.
     const bool begun_before = states.size() == 1 && s.dt_s - elapsed_s > kStampRounding_s;
     if (begun_before || std::abs(elapsed_s - s.dt_s) > 0.5 * s.dt_s) {
       const double scale = elapsed_s / s.dt_s;

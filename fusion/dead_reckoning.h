@@ -12,9 +12,9 @@
 namespace canyon::fusion {
 
 /// States at the start and after every sample, by free inertial navigation from `initial`. Samples that end at or
-/// before initial.t only let the integrator look back; of one whose interval holds initial.t, the part behind it is
+/// before initial.t only let the integrator look back; of one whose interval holds initial.t, the part after it is
 /// taken as its share of the time. Where samples are missing between two (a gap of more than half an interval) the
-/// integrator forgets its past and the one behind the gap stands for it: its mean rates are taken for the whole time.
+/// integrator forgets its past and the one after the gap stands for it: its mean rates are taken for the whole time.
 std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavState& initial, Strapdown& strapdown);
 
 /// A state at rest at that place and heading, its attitude levelled with a specific force (of any length) measured
@@ -35,7 +35,7 @@ struct NavError {
 /// reference without velocity (NaN) leaves the velocity error NaN.
 std::vector<NavError> navigation_errors(std::span<const NavState> estimate, std::span<const NavState> reference);
 
-/// Root mean squares over the errors behind the first, which is that of the start; NaN where there is none.
+/// Root mean squares over the errors after the first, which is that of the start; NaN where there is none.
 struct NavErrorStatistics {
   Eigen::Vector3d position_rms_enu_m, velocity_rms_enu_m_s, attitude_rms_rad;
   double position_rms_m = kNaN, final_error_m = kNaN, final_horizontal_m = kNaN;

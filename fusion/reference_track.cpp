@@ -25,7 +25,7 @@ double usual_interval_s(std::span<const NavState> reference) {
 }
 
 /// Index of the first state later than t.
-std::size_t behind(std::span<const NavState> reference, GpsTime t) {
+std::size_t first_after(std::span<const NavState> reference, GpsTime t) {
   const auto next = std::upper_bound(reference.begin(), reference.end(), t,
                                      [](GpsTime value, const NavState& state) { return value < state.t; });
   return static_cast<std::size_t>(next - reference.begin());
@@ -49,7 +49,7 @@ std::span<const NavState> neighbours(std::span<const NavState> reference, std::s
 
 std::optional<NavState> reference_at(std::span<const NavState> reference, GpsTime t) {
   if (reference.empty() || t < reference.front().t || reference.back().t < t) return std::nullopt;
-  const std::size_t next = behind(reference, t);
+  const std::size_t next = first_after(reference, t);
   const NavState& a = reference[next - 1];
   if (a.t == t) return a;
   const double longest_s = kGapFactor * usual_interval_s(reference);
@@ -75,8 +75,8 @@ std::optional<NavState> first_common_state(std::span<const NavState> reference, 
   if (reference.empty() || samples.empty()) return std::nullopt;
   const GpsTime first_edge = samples.front().t - samples.front().dt_s;
   std::optional<NavState> start;
-  // The first state at or behind the log's beginning, and whether it is that beginning.
-  const std::size_t next = behind(reference, first_edge - kSameInstant_s);
+  // The first state at or after the log's beginning, and whether it is that beginning.
+  const std::size_t next = first_after(reference, first_edge - kSameInstant_s);
   const bool begins_there = next < reference.size() && reference[next].t - first_edge <= kSameInstant_s;
   if (next > 0 && !begins_there) start = reference_at(reference, first_edge);
   if (!start && next < reference.size()) start = reference[next];

@@ -20,11 +20,11 @@ std::optional<NavState> reference_at(std::span<const NavState> reference, GpsTim
 
 /// Where free inertial navigation can start from a reference: the first instant that both cover. That is the first
 /// state of a reference that begins within the log, whether a sample ends there or not; else the log's beginning, with
-/// the reference interpolated there, or in a gap of it the state behind the gap. A stamp within kSameInstant_s of a
+/// the reference interpolated there, or in a gap of it the state after the gap. A stamp within kSameInstant_s of a
 /// sample's is taken for it. Empty if nothing is in common.
 std::optional<NavState> first_common_state(std::span<const NavState> reference, std::span<const ImuSample> samples);
 
-/// The start, and the reference's states behind it.
+/// The start, and the reference's states after it.
 std::vector<NavState> reference_from(const NavState& start, std::span<const NavState> reference);
 
 }  // namespace canyon::fusion

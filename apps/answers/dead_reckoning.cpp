@@ -20,7 +20,7 @@ void tell_scored(const study::DeadReckoning& o) {
   std::printf("  scored from %s at %zu instants", study::of_week(o.errors.front().t, o.errors.back().t).c_str(),
               o.errors.size() - 1);
   if (left.before_s > fusion::kSameInstant_s || left.behind_s > fusion::kSameInstant_s)
-    std::printf("; of the log %.3f s before and %.3f s behind are not", left.before_s, left.behind_s);
+    std::printf("; of the log %.3f s before and %.3f s after are not", left.before_s, left.behind_s);
   std::printf("\n");
 }
 

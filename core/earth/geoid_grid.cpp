@@ -25,7 +25,7 @@ std::array<double, N> lagrange_weights(double t) {
   return weights;
 }
 
-/// The number behind a comment's key, or the size's line.
+/// The number after a comment's key, or the size's line.
 double number_after(std::string_view header, const std::string& key) {
   const std::size_t at = header.find(key);
   CANYON_CHECK(at != std::string_view::npos, "a geoid grid without ", key);

@@ -26,7 +26,7 @@ double chip_rate_hz(Modulation modulation);
 /// below.
 Modulation modulation_of(GnssSystem system, int band);
 
-/// Correlation of a received code with the receiver's clean replica, real and even in the delay, as seen behind an
+/// Correlation of a received code with the receiver's clean replica, real and even in the delay, as seen after an
 /// ideal (brick-wall, linear-phase) front end.
 ///
 /// With infinite bandwidth R is piecewise linear: R(x) = sum_k w_k |x - x_k| / 2 with its kinks x_k and changes of

@@ -321,7 +321,7 @@ class Reader {
   ObservationHeaderReader header_;
   ReaderWarnings warnings_;
   ObservationFile out_;
-  std::vector<ObservationEpoch> waiting_;  // ascending; they go back behind the last one kept
+  std::vector<ObservationEpoch> waiting_;  // ascending; they go back after the last one kept
   std::vector<ObservationValue> values_;   // of the satellite at hand
   bool lost_ = false;
 };
