@@ -99,6 +99,7 @@ TEST(MemoryNightly, ADayIsDrivenInBoundedMemory) {
         mission::run_mission(*config, *prepared, nullptr, {.tape = nullptr, .recorder = &all, .autonomy = nullptr});
     ASSERT_TRUE(record.ok()) << record.error().str();
     EXPECT_GT(record->simulated_s, 3600.0 * hours - 1.0) << (record->failure ? record->failure->detail : "");
+    ASSERT_GE(log.mb.size(), 6.0 * hours) << "one reading in ten minutes";
     const double slope = slope_mb_h(std::span(log.mb).subspan(log.mb.size() / 2));
     std::printf("  %s: %.3f MB an hour over the last half\n", fidelity, slope);
     EXPECT_LE(slope, 1.0) << fidelity;
