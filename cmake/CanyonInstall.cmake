@@ -1,5 +1,6 @@
 # What `cmake --install` puts in place: the program with the parts that it opens late, and for other programs the libraries,
-# headers and the package of `find_package(canyon COMPONENTS gnss)`. Nothing in it names the folder that it was installed in.
+# headers and the package of `find_package(canyon COMPONENTS gnss)`. Nothing in it names the folder that it was installed in: the program finds its
+# parts by the way from its own folder to theirs (core/process/library_part.h), so all of it may be moved together.
 include(CMakePackageConfigHelpers)
 
 install(TARGETS canyon RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

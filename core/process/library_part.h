@@ -13,8 +13,10 @@ namespace canyon {
 ///
 /// A program that links the part itself (the target canyon_pcl) has the table at hand. Otherwise the table's address is
 /// null, and the part is the shared object libcanyon_pcl.so: in the folder that the environment variable
-/// CANYON_PART_DIR names, else in ../lib/canyon beside the program's own folder, else where Canyon was installed.
-/// Throws std::runtime_error, which names the file and why it cannot be opened. Safe from any thread; never closed.
+/// CANYON_PART_DIR names, else where it was installed as seen from the program's own folder (an installation may be
+/// moved as a whole), else in ../lib/canyon beside that folder, where the build leaves it. It must be of the same build
+/// as the program: nothing but the name of the table is checked. Throws std::runtime_error, which names the file and
+/// why it cannot be opened. Safe from any thread; never closed.
 const void* open_library_part(const std::string& name);
 
 template <class Part>
