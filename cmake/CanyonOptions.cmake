@@ -24,6 +24,10 @@ else()
   set(open_late ON)
 endif()
 option(CANYON_OPEN_LATE "The program opens PCL, assimp, PROJ and Ceres at their first use" ${open_late})
+if(CANYON_OPEN_LATE AND CANYON_SANITIZE MATCHES "address")
+  message(FATAL_ERROR "CANYON_SANITIZE=${CANYON_SANITIZE} needs -DCANYON_OPEN_LATE=OFF: the address sanitizer takes what is both in "
+                      "the program and in a part that it opens for a violation of one definition")
+endif()
 
 # Headers are included as "canyon/core/time.h", in this tree as where they are installed.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/include/canyon)
