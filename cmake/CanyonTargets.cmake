@@ -13,10 +13,11 @@ function(canyon_precompile target root)
   endif()
 endfunction()
 
-# canyon_library(NAME [LINK libs...] [PRIVATE libs...] [ONLY pattern] [EXCLUDE patterns...] [PRECOMPILE headers...]): every .cpp of
-# the folder and its rooms (whose path from the folder matches ONLY and none of EXCLUDE), one static library canyon_NAME.
+# canyon_library(NAME [NO_INSTALL] [LINK libs...] [PRIVATE libs...] [ONLY pattern] [EXCLUDE patterns...] [PRECOMPILE headers...]):
+# every .cpp of the folder and its rooms (whose path from the folder matches ONLY and none of EXCLUDE), one static library
+# canyon_NAME; with NO_INSTALL it is the program's alone, no component of the package.
 function(canyon_library name)
-  cmake_parse_arguments(ARG "" "ONLY" "LINK;PRIVATE;EXCLUDE;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "NO_INSTALL" "ONLY" "LINK;PRIVATE;EXCLUDE;PRECOMPILE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   if(ARG_ONLY)
     list(FILTER sources INCLUDE REGEX ${ARG_ONLY})
@@ -31,7 +32,10 @@ function(canyon_library name)
   else()
     canyon_precompile(canyon_${name} canyon_core)
   endif()
-  canyon_install(${name})
+  set_property(GLOBAL APPEND PROPERTY canyon_libraries canyon_${name})
+  if(NOT ARG_NO_INSTALL)
+    canyon_install(${name})
+  endif()
 endfunction()
 
 # canyon_install(NAME): the library canyon_NAME as canyon::NAME of the package that `cmake --install` makes.
@@ -53,10 +57,12 @@ function(canyon_part name)
   target_link_libraries(canyon_${name} PUBLIC canyon_${ARG_OF} PRIVATE ${ARG_PRIVATE})
   target_link_options(canyon_${name} INTERFACE LINKER:--undefined=canyon_${name}_part)
   canyon_precompile(canyon_${name} canyon_core)
+  set_property(GLOBAL APPEND PROPERTY canyon_libraries canyon_${name})
   canyon_install(${name})
   target_link_libraries(canyon_parts INTERFACE canyon_${name})
   if(CANYON_OPEN_LATE)
-    file(WRITE ${CMAKE_BINARY_DIR}/generated/part.cpp "")
+    # Written once: a file of the same text keeps its time, so that configuring again builds nothing.
+    file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/part.cpp CONTENT "")
     add_library(canyon_${name}_module MODULE ${CMAKE_BINARY_DIR}/generated/part.cpp)
     target_link_libraries(canyon_${name}_module PRIVATE canyon_${name})
     set_target_properties(canyon_${name}_module PROPERTIES OUTPUT_NAME canyon_${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/canyon)

@@ -42,13 +42,13 @@ class Install(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def example(self, package="canyon REQUIRED COMPONENTS gnss"):
-        """The example configured, with another find_package."""
+    def example(self, package="canyon REQUIRED COMPONENTS gnss", after=""):
+        """The example configured, with another find_package and further lines at its end."""
         source = self.top / "example"
         shutil.rmtree(source, ignore_errors=True)
         shutil.copytree(SOURCE / "examples" / "positions_from_rinex", source)
         text = (source / "CMakeLists.txt").read_text(encoding="utf-8")
-        (source / "CMakeLists.txt").write_text(text.replace("canyon REQUIRED COMPONENTS gnss", package), encoding="utf-8")
+        (source / "CMakeLists.txt").write_text(text.replace("canyon REQUIRED COMPONENTS gnss", package) + after, encoding="utf-8")
         return subprocess.run(["cmake", "-S", source, "-B", source / "build", "-DCMAKE_BUILD_TYPE=Release",
                                f"-DCMAKE_PREFIX_PATH={self.prefix}"], capture_output=True, text=True, check=False)
 
@@ -78,12 +78,46 @@ class Install(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("99", done.stderr)
 
+    def test_what_is_the_programs_alone_is_no_component(self):
+        done = self.example(package="canyon REQUIRED COMPONENTS apps")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("there is no component apps", done.stderr)
+
+    def test_pcl_leaves_the_project_its_own_vtk(self):
+        if not list(self.prefix.rglob("libcanyon_pcl.a")):
+            self.skipTest("built without PCL")
+        tell = 'message(NOTICE "VTK disabled: <${CMAKE_DISABLE_FIND_PACKAGE_VTK}>")\n'
+        for before, after in (("", "<>"), ("set(CMAKE_DISABLE_FIND_PACKAGE_VTK 1)\n", "<1>")):
+            done = self.example(after=before + "find_package(canyon REQUIRED COMPONENTS pcl)\n" + tell)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"VTK disabled: {after}", done.stderr)
+
     def test_the_moved_program_opens_its_parts_late(self):
-        parts = self.prefix / "lib"
-        self.assertTrue(list(parts.rglob("libcanyon_pcl.so")), "no part was installed")
         for heavy in ("libpcl", "libassimp", "libproj", "libceres", "libcholmod"):
             self.assertNotIn(heavy, run("ldd", self.canyon))
         self.assertIn('"buildings":1', run(self.canyon, "scene", "info", self.scene, "--json").replace(" ", ""))
+        # It was the installed part: without it there is none, neither of the build nor of the folder installed into at first.
+        part, = self.prefix.rglob("libcanyon_proj.so")
+        part.rename(self.top / "aside.so")
+        try:
+            done = subprocess.run([self.canyon, "scene", "info", self.scene], capture_output=True, text=True, check=False)
+        finally:
+            (self.top / "aside.so").rename(part)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, f"canyon could not finish: libcanyon_proj.so is missing; it is looked for in {part.parent} "
+                          "(or in CANYON_PART_DIR)\n"))
+
+    def test_a_file_that_is_no_part_is_named(self):
+        other = next((part for part in self.prefix.rglob("libcanyon_*.so") if part.name != "libcanyon_proj.so"), None)
+        if other is None:
+            self.skipTest("built with one part alone")
+        libraries = self.top / "others"
+        libraries.mkdir()
+        shutil.copy(other, libraries / "libcanyon_proj.so")
+        done = subprocess.run([self.canyon, "scene", "info", self.scene], capture_output=True, text=True, check=False,
+                              env={"CANYON_PART_DIR": str(libraries)})
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, f"canyon could not finish: {libraries}/libcanyon_proj.so is no part of Canyon: it has no canyon_proj_part\n"))
 
     def test_a_part_that_is_missing_is_named(self):
         done = subprocess.run([self.canyon, "scene", "info", self.scene, "--json"], capture_output=True, text=True, check=False,
