@@ -50,7 +50,7 @@ void visit(FieldVisitor& f, ImportConfig& c) {
   f.choice("heights", c.heights, ModelTable<HeightDatum>(kHeights),
            "what heights in the files are above; auto: as the coordinate system says, else orthometric");
   f.optional_number(
-      "undulation_m", c.undulation_m, -1000.0, {-1000.0, 200.0},
+      "undulation_m", c.undulation_m, -1000.0, {-200.0, 200.0},
       "geoid above the ellipsoid; -1000: of the finest of GeographicLib's geoids that is installed, else of EGM96");
   f.numbers("center_deg", c.center_deg, 0, {-360.0, 360.0},
             "latitude, longitude of W's origin; empty: the middle of the scene");

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -57,6 +58,7 @@ class ConfigNode {
 struct Range {
   double min;
   double max;
+  double unset = std::numeric_limits<double>::quiet_NaN();  ///< allowed beside it, where not NaN: stands for no number
 };
 inline constexpr Range kPositive{1e-300, 1e300};
 inline constexpr Range kNotNegative{0.0, 1e300};
@@ -98,7 +100,7 @@ class FieldVisitor {
     choice(key, name, model_names(rows), doc);
     value = model_row(rows, name).make;
   }
-  /// A number that may be not set, which is written as `unset`.
+  /// A number in `range` that may be not set, which is written as `unset`, a value outside of it.
   void optional_number(const char* key, std::optional<double>& value, double unset, Range range, const char* doc);
   void vector3(const char* key, Eigen::Vector3d& value, Range range, const char* doc);
   void vector2(const char* key, Eigen::Vector2d& value, Range range, const char* doc);

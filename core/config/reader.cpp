@@ -213,7 +213,7 @@ class Reader final : public FieldVisitor {
       fail(node, where, number_text(v) + " is not a finite number", range_text(range, false));
       return std::nullopt;
     }
-    if (v < range.min || v > range.max) {
+    if ((v < range.min || v > range.max) && v != range.unset) {
       fail(node, where, number_text(v) + " is out of range", range_text(range, false));
       return std::nullopt;
     }
@@ -262,7 +262,7 @@ Error all_missing(Error first, const std::vector<Error>& errors) {
 void FieldVisitor::optional_number(const char* key, std::optional<double>& value, double unset, Range range,
                                    const char* doc) {
   double number_or_unset = value.value_or(unset);
-  number(key, number_or_unset, range, doc);
+  number(key, number_or_unset, {range.min, range.max, unset}, doc);
   if (number_or_unset == unset)
     value.reset();
   else

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 namespace canyon {
 
@@ -12,6 +13,7 @@ std::string number_text(double value) {
 }
 
 std::string range_text(Range range, bool whole) {
+  if (!std::isnan(range.unset)) return range_text({range.min, range.max}, whole) + ", or " + number_text(range.unset);
   const std::string number = whole ? "whole number" : "number";
   if (range.min == kPositive.min && range.max >= kPositive.max) return "a positive " + number;
   const bool below = range.min > kAnyNumber.min;

@@ -31,12 +31,10 @@ void visit(FieldVisitor& f, RunConfig& c) {
       "keeps IMU messages and fixes with full covariances as epochs/RUN_imu.csv and RUN_fixes.csv, for other filters");
   f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
-  f.optional_number("withhold_fixes_after_s", c.withhold_fixes_after_s, -1, {-1, 1e5},
+  f.optional_number("withhold_fixes_after_s", c.withhold_fixes_after_s, -1, {0, 1e5},
                     "no fix reaches the filter from then on; -1 = never");
-  f.optional_number("withhold_scans_after_s", c.withhold_scans_after_s, -1, {-1, 1e5},
+  f.optional_number("withhold_scans_after_s", c.withhold_scans_after_s, -1, {0, 1e5},
                     "no scan reaches map and autonomy from then on; -1 = never");
-  for (auto* after_s : {&c.withhold_fixes_after_s, &c.withhold_scans_after_s})
-    if (after_s->value_or(0.0) < 0.0) after_s->reset();  // any negative time is never
 }
 
 void visit(FieldVisitor& f, MissionConfig& c) {

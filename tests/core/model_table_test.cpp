@@ -28,7 +28,7 @@ struct Road {
 void visit(FieldVisitor& f, Road& c) {
   f.old_key("speed_kmh", "road.limit_m_s, in m/s");
   f.choice("side", c.side, ModelTable<Side>(kSides), "where one drives");
-  f.optional_number("limit_m_s", c.limit_m_s, -1.0, {-1.0, 100.0}, "largest speed; -1 = none");
+  f.optional_number("limit_m_s", c.limit_m_s, -1.0, {0.0, 100.0}, "largest speed; -1 = none");
 }
 
 Result<Road> read(const std::string& toml) {
@@ -71,6 +71,9 @@ TEST(ModelTable, ANumberThatIsNotSetIsNone) {
   EXPECT_FALSE(read("")->limit_m_s.has_value());
   EXPECT_FALSE(read("limit_m_s = -1")->limit_m_s.has_value());
   EXPECT_EQ(read("limit_m_s = 0")->limit_m_s, 0.0);
+  for (const std::string other : {"-0.5", "-2", "101"})
+    EXPECT_EQ(read("limit_m_s = " + other).error().str(),
+              "my.toml:1: road.limit_m_s: " + other + " is out of range, expected a number from 0 to 100, or -1");
 }
 
 TEST(ModelTable, AnOldKeyNamesWhatTookItsPlace) {
