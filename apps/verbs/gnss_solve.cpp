@@ -8,6 +8,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/files/place_files.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/antenna_height.h"
 #include "canyon/gnss/single_point/solution_file.h"
@@ -76,13 +77,18 @@ Result<int> run(const Options& options) {
   CANYON_TRY(const auto config, configuration(options));
   CANYON_TRY(const auto truth, truth_of(options));
   CANYON_TRY(const auto data, gnss::read_recorded_data(options.files, config));
+  // Before the solution, which takes its time, so that a wrong file is told at once.
+  std::optional<gnss::ReceiverLog> receiver;
+  if (!options.compare.empty()) {
+    CANYON_TRY(receiver, gnss::read_receiver_log(options.compare, data.observations.epochs.front().t));
+  }
   CANYON_TRY(const auto result, gnss::solve_observations(data.observations, data.inputs(), config));
 
   std::vector<GnssFix> fixes;
   for (const auto& e : result.epochs) fixes.push_back(e.fix);
   SinglePointAnswer answer{data, result, gnss::position_statistics(fixes, truth), std::nullopt};
-  if (!options.compare.empty()) {
-    CANYON_TRY(answer.comparison, gnss::compare_with_receiver(fixes, options.compare));
+  if (receiver) {
+    CANYON_TRY(answer.comparison, gnss::compare_with_receiver(fixes, *receiver));
   }
   const Json json = single_point_json(answer);
   if (table != nullptr) CANYON_TRY_STATUS(table->write(gnss::solution_csv(result)));

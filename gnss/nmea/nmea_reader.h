@@ -11,7 +11,8 @@
 
 namespace canyon::gnss {
 
-/// One epoch of a receiver's NMEA 0183 log: what its GGA and RMC say.
+/// One epoch of a receiver's NMEA 0183 log: place, quality, satellites and HDOP from its GGA, speed and course from its
+/// RMC. The position in RMC has no height and is not taken.
 struct NmeaRecord {
   GpsTime t;
   int quality = 0;  ///< GGA: 0 no fix, 1 single, 2 differential, 4 RTK fixed, 5 RTK float, 6 dead reckoning
@@ -23,7 +24,8 @@ struct NmeaRecord {
 };
 
 struct NmeaFile {
-  std::vector<NmeaRecord> records;    ///< in file order; epochs before the first date (RMC, ZDA) are left out
+  /// In file order. Epochs before the first date (RMC, ZDA) are left out; those without GGA have quality 0.
+  std::vector<NmeaRecord> records;
   std::int64_t damaged_lines = 0;     ///< wrong checksum or fields that do not parse
   std::vector<std::string> warnings;  ///< `file:line: what`, the first few damaged lines
 };

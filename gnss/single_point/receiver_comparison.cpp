@@ -29,21 +29,26 @@ TruePlace place_of(const NmeaRecord& record) {
 
 }  // namespace
 
-Result<ReceiverComparison> compare_with_receiver(const std::vector<GnssFix>& fixes, const std::string& nmea_path) {
-  CANYON_CHECK(!fixes.empty(), "no epochs");
-  const GpsTime first = fixes.front().t;
+Result<ReceiverLog> read_receiver_log(const std::string& nmea_path, GpsTime first) {
   const CalendarTime day = calendar(first - first.leap_seconds());
   CANYON_TRY(NmeaFile log, read_nmea_file(nmea_path, GpsTime::from_calendar(day.year, day.month, day.day, 0, 0, 0.0)));
-  std::vector<NmeaRecord>& records = log.records;
-  std::erase_if(records, [](const NmeaRecord& r) { return r.quality == 0; });
-  if (records.empty()) return Error{nmea_path, 0, "", "holds no position", "a log with fixes"};
-  std::stable_sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
-  if (std::none_of(fixes.begin(), fixes.end(), [&](const GnssFix& f) { return record_at(records, f.t) != nullptr; }))
-    return Error{nmea_path, 0, "", "covers " + records.front().t.iso() + " to " + records.back().t.iso() + " GPS time",
-                 "epochs of the observations, " + first.iso() + " to " + fixes.back().t.iso()};
-  ReceiverComparison out{nmea_path, static_cast<int>(records.size()), {}, log.warnings};
+  ReceiverLog out{nmea_path, std::move(log.records), std::move(log.warnings)};
+  std::erase_if(out.records, [](const NmeaRecord& r) { return r.quality == 0; });
+  if (out.records.empty()) return Error{nmea_path, 0, "", "holds no GGA with a fix", "a log with fixes"};
+  std::stable_sort(out.records.begin(), out.records.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+  return out;
+}
+
+Result<ReceiverComparison> compare_with_receiver(const std::vector<GnssFix>& fixes, const ReceiverLog& log) {
+  CANYON_CHECK(!fixes.empty() && !log.records.empty(), fixes.size(), " epochs, ", log.records.size(), " records");
+  if (std::none_of(fixes.begin(), fixes.end(),
+                   [&](const GnssFix& f) { return record_at(log.records, f.t) != nullptr; }))
+    return Error{log.file, 0, "",
+                 "covers " + log.records.front().t.iso() + " to " + log.records.back().t.iso() + " GPS time",
+                 "epochs of the observations, " + fixes.front().t.iso() + " to " + fixes.back().t.iso()};
+  ReceiverComparison out{log.file, static_cast<int>(log.records.size()), {}, log.warnings};
   out.difference = position_statistics(fixes, [&](GpsTime t) -> std::optional<TruePlace> {
-    const NmeaRecord* record = record_at(records, t);
+    const NmeaRecord* record = record_at(log.records, t);
     return record ? std::optional(place_of(*record)) : std::nullopt;
   });
   return out;

@@ -13,6 +13,17 @@ namespace canyon::gnss {
 /// apart.
 inline constexpr double kSameEpoch_s = 0.045;
 
+/// What the receiver that made the observations said itself, NMEA 0183.
+struct ReceiverLog {
+  std::string file;
+  std::vector<NmeaRecord> records;  ///< those with a fix, in order of time; at least one
+  std::vector<std::string> warnings;
+};
+
+/// A log without a date is taken to begin on the UTC day of `first`, the first epoch observed. Errors: no GGA with a
+/// fix in it.
+Result<ReceiverLog> read_receiver_log(const std::string& nmea_path, GpsTime first);
+
 /// How our fixes differ from what the receiver itself said of the same observations.
 struct ReceiverComparison {
   std::string file;
@@ -21,8 +32,7 @@ struct ReceiverComparison {
   std::vector<std::string> warnings;
 };
 
-/// The log is NMEA 0183 of the receiver that made the observations; without a date it is taken to begin on the UTC day
-/// of the first fix. Errors: no position in it, or none at a time of `fixes`, whichever of them were solved.
-Result<ReceiverComparison> compare_with_receiver(const std::vector<GnssFix>& fixes, const std::string& nmea_path);
+/// Errors: no position of the log is at a time of `fixes`, whichever of them were solved. There must be fixes.
+Result<ReceiverComparison> compare_with_receiver(const std::vector<GnssFix>& fixes, const ReceiverLog& log);
 
 }  // namespace canyon::gnss

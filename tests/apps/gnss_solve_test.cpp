@@ -78,6 +78,13 @@ TEST_F(GnssSolveTest, ComparesWithTheReceiverItself) {
                         "own:\n  diff., m     mean     std\n  east "));
   expect_mistake(solve + "missing.nmea", "missing.nmea: ");
   expect_mistake(solve + "given.rnx", "given.rnx: no GGA or RMC sentence in it, expected an NMEA 0183 log");
+  // It is read before anything is solved: of two mistakes, the other of which shows in the solution, this one is told.
+  ASSERT_EQ(
+      canyon("gnss simulate --force --at 32.35,-90.88,60 --start 2021-01-01 --duration 60 --errors none --rinex-obs "
+             "other.rnx --rinex-nav other.nav"),
+      0)
+      << read("stderr");
+  expect_mistake("gnss solve --obs given.rnx --nav other.nav --systems G --compare given.rnx", "given.rnx: no GGA");
 }
 
 /// A constellation seen at its centres of mass, `offset_m` further out than the antennas.

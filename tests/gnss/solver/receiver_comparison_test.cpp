@@ -27,6 +27,11 @@ std::vector<GnssFix> fixes() {
   return out;
 }
 
+Result<ReceiverComparison> compare(const std::vector<GnssFix>& fixes, const std::string& path) {
+  CANYON_TRY(const ReceiverLog log, read_receiver_log(path, fixes.front().t));
+  return compare_with_receiver(fixes, log);
+}
+
 class ReceiverComparisonTest : public ::testing::Test {
  protected:
   std::string path_ = canyon::testing::temporary_file("log.nmea");
@@ -46,7 +51,7 @@ class ReceiverComparisonTest : public ::testing::Test {
 TEST_F(ReceiverComparisonTest, IsOursMinusItsOwn) {
   for (const double late_s : {0.0, 0.04, -0.04}) {
     write_log(fixes(), {3.0, -4.0, 1.5}, late_s);
-    const auto c = compare_with_receiver(fixes(), path_);
+    const auto c = compare(fixes(), path_);
     ASSERT_TRUE(c.ok()) << c.error().str();
     EXPECT_EQ(c->records, 10);
     EXPECT_EQ(c->difference.compared, 10);
@@ -63,7 +68,7 @@ TEST_F(ReceiverComparisonTest, OnlyEpochsOfBothCount) {
   theirs[5].status = FixStatus::kNone;
   theirs.erase(theirs.begin() + 7);
   write_log(theirs, {1.0, 0.0, 0.0});
-  const auto c = compare_with_receiver(ours, path_);
+  const auto c = compare(ours, path_);
   ASSERT_TRUE(c.ok());
   EXPECT_EQ(c->records, 8);
   EXPECT_EQ(c->difference.epochs, 10);
@@ -76,7 +81,7 @@ TEST_F(ReceiverComparisonTest, ALogWithoutADateIsOfTheDayOfTheObservations) {
   ASSERT_TRUE(
       write_text_file(path_, nmea_sentence("GPGGA,130003.00,3422.6480625,N,01127.5493542,E,1,08,1.0,70.0,M,30.0,M,,"))
           .ok());
-  const auto c = compare_with_receiver(fixes(), path_);
+  const auto c = compare(fixes(), path_);
   ASSERT_TRUE(c.ok()) << c.error().str();
   EXPECT_EQ(c->difference.compared, 1);
   EXPECT_LT(c->difference.rms_3d_m, 1e-3);  // the sentence is 0.6 rad north, 0.2 rad east, to 0.2 mm
@@ -84,19 +89,22 @@ TEST_F(ReceiverComparisonTest, ALogWithoutADateIsOfTheDayOfTheObservations) {
 
 TEST_F(ReceiverComparisonTest, MistakesWordForWord) {
   write_log(fixes(), Eigen::Vector3d::Zero(), 3600.0);
-  EXPECT_EQ(compare_with_receiver(fixes(), path_).error().str(),
+  EXPECT_EQ(compare(fixes(), path_).error().str(),
             path_ +
                 ": covers 2010-07-01T14:00:15.000 to 2010-07-01T14:00:24.000 GPS time, expected epochs of the "
                 "observations, 2010-07-01T13:00:15.000 to 2010-07-01T13:00:24.000");
   std::vector<GnssFix> none = fixes();
   for (GnssFix& fix : none) fix.status = FixStatus::kNone;
   write_log(none, Eigen::Vector3d::Zero());
-  EXPECT_EQ(compare_with_receiver(fixes(), path_).error().str(),
-            path_ + ": holds no position, expected a log with fixes");
+  EXPECT_EQ(compare(fixes(), path_).error().str(), path_ + ": holds no GGA with a fix, expected a log with fixes");
+  // RMC has a place too, but no height: it is not taken.
+  ASSERT_TRUE(
+      write_text_file(path_, nmea_sentence("GPRMC,130003.00,A,3422.6480625,N,01127.5493542,E,0.0,0.0,010710,,,A"))
+          .ok());
+  EXPECT_EQ(compare(fixes(), path_).error().str(), path_ + ": holds no GGA with a fix, expected a log with fixes");
   ASSERT_TRUE(write_text_file(path_, "something else\n").ok());
-  EXPECT_EQ(compare_with_receiver(fixes(), path_).error().str(),
-            path_ + ": no GGA or RMC sentence in it, expected an NMEA 0183 log");
-  EXPECT_FALSE(compare_with_receiver(fixes(), "no_such.nmea").ok());
+  EXPECT_EQ(compare(fixes(), path_).error().str(), path_ + ": no GGA or RMC sentence in it, expected an NMEA 0183 log");
+  EXPECT_FALSE(compare(fixes(), "no_such.nmea").ok());
 }
 
 }  // namespace
