@@ -75,13 +75,13 @@ const Spoken kSpoken[] = {
     {"third_sinusoid", kHour / kDegree, "deg/h", 1e3 / kMilliG, "ug"},
 };
 
-void print_fit(const ChannelNoise& c) {
-  const bool gyro = c.channel < 3;
+void print_fit(int channel, const inertial::NoiseFit& fit) {
+  const bool gyro = channel < 3;
   for (const Spoken& s : kSpoken) {
-    const auto& t = c.fit.term(s.process);
+    const auto& t = fit.term(s.process);
     if (!t.determined) continue;
     const double factor = gyro ? s.gyro : s.accel;
-    std::printf("  %-3s %-17s %10.4g +- %-8.2g %-14s", kChannelNames[c.channel], s.process, t.value * factor,
+    std::printf("  %-3s %-17s %10.4g +- %-8.2g %-14s", kChannelNames[channel], s.process, t.value * factor,
                 t.sigma * factor, gyro ? s.gyro_unit : s.accel_unit);
     if (t.name == "gauss_markov") std::printf("correlation time %.3g +- %.2g s", t.second, t.second_sigma);
     if (t.name.ends_with("sinusoid")) std::printf("at %.4g +- %.2g Hz", t.second, t.second_sigma);
@@ -91,12 +91,16 @@ void print_fit(const ChannelNoise& c) {
   }
 }
 
+bool is_fitted(const LogAnalysis& a) {
+  return std::all_of(a.channels.begin(), a.channels.end(), [](const ChannelNoise& c) { return c.fit.has_value(); });
+}
+
 /// Processes that no channel determines.
 void print_undetermined(const LogAnalysis& a) {
   std::string names;
   for (const Spoken& s : kSpoken)
     if (std::none_of(a.channels.begin(), a.channels.end(),
-                     [&](const ChannelNoise& c) { return c.fit.term(s.process).determined; }))
+                     [&](const ChannelNoise& c) { return c.fit->term(s.process).determined; }))
       names += (names.empty() ? "" : ", ") + std::string(s.process);
   if (!names.empty()) std::printf("\nNot determined by this log on any axis: %s\n", names.c_str());
 }
@@ -115,22 +119,22 @@ report::Panel panel_of(const LogAnalysis& a, bool gyro) {
       if (!(p.deviation > 0.0)) continue;
       for (auto* x : {&measured.x, &fit.x, &band.x}) x->push_back(p.tau_s);
       measured.y.push_back(p.deviation / unit);
-      fit.y.push_back(c.fit.deviation_at(p.tau_s) / unit);
+      if (c.fit) fit.y.push_back(c.fit->deviation_at(p.tau_s) / unit);
       band.low.push_back(p.low / unit);
       band.high.push_back(p.high / unit);
     }
     panel.bands.push_back(std::move(band));
     panel.lines.push_back(std::move(measured));
-    panel.lines.push_back(std::move(fit));
+    if (c.fit) panel.lines.push_back(std::move(fit));
   }
   return panel;
 }
 
 std::string subtitle_of(const LogAnalysis& a) {
   char text[160];
-  std::snprintf(text, sizeof text, "%.0f s at %.2f Hz, %zu gaps; points: measured, band: %g %%, line: fitted processes",
-                a.duration_s(), 1.0 / a.sampling.interval_s, a.sampling.segments.size() - 1,
-                100.0 * a.options.noise.confidence);
+  std::snprintf(text, sizeof text, "%.0f s at %.2f Hz, %zu gaps; points: measured, band: %g %%%s", a.duration_s(),
+                1.0 / a.sampling.interval_s, a.sampling.segments.size() - 1, 100.0 * a.options.noise.confidence,
+                is_fitted(a) ? ", line: fitted processes" : "");
   return text;
 }
 
@@ -158,29 +162,36 @@ Json allan_json(const LogAnalysis& a) {
     const ChannelNoise& c = a.channels[i];
     Json axis = json_of(c.points, "adev");
     axis["unit"] = channel_unit(c.channel);
-    axis["fit"] = json_of(c.fit);
+    axis["fit"] = c.fit ? json_of(*c.fit) : Json(nullptr);
     for (std::size_t k = 0; k < a.options.kinds.size(); ++k)
       axis[a.options.kinds[k]] = json_of(a.more[i][k], "deviation");
     axes[kChannelNames[c.channel]] = axis;
   }
   out["axes"] = axes;
+  if (!is_fitted(a)) out["no_fit"] = inertial::kNoNoiseFit;
   return out;
 }
 
 void print_allan(const LogAnalysis& a, const std::string& path) {
   std::printf("%s: %zu samples, %.1f s at %.3f Hz, %zu gaps, times jitter by %.2g ms\n\n", path.c_str(), a.log.size(),
               a.duration_s(), 1.0 / a.sampling.interval_s, a.sampling.segments.size() - 1, a.sampling.jitter_s * 1e3);
-  std::printf("  axis  least deviation         at       fit's misfit (1: as statistics explain)\n");
+  const bool fitted = is_fitted(a);
+  std::printf("  axis  least deviation         at%s\n", fitted ? "       fit's misfit (1: as statistics explain)" : "");
   for (const ChannelNoise& c : a.channels) {
     const auto least = std::min_element(c.points.begin(), c.points.end(),
                                         [](const auto& x, const auto& y) { return x.deviation < y.deviation; });
     const bool gyro = c.channel < 3;
-    std::printf("  %-5s %10.4g %-8s %8.1f s   %.2f\n", kChannelNames[c.channel],
-                least->deviation / (gyro ? kDegree / kHour : 1e-3 * kMilliG), gyro ? "deg/h" : "ug", least->tau_s,
-                c.fit.chi_square_per_dof);
+    std::printf("  %-5s %10.4g %-8s %8.1f s", kChannelNames[c.channel],
+                least->deviation / (gyro ? kDegree / kHour : 1e-3 * kMilliG), gyro ? "deg/h" : "ug", least->tau_s);
+    if (c.fit) std::printf("   %.2f", c.fit->chi_square_per_dof);
+    std::printf("\n");
   }
   std::printf("\n");
-  for (const ChannelNoise& c : a.channels) print_fit(c);
+  if (!fitted) {
+    std::printf("No processes: %s (CANYON_WITH_CERES)\n", inertial::kNoNoiseFit);
+    return;
+  }
+  for (const ChannelNoise& c : a.channels) print_fit(c.channel, *c.fit);
   print_undetermined(a);
 }
 

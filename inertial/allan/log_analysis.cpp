@@ -28,8 +28,8 @@ std::string deviations_csv(const LogAnalysis& a) {
     std::snprintf(line, sizeof line, "%s,%s,%.9g,%lld,%.9g,%.9g,%.9g,%.4g,", kChannelNames[c.channel], kind.c_str(),
                   p.tau_s, static_cast<long long>(p.m), p.deviation, p.low, p.high, p.edf);
     out += line;
-    if (fitted) {
-      std::snprintf(line, sizeof line, "%.9g", c.fit.deviation_at(p.tau_s));
+    if (fitted && c.fit) {
+      std::snprintf(line, sizeof line, "%.9g", c.fit->deviation_at(p.tau_s));
       out += line;
     }
     out += std::string(",") + channel_unit(c.channel) + "\n";

@@ -27,7 +27,8 @@ struct LogAnalysis {
 };
 Result<LogAnalysis> analyse_log(ImuLog log, const LogAnalysisOptions& options);
 
-/// Every point of every curve with its interval, and of the overlapping one what the fitted processes give there.
+/// Every point of every curve with its interval, and of the overlapping one what the fitted processes give there,
+/// where there is a fit.
 std::string deviations_csv(const LogAnalysis& analysis);
 
 /// "rad/s" or "m/s^2": of channel 0..5.

@@ -12,7 +12,9 @@ Result<std::vector<ChannelNoise>> log_noise(const ImuLog& log, const Sampling& s
     ChannelNoise noise;
     noise.channel = c;
     noise.points = deviation("overlapping", rate, sampling, factors, options.confidence);
-    CANYON_TRY(noise.fit, fit_noise(noise.points, options.per_octave, options.processes));
+    if (can_fit_noise() || !options.processes.empty()) {
+      CANYON_TRY(noise.fit, fit_noise(noise.points, options.per_octave, options.processes));
+    }
     out.push_back(std::move(noise));
   }
   return out;

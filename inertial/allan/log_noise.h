@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +14,14 @@ namespace canyon::inertial {
 struct LogNoiseOptions {
   int per_octave = 4;  ///< points of the curves to an octave of the averaging time
   double confidence = 0.95;
-  std::vector<std::string> processes;  ///< that the fit may use; all if empty
+  std::vector<std::string> processes;  ///< that the fit may use; all if empty; an Error where there can be no fit
 };
 
 /// The noise of one channel of a resting unit.
 struct ChannelNoise {
   int channel = 0;                     ///< 0..5, as in ImuLog
   std::vector<DeviationPoint> points;  ///< overlapping Allan deviation
-  NoiseFit fit;
+  std::optional<NoiseFit> fit;         ///< none in a build that cannot fit (can_fit_noise)
 };
 
 /// Overlapping Allan deviation of every channel of a log, and the processes fitted to it. The times of the log give its

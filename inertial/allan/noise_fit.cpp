@@ -49,7 +49,7 @@ bool can_fit_noise() {
 }
 
 Result<NoiseFit> fit_noise(std::span<const DeviationPoint>, int, const std::vector<std::string>&) {
-  return Error{"", 0, "", "this build has no noise fit", "a build with CANYON_WITH_CERES=ON"};
+  return Error{"", 0, "", kNoNoiseFit, "a build with CANYON_WITH_CERES=ON"};
 }
 
 #endif

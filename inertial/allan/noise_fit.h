@@ -56,7 +56,8 @@ std::vector<std::string> noise_process_names();
 /// Ceres.
 Result<NoiseFit> fit_noise(std::span<const DeviationPoint> points, int points_per_octave,
                            const std::vector<std::string>& allowed = {});
-/// Whether this build can fit (CANYON_WITH_CERES).
+/// Whether this build can fit (CANYON_WITH_CERES), and what is said where it cannot.
 bool can_fit_noise();
+inline constexpr const char* kNoNoiseFit = "this build has no noise fit";
 
 }  // namespace canyon::inertial

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/apps/answers/allan.h"
 #include "canyon/core/random/random.h"
 #include "canyon/tests/apps/command_line_fixture.h"
 
@@ -122,6 +123,32 @@ TEST_F(ImuAllanTest, ALogThatMovesIsWarnedOf) {
     EXPECT_EQ(canyon("imu allan given_log.csv"), 0) << path;
     EXPECT_THAT(read("stderr"), HasSubstr("warning: given_log.csv moves from ")) << path;
   }
+}
+
+// A build without Ceres has the curves all the same, and says what it has not.
+TEST(AllanAnswer, WithoutAFitHasTheCurves) {
+  inertial::ImuLog log;
+  const RandomStream stream(5, "test.unfitted");
+  for (int k = 0; k < 2000; ++k) {
+    log.t_s.push_back(0.01 * k);
+    log.channels[0].push_back(1e-3 * stream.normal(0, static_cast<std::uint64_t>(k)));
+  }
+  auto a = inertial::analyse_log(std::move(log), {});
+  ASSERT_TRUE(a.ok()) << a.error().str();
+  EXPECT_THAT(allan_svg(*a, "log.csv"), HasSubstr("line: fitted processes"));
+  EXPECT_FALSE(allan_json(*a).contains("no_fit"));
+  for (inertial::ChannelNoise& c : a->channels) c.fit.reset();
+  const auto json = allan_json(*a);
+  EXPECT_EQ(json["no_fit"], "this build has no noise fit");
+  EXPECT_TRUE(json["axes"]["gx"]["fit"].is_null());
+  EXPECT_EQ(json["axes"]["gx"]["adev"].size(), a->channels[0].points.size());
+  EXPECT_THAT(inertial::deviations_csv(*a), ::testing::ContainsRegex("gx,overlapping,0.01,1,.*,,rad/s\n"));
+  EXPECT_THAT(allan_svg(*a, "log.csv"), ::testing::Not(HasSubstr("fitted")));
+  ::testing::internal::CaptureStdout();
+  print_allan(*a, "log.csv");
+  const std::string said = ::testing::internal::GetCapturedStdout();
+  EXPECT_THAT(said, HasSubstr("  axis  least deviation         at\n"));
+  EXPECT_THAT(said, HasSubstr("\nNo processes: this build has no noise fit (CANYON_WITH_CERES)\n"));
 }
 
 }  // namespace
