@@ -1,20 +1,42 @@
 #include "canyon/lidar/scan_drive.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "canyon/core/check.h"
 #include "canyon/core/process/progress.h"
 
 namespace canyon::lidar {
 
 void ScanDrive::cover_motion() {
+  CANYON_CHECK(!motion.empty(), "no poses");
   const auto& poses = motion.poses();
   start = poses.front().t + before_s();
-  scans = static_cast<std::int64_t>(std::floor((poses.back().t - start) / period_s() + 1e-9)) + 1;
+  const double periods = std::floor((poses.back().t - start) / period_s() + 1e-9);
+  scans = static_cast<std::int64_t>(std::max(0.0, periods + 1.0));
 }
+
+namespace {
+
+/// Rounding of times may cost the motion's ends a few ns.
+constexpr double kTimeRounding_s = 1e-6;
+
+void check_coverage(const ScanDrive& drive) {
+  if (drive.scans < 1) return;
+  const GpsTime from = drive.start - drive.before_s();
+  const GpsTime to = drive.start + static_cast<double>(drive.scans - 1) * drive.period_s();
+  CANYON_CHECK(!drive.motion.empty(), "no poses for ", drive.scans, " scans");
+  const auto& poses = drive.motion.poses();
+  CANYON_CHECK(poses.front().t - from <= kTimeRounding_s && to - poses.back().t <= kTimeRounding_s, "motion from ",
+               poses.front().t.iso(), " to ", poses.back().t.iso(), ", scans from ", from.iso(), " to ", to.iso());
+}
+
+}  // namespace
 
 Result<ScanDriveCost> scan_drive(const ScanDrive& drive, std::uint64_t seed, const TakeScan& take) {
   CANYON_TRY(const auto scanner, make_scanner(drive.lidar, seed));
+  check_coverage(drive);
   scene::SceneAt scene(*drive.scene);
   ScanDriveCost cost;
   LidarOutput output;

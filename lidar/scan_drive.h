@@ -23,17 +23,21 @@ struct ScanDrive {
   /// How long before its stamp the first laser of a scan may fire: lasers that run free begin a scan up to one cycle,
   /// below 1 ms, before its period.
   double before_s() const { return period_s() + lidar.latency_s + 1e-3; }
-  /// Along the whole of `motion`: the first stamp and as many scans as it covers; 0 if it is too short for one.
+  /// Along the whole of `motion`, which must not be empty: the first stamp and as many scans as it covers; 0 if it is
+  /// too short for one.
   void cover_motion();
 };
 
-/// Scans in order of time; `take` gets the number, the stamp, the scan with its truth, and the scene as it was then.
-/// What it took to scan, without what `take` does, in wall time.
+/// What it took to scan, without what the scans were taken for.
 struct ScanDriveCost {
   std::int64_t rays = 0, points = 0;
-  double scanning_s = 0.0;
+  double scanning_s = 0.0;  ///< wall time
 };
+/// What takes a scan: its number from 0, its stamp, the scan with its truth, and the scene as it was at the stamp. An
+/// Error ends the drive.
 using TakeScan = std::function<Status(std::int64_t, GpsTime, const LidarOutput&, const scene::SceneAt&)>;
+/// All scans, one after the other in order of time. `motion` must cover them, from before_s() before the first stamp to
+/// the last one. Errors: a configuration that no scanner can be made of, and what `take` refuses, as it says it.
 Result<ScanDriveCost> scan_drive(const ScanDrive& drive, std::uint64_t seed, const TakeScan& take);
 
 /// The points of a scan in W, each from where the sensor truly was when it fired.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canyon/core/check.h"
 #include "canyon/tests/lidar/lidar_scenes.h"
 
 namespace canyon::lidar {
@@ -33,10 +34,26 @@ TEST(ScanDrive, CoversTheMotion) {
   const GpsTime last = d.start + static_cast<double>(d.scans - 1) * d.period_s();
   EXPECT_LE(last, d.motion.poses().back().t);
   EXPECT_GT(last + d.period_s(), d.motion.poses().back().t);
-  ScanDrive tiny = d;
-  tiny.motion = Trajectory({d.motion.poses()[0], d.motion.poses()[1]});
-  tiny.cover_motion();
-  EXPECT_EQ(tiny.scans, 0);
+  // One pose alone ends more than a period before the first stamp.
+  for (const std::size_t poses : {1u, 2u}) {
+    ScanDrive tiny = d;
+    tiny.motion = Trajectory({d.motion.poses().begin(), d.motion.poses().begin() + static_cast<std::ptrdiff_t>(poses)});
+    tiny.cover_motion();
+    EXPECT_EQ(tiny.scans, 0) << poses;
+  }
+  ScanDrive none = d;
+  none.motion = Trajectory();
+  EXPECT_THROW(none.cover_motion(), ProgramError);
+}
+
+TEST(ScanDrive, RefusesScansThatTheMotionDoesNotCover) {
+  const auto take = [](std::int64_t, GpsTime, const LidarOutput&, const scene::SceneAt&) { return Status(Ok{}); };
+  ScanDrive more = drive();
+  ++more.scans;
+  EXPECT_THROW((void)scan_drive(more, 3, take), ProgramError);
+  ScanDrive early = drive();
+  early.start = early.start - 0.1;
+  EXPECT_THROW((void)scan_drive(early, 3, take), ProgramError);
 }
 
 // A point in the scene lies on a surface of it, ground or wall, but for the range noise of 2 cm: 15 cm are more than
