@@ -68,7 +68,9 @@ TEST(SimulatedLog, FilesAgreeWithOneAnother) {
 }
 
 TEST(SimulatedLog, RoundingCostsNoSample) {
-  EXPECT_EQ(whole_samples(0.3, 10.0), 3u);  // 0.3 * 10 is 3 exactly, 0.7 * 10 is not quite 7
+  // The product of the doubles nearest to 0.29 and 100 is 28.999999999999996, which truncation would make 28.
+  static_assert(0.29 * 100.0 < 29.0);
+  EXPECT_EQ(whole_samples(0.29, 100.0), 29u);
   EXPECT_EQ(whole_samples(0.7, 10.0), 7u);
   EXPECT_EQ(whole_samples(0.69, 10.0), 6u);
   EXPECT_EQ(whole_samples(0.05, 10.0), 0u);
