@@ -7,9 +7,9 @@
 namespace canyon::study {
 
 inline constexpr Figure kFixShare{
-    .group = "GNSS",
+    .group = "Satellites",
     .key = "fix_share",
-    .unit = "",
+    .unit = "%",
     .label = "epochs with a fix",
     .better = Better::kHigher,
     .kind = Figure::Kind::kShare,

@@ -28,6 +28,14 @@ TEST(WorkedExample, AFigureIsOneRow) {
   run.fixes_due = 8;
   run.fixes_lost = 2;
   EXPECT_EQ(study::estimate(study::kFixShare, run).value, 0.75);
+  // It reads as those of the product do: under one of their headings, and shares are shown in per cent.
+  EXPECT_TRUE(std::any_of(study::figures().begin(), study::figures().end(),
+                          [](const study::Figure& f) { return std::string_view(f.group) == study::kFixShare.group; }));
+  for (const study::Figure& f : study::figures()) {
+    const bool share = f.kind == study::Figure::Kind::kShare;
+    EXPECT_TRUE(!share || std::string_view(f.unit) == study::kFixShare.unit) << f.key;
+  }
+  EXPECT_STREQ(study::kFixShare.unit, "%");
   EXPECT_EQ(study::find_figure("fix_share"), nullptr) << "a figure of the product has this key: show another one";
 }
 
@@ -39,7 +47,8 @@ TEST(WorkedExample, AVerbDeclaresCallsAndPrints) {
   app.parse("--lat 90");
   ::testing::internal::CaptureStdout();
   const Result<int> status = action();
-  // WGS84's normal gravity at the poles, 9.8321849379 m/s^2 (NIMA TR8350.2, table 3.4).
+  // WGS 84's normal gravity at the poles: 9.8321849378 m/s^2, all the digits that NIMA TR8350.2 (third edition, 2000),
+  // table 3.4, prints. The verb prints one digit less.
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "9.832184938 m/s^2\n");
   ASSERT_TRUE(status.ok());
   EXPECT_EQ(*status, 0);
