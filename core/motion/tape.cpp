@@ -83,14 +83,13 @@ void append_tape_node(std::string& out, const TapeNode& node) {
 Result<Tape> read_tape(const std::string& path) {
   CANYON_TRY(const std::string bytes, read_text_file(path));
   const std::size_t end = bytes.find('\n');
-  const auto header = nlohmann::json::parse(bytes.substr(0, end == std::string::npos ? 0 : end), nullptr, false);
-  if (!header.is_object() || header.value("kind", nlohmann::json()) != kKind)
-    return no_tape(path, "does not begin as a tape");
+  const auto header = parse_json(std::string_view(bytes).substr(0, end == std::string::npos ? 0 : end), path);
+  if (!header.ok() || json_string(*header, "kind") != kKind) return no_tape(path, "does not begin as a tape");
   const std::size_t rest = bytes.size() - end - 1;
   if (rest % kNodeBytes != 0) return no_tape(path, "ends within a node");
-  Tape tape{.source = json_string(header, "source"),
-            .scene_hash = json_string(header, "scene_hash"),
-            .traffic = json_string(header, "traffic"),
+  Tape tape{.source = json_string(*header, "source"),
+            .scene_hash = json_string(*header, "scene_hash"),
+            .traffic = json_string(*header, "traffic"),
             .nodes = {}};
   tape.nodes.reserve(rest / kNodeBytes);
   for (std::size_t at = end + 1; at < bytes.size(); at += kNodeBytes) tape.nodes.push_back(parse_node(&bytes[at]));
