@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/read/decimate.h"
+#include "canyon/report/draw/format.h"
 
 namespace canyon::report {
 namespace {
@@ -49,12 +51,18 @@ std::string line_path(const PlotArea& area, const Line& line, std::size_t bucket
 }
 
 std::string band_path(const PlotArea& area, const Band& band, std::size_t buckets) {
-  // Each edge keeps its own extreme samples; both share their places, so the area closes.
+  // Both edges are drawn at the places that either needs, so the area closes and no spike of either is lost. Their gaps
+  // are made the same, so their pieces are as well.
+  std::vector<double> low = band.low, high = band.high;
+  for (std::size_t i = 0; i < low.size(); ++i)
+    if (!std::isfinite(low[i]) || !std::isfinite(high[i])) low[i] = high[i] = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<LinePiece> lows = decimate(band.x, low, buckets), highs = decimate(band.x, high, buckets);
   std::string path;
-  for (const LinePiece& piece : decimate(band.x, band.high, buckets)) {
+  for (std::size_t k = 0; k < highs.size(); ++k) {
+    LinePiece piece;
+    std::set_union(lows[k].begin(), lows[k].end(), highs[k].begin(), highs[k].end(), std::back_inserter(piece));
     std::string forth, back;
     for (const std::size_t i : piece) {
-      if (!std::isfinite(band.low[i])) continue;
       const std::string x = fixed(area.x_px(band.x[i]), 1) + " ";
       forth += x + fixed(area.y_px(band.high[i]), 1) + " ";
       back.insert(0, x + fixed(area.y_px(band.low[i]), 1) + " ");

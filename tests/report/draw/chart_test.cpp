@@ -1,10 +1,12 @@
 #include "canyon/report/draw/chart.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "canyon/report/draw/plot_area.h"
 #include "canyon/report/draw/theme.h"
 
 namespace canyon::report {
@@ -64,6 +66,26 @@ TEST(Chart, BandsCloseAroundBothEdges) {
   Chart chart = one_line({0, 10}, {50, 50});
   chart.panels[0].bands.push_back({.run = 0, .x = {0, 10}, .low = {0, 20}, .high = {40, 60}});
   EXPECT_THAT(draw(chart), HasSubstr("<path class=\"band r0\" d=\"M0 30 1000 20 1000 40 0 50 Z\"/>"));
+}
+
+// Ten thousand samples in ten steps of x: what either edge does for one sample alone is drawn, and a gap is left out.
+TEST(Chart, BandsKeepTheExtremesOfBothEdges) {
+  Band band;
+  for (int i = 0; i < 10000; ++i) {
+    band.x.push_back(i);
+    band.low.push_back(i == 3217 ? 5.0 : 20.0);
+    band.high.push_back(i == 6543 ? 90.0 : 40.0);
+  }
+  for (int i = 8000; i < 10000; ++i) (i % 2 == 0 ? band.low : band.high)[static_cast<std::size_t>(i)] = NAN;
+  const Axis x = Axis::linear(0, 10000), y = Axis::linear(0, 100);
+  const PlotArea area{.x = x, .y = y, .width = 10000, .height = 100};
+  const std::string path = band_path(area, band, 10);
+  EXPECT_THAT(path, HasSubstr(" 3217 60 "));  // the high edge at the low one's spike, forth
+  EXPECT_THAT(path, HasSubstr(" 3217 95 "));  // and the spike itself, back
+  EXPECT_THAT(path, HasSubstr(" 6543 10 "));
+  EXPECT_THAT(path, HasSubstr(" 6543 80 "));
+  EXPECT_THAT(path, HasSubstr(" 7999 60 7999 80 "));  // it ends there
+  EXPECT_EQ(std::count(path.begin(), path.end(), 'Z'), 1);
 }
 
 TEST(Chart, ExtremesPassOverGaps) {
