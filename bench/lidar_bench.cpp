@@ -19,7 +19,7 @@
 #include "canyon/core/units.h"
 #include "canyon/lidar/beam/beam_table.h"
 #include "canyon/lidar/beam/firing_pattern.h"
-#include "canyon/lidar/beam/footprint_rays.h"
+#include "canyon/lidar/beam/footprint/footprint_rays.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/lidar/sweep_motion.h"
 #include "canyon/scene/city/city.h"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """check_layers.py [TREE]: checks what may include what; one line `file:line: what is wrong` for each breach.
 
-A folder includes only folders of lower floors, each heavy library stays in its few named .cpp files, headers stay light, and
+A folder includes only folders of lower floors, rooms of a folder do not include one another in circles, each heavy library stays in its few named .cpp files, headers stay light, and
 truth does not reach those who must not see it. The rules are the tables below; docs/design.md says why.
 """
 
@@ -89,6 +89,27 @@ def matches(name, patterns):
     return any(fnmatch.fnmatch(name, pattern) for pattern in patterns)
 
 
+def room_of(name, folder):
+    """The room of a folder that a file is in, or None: report/draw/chart.h is in draw."""
+    parts = name.split("/")
+    return parts[1] if parts[0] == folder and len(parts) > 2 else None
+
+
+def way_back(steps, start):
+    """The shortest way from a room through others back to it, or None."""
+    ways = [[start]]
+    seen = set()
+    while ways:
+        way = ways.pop(0)
+        for room in sorted(steps.get(way[-1], {})):
+            if room == start:
+                return way
+            if room not in seen:
+                seen.add(room)
+                ways.append([*way, room])
+    return None
+
+
 class Tree:
     """All sources of a tree: breaches are gathered by check()."""
 
@@ -133,6 +154,8 @@ class Tree:
                 self.check_truth(name)
         self.check_registration_files()
         self.check_folder_sizes()
+        for folder in FLOORS:
+            self.check_circles(folder)
         for folder in FLOORS:
             self.check_links(folder)
         return self.breaches
@@ -210,6 +233,25 @@ class Tree:
         for folder, files in sorted(sizes.items()):
             if files > FOLDER_FILES_MAX:
                 self.breach(folder, 1, f"{files} sources in one folder; more than {FOLDER_FILES_MAX} want rooms")
+
+    def check_circles(self, folder):
+        """Rooms of a folder, each with all below it, do not include one another in circles. The folder's own files, which join
+        its rooms, are of none. Of each circle the shortest way around is told, by one include for every step."""
+        steps = {}  # room -> {room it includes: (file, line number, what it includes)}
+        for name in self.lines:
+            for number, quoted, _ in self.includes[name]:
+                included = self.named(quoted) or ""
+                room, other = room_of(name, folder), room_of(included, folder)
+                if room and other and room != other and included in self.lines:
+                    steps.setdefault(room, {}).setdefault(other, (name, number, quoted))
+        told = set()
+        for start in sorted(steps):
+            way = way_back(steps, start)
+            if way and not told.intersection(way):
+                told.update(way)
+                for room, other in zip(way, [*way[1:], start]):
+                    name, number, quoted = steps[room][other]
+                    self.breach(name, number, f'"{quoted}": {folder}/ has a circle of rooms, {" -> ".join([*way, start])}')
 
     def check_links(self, folder):
         """A folder links what it may include, no more."""

@@ -6,6 +6,7 @@
 #include "canyon/core/model_choice.h"
 #include "canyon/lidar/beam/echo_model.h"
 #include "canyon/lidar/beam/see_through.h"
+#include "canyon/lidar/beam/signal.h"
 #include "canyon/lidar/beam/weather.h"
 #include "canyon/lidar/ego_mask.h"
 #include "canyon/lidar/receiver/crosstalk.h"

@@ -3,11 +3,12 @@
 #include <algorithm>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/read/read_results.h"
 #include "canyon/report/sections/sections.h"
 

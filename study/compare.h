@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/study/results/results.h"

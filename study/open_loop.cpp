@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 #include "canyon/study/compare.h"
 
 namespace canyon::study {

@@ -11,12 +11,13 @@
 #include "canyon/apps/line/verb.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
+#include "canyon/study/results/over_seeds.h"
 #include "canyon/study/results/results.h"
 #include "canyon/study/seeds/further_seeds.h"
-#include "canyon/study/seeds/over_seeds.h"
 
 namespace canyon::apps {
 

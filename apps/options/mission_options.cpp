@@ -2,7 +2,7 @@
 
 #include <ctime>
 
-#include "canyon/core/files/files.h"
+#include "canyon/core/output/staged.h"
 
 namespace canyon::apps {
 

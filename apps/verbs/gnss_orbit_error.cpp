@@ -7,6 +7,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/orbit_error.h"
 #include "canyon/gnss/products/precise_products.h"

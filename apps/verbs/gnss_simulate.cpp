@@ -9,6 +9,7 @@
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/output/printed.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/gnss/sensor/simulation/drive_files.h"

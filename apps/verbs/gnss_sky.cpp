@@ -7,6 +7,7 @@
 #include "canyon/apps/options/antenna_way.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/antenna_height.h"
 

@@ -8,6 +8,7 @@
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
 #include "canyon/study/dead_reckoning/files.h"

@@ -9,6 +9,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/calibration/log_fits.h"

@@ -8,6 +8,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/random/random.h"
 #include "canyon/inertial/paper_figures.h"

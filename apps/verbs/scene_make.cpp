@@ -7,6 +7,7 @@
 #include "canyon/apps/options/scene_options.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/scene/written_scene.h"
 

@@ -3,7 +3,6 @@
 #include <string>
 #include <string_view>
 
-#include "canyon/core/output/staged.h"
 #include "canyon/core/result.h"
 
 namespace canyon {
@@ -15,9 +14,5 @@ Status write_text_file(const std::string& path, std::string_view text);
 
 /// SHA-256 of bytes as 64 hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
-
-/// `path`, or `path`-2, -3, ... where nothing of that name exists; of a file the number stands before its extension.
-std::string free_name(const std::string& path);
-std::string free_file_name(const std::string& path);
 
 }  // namespace canyon

@@ -7,9 +7,9 @@
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/output/disk.h"
-#include "canyon/core/output/staging_litter.h"
 #include "canyon/core/output/staging_name.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/core/process/staging_litter.h"
 
 namespace canyon {
 namespace {

@@ -9,6 +9,10 @@
 
 namespace canyon {
 
+/// `path`, or `path`-2, -3, ... where nothing of that name exists; of a file the number stands before its extension.
+std::string free_name(const std::string& path);
+std::string free_file_name(const std::string& path);
+
 /// An output that appears under its final name only when it is complete and on the disk (fsync). Until commit() it is
 /// written under a temporary name beside it; the destructor removes what was not committed. A temporary name is unlike
 /// that of any other process on any host, and those of processes that were killed are taken away when the next output

@@ -9,6 +9,7 @@
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/output/disk.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/output/staging_name.h"
 
 namespace canyon {

@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #include "canyon/core/check.h"
-#include "canyon/core/output/staging_litter.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/core/process/staging_litter.h"
 
 namespace canyon {
 namespace {

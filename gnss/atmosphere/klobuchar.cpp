@@ -7,13 +7,6 @@
 
 namespace canyon::gnss {
 
-bool is_sane(const KlobucharCoefficients& c) {
-  const auto within = [](const std::array<double, 4>& k, double limit) {
-    return std::all_of(k.begin(), k.end(), [limit](double x) { return std::abs(x) <= limit; });
-  };
-  return within(c.alpha, 1e-4) && within(c.beta, 1e8);
-}
-
 double klobuchar_obliquity(double elevation_rad) {
   const double x = 0.53 - elevation_rad / kPi;
   return 1.0 + 16.0 * x * x * x;

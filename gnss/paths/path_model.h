@@ -10,9 +10,10 @@
 #include <Eigen/Core>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/gnss/paths/counters.h"
 #include "canyon/gnss/paths/diffraction/fresnel.h"
 #include "canyon/gnss/paths/plane_waves.h"
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 

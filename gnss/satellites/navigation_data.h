@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "canyon/core/result.h"
-#include "canyon/gnss/atmosphere/klobuchar.h"
 #include "canyon/gnss/satellites/ephemerides/glonass_ephemeris.h"
 #include "canyon/gnss/satellites/ephemerides/kepler_ephemeris.h"
+#include "canyon/gnss/satellites/klobuchar_coefficients.h"
 
 namespace canyon::gnss {
 

@@ -8,6 +8,7 @@
 #include "canyon/core/messages.h"
 #include "canyon/core/result.h"
 #include "canyon/core/truth.h"
+#include "canyon/gnss/paths/counters.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
@@ -17,16 +18,6 @@ struct GnssOutput {
   GnssEpoch epoch;  ///< empty for models that do not form pseudoranges
   GnssFix fix;
   GnssTruth truth;
-};
-
-/// Work done, for reports of cost and of what was left out.
-struct GnssCounters {
-  std::int64_t epochs = 0;
-  std::int64_t occlusion_rays = 0;
-  std::int64_t path_searches = 0;  ///< for the ways of one signal to one place of the antenna
-  std::int64_t facets_tested = 0;
-  std::int64_t reflected_paths = 0;
-  std::int64_t diffracted_paths = 0;
 };
 
 /// A GNSS receiver in the scene. `index` is the number of the epoch since the start (the random streams' sample index).

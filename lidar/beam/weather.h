@@ -7,10 +7,12 @@
 #include "canyon/core/model_table.h"
 #include "canyon/core/random/random.h"
 #include "canyon/lidar/beam/echoes.h"
+#include "canyon/lidar/beam/signal.h"
 #include "canyon/lidar/beam/volley.h"
-#include "canyon/lidar/receiver/detector.h"
 
 namespace canyon::lidar {
+
+struct LidarConfig;
 
 /// [lidar.weather]: what is in the air between sensor and surfaces. Several may be at once; 0 = none.
 struct WeatherConfig {

@@ -2,6 +2,7 @@
 
 #include "canyon/core/random/random.h"
 #include "canyon/lidar/beam/echoes.h"
+#include "canyon/lidar/beam/signal.h"
 #include "canyon/lidar/beam/volley.h"
 #include "canyon/lidar/receiver/detector.h"
 

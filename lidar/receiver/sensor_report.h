@@ -7,6 +7,7 @@
 #include "canyon/core/truth.h"
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/firing_pattern.h"
+#include "canyon/lidar/beam/signal.h"
 #include "canyon/lidar/beam/volley.h"
 #include "canyon/lidar/receiver/detector.h"
 #include "canyon/lidar/receiver/return_choice.h"

@@ -2,7 +2,7 @@
 
 #include "canyon/core/check.h"
 #include "canyon/mission/autonomy/reference_autonomy.h"
-#include "canyon/mission/motion/route_driver.h"
+#include "canyon/mission/autonomy/route_driver.h"
 
 namespace canyon::mission {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "canyon/mission/autonomy/local_grid.h"
-#include "canyon/mission/motion/route_driver.h"
+#include "canyon/mission/autonomy/route_driver.h"
 
 namespace canyon::mission {
 

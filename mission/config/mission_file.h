@@ -105,7 +105,7 @@ class SceneCache {
 Result<GpsTime> start_time(const MissionConfig& config);
 
 /// Reads every file that is named, builds the scene and every sensor once, and checks what can be checked before any
-/// time is spent: no contradictions between keys (mission/scoring/consistency.h), places that can be stood at, reached
+/// time is spent: no contradictions between keys (mission/config/consistency.h), places that can be stood at, reached
 /// and seen from (mission/config/place_checks.h). Errors name the key; MissionFile::locate adds file and line.
 Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes);
 

@@ -2,9 +2,9 @@
 
 #include "canyon/core/check.h"
 #include "canyon/core/files/files.h"
+#include "canyon/mission/config/consistency.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/config/place_checks.h"
-#include "canyon/mission/scoring/consistency.h"
 
 namespace canyon::mission {
 

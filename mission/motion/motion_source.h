@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/mission/motion/vehicle.h"
 
 namespace canyon::mission {

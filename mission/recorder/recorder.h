@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/core/result.h"
 #include "canyon/lidar/files/cloud_files.h"
 #include "canyon/mission/recorder/rows.h"

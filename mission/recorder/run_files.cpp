@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 
 namespace canyon::mission {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/plot_area.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

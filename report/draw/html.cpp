@@ -1,7 +1,7 @@
 #include "canyon/report/draw/html.h"
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 

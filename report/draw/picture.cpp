@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/plot_area.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

@@ -5,8 +5,8 @@
 #include <iterator>
 #include <limits>
 
-#include "canyon/report/read/decimate.h"
-#include "canyon/report/draw/format.h"
+#include "canyon/report/draw/decimate.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

@@ -19,7 +19,7 @@ struct PlotArea {
   double y_px(double value) const;
 };
 
-/// `d` attributes of SVG paths, thinned out to what can be seen in so many steps of x (report/read/decimate.h): of a
+/// `d` attributes of SVG paths, thinned out to what can be seen in so many steps of x (report/draw/decimate.h): of a
 /// band the extremes of both its edges. Where either edge is no number, a band has a gap.
 std::string line_path(const PlotArea& area, const Line& line, std::size_t buckets);
 std::string band_path(const PlotArea& area, const Band& band, std::size_t buckets);

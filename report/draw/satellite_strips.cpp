@@ -5,9 +5,9 @@
 #include <cmath>
 #include <map>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "canyon/report/draw/format.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

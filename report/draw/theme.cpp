@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "canyon/report/draw/format.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

@@ -1,15 +1,18 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
-
-#include "canyon/report/maps/png.h"
 
 /// Colours. Runs have the hues of Okabe & Ito (2008), darkened or lightened for contrast with the page; errors the
 /// viridis scale of van der Walt & Smith (2015), always with more error standing out more from the page. Both survive
 /// colour blindness; lines also differ by their dashes, classes of error by a legend.
 namespace canyon::report {
+
+struct Rgba {
+  std::uint8_t r = 0, g = 0, b = 0, a = 255;
+};
 
 /// Class of the elements of run i: "r0".
 std::string run_class(std::size_t run);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
-#include "canyon/report/sections/run_story.h"
+#include "canyon/report/format.h"
+#include "canyon/report/read/run_story.h"
 
 namespace canyon::report {
 

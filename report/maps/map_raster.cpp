@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/maps/png.h"
 
 namespace canyon::report {

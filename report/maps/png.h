@@ -6,11 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace canyon::report {
+#include "canyon/report/draw/theme.h"
 
-struct Rgba {
-  std::uint8_t r = 0, g = 0, b = 0, a = 255;
-};
+namespace canyon::report {
 
 /// A PNG (ISO/IEC 15948) of palette indices, row by row from the top; 4 bits a pixel for up to 16 colours, else 8.
 /// Every index must be below palette.size(), which lies in [1, 256].

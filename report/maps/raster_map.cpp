@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "canyon/core/check.h"
-#include "canyon/report/draw/format.h"
+#include "canyon/report/format.h"
 #include "canyon/report/maps/png.h"
 
 namespace canyon::report {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/json_text.h"
-#include "canyon/report/draw/format.h"
+#include "canyon/report/format.h"
 #include "canyon/report/read/number_limit.h"
 
 namespace canyon::report {

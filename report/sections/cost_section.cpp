@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "canyon/core/messages.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/sections/sections.h"
 
 namespace canyon::report {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "canyon/core/messages.h"
-#include "canyon/report/draw/format.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

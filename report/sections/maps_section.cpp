@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "canyon/report/draw/chart.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/maps/map_raster.h"
 #include "canyon/report/sections/run_paths.h"
 #include "canyon/report/sections/sections.h"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
+#include "canyon/report/format.h"
 #include "canyon/report/sections/sections.h"
 
 namespace canyon::report {

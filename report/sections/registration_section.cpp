@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/time_charts.h"
+#include "canyon/report/format.h"
 #include "canyon/report/sections/sections.h"
 
 namespace canyon::report {

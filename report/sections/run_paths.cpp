@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/maps/polyline.h"
-#include "canyon/report/sections/run_story.h"
+#include "canyon/report/read/run_story.h"
 
 namespace canyon::report {
 namespace {

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "canyon/core/messages.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/time_charts.h"
-#include "canyon/report/sections/run_story.h"
+#include "canyon/report/format.h"
+#include "canyon/report/read/run_story.h"
 #include "canyon/report/sections/sections.h"
 
 namespace canyon::report {

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <optional>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/maps/map_drawing.h"
+#include "canyon/report/read/run_story.h"
 #include "canyon/report/sections/run_paths.h"
-#include "canyon/report/sections/run_story.h"
 #include "canyon/report/sections/sections.h"
 
 namespace canyon::report {

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
-#include "canyon/report/sections/run_story.h"
+#include "canyon/report/format.h"
+#include "canyon/report/read/run_story.h"
 #include "canyon/report/sections/sections.h"
 
 namespace canyon::report {

@@ -15,7 +15,7 @@
 #include "canyon/core/units.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
 #include "canyon/study/results/figures.h"
-#include "canyon/study/seeds/over_seeds.h"
+#include "canyon/study/results/over_seeds.h"
 
 namespace canyon::study {
 

@@ -76,6 +76,23 @@ class CheckLayers(unittest.TestCase):
             {f"report/section_{number}.cpp": "" for number in range(25)},
             "report:1: 26 sources in one folder; more than 25 want rooms")
 
+    def test_rooms_do_not_include_one_another_in_circles(self):
+        self.assert_breach(
+            {"report/read/results.h": '#pragma once\n#include "canyon/report/draw/format.h"\n',
+             "report/draw/format.h": '#pragma once\n',
+             "report/draw/chart.h": '#pragma once\n#include "canyon/report/maps/map.h"\n',
+             "report/maps/map.h": '#pragma once\n\n#include "canyon/report/read/results.h"\n',
+             "report/sections/all.cpp": '#include "canyon/report/maps/map.h"\n'},
+            'report/draw/chart.h:2: "canyon/report/maps/map.h": report/ has a circle of rooms, draw -> maps -> read -> draw',
+            'report/maps/map.h:3: "canyon/report/read/results.h": report/ has a circle of rooms, draw -> maps -> read -> draw',
+            'report/read/results.h:2: "canyon/report/draw/format.h": report/ has a circle of rooms, draw -> maps -> read -> draw')
+
+    def test_a_folders_own_files_join_its_rooms(self):
+        files = {"report/read/results.h": '#pragma once\n#include "canyon/report/format.h"\n',
+                 "report/format.h": '#pragma once\n#include "canyon/report/draw/chart.h"\n',
+                 "report/draw/chart.h": '#pragma once\n#include "canyon/report/read/results.h"\n'}
+        self.assertEqual(check(files)[0], 0)
+
     def test_embree_stays_in_its_file(self):
         self.assert_breach(
             {"scene/scene_at.cpp": "#include <embree3/rtcore.h>\n"},

@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "canyon/study/seeds/over_seeds.h"
+#include "canyon/study/results/over_seeds.h"
 #include "canyon/tests/report/markup.h"
 #include "canyon/tests/report/synthetic_results.h"
 #include "canyon/tests/report/temporary_directory.h"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon {

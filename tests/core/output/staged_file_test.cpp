@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/tests/support/temporary_folder.h"
 

@@ -1,4 +1,5 @@
 #include "canyon/core/output/staging_name.h"
+#include "canyon/core/output/staged.h"
 
 #include <sys/wait.h>
 

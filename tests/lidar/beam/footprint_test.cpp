@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/config/text.h"
-#include "canyon/lidar/beam/footprint_rays.h"
+#include "canyon/lidar/beam/footprint/footprint_rays.h"
 #include "canyon/tests/lidar/beam/screens.h"
 
 namespace canyon::lidar {

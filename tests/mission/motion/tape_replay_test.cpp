@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 #include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {

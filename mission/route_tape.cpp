@@ -1,4 +1,4 @@
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 
 #include <cmath>
 #include <cstdio>
@@ -7,8 +7,8 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/motion/motion.h"
+#include "canyon/mission/autonomy/route_driver.h"
 #include "canyon/mission/motion/motion_source.h"
-#include "canyon/mission/motion/route_driver.h"
 #include "canyon/mission/scoring/scorer.h"
 
 namespace canyon::mission {

@@ -1,4 +1,4 @@
-#include "canyon/lidar/receiver/glint_sum.h"
+#include "canyon/lidar/beam/footprint/glint_sum.h"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include "canyon/core/output/staging_litter.h"
+#include "canyon/core/process/staging_litter.h"
 
 #include <atomic>
 #include <filesystem>

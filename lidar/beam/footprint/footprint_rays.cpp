@@ -1,4 +1,4 @@
-#include "canyon/lidar/beam/footprint_rays.h"
+#include "canyon/lidar/beam/footprint/footprint_rays.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "canyon/mission/scoring/consistency.h"
+#include "canyon/mission/config/consistency.h"
 
 #include <algorithm>
 #include <cmath>

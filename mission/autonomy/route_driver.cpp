@@ -1,4 +1,4 @@
-#include "canyon/mission/motion/route_driver.h"
+#include "canyon/mission/autonomy/route_driver.h"
 
 #include <algorithm>
 #include <cmath>

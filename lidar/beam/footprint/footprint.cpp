@@ -4,10 +4,10 @@
 #include <span>
 
 #include "canyon/core/units.h"
-#include "canyon/lidar/beam/footprint_rays.h"
+#include "canyon/lidar/beam/footprint/footprint_rays.h"
+#include "canyon/lidar/beam/footprint/glint_sum.h"
 #include "canyon/lidar/beam/see_through.h"
 #include "canyon/lidar/lidar_config.h"
-#include "canyon/lidar/receiver/glint_sum.h"
 
 namespace canyon::lidar {
 namespace {

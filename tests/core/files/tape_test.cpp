@@ -1,4 +1,4 @@
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 
 #include <cmath>
 #include <filesystem>

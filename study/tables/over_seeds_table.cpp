@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "canyon/study/seeds/over_seeds.h"
+#include "canyon/study/results/over_seeds.h"
 #include "canyon/study/tables/text_table.h"
 
 namespace canyon::study {

@@ -1,4 +1,4 @@
-#include "canyon/report/draw/format.h"
+#include "canyon/report/format.h"
 
 #include <array>
 #include <charconv>

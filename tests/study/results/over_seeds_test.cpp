@@ -1,4 +1,4 @@
-#include "canyon/study/seeds/over_seeds.h"
+#include "canyon/study/results/over_seeds.h"
 
 #include <algorithm>
 #include <stdexcept>

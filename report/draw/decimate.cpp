@@ -1,4 +1,4 @@
-#include "canyon/report/read/decimate.h"
+#include "canyon/report/draw/decimate.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "canyon/report/sections/run_story.h"
+#include "canyon/report/read/run_story.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/study/seeds/over_seeds.h"
+#include "canyon/study/results/over_seeds.h"
 
 namespace canyon::study {
 
