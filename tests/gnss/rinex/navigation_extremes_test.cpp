@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "canyon/gnss/atmosphere/klobuchar.h"
 #include "canyon/gnss/rinex/navigation/navigation_file.h"
 #include "canyon/gnss/satellites/contradictions.h"
 #include "canyon/gnss/satellites/transmission.h"
