@@ -13,8 +13,10 @@ void declare_import_options(Arguments& arguments, scene::ImportConfig& from) {
   arguments.option("--more", from.more_files, "further files of the same place");
   arguments.option("--terrain", from.terrain, "elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII grid");
   arguments.option("--crs", from.crs, "coordinate system in place of the file's own, as PROJ knows it");
-  arguments.option("--undulation", from.undulation_m,
-                   "geoid above the ellipsoid, m; else GeographicLib's geoid where it is installed");
+  arguments
+      .option("--undulation", from.undulation_m,
+              "geoid above the ellipsoid, m; else GeographicLib's geoid where it is installed")
+      .within(-200.0, 200.0);
   arguments.option("--materials", from.materials, "material tables over the built-in one");
 }
 
