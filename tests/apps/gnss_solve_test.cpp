@@ -81,10 +81,12 @@ TEST_F(GnssSolveTest, ComparesWithTheReceiverItself) {
   // It is read before anything is solved: of two mistakes, the other of which shows in the solution, this one is told.
   ASSERT_EQ(
       canyon("gnss simulate --force --at 32.35,-90.88,60 --start 2021-01-01 --duration 60 --errors none --rinex-obs "
-             "other.rnx --rinex-nav other.nav"),
+             "given_other.rnx --rinex-nav given_other.nav"),
       0)
       << read("stderr");
-  expect_mistake("gnss solve --obs given.rnx --nav other.nav --systems G --compare given.rnx", "given.rnx: no GGA");
+  const std::string unsolvable = "gnss solve --obs given.rnx --nav given_other.nav --systems G";
+  expect_mistake(unsolvable, "has a valid ephemeris");
+  expect_mistake(unsolvable + " --compare given.rnx", "given.rnx: no GGA");
 }
 
 /// A constellation seen at its centres of mass, `offset_m` further out than the antennas.
