@@ -18,6 +18,10 @@ using Index = ErrorIndex;
 constexpr double kMaxFixAge_s = 0.1;
 /// Moving this far changes the gravity gradient by 1e-4 of itself, which no covariance notices.
 constexpr double kGradientReach_m = 500.0;
+/// From this 1-sigma on the position is not known on Earth: gravity and what is linear about it tell nothing. Without
+/// fixes the vertical channel comes there within two hours (e-folding 570 s).
+constexpr double kLost_m = 1e6;
+constexpr double kUnknownSpeed_m_s = 1e3;
 
 void check_finite(const ImuSample& imu) {
   const bool good = std::isfinite(imu.dt_s) && imu.dt_s > 0.0 && imu.dtheta_U.allFinite() && imu.dv_U.allFinite();
@@ -158,6 +162,21 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
   }
 }
 
+void ErrorStateFilter::restart(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
+                               const Eigen::Matrix3d& H_theta) {
+  state_.p_EU_E += innovation;
+  state_.v_EU_E.setZero();
+  // The antenna is where the fix says; the IMU's place beside it is as well known as the attitude.
+  const Eigen::Matrix<double, 3, Index::kAll> lever = -H_theta * P_.middleRows<3>(Index::kTheta);
+  const Eigen::Matrix3d P_lever = lever.middleCols<3>(Index::kTheta) * -H_theta.transpose();
+  P_.middleRows<3>(Index::kPosition) = lever;
+  P_.middleCols<3>(Index::kPosition) = lever.transpose();
+  P_.block<3, 3>(Index::kPosition, Index::kPosition) = R + 0.5 * (P_lever + P_lever.transpose());
+  P_.middleRows<3>(Index::kVelocity).setZero();
+  P_.middleCols<3>(Index::kVelocity).setZero();
+  P_.diagonal().segment<3>(Index::kVelocity).setConstant(kUnknownSpeed_m_s * kUnknownSpeed_m_s);
+}
+
 UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   UpdateReport report;
   report.t = fix.t;
@@ -170,9 +189,14 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   const AntennaPosition antenna = antenna_position(state_, w_EU_U_, lever_A_B_ - lever_U_B_, age_s);
   const Eigen::Matrix<double, 3, 9>& H = antenna.H;
   report.innovation = fix.p_A_E - antenna.p_A_E;
+  const Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
+  if (P_.diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
+    restart(report.innovation, R, antenna.H.leftCols<3>());
+    report.accepted = true;
+    return report;
+  }
   report.dimension = 3;
 
-  const Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
   const Columns3 PHt = P_.leftCols<9>().lazyProduct(H.transpose());
   Eigen::Matrix3d S = H.lazyProduct(PHt.topRows<9>()) + R;
   S = 0.5 * (S + S.transpose()).eval();

@@ -40,7 +40,7 @@ struct UpdateReport {
   GpsTime t;
   bool accepted = false;
   double nis = 0.0;                                      ///< normalized innovation squared
-  int dimension = 0;                                     ///< 0: there was no fix to use
+  int dimension = 0;                                     ///< 0: there was no fix, or nothing to correct by it
   Eigen::Vector3d innovation = Eigen::Vector3d::Zero();  ///< m, in E
 };
 
@@ -73,7 +73,9 @@ class ErrorStateFilter {
   /// Corrects with a position of the antenna. A fix with status kNone changes nothing (dimension 0); so does one that
   /// the gate refuses (accepted false). The fix may be up to 0.1 s away from the last IMU sample: the antenna is then
   /// carried there with the estimated velocity. A fix that is not finite, or whose covariance is not positive definite,
-  /// is refused with a ProgramError that names the receiver.
+  /// is refused with a ProgramError that names the receiver. Where the position is not known to 1000 km (1-sigma),
+  /// after hours without a fix, the fix does not correct it but takes its place (accepted, dimension 0), the velocity
+  /// counts as unknown, and attitude and calibration stay.
   UpdateReport update(const GnssFix& fix);
 
   NavEstimate estimate() const;
@@ -84,6 +86,7 @@ class ErrorStateFilter {
   const Calibration& calibration() const { return calibration_; }
 
  private:
+  void restart(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, const Eigen::Matrix3d& H_theta);
   void inject(const Eigen::Matrix<double, ErrorIndex::kAll, 1>& error);
 
   FilterConfig config_;
