@@ -60,7 +60,7 @@ REGISTRATION_FILES_MAX = 3
 STANDARD = r"[a-z_0-9]+"
 EIGEN = r"(unsupported/)?Eigen/\w+"
 FORWARD_DECLARATIONS = r"nlohmann/json_fwd\.hpp"
-SYSTEM = r"(unistd|fcntl|signal|termios|poll|dlfcn|sched|immintrin|cpuid|x86intrin)\.h|(sys|arpa|netinet)/\w+\.h"
+SYSTEM = r"(malloc|unistd|fcntl|signal|termios|poll|dlfcn|sched|immintrin|cpuid|x86intrin)\.h|(sys|arpa|netinet)/\w+\.h"
 
 # Truth is for sensors, recorder and scorer: these files must not see it, not even through another header.
 TRUTH = "core/truth.h"

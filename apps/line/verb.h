@@ -23,6 +23,7 @@ struct Verb {
 };
 
 Verb compare_verb();
+Verb tradeoff_verb();
 Verb run_verb();
 Verb report_verb();
 Verb keys_verb();

@@ -33,6 +33,15 @@ struct Launched {
   double length_m = 0.0;
 };
 
+/// Keys of this model.
+struct LaunchingParameters {
+  std::int64_t launched_rays = 20000;
+};
+void visit(FieldVisitor& f, LaunchingParameters& c) {
+  f.integer("launched_rays", c.launched_rays, {1, 1e8},
+            "paths launching: rays over the whole sphere; the cost grows with them");
+}
+
 class Launching final : public PathModel {
  public:
   explicit Launching(const PathParameters& p) : p_(p), visibility_(make_visibility(p)) {
@@ -187,6 +196,16 @@ class Launching final : public PathModel {
 
 std::unique_ptr<PathModel> make_launching(const PathParameters& p) {
   return std::make_unique<Launching>(p);
+}
+
+std::unique_ptr<PathModel> make_configured_launching(const ModelParameters& own, const PathParameters& p) {
+  PathParameters launched = p;
+  launched.launched_rays = static_cast<int>(own.get<LaunchingParameters>().launched_rays);
+  return make_launching(launched);
+}
+
+void launching_parameters(ModelParameters& section) {
+  section.add<LaunchingParameters>();
 }
 
 }  // namespace canyon::gnss

@@ -23,7 +23,8 @@ constexpr ModelRow<MakePathModel> kModels[] = {
     {"specular1", without_keys<make_specular1>, "occlusion and single specular reflections off the scene's facets"},
     {"specular2", without_keys<make_specular2>, "occlusion and up to two specular reflections"},
     {"specular3", without_keys<make_specular3>, "occlusion and up to three specular reflections"},
-    {"launching", without_keys<make_launching>, "rays launched from the antenna, up to two reflections; approximate"},
+    {"launching", make_configured_launching, "rays launched from the antenna, up to two reflections; approximate",
+     launching_parameters},
 };
 
 }  // namespace

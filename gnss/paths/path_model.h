@@ -98,5 +98,8 @@ std::unique_ptr<PathModel> make_specular3(const PathParameters& p);
 /// times the tilt of the mirrors; facets narrower than the rays' spacing are missed; cost grows with the rays, whatever
 /// they find.
 std::unique_ptr<PathModel> make_launching(const PathParameters& p);
+/// The same with as many rays as its own key says (launched_rays, 1 to 1e8).
+std::unique_ptr<PathModel> make_configured_launching(const ModelParameters& own, const PathParameters& p);
+void launching_parameters(ModelParameters& section);
 
 }  // namespace canyon::gnss

@@ -70,6 +70,7 @@ class ChartWriter {
     out_ += "</svg>\n";
     y_labels(area, height_px);
     if (index == 0 || panel.marks_of) mark_labels(panel);
+    point_labels(panel, area, height_px);
     out_ += "</div>\n";
     for (const std::string& note : panel.notes) out_ += "<p class=\"note\">" + escape_html(note) + "</p>\n";
     out_ += "</div>\n";
@@ -99,9 +100,13 @@ class ChartWriter {
     if (panel.zero_line) level("zero", 0);
   }
 
+  static const char* style_class(Line::Style style) {
+    return style == Line::Style::kThin ? " thin" : style == Line::Style::kPoints ? " points" : "";
+  }
+
   void draw_line(const PlotArea& area, const Line& line) {
-    out_ += "<path class=\"line " + run_class(line.run) + (line.style == Line::Style::kThin ? " thin" : "") +
-            "\" data-name=\"" + escape_html(line.name) + "\" d=\"" + line_path(area, line, kBuckets) + "\"/>\n";
+    out_ += "<path class=\"line " + run_class(line.run) + style_class(line.style) + "\" data-name=\"" +
+            escape_html(line.name) + "\" d=\"" + line_path(area, line, kBuckets) + "\"/>\n";
   }
 
   void draw_mark(const Mark& mark, int height_px) {
@@ -125,6 +130,32 @@ class ChartWriter {
       out_ += "<span class=\"mark-label " + run_class(mark.run) + (place > 0.5 ? " left" : "") +
               "\" style=\"left:" + fixed(100 * place, 2) + "%;top:" + fixed(0.1 + line * 1.05, 2) + "rem\">" +
               escape_html(mark.text) + "</span>\n";
+    }
+  }
+
+  /// Words to the right of their places, left of those near the right border; each moves down until none before it is
+  /// covered.
+  void point_labels(const Panel& panel, const PlotArea& area, int height_px) {
+    constexpr double kLine_px = 13.0, kLetter = 7.0;  // of a page 1000 units wide
+    struct Box {
+      double left, right, top_px;
+    };
+    std::vector<Box> taken;
+    for (const PointLabel& label : panel.labels) {
+      const double x = x_px(label.x), length = kLetter * static_cast<double>(label.text.size());
+      if (!std::isfinite(x) || !std::isfinite(area.y_px(label.y))) continue;
+      const bool left = x + length > kWidth;
+      Box box{left ? x - length : x, left ? x : x + length, area.y_px(label.y) - 0.5 * kLine_px};
+      for (bool moved = true; moved;) {
+        moved = false;
+        for (const Box& other : taken)
+          if (box.left < other.right && other.left < box.right && std::abs(box.top_px - other.top_px) < kLine_px)
+            box.top_px = other.top_px + kLine_px, moved = true;
+      }
+      taken.push_back(box);
+      out_ += "<span class=\"point-label " + run_class(label.run) + (left ? " left" : "") +
+              "\" style=\"left:" + fixed(100 * x / kWidth, 2) + "%;top:" + fixed(100 * box.top_px / height_px, 2) +
+              "%\">" + escape_html(label.text) + "</span>\n";
     }
   }
 

@@ -39,6 +39,13 @@ struct Mark {
   std::string text;
 };
 
+/// Words beside a place of a panel; they step aside for one another.
+struct PointLabel {
+  std::size_t run = 0;
+  double x = 0.0, y = 0.0;
+  std::string text = {};
+};
+
 struct Panel {
   std::string title = {};  ///< "East error"
   std::string unit = {};   ///< "m"; may be empty
@@ -49,6 +56,7 @@ struct Panel {
   std::vector<Band> bands = {};
   std::vector<Line> lines = {};
   std::vector<Lane> lanes = {};
+  std::vector<PointLabel> labels = {};
   std::optional<std::size_t> marks_of = {};  ///< the only run whose marks the panel shows; none = all runs
   std::vector<std::string> notes = {};       ///< beneath the panel: what is missing and why
 };

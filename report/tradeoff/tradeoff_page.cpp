@@ -1,0 +1,112 @@
+#include "canyon/report/tradeoff/tradeoff_page.h"
+
+#include <cmath>
+
+#include "canyon/core/process/embedded.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/report/draw/format.h"
+#include "canyon/report/draw/html.h"
+#include "canyon/report/draw/theme.h"
+#include "canyon/report/tradeoff/ladder_section.h"
+
+namespace canyon::report {
+namespace {
+
+std::string asset(std::string_view key) {
+  const auto bytes = embedded_file(key);
+  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
+  return std::string(*bytes);
+}
+
+std::string swatch(TradeoffColour colour, const char* words) {
+  return "<span class=\"tag keep " + run_class(colour) +
+         "\"><svg class=\"swatch\" viewBox=\"0 0 22 8\" aria-hidden=\"true\"><path d=\"M1 4H21\"/></svg>" + words +
+         "</span> ";
+}
+
+std::string legend() {
+  return "<p class=\"legend\">" + swatch(kFront, "on the front") + swatch(kInUse, "in use") +
+         swatch(kReference, "reference") + swatch(kDominated, "dominated") + "</p>\n";
+}
+
+std::string runs_section(const TradeoffSummary& t) {
+  if (t.runs.empty()) return "";
+  std::string body =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Whole runs\"><table>\n<thead><tr><th "
+      "scope=\"col\" class=\"text\">fidelity</th><th>position, m</th><th>map, m</th><th>registration, m</th><th>CPU, s "
+      "per s</th><th>least\xE2\x80\x93most</th></tr></thead>\n<tbody>";
+  for (const TradeoffRun& run : t.runs)
+    body += "<tr><th scope=\"row\">" + escape_html(run.fidelity) + "</th><td>" + show_number(run.position_m) +
+            "</td><td>" + show_number(run.map_m) + "</td><td>" + show_number(run.registration_m) + "</td><td>" +
+            show_number(run.cpu_s) + "</td><td>" + show_number(run.cpu_low_s) + "\xE2\x80\x93" +
+            show_number(run.cpu_high_s) + "</td></tr>\n";
+  body += "</tbody></table></div>\n";
+  return section("runs", "The mission as a whole",
+                 "Root mean square errors of whole runs on the same true motion, " +
+                     show_quantity(t.runs.front().simulated_s, "s") + " of it, against what they cost.",
+                 body);
+}
+
+std::string choice_section(const TradeoffChoice& c) {
+  if (!c.asked) return "";
+  std::string asked = std::isfinite(c.tolerance)
+                          ? c.figure + " within " + show_quantity(c.tolerance, c.unit)
+                          : "at most " + show_number(c.budget_cpu_s) + " CPU seconds per simulated second";
+  std::string body;
+  for (const std::string& one : c.settings) body += "<p><code>" + escape_html(one) + "</code></p>\n";
+  if (c.found) {
+    body +=
+        "<p>" +
+        escape_html(c.figure + " changes by at most " + show_quantity(c.error, c.unit) + " on " +
+                    std::to_string(c.seeds) + " seeds that did not choose these settings; CPU " + show_number(c.cpu_s) +
+                    " s per simulated second, " + show_number(c.cpu_reference_s) + " without them.") +
+        "</p>\n";
+    if (c.settings.empty()) body += note("Nothing to change: the fidelity\xE2\x80\x99s own settings.");
+  } else {
+    body += note("No combination held on seeds that had not chosen it.");
+  }
+  if (c.refused > 0) body += note(show_count(c.refused) + " that ranked before did not hold on those seeds.");
+  return section("chosen", "Asked: " + asked, "", body);
+}
+
+std::string contents(const TradeoffSummary& t) {
+  std::string out = "<nav aria-label=\"Contents\">";
+  for (std::size_t i = 0; i < t.ladders.size(); ++i)
+    if (i == 0 || t.ladders[i].part != t.ladders[i - 1].part)
+      out += "<a href=\"#ladder-" + std::to_string(i) + "\">" + escape_html(t.ladders[i].part) + "</a> ";
+  if (!t.runs.empty()) out += "<a href=\"#runs\">whole runs</a> ";
+  return out + "</nav>\n";
+}
+
+std::string intro(const TradeoffSummary& t) {
+  return "<p class=\"intro\">" +
+         escape_html("Each ladder varies one setting of fidelity " + t.fidelity + " on the same true motion (" +
+                     t.tape + ") and the same random numbers: up to " + show_count(t.samples) + " samples, " +
+                     show_count(t.repetitions) +
+                     " repetitions in interleaved random order. Bars: the least and the most time of these, and the "
+                     "95 % interval of the error by block bootstrap. Models whose times overlap are tied.") +
+         "</p>\n";
+}
+
+}  // namespace
+
+Result<std::string> tradeoff_page(const std::string& summary_path) {
+  CANYON_TRY(const TradeoffSummary t, read_tradeoff(summary_path));
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
+      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: error against run time</title>\n<style>\n" +
+      theme_css(kTradeoffColours) + asset("report/assets/report.css") + "</style>\n</head>\n<body>\n<main>\n<header>\n";
+  out += "<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(t.mission) + " \xC2\xB7 seed " +
+         escape_html(t.seed) + "</p>\n<h1>Error against run time</h1>\n" + contents(t) + "</header>\n";
+  out += choice_section(t.choice) + runs_section(t);
+  if (!t.ladders.empty()) out += intro(t) + legend();
+  for (std::size_t i = 0; i < t.ladders.size(); ++i) {
+    throw_if_cancelled();
+    out += ladder_section(t.ladders[i], "ladder-" + std::to_string(i));
+  }
+  for (const std::string& one : t.skipped) out += note("Not measured here: " + one);
+  return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace canyon::report
