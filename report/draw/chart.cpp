@@ -133,8 +133,8 @@ class ChartWriter {
     }
   }
 
-  /// Words to the right of their places, left of those near the right border; each moves down until none before it is
-  /// covered.
+  /// Words above and to the right of their places, left of those near the right border; each moves down until none
+  /// before it is covered.
   void point_labels(const Panel& panel, const PlotArea& area, int height_px) {
     constexpr double kLine_px = 13.0, kLetter = 7.0;  // of a page 1000 units wide
     struct Box {
@@ -145,7 +145,7 @@ class ChartWriter {
       const double x = x_px(label.x), length = kLetter * static_cast<double>(label.text.size());
       if (!std::isfinite(x) || !std::isfinite(area.y_px(label.y))) continue;
       const bool left = x + length > kWidth;
-      Box box{left ? x - length : x, left ? x : x + length, area.y_px(label.y) - 0.5 * kLine_px};
+      Box box{left ? x - length : x, left ? x : x + length, area.y_px(label.y) - kLine_px};
       for (bool moved = true; moved;) {
         moved = false;
         for (const Box& other : taken)

@@ -61,6 +61,11 @@ Line front_line(const TradeoffLadder& ladder) {
   return line;
 }
 
+/// Whole decades where there are several, else no more than there is to see.
+Axis scale(double min, double max) {
+  return max > 10.0 * min ? Axis::decades(min, max) : Axis::logarithmic(min, max);
+}
+
 Chart chart_of(const TradeoffLadder& ladder, const std::string& id) {
   Panel panel{.title = ladder.error_is, .unit = ladder.unit};
   panel.height_px = 230;
@@ -80,12 +85,12 @@ Chart chart_of(const TradeoffLadder& ladder, const std::string& id) {
   }
   const Extremes y = positive_extremes_of(panel.lines);
   if (y.drawn) {
-    panel.y = Axis::decades(0.8 * y.min, 1.25 * y.max);
+    panel.y = scale(0.8 * y.min, 1.25 * y.max);
     panel.lines.push_back(front_line(ladder));
   }
   if (ladder.reference_error > 0.0) panel.limit = ladder.reference_error;
   Chart chart{.id = id,
-              .x = high_x > 0.0 ? Axis::decades(0.9 * low_x, 1.1 * high_x) : Axis::decades(1.0, 10.0),
+              .x = high_x > 0.0 ? scale(0.9 * low_x, 1.1 * high_x) : Axis::decades(1.0, 10.0),
               .x_label = "CPU time, ms per simulated second",
               .solid = true,
               .title = "Work and precision of " + ladder.key,
@@ -102,7 +107,7 @@ std::string remarks(const TradeoffModel& model) {
   if (model.on_front) words.push_back("on the front");
   if (model.in_use) words.push_back("in use");
   if (!model.resolved) words.push_back("unresolved: below the reference\xE2\x80\x99s own error");
-  if (model.undefined_share > 0.0) words.push_back(show_share(model.undefined_share) + " undefined");
+  if (model.undefined_share >= 5e-4) words.push_back(show_share(model.undefined_share) + " undefined");
   if (!model.tied_with.empty())
     words.push_back("tied in time with " + (model.tied_with.size() > 3
                                                 ? std::to_string(model.tied_with.size()) + " others"
@@ -126,7 +131,8 @@ std::string table_of(const TradeoffLadder& ladder) {
                 : std::string()) +
            "</td><td>" + show_number(kMs * model.cpu_s) + "</td><td>" + show_number(kMs * model.cpu_low_s) +
            "\xE2\x80\x93" + show_number(kMs * model.cpu_high_s) + "</td><td>" + show_count(model.work) + "</td><td>" +
-           show_number(model.memory_mb) + "</td><td class=\"text\">" + escape_html(remarks(model)) + "</td></tr>\n";
+           show_number(model.memory_mb) + "</td><td class=\"text remarks\">" + escape_html(remarks(model)) +
+           "</td></tr>\n";
   return out + "</tbody></table></div>\n";
 }
 
@@ -136,7 +142,7 @@ std::string caption_of(const TradeoffLadder& ladder) {
     text += " The reference, " + ladder.reference + ", itself errs " +
             show_quantity(ladder.reference_error, ladder.unit) + " (extrapolated, the level line).";
   if (std::isfinite(ladder.order_observed) || std::isfinite(ladder.order_theory)) {
-    text += " Order observed: " + (std::isfinite(ladder.order_observed) ? fixed(ladder.order_observed, 2)
+    text += " Order observed: " + (std::isfinite(ladder.order_observed) ? show_number(ladder.order_observed)
                                                                         : std::string("none above rounding"));
     if (std::isfinite(ladder.order_theory)) text += ", theory: " + show_number(ladder.order_theory);
     text += ladder.order_holds ? "." : ": it is not what its row says.";

@@ -10,6 +10,7 @@ namespace canyon::study {
 namespace {
 
 constexpr std::size_t kReplicates = 1000;
+constexpr std::size_t kFewest = 8;  // samples: four blocks of two
 
 double rms_of(const SquareSum& total) {
   return total.count > 0 ? std::sqrt(total.sum / total.count) : kNaN;
@@ -37,7 +38,7 @@ RmsEstimate block_bootstrap_rms(std::span<const SquareSum> samples, std::uint64_
   for (const SquareSum& one : samples) total = {total.sum + one.sum, total.count + one.count};
   RmsEstimate out;
   out.rms = rms_of(total);
-  if (samples.size() < 2 || !std::isfinite(out.rms)) return out;
+  if (samples.size() < kFewest || !std::isfinite(out.rms)) return out;
   const auto length = static_cast<std::size_t>(std::ceil(std::cbrt(static_cast<double>(samples.size())) - 1e-9));
   const RandomStream stream(seed, "tradeoff.bootstrap");
   std::vector<double> values;

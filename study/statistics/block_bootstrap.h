@@ -15,7 +15,7 @@ struct SquareSum {
 /// Root mean square over samples, with how sure it is.
 struct RmsEstimate {
   double rms = kNaN;
-  double sigma = kNaN;  ///< of the replicates; NaN for fewer than two samples
+  double sigma = kNaN;  ///< of the replicates; NaN for fewer than eight samples
   Interval interval;    ///< 95 %, by percentiles
 };
 

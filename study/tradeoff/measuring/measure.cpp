@@ -44,9 +44,13 @@ double reference_error(const Contenders& c, const std::vector<Repeated>& runs, c
   if (!c.reference) return 0.0;
   if (!c.reference_is_rung) return kNaN;
   const std::vector<Step> steps = steps_of(c);
+  // Below half an order values hardly converge, and going on with them tells nothing.
   if (steps.size() > 2 && steps.back().rung == *c.reference)
-    return richardson_error(steps[steps.size() - 2].h, steps.back().h,
-                            difference(runs, steps[steps.size() - 2].rung, steps.back().rung), ladder.order_observed);
+    return !(ladder.order_observed >= 0.5)
+               ? kNaN
+               : richardson_error(steps[steps.size() - 2].h, steps.back().h,
+                                  difference(runs, steps[steps.size() - 2].rung, steps.back().rung),
+                                  ladder.order_observed);
   std::vector<std::size_t> series;
   for (const std::string& name : c.series) {
     const auto found = std::find(c.names.begin(), c.names.end(), name);

@@ -10,17 +10,18 @@ namespace canyon::study {
 double observed_order(double h1, double h2, double h3, double e12, double e23, double rounding) {
   CANYON_CHECK(h1 > h2 && h2 > h3 && h3 > 0.0, "steps ", h1, " ", h2, " ", h3);
   if (!(e12 > rounding) || !(e23 > rounding)) return kNaN;
-  const double r12 = h1 / h2, r23 = h2 / h3;
-  // e12 / e23 = r23^p (r12^p - 1) / (r23^p - 1).
-  double p = std::log(e12 / e23) / std::log(r23);
-  for (int i = 0; i < 200; ++i) {
-    const double q = std::log((std::pow(r12, p) - 1.0) / (std::pow(r23, p) - 1.0));
-    const double next = (std::log(e12 / e23) - q) / std::log(r23);
-    if (!std::isfinite(next)) return kNaN;
-    if (std::abs(next - p) < 1e-12) return next;
-    p = next;
+  const double r12 = h1 / h2, r23 = h2 / h3, wanted = std::log(e12 / e23);
+  // e12 / e23 = r23^p (r12^p - 1) / (r23^p - 1), which grows with p: halved between the least and the most.
+  const auto excess = [&](double p) {
+    return p * std::log(r23) + std::log(std::expm1(p * std::log(r12)) / std::expm1(p * std::log(r23))) - wanted;
+  };
+  double low = 1e-3, high = 30.0;
+  if (!(excess(low) <= 0.0 && excess(high) >= 0.0)) return kNaN;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (excess(middle) < 0.0 ? low : high) = middle;
   }
-  return p;
+  return 0.5 * (low + high);
 }
 
 double richardson_error(double h1, double h2, double e12, double order) {

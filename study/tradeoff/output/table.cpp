@@ -35,7 +35,7 @@ std::string remarks(const MeasuredModel& model) {
   if (model.on_front) add("front");
   if (model.in_use) add("in use");
   if (!model.resolved) add("unresolved");
-  if (model.undefined_share > 0.0) add(printed("%.1f %% undefined", 100.0 * model.undefined_share));
+  if (model.undefined_share >= 5e-4) add(printed("%.1f %% undefined", 100.0 * model.undefined_share));
   if (!model.tied_with.empty()) add("tied in time with " + few_of(model.tied_with));
   return text;
 }

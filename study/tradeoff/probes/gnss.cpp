@@ -17,6 +17,11 @@ struct Place {
   Eigen::Vector3d p_A_W, v_A_W;
 };
 
+Result<std::unique_ptr<gnss::GnssSensor>> sensor_of(const ProbeSetup& setup, const mission::MissionConfig& config) {
+  return gnss::make_gnss_sensor(config.gnss, static_cast<std::uint64_t>(config.run.seed), setup.mission.start,
+                                setup.mission.start + setup.tape.duration_s(), *setup.mission.scene);
+}
+
 enum class What { kPseudorange, kFix };
 
 class GnssProbe final : public Probe {
@@ -35,10 +40,7 @@ class GnssProbe final : public Probe {
 
   Result<ProbeRun> run() override {
     const HeapMeter heap;
-    const auto seed = static_cast<std::uint64_t>(config_.run.seed);
-    CANYON_TRY(const auto sensor,
-               gnss::make_gnss_sensor(config_.gnss, seed, setup_.mission.start,
-                                      setup_.mission.start + setup_.tape.duration_s(), *setup_.mission.scene));
+    CANYON_TRY(const auto sensor, sensor_of(setup_, config_));
     scene::SceneAt scene(*setup_.mission.scene);
     ProbeRun run;
     run.samples.dimension = what_ == What::kFix ? 3 : 1;
@@ -83,6 +85,7 @@ class GnssProbe final : public Probe {
 };
 
 Result<std::unique_ptr<Probe>> make(const ProbeSetup& setup, What what, const std::vector<std::int64_t>& ticks) {
+  CANYON_TRY(const auto sensor, sensor_of(setup, setup.config));  // what it refuses is told before it runs
   auto probe = std::make_unique<GnssProbe>(setup, what, ticks);
   return std::unique_ptr<Probe>(std::move(probe));
 }
