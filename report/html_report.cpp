@@ -1,6 +1,7 @@
 #include "canyon/report/html_report.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/output/staged.h"
@@ -11,6 +12,7 @@
 #include "canyon/report/format.h"
 #include "canyon/report/read/read_results.h"
 #include "canyon/report/sections/sections.h"
+#include "canyon/report/tradeoff/tradeoff_page.h"
 
 namespace canyon::report {
 namespace {
@@ -70,6 +72,8 @@ std::string page(const Results& results) {
 }  // namespace
 
 Result<std::string> html_report(const std::string& results_dir) {
+  std::error_code code;
+  if (std::filesystem::exists(results_dir + "/tradeoff.csv", code)) return tradeoff_page(results_dir + "/summary.json");
   CANYON_TRY(Results results, read_results(results_dir));
   // As they were asked for, which also gives the colours; the mixed runs last.
   std::stable_partition(results.runs.begin(), results.runs.end(), [](const Run& run) { return run.is_pure(); });

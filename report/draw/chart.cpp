@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/core/config/text.h"
+#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/plot_area.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
@@ -31,7 +33,9 @@ class ChartWriter {
  private:
   /// "min max log|lin": what the read-out needs to turn places into values.
   static std::string axis_data(const Axis& axis) {
-    return fixed(axis.min(), 9) + " " + fixed(axis.max(), 9) + (axis.is_logarithmic() ? " log" : " lin");
+    // Nine decimals would make nothing of a logarithmic axis's small end.
+    const auto end = [&](double v) { return axis.is_logarithmic() && v < 1e-3 ? number_text(v) : fixed(v, 9); };
+    return end(axis.min()) + " " + end(axis.max()) + (axis.is_logarithmic() ? " log" : " lin");
   }
 
   PlotArea area_of(const Panel& panel) const {
