@@ -25,6 +25,7 @@ struct Options {
   std::string parts, fidelity = "high", tolerance, figure = "position_error_rms_m", write;
   std::optional<double> budget_cpu_s;
   std::int64_t samples = 60, repetitions = 5, seeds = 20;
+  double question_s = 30.0;
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -54,6 +55,7 @@ Result<int> run(const Options& options) {
                                .fidelity = options.fidelity,
                                .samples = static_cast<std::size_t>(options.samples),
                                .repetitions = static_cast<int>(options.repetitions),
+                               .question_s = options.question_s,
                                .show_progress = !options.mission.common.json};
   CANYON_TRY_STATUS(study::check_parts(asked.parts, "--part"));
   CANYON_TRY(const auto question, study::read_question(options.tolerance, options.budget_cpu_s, options.figure));
@@ -113,6 +115,9 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--validate", options->seeds, "seeds that the answer must hold on, which have not chosen it")
       .default_shown()
       .within(std::int64_t{1}, std::int64_t{10'000});
+  arguments.option("--seconds", options->question_s, "of the true motion, from its start, that it is answered on")
+      .default_shown()
+      .within(1.0, 1e6);
   arguments.option("--write", options->write, "mission file to write, with the answer as the fidelity \"tradeoff\"")
       .type("FILE");
   return [options] { return run(*options); };

@@ -15,6 +15,7 @@ struct TradeoffOptions {
   std::string fidelity = "high";   ///< what ladders vary one setting of
   std::size_t samples = 60;
   int repetitions = 5;
+  double question_s = 30.0;  ///< of the tape, from its start, that --tolerance and --budget-cpu are answered on
   bool show_progress = true;
 };
 

@@ -14,7 +14,8 @@
 namespace canyon::study {
 namespace {
 
-constexpr double kRun_s = 30.0;
+/// What saves less than this part of a run's time is not moved: one run's time does not tell it from none.
+constexpr double kLeastSaving = 0.03;
 constexpr int kMostTried = 8;  ///< combinations that are run as a whole before the answer is "none"
 
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -25,18 +26,19 @@ struct Outcome {
 };
 
 Result<Outcome> outcome_of(const Question& question, const mission::MissionConfig& config,
-                           const mission::PreparedMission& mission, const Tape& tape) {
-  CANYON_TRY(const RunSummary run, taped_run(config, mission, tape, kRun_s));
+                           const mission::PreparedMission& mission, const Tape& tape, double run_s) {
+  CANYON_TRY(const RunSummary run, taped_run(config, mission, tape, run_s));
   return Outcome{question.figure->get(run), run.cpu_per_simulated_s()};
 }
 
 /// Runs side by side, each on the thread that takes it; what cannot be driven is NaN.
 std::vector<Outcome> outcomes_of(const Question& question, const std::vector<const mission::MissionConfig*>& configs,
-                                 const mission::PreparedMission& mission, const Tape& tape, Progress& progress) {
+                                 const mission::PreparedMission& mission, const Tape& tape, double run_s,
+                                 Progress& progress) {
   std::vector<Outcome> out(configs.size());
   parallel_for(configs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (const auto one = outcome_of(question, *configs[i], mission, tape)) out[i] = *one;
+      if (const auto one = outcome_of(question, *configs[i], mission, tape, run_s)) out[i] = *one;
       progress.advance(1.0);
     }
   });
@@ -61,7 +63,7 @@ Result<Seen> look(const Question& question, const mission::MissionFile& file, co
     for (std::size_t i = 1; i < key.configs.size(); ++i) configs.push_back(&key.configs[i]);
   Progress progress("moving keys one by one", static_cast<double>(configs.size()), options.show_progress);
   const std::vector<Outcome> outcomes =
-      outcomes_of(question, configs, comparison.missions.front(), *comparison.tape, progress);
+      outcomes_of(question, configs, comparison.missions.front(), *comparison.tape, options.question_s, progress);
   seen.base = outcomes.front();
   std::size_t next = 1;
   for (const MovableKey& key : seen.keys) {
@@ -71,7 +73,7 @@ Result<Seen> look(const Question& question, const mission::MissionFile& file, co
       const Outcome& one = outcomes[next];
       const double change = std::abs(one.figure - seen.base.figure), cpu_s = one.cpu_s - seen.base.cpu_s;
       if (i == key.finest && std::isfinite(change)) seen.own_error += change;
-      if (!std::isfinite(change) || !(cpu_s < 0.0)) continue;
+      if (!std::isfinite(change) || !(cpu_s < -kLeastSaving * seen.base.cpu_s)) continue;
       own.push_back({cpu_s, change});
       rungs.push_back(i);
     }
@@ -98,21 +100,34 @@ struct Fresh {
   Outcome base;
 };
 
+Status drive_fresh(const Question& question, const mission::MissionConfig& config, double run_s, Fresh& fresh) {
+  CANYON_TRY(fresh.tape, mission::drive_route(config, fresh.mission));
+  CANYON_TRY(fresh.base, outcome_of(question, config, fresh.mission, fresh.tape, run_s));
+  return Ok{};
+}
+
 Result<std::vector<Fresh>> fresh_seeds(const Question& question, const mission::MissionFile& file,
                                        const TradeoffOptions& options, std::int64_t first, int seeds) {
   mission::SceneCache scenes;
   std::vector<Fresh> out;
-  Progress progress("driving seeds that choose nothing", seeds, options.show_progress);
+  std::vector<mission::MissionConfig> configs;
   for (int i = 0; i < seeds; ++i) {
     Fresh fresh{.file = file, .mission = {}, .tape = {}, .base = {}};
     fresh.file.set_option("run.seed", ConfigNode::of(first + i), "tradeoff");
-    CANYON_TRY(const auto config, fresh.file.resolve(options.fidelity));
+    CANYON_TRY(auto config, fresh.file.resolve(options.fidelity));
     CANYON_TRY(fresh.mission, mission::prepare(config, scenes));
-    CANYON_TRY(fresh.tape, mission::drive_route(config, fresh.mission));
-    CANYON_TRY(fresh.base, outcome_of(question, config, fresh.mission, fresh.tape));
+    configs.push_back(std::move(config));
     out.push_back(std::move(fresh));
-    progress.advance(1.0);
   }
+  Progress progress("driving seeds that choose nothing", seeds, options.show_progress);
+  std::vector<Status> driven(out.size(), Ok{});
+  parallel_for(out.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      driven[i] = drive_fresh(question, configs[i], options.question_s, out[i]);
+      progress.advance(1.0);
+    }
+  });
+  for (const Status& one : driven) CANYON_TRY_STATUS(one);
   return out;
 }
 
@@ -124,7 +139,7 @@ Result<Outcome> on_fresh_seeds(const Question& question, const TradeoffOptions& 
     for (std::size_t i = begin; i < end; ++i) {
       auto config = with_settings(seeds[i].file, options.fidelity, settings);
       if (config)
-        outcomes[i] = outcome_of(question, *config, seeds[i].mission, seeds[i].tape);
+        outcomes[i] = outcome_of(question, *config, seeds[i].mission, seeds[i].tape, options.question_s);
       else
         outcomes[i] = config.error();
     }

@@ -6,7 +6,7 @@
 namespace canyon::study {
 
 /// Answers the question for the fidelity in hand. Change of a figure: of a run in an open loop over the tape's first
-/// half minute, against the same with the fidelity's own settings, same true motion, same draws.
+/// options.question_s, against the same with the fidelity's own settings, same true motion, same draws.
 ///
 /// Every key that ladders.toml lets it move is moved alone, rung by rung, on the tape in hand; sums of what was seen
 /// rank the combinations. The first on the list is then run as a whole on tapes of `seeds` seeds that follow the
