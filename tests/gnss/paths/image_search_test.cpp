@@ -289,7 +289,7 @@ TEST(Launching, AWayIsOneEcho) {
   GnssCounters counters;
   PathParameters p = everything();
   p.launched_rays = 50000;
-  find_model(path_models(), "launching")->make({}, p)->trace({0.0, 0.0, 1.5}, directions, at, launched, counters);
+  make_launching(p)->trace({0.0, 0.0, 1.5}, directions, at, launched, counters);
   int echoes = 0;
   for (const auto& paths : launched) {
     std::set<decltype(SignalPath::facets)> ways;
@@ -322,7 +322,7 @@ TEST(Launching, ComesNearerToTheExactWaysWithMoreRays) {
   ASSERT_GT(all, 30u);
   for (const int rays : {2000, 20000, 200000}) {
     p.launched_rays = rays;
-    find_model(path_models(), "launching")->make({}, p)->trace(antenna, directions, at, launched, counters);
+    make_launching(p)->trace(antenna, directions, at, launched, counters);
     double error_m = 0.0;
     std::size_t missed = 0, both = 0;
     for (std::size_t k = 0; k < directions.size(); ++k) {
