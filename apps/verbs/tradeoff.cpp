@@ -8,6 +8,7 @@
 #include "canyon/apps/options/mission_options.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/tradeoff/tradeoff_page.h"

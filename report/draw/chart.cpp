@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "canyon/core/config/text.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/plot_area.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "canyon/report/draw/chart.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
+#include "canyon/report/format.h"
 
 namespace canyon::report {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
-#include "canyon/report/draw/format.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
 #include "canyon/report/tradeoff/ladder_section.h"
 
 namespace canyon::report {

@@ -6,7 +6,7 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 #include "canyon/study/tradeoff/choosing/combinations.h"
 #include "canyon/study/tradeoff/choosing/movable_keys.h"
 #include "canyon/study/tradeoff/probes/taped_run.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "canyon/core/files/tape.h"
 #include "canyon/core/model_table.h"
-#include "canyon/core/motion/tape.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/study/tradeoff/ladders/config_keys.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/study/results/summary.h"
 
