@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "canyon/gnss/paths/need/path_question.h"
+
 namespace canyon::gnss {
 namespace {
 
@@ -17,13 +19,28 @@ std::unique_ptr<PathModel> make_none(const PathParameters&) {
   return std::make_unique<OpenSky>();
 }
 
+template <int Order>
+std::vector<Need> needs_of_specular(const PathQuestion& question) {
+  return specular_needs(Order, question);
+}
+
+std::vector<Need> no_needs(const PathQuestion&) {
+  return {};
+}
+
 constexpr ModelRow<MakePathModel> kModels[] = {
-    {"none", without_keys<make_none>, "every satellite above the mask is clear, nothing reflects"},
-    {"visibility", without_keys<make_visibility>, "occlusion rays against the scene, nothing reflects"},
-    {"specular1", without_keys<make_specular1>, "occlusion and single specular reflections off the scene's facets"},
-    {"specular2", without_keys<make_specular2>, "occlusion and up to two specular reflections"},
-    {"specular3", without_keys<make_specular3>, "occlusion and up to three specular reflections"},
-    {"launching", make_configured_launching, "rays launched from the antenna, up to two reflections; approximate",
+    {"none", {without_keys<make_none>, no_needs}, "every satellite above the mask is clear, nothing reflects"},
+    {"visibility",
+     {without_keys<make_visibility>, needs_of_specular<0>},
+     "occlusion rays against the scene, nothing reflects"},
+    {"specular1",
+     {without_keys<make_specular1>, needs_of_specular<1>},
+     "occlusion and single specular reflections off the scene's facets"},
+    {"specular2", {without_keys<make_specular2>, needs_of_specular<2>}, "occlusion and up to two specular reflections"},
+    {"specular3",
+     {without_keys<make_specular3>, needs_of_specular<3>},
+     "occlusion and up to three specular reflections"},
+    {"launching", {make_configured_launching}, "rays launched from the antenna, up to two reflections; approximate",
      launching_parameters},
 };
 

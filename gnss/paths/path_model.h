@@ -10,12 +10,18 @@
 #include <Eigen/Core>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/core/need.h"
 #include "canyon/gnss/paths/counters.h"
 #include "canyon/gnss/paths/diffraction/fresnel.h"
+#include "canyon/gnss/paths/path_omissions.h"
 #include "canyon/gnss/paths/plane_waves.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
+
+struct PathQuestion;
+/// States which of a model's effects can act on a piece of the route (gnss/paths/need/path_question.h).
+using StatePathNeeds = std::vector<Need>(const PathQuestion& question);
 
 /// One way from a satellite to the antenna beside the straight one: reflected, diffracted over an edge, or both.
 struct SignalPath {
@@ -71,9 +77,11 @@ struct PathParameters {
   int launched_rays = 20000;        ///< launching: over the whole sphere
   /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
   bool exhaustive = false;
+  PathOmissions leave_out;  ///< what cannot act where the antenna is
 };
 
-using MakePathModel = std::unique_ptr<PathModel>(const ModelParameters& own, const PathParameters& p);
+using MakePathModel =
+    MakerAndNeed<std::unique_ptr<PathModel>(const ModelParameters& own, const PathParameters& p), StatePathNeeds>;
 ModelTable<MakePathModel> path_models();
 
 /// Direct ways only: is each blocked, how far does it pass through foliage. One occlusion ray per satellite, outward

@@ -45,7 +45,11 @@ Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& con
   limits.roughness_m = config.surface_roughness_m;
   CANYON_TRY(auto paths, config.paths.make("gnss.paths", limits));
   CANYON_TRY(auto diffraction, config.diffraction.make("gnss.diffraction", limits));
-  if (!diffraction->bends() && !config.ground_reflection) return paths;
+  const bool bends = diffraction->bends() && !limits.leave_out.diffraction;
+  if (!bends && !config.ground_reflection) return paths;
+  if (!bends) {
+    CANYON_TRY(diffraction, ModelChoice<diffraction_models>("none").make("gnss.diffraction", limits));
+  }
   return make_propagation(std::move(paths), std::move(diffraction), config.ground_reflection, limits);
 }
 

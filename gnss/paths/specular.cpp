@@ -8,11 +8,13 @@ namespace {
 
 class Specular final : public PathModel {
  public:
-  Specular(int order, const PathParameters& p) : order_(order), p_(p), visibility_(make_visibility(p)) {}
+  Specular(int order, const PathParameters& p)
+      : order_(std::min(order, p.leave_out.most_reflections)), p_(p), visibility_(make_visibility(p)) {}
 
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
     visibility_->trace(p_A_W, waves, scene, out, counters);
+    if (order_ == 0) return;
     find_images(order_, p_, p_A_W, waves, scene, out, counters);
     for (auto& paths : out)
       std::stable_sort(paths.echoes.begin(), paths.echoes.end(),

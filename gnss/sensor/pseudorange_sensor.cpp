@@ -11,6 +11,7 @@
 #include "canyon/gnss/receiver/modes/receiver_fix.h"
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/sensor/gnss_config.h"
+#include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/gnss/solver/velocity.h"
 
@@ -30,6 +31,7 @@ struct PseudorangeParts {
   std::unique_ptr<TroposphereModel> troposphere;
   std::unique_ptr<EphemerisError> ephemeris_error;
   std::unique_ptr<PathModel> paths;
+  PathParameters path_limits;                  ///< that they were made with
   std::array<Channel, kModulations> channels;  ///< by Modulation
   std::unique_ptr<ReceiverClock> clock;
   std::unique_ptr<ReceiverMode> mode;
@@ -140,6 +142,7 @@ class PseudorangeSensor final : public GnssSensor {
   }
 
   GnssCounters counters() const override { return counters_; }
+  void leave_out(const PathOmissions& omissions) override { leave_out_ = omissions; }
   bool has_satellites() const override { return true; }
   std::vector<std::string> warnings() const override { return parts_.warnings; }
 
@@ -197,6 +200,17 @@ class PseudorangeSensor final : public GnssSensor {
     return sights;
   }
 
+  /// The configured model of propagation, without what is left out; made when it is first asked for.
+  const PathModel& paths_now() {
+    if (leave_out_ == PathOmissions{}) return *parts_.paths;
+    for (const auto& [omissions, model] : reduced_)
+      if (omissions == leave_out_) return *model;
+    PathParameters limits = parts_.path_limits;
+    limits.leave_out = leave_out_;
+    reduced_.emplace_back(leave_out_, *make_propagation(config_.propagation, limits));
+    return *reduced_.back().second;
+  }
+
   template <class BandOf>
   std::vector<SignalPaths> trace(const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights, const BandOf& band_of,
                                  const scene::SceneAt& scene) {
@@ -207,7 +221,7 @@ class PseudorangeSensor final : public GnssSensor {
       carriers_hz.push_back(s.carrier_hz(band_of(s.sv.system)));
     }
     std::vector<SignalPaths> paths(sights.size());
-    parts_.paths->trace(p_A_W, {directions_W, carriers_hz}, scene, paths, counters_);
+    paths_now().trace(p_A_W, {directions_W, carriers_hz}, scene, paths, counters_);
     return paths;
   }
 
@@ -369,18 +383,11 @@ class PseudorangeSensor final : public GnssSensor {
   PseudorangeParts parts_;
   SignalStreams first_, second_;
   std::optional<PvtFilter> filter_;
+  PathOmissions leave_out_;
+  std::vector<std::pair<PathOmissions, std::unique_ptr<PathModel>>> reduced_;
   std::int64_t last_index_ = -2;
   GnssCounters counters_;
 };
-
-/// What the receiver can notice of the ways that a signal takes.
-PathParameters path_limits(const GnssConfig& c, const MultipathRule& multipath) {
-  PathParameters p;
-  p.cutoff_m = multipath.reach_m();
-  p.weakest_nlos_db = c.locks.tracking_threshold_dbhz - c.link.cn0_zenith_dbhz;
-  p.weakest_db = std::min(p.weakest_db, p.weakest_nlos_db);
-  return p;
-}
 
 SignalLockParameters lock_parameters(const GnssConfig& c, std::uint64_t seed) {
   return {.seed = seed,
@@ -422,7 +429,9 @@ Result<PseudorangeParts> make_parts(const SensorSetup& at) {
                    MultipathParameters{c.reception.cutoff_m(), c.locks.tracking_threshold_dbhz, design}));
     parts.channels[i].tracking = std::make_unique<CodeTracking>(design);
   }
-  CANYON_TRY(parts.paths, make_propagation(c.propagation, path_limits(c, *parts.channels[0].multipath)));
+  parts.path_limits = path_limits(c);
+  parts.path_limits.cutoff_m = parts.channels[0].multipath->reach_m();
+  CANYON_TRY(parts.paths, make_propagation(c.propagation, parts.path_limits));
   CANYON_TRY(parts.clock,
              c.receiver_clock.make("gnss.receiver_clock", ReceiverClockParameters{at.seed, 1.0 / c.rate_hz}));
   CANYON_TRY(parts.mode, c.mode.make("gnss.mode", ReceiverModeSetup{at.seed, parts.ionosphere->acts(),

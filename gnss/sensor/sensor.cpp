@@ -7,12 +7,24 @@
 namespace canyon::gnss {
 namespace {
 
+std::vector<Need> no_needs(const GnssConfig&, const GnssSurroundings&, const RouteSegment&) {
+  return {};
+}
+
 constexpr ModelRow<MakeSensor> kSensors[] = {
-    {"pseudorange", make_pseudorange_sensor, "satellites, delays, paths in the scene, receiver and solver"},
-    {"truth_plus_isotropic", make_isotropic_sensor,
-     "truth plus a random direction times U(min, max), independent per fix", isotropic_parameters},
-    {"truth_plus_white", make_white_noise_sensor, "truth plus white Gaussian noise per axis", white_noise_parameters},
-    {"satellite_count", make_satellite_count_sensor,
+    {"pseudorange",
+     {make_pseudorange_sensor, pseudorange_needs},
+     "satellites, delays, paths in the scene, receiver and solver"},
+    {"truth_plus_isotropic",
+     {make_isotropic_sensor, no_needs},
+     "truth plus a random direction times U(min, max), independent per fix",
+     isotropic_parameters},
+    {"truth_plus_white",
+     {make_white_noise_sensor, no_needs},
+     "truth plus white Gaussian noise per axis",
+     white_noise_parameters},
+    {"satellite_count",
+     {make_satellite_count_sensor},
      "Balaguer & Carpin (2008): truth plus noise that falls with the number of satellites in sight",
      satellite_count_parameters},
 };

@@ -9,6 +9,7 @@
 #include "canyon/core/result.h"
 #include "canyon/core/truth.h"
 #include "canyon/gnss/paths/counters.h"
+#include "canyon/gnss/paths/path_omissions.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
@@ -34,6 +35,9 @@ class GnssSensor {
   virtual GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                              const scene::SceneAt& scene) = 0;
   virtual GnssCounters counters() const = 0;
+  /// From the next epoch on, until it is called again: what has been shown to change nothing where the antenna will be
+  /// (gnss/sensor/sensor_need.h) is not computed. A sensor that has none of it to leave out does nothing.
+  virtual void leave_out(const PathOmissions&) {}
   /// False where fixes come without satellites: counts of them and DOP jumps are then undefined.
   virtual bool has_satellites() const { return false; }
   /// What a user should be told once: damaged records of the navigation file that were skipped, one line each.

@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/core/motion/route_segment.h"
+#include "canyon/core/need.h"
 #include "canyon/gnss/sensor/sensor.h"
 
 namespace canyon::gnss {
@@ -15,7 +18,13 @@ struct SensorSetup {
   GpsTime start, end;
   const scene::Scene& scene;
 };
-using MakeSensor = Result<std::unique_ptr<GnssSensor>>(const ModelParameters& own, const SensorSetup& at);
+
+struct GnssSurroundings;
+/// States which effects of the sensor that depend on places act along a piece of a route (gnss/sensor/sensor_need.h).
+using StateSensorNeeds = std::vector<Need>(const GnssConfig& config, const GnssSurroundings& around,
+                                           const RouteSegment& segment);
+using MakeSensor = MakerAndNeed<Result<std::unique_ptr<GnssSensor>>(const ModelParameters& own, const SensorSetup& at),
+                                StateSensorNeeds>;
 ModelTable<MakeSensor> sensor_models();
 
 /// truth_plus_isotropic: the fix is the truth plus an isotropic direction times U(min, max); see isotropic_sensor.cpp.
@@ -32,5 +41,6 @@ void satellite_count_parameters(ModelParameters& section);
 
 /// pseudorange: satellites, delays, paths, receiver and solver; see pseudorange_sensor.cpp.
 Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const ModelParameters& own, const SensorSetup& at);
+StateSensorNeeds pseudorange_needs;
 
 }  // namespace canyon::gnss

@@ -1,5 +1,7 @@
 #include "canyon/gnss/paths/diffraction/diffraction.h"
 
+#include "canyon/gnss/paths/need/path_question.h"
+
 namespace canyon::gnss {
 namespace {
 
@@ -14,10 +16,16 @@ std::unique_ptr<DiffractionModel> make_none(const PathParameters&) {
   return std::make_unique<Shadows>();
 }
 
+std::vector<Need> no_needs(const PathQuestion&) {
+  return {};
+}
+
 constexpr ModelRow<MakeDiffractionModel> kModels[] = {
-    {"none", without_keys<make_none>, "shadows are sharp"},
-    {"knife_edge", without_keys<make_knife_edge>, "ITU-R P.526 knife edges at roofs and corners"},
-    {"double_knife_edge", without_keys<make_double_knife_edge>, "also over two edges after each other"},
+    {"none", {without_keys<make_none>, no_needs}, "shadows are sharp"},
+    {"knife_edge", {without_keys<make_knife_edge>, diffraction_needs}, "ITU-R P.526 knife edges at roofs and corners"},
+    {"double_knife_edge",
+     {without_keys<make_double_knife_edge>, diffraction_needs},
+     "also over two edges after each other"},
 };
 
 }  // namespace

@@ -19,7 +19,9 @@ class DiffractionModel {
   virtual bool bends() const { return true; }
 };
 
-using MakeDiffractionModel = std::unique_ptr<DiffractionModel>(const ModelParameters& own, const PathParameters& p);
+using MakeDiffractionModel =
+    MakerAndNeed<std::unique_ptr<DiffractionModel>(const ModelParameters& own, const PathParameters& p),
+                 StatePathNeeds>;
 ModelTable<MakeDiffractionModel> diffraction_models();
 
 /// Knife edges of ITU-R P.526-15: each convex edge of the scene (roof, corner of a house) that the satellite's wave

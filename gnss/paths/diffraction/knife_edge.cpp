@@ -1,5 +1,6 @@
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/core/units.h"
@@ -39,6 +40,18 @@ Complex fresnel_integral(double x) {
 
 Complex knife_edge_field(double nu) {
   return 0.5 * Complex(1.0, 1.0) * std::conj(Complex(0.5, 0.5) - fresnel_integral(nu));
+}
+
+double largest_knife_edge_nu(double weakest_db) {
+  // Deep in the shadow the field falls as 0.225 / nu.
+  const double weakest = std::pow(10.0, weakest_db / 20.0);
+  double nu = 0.0;
+  while (std::abs(knife_edge_field(nu)) > weakest && nu < 30.0) nu += 0.01;
+  return std::max(nu, kDeepestLitNu);
+}
+
+double largest_detour_m(double largest_nu, double wavelength_m) {
+  return 0.25 * largest_nu * largest_nu * wavelength_m;
 }
 
 double knife_edge_nu(double detour_m, double wavelength_m) {

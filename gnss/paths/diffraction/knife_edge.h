@@ -16,4 +16,11 @@ std::complex<double> knife_edge_field(double nu);
 /// eq. 28 for small angles).
 double knife_edge_nu(double detour_m, double wavelength_m);
 
+/// On the lit side ripples beyond this nu are below 0.7 dB, and left out.
+inline constexpr double kDeepestLitNu = 3.0;
+/// Beyond this nu a field in the shadow is weaker than `weakest_db` (at most 30: 43 dB), and a lit one undisturbed.
+double largest_knife_edge_nu(double weakest_db);
+/// The detour of that nu: longer ways over an edge are not looked at, m.
+double largest_detour_m(double largest_nu, double wavelength_m);
+
 }  // namespace canyon::gnss

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kOff_m = 0.03;   // legs meet the edge this far outside, beyond the rounding of single precision
 constexpr double kProbe_m = 0.3;  // a true edge has this much air around it
-constexpr double kDeepest = 3.0;  // lit side: beyond this nu the ripples are below 0.7 dB
 
 /// Where a plane wave from s bends at an edge towards p.
 struct Bend {
@@ -57,13 +56,8 @@ std::optional<Bend> bend(const scene::Edge& edge, const Eigen::Vector3d& p_W, co
 class KnifeEdges final : public DiffractionModel {
  public:
   KnifeEdges(const PathParameters& p, bool twice) : p_(p), twice_(twice) {
-    // Deep in the shadow the field falls as 0.225 / nu.
-    const double weakest = std::pow(10.0, p.weakest_nlos_db / 20.0);
-    double nu = 0.0;
-    while (std::abs(knife_edge_field(nu)) > weakest && nu < 30.0) nu += 0.01;
-    nu = std::max(nu, kDeepest);
-    weakest_ = weakest;
-    largest_nu_ = nu;
+    weakest_ = std::pow(10.0, p.weakest_nlos_db / 20.0);
+    largest_nu_ = largest_knife_edge_nu(p.weakest_nlos_db);
   }
 
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
@@ -75,7 +69,7 @@ class KnifeEdges final : public DiffractionModel {
     const double reach_m = largest_detour_m(waves.longest_wavelength_m());
     std::vector<std::uint32_t> candidates;
     edges.shading(p_A_W, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_m, candidates);
-    std::vector<double> nearest_nu(out.size(), kDeepest);
+    std::vector<double> nearest_nu(out.size(), kDeepestLitNu);
     for (const std::uint32_t i : candidates) {
       const scene::Edge& edge = edges.edges()[i];
       const Eigen::Vector3d to_middle_W = 0.5 * (edge.a_W + edge.b_W) - p_A_W;
@@ -113,7 +107,7 @@ class KnifeEdges final : public DiffractionModel {
   };
 
   /// Beyond it the field is too weak to matter, and the lit side's ripples too small.
-  double largest_detour_m(double wavelength_m) const { return 0.25 * largest_nu_ * largest_nu_ * wavelength_m; }
+  double largest_detour_m(double wavelength_m) const { return gnss::largest_detour_m(largest_nu_, wavelength_m); }
 
   static Eigen::Vector3d outside(const scene::Edge& edge, const Bend& b) { return b.point_W + kOff_m * edge.outward_W; }
 
@@ -165,7 +159,7 @@ class KnifeEdges final : public DiffractionModel {
     const auto& edges = scene.scene().edges();
     std::vector<std::uint32_t> candidates;
     edges.shading(p_W, std::asin(std::clamp(to_far_W.z(), 0.0, 1.0)), largest_detour_m(wavelength_m), candidates);
-    double nearest_nu = kDeepest;
+    double nearest_nu = kDeepestLitNu;
     std::complex<double> field = 1.0;
     for (const std::uint32_t i : candidates) {
       const scene::Edge& edge = edges.edges()[i];

@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/need/path_question.h"
+
+namespace canyon::gnss {
+
+namespace {
+
+constexpr double kShortestWave_m = 0.18;  // of L1 and G1, the highest carriers that are received, 0.187 m
+constexpr std::int64_t kMostTried = 2'000'000;
+
+/// The image search of image_search.cpp with a ball in place of the antenna and the satellites of a span of time in
+/// place of those of an epoch: every sequence of facets that the search would follow from any point of the ball is
+/// followed here. Depth first, and done with the first sequence through which a satellite may be seen.
+class Search {
+ public:
+  Search(int order, const PathQuestion& q) : q_(q), order_(order), facets_(q.scene.facets().facets()) {
+    const double weakest_db = std::min(q.limits.weakest_db, q.limits.weakest_nlos_db);
+    reach_per_area_ = q.limits.finite_facets ? 1.0 / (kShortestWave_m * std::pow(10.0, weakest_db / 20.0))
+                                             : std::numeric_limits<double>::infinity();
+  }
+
+  Need run() {
+    Need need{.effect = kReflections[order_ - 1]};
+    if (extend(1, q_.antenna(), nullptr)) {
+      need.reason = tried_ > kMostTried ? "too many ways over walls to try them all" : found();
+      return need;
+    }
+    need.verdict = Verdict::kNotNeeded;
+    need.reason = facets_.empty() ? "there are no walls" : "no walls mirror a satellite onto the corridor";
+    return need;
+  }
+
+ private:
+  std::string found() const {
+    std::string over, last;
+    for (int k = 0; k < order_; ++k) {
+      const std::string& name = q_.scene.objects()[facets_[sequence_[static_cast<std::size_t>(k)]].object].name;
+      if (name != last) over += (over.empty() ? "" : " and ") + name;
+      last = name;
+    }
+    return over + " may mirror " + seen_.str();
+  }
+
+  /// May a wave leave the facet at the outer end of the sequence for the ball `image`, seen through `last` if any?
+  bool extend(int count, const Ball& image, const scene::Facet* last) {
+    for (std::uint32_t i = 0; i < facets_.size(); ++i) {
+      const scene::Facet& f = facets_[i];
+      if (++tried_ > kMostTried) return true;
+      if (&f == last || !in_reach(f, image) || (last != nullptr && !seen_through(image, *last, f))) continue;
+      sequence_[static_cast<std::size_t>(count - 1)] = i;
+      const double to_plane_m = f.normal_W.dot(image.center_W) - f.offset_m;
+      const Ball mirrored{image.center_W - 2.0 * to_plane_m * f.normal_W, image.radius_m};
+      if (count < order_ ? extend(count + 1, mirrored, &f) : satellite(mirrored, f)) return true;
+    }
+    return false;
+  }
+
+  bool satellite(const Ball& image, const scene::Facet& f) {
+    const Ball around{f.center_W, f.radius_m};
+    const auto seen = q_.sky.through(image, around);
+    if (!seen) return false;
+    seen_ = q_.sky.directions[*seen].sv;
+    return true;
+  }
+
+  /// Does the facet face some point of the ball, and is it, if small, near enough to reflect enough?
+  bool in_reach(const scene::Facet& f, const Ball& image) const {
+    if (q_.scene.materials()[f.material].rf_absorbing) return false;
+    const double to_plane_m = f.normal_W.dot(image.center_W) - f.offset_m + image.radius_m;
+    if (to_plane_m <= 0.0) return false;
+    const double distance_m = (f.center_W - image.center_W).norm() - f.radius_m - image.radius_m;
+    return distance_m <= 0.0 || distance_m * distance_m <= reach_per_area_ * f.area_m2 * to_plane_m;
+  }
+
+  /// May a straight line from the ball behind `window` pass it and meet `f` in front of it?
+  static bool seen_through(const Ball& image, const scene::Facet& window, const scene::Facet& f) {
+    if (window.normal_W.dot(f.center_W) - window.offset_m < -f.radius_m) return false;
+    const Eigen::Vector3d a = window.center_W - image.center_W, b = f.center_W - image.center_W;
+    const double a_m = a.norm(), b_m = b.norm();
+    const double a_wide_m = window.radius_m + image.radius_m, b_wide_m = f.radius_m + image.radius_m;
+    if (a_m <= a_wide_m || b_m <= b_wide_m) return true;
+    const double wide_rad = std::asin(a_wide_m / a_m) + std::asin(b_wide_m / b_m) + 1e-6;
+    return wide_rad >= kPi || a.dot(b) >= std::cos(wide_rad) * a_m * b_m;
+  }
+
+  const PathQuestion& q_;
+  int order_;
+  const std::vector<scene::Facet>& facets_;
+  double reach_per_area_ = 0.0;
+  std::array<std::uint32_t, SignalPath::kMaxReflections> sequence_{};
+  SatelliteId seen_;
+  std::int64_t tried_ = 0;
+};
+
+}  // namespace
+
+Need reflection_need(int order, const PathQuestion& question) {
+  return Search(order, question).run();
+}
+
+}  // namespace canyon::gnss
