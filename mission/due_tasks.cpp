@@ -60,6 +60,7 @@ Status MissionRun::take_gnss(const Due& due) {
   const Eigen::Vector3d lever = config_.gnss.lever_arm_m;
   const Eigen::Vector3d p_A_W = truth.X_WB * lever;
   const Eigen::Vector3d v_A_W = truth.v_WB_W + truth.X_WB.R * truth.w_WB_B.cross(lever);
+  gnss_->leave_out(corridor_.at(truth.t - mission_.start, truth.X_WB.p));
   gnss::GnssOutput output =
       clock_.charge(Part::kGnss, [&] { return gnss_->measure(due.k, truth.t, p_A_W, v_A_W, scene_); });
   CANYON_TRY_STATUS(boundaries_.check(output));
@@ -124,7 +125,7 @@ void MissionRun::forget_motion_before(GpsTime t) {
 /// An autonomy that does not look leaves the map, which takes keyframes only. Whether a scan becomes one is known
 /// before it is made, if the filter has come there.
 bool MissionRun::scan_is_wanted(GpsTime t) const {
-  return autonomy_->looks() || localizer_.at() != t || mapper_.wants(estimate(t));
+  return autonomy_->looks() || (!omissions_.keyframes && (localizer_.at() != t || mapper_.wants(estimate(t))));
 }
 
 Status MissionRun::use_scan(const LidarScan& scan) {
@@ -140,13 +141,7 @@ Status MissionRun::use_scan(const LidarScan& scan) {
       clock_.charge(Part::kLidar, [&] { return lidar::deskew(scan, short_of ? to_now : motion, X_BL_); });
   record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());
 
-  const Keyframe* keyframe = nullptr;
-  if (!deskewed.points.empty())
-    keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
-  if (keyframe != nullptr) {
-    CANYON_TRY_STATUS(boundaries_.check(*keyframe));
-    CANYON_TRY_STATUS(add_keyframe(deskewed, *keyframe, true_motion_.at(scan.t).value()));
-  }
+  if (!omissions_.keyframes && !deskewed.points.empty()) CANYON_TRY_STATUS(map_scan(deskewed, now));
 
   const NavEstimate seen = with_correction(now);
   clock_.charge(Part::kAutonomy, [&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); });
@@ -179,6 +174,13 @@ Status MissionRun::record_epoch(const Due& due) {
     CANYON_TRY_STATUS(boundaries_.check(row));
     return recorder_.epoch(row);
   });
+}
+
+Status MissionRun::map_scan(const LidarScan& deskewed, const NavEstimate& now) {
+  const Keyframe* keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
+  if (keyframe == nullptr) return Ok{};
+  CANYON_TRY_STATUS(boundaries_.check(*keyframe));
+  return add_keyframe(deskewed, *keyframe, true_motion_.at(deskewed.t).value());
 }
 
 Status MissionRun::add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true) {

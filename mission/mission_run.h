@@ -5,6 +5,7 @@
 
 #include "canyon/core/motion/true_motion.h"
 #include "canyon/mission/boundaries.h"
+#include "canyon/mission/corridor_guard.h"
 #include "canyon/mission/localizer.h"
 #include "canyon/mission/mapper.h"
 #include "canyon/mission/motion/motion_source.h"
@@ -36,6 +37,7 @@ class MissionRun {
     std::unique_ptr<Autonomy> autonomy;
     bool open_loop = false;
     Recorder* recorder = nullptr;
+    Omissions omissions;
   };
   MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock);
 
@@ -52,6 +54,7 @@ class MissionRun {
   bool scan_is_wanted(GpsTime t) const;
   void forget_motion_before(GpsTime t);
   Status use_scan(const LidarScan& scan);
+  Status map_scan(const LidarScan& deskewed, const NavEstimate& now);
   Status add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true);
   void count_work();
   void place_traffic(GpsTime t);
@@ -72,6 +75,8 @@ class MissionRun {
   std::unique_ptr<lidar::Scanner> scanner_;
   Localizer localizer_;
   Mapper mapper_;
+  const Omissions omissions_;
+  CorridorGuard corridor_;
   std::unique_ptr<Autonomy> autonomy_;
   Scorer scorer_;
   Schedule schedule_;

@@ -25,18 +25,22 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
           {config.fusion, parts.imu_noise, mission.scene->frame(), config.imu.lever_arm_m, config.gnss.lever_arm_m},
           mission.start, boundaries_, clock),
       mapper_(config.registration, std::move(parts.registration), lidar::sensor_in_body(config.lidar)),
+      omissions_(std::move(parts.omissions)),
+      corridor_(omissions_.corridor),
       autonomy_(std::move(parts.autonomy)),
       scorer_(config, mission, scene_),
       schedule_(mission.start, {config.imu.rate_hz, config.gnss.rate_hz, config.lidar.rate_hz, config.autonomy.rate_hz,
                                 config.run.epoch_rate_hz}),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
-      maps_(config.run, lidar::registers(config.registration), clock) {
+      maps_(config.run, !omissions_.maps, lidar::registers(config.registration), clock) {
   record_.config = config;
   record_.files = mission.files;
   record_.frame = mission.scene->frame();
   record_.start = mission.start;
   record_.open_loop = open_loop_;
+  record_.maps_made = !omissions_.maps;
+  record_.keyframes_made = !omissions_.keyframes;
 
   // The filter starts at the truth, but for its attitude: the seeded error of the alignment.
   const KinematicState& truth = source_->now().motion;
@@ -69,6 +73,7 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
       given.autonomy ? std::move(given.autonomy) : make_autonomy(config.autonomy, mission.prior, mission.start);
   parts.open_loop = tape != nullptr;
   parts.recorder = given.recorder;
+  if (given.omissions != nullptr) parts.omissions = *given.omissions;
   std::unique_ptr<MissionRun> run(new MissionRun(config, mission, std::move(parts), clock));
   CANYON_TRY_STATUS(run->recorder_.node(run->source_->now()));
   return run;
@@ -120,6 +125,7 @@ Result<RunRecord> MissionRun::finish() {
   CANYON_TRY_STATUS(boundaries_.check_end(record_.simulated_s, record_.distance_m));
   record_.warnings = mission_.warnings;
   for (std::string& warning : gnss_->warnings()) record_.warnings.push_back(std::move(warning));
+  if (corridor_.left()) record_.warnings.push_back(*corridor_.left());
   CANYON_TRY_STATUS(maps_.finish(scene_, boundaries_, record_, recorder_));
   CANYON_TRY_STATUS(recorder_.finish());
   count_work();

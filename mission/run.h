@@ -6,6 +6,7 @@
 #include "canyon/core/result.h"
 #include "canyon/mission/autonomy/autonomy.h"
 #include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/omissions.h"
 #include "canyon/mission/recorder/recorder.h"
 #include "canyon/mission/recorder/run_record.h"
 
@@ -16,6 +17,8 @@ struct RunParts {
   const Tape* tape = nullptr;          ///< the true motion; must outlive the run
   Recorder* recorder = nullptr;        ///< gets what the run gives as it comes; null: nobody does
   std::unique_ptr<Autonomy> autonomy;  ///< who drives
+  /// What it leaves out; null: nothing. The configuration must be without() it; must outlive the run.
+  const Omissions* omissions = nullptr;
 };
 
 /// Drives one mission. The master step is the vehicle's own (Vehicle::kStep_ns); within it everything else is due at

@@ -6,14 +6,14 @@
 
 namespace canyon::mission {
 
-ScoredMaps::ScoredMaps(const RunConfig& config, bool registers, PartClock& clock)
-    : range2_m2_(static_cast<float>(config.map_range_m * config.map_range_m)),
-      clock_(clock),
-      prior_(config.map_leaf_m) {
-  if (registers) registered_.emplace(config.map_leaf_m);
+ScoredMaps::ScoredMaps(const RunConfig& config, bool wanted, bool registers, PartClock& clock)
+    : range2_m2_(static_cast<float>(config.map_range_m * config.map_range_m)), clock_(clock) {
+  if (wanted) prior_.emplace(config.map_leaf_m);
+  if (wanted && registers) registered_.emplace(config.map_leaf_m);
 }
 
 void ScoredMaps::add(const LidarScan& deskewed, const Keyframe& keyframe) {
+  if (!prior_) return;
   clock_.charge(Part::kScoring, [&] {
     for (const LidarPoint& point : deskewed.points) {
       const Eigen::Vector3f p_L(point.x, point.y, point.z);

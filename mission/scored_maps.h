@@ -12,10 +12,10 @@
 namespace canyon::mission {
 
 /// The two maps of a run's keyframes that are scored at its end: with the filter's pose alone, and registered. Without
-/// registration there is no second one.
+/// registration there is no second one; of a run whose maps nobody reads there are none.
 class ScoredMaps {
  public:
-  ScoredMaps(const RunConfig& config, bool registers, PartClock& clock);
+  ScoredMaps(const RunConfig& config, bool wanted, bool registers, PartClock& clock);
 
   /// `deskewed` in L at the keyframe's time.
   void add(const LidarScan& deskewed, const Keyframe& keyframe);

@@ -42,6 +42,10 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
   return comparison;
 }
 
+const mission::Omissions* omissions(const Comparison& comparison, std::size_t i) {
+  return comparison.plans.empty() ? nullptr : &comparison.plans[i].omissions;
+}
+
 namespace {
 
 /// One run of a comparison, with what it leaves behind.
@@ -64,8 +68,10 @@ Result<DrivenRun> drive(const Comparison& comparison, std::size_t i, const std::
     recorders.push_back(files.get());
   }
   mission::Recorders all(std::move(recorders));
-  CANYON_TRY(run.record, mission::run_mission(comparison.configs[i], mission, &progress,
-                                              {.tape = tape, .recorder = &all, .autonomy = nullptr}));
+  CANYON_TRY(run.record,
+             mission::run_mission(
+                 comparison.configs[i], mission, &progress,
+                 {.tape = tape, .recorder = &all, .autonomy = nullptr, .omissions = omissions(comparison, i)}));
   run.record.name = plan.name;
   run.record.gnss = plan.gnss;
   run.record.imu = plan.imu;
@@ -106,6 +112,7 @@ Result<Results> compare(const Comparison& comparison, const std::string& directo
     results.records.push_back(std::move(run.record));
   }
   results.mission = &comparison.missions.front();
+  results.plans = comparison.plans;
   if (comparison.tape) results.tape_source = comparison.tape->source;
   results.threads = threads();
   results.peak_memory_mb = peak_memory_mb();

@@ -7,6 +7,7 @@
 #include "canyon/core/files/tape.h"
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
+#include "canyon/study/plan/plan.h"
 #include "canyon/study/results/results.h"
 
 namespace canyon::study {
@@ -25,6 +26,7 @@ struct Comparison {
   std::vector<RunPlan> plan;
   std::vector<mission::MissionConfig> configs;     ///< same index
   std::vector<mission::PreparedMission> missions;  ///< same index; equal scenes are shared
+  std::vector<Plan> plans;   ///< same index: what each run leaves out; empty: nothing. `configs` are without it
   std::optional<Tape> tape;  ///< all runs on this true motion (open loop); none: each drives by itself (closed loop)
 };
 
@@ -36,6 +38,9 @@ struct TapeChoice {
 };
 /// Finds or drives the tape and checks that it fits every run's mission.
 Status choose_tape(const TapeChoice& choice, Comparison& comparison);
+
+/// What run i leaves out.
+const mission::Omissions* omissions(const Comparison& comparison, std::size_t i);
 
 /// Every mistake of the mission file is found here, before any time is spent.
 Result<Comparison> prepare_comparison(const mission::MissionFile& file, const std::vector<RunPlan>& plan);

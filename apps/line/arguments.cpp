@@ -19,6 +19,11 @@ Argument Argument::type(const char* name) const {
   return *this;
 }
 
+Argument Argument::value_optional(const std::string& value) const {
+  option_->expected(0, 1)->default_str(value);
+  return *this;
+}
+
 Argument Argument::excludes(Argument other) const {
   option_->excludes(other.option_);
   return *this;

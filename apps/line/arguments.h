@@ -21,6 +21,8 @@ class Argument {
   Argument required() const;
   Argument default_shown() const;  ///< the variable's present value, in --help
   Argument type(const char* name) const;
+  /// The value may be left away, and is then this one. It stands last, or after "=": what follows is taken for it.
+  Argument value_optional(const std::string& value) const;
   Argument excludes(Argument other) const;
   Argument among(const std::vector<std::string>& words) const;
 

@@ -25,6 +25,7 @@ struct Verb {
 Verb compare_verb();
 Verb tradeoff_verb();
 Verb run_verb();
+Verb plan_verb();
 Verb report_verb();
 Verb keys_verb();
 Verb scene_info_verb();

@@ -15,6 +15,7 @@
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
+#include "canyon/study/plan/follow.h"
 #include "canyon/study/results/over_seeds.h"
 #include "canyon/study/results/results.h"
 #include "canyon/study/seeds/further_seeds.h"
@@ -22,6 +23,8 @@
 namespace canyon::apps {
 
 namespace {
+
+constexpr const char* kMakePlan = "make";
 
 void print_json(const study::Results& results, const std::string& directory, const std::string& hash) {
   nlohmann::ordered_json out = study::summary_json(results);
@@ -68,8 +71,34 @@ void declare_figures_option(Arguments& arguments, FigureOptions& options) {
                    "rows of the table, by their keys with commas between (canyon keys --figures); without it all");
 }
 
+void declare_plan_options(Arguments& arguments, PlanOptions& options) {
+  arguments
+      .option(
+          "--plan", options.plan,
+          "leave out what a plan says that is not needed: a file of canyon plan --write, or without one a plan made "
+          "here for each run")
+      .type("FILE")
+      .value_optional(kMakePlan);
+  arguments.option("--for", options.outputs, "what somebody will read, for a plan that is made here").default_shown();
+}
+
+namespace {
+
+Status follow_plan(const PlanOptions& options, study::Comparison& comparison) {
+  if (options.plan.empty()) return Ok{};
+  if (options.plan.ends_with(".toml"))
+    return Error{.file = "--plan",
+                 .what = "\"" + options.plan + "\" is a mission file",
+                 .expected = "a plan file, or the mission before --plan"};
+  CANYON_TRY(const auto outputs, study::outputs_of(split_list(options.outputs), "--for"));
+  return study::follow_plan(options.plan == kMakePlan ? "" : options.plan, outputs, comparison);
+}
+
+}  // namespace
+
 Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const FigureOptions& figures,
-                             const mission::MissionFile& file, const std::vector<study::RunPlan>& plan) {
+                             const PlanOptions& leave_out, const mission::MissionFile& file,
+                             const std::vector<study::RunPlan>& plan) {
   set_threads(options.common.threads);
   const auto keys = figures.figures.empty() ? std::vector<std::string>() : split_list(figures.figures);
   CANYON_TRY_STATUS(study::choose_figures(keys, "--figures"));
@@ -79,6 +108,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
                  .what = "is for open loops",
                  .expected = "--open-loop beside it"};
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
+  CANYON_TRY_STATUS(follow_plan(leave_out, comparison));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));

@@ -24,9 +24,17 @@ struct FigureOptions {
 };
 void declare_figures_option(Arguments& arguments, FigureOptions& options);
 
+/// What a run may leave out.
+struct PlanOptions {
+  std::string plan;                                     ///< empty: nothing; "make", or a plan file
+  std::string outputs = "outcome,position,map,clouds";  ///< of a plan that is made here
+};
+void declare_plan_options(Arguments& arguments, PlanOptions& options);
+
 /// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run
 /// share.
 Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const FigureOptions& figures,
-                             const mission::MissionFile& file, const std::vector<study::RunPlan>& plan);
+                             const PlanOptions& leave_out, const mission::MissionFile& file,
+                             const std::vector<study::RunPlan>& plan);
 
 }  // namespace canyon::apps

@@ -6,7 +6,7 @@
 
 namespace canyon::apps {
 
-void declare_mission_options(Arguments& arguments, MissionOptions& options) {
+void declare_mission_choice(Arguments& arguments, MissionOptions& options) {
   declare_common(arguments, options.common);
   arguments.option("mission", options.mission, "mission file (TOML); without it the built-in mission")
       .type("MISSION.toml");
@@ -14,6 +14,10 @@ void declare_mission_options(Arguments& arguments, MissionOptions& options) {
       .within(std::int64_t{0}, kLargestSeed);
   arguments.option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
   arguments.option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
+}
+
+void declare_mission_options(Arguments& arguments, MissionOptions& options) {
+  declare_mission_choice(arguments, options);
   arguments.option("--out", options.out, "results directory; default results/<mission>-<seed>-<time>");
   arguments.flag("--force", options.force,
                  "replace the results directory if it exists; only one that canyon wrote, or an empty one");

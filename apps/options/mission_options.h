@@ -18,6 +18,8 @@ struct MissionOptions {
   bool force = false;
 };
 void declare_mission_options(Arguments& arguments, MissionOptions& options);
+/// Of these, which mission it is: no results directory.
+void declare_mission_choice(Arguments& arguments, MissionOptions& options);
 
 /// The mission file with the options laid over it.
 Result<mission::MissionFile> load_mission(const MissionOptions& options);

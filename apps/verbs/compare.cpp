@@ -12,6 +12,7 @@ VerbAction declare(Arguments& arguments) {
     MissionOptions mission;
     LoopOptions loop;
     FigureOptions figures;
+    PlanOptions leave_out;
     std::string fidelities = "low,high,paper";
     bool no_two_by_two = false;
   };
@@ -19,6 +20,7 @@ VerbAction declare(Arguments& arguments) {
   declare_mission_options(arguments, options->mission);
   declare_loop_options(arguments, options->loop);
   declare_figures_option(arguments, options->figures);
+  declare_plan_options(arguments, options->leave_out);
   arguments
       .option("--seeds", options->figures.seeds,
               "every run with so many seeds, from the mission's own on: shares of success, medians and paired "
@@ -36,7 +38,7 @@ VerbAction declare(Arguments& arguments) {
     const std::vector<std::string> fidelities = split_list(options->fidelities);
     CANYON_TRY_STATUS(file.check_fidelities(fidelities, "--fidelities"));
     const bool square = !options->no_two_by_two && fidelities.size() > 1;
-    return drive_and_report(options->mission, options->loop, options->figures, file,
+    return drive_and_report(options->mission, options->loop, options->figures, options->leave_out, file,
                             study::plan_runs(fidelities, square));
   };
 }

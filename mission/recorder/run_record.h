@@ -25,6 +25,8 @@ struct RunRecord {
   LocalFrame frame;
   GpsTime start;
   bool open_loop = false;  ///< on a tape: no outcome, no waypoints
+  bool maps_made = true;   ///< and scored; not where a plan left them out
+  bool keyframes_made = true;
   double simulated_s = 0.0;
   double distance_m = 0.0;
   std::optional<Outcome> outcome;  ///< none in an open loop

@@ -31,6 +31,11 @@ double if_registered(const Run& r, double value) {
   return r.keyframes_registered ? value : kNaN;
 }
 
+/// Nor is a map that nobody asked for an empty one.
+double if_mapped(const Run& r, double value) {
+  return r.maps_made ? value : kNaN;
+}
+
 double capped_share(const lidar::MapQuality& map) {
   return map.points > 0 ? static_cast<double>(map.capped_points) / static_cast<double>(map.points) : kNaN;
 }
@@ -109,7 +114,7 @@ constexpr auto kFigures = std::to_array<Figure>({
     {kMap, "registration_error_rms_m", "m", "keyframe error, registered, RMS", kLower, kQuantity, 3,
      [](const Run& r) { return r.registration_rms_m; },
      "alignment and filter's pose weighed by their covariances; as all that is registered, null with [registration] method \"none\""},
-    {kMap, "keyframes", "", "keyframes", kNeither, kCount, 0, [](const Run& r) -> double { return r.keyframes; }},
+    {kMap, "keyframes", "", "keyframes", kNeither, kCount, 0, [](const Run& r) { return optional_count(r.keyframes); }},
     {kMap, "keyframes_registered", "", "keyframes registered", kNeither, kCount, 0,
      [](const Run& r) { return optional_count(r.keyframes_registered); }, "aligned with those before; all but the first", "keyframes"},
     {kMap, "keyframes_converged", "", "keyframes converged", kHigher, kCount, 0,
@@ -127,12 +132,12 @@ constexpr auto kFigures = std::to_array<Figure>({
     {kMap, "map_error_up_rms_m", "m", "map error up, registered, RMS", kLower, kQuantity, 3,
      [](const Run& r) { return r.registered_map.map_error_up_rms_m; }},
     {kMap, "map_points", "", "map points", kNeither, kCount, 0,
-     [](const Run& r) { return static_cast<double>(r.keyframes_registered ? r.registered_map.points : r.prior_map.points); },
+     [](const Run& r) { return if_mapped(r, static_cast<double>(r.keyframes_registered ? r.registered_map.points : r.prior_map.points)); },
      "of the registered map, or of the prior one where there is no other"},
     {kMap, "map_points_capped_prior", "", "map points capped, prior", kLower, kCount, 0,
-     [](const Run& r) { return static_cast<double>(r.prior_map.capped_points); }, "no true surface within 5 m"},
+     [](const Run& r) { return if_mapped(r, static_cast<double>(r.prior_map.capped_points)); }, "no true surface within 5 m"},
     {kMap, "map_points_capped", "", "map points capped, registered", kLower, kCount, 0,
-     [](const Run& r) { return if_registered(r, static_cast<double>(r.registered_map.capped_points)); }},
+     [](const Run& r) { return if_mapped(r, if_registered(r, static_cast<double>(r.registered_map.capped_points))); }},
     {kMap, "map_capped_prior_share", "%", "share of points capped, prior", kLower, kShare, 1, [](const Run& r) { return capped_share(r.prior_map); }},
     {kMap, "map_capped_share", "%", "share of points capped, registered", kLower, kShare, 1,
      [](const Run& r) { return if_registered(r, capped_share(r.registered_map)); }},

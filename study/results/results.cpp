@@ -14,6 +14,7 @@
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
+#include "canyon/study/plan/plan_file.h"
 #include "canyon/study/results/figures.h"
 #include "canyon/study/results/over_seeds.h"
 
@@ -115,7 +116,11 @@ Json manifest_json(const Results& results) {
                             {"velocity_m_s", {v.x(), v.y(), v.z()}}};
     runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
   }
+  Json left_out = Json::object();
+  for (std::size_t i = 0; i < results.plans.size(); ++i)
+    left_out[results.records[i].name] = left_out_json(results.plans[i]);
   return {{"schema", 1},
+          {"left_out", left_out},
           {"version", kVersion},
           {"commit", known(results.commit)},
           {"command_line", known(results.command_line)},

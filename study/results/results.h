@@ -9,6 +9,7 @@
 #include "canyon/core/result.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/recorder/run_record.h"
+#include "canyon/study/plan/plan.h"
 #include "canyon/study/results/paired_errors.h"
 #include "canyon/study/results/summary.h"
 
@@ -23,6 +24,7 @@ struct Results {
   std::vector<PairedErrors> paired;   ///< every run against the first; of open loops alone
   /// The same runs with the seeds that follow, one element per seed: summaries are all that is kept of them.
   std::vector<std::vector<RunSummary>> further_seeds;
+  std::vector<Plan> plans;  ///< by run: what it left out; empty: no run left anything out
   double wall_s = 0.0;
   double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
   int threads = 0;

@@ -39,6 +39,8 @@ Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatisti
   out.duration_s = record.simulated_s;
   out.distance_m = record.distance_m;
   CANYON_TRY_STATUS(statistics.fill(out, record.registers()));
+  out.maps_made = record.maps_made;
+  if (!record.keyframes_made) out.keyframes.reset();
   out.prior_map = record.prior_quality;
   if (record.registers()) out.registered_map = record.registered_quality;
   out.counters = record.counters;

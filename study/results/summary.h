@@ -18,6 +18,7 @@ struct RunSummary {
   std::optional<mission::Outcome> outcome;  ///< none in an open loop
   std::int64_t seed = 0;
   bool open_loop = false;  ///< neither outcome nor waypoints
+  bool maps_made = true;   ///< not where a plan left them out
   std::optional<mission::Failure> failure;
   std::vector<mission::WaypointScore> waypoints;
   int waypoints_reached = 0, mission_waypoints_reached = 0;
@@ -33,7 +34,7 @@ struct RunSummary {
   int fixes_due = 0, fixes_lost = 0;
 
   double registration_rms_m = kNaN, registration_prior_rms_m = kNaN;
-  int keyframes = 0;
+  std::optional<int> keyframes;                                  ///< none where a plan left them out
   std::optional<int> keyframes_registered, keyframes_converged;  ///< none where nothing is registered
   lidar::MapQuality prior_map, registered_map;
 

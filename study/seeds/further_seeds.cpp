@@ -24,7 +24,8 @@ Result<RunSummary> drive(const Comparison& comparison, std::size_t run, std::int
   CANYON_TRY(auto record, mission::run_mission(config, mission, &progress,
                                                {.tape = comparison.tape ? &*comparison.tape : nullptr,
                                                 .recorder = &statistics,
-                                                .autonomy = nullptr}));
+                                                .autonomy = nullptr,
+                                                .omissions = omissions(comparison, run)}));
   record.name = comparison.plan[run].name;
   record.gnss = comparison.plan[run].gnss;
   record.imu = comparison.plan[run].imu;

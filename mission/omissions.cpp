@@ -1,0 +1,19 @@
+#include "canyon/mission/omissions.h"
+
+#include "canyon/core/check.h"
+
+namespace canyon::mission {
+
+bool can_leave_out(const MissionConfig& config, const Omissions& omissions) {
+  if (omissions.registration && config.autonomy.map == MapPose::kRegistered) return false;
+  const bool registers = lidar::registers(config.registration) && !omissions.registration;
+  return !omissions.keyframes || (omissions.maps && !registers);
+}
+
+MissionConfig without(MissionConfig config, const Omissions& omissions) {
+  CANYON_CHECK(can_leave_out(config, omissions), "what is left out is read");
+  if (omissions.registration) config.registration.method.name = "none";
+  return config;
+}
+
+}  // namespace canyon::mission

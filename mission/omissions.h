@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canyon/core/motion/route_segment.h"
+#include "canyon/gnss/paths/path_omissions.h"
+#include "canyon/mission/config/mission_config.h"
+
+namespace canyon::mission {
+
+/// A piece of the planned corridor, and what cannot act on a vehicle in it.
+struct PlannedPlace {
+  RouteSegment segment;
+  gnss::PathOmissions paths;
+};
+
+/// What a run leaves out (study/plan decides it): nothing, unless it is told otherwise.
+struct Omissions {
+  // Because nobody reads it.
+  bool registration = false;  ///< keyframes are not aligned; only where no one works with registered poses
+  bool maps = false;          ///< no cells are kept, and nothing is scored
+  bool keyframes = false;     ///< none are chosen; nothing may be made of them
+
+  // Because it cannot act there.
+  std::vector<PlannedPlace> corridor;  ///< empty: nothing is known of places
+
+  bool any() const { return registration || maps || keyframes || !corridor.empty(); }
+};
+
+/// False where something that is not left out works with what is.
+bool can_leave_out(const MissionConfig& config, const Omissions& omissions);
+/// The configuration of a run that leaves these out: what the configuration itself can switch off. They must be
+/// such as can_leave_out().
+MissionConfig without(MissionConfig config, const Omissions& omissions);
+
+}  // namespace canyon::mission

@@ -1,0 +1,178 @@
+#include "canyon/study/plan/plan_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/core/files/files.h"
+#include "canyon/core/files/json_text.h"
+#include "canyon/core/output/json.h"
+#include "canyon/core/process/version.h"
+
+namespace canyon::study {
+
+namespace {
+
+constexpr const char* kKind = "canyon-plan-1";
+
+/// Of all that a plan depends on but the scene's own geometry.
+std::string mission_hash(const mission::MissionConfig& config) {
+  mission::MissionConfig copy = config;
+  copy.run.seed = 0;
+  return sha256_hex(fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); }));
+}
+
+Json place_json(const mission::PlannedPlace& place) {
+  Json points = Json::array();
+  for (const Eigen::Vector3d& p : place.segment.points_W) points.push_back({p.x(), p.y(), p.z()});
+  const gnss::PathOmissions& paths = place.paths;
+  return {{"start_m", place.segment.start_m},
+          {"end_m", place.segment.end_m},
+          {"half_width_m", place.segment.half_width_m},
+          {"low_m", place.segment.low_m},
+          {"high_m", place.segment.high_m},
+          {"no_occlusion", paths.occlusion},
+          {"no_foliage", paths.foliage},
+          {"no_diffraction", paths.diffraction},
+          {"most_reflections", paths.most_reflections},
+          {"points_m", points}};
+}
+
+/// Throws nlohmann's exceptions where something is missing or of another type.
+mission::PlannedPlace place_of(const nlohmann::json& json) {
+  mission::PlannedPlace place;
+  RouteSegment& segment = place.segment;
+  segment.start_m = json.at("start_m");
+  segment.end_m = json.at("end_m");
+  segment.half_width_m = json.at("half_width_m");
+  segment.low_m = json.at("low_m");
+  segment.high_m = json.at("high_m");
+  place.paths.occlusion = json.at("no_occlusion");
+  place.paths.foliage = json.at("no_foliage");
+  place.paths.diffraction = json.at("no_diffraction");
+  place.paths.most_reflections = json.at("most_reflections");
+  for (const auto& p : json.at("points_m")) segment.points_W.emplace_back(p.at(0), p.at(1), p.at(2));
+  return place;
+}
+
+bool sound(const mission::PlannedPlace& place) {
+  const RouteSegment& s = place.segment;
+  return !s.points_W.empty() && s.half_width_m >= 0.0 && s.low_m <= s.high_m && place.paths.most_reflections >= 0;
+}
+
+void fill(const nlohmann::json& json, Plan& plan) {
+  plan.mission = json.at("mission");
+  plan.fidelity = json.at("fidelity");
+  plan.half_width_m = json.at("half_width_m");
+  std::vector<std::string> outputs;
+  for (const auto& output : json.at("outputs")) outputs.push_back(output);
+  if (auto known = outputs_of(outputs, ""); known) plan.outputs = *std::move(known);
+  const auto& out = json.at("leave_out");
+  plan.omissions.registration = out.at("registration");
+  plan.omissions.maps = out.at("maps");
+  plan.omissions.keyframes = out.at("keyframes");
+  for (const auto& place : out.at("corridor")) plan.omissions.corridor.push_back(place_of(place));
+  for (const auto& line : json.at("effects")) {
+    PlannedEffect effect;
+    effect.need.effect = line.at("effect");
+    const std::string verdict = line.at("verdict");
+    for (const Verdict v : {Verdict::kNeeded, Verdict::kNotNeeded})
+      if (verdict == canyon::name(v)) effect.need.verdict = v;
+    effect.need.reason = line.at("reason");
+    effect.segment = line.at("segment");
+    effect.start_m = line.at("start_m");
+    effect.end_m = line.at("end_m");
+    plan.effects.push_back(std::move(effect));
+  }
+}
+
+Status check(const nlohmann::json& json, const std::string& path, const mission::MissionConfig& config,
+             const mission::PreparedMission& mission) {
+  const std::string version = json_string(json, "version");
+  if (version != kVersion)
+    return Error{.file = path,
+                 .what = "is a plan of canyon " + (version.empty() ? std::string("of no version") : version),
+                 .expected = std::string("one of canyon ") + kVersion + ": make it again with canyon plan --write"};
+  if (json_string(json, "scene_hash") != mission.scene->hash())
+    return Error{.file = path,
+                 .what = "is a plan for another scene",
+                 .expected = "one for the scene of this mission (" + mission.scene->hash().substr(0, 12) + "…)"};
+  if (json_string(json, "mission_hash") != mission_hash(config))
+    return Error{.file = path,
+                 .what = "is a plan for another mission (\"" + json_string(json, "mission") + "\", fidelity " +
+                         json_string(json, "fidelity") + ")",
+                 .expected = "one for this mission and fidelity, of the same keys but [run] seed"};
+  return Ok{};
+}
+
+}  // namespace
+
+Json effects_json(const Plan& plan) {
+  Json effects = Json::array();
+  for (const PlannedEffect& effect : plan.effects) {
+    const Need& need = effect.need;
+    const bool bounded = need.verdict == Verdict::kNotNeeded;
+    effects.push_back({{"effect", need.effect},
+                       {"segment", effect.segment},
+                       {"needed", need.verdict != Verdict::kNotNeeded},
+                       {"verdict", canyon::name(need.verdict)},
+                       {"reason", need.reason},
+                       {"bound", bounded ? Json(need.bound) : Json(nullptr)},
+                       {"bound_unit", need.bound_unit},
+                       {"saved_cpu_s", bounded ? or_null(effect.saved_cpu_s) : Json(0.0)},
+                       {"start_m", effect.start_m},
+                       {"end_m", effect.end_m}});
+  }
+  return effects;
+}
+
+Json left_out_json(const Plan& plan) {
+  Json out = Json::array();
+  for (const PlannedEffect& effect : plan.effects)
+    if (effect.need.verdict == Verdict::kNotNeeded)
+      out.push_back({{"effect", effect.need.effect}, {"segment", effect.segment}, {"reason", effect.need.reason}});
+  return out;
+}
+
+std::string plan_text(const Plan& plan, const mission::MissionConfig& config, const mission::PreparedMission& mission) {
+  Json outputs = Json::array(), corridor = Json::array();
+  for (const Output output : plan.outputs) outputs.push_back(name(output));
+  for (const mission::PlannedPlace& place : plan.omissions.corridor) corridor.push_back(place_json(place));
+  const Json json{{"kind", kKind},
+                  {"version", kVersion},
+                  {"mission", plan.mission},
+                  {"fidelity", plan.fidelity},
+                  {"mission_hash", mission_hash(config)},
+                  {"scene_hash", mission.scene->hash()},
+                  {"outputs", outputs},
+                  {"half_width_m", plan.half_width_m},
+                  {"effects", effects_json(plan)},
+                  {"leave_out",
+                   {{"registration", plan.omissions.registration},
+                    {"maps", plan.omissions.maps},
+                    {"keyframes", plan.omissions.keyframes},
+                    {"corridor", corridor}}}};
+  return json_text(json, 1) + "\n";
+}
+
+Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& config,
+                       const mission::PreparedMission& mission) {
+  CANYON_TRY(const std::string text, read_text_file(path));
+  CANYON_TRY(const nlohmann::json json, parse_json(text, path));
+  const Error no_plan{.file = path, .what = "is no plan", .expected = "a file of canyon plan --write"};
+  if (!json.is_object() || json_string(json, "kind") != kKind) return no_plan;
+  CANYON_TRY_STATUS(check(json, path, config, mission));
+  Plan plan;
+  try {
+    fill(json, plan);
+  } catch (const nlohmann::json::exception&) {
+    return no_plan;
+  }
+  const auto& corridor = plan.omissions.corridor;
+  if (!std::all_of(corridor.begin(), corridor.end(), sound) || !mission::can_leave_out(config, plan.omissions))
+    return no_plan;
+  return plan;
+}
+
+}  // namespace canyon::study

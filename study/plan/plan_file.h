@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "canyon/core/result.h"
+#include "canyon/study/plan/plan.h"
+
+namespace canyon::study {
+
+/// `effects` of `canyon plan --json` and of a plan file.
+nlohmann::ordered_json effects_json(const Plan& plan);
+
+/// Of these what is left out: {effect, segment, reason} each.
+nlohmann::ordered_json left_out_json(const Plan& plan);
+
+/// A plan as a file that `run --plan` and `compare --plan` follow: JSON, docs/plan.md. It names the version, the
+/// mission's configuration (without its seed, which decides nothing of a plan) and the scene that it was made for.
+std::string plan_text(const Plan& plan, const mission::MissionConfig& config, const mission::PreparedMission& mission);
+
+/// Reads it back for this mission. An Error, with file and line, for what is no plan; for one of another version,
+/// mission, fidelity or scene, and for one that leaves out what the mission reads.
+Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& config,
+                       const mission::PreparedMission& mission);
+
+}  // namespace canyon::study

@@ -1,0 +1,65 @@
+#include "canyon/study/plan/readers.h"
+
+#include <algorithm>
+
+namespace canyon::study {
+
+namespace {
+
+Need read_by(const char* effect, const std::string& reader) {
+  return {.effect = effect, .verdict = Verdict::kNeeded, .reason = "read by " + reader};
+}
+
+Need unread(const char* effect, const char* why) {
+  return {.effect = effect, .verdict = Verdict::kNotNeeded, .reason = why};
+}
+
+/// "--for map,clouds", of those that read maps; empty: none.
+std::string readers_of_maps(const std::vector<Output>& outputs) {
+  std::string readers;
+  for (const Output output : {Output::kMap, Output::kClouds})
+    if (reads(outputs, output)) readers += (readers.empty() ? "--for " : ",") + std::string(name(output));
+  return readers;
+}
+
+bool not_needed(const std::vector<Need>& needs, const char* effect) {
+  return std::any_of(needs.begin(), needs.end(),
+                     [&](const Need& need) { return need.effect == effect && need.verdict == Verdict::kNotNeeded; });
+}
+
+}  // namespace
+
+std::vector<Need> reader_needs(const mission::MissionConfig& config, const mission::PreparedMission& mission,
+                               const std::vector<Output>& outputs) {
+  std::vector<Need> needs;
+  const std::string maps = readers_of_maps(outputs);
+  const bool registered_poses = config.autonomy.map == mission::MapPose::kRegistered;
+  const bool registers = lidar::registers(config.registration);
+  const bool aligned = registers && (!maps.empty() || registered_poses);
+  if (registers)
+    needs.push_back(!maps.empty()      ? read_by(kRegistration, maps)
+                    : registered_poses ? read_by(kRegistration, "the autonomy ([autonomy] map = \"registered\")")
+                                       : unread(kRegistration, "neither an output nor the autonomy takes the poses"));
+  needs.push_back(maps.empty() ? unread(kMaps, "no output has a map") : read_by(kMaps, maps));
+  if (maps.empty() && !aligned)
+    needs.push_back(unread(kKeyframes, "nothing is made of them"));
+  else
+    needs.push_back(read_by(kKeyframes, maps.empty() ? "registration" : maps));
+
+  const bool looks = mission::make_autonomy(config.autonomy, mission.prior, mission.start)->looks();
+  const bool keyframes = !not_needed(needs, kKeyframes);
+  needs.push_back(looks       ? read_by(kScans, "the autonomy, all of them")
+                  : keyframes ? read_by(kScans, "the keyframes, where one is due")
+                              : unread(kScans, "the autonomy does not look, and no keyframe is taken"));
+  needs.push_back(mission.traffic.empty() ? unread(kMovedScene, "nothing moves in the scene")
+                                          : read_by(kMovedScene, "LIDAR, GNSS and scorer"));
+  return needs;
+}
+
+void leave_out_unread(const std::vector<Need>& needs, mission::Omissions& omissions) {
+  omissions.registration = omissions.registration || not_needed(needs, kRegistration);
+  omissions.maps = omissions.maps || not_needed(needs, kMaps);
+  omissions.keyframes = omissions.keyframes || not_needed(needs, kKeyframes);
+}
+
+}  // namespace canyon::study

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "canyon/core/motion/tape.h"
+#include "canyon/study/plan/plan.h"
+
+namespace canyon::study {
+
+/// What was found of one effect that a plan leaves out.
+struct VerifiedEffect {
+  std::string effect;
+  std::int64_t epochs = 0;      ///< at which it was left out and compared
+  std::int64_t violations = 0;  ///< of those, with a difference beyond the bound
+  double bound = 0.0;
+  double largest_difference = 0.0;
+};
+
+struct Verification {
+  std::vector<VerifiedEffect> effects;
+  std::int64_t epochs() const;  ///< each counts once, however many effects were left out at it
+  std::int64_t violations() const;
+  /// Median over effects with a bound above 0 of bound / largest difference; NaN where there is none.
+  double tightness() const;
+};
+
+/// Replays the tape with and without each omission and counts every difference beyond its bound:
+/// - what cannot act: `epochs` epochs of the GNSS sensor, anywhere in the corridor (study/plan/replay.h), without each
+///   effect by itself and without all of them;
+/// - what nobody reads: whole runs on the tape, of the mission's seed and those that follow, until `epochs` rows are
+///   compared.
+Result<Verification> verify_plan(const mission::MissionConfig& config, const mission::PreparedMission& mission,
+                                 const Tape& tape, const Plan& plan, std::int64_t epochs);
+
+}  // namespace canyon::study

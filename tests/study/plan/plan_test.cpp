@@ -1,0 +1,195 @@
+#include "canyon/study/plan/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canyon/core/files/files.h"
+#include "canyon/mission/motion/route_tape.h"
+#include "canyon/study/plan/plan_file.h"
+#include "canyon/study/plan/readers.h"
+#include "canyon/study/plan/run_pair.h"
+#include "canyon/study/plan/verify.h"
+#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/support/temporary_folder.h"
+
+namespace canyon::study {
+namespace {
+
+using mission::testing::RecordedRun;
+using mission::testing::scenes;
+using mission::testing::short_config;
+
+constexpr const char* kRegistered = "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"gicp\"\n";
+constexpr const char* kEmpty =
+    "[time]\nlimit_s = 6.0\n[scene]\nempty = true\n[[autonomy.waypoint]]\nname = \"1\"\np_m = [213.9, 109.9]\n";
+
+/// A mission that has been prepared, and a plan for it.
+struct Planned {
+  Planned(const std::string& fidelity, const std::string& extra, const std::vector<Output>& outputs)
+      : config(short_config(fidelity, fidelity, extra)),
+        mission(*mission::prepare(config, scenes())),
+        plan(*make_plan(config, mission, {.fidelity = fidelity, .outputs = outputs})) {}
+
+  Verdict verdict(const std::string& effect) const {
+    for (const PlannedEffect& line : plan.effects)
+      if (line.need.effect == effect) return line.need.verdict;
+    ADD_FAILURE() << effect;
+    return Verdict::kUndecidable;
+  }
+  RecordedRun drive(bool as_planned) const {
+    RecordedRun run;
+    const auto used = as_planned ? mission::without(config, plan.omissions) : config;
+    auto record = mission::run_mission(
+        used, mission, nullptr,
+        {.tape = nullptr, .recorder = &run, .autonomy = nullptr, .omissions = as_planned ? &plan.omissions : nullptr});
+    static_cast<mission::RunRecord&>(run) = *std::move(record);
+    return run;
+  }
+
+  mission::MissionConfig config;
+  mission::PreparedMission mission;
+  Plan plan;
+};
+
+const std::vector<Output> kDriving{Output::kOutcome, Output::kPosition};
+
+TEST(Readers, RegistrationIsReadByMapsAndByAnAutonomyThatTakesItsPoses) {
+  EXPECT_EQ(Planned("low", kRegistered, kDriving).verdict(kRegistration), Verdict::kNotNeeded);
+  EXPECT_EQ(Planned("low", kRegistered, {Output::kMap}).verdict(kRegistration), Verdict::kNeeded);
+  EXPECT_EQ(Planned("low", kRegistered, {Output::kClouds}).verdict(kMaps), Verdict::kNeeded);
+  const Planned corrected("low", std::string(kRegistered) + "[autonomy]\nmap = \"registered\"\n", kDriving);
+  EXPECT_EQ(corrected.verdict(kRegistration), Verdict::kNeeded);
+  EXPECT_EQ(corrected.verdict(kKeyframes), Verdict::kNeeded);
+  EXPECT_EQ(corrected.verdict(kMaps), Verdict::kNotNeeded);
+}
+
+TEST(Readers, ScansAreMadeForTheAutonomyOrForKeyframes) {
+  const std::string follower = "[time]\nlimit_s = 6.0\n[autonomy]\nmodel = \"route_follower\"\n";
+  EXPECT_EQ(Planned("low", "[time]\nlimit_s = 6.0\n", kDriving).verdict(kScans), Verdict::kNeeded);
+  EXPECT_EQ(Planned("low", follower, {Output::kMap}).verdict(kScans), Verdict::kNeeded);
+  const Planned blind("low", follower, kDriving);
+  EXPECT_EQ(blind.verdict(kScans), Verdict::kNotNeeded);
+  EXPECT_EQ(blind.drive(true).counters.at("lidar_rays"), 0);
+}
+
+// The closed loop: who drives sees the same, so the vehicle goes the same way.
+TEST(Plan, WhatNobodyReadsChangesNoBitOfTheRestAndIsNotMade) {
+  const Planned planned("high", kRegistered, kDriving);
+  const RecordedRun full = planned.drive(false), less = planned.drive(true);
+  ASSERT_EQ(full.nav.size(), less.nav.size());
+  for (std::size_t i = 0; i < full.nav.size(); ++i) {
+    EXPECT_EQ(full.nav[i].estimate.X_WB.p, less.nav[i].estimate.X_WB.p) << i;
+    EXPECT_EQ(full.nav[i].X_WB_true.p, less.nav[i].X_WB_true.p) << i;
+    EXPECT_EQ(full.nav[i].command.curvature_1_m, less.nav[i].command.curvature_1_m) << i;
+  }
+  for (const char* made : {"pcl_objects", "keyframes_registered", "map_cells_prior", "map_cells_registered"}) {
+    EXPECT_GT(full.counters.at(made), 0) << made;
+    EXPECT_EQ(less.counters.at(made), 0) << made;
+  }
+  EXPECT_TRUE(less.prior_map.empty());
+  EXPECT_EQ(full.counters.at("lidar_rays"), less.counters.at("lidar_rays")) << "the autonomy looks";
+}
+
+TEST(Plan, AnOpenFieldTracesNoRayAndIndexesNothing) {
+  const Planned planned("high", kEmpty, kDriving);
+  const RecordedRun full = planned.drive(false), less = planned.drive(true);
+  EXPECT_GT(full.counters.at("gnss_occlusion_rays"), 0);
+  EXPECT_EQ(less.counters.at("gnss_occlusion_rays"), 0);
+  EXPECT_EQ(less.counters.at("gnss_facets_tested"), 0);
+  ASSERT_EQ(full.nav.size(), less.nav.size());
+  for (std::size_t i = 0; i < full.nav.size(); ++i)
+    EXPECT_EQ(full.nav[i].estimate.X_WB.p, less.nav[i].estimate.X_WB.p) << i;
+  EXPECT_THAT(less.warnings, ::testing::Not(::testing::Contains(::testing::HasSubstr("corridor"))));
+}
+
+TEST(Plan, AVehicleBesideTheCorridorGetsEverythingBack) {
+  Planned planned("high", kEmpty, kDriving);
+  for (mission::PlannedPlace& place : planned.plan.omissions.corridor)
+    if (place.segment.start_m > 5.0) place.segment.half_width_m = 0.0;
+  const RecordedRun full = planned.drive(false), less = planned.drive(true);
+  EXPECT_GT(less.counters.at("gnss_occlusion_rays"), 0);
+  EXPECT_LT(less.counters.at("gnss_occlusion_rays"), full.counters.at("gnss_occlusion_rays"));
+  EXPECT_THAT(less.warnings, ::testing::Contains(::testing::HasSubstr("left the plan's corridor at ")));
+  EXPECT_EQ(full.nav.back().estimate.X_WB.p, less.nav.back().estimate.X_WB.p);
+}
+
+TEST(Verify, CountsWhatIsLeftOutWrongly) {
+  Planned planned("high", "[time]\nlimit_s = 6.0\n", kDriving);
+  const auto tape = mission::drive_route(planned.config, planned.mission);
+  ASSERT_TRUE(tape.ok());
+  const auto right = verify_plan(planned.config, planned.mission, *tape, planned.plan, 60);
+  ASSERT_TRUE(right.ok());
+  EXPECT_EQ(right->violations(), 0);
+  EXPECT_GE(right->epochs(), 60);
+
+  // In a street of the city houses hide satellites and mirror them: a plan that denies it is found out.
+  for (const char* effect : {"occlusion rays", "reflection off one wall", "diffraction at edges"}) {
+    Plan wrong = planned.plan;
+    wrong.effects = {
+        {.need = {.effect = effect, .verdict = Verdict::kNotNeeded}, .segment = {}, .start_m = 0.0, .end_m = 1e4}};
+    wrong.omissions = {};
+    RouteSegment everywhere;
+    everywhere.points_W = {{213.9, 30.0, 0.0}, {213.9, 150.0, 0.0}};
+    everywhere.half_width_m = 4.0;
+    everywhere.low_m = -100.0;
+    everywhere.high_m = 200.0;
+    wrong.omissions.corridor = {
+        {everywhere, {.occlusion = true, .foliage = true, .diffraction = true, .most_reflections = 0}}};
+    const auto found = verify_plan(planned.config, planned.mission, *tape, wrong, 60);
+    ASSERT_TRUE(found.ok());
+    EXPECT_GT(found->violations(), 0) << effect;
+  }
+}
+
+class PlanFileTest : public ::testing::Test {
+ protected:
+  PlanFileTest() : planned_("high", kEmpty, kDriving), path_(canyon::testing::temporary_file("a.plan")) {
+    text_ = plan_text(planned_.plan, planned_.config, planned_.mission);
+  }
+  std::string refusal(const std::string& text, const mission::MissionConfig& config) {
+    EXPECT_TRUE(write_text_file(path_, text).ok());
+    const auto plan = read_plan(path_, config, planned_.mission);
+    EXPECT_FALSE(plan.ok());
+    return plan.ok() ? "" : plan.error().str().substr(path_.size());
+  }
+  std::string with(std::string from, const std::string& to) {
+    std::string text = text_;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+  Planned planned_;
+  std::string path_, text_;
+};
+
+TEST_F(PlanFileTest, ComesBackAsItWasWhateverTheSeed) {
+  ASSERT_TRUE(write_text_file(path_, text_).ok());
+  mission::MissionConfig other_seed = planned_.config;
+  other_seed.run.seed = 77;
+  const auto plan = read_plan(path_, other_seed, planned_.mission);
+  ASSERT_TRUE(plan.ok()) << plan.error().str();
+  EXPECT_EQ(plan_text(*plan, planned_.config, planned_.mission).size(), text_.size());
+  ASSERT_EQ(plan->omissions.corridor.size(), planned_.plan.omissions.corridor.size());
+  EXPECT_EQ(plan->omissions.corridor[0].paths, planned_.plan.omissions.corridor[0].paths);
+  EXPECT_EQ(plan->omissions.corridor[0].segment.points_W, planned_.plan.omissions.corridor[0].segment.points_W);
+  EXPECT_TRUE(plan->omissions.keyframes);
+}
+
+TEST_F(PlanFileTest, OfAnotherMissionSceneOrVersionIsRefused) {
+  mission::MissionConfig other = planned_.config;
+  other.gnss.mask_deg = 5.0;
+  EXPECT_EQ(
+      refusal(text_, other),
+      ": is a plan for another mission (\"short\", fidelity high), expected one for this mission and fidelity, of the "
+      "same keys but [run] seed");
+  EXPECT_THAT(refusal(with(planned_.mission.scene->hash(), "0123"), planned_.config),
+              ::testing::StartsWith(": is a plan for another scene, expected one for the scene of this mission ("));
+  EXPECT_THAT(refusal(with("\"version\": \"", "\"version\": \"9."), planned_.config),
+              ::testing::StartsWith(": is a plan of canyon 9."));
+  EXPECT_EQ(refusal("{}", planned_.config), ": is no plan, expected a file of canyon plan --write");
+  EXPECT_EQ(refusal(with("\"half_width_m\"", "\"width\""), planned_.config),
+            ": is no plan, expected a file of canyon plan --write");
+}
+
+}  // namespace
+}  // namespace canyon::study
