@@ -67,10 +67,23 @@ std::vector<Companion> town() {
   return {{"town.geojson", kTown}};
 }
 
+std::vector<Companion> town_and_mission() {
+  return {{"town.geojson", kTown}, {"short.toml", kMission}};
+}
+
 }  // namespace
 
 std::vector<Format> mission_formats() {
-  return {{.name = "MissionToml",
+  return {{.name = "Plan",
+           .command = {"run", "short.toml", "--out", "out", "--force", "--plan", "@"},
+           .read = {},
+           .seeds =
+               [] {
+                 return written_by_canyon({"plan", "short.toml", "--for", "position", "--write", "a.plan"}, {"a.plan"},
+                                          town_and_mission());
+               },
+           .beside = town_and_mission},
+          {.name = "MissionToml",
            .command = {"scene", "info", "@"},
            .read = {},
            .seeds =
