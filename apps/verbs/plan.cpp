@@ -10,13 +10,13 @@
 #include "canyon/core/output/json.h"
 #include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 #include "canyon/study/compare.h"
 #include "canyon/study/plan/cost.h"
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/plan/plan_table.h"
-#include "canyon/study/plan/tolerance.h"
 #include "canyon/study/plan/verify.h"
+#include "canyon/study/results/tolerance.h"
 
 namespace canyon::apps {
 

@@ -40,7 +40,9 @@ constexpr ModelRow<MakePathModel> kModels[] = {
     {"specular3",
      {without_keys<make_specular3>, needs_of_specular<3>},
      "occlusion and up to three specular reflections"},
-    {"launching", {make_configured_launching}, "rays launched from the antenna, up to two reflections; approximate",
+    {"launching",
+     {make_configured_launching},
+     "rays launched from the antenna, up to two reflections; approximate",
      launching_parameters},
 };
 

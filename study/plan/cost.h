@@ -1,6 +1,6 @@
 #pragma once
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/study/plan/plan.h"
 
 namespace canyon::study {

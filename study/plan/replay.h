@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/gnss/sensor/sensor.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/omissions.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/omissions.h"
 #include "canyon/mission/part_clock.h"

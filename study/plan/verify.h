@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "canyon/core/motion/tape.h"
+#include "canyon/core/files/tape.h"
 #include "canyon/study/plan/plan.h"
 
 namespace canyon::study {

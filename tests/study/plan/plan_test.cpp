@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
-#include "canyon/mission/motion/route_tape.h"
+#include "canyon/mission/route_tape.h"
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/plan/readers.h"
 #include "canyon/study/plan/run_pair.h"

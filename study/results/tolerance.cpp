@@ -1,4 +1,4 @@
-#include "canyon/study/plan/tolerance.h"
+#include "canyon/study/results/tolerance.h"
 
 #include <charconv>
 #include <cmath>
