@@ -8,7 +8,7 @@
 
 namespace canyon::study {
 
-/// By a figure's key (study/results/figures.h): how far a plan may move it over the run, in the figure's own unit.
+/// By a figure's key (study/results/figures.h): how far it may move over the run, in the figure's own unit.
 using Tolerances = std::map<std::string, double>;
 
 /// From "FIGURE=VALUE" each; an Error, for `option`, for an unknown figure and a value that is not above 0.

@@ -1,7 +1,8 @@
 #include "canyon/study/tradeoff/choosing/question.h"
 
-#include <charconv>
 #include <cmath>
+
+#include "canyon/study/results/tolerance.h"
 
 namespace canyon::study {
 namespace {
@@ -29,15 +30,9 @@ Result<std::optional<Question>> read_question(const std::string& tolerance, std:
     return std::optional(question);
   }
   constexpr const char* kOption = "--tolerance";
-  const auto sign = tolerance.find('=');
-  if (sign == std::string::npos)
-    return Error{.file = kOption, .what = "\"" + tolerance + "\"", .expected = "FIGURE=VALUE"};
-  CANYON_TRY(question.figure, figure_of(tolerance.substr(0, sign), kOption));
-  const std::string value = tolerance.substr(sign + 1);
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), question.tolerance);
-  if (error != std::errc{} || end != value.data() + value.size() || !std::isfinite(question.tolerance) ||
-      !(question.tolerance > 0.0))
-    return Error{.file = kOption, .what = "\"" + value + "\"", .expected = "a positive number after the ="};
+  CANYON_TRY(const Tolerances asked, tolerances_of({tolerance}, kOption));
+  CANYON_TRY(question.figure, figure_of(asked.begin()->first, kOption));
+  question.tolerance = asked.begin()->second;
   return std::optional(question);
 }
 

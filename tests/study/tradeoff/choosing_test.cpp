@@ -55,9 +55,12 @@ TEST(Question, IsReadOrItsMistakeTold) {
     return read ? std::string("no mistake") : read.error().str();
   };
   EXPECT_THAT(mistake("position_rms=1", {}, ""), HasSubstr("--tolerance: \"position_rms\" is no figure"));
-  EXPECT_EQ(mistake("position_error_rms_m=0", {}, ""), "--tolerance: \"0\", expected a positive number after the =");
-  EXPECT_EQ(mistake("position_error_rms_m=-1", {}, ""), "--tolerance: \"-1\", expected a positive number after the =");
-  EXPECT_EQ(mistake("position_error_rms_m", {}, ""), "--tolerance: \"position_error_rms_m\", expected FIGURE=VALUE");
+  EXPECT_EQ(mistake("position_error_rms_m=0", {}, ""),
+            "--tolerance: position_error_rms_m: \"0\", expected a number above 0");
+  EXPECT_EQ(mistake("position_error_rms_m=-1", {}, ""),
+            "--tolerance: position_error_rms_m: \"-1\", expected a number above 0");
+  EXPECT_EQ(mistake("position_error_rms_m", {}, ""),
+            "--tolerance: \"position_error_rms_m\" has no value, expected FIGURE=VALUE, as position_error_rms_m=0.05");
   EXPECT_THAT(mistake("cpu_s=1", {}, ""), HasSubstr("depends on the machine"));
   EXPECT_THAT(mistake("map_error_rms_m=1", 1.0, ""), HasSubstr("stands beside --tolerance"));
   EXPECT_THAT(mistake("", -1.0, "map_error_rms_m"), HasSubstr("expected a positive number"));
