@@ -73,7 +73,8 @@ TEST_F(TradeoffTest, WhatIsWrongIsOneLine) {
   expect_mistake("tradeoff --part gnss,gnss", "--part: \"gnss\" stands there twice");
   expect_mistake("tradeoff --tolerance position_error=1",
                  "--tolerance: \"position_error\" is no figure, expected one that canyon keys --figures lists");
-  expect_mistake("tradeoff --tolerance position_error_rms_m=0", "--tolerance: \"0\", expected a positive number");
+  expect_mistake("tradeoff --tolerance position_error_rms_m=0",
+                 "--tolerance: position_error_rms_m: \"0\", expected a number above 0");
   expect_mistake("tradeoff --fidelity medium", "--fidelity");
   expect_mistake("tradeoff --write x.toml", "--write: nothing is chosen, expected --tolerance or --budget-cpu");
   expect_mistake("tradeoff --repetitions 4", "--repetitions");

@@ -17,10 +17,12 @@ using testing::WallScene;
 std::vector<std::pair<std::string, std::unique_ptr<PathModel>>> all_models() {
   std::vector<std::pair<std::string, std::unique_ptr<PathModel>>> out;
   for (const auto& row : path_models()) {
-    out.emplace_back(row.name, row.make({}, {}));
+    ModelParameters own;
+    if (row.parameters != nullptr) row.parameters(own);
+    out.emplace_back(row.name, row.make(own, {}));
     for (const auto& bend : diffraction_models())
       out.emplace_back(std::string(row.name) + " + " + bend.name + " + ground",
-                       make_propagation(row.make({}, {}), bend.make({}, {}), true, {}));
+                       make_propagation(row.make(own, {}), bend.make({}, {}), true, {}));
   }
   return out;
 }
