@@ -60,7 +60,7 @@ Status MissionRun::take_gnss(const Due& due) {
   const Eigen::Vector3d lever = config_.gnss.lever_arm_m;
   const Eigen::Vector3d p_A_W = truth.X_WB * lever;
   const Eigen::Vector3d v_A_W = truth.v_WB_W + truth.X_WB.R * truth.w_WB_B.cross(lever);
-  gnss_->leave_out(corridor_.at(truth.t - mission_.start, truth.X_WB.p));
+  gnss_->leave_out(corridor_.at(truth.t - mission_.start, truth.X_WB));
   gnss::GnssOutput output =
       clock_.charge(Part::kGnss, [&] { return gnss_->measure(due.k, truth.t, p_A_W, v_A_W, scene_); });
   CANYON_TRY_STATUS(boundaries_.check(output));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct Omissions {
   bool keyframes = false;     ///< none are chosen; nothing may be made of them
 
   // Because it cannot act there.
-  std::vector<PlannedPlace> corridor;  ///< empty: nothing is known of places
+  std::vector<PlannedPlace> corridor;                                 ///< empty: nothing is known of places
+  double corridor_until_s = std::numeric_limits<double>::infinity();  ///< after the start; the sky moves on
 
   bool any() const { return registration || maps || keyframes || !corridor.empty(); }
 };

@@ -26,7 +26,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
           mission.start, boundaries_, clock),
       mapper_(config.registration, std::move(parts.registration), lidar::sensor_in_body(config.lidar)),
       omissions_(std::move(parts.omissions)),
-      corridor_(omissions_.corridor),
+      corridor_(omissions_.corridor, omissions_.corridor_until_s),
       autonomy_(std::move(parts.autonomy)),
       scorer_(config, mission, scene_),
       schedule_(mission.start, {config.imu.rate_hz, config.gnss.rate_hz, config.lidar.rate_hz, config.autonomy.rate_hz,

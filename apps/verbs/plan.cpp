@@ -72,7 +72,8 @@ Result<int> run(const Options& options) {
   if (options.verify) {
     CANYON_TRY(verification, study::verify_plan(config, mission, tape, plan, *options.verify));
   }
-  if (written) {
+  const bool refuted = verification && verification->violations() > 0;
+  if (written && !refuted) {
     CANYON_TRY_STATUS(written->write(study::plan_text(plan, config, mission)));
     CANYON_TRY_STATUS(written->commit());
   }
@@ -82,9 +83,10 @@ Result<int> run(const Options& options) {
   } else {
     std::printf("%s", study::plan_table(plan, cost, mission.nominal_s).c_str());
     if (verification) std::printf("\n%s", study::verification_table(*verification).c_str());
-    if (written) std::printf("\nPlan: %s, for canyon run --plan\n", written->final_path().c_str());
+    if (written && !refuted) std::printf("\nPlan: %s, for canyon run --plan\n", written->final_path().c_str());
+    if (written && refuted) std::printf("\nPlan not written: it does not hold.\n");
   }
-  return verification && verification->violations() > 0 ? 1 : 0;
+  return refuted ? 1 : 0;
 }
 
 VerbAction declare(Arguments& arguments) {
@@ -109,8 +111,8 @@ VerbAction declare(Arguments& arguments) {
   arguments.flag("--force", options->mission.force, "replace that file if it exists");
   arguments
       .option("--verify", options->verify,
-              "replay so many epochs with and without what is left out; exit status 1 if one differs by more than its "
-              "bound")
+              "replay so many epochs with and without what is left out; if one differs by more than its bound, exit "
+              "status 1, and the plan is not written")
       .within(std::int64_t{1}, std::int64_t{10'000'000});
   return [options]() -> Result<int> { return run(*options); };
 }

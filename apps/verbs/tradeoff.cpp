@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -35,10 +36,8 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// What was measured, as files; the directory's final name.
-Result<std::string> write_files(const Options& options, const mission::MissionConfig& config,
-                                const study::Tradeoff& tradeoff) {
-  CANYON_TRY(auto staged, StagedDirectory::create(output_directory(options.mission, config), options.mission.force));
+/// What was measured, as files of a directory that has been staged.
+Status write_files(const study::Tradeoff& tradeoff, StagedDirectory& staged) {
   const std::string folder = staged.staging_path();
   const std::string summary = json_text(study::tradeoff_json(tradeoff), 2) + "\n";
   CANYON_TRY_STATUS(write_text_file(folder + "/summary.json", summary));
@@ -46,8 +45,7 @@ Result<std::string> write_files(const Options& options, const mission::MissionCo
   CANYON_TRY(const std::string page, report::tradeoff_page(folder + "/summary.json"));
   CANYON_TRY_STATUS(write_text_file(folder + "/report.html", page));
   throw_if_cancelled();
-  CANYON_TRY_STATUS(staged.commit());
-  return staged.final_path();
+  return staged.commit();
 }
 
 Result<int> run(const Options& options) {
@@ -66,28 +64,36 @@ Result<int> run(const Options& options) {
   CANYON_TRY_STATUS(file.check_fidelities({asked.fidelity}, "--fidelity"));
   CANYON_TRY(const auto comparison, study::prepare_tradeoff(file, asked, options.tape));
 
+  // What cannot be written is said before minutes are spent.
+  CANYON_TRY(auto directory, StagedDirectory::create(output_directory(options.mission, comparison.configs.front()),
+                                                     options.mission.force));
+  std::optional<StagedFile> written;
+  if (!options.write.empty()) {
+    CANYON_TRY(StagedFile staged, StagedFile::create(options.write, options.mission.force));
+    written.emplace(std::move(staged));
+  }
+
   study::Tradeoff tradeoff;
   if (question) {
     CANYON_TRY(tradeoff,
                study::choose_and_describe(*question, file, asked, comparison, static_cast<int>(options.seeds)));
-    if (tradeoff.chosen->found && !options.write.empty()) {
+    if (tradeoff.chosen->found && written) {
       CANYON_TRY(const std::string text,
                  study::mission_with(*tradeoff.chosen, asked.fidelity, options.mission.mission, options.write));
-      CANYON_TRY(auto written, StagedFile::create(options.write, options.mission.force));
-      CANYON_TRY_STATUS(written.write(text));
-      CANYON_TRY_STATUS(written.commit());
+      CANYON_TRY_STATUS(written->write(text));
+      CANYON_TRY_STATUS(written->commit());
     }
   } else {
     CANYON_TRY(tradeoff, study::measure_tradeoff(file, asked, comparison));
   }
-  CANYON_TRY(const std::string directory, write_files(options, comparison.configs.front(), tradeoff));
+  CANYON_TRY_STATUS(write_files(tradeoff, directory));
   if (options.mission.common.json) {
     auto out = study::tradeoff_json(tradeoff);
-    out["results_dir"] = directory;
+    out["results_dir"] = directory.final_path();
     std::printf("%s\n", json_text(out).c_str());
     return 0;
   }
-  const auto place = std::filesystem::absolute(directory).lexically_normal();
+  const auto place = std::filesystem::absolute(directory.final_path()).lexically_normal();
   std::printf("%sResults: %s\nReport:  %s\n", study::tradeoff_table(tradeoff).c_str(), place.c_str(),
               (place / "report.html").c_str());
   return 0;

@@ -1,15 +1,22 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "canyon/core/motion/rotation.h"
+
 namespace canyon {
 
 /// A piece of the planned route and the room around it in which the vehicle is expected: what a model states of its
-/// need (core/need.h) holds while the body's origin is in there, wherever in it and however the body is turned.
+/// need (core/need.h) holds while the body's origin is in there, wherever in it and whatever way the body heads, as
+/// long as it is tilted by no more than a ground vehicle is.
 struct RouteSegment {
+  /// Between the body's z axis and W's, rad: a street of 40 % and suspension travel on it.
+  static constexpr double kMostTilt_rad = 0.45;
+
   std::vector<Eigen::Vector3d> points_W;  ///< polyline of B's origin, m; at least one point
   double start_m = 0.0, end_m = 0.0;      ///< arc length along the route
   double half_width_m = 0.0;              ///< horizontal distance from the polyline, >= 0
@@ -26,8 +33,11 @@ struct RouteSegment {
     }
     return least_m;
   }
-  bool contains(const Eigen::Vector3d& p_WB_W) const {
-    return p_WB_W.z() >= low_m && p_WB_W.z() <= high_m && distance_m(p_WB_W.head<2>()) <= half_width_m;
+  bool contains(const Pose& X_WB) const {
+    const Eigen::Vector3d& p = X_WB.p;
+    const double cos_tilt = (X_WB.R * Eigen::Vector3d::UnitZ()).z();
+    return cos_tilt >= std::cos(kMostTilt_rad) && p.z() >= low_m && p.z() <= high_m &&
+           distance_m(p.head<2>()) <= half_width_m;
   }
 };
 

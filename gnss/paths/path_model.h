@@ -77,7 +77,7 @@ struct PathParameters {
   int launched_rays = 20000;        ///< launching: over the whole sphere
   /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
   bool exhaustive = false;
-  PathOmissions leave_out;  ///< what cannot act where the antenna is
+  PathOmissions leave_out{};  ///< what cannot act where the antenna is
 };
 
 using MakePathModel =

@@ -10,9 +10,6 @@ namespace canyon::gnss {
 
 namespace {
 
-/// However a ground vehicle's body is tilted: a street of 40 % and suspension travel on it.
-constexpr double kMostTilt_rad = 0.45;
-
 bool not_needed(const std::vector<Need>& needs, const char* effect) {
   return std::any_of(needs.begin(), needs.end(),
                      [&](const Need& need) { return need.effect == effect && need.verdict == Verdict::kNotNeeded; });
@@ -61,7 +58,8 @@ std::vector<Need> pseudorange_needs(const GnssConfig& config, const GnssSurround
   const PathQuestion question{
       .segment = segment,
       .antenna_reach_m = lever.norm(),
-      .antenna_above_m = lever.z() * std::cos(kMostTilt_rad) - lever.head<2>().norm() * std::sin(kMostTilt_rad),
+      .antenna_above_m = std::min(lever.z(), lever.z() * std::cos(RouteSegment::kMostTilt_rad)) -
+                         lever.head<2>().norm() * std::sin(RouteSegment::kMostTilt_rad),
       .scene = around.scene,
       .things_move = around.things_move,
       .sky = around.sky,

@@ -37,7 +37,7 @@ double seconds_of(GnssReplay& replay, gnss::GnssSensor& sensor, const GnssReplay
 Status measure_gnss(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
                     Plan& plan) {
   const auto& corridor = plan.omissions.corridor;
-  GnssReplay replay(config, mission, tape, corridor, kEpochs);
+  GnssReplay replay(config, mission, tape, plan.omissions, kEpochs);
   const double epochs_each = mission.nominal_s * config.gnss.rate_hz / static_cast<double>(kEpochs);
   CANYON_TRY(const auto full, replay.sensor());
   std::vector<double> full_s;

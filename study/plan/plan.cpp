@@ -66,6 +66,7 @@ Result<Plan> make_plan(const mission::MissionConfig& config, const mission::Prep
   CANYON_TRY(const auto around,
              gnss::GnssSurroundings::make(config.gnss, *mission.scene, !mission.traffic.empty(), mission.start,
                                           mission.start + mission.time_limit_s, corridor));
+  plan.omissions.corridor_until_s = mission.time_limit_s;
   std::vector<PlannedEffect> pieces;
   for (const RouteSegment& segment : corridor) {
     throw_if_cancelled();

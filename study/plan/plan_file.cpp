@@ -16,11 +16,13 @@ namespace {
 
 constexpr const char* kKind = "canyon-plan-1";
 
-/// Of all that a plan depends on but the scene's own geometry.
-std::string mission_hash(const mission::MissionConfig& config) {
+/// Of all that a plan depends on but the scene's own geometry: the keys, and what stands in the files that they name.
+std::string mission_hash(const mission::MissionConfig& config, const mission::PreparedMission& mission) {
   mission::MissionConfig copy = config;
   copy.run.seed = 0;
-  return sha256_hex(fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); }));
+  std::string text = fields_as_json([&copy](FieldVisitor& f) { visit(f, copy); });
+  for (const mission::InputFile& file : mission.files) text += file.sha256;
+  return sha256_hex(text);
 }
 
 Json place_json(const mission::PlannedPlace& place) {
@@ -61,17 +63,21 @@ bool sound(const mission::PlannedPlace& place) {
   return !s.points_W.empty() && s.half_width_m >= 0.0 && s.low_m <= s.high_m && place.paths.most_reflections >= 0;
 }
 
-void fill(const nlohmann::json& json, Plan& plan) {
+/// False for what no plan says. Throws nlohmann's exceptions where something is missing or of another type.
+bool fill(const nlohmann::json& json, Plan& plan) {
   plan.mission = json.at("mission");
   plan.fidelity = json.at("fidelity");
   plan.half_width_m = json.at("half_width_m");
   std::vector<std::string> outputs;
   for (const auto& output : json.at("outputs")) outputs.push_back(output);
-  if (auto known = outputs_of(outputs, ""); known) plan.outputs = *std::move(known);
+  auto known = outputs_of(outputs, "");
+  if (!known) return false;
+  plan.outputs = *std::move(known);
   const auto& out = json.at("leave_out");
   plan.omissions.registration = out.at("registration");
   plan.omissions.maps = out.at("maps");
   plan.omissions.keyframes = out.at("keyframes");
+  plan.omissions.corridor_until_s = out.at("corridor_until_s");
   for (const auto& place : out.at("corridor")) plan.omissions.corridor.push_back(place_of(place));
   for (const auto& line : json.at("effects")) {
     PlannedEffect effect;
@@ -85,6 +91,7 @@ void fill(const nlohmann::json& json, Plan& plan) {
     effect.end_m = line.at("end_m");
     plan.effects.push_back(std::move(effect));
   }
+  return true;
 }
 
 Status check(const nlohmann::json& json, const std::string& path, const mission::MissionConfig& config,
@@ -98,11 +105,11 @@ Status check(const nlohmann::json& json, const std::string& path, const mission:
     return Error{.file = path,
                  .what = "is a plan for another scene",
                  .expected = "one for the scene of this mission (" + mission.scene->hash().substr(0, 12) + "…)"};
-  if (json_string(json, "mission_hash") != mission_hash(config))
+  if (json_string(json, "mission_hash") != mission_hash(config, mission))
     return Error{.file = path,
                  .what = "is a plan for another mission (\"" + json_string(json, "mission") + "\", fidelity " +
                          json_string(json, "fidelity") + ")",
-                 .expected = "one for this mission and fidelity, of the same keys but [run] seed"};
+                 .expected = "one for this mission and fidelity, of the same keys but [run] seed and the same files"};
   return Ok{};
 }
 
@@ -143,7 +150,7 @@ std::string plan_text(const Plan& plan, const mission::MissionConfig& config, co
                   {"version", kVersion},
                   {"mission", plan.mission},
                   {"fidelity", plan.fidelity},
-                  {"mission_hash", mission_hash(config)},
+                  {"mission_hash", mission_hash(config, mission)},
                   {"scene_hash", mission.scene->hash()},
                   {"outputs", outputs},
                   {"half_width_m", plan.half_width_m},
@@ -152,6 +159,7 @@ std::string plan_text(const Plan& plan, const mission::MissionConfig& config, co
                    {{"registration", plan.omissions.registration},
                     {"maps", plan.omissions.maps},
                     {"keyframes", plan.omissions.keyframes},
+                    {"corridor_until_s", plan.omissions.corridor_until_s},
                     {"corridor", corridor}}}};
   return json_text(json, 1) + "\n";
 }
@@ -165,7 +173,7 @@ Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& co
   CANYON_TRY_STATUS(check(json, path, config, mission));
   Plan plan;
   try {
-    fill(json, plan);
+    if (!fill(json, plan)) return no_plan;
   } catch (const nlohmann::json::exception&) {
     return no_plan;
   }

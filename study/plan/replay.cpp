@@ -11,9 +11,11 @@ namespace canyon::study {
 
 namespace {
 
-std::size_t place_of(const std::vector<mission::PlannedPlace>& corridor, const Eigen::Vector3d& p_WB_W) {
+std::size_t place_of(const mission::Omissions& omissions, double t_s, const Pose& X_WB) {
+  const auto& corridor = omissions.corridor;
+  if (t_s > omissions.corridor_until_s) return corridor.size();
   std::size_t i = 0;
-  while (i < corridor.size() && !corridor[i].segment.contains(p_WB_W)) ++i;
+  while (i < corridor.size() && !corridor[i].segment.contains(X_WB)) ++i;
   return i;
 }
 
@@ -27,26 +29,28 @@ double apart(double a, double b) {
 }  // namespace
 
 GnssReplay::GnssReplay(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
-                       const std::vector<mission::PlannedPlace>& corridor, std::int64_t count)
+                       const mission::Omissions& omissions, std::int64_t count)
     : config_(config), mission_(mission), scene_(*mission.scene) {
   const RandomStream stream(static_cast<std::uint64_t>(config.run.seed), "plan.replay");
   const scene::Scene& scene = *mission.scene;
+  const auto& corridor = omissions.corridor;
   const double last = static_cast<double>(tape.nodes.size() - 1);
   for (std::int64_t k = 0; k < count; ++k) {
     const double share = count > 1 ? static_cast<double>(k) / static_cast<double>(count - 1) : 0.0;
     const KinematicState& truth = tape.nodes[static_cast<std::size_t>(std::llround(share * last))].motion;
+    const double t_s = truth.t - tape.nodes.front().motion.t;
     Pose X_WB = truth.X_WB;
-    const std::size_t on = place_of(corridor, X_WB.p);
+    const std::size_t on = place_of(omissions, t_s, X_WB);
     if (on < corridor.size()) {
       const double half_m = corridor[on].segment.half_width_m;
       const double side_m = stream.uniform(-half_m, half_m, 0, static_cast<std::uint64_t>(k));
-      Eigen::Vector3d moved = X_WB * Eigen::Vector3d(0.0, side_m, 0.0);
-      const auto here = scene.ground(X_WB.p.x(), X_WB.p.y()), there = scene.ground(moved.x(), moved.y());
-      if (here && there) moved.z() = X_WB.p.z() + there->height_m - here->height_m;
-      if (here && there && place_of(corridor, moved) < corridor.size()) X_WB.p = moved;
+      Pose moved{X_WB.R, X_WB * Eigen::Vector3d(0.0, side_m, 0.0)};
+      const auto here = scene.ground(X_WB.p.x(), X_WB.p.y()), there = scene.ground(moved.p.x(), moved.p.y());
+      if (here && there) moved.p.z() = X_WB.p.z() + there->height_m - here->height_m;
+      if (here && there && place_of(omissions, t_s, moved) < corridor.size()) X_WB = moved;
     }
-    epochs_.push_back({k, mission.start + (truth.t - tape.nodes.front().motion.t), place_of(corridor, X_WB.p),
-                       X_WB * config.gnss.lever_arm_m, truth.v_WB_W});
+    epochs_.push_back(
+        {k, mission.start + t_s, place_of(omissions, t_s, X_WB), X_WB * config.gnss.lever_arm_m, truth.v_WB_W});
   }
 }
 

@@ -18,7 +18,7 @@ class GnssReplay {
   /// the half-width of the corridor to either side (stream "plan.replay" of the mission's seed), on the ground there;
   /// where that is not within the corridor, it is not moved. `mission` must outlive this.
   GnssReplay(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
-             const std::vector<mission::PlannedPlace>& corridor, std::int64_t count);
+             const mission::Omissions& omissions, std::int64_t count);
 
   struct Epoch {
     std::int64_t index = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "canyon/core/math/median.h"
 #include "canyon/core/process/progress.h"
@@ -27,9 +28,21 @@ std::vector<std::string> effects_of_places(const Plan& plan) {
   return names;
 }
 
+/// The largest that the plan's lines promise of an effect; of all of them together, their sum.
+double bound_of(const Plan& plan, const std::string& effect) {
+  std::map<std::string, double> bounds;
+  for (const PlannedEffect& line : plan.effects)
+    if (!line.whole_run() && line.need.verdict == Verdict::kNotNeeded &&
+        (effect == kAllPaths || line.need.effect == effect))
+      bounds[line.need.effect] = std::max(bounds[line.need.effect], line.need.bound);
+  double sum = 0.0;
+  for (const auto& [name, bound] : bounds) sum += bound;
+  return sum;
+}
+
 Result<VerifiedEffect> verify_place_effect(GnssReplay& replay, const Plan& plan, const std::string& effect,
                                            const std::vector<gnss::GnssOutput>& full) {
-  VerifiedEffect found{.effect = effect};
+  VerifiedEffect found{.effect = effect, .bound = bound_of(plan, effect)};
   const auto& corridor = plan.omissions.corridor;
   CANYON_TRY(const auto sensor, replay.sensor());
   for (std::size_t k = 0; k < full.size(); ++k) {
@@ -54,7 +67,7 @@ Status verify_places(const mission::MissionConfig& config, const mission::Prepar
                      const Plan& plan, std::int64_t epochs, Verification& verification) {
   const std::vector<std::string> effects = effects_of_places(plan);
   if (effects.empty() || plan.omissions.corridor.empty()) return Ok{};
-  GnssReplay replay(config, mission, tape, plan.omissions.corridor, epochs);
+  GnssReplay replay(config, mission, tape, plan.omissions, epochs);
   CANYON_TRY(const auto sensor, replay.sensor());
   std::vector<gnss::GnssOutput> full;
   for (const GnssReplay::Epoch& epoch : replay.epochs()) {

@@ -5,6 +5,12 @@
 namespace canyon::mission {
 namespace {
 
+constexpr double kUntil_s = 100.0;
+
+Pose level_at(double x, double y, double z) {
+  return {Eigen::Quaterniond::Identity(), {x, y, z}};
+}
+
 /// Two pieces along x, 10 m each and 2 m to either side; only the first leaves out occlusion.
 std::vector<PlannedPlace> corridor() {
   std::vector<PlannedPlace> places(2);
@@ -21,28 +27,38 @@ std::vector<PlannedPlace> corridor() {
 }
 
 TEST(CorridorGuard, LeavesOutWhatThePieceAllows) {
-  CorridorGuard guard(corridor());
-  EXPECT_TRUE(guard.at(1.0, {5, 1.9, 0}).occlusion);
-  EXPECT_FALSE(guard.at(2.0, {15, -1.9, 0}).occlusion);
-  EXPECT_TRUE(guard.at(2.0, {15, -1.9, 0}).foliage);
+  CorridorGuard guard(corridor(), kUntil_s);
+  EXPECT_TRUE(guard.at(1.0, level_at(5, 1.9, 0)).occlusion);
+  EXPECT_FALSE(guard.at(2.0, level_at(15, -1.9, 0)).occlusion);
+  EXPECT_TRUE(guard.at(2.0, level_at(15, -1.9, 0)).foliage);
   EXPECT_FALSE(guard.left());
 }
 
 TEST(CorridorGuard, BesideTheCorridorEverythingComesBackForGoodAndItIsSaidWhen) {
-  for (const Eigen::Vector3d& beside :
-       {Eigen::Vector3d(5, 2.1, 0), Eigen::Vector3d(5, 0, 0.6), Eigen::Vector3d(-2.1, 0, 0)}) {
-    CorridorGuard guard(corridor());
-    EXPECT_TRUE(guard.at(1.0, {5, 0, 0}).occlusion);
+  Pose tilted = level_at(5, 0, 0);
+  tilted.R = so3_exp({0.46, 0, 0});
+  for (const Pose& beside : {level_at(5, 2.1, 0), level_at(5, 0, 0.6), level_at(-2.1, 0, 0), tilted}) {
+    CorridorGuard guard(corridor(), kUntil_s);
+    EXPECT_TRUE(guard.at(1.0, level_at(5, 0, 0)).occlusion);
     EXPECT_EQ(guard.at(12.5, beside), gnss::PathOmissions{});
-    EXPECT_EQ(guard.at(13.0, {5, 0, 0}), gnss::PathOmissions{}) << "what follows from having been beside it";
+    EXPECT_EQ(guard.at(13.0, level_at(5, 0, 0)), gnss::PathOmissions{}) << "what follows from having been beside it";
     ASSERT_TRUE(guard.left());
     EXPECT_EQ(guard.left()->rfind("left the plan's corridor at 12.50 s, x ", 0), 0U) << *guard.left();
   }
 }
 
+// The sky has been looked at up to the time limit; a tape may go on.
+TEST(CorridorGuard, BeyondItsTimeNothingIsLeftOut) {
+  CorridorGuard guard(corridor(), kUntil_s);
+  EXPECT_TRUE(guard.at(100.0, level_at(5, 0, 0)).occlusion);
+  EXPECT_EQ(guard.at(100.1, level_at(5, 0, 0)), gnss::PathOmissions{});
+  ASSERT_TRUE(guard.left());
+  EXPECT_EQ(guard.left()->rfind("drives beyond the plan's time limit at 100.10 s, x ", 0), 0U) << *guard.left();
+}
+
 TEST(CorridorGuard, WithoutACorridorNothingIsLeftOut) {
-  CorridorGuard guard({});
-  EXPECT_EQ(guard.at(0.0, {0, 0, 0}), gnss::PathOmissions{});
+  CorridorGuard guard({}, kUntil_s);
+  EXPECT_EQ(guard.at(0.0, level_at(0, 0, 0)), gnss::PathOmissions{});
   EXPECT_FALSE(guard.left());
 }
 

@@ -181,14 +181,18 @@ TEST_F(PlanFileTest, OfAnotherMissionSceneOrVersionIsRefused) {
   EXPECT_EQ(
       refusal(text_, other),
       ": is a plan for another mission (\"short\", fidelity high), expected one for this mission and fidelity, of the "
-      "same keys but [run] seed");
+      "same keys but [run] seed and the same files");
+  mission::PreparedMission other_files = planned_.mission;
+  other_files.files.push_back({"brdc.rnx", "0123"});
+  ASSERT_TRUE(write_text_file(path_, text_).ok());
+  EXPECT_FALSE(read_plan(path_, planned_.config, other_files).ok()) << "the same names, other contents";
   EXPECT_THAT(refusal(with(planned_.mission.scene->hash(), "0123"), planned_.config),
               ::testing::StartsWith(": is a plan for another scene, expected one for the scene of this mission ("));
   EXPECT_THAT(refusal(with("\"version\": \"", "\"version\": \"9."), planned_.config),
               ::testing::StartsWith(": is a plan of canyon 9."));
   EXPECT_EQ(refusal("{}", planned_.config), ": is no plan, expected a file of canyon plan --write");
-  EXPECT_EQ(refusal(with("\"half_width_m\"", "\"width\""), planned_.config),
-            ": is no plan, expected a file of canyon plan --write");
+  for (const auto& [from, to] : {std::pair("\"half_width_m\"", "\"width\""), std::pair("\"outcome\"", "\"weather\"")})
+    EXPECT_EQ(refusal(with(from, to), planned_.config), ": is no plan, expected a file of canyon plan --write") << to;
 }
 
 }  // namespace
