@@ -143,8 +143,9 @@ test_preset() {
     fail "tests of build/$1 failed"
 }
 
-# The address and undefined-behaviour sanitizers, on what reads files: the tests of core and of damaged files, which call every
-# verb that reads one. With `all`, on every test but the nightly ones.
+# clang with the address and undefined-behaviour sanitizers: its warnings, which are errors, of the libraries and the program;
+# and the tests of what reads files, those of core and of damaged files, which call every verb that reads one. With `all`, every
+# test but the nightly ones.
 run_sanitized() {
   local started=$SECONDS
   configure ON asan
@@ -152,26 +153,19 @@ run_sanitized() {
     build all asan
     test_preset asan
   else
-    build canyon_core_tests,canyon_mutation_tests asan
+    build canyon,canyon_core_tests,canyon_mutation_tests asan
     test_preset asan --label-regex '^(core|mutation)$'
   fi
   say "sanitized tests passed after $((SECONDS - started)) s"
 }
 
-# clang's warnings, which are errors, of the libraries and the program, without building them. With `all`, clang builds
-# everything, and its build is tested.
+# Everything built with clang as it is for use, and tested.
 run_clang() {
   local started=$SECONDS
-  configure ON clang -DCANYON_PRECOMPILED_HEADERS=ON
-  if [ "${1:-}" = all ]; then
-    build all clang
-    test_preset clang
-  else
-    build core/CMakeFiles/canyon_core.dir/cmake_pch.hxx.pch,apps/CMakeFiles/canyon_apps.dir/cmake_pch.hxx.pch clang
-    say "checking with clang"
-    python3 "$root/cmake/check_clang.py" "$root/build/clang" >&2 || fail "clang refuses what g++ takes"
-  fi
-  say "clang's part took $((SECONDS - started)) s"
+  configure ON clang
+  build all clang
+  test_preset clang
+  say "clang's tests passed after $((SECONDS - started)) s"
 }
 
 # count_skipped: passes ctest's output on, but holds its closing lines back until the skipped tests have been counted and named.
