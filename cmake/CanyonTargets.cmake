@@ -14,7 +14,7 @@ function(canyon_precompile target root)
 endfunction()
 
 # canyon_library(NAME [NO_INSTALL] [LINK libs...] [PRIVATE libs...] [ONLY pattern] [EXCLUDE patterns...] [PRECOMPILE headers...]):
-# every .cpp of the folder and its rooms (whose path from the folder matches ONLY and none of EXCLUDE), one static library
+# every .cpp of the folder and its rooms but stress/ (whose path from the folder matches ONLY and none of EXCLUDE), one static library
 # canyon_NAME; with NO_INSTALL it is the program's alone, no component of the package.
 function(canyon_library name)
   cmake_parse_arguments(ARG "NO_INSTALL" "ONLY" "LINK;PRIVATE;EXCLUDE;PRECOMPILE" ${ARGN})
@@ -25,6 +25,9 @@ function(canyon_library name)
   foreach(pattern IN LISTS ARG_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX ${pattern})
   endforeach()
+  if(NOT ARG_ONLY)
+    list(FILTER sources EXCLUDE REGEX "^stress/")
+  endif()
   add_library(canyon_${name} STATIC ${sources})
   target_link_libraries(canyon_${name} PUBLIC canyon_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE})
   if(ARG_PRECOMPILE)
@@ -36,6 +39,15 @@ function(canyon_library name)
   if(NOT ARG_NO_INSTALL)
     canyon_install(${name})
   endif()
+endfunction()
+
+# The libraries of canyon_stress, for whoever runs their cases.
+add_library(canyon_stress_cases INTERFACE)
+
+# canyon_stress(FOLDER): the room stress/ of this folder, a library of its own: who wants the models need not link their extremes.
+function(canyon_stress folder)
+  canyon_library(${folder}_stress NO_INSTALL ONLY "^stress/" LINK ${ARGN})
+  target_link_libraries(canyon_stress_cases INTERFACE canyon_${folder}_stress)
 endfunction()
 
 # canyon_install(NAME): the library canyon_NAME as canyon::NAME of the package that `cmake --install` makes.

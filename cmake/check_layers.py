@@ -30,7 +30,7 @@ OUTSIDE = ["tests", "bench"]
 
 # Rooms of a folder that are a library of their own: the rest of the folder includes neither them nor what they alone may include,
 # so that a program that reads RINEX links no ray tracer.
-ROOMS = {"gnss": (["gnss/paths/*", "gnss/receiver/*", "gnss/sensor/*"], ["scene/*"])}
+ROOMS = {"gnss": (["gnss/paths/*", "gnss/receiver/*", "gnss/sensor/*", "gnss/stress/*"], ["scene/*"])}
 
 # So many sources a folder holds, headers and all; a fuller one wants rooms.
 FOLDER_FILES_MAX = 25

@@ -39,7 +39,8 @@ TEST(GzipFile, OneThatFillsMemoryIsAnError) {
 std::string long_text() {
   const RandomStream random(1, "test.text");
   std::string text;
-  for (std::uint64_t i = 0; i < 300'000; ++i) text += static_cast<char>(static_cast<unsigned char>(random.uniform(0.0, 256.0, 0, i)));
+  for (std::uint64_t i = 0; i < 300'000; ++i)
+    text += static_cast<char>(static_cast<unsigned char>(random.uniform(0.0, 256.0, 0, i)));
   return text;
 }
 
