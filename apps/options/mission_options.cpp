@@ -13,6 +13,10 @@ void declare_mission_choice(Arguments& arguments, MissionOptions& options) {
   arguments.option("--seed", options.seed, "seed of every random stream; without it the mission's")
       .within(std::int64_t{0}, kLargestSeed);
   arguments.option("--nav", options.nav, "RINEX navigation file; without it the built-in 24-slot GPS constellation");
+  arguments.option(
+      "--set", options.settings,
+      "KEY=VALUE of the mission's keys (canyon keys), as gnss.rate_hz=2 or 'gnss.ionosphere=\"none\"', for "
+      "every fidelity; may be repeated");
   arguments.option("--start", options.start, "first instant: ISO date (GPS time, or UTC with Z) or WEEK:SOW");
 }
 
@@ -28,6 +32,10 @@ Result<mission::MissionFile> load_mission(const MissionOptions& options) {
   if (options.seed) file.set_option("run.seed", ConfigNode::of(*options.seed), "--seed");
   if (!options.nav.empty()) file.set_option("gnss.nav_file", ConfigNode::of(options.nav), "--nav");
   if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
+  for (const std::string& setting : options.settings) {
+    CANYON_TRY(const ConfigNode tree, ConfigNode::parse(setting, "--set"));
+    file.lay_over(tree);
+  }
   return file;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "canyon/apps/line/verb.h"
 #include "canyon/mission/config/mission_file.h"
@@ -15,6 +16,7 @@ struct MissionOptions {
   std::string mission;  ///< empty = built-in
   std::optional<std::int64_t> seed;
   std::string nav, start, out;
+  std::vector<std::string> settings;  ///< "KEY=VALUE"
   bool force = false;
 };
 void declare_mission_options(Arguments& arguments, MissionOptions& options);

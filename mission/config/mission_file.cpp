@@ -184,6 +184,10 @@ void MissionFile::set_option(const std::string& key, ConfigNode value, const std
   options_.set(key, std::move(value), option);
 }
 
+void MissionFile::lay_over(const ConfigNode& options) {
+  options_.overlay(options);
+}
+
 std::vector<std::string> MissionFile::fidelities() const {
   std::vector<std::string> names = table_keys(builtin_fidelities_.find("fidelity"));
   for (const ConfigNode* tree : {&base_, &user_})

@@ -32,6 +32,9 @@ class MissionFile {
   /// An option of the command line: value for a dotted key, for example "run.seed".
   void set_option(const std::string& key, ConfigNode value, const std::string& option);
 
+  /// Several of them, as a tree.
+  void lay_over(const ConfigNode& options);
+
   /// Built-in fidelities and the user's own.
   std::vector<std::string> fidelities() const;
   /// That each name is one of fidelities() and none is given twice; `option` is named in the error.

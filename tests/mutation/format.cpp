@@ -7,7 +7,7 @@
 #include "canyon/apps/line/command_line.h"
 #include "canyon/core/check.h"
 #include "canyon/core/files/files.h"
-#include "canyon/tests/mutation/child_process.h"
+#include "canyon/core/process/child_process.h"
 #include "canyon/tests/report/temporary_directory.h"
 #include "canyon/tests/support/test_data.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "canyon/tests/mutation/child_process.h"
+#include "canyon/core/process/child_process.h"
 #include "canyon/tests/mutation/format.h"
 
 /// Whether a reader survives what it is given.

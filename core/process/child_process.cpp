@@ -1,10 +1,12 @@
-#include "canyon/tests/mutation/child_process.h"
+#include "canyon/core/process/child_process.h"
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <thread>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -12,6 +14,7 @@
 #include <unistd.h>
 
 #include "canyon/core/check.h"
+#include "canyon/core/process/progress.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define CANYON_SANITIZED
@@ -21,7 +24,7 @@
 #endif
 #endif
 
-namespace canyon::testing {
+namespace canyon {
 namespace {
 
 #ifdef CANYON_SANITIZED
@@ -56,7 +59,7 @@ int guarded(const std::function<int()>& body) {
   try {
     return body();
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "an exception left the reader: %s\n", error.what());
+    std::fprintf(stderr, "an exception left it: %s\n", error.what());
     return 3;
   }
 }
@@ -82,7 +85,11 @@ pid_t start_child(const std::function<int()>& body, const std::filesystem::path&
 std::pair<pid_t, ChildEnd> wait_for_a_child() {
   int status = 0;
   rusage used{};
-  const pid_t child = wait4(-1, &status, 0, &used);
+  pid_t child = 0;
+  while ((child = wait4(-1, &status, WNOHANG, &used)) == 0) {
+    throw_if_cancelled();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
   CANYON_CHECK(child > 0, "wait4: ", std::strerror(errno));
   ChildEnd end;
   end.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -93,6 +100,11 @@ std::pair<pid_t, ChildEnd> wait_for_a_child() {
   end.cpu_s = seconds(used.ru_utime) + seconds(used.ru_stime);
   end.peak_memory_bytes = static_cast<std::size_t>(used.ru_maxrss) * 1024;
   return {child, end};
+}
+
+void end_child(pid_t child) {
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
 }
 
 std::string breach(const ChildEnd& end, const ChildLimits& limits) {
@@ -112,4 +124,4 @@ std::string breach(const ChildEnd& end, const ChildLimits& limits) {
   return text;
 }
 
-}  // namespace canyon::testing
+}  // namespace canyon

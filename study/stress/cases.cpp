@@ -1,0 +1,74 @@
+#include "canyon/study/stress/cases.h"
+
+#include <algorithm>
+#include <set>
+
+#include "canyon/core/stress/stress_cases.h"
+#include "canyon/fusion/stress/stress_cases.h"
+#include "canyon/gnss/stress/stress_cases.h"
+#include "canyon/inertial/stress/stress_cases.h"
+#include "canyon/lidar/stress/stress_cases.h"
+#include "canyon/mission/stress/stress_cases.h"
+#include "canyon/scene/stress/stress_cases.h"
+
+namespace canyon::study {
+namespace {
+
+constexpr ModelRow<StressGroup> kGroups[] = {
+    {"stiff", StressGroup::kStiff, "time constants and steps that do not fit each other"},
+    {"geometry", StressGroup::kGeometry, "places, attitudes and shapes at their borders"},
+    {"data", StressGroup::kData, "values and orders of messages that nobody expects"},
+    {"long", StressGroup::kLong, "hours, years and large counts"},
+};
+
+std::string subject(const std::string& name) {
+  return name.substr(0, name.find('/'));
+}
+
+/// Of an option that is no model's.
+Error unknown_case(const std::string& name, const std::set<std::string>& subjects,
+                   const std::vector<StressCase>& cases) {
+  std::vector<std::string> known(subjects.begin(), subjects.end());
+  const std::vector<std::string> listed = known;
+  for (const StressCase& one : cases) known.push_back(one.name);
+  const std::string nearest = nearest_word(name, known);
+  std::string expected = "a case, or all of a subject: " + plain_list(listed);
+  if (!nearest.empty()) expected += "; nearest is \"" + nearest + "\"";
+  return Error{.file = "case", .what = "\"" + name + "\" is unknown", .expected = expected};
+}
+
+bool named(const std::vector<std::string>& names, const StressCase& one) {
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return name == one.name || name == subject(one.name); });
+}
+
+}  // namespace
+
+ModelTable<StressGroup> stress_groups() {
+  return kGroups;
+}
+
+std::vector<StressCase> all_stress_cases() {
+  std::vector<StressCase> all;
+  for (std::vector<StressCase>& floor :
+       std::vector{stress_cases(), scene::stress_cases(), gnss::stress_cases(), inertial::stress_cases(),
+                   lidar::stress_cases(), fusion::stress_cases(), mission::stress_cases()})
+    std::move(floor.begin(), floor.end(), std::back_inserter(all));
+  return all;
+}
+
+Result<std::vector<StressCase>> choose_cases(std::vector<StressCase> all, const CaseChoice& choice) {
+  std::set<std::string> subjects;
+  for (const StressCase& one : all) subjects.insert(subject(one.name));
+  for (const std::string& name : choice.names)
+    if (std::none_of(all.begin(), all.end(), [&](const StressCase& one) { return named({name}, one); }))
+      return unknown_case(name, subjects, all);
+  if (!choice.group.empty()) CANYON_TRY_STATUS(choose(stress_groups(), choice.group, "--group"));
+  std::erase_if(all, [&](const StressCase& one) {
+    if (!choice.group.empty() && row_of(stress_groups(), one.group).name != choice.group) return true;
+    return choice.names.empty() ? one.long_running && !choice.long_form : !named(choice.names, one);
+  });
+  return all;
+}
+
+}  // namespace canyon::study

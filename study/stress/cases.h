@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canyon/core/model_table.h"
+#include "canyon/core/result.h"
+#include "canyon/core/stress_case.h"
+
+namespace canyon::study {
+
+ModelTable<StressGroup> stress_groups();
+
+/// The cases of all floors, lowest first.
+std::vector<StressCase> all_stress_cases();
+
+/// Which of them are asked for.
+struct CaseChoice {
+  std::vector<std::string> names;  ///< of cases, or of a subject: what stands before the "/"; none: all
+  std::string group;               ///< empty: all
+  bool long_form = false;          ///< also those that take long; those that are named run in any case
+};
+
+/// Those, in their order. An Error for a name or a group that there is not, with the nearest.
+Result<std::vector<StressCase>> choose_cases(std::vector<StressCase> all, const CaseChoice& choice);
+
+}  // namespace canyon::study
