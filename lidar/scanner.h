@@ -31,10 +31,10 @@ class Scanner {
  public:
   virtual ~Scanner() = default;
   /// `truth` must cover [t - latency - period, t - latency], lasers that run free one firing cycle more at the
-  /// beginning; poses of B in W. `index` numbers the revolution. What was in `out` is replaced; its memory is used
-  /// again, which saves a tenth of the time.
-  /// `moving` says where moving things are so many seconds after the stamp; without it they stand as in `scene`, which
-  /// must hold the same things in the same order in either case. They are placed anew for every 32 firing cycles.
+  /// beginning (reach_s()); poses of B in W. `index` numbers the revolution. What was in `out` is replaced; its memory
+  /// is used again, which saves a tenth of the time. `moving` says where moving things are so many seconds after the
+  /// stamp; without it they stand as in `scene`, which must hold the same things in the same order in either case. They
+  /// are placed anew for every 32 firing cycles.
   using InstancesAt = std::function<std::vector<scene::Instance>(double after_stamp_s)>;
   virtual void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
                     const InstancesAt& moving, LidarOutput& out) = 0;
@@ -55,6 +55,8 @@ class Scanner {
     true_ranges(index, t, truth, scene, out);
     return out;
   }
+  /// So long before its stamp the first shot of scan `index` may be fired, s: `truth` must reach back to there.
+  virtual double reach_s(std::int64_t index) const = 0;
   virtual std::int64_t rays() const = 0;  ///< fired so far
 };
 

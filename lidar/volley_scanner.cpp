@@ -154,6 +154,7 @@ class VolleyScanner final : public Scanner {
     rays_ += static_cast<std::int64_t>(out.size());
   }
 
+  double reach_s(std::int64_t index) const override { return config_.latency_s - first_s(pattern_.sweep(index)); }
   std::int64_t rays() const override { return rays_; }
 
  private:
@@ -165,13 +166,16 @@ class VolleyScanner final : public Scanner {
     return truth.empty() ? Eigen::Vector3d::Zero() : scene.packet_origin(truth.poses().back().X_WB.p);
   }
 
+  /// When the sweep begins, after its stamp less the latency.
+  double first_s(const FiringPattern::Sweep& sweep) const { return std::min(-period_s_, sweep.start_s); }
+
   /// The sensor's motion in W moved to origin_W.
   SweepMotion motion_of(GpsTime t, const Trajectory& truth, const FiringPattern::Sweep& sweep,
                         const Eigen::Vector3d& origin_W) const {
-    const double first_s = std::min(-period_s_, sweep.start_s);
+    const double first = first_s(sweep);
     const Pose X_RW{Eigen::Quaterniond::Identity(), -origin_W};
-    SweepMotion motion(truth, t - config_.latency_s, first_s, 0.0, X_RW, X_BL_);
-    CANYON_CHECK(motion.covers(first_s) && motion.covers(0.0), "the true motion does not cover the sweep that ends at ",
+    SweepMotion motion(truth, t - config_.latency_s, first, 0.0, X_RW, X_BL_);
+    CANYON_CHECK(motion.covers(first) && motion.covers(0.0), "the true motion does not cover the sweep that ends at ",
                  (t - config_.latency_s).iso());
     return motion;
   }

@@ -102,7 +102,10 @@ Status MissionRun::record_fix() {
 }
 
 Status MissionRun::take_scan(const Due& due) {
-  forget_motion_before(std::min(due.t, localizer_.at()) - 1.0 / config_.lidar.rate_hz);  // scans may wait for it
+  const double reach_s = scanner_->reach_s(due.k);
+  forget_motion_before(std::min(due.t, localizer_.at()) - reach_s);  // scans may wait for it
+  constexpr double kSameInstant_s = 1e-9;
+  if (due.t - mission_.start < reach_s - kSameInstant_s) return Ok{};  // it began before the vehicle did
   const auto withhold_s = config_.run.withhold_scans_after_s;
   if (withhold_s && due.t - mission_.start >= *withhold_s) return Ok{};
   if (!scan_is_wanted(due.t)) return Ok{};

@@ -50,10 +50,9 @@ std::string summary_line(const std::vector<CaseResult>& results) {
     cpu_s += result.cpu_s;
   }
   char text[200];
-  std::snprintf(text, sizeof text,
-                "%zu cases of %zu mechanisms: %zu hold, %zu do not, %zu open; %.1f s of CPU time\n", results.size(),
-                mechanisms(cases), count(results, CaseVerdict::kHolds), count(results, CaseVerdict::kFails),
-                count(results, CaseVerdict::kOpen), cpu_s);
+  std::snprintf(text, sizeof text, "%zu cases of %zu mechanisms: %zu hold, %zu do not, %zu open; %.1f s of CPU time\n",
+                results.size(), mechanisms(cases), count(results, CaseVerdict::kHolds),
+                count(results, CaseVerdict::kFails), count(results, CaseVerdict::kOpen), cpu_s);
   return text;
 }
 
@@ -65,7 +64,8 @@ std::string stress_table(const std::vector<CaseResult>& results) {
   for (const CaseResult& result : results) {
     const StressCase& one = result.stress_case;
     if (subject(one.name) != last) table.heading(last = subject(one.name));
-    const std::string mark = result.verdict == CaseVerdict::kHolds ? "" : std::string(" (") + name(result.verdict) + ")";
+    const std::string mark =
+        result.verdict == CaseVerdict::kHolds ? "" : std::string(" (") + name(result.verdict) + ")";
     table.line(rest(one.name) + mark,
                {scientific(result.found.figure), scientific(result.found.bound), fixed(result.cpu_s, 3)}, one.unit);
   }
@@ -95,15 +95,16 @@ nlohmann::ordered_json stress_json(const std::vector<CaseResult>& results) {
 }
 
 std::string stress_list(const std::vector<StressCase>& cases) {
-  std::string text = "| subject | group | what may break | how | what is true there | cases |\n|---|---|---|---|---|---|\n";
+  std::string text =
+      "| subject | group | what may break | how | what is true there | cases |\n|---|---|---|---|---|---|\n";
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const StressCase& one = cases[i];
     const auto same = [&one](const StressCase& other) {
       return other.mechanism == one.mechanism && subject(other.name) == subject(one.name);
     };
     if (std::any_of(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
-    text += "| `" + subject(one.name) + "` | " + row_of(stress_groups(), one.group).name + " | " + one.mechanism + " | " +
-            one.why + " | " + one.expected + " | " +
+    text += "| `" + subject(one.name) + "` | " + row_of(stress_groups(), one.group).name + " | " + one.mechanism +
+            " | " + one.why + " | " + one.expected + " | " +
             std::to_string(std::count_if(cases.begin(), cases.end(), same)) + " |\n";
   }
   return text;
