@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <thread>
+#include <type_traits>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -25,6 +26,9 @@
 #endif
 
 namespace canyon {
+
+static_assert(std::is_same_v<ProcessId, pid_t>);
+
 namespace {
 
 #ifdef CANYON_SANITIZED
@@ -66,8 +70,8 @@ int guarded(const std::function<int()>& body) {
 
 }  // namespace
 
-pid_t start_child(const std::function<int()>& body, const std::filesystem::path& folder,
-                  const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits) {
+ProcessId start_child(const std::function<int()>& body, const std::filesystem::path& folder,
+                      const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits) {
   std::fflush(nullptr);
   const pid_t child = fork();
   CANYON_CHECK(child >= 0, "fork: ", std::strerror(errno));
@@ -82,7 +86,7 @@ pid_t start_child(const std::function<int()>& body, const std::filesystem::path&
   _exit(status);
 }
 
-std::pair<pid_t, ChildEnd> wait_for_a_child() {
+std::pair<ProcessId, ChildEnd> wait_for_a_child() {
   int status = 0;
   rusage used{};
   pid_t child = 0;
@@ -102,7 +106,7 @@ std::pair<pid_t, ChildEnd> wait_for_a_child() {
   return {child, end};
 }
 
-void end_child(pid_t child) {
+void end_child(ProcessId child) {
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
 }

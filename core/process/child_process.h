@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-
-#include <sys/types.h>
+#include <utility>
 
 /// A function in a process of its own: whatever becomes of it, the caller goes on and knows what it was.
 namespace canyon {
+
+using ProcessId = int;  ///< what the system calls pid_t
 
 struct ChildLimits {
   double cpu_s = 20.0;
@@ -27,14 +28,14 @@ struct ChildEnd {
 /// Forks a process that works in `folder`, with stdout and stderr in the files `out` and `err`, and whose exit status
 /// is what `body` returns; 3 and the exception's text on stderr if one leaves it. Nothing that runs at a program's end
 /// runs in it. The calling process must have no other threads, unless all that `body` does is to execute a program.
-pid_t start_child(const std::function<int()>& body, const std::filesystem::path& folder,
-                  const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits);
+ProcessId start_child(const std::function<int()>& body, const std::filesystem::path& folder,
+                      const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits);
 
 /// Waits for any child; returns its process and how it ended, without what it printed. Throws Cancelled when the user
 /// asks to stop: end_child() those that are left.
-std::pair<pid_t, ChildEnd> wait_for_a_child();
+std::pair<ProcessId, ChildEnd> wait_for_a_child();
 /// Kills it and waits until it is gone.
-void end_child(pid_t child);
+void end_child(ProcessId child);
 
 /// What is wrong with that end in any case: a signal, too much time or memory. Empty if nothing is.
 std::string breach(const ChildEnd& end, const ChildLimits& limits);
