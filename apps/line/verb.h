@@ -26,6 +26,7 @@ Verb compare_verb();
 Verb tradeoff_verb();
 Verb run_verb();
 Verb plan_verb();
+Verb stress_verb();
 Verb report_verb();
 Verb keys_verb();
 Verb scene_info_verb();

@@ -19,6 +19,12 @@ std::string scientific(double value) {
   return text;
 }
 
+/// What is no column's border in Markdown.
+std::string cell(std::string text) {
+  for (std::size_t at = text.find('|'); at != std::string::npos; at = text.find('|', at + 2)) text.insert(at, "\\");
+  return text;
+}
+
 std::string subject(const std::string& name) {
   return name.substr(0, name.find('/'));
 }
@@ -103,8 +109,8 @@ std::string stress_list(const std::vector<StressCase>& cases) {
       return other.mechanism == one.mechanism && subject(other.name) == subject(one.name);
     };
     if (std::any_of(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
-    text += "| `" + subject(one.name) + "` | " + row_of(stress_groups(), one.group).name + " | " + one.mechanism +
-            " | " + one.why + " | " + one.expected + " | " +
+    text += "| `" + subject(one.name) + "` | " + row_of(stress_groups(), one.group).name + " | " + cell(one.mechanism) +
+            " | " + cell(one.why) + " | " + cell(one.expected) + " | " +
             std::to_string(std::count_if(cases.begin(), cases.end(), same)) + " |\n";
   }
   return text;
