@@ -42,7 +42,7 @@ TEST_F(StressTest, AMissionsKeysAreTriedForAsLongAsThereIsTime) {
   EXPECT_GT(json["values_tried"].get<int>() + json["pairs_tried"].get<int>(), 0);
   EXPECT_GT(json["not_tried"].get<int>(), 500);
   EXPECT_TRUE(json["failures"].empty());
-  EXPECT_EQ(entries().size(), 0U) << "nothing is left in the folder";
+  EXPECT_THAT(leftovers(), ::testing::IsEmpty());
 }
 
 // With one guard taken out of it, a program is found out: tests/study/stress/sweep_test.cpp.
