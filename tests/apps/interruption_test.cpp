@@ -14,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canyon/core/random/random.h"
 #include "canyon/tests/apps/command_line_fixture.h"
 
 namespace canyon::apps {
@@ -43,7 +44,7 @@ class Interruption : public testing::CommandLineTest {
   Ended interrupted(std::vector<std::string> words, double moment_s, int signal = SIGINT, int times = 1) const {
     const pid_t child = fork();
     if (child == 0) {
-      if (chdir(folder_.c_str()) != 0) _exit(99);
+      if (chdir(folder_.c_str()) != 0 || setenv("TMPDIR", folder_.c_str(), 1) != 0) _exit(99);
       std::freopen("stdout", "w", stdout);
       std::freopen("stderr", "w", stderr);
       std::string name = "canyon";
@@ -99,6 +100,36 @@ TEST_F(Interruption, LidarScanAtAnyMoment) {
     expect_clean_end({"lidar", "scan", "--at", "213.9,30,0,90", "--scans", "1000000", "--beams", "hdl32e", "--out",
                       "scans", "--pcap", "scans.pcap"},
                      moment_s);
+}
+
+TEST_F(Interruption, PlanTradeoffAndStressAtAnyMoment) {
+  for (const double moment_s : {0.05, 0.6, 2.5}) {
+    expect_clean_end({"plan", "mission.toml", "--write", "a.plan", "--verify", "100000"}, moment_s);
+    expect_clean_end({"tradeoff", "mission.toml", "--part", "fusion", "--out", "out"}, moment_s, SIGTERM);
+    expect_clean_end({"stress", "--long"}, moment_s);
+    expect_clean_end({"stress", "mission.toml"}, moment_s, SIGTERM);
+  }
+}
+
+// Twenty moments that nobody has chosen.
+TEST_F(Interruption, EveryLongVerbAtRandomMomentsNightly) {
+  const std::vector<std::vector<std::string>> verbs{
+      {"compare", "--out", "out"},
+      {"run", "mission.toml", "--out", "out"},
+      {"plan", "mission.toml", "--write", "a.plan", "--verify", "100000"},
+      {"tradeoff", "mission.toml", "--out", "out"},
+      {"stress", "--long"},
+      {"stress", "mission.toml"},
+      {"scene", "make", "--out", "city.json"},
+      {"gnss", "simulate", "--at", "32.3,-90.9,50", "--duration", "100000", "--rinex-obs", "a.rnx"},
+      {"gnss", "map", "--out", "map"},
+      {"imu", "simulate", "--path", "circle", "--duration", "100000", "--out", "log.csv"},
+      {"lidar", "scan", "--at", "213.9,30,0,90", "--scans", "1000000", "--beams", "hdl32e", "--out", "scans"}};
+  const RandomStream stream(15, "test.interruption");
+  for (std::size_t verb = 0; verb < verbs.size(); ++verb)
+    for (std::uint64_t k = 0; k < 20; ++k)
+      expect_clean_end(verbs[verb], stream.uniform(0.0, 8.0, static_cast<std::uint32_t>(verb), k),
+                       k % 2 == 0 ? SIGINT : SIGTERM);
 }
 
 // 2026-11-22: the reading of a pipe that nobody writes to could not be interrupted.
