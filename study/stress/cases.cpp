@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "canyon/core/config/text.h"
 #include "canyon/core/stress/stress_cases.h"
 #include "canyon/fusion/stress/stress_cases.h"
 #include "canyon/gnss/stress/stress_cases.h"

@@ -6,7 +6,7 @@
 
 #include "canyon/core/process/cpu_time.h"
 #include "canyon/core/process/progress.h"
-#include "canyon/core/units.h"
+#include "canyon/core/messages.h"
 
 namespace canyon::study {
 namespace {

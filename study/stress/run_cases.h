@@ -19,7 +19,7 @@ struct CaseResult {
   StressCase stress_case;
   StressFigure found;  ///< NaN where it threw
   CaseVerdict verdict = CaseVerdict::kFails;
-  std::string thrown;  ///< what it threw, if it did
+  std::string thrown{};  ///< what it threw, if it did
   double cpu_s = 0.0;  ///< of all threads
 };
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "canyon/core/units.h"
+#include "canyon/core/messages.h"
 #include "canyon/study/stress/cases.h"
 #include "canyon/study/stress/stress_output.h"
 
