@@ -15,6 +15,7 @@ option(CANYON_BENCH "Build the benchmarks" OFF)
 option(CANYON_WERROR "Treat warnings as errors" ON)
 option(CANYON_WITH_PCL "Registration methods that need PCL (gicp)" ON)
 option(CANYON_WITH_ASSIMP "Scenes in glTF and what else assimp reads" ON)
+option(CANYON_WITH_PROJ "Scenes in the coordinates of a map (PROJ)" ON)
 option(CANYON_WITH_CERES "Fit of noise processes to inertial logs (Ceres)" ON)
 set(CANYON_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
 # The address sanitizer takes what is both in the program and in a part that it opens for a violation of one definition.

@@ -6,7 +6,9 @@ find_package(embree 3 REQUIRED)
 find_package(ZLIB REQUIRED)
 # Scenes from files: map projections, GeoTIFF, XML. PROJ and libtiff are used directly: GDAL would bring a hundred shared libraries to
 # the start of every run for one raster format.
-find_package(PROJ REQUIRED)
+if(CANYON_WITH_PROJ)
+  find_package(PROJ REQUIRED)
+endif()
 find_package(TIFF REQUIRED)
 find_package(LibXml2 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
