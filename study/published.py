@@ -73,7 +73,7 @@ class Made:
     def __init__(self, stdout, summary):
         self.stdout = stdout
         self.values = dict(summary)
-        first = summary.get("mission", {}).get("seed")
+        first = summary["mission"]["seed"] if summary.get("runs") else None
         for run in summary.get("runs", []):
             if run["seed"] == first:
                 self.values[run["fidelity"]] = run
@@ -83,6 +83,11 @@ class Made:
         self.values["paired"] = {}
         for pair in summary.get("paired") or []:
             self.values["paired"].setdefault(pair["b"], {})[pair["figure"]] = pair
+        self.values["whole"] = {run["fidelity"]: run for run in summary.get("fidelities") or []}
+        self.values["ladder"] = {}
+        for ladder in summary.get("ladders") or []:
+            of_key = self.values["ladder"].setdefault(ladder["key"].replace(".", "_"), {})
+            of_key[ladder["probe"]] = {model["name"]: model for model in ladder["models"]}
         self.values["median"] = {run["fidelity"]: {key: row["median"] for key, row in run["figures"].items()}
                                  for run in summary.get("over_seeds") or []}
 
@@ -154,8 +159,8 @@ def run(canyon, name, row, seeds):
         if "mission" in row:
             (pathlib.Path(folder) / "mission.toml").write_text(row["mission"], encoding="utf-8")
             arguments.insert(1, "mission.toml")
-        drives = arguments[0] in ("compare", "run")
-        if drives:
+        has_results = arguments[0] in ("compare", "run", "tradeoff")
+        if has_results:
             arguments += ["--out", "results"]
         start = time.monotonic()
         try:
@@ -164,7 +169,11 @@ def run(canyon, name, row, seeds):
             raise Mistake(f"--canyon: {canyon}: {error.strerror}") from error
         if done.returncode != 0:
             raise Mistake(f"command.{name}: canyon {' '.join(arguments)} ended with status {done.returncode}")
-        summary = json.loads((pathlib.Path(folder) / "results" / "summary.json").read_text(encoding="utf-8")) if drives else {}
+        summary = {}
+        if has_results:
+            summary = json.loads((pathlib.Path(folder) / "results" / "summary.json").read_text(encoding="utf-8"))
+        elif "--json" in arguments:
+            summary = json.loads(done.stdout)
         print(f"{name}: {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
         return Made(done.stdout, summary)
 

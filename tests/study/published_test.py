@@ -17,6 +17,18 @@ if sys.argv[1] == "keys":
     sys.exit(0)
 if "broken" in sys.argv:
     sys.exit(1)
+if sys.argv[1] == "plan":
+    print(json.dumps({{"mission": "small", "planned_cpu_s": 14.4}}))
+    sys.exit(0)
+if sys.argv[1] == "tradeoff":
+    out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
+    out.mkdir()
+    (out / "summary.json").write_text(json.dumps({{
+        "mission": "small", "fidelities": [{{"fidelity": "high_planned", "closed_loop": {{"success": 2}}}}],
+        "ladders": [{{"key": "gnss.paths", "probe": "pseudorange", "models": [{{"name": "none", "error": 1.25}}]}},
+                    {{"key": "gnss.paths", "probe": "fix", "models": [{{"name": "none", "error": 7.5}}]}}]}}))
+    print("whole")
+    sys.exit(0)
 error = {error}
 runs = [{{"fidelity": "low", "seed": seed, "error_m": error + seed, "outcome": "success", "gdop": None,
          "timing": {{"cpu_s": 3.25}}}} for seed in (1, 2)]
@@ -55,6 +67,19 @@ README = """It is <!-- canyon:number -->?<!-- /canyon:number --> off and takes <
 <!-- canyon:block -->
 <!-- /canyon:block -->
 """
+OTHER_VERBS = '''
+[command.errors]
+arguments = ["tradeoff", "--part", "gnss"]
+[command.left]
+arguments = ["plan", "--json"]
+[text.errors]
+command = "errors"
+text = "{whole.high_planned.closed_loop.success} {ladder.gnss_paths.pseudorange.none.error:.2f} {ladder.gnss_paths.fix.none.error:.1f}"
+[text.left]
+command = "left"
+text = "{planned_cpu_s:.1f} s"
+'''
+OTHER_PAGE = "<!-- canyon:errors --><!-- /canyon:errors --> <!-- canyon:left --><!-- /canyon:left -->\n"
 PAGE = "<!-- canyon:list -->\n<!-- /canyon:list -->\n"
 
 
@@ -109,6 +134,15 @@ closed loop
         self.assertEqual(self.read("docs/page.md"), "<!-- canyon:list -->\n| key |\n|---|\n<!-- /canyon:list -->\n")
         # One call for all that a command gives; the mission beside it.
         self.assertEqual(sorted(self.read("calls").splitlines()), ["compare mission.toml --seeds 20 --out results", "keys"])
+
+    def test_what_tradeoff_and_json_tell(self):
+        self.write("study/published.toml", OTHER_VERBS)
+        self.write("README.md", "")
+        self.write("docs/page.md", OTHER_PAGE)
+        self.assertEqual(self.call().returncode, 0)
+        self.assertEqual(self.read("docs/page.md"), "<!-- canyon:errors -->2 1.25 7.5<!-- /canyon:errors --> "
+                                                    "<!-- canyon:left -->14.4 s<!-- /canyon:left -->\n")
+        self.assertEqual(sorted(self.read("calls").splitlines()), ["plan --json", "tradeoff --part gnss --out results"])
 
     def test_what_was_written_is_found_again(self):
         self.call()
