@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -5,16 +6,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/apps/answers/tradeoff_files.h"
 #include "canyon/apps/line/usage_errors.h"
 #include "canyon/apps/options/mission_options.h"
-#include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
-#include "canyon/core/process/progress.h"
-#include "canyon/report/tradeoff/tradeoff_page.h"
 #include "canyon/study/tradeoff/choosing/choose.h"
 #include "canyon/study/tradeoff/output/tradeoff_output.h"
+#include "canyon/study/tradeoff/recorded/recorded_drive.h"
 #include "canyon/study/tradeoff/tradeoff.h"
 
 namespace canyon::apps {
@@ -24,9 +24,10 @@ namespace {
 struct Options {
   MissionOptions mission;
   study::TapeChoice tape;
-  std::string parts, fidelity = "high", tolerance, figure = "position_error_rms_m", write;
+  std::string recording, parts, fidelity = "high", tolerance, figure = "position_error_rms_m", write;
   std::optional<double> budget_cpu_s;
-  std::int64_t samples = 60, repetitions = 5, seeds = 20;
+  std::int64_t samples = 60, repetitions = 5, seeds = 3, validate = 20;
+  std::string outputs = "outcome,position,map,clouds";
   double question_s = 30.0;
 };
 
@@ -36,16 +37,17 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// What was measured, as files of a directory that has been staged.
-Status write_files(const study::Tradeoff& tradeoff, StagedDirectory& staged) {
-  const std::string folder = staged.staging_path();
-  const std::string summary = json_text(study::tradeoff_json(tradeoff), 2) + "\n";
-  CANYON_TRY_STATUS(write_text_file(folder + "/summary.json", summary));
-  CANYON_TRY_STATUS(write_text_file(folder + "/tradeoff.csv", study::tradeoff_csv(tradeoff)));
-  CANYON_TRY(const std::string page, report::tradeoff_page(folder + "/summary.json"));
-  CANYON_TRY_STATUS(write_text_file(folder + "/report.html", page));
-  throw_if_cancelled();
-  return staged.commit();
+/// The recorded drive, if one is given; nullptr where none is.
+Result<std::unique_ptr<const study::RecordedDrive>> recording_of(const Options& options) {
+  const std::vector<std::string> parts = split_list(options.parts);
+  const bool all = options.parts.empty();
+  const bool named = std::find(parts.begin(), parts.end(), study::kRecordedPart) != parts.end();
+  if (named && options.recording.empty())
+    return Error{.file = "--part", .what = "recorded without a recording", .expected = "--recording FILE beside it"};
+  if (!named && !all && !options.recording.empty())
+    return Error{.file = "--recording", .what = "is for the part recorded", .expected = "it among those of --part"};
+  if (options.recording.empty()) return std::unique_ptr<const study::RecordedDrive>();
+  return study::read_recorded_drive(options.recording);
 }
 
 Result<int> run(const Options& options) {
@@ -55,8 +57,12 @@ Result<int> run(const Options& options) {
                                .samples = static_cast<std::size_t>(options.samples),
                                .repetitions = static_cast<int>(options.repetitions),
                                .question_s = options.question_s,
+                               .seeds = options.seeds,
                                .show_progress = !options.mission.common.json};
   CANYON_TRY_STATUS(study::check_parts(asked.parts, "--part"));
+  CANYON_TRY(asked.outputs, study::outputs_of(split_list(options.outputs), "--for"));
+  CANYON_TRY(const auto recording, recording_of(options));
+  asked.recording = recording.get();
   CANYON_TRY(const auto question, study::read_question(options.tolerance, options.budget_cpu_s, options.figure));
   if (!question && !options.write.empty())
     return Error{.file = "--write", .what = "nothing is chosen", .expected = "--tolerance or --budget-cpu beside it"};
@@ -76,7 +82,7 @@ Result<int> run(const Options& options) {
   study::Tradeoff tradeoff;
   if (question) {
     CANYON_TRY(tradeoff,
-               study::choose_and_describe(*question, file, asked, comparison, static_cast<int>(options.seeds)));
+               study::choose_and_describe(*question, file, asked, comparison, static_cast<int>(options.validate)));
     if (tradeoff.chosen->found && written) {
       CANYON_TRY(const std::string text,
                  study::mission_with(*tradeoff.chosen, asked.fidelity, options.mission.mission, options.write));
@@ -86,7 +92,7 @@ Result<int> run(const Options& options) {
   } else {
     CANYON_TRY(tradeoff, study::measure_tradeoff(file, asked, comparison));
   }
-  CANYON_TRY_STATUS(write_files(tradeoff, directory));
+  CANYON_TRY_STATUS(write_tradeoff_files(tradeoff, directory));
   if (options.mission.common.json) {
     auto out = study::tradeoff_json(tradeoff);
     out["results_dir"] = directory.final_path();
@@ -104,6 +110,10 @@ VerbAction declare(Arguments& arguments) {
   declare_mission_options(arguments, options->mission);
   arguments.option("--part", options->parts,
                    "parts to measure, with commas between: " + joined(study::tradeoff_parts()) + "; without it all");
+  arguments
+      .option("--recording", options->recording,
+              "a recorded GNSS drive with its surveyed truth and scene (docs/tradeoff.md), for the part recorded")
+      .type("FILE.toml");
   arguments.option("--fidelity", options->fidelity, "what ladders vary one setting of").default_shown();
   arguments.option("--samples", options->samples, "epochs, scans, windows or keyframes, spread over the tape")
       .default_shown()
@@ -111,6 +121,17 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--repetitions", options->repetitions, "of each model, interleaved in random order")
       .default_shown()
       .within(std::int64_t{5}, std::int64_t{1000});
+  arguments
+      .option(
+          "--seeds", options->seeds,
+          "part mission: closed loops of each fidelity, from the mission's own seed on, for the shares of outcomes; "
+          "0: none")
+      .default_shown()
+      .within(std::int64_t{0}, std::int64_t{100'000});
+  arguments
+      .option("--for", options->outputs,
+              "part mission: what somebody will read of the planned run, with commas between")
+      .default_shown();
   arguments.option("--tape", options->tape.tape, "true motion: a .tape, or a results directory; without it the route")
       .type("RUN_DIR");
   arguments.option("--tolerance", options->tolerance,
@@ -119,7 +140,7 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--budget-cpu", options->budget_cpu_s,
                    "the settings that change --figure least for so many CPU seconds per simulated second");
   arguments.option("--figure", options->figure, "what --budget-cpu is to keep").default_shown();
-  arguments.option("--validate", options->seeds, "seeds that the answer must hold on, which have not chosen it")
+  arguments.option("--validate", options->validate, "seeds that the answer must hold on, which have not chosen it")
       .default_shown()
       .within(std::int64_t{1}, std::int64_t{10'000});
   arguments.option("--seconds", options->question_s, "of the true motion, from its start, that it is answered on")

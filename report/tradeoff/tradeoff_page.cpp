@@ -29,22 +29,50 @@ std::string legend() {
          swatch(kReference, "reference") + swatch(kDominated, "dominated") + "</p>\n";
 }
 
+/// One row a fidelity, after the columns' titles.
+std::string fidelity_table(const char* name, const std::vector<std::string>& titles,
+                           const std::vector<std::vector<std::string>>& rows) {
+  std::string out = std::string("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"") + name +
+                    "\"><table>\n<thead><tr><th scope=\"col\" class=\"text\">fidelity</th>";
+  for (const std::string& title : titles) out += "<th>" + title + "</th>";
+  out += "</tr></thead>\n<tbody>";
+  for (const std::vector<std::string>& row : rows) {
+    out += "<tr><th scope=\"row\">" + escape_html(row.front()) + "</th>";
+    for (std::size_t i = 1; i < row.size(); ++i) out += "<td>" + escape_html(row[i]) + "</td>";
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string error_table(const TradeoffSummary& t) {
+  std::vector<std::vector<std::string>> rows;
+  for (const TradeoffRun& run : t.runs)
+    rows.push_back({run.fidelity, show_number(run.position_m), show_number(run.map_m), show_number(run.registration_m),
+                    show_number(run.cpu_s), show_number(run.cpu_low_s) + "\xE2\x80\x93" + show_number(run.cpu_high_s)});
+  return fidelity_table("Errors of whole missions",
+                        {"position, m", "map, m", "registration, m", "CPU, s per s", "least\xE2\x80\x93most"}, rows);
+}
+
+std::string outcome_table(const TradeoffSummary& t) {
+  std::vector<std::vector<std::string>> rows;
+  for (const TradeoffRun& run : t.runs)
+    if (run.driven)
+      rows.push_back({run.fidelity, show_count(run.success) + " of " + show_count(run.seeds),
+                      show_share(run.success_low) + "\xE2\x80\x93" + show_share(run.success_high), listed(run.outcomes),
+                      show_number(run.mission_cpu_s)});
+  if (rows.empty()) return "";
+  return fidelity_table("Outcomes of whole missions", {"success", "95 %", "how they ended", "CPU, s a mission"}, rows);
+}
+
 std::string runs_section(const TradeoffSummary& t) {
   if (t.runs.empty()) return "";
-  std::string body =
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Whole runs\"><table>\n<thead><tr><th "
-      "scope=\"col\" class=\"text\">fidelity</th><th>position, m</th><th>map, m</th><th>registration, m</th><th>CPU, s "
-      "per s</th><th>least\xE2\x80\x93most</th></tr></thead>\n<tbody>";
-  for (const TradeoffRun& run : t.runs)
-    body += "<tr><th scope=\"row\">" + escape_html(run.fidelity) + "</th><td>" + show_number(run.position_m) +
-            "</td><td>" + show_number(run.map_m) + "</td><td>" + show_number(run.registration_m) + "</td><td>" +
-            show_number(run.cpu_s) + "</td><td>" + show_number(run.cpu_low_s) + "\xE2\x80\x93" +
-            show_number(run.cpu_high_s) + "</td></tr>\n";
-  body += "</tbody></table></div>\n";
-  return section("runs", "The mission as a whole",
-                 "Root mean square errors of whole runs on the same true motion, " +
-                     show_quantity(t.runs.front().simulated_s, "s") + " of it, against what they cost.",
-                 body);
+  const TradeoffRun& first = t.runs.front();
+  std::string words = "Root mean square errors on the same true motion, " + show_quantity(first.tape_s, "s") +
+                      " of it, against what its first " + show_quantity(first.simulated_s, "s") + " cost.";
+  const std::string outcomes = outcome_table(t);
+  if (!outcomes.empty())
+    words += " And how missions end that each drives by itself, over seeds, against what one costs to its end.";
+  return section("runs", "The mission as a whole", words, error_table(t) + outcomes);
 }
 
 std::string choice_section(const TradeoffChoice& c) {

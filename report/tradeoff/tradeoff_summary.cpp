@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/report/format.h"
 #include "canyon/report/read/json_fields.h"
 
 namespace canyon::report {
@@ -65,14 +66,28 @@ TradeoffLadder read_ladder(const JsonFields& f) {
 }
 
 TradeoffRun read_run(const JsonFields& f) {
-  return {.fidelity = f.required_text("fidelity"),
-          .position_m = f.number("position_error_rms_m"),
-          .map_m = f.number("map_error_rms_m"),
-          .registration_m = f.number("registration_error_rms_m"),
-          .cpu_s = f.number("cpu_s"),
-          .cpu_low_s = f.number("cpu_low_s"),
-          .cpu_high_s = f.number("cpu_high_s"),
-          .simulated_s = f.number("simulated_s")};
+  const JsonFields driven = f.object("closed_loop");
+  TradeoffRun run{.fidelity = f.required_text("fidelity"),
+                  .position_m = f.number("position_error_rms_m"),
+                  .map_m = f.number("map_error_rms_m"),
+                  .registration_m = f.number("registration_error_rms_m"),
+                  .tape_s = f.number("tape_s"),
+                  .cpu_s = f.number("cpu_s"),
+                  .cpu_low_s = f.number("cpu_low_s"),
+                  .cpu_high_s = f.number("cpu_high_s"),
+                  .simulated_s = f.number("simulated_s"),
+                  .driven = driven.node() != nullptr,
+                  .success = driven.number("success"),
+                  .seeds = driven.number("n"),
+                  .success_low = driven.share("low"),
+                  .success_high = driven.share("high"),
+                  .mission_cpu_s = driven.number("mission_cpu_s"),
+                  .outcomes = {}};
+  const JsonFields outcomes = driven.object("outcomes");
+  if (outcomes.node() != nullptr)
+    for (const auto& [outcome, count] : outcomes.node()->items())
+      run.outcomes.push_back(outcome + " " + show_count(outcomes.number(outcome)));
+  return run;
 }
 
 TradeoffChoice read_choice(const JsonFields& f) {

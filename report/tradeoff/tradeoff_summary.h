@@ -28,8 +28,11 @@ struct TradeoffLadder {
 
 struct TradeoffRun {
   std::string fidelity;
-  double position_m = kNaN, map_m = kNaN, registration_m = kNaN;
+  double position_m = kNaN, map_m = kNaN, registration_m = kNaN, tape_s = kNaN;
   double cpu_s = kNaN, cpu_low_s = kNaN, cpu_high_s = kNaN, simulated_s = kNaN;
+  bool driven = false;  ///< closed loops, of which the rest tells
+  double success = kNaN, seeds = kNaN, success_low = kNaN, success_high = kNaN, mission_cpu_s = kNaN;
+  std::vector<std::string> outcomes;  ///< "collision 2"
 };
 
 struct TradeoffChoice {

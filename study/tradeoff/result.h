@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "canyon/study/results/over_seeds.h"
 #include "canyon/study/statistics/interval.h"
 #include "canyon/study/tradeoff/ladders/rungs.h"
 
@@ -50,13 +51,23 @@ struct MeasuredLadder {
   bool order_holds() const;
 };
 
-/// One fidelity's whole run in an open loop.
+/// How a fidelity's missions end that are driven in a closed loop, over seeds.
+struct MeasuredOutcomes {
+  Share share;
+  double cpu_s = kNaN, cpu_low_s = kNaN, cpu_high_s = kNaN;  ///< of a mission to its end: median, least, most
+};
+
+/// One fidelity's mission as a whole: what it errs in an open loop over the whole tape, what its first part costs, and
+/// how it ends where it drives by itself.
 struct MeasuredFidelity {
   std::string name;
+  bool planned = false;  ///< the fidelity above it, without what its plan says is not needed
   double position_error_rms_m = kNaN, map_error_rms_m = kNaN, registration_error_rms_m = kNaN;
+  double tape_s = kNaN;                                      ///< that the errors are of
   double cpu_s = kNaN, cpu_low_s = kNaN, cpu_high_s = kNaN;  ///< per simulated second
-  double simulated_s = kNaN;
+  double simulated_s = kNaN;                                 ///< that the times are of
   std::int64_t work = 0;
+  std::optional<MeasuredOutcomes> outcomes;  ///< none where no seeds were asked for
 };
 
 /// The combination that was asked for.

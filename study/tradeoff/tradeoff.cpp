@@ -6,6 +6,7 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/study/tradeoff/measuring/fidelities.h"
 #include "canyon/study/tradeoff/measuring/measure.h"
+#include "canyon/study/tradeoff/recorded/recorded_drive.h"
 
 namespace canyon::study {
 namespace {
@@ -16,7 +17,9 @@ bool asked_for(const TradeoffOptions& options, const std::string& part) {
 
 Status measure_ladder(const Ladder& ladder, const mission::MissionFile& file, const TradeoffOptions& options,
                       const Measuring& with, Tradeoff& out) {
-  const auto lists = make_rungs(ladder, file, options.fidelity, probe_keys());
+  const bool recorded = ladder.part == kRecordedPart;
+  const auto lists =
+      make_rungs(ladder, recorded ? with_receiver(file, *options.recording) : file, options.fidelity, probe_keys());
   if (!lists) {
     out.skipped.push_back({ladder.key, lists.error().str()});
     return Ok{};
@@ -76,18 +79,25 @@ Tradeoff described(const TradeoffOptions& options, const Comparison& comparison)
 Result<Tradeoff> measure_tradeoff(const mission::MissionFile& file, const TradeoffOptions& options,
                                   const Comparison& comparison) {
   Tradeoff out = described(options, comparison);
-  const Measuring with{comparison.missions.front(), *comparison.tape, options.samples, options.repetitions,
-                       static_cast<std::uint64_t>(out.seed)};
+  const Measuring with{comparison.missions.front(),          *comparison.tape, options.samples, options.repetitions,
+                       static_cast<std::uint64_t>(out.seed), options.recording};
   std::vector<const Ladder*> ladders;
   for (const Ladder& ladder : built_in_ladders().ladder)
-    if (asked_for(options, ladder.part)) ladders.push_back(&ladder);
+    if (asked_for(options, ladder.part) && (ladder.part != kRecordedPart || options.recording != nullptr))
+      ladders.push_back(&ladder);
   Progress progress("measuring ladders", static_cast<double>(ladders.size()), options.show_progress);
   for (const Ladder* ladder : ladders) {
     CANYON_TRY_STATUS(measure_ladder(*ladder, file, options, with, out));
     progress.advance(1.0);
   }
+  if (asked_for(options, kRecordedPart) && options.recording == nullptr)
+    out.skipped.push_back({"ladders against a recorded drive", "no recording is given (--recording)"});
   if (asked_for(options, "mission")) {
-    CANYON_TRY(out.fidelities, measure_fidelities(comparison, options.repetitions, with.seed));
+    CANYON_TRY(out.fidelities, measure_fidelities(comparison, {.outputs = options.outputs,
+                                                               .repetitions = options.repetitions,
+                                                               .seeds = options.seeds,
+                                                               .seed = with.seed,
+                                                               .show_progress = options.show_progress}));
   }
   return out;
 }

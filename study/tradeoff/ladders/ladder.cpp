@@ -5,7 +5,8 @@
 namespace canyon::study {
 
 const std::vector<std::string>& tradeoff_parts() {
-  static const std::vector<std::string> parts{"gnss", "imu", "lidar", "fusion", "registration", "mission"};
+  static const std::vector<std::string> parts{"gnss",         "imu",     "lidar",      "fusion",
+                                              "registration", "mission", kRecordedPart};
   return parts;
 }
 

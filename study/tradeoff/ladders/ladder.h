@@ -11,6 +11,7 @@ namespace canyon::study {
 
 /// The parts that ladders belong to, in the order in which they are shown.
 const std::vector<std::string>& tradeoff_parts();
+inline constexpr const char* kRecordedPart = "recorded";  ///< measured on a recorded drive, if one is given
 
 /// The models of one effect, or the values of one setting, ordered or not: one [[ladder]] of ladders.toml, whose head
 /// says what each key means.

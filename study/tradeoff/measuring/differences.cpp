@@ -13,6 +13,12 @@ bool has(const std::vector<double>& values, std::size_t first, std::size_t dimen
                      [](double v) { return std::isfinite(v); });
 }
 
+/// Whether vector `k` of sample `i` is of the same thing in both.
+bool of_the_same(const Samples& a, const Samples* b, std::size_t i, std::size_t k) {
+  if (b == nullptr || a.of.empty() || b->of.empty()) return true;
+  return k < a.of[i].size() && k < b->of[i].size() && a.of[i][k] == b->of[i][k];
+}
+
 }  // namespace
 
 Differences differences(const Samples& a, const Samples* b) {
@@ -26,8 +32,9 @@ Differences differences(const Samples& a, const Samples* b) {
     SquareSum sum;
     for (std::size_t k = 0; k < std::max(x.size(), y == nullptr ? 0 : y->size()); k += dimension) {
       const bool has_x = has(x, k, dimension), has_y = y == nullptr || has(*y, k, dimension);
-      if (has_x != has_y) one += 1.0;
-      if (!has_x || !has_y) continue;
+      const bool comparable = has_x && has_y && of_the_same(a, b, i, k / dimension);
+      if ((has_x || has_y) && !comparable) one += 1.0;
+      if (!comparable) continue;
       both += 1.0;
       sum.count += 1.0;
       for (std::size_t c = k; c < k + dimension; ++c) {

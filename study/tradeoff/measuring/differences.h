@@ -11,7 +11,7 @@ namespace canyon::study {
 /// How two rungs' values differ, sample by sample.
 struct Differences {
   std::vector<SquareSum> samples;  ///< squares of the vectors' lengths, and how many vectors both have
-  double undefined_share = 0.0;    ///< of the vectors that either has, that only one has
+  double undefined_share = 0.0;  ///< of the vectors that either has, that only one has, or that are of different things
 };
 
 /// `b` null: against zero, which is the truth where a probe knows it.

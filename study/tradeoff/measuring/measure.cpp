@@ -128,7 +128,7 @@ Result<MeasuredLadder> measure(const RungList& list, const Measuring& with) {
   std::vector<bool> in_use;
   for (std::size_t i = 0; i < list.rungs.size(); ++i) {
     const Rung& rung = list.rungs[i];
-    const ProbeSetup setup{rung.config, with.mission, with.tape, samples, rung.own};
+    const ProbeSetup setup{rung.config, with.mission, with.tape, samples, rung.own, with.recording};
     if (row.order != nullptr && !out.order_theory) out.order_theory = row.order(rung.own, rung.config);
     auto made = row.make(setup);
     if (!made) {

@@ -14,6 +14,7 @@ struct Measuring {
   std::size_t samples = 60;
   int repetitions = 5;
   std::uint64_t seed = 1;
+  const RecordedDrive* recording = nullptr;
 };
 
 /// Makes the rungs' probes, repeats them and says what each errs and costs. Rungs that cannot be made join

@@ -71,17 +71,33 @@ Json ladder_json(const MeasuredLadder& ladder) {
   return out;
 }
 
+Json outcomes_json(const MeasuredOutcomes& found) {
+  Json out;
+  out["success"] = found.share.success;
+  out["n"] = found.share.n;
+  out["low"] = or_null(found.share.interval.low);
+  out["high"] = or_null(found.share.interval.high);
+  out["outcomes"] = found.share.outcomes;
+  out["mission_cpu_s"] = or_null(found.cpu_s);
+  out["mission_cpu_low_s"] = or_null(found.cpu_low_s);
+  out["mission_cpu_high_s"] = or_null(found.cpu_high_s);
+  return out;
+}
+
 Json fidelity_json(const MeasuredFidelity& run) {
   Json out;
   out["fidelity"] = run.name;
+  out["planned"] = run.planned;
   out["position_error_rms_m"] = or_null(run.position_error_rms_m);
   out["map_error_rms_m"] = or_null(run.map_error_rms_m);
   out["registration_error_rms_m"] = or_null(run.registration_error_rms_m);
+  out["tape_s"] = or_null(run.tape_s);
   out["cpu_s"] = or_null(run.cpu_s);
   out["cpu_low_s"] = or_null(run.cpu_low_s);
   out["cpu_high_s"] = or_null(run.cpu_high_s);
   out["simulated_s"] = or_null(run.simulated_s);
   out["work"] = run.work;
+  out["closed_loop"] = run.outcomes ? outcomes_json(*run.outcomes) : Json(nullptr);
   return out;
 }
 

@@ -80,8 +80,26 @@ std::string fidelity_table(const std::vector<MeasuredFidelity>& runs) {
     table.line("  " + run.name,
                {fixed(run.position_error_rms_m, 3), fixed(run.map_error_rms_m, 3),
                 fixed(run.registration_error_rms_m, 3), three(run.cpu_s), three(run.cpu_low_s), three(run.cpu_high_s)});
-  return "Whole runs, open loop, " + fixed(runs.front().simulated_s, 0) + " s: errors (RMS) against run time\n" +
-         table.str() + "\n";
+  return "The mission as a whole, open loop: errors (RMS) over " + fixed(runs.front().tape_s, 0) +
+         " s against CPU time of the first " + fixed(runs.front().simulated_s, 0) + " s\n" + table.str() + "\n";
+}
+
+std::string outcome_table(const std::vector<MeasuredFidelity>& runs) {
+  if (runs.empty() || !runs.front().outcomes) return "";
+  TextTable table({"success", "share, 95 %", "CPU, s a mission", "least", "most"}, "");
+  for (const MeasuredFidelity& run : runs) {
+    const auto& [share, cpu_s, least_s, most_s] = *run.outcomes;
+    std::string how;
+    for (const auto& [outcome, count] : share.outcomes)
+      how += (how.empty() ? "  " : ", ") + outcome + " " + std::to_string(count);
+    table.line("  " + run.name,
+               {printed("%d of %d", share.success, share.n),
+                printed("%.0f-%.0f %%", 100.0 * share.interval.low, 100.0 * share.interval.high), three(cpu_s),
+                three(least_s), three(most_s)},
+               how);
+  }
+  return "The mission as a whole, closed loop, " + std::to_string(runs.front().outcomes->share.n) +
+         " seeds: outcomes against CPU time\n" + table.str() + "\n";
 }
 
 std::string chosen_text(const Chosen& chosen) {
@@ -107,7 +125,7 @@ std::string tradeoff_table(const Tradeoff& tradeoff) {
   std::string out;
   for (const MeasuredLadder& ladder : tradeoff.ladders) out += ladder_table(ladder);
   for (const LeftOut& one : tradeoff.skipped) out += one.name + ": not measured here: " + one.reason + "\n";
-  out += fidelity_table(tradeoff.fidelities);
+  out += fidelity_table(tradeoff.fidelities) + outcome_table(tradeoff.fidelities);
   if (tradeoff.chosen) out += chosen_text(*tradeoff.chosen);
   return out;
 }

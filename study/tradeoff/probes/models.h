@@ -12,12 +12,19 @@ Result<std::unique_ptr<Probe>> make_orbit_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_free_inertial_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_proof_mass_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_range_probe(const ProbeSetup& setup);
+Result<std::unique_ptr<Probe>> make_object_range_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_filter_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_smooth_position_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_smooth_velocity_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_smooth_attitude_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_keyframe_probe(const ProbeSetup& setup);
 Result<std::unique_ptr<Probe>> make_mission_map_probe(const ProbeSetup& setup);
+
+// On a recorded drive (study/tradeoff/recorded/).
+Result<std::unique_ptr<Probe>> make_recorded_pseudorange_probe(const ProbeSetup& setup);
+Result<std::unique_ptr<Probe>> make_recorded_strength_probe(const ProbeSetup& setup);
+Result<std::unique_ptr<Probe>> make_recorded_fix_probe(const ProbeSetup& setup);
+Result<std::unique_ptr<Probe>> make_recorded_orbit_probe(const ProbeSetup& setup);
 
 /// Orders of the rows that a ladder is of.
 using ProbeSettings = std::map<std::string, std::string>;

@@ -20,6 +20,8 @@ namespace canyon::study {
 struct Samples {
   std::size_t dimension = 1;
   std::vector<std::vector<double>> values;
+  /// What each vector is of (a surface), where that matters: two of different things are no difference. Empty: all are.
+  std::vector<std::vector<std::uint32_t>> of{};
 };
 
 /// One repetition.
@@ -38,6 +40,8 @@ class Probe {
   virtual Result<ProbeRun> run() = 0;
 };
 
+struct RecordedDrive;  // study/tradeoff/recorded/recorded_drive.h
+
 /// What probes are made from. All of it must outlive the probe.
 struct ProbeSetup {
   const mission::MissionConfig& config;
@@ -45,6 +49,7 @@ struct ProbeSetup {
   const Tape& tape;
   std::size_t samples;
   const std::map<std::string, std::string>& own;  ///< settings of probe_keys()
+  const RecordedDrive* recording = nullptr;       ///< for the probes on one
 
   double own_number(const std::string& key) const;  ///< NaN if it is not set
   GpsTime time_of(double t_s) const { return mission.start + t_s; }

@@ -26,6 +26,10 @@ constexpr ModelRow<ProbeModel> kProbes[] = {
      {make_proof_mass_probe, "1", "steps", true, 1e-13, true, proof_mass_order},
      "ringing of a proof mass of 5 kHz, Q = 2, over one period, as a part of its amplitude; steps in periods"},
     {"range", {make_range_probe, "m", "rays"}, "range of every beam's first return, by scans all along the tape"},
+    {"object_range",
+     // A range is kept in single precision: to 4e-6 m at 64 m.
+     {make_object_range_probe, "m", "rays", false, 1e-5},
+     "range of every beam's first return where both meet the same object, by scans all along the tape"},
     {"filter",
      {make_filter_probe, "m", "predictions and updates", true},
      "the filter's position on IMU and fixes of the tape's first minute, every second"},
@@ -44,6 +48,18 @@ constexpr ModelRow<ProbeModel> kProbes[] = {
     {"mission_map",
      {make_mission_map_probe, "m", "all counters of the run", true},
      "points of the map to the nearest true surface, RMS, of a run in an open loop"},
+    {"recorded_pseudorange",
+     {make_recorded_pseudorange_probe, "m", "epochs, rays and facets tested", true},
+     "recorded pseudoranges minus those of the model at the surveyed truth, less the clock (median of the epoch)"},
+    {"recorded_strength",
+     {make_recorded_strength_probe, "dB-Hz", "epochs, rays and facets tested", true},
+     "recorded C/N0 minus that of the model at the surveyed truth, less the receiver's gain (median of the drive)"},
+    {"recorded_fix",
+     {make_recorded_fix_probe, "m", "ranges solved", true},
+     "the fix that recorded pseudoranges give, against the surveyed truth"},
+    {"recorded_orbit",
+     {make_recorded_orbit_probe, "m", "states interpolated", true},
+     "recorded pseudoranges minus ranges to satellites between samples of precise orbits, less the clock"},
 };
 
 }  // namespace

@@ -9,12 +9,13 @@
 namespace canyon::study {
 
 Result<RunSummary> taped_run(mission::MissionConfig config, const mission::PreparedMission& mission, const Tape& tape,
-                             double limit_s) {
+                             double limit_s, const mission::Omissions* omissions) {
   config.time.limit_s = std::min(limit_s, tape.duration_s());
   RunStatistics statistics(mission.scene->frame(), std::filesystem::temp_directory_path().string());
   CANYON_TRY(
       const mission::RunRecord record,
-      mission::run_mission(config, mission, nullptr, {.tape = &tape, .recorder = &statistics, .autonomy = nullptr}));
+      mission::run_mission(config, mission, nullptr,
+                           {.tape = &tape, .recorder = &statistics, .autonomy = nullptr, .omissions = omissions}));
   return summarize(record, statistics);
 }
 

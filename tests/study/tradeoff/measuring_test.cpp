@@ -103,6 +103,17 @@ TEST(Measuring, WhatOnlyOneOfTwoHasIsNoDifferenceButCounted) {
   EXPECT_DOUBLE_EQ(rms(differences(v, nullptr)), 5.0);  // one vector of length 5
 }
 
+TEST(Measuring, WhatIsOfDifferentThingsIsNoDifferenceButCounted) {
+  Samples a, b;
+  a.values = {{1.0, 40.0, 3.0}};
+  a.of = {{7, 7, 9}};
+  b.values = {{2.0, 10.0, 3.0}};
+  b.of = {{7, 8, 9}};  // the second meets another surface
+  const Differences d = differences(a, &b);
+  EXPECT_DOUBLE_EQ(rms(d), std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(d.undefined_share, 1.0 / 3.0);
+}
+
 MeasuredModel model(const char* name, double error, double low_s, double cpu_s, double high_s) {
   MeasuredModel m;
   m.name = name;
