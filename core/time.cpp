@@ -49,7 +49,9 @@ constexpr int kLastYear = 2261;
 }  // namespace
 
 GpsTime GpsTime::from_week_sow(int week, double sow_s) {
-  return GpsTime{static_cast<std::int64_t>(week) * kNsPerWeek} + sow_s;
+  std::int64_t ns = 0;
+  CANYON_CHECK(!__builtin_mul_overflow(std::int64_t{week}, kNsPerWeek, &ns), "week = ", week);
+  return GpsTime{ns} + sow_s;
 }
 
 GpsTime GpsTime::from_calendar(int year, int month, int day, int hour, int minute, double second) {
@@ -142,7 +144,9 @@ GpsTime operator-(GpsTime t, double seconds) {
 }
 
 double operator-(GpsTime a, GpsTime b) {
-  return static_cast<double>(a.ns - b.ns) / 1e9;
+  std::int64_t ns = 0;
+  CANYON_CHECK(!__builtin_sub_overflow(a.ns, b.ns, &ns), a.ns, " ns minus ", b.ns, " ns");
+  return static_cast<double>(ns) / 1e9;
 }
 
 GpsTime tick(GpsTime start, std::int64_t k, double rate_hz) {
@@ -159,7 +163,10 @@ GpsTime tick(GpsTime start, std::int64_t k, double rate_hz) {
   }
   const Wide numerator = (Wide{k < 0 ? -k : k} * kNsPerSecond) << shift;
   const Wide magnitude = (2 * numerator + mantissa) / (Wide{2} * mantissa);
-  return {start.ns + static_cast<std::int64_t>(k < 0 ? -magnitude : magnitude)};
+  const Wide sum = start.ns + (k < 0 ? -magnitude : magnitude);
+  const auto ns = static_cast<std::int64_t>(sum);
+  CANYON_CHECK(sum == ns, "sample ", k, " at ", rate_hz, " Hz from ", start.ns, " ns");
+  return {ns};
 }
 
 namespace {

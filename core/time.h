@@ -16,6 +16,7 @@ inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 struct GpsTime {
   std::int64_t ns = 0;
 
+  /// Throws beyond year 2272.
   static GpsTime from_week_sow(int week, double sow_s);
   /// Calendar date in GPS time; `second` may carry a fraction. Valid 1980-2261.
   static GpsTime from_calendar(int year, int month, int day, int hour, int minute, double second);
@@ -44,10 +45,11 @@ CalendarTime calendar(GpsTime t);
 /// of 64 bits (year 2272), throws.
 GpsTime operator+(GpsTime t, double seconds);
 GpsTime operator-(GpsTime t, double seconds);
-/// a - b in seconds; exact to 1 ns for |a - b| < 104 days.
+/// a - b in seconds; exact to 1 ns for |a - b| < 104 days. Throws where it leaves the range of 64 bits of nanoseconds.
 double operator-(GpsTime a, GpsTime b);
 
-/// Instant of sample k of a sensor with that rate, from `start`: round(k * 1e9 / rate_hz) ns, never accumulated.
+/// Instant of sample k of a sensor with that rate, from `start`: round(k * 1e9 / rate_hz) ns, never accumulated. Throws
+/// for an instant beyond year 2272.
 GpsTime tick(GpsTime start, std::int64_t k, double rate_hz);
 
 }  // namespace canyon
