@@ -83,7 +83,9 @@ void fill_by_tiles(TileFunction tile, std::uint64_t key, std::span<double> out, 
   while (done < out.size()) {
     const std::uint64_t index = first_index + done;
     const std::size_t skip = index % 2;
-    const std::size_t take = std::min(out.size() - done, kRandomTile - skip);
+    std::size_t take = std::min(out.size() - done, kRandomTile - skip);
+    const std::uint64_t left = 0 - index;  // until the last index, which 0 follows
+    if (left != 0 && left < take) take = left;
     double* const target = take == kRandomTile ? out.data() + done : buffer.data();
     tile(key, entity, index / 2, n, target);
     if (target == buffer.data()) std::copy_n(buffer.data() + skip, take, out.data() + done);
