@@ -76,8 +76,13 @@ YawPitchRoll yaw_pitch_roll(const Eigen::Quaterniond& R_WB) {
   const double cos_pitch = std::hypot(R(0, 0), R(1, 0));
   const double pitch = std::atan2(-R(2, 0), cos_pitch);
   // Looking straight up or down only yaw -+ roll is defined; all of it is given to yaw.
-  if (cos_pitch < 1e-12) return {std::atan2(-R(0, 1), R(1, 1)), pitch, 0.0};
-  return {std::atan2(R(1, 0), R(0, 0)), pitch, std::atan2(R(2, 1), R(2, 2))};
+  if (cos_pitch < 1e-15) return {std::atan2(-R(0, 1), R(1, 1)), pitch, 0.0};
+  const double yaw = std::atan2(R(1, 0), R(0, 0));
+  if (cos_pitch > 0.5) return {yaw, pitch, std::atan2(R(2, 1), R(2, 2))};
+  // Near the vertical yaw is uncertain by eps / cos(pitch). Roll is what is left once that yaw is taken off, so that
+  // the two make the attitude again.
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  return {yaw, pitch, std::atan2(s * R(0, 2) - c * R(1, 2), c * R(1, 1) - s * R(0, 1))};
 }
 
 Eigen::Quaterniond rotation_from(const YawPitchRoll& angles) {
