@@ -1,0 +1,134 @@
+#include "canyon/core/earth/earth.h"
+
+#include <vector>
+
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress/subjects.h"
+#include "canyon/core/units.h"
+
+namespace canyon {
+namespace {
+
+using Eigen::Vector3d;
+using stress::kEpsilon;
+using stress::row;
+using stress::Worst;
+
+const double kHeights_m[] = {-400.0, 0.0, 100.0, 20000.0};
+const double kPolar_deg[] = {90.0, -90.0, 90.0 - 1e-12, 1e-9 - 90.0, 89.9999};
+const double kOrdinary_deg[] = {-45.0, -1e-12, 0.0, 32.35, 60.0};
+const double kLongitudes_deg[] = {0.0, 1e-12, 90.0, 179.9999999999, 180.0, -180.0, -179.9999999999, -90.0};
+
+/// Place to E and back, and to E again. A rounding of a degree or radian is an epsilon of Earth's radius; there are two
+/// conversions each way, sine and cosine, and the sums: 8 of them.
+template <class Latitudes>
+StressFigure there_and_back(const Latitudes& latitudes_deg) {
+  Worst worst;
+  for (const double h_m : kHeights_m)
+    for (const double lat : latitudes_deg)
+      for (const double lon : kLongitudes_deg) {
+        const Geodetic g{lat * kDegree, lon * kDegree, h_m};
+        const Vector3d p_E = ecef_from_geodetic(g);
+        const Geodetic back = geodetic_from_ecef(p_E);
+        const double bound_m = 8.0 * kEpsilon * (Wgs84::a_m + h_m);
+        worst.look((ecef_from_geodetic(back) - p_E).norm(), bound_m);
+        worst.look(back.h_m - h_m, bound_m);
+        worst.look((back.lat_rad - g.lat_rad) * Wgs84::a_m, bound_m);
+      }
+  return worst.figure();
+}
+
+/// A place in W, 100 km off, over geodetic coordinates: as above, with R_EW's roundings both ways, 8 more of Earth's
+/// radius.
+StressFigure local_frames(double lat_deg, double lon_deg) {
+  Worst worst;
+  const LocalFrame frame(Geodetic{lat_deg * kDegree, lon_deg * kDegree, 100.0});
+  for (const double east_m : {-1e5, -1e-3, 0.0, 1e5})
+    for (const double north_m : {-1e5, 0.0, 1e-3, 1e5}) {
+      const Vector3d p_W(east_m, north_m, -50.0);
+      worst.look((frame.from_geodetic(frame.to_geodetic(p_W)) - p_W).norm(), 16.0 * kEpsilon * Wgs84::a_m);
+    }
+  const Eigen::Matrix3d& R = frame.R_EW();
+  worst.look((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 4.0 * kEpsilon);
+  return worst.figure();
+}
+
+/// NIMA TR8350.2, table 3.4: normal gravity of WGS84 at the equator and the poles, to ten decimals;
+/// the pole's, 9.832184937863, is cut off there, not rounded: a unit of the last one.
+StressFigure printed_gravity() {
+  Worst worst;
+  for (const double lon : kLongitudes_deg) {
+    for (const double pole : {-90.0, 90.0}) {
+      const Vector3d g_E = gravity_E(ecef_from_geodetic({pole * kDegree, lon * kDegree, 0.0}));
+      worst.look(g_E.norm() - 9.8321849378, 1e-10);
+      worst.look(g_E.head<2>().norm(), 8.0 * kEpsilon * 9.8);  // a rounding of the place turns it by as much
+    }
+    worst.look(gravity_E(ecef_from_geodetic({0.0, lon * kDegree, 0.0})).norm() - 9.7803253359, 1e-10);
+  }
+  return worst.figure();
+}
+
+/// Outside of all mass the gradient's trace is that of the centrifugal part, 2 w^2, and it is symmetric.
+StressFigure gravity_gradient() {
+  Worst worst;
+  for (const double h_m : kHeights_m)
+    for (const double lat : {-90.0, -45.0, 0.0, 1e-9, 32.0, 90.0}) {
+      const Eigen::Matrix3d G = gravity_gradient_E(ecef_from_geodetic({lat * kDegree, 3.0, h_m}));
+      constexpr double kStep_m = 100.0;
+      // Each column: truncation 1.5e-15 (24 g / a^3 h^2 / 6), and two values with ten roundings of g each over 200 m.
+      const double bound = 1.5e-15 + 20.0 * kEpsilon * 9.8 / (2.0 * kStep_m);
+      worst.look(G.trace() - 2.0 * Wgs84::rate_rad_s * Wgs84::rate_rad_s, 3.0 * bound);
+      worst.look((G - G.transpose()).cwiseAbs().maxCoeff(), 2.0 * bound);
+    }
+  return worst.figure();
+}
+
+/// From Earth's centre to a hundred radii: something that can be reckoned with, even where it means nothing.
+StressFigure everywhere() {
+  int broken = 0;
+  for (double r_m = 0.0; r_m < 1e9; r_m = r_m == 0.0 ? 1e-9 : r_m * 1.7)
+    for (const Vector3d& way : {Vector3d(1, 0, 0), Vector3d(0, 0, -1), Vector3d(1, 1, 1e-9), Vector3d(-1, 1e-9, 1)}) {
+      const Geodetic g = geodetic_from_ecef(r_m * way);
+      broken += std::isfinite(g.lat_rad + g.lon_rad + g.h_m) ? 0 : 1;
+      broken += gravity_E(r_m * way).allFinite() ? 0 : 1;
+    }
+  return {1.0 * broken, 0.0};
+}
+
+}  // namespace
+
+std::vector<StressCase> earth_cases() {
+  const auto group = StressGroup::kGeometry;
+  const StressCase pole =
+      stress::mechanism(group, "the poles and the antimeridian of geodetic coordinates",
+                        "longitude is 0 / 0 at a pole, the height p / cos(latitude) - N loses all digits there, 180 "
+                        "and -180 degrees differ",
+                        "places at -400 m to 20 km come back to 8 epsilons of Earth's radius (1e-8 m)", "of the bound");
+  const StressCase frame = stress::mechanism(group, "a local frame where directions end",
+                                             "east and north are undefined at a pole, and flip with the longitude",
+                                             "places 100 km off come back over geodetic coordinates to 16 epsilons of "
+                                             "Earth's radius; the axes stay orthonormal",
+                                             "of the bound");
+  const StressCase printed = stress::mechanism(
+      group, "gravity at the ends of its formula", "a series in latitude that is wrong by 1e-6 m/s^2 at its ends",
+      "what the standard prints at poles and equator, to a unit of its last decimal, where it is cut off",
+      "of the bound");
+  const StressCase difference = stress::mechanism(
+      group, "differences of a nearly constant vector",
+      "a step that is too short leaves the rounding of g, one too long the third derivative",
+      "the gradient has the trace 2 w^2 and is symmetric, to truncation and ten roundings of g", "of the bound");
+  const StressCase centre = stress::mechanism(group, "places where the formula means nothing",
+                                              "1 / r at Earth's centre, or a negative root within the focal disc",
+                                              "finite from the centre to a hundred radii", "places");
+  return {row(pole, "earth/place_and_back_at_the_poles", [] { return there_and_back(kPolar_deg); }),
+          row(pole, "earth/place_and_back_at_the_antimeridian", [] { return there_and_back(kOrdinary_deg); }),
+          row(frame, "earth/local_frame_at_the_north_pole", [] { return local_frames(90.0, 17.0); }),
+          row(frame, "earth/local_frame_at_the_south_pole", [] { return local_frames(-90.0, 180.0); }),
+          row(frame, "earth/local_frame_at_the_antimeridian", [] { return local_frames(-16.0, 180.0); }),
+          row(printed, "earth/gravity_at_poles_and_equator", printed_gravity),
+          row(difference, "earth/gravity_gradient", gravity_gradient),
+          row(centre, "earth/from_the_centre_to_a_hundred_radii", everywhere)};
+}
+
+}  // namespace canyon

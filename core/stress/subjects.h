@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// The cases of this room, a file for each subject.
+namespace canyon {
+
+std::vector<StressCase> chi_square_cases();
+std::vector<StressCase> earth_cases();
+std::vector<StressCase> geoid_cases();
+std::vector<StressCase> number_cases();
+std::vector<StressCase> random_cases();
+std::vector<StressCase> rotation_cases();
+std::vector<StressCase> summary_cases();
+std::vector<StressCase> time_cases();
+std::vector<StressCase> true_motion_cases();
+
+}  // namespace canyon

@@ -1,0 +1,82 @@
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "canyon/core/math/median.h"
+#include "canyon/core/math/singular_values.h"
+#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress/subjects.h"
+
+namespace canyon {
+namespace {
+
+using stress::row;
+
+StressFigure medians() {
+  constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::denorm_min();
+  int wrong = 0;
+  wrong += median({kMost, kMost}) == kMost ? 0 : 1;
+  wrong += median({-kMost, -kMost, -kMost, -kMost}) == -kMost ? 0 : 1;
+  wrong += median({-kMost, kMost}) == 0.0 ? 0 : 1;
+  wrong += median({kLeast, kLeast}) == kLeast ? 0 : 1;
+  wrong += median({-stress::kInfinity, 1.0, stress::kInfinity}) == 1.0 ? 0 : 1;
+  wrong += median({1e9, 3.0, -1e300}) == 3.0 ? 0 : 1;
+  wrong += std::isnan(median({})) ? 0 : 1;
+  return {1.0 * wrong, 0.0};
+}
+
+/// The order of a list that holds what is not a number is none: whatever place that has, the answer must say so.
+StressFigure medians_of_no_numbers() {
+  int wrong = 0;
+  for (std::size_t place = 0; place < 101; ++place) {
+    std::vector<double> values;
+    for (int i = 0; i < 101; ++i) values.push_back((i * 37) % 101);
+    values[place] = std::nan("");
+    wrong += std::isnan(median(values)) ? 0 : 1;
+  }
+  return {1.0 * wrong, 0.0};
+}
+
+/// Two directions of which the second is weaker by `ratio`, mixed by turns: the values come out to 20 epsilons of the
+/// largest (Jacobi's sweeps), and a solution that leaves the weak one alone stays as small as the strong one makes it.
+StressFigure weak_direction(double ratio) {
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  Eigen::MatrixXd U(4, 2);
+  U << c, 0.0, s, 0.0, 0.0, s, 0.0, -c;
+  const Eigen::Matrix2d V = (Eigen::Matrix2d() << s, -c, c, s).finished();
+  const Eigen::MatrixXd A = U * Eigen::Vector2d(1.0, ratio).asDiagonal() * V.transpose();
+  const SingularValues found(A);
+  const Eigen::VectorXd x = found.solve(U * Eigen::Vector2d(2.0, 1.0), 1e-9);
+  stress::Worst worst;
+  worst.look(found.values[0] - 1.0, 20.0 * stress::kEpsilon);
+  worst.look(found.values[1] - ratio, 20.0 * stress::kEpsilon);
+  // The right-hand side's weak part is as large as the strong one; divided by `ratio` it would be all there is. The
+  // direction itself is known to an epsilon.
+  const Eigen::Vector2d exact = ratio > 1e-9 ? Eigen::Vector2d(V * Eigen::Vector2d(2.0, 1.0 / ratio))
+                                             : Eigen::Vector2d(V * Eigen::Vector2d(2.0, 0.0));
+  worst.look((x - exact).norm(), 20.0 * stress::kEpsilon * (2.0 + (ratio > 1e-9 ? 1.0 / (ratio * ratio) : 0.0)));
+  return worst.figure();
+}
+
+}  // namespace
+
+std::vector<StressCase> summary_cases() {
+  const StressCase overflow =
+      stress::mechanism(StressGroup::kData, "overflow of a mean", "the sum of the two in the middle is infinite",
+                        "the largest, the smallest and infinite values have their median: exact", "medians");
+  const StressCase order = stress::mechanism(StressGroup::kData, "an order that is none",
+                                             "sorting what is not a number leaves any order, and reads past the ends",
+                                             "no number, wherever in the list it stands", "medians");
+  const StressCase weak = stress::mechanism(
+      StressGroup::kData, "rank deficiency of a least-squares problem",
+      "normal equations square the ratio of the directions, and the weak one's noise becomes the answer",
+      "values to 20 epsilons of the largest; below the threshold the weak direction is left alone", "of the bound");
+  std::vector<StressCase> cases = {row(overflow, "median/of_largest_values", medians),
+                                   row(order, "median/of_no_numbers", medians_of_no_numbers)};
+  for (const double ratio : {1.0, 1e-6, 1e-12, 0.0})
+    cases.push_back(row(weak, "singular_values/second_direction_weaker_by_" + stress::text(ratio),
+                        [ratio] { return weak_direction(ratio); }));
+  return cases;
+}
+
+}  // namespace canyon
