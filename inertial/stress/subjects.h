@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// The cases of this room, a file for each subject.
+namespace canyon::inertial {
+
+std::vector<StressCase> aiding_cases();
+std::vector<StressCase> deviation_cases();
+std::vector<StressCase> error_chain_cases();
+std::vector<StressCase> gauss_markov_cases();
+std::vector<StressCase> imu_log_cases();
+std::vector<StressCase> increment_cases();
+std::vector<StressCase> paper_recursion_cases();
+std::vector<StressCase> proof_mass_cases();
+
+}  // namespace canyon::inertial
