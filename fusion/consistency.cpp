@@ -24,6 +24,7 @@ double normal_quantile(double upper_tail) {
 double chi_square_tail(double x, int dof) {
   CANYON_CHECK(dof >= 1 && dof <= 100 && x >= 0.0, "dof = ", dof, ", x = ", x);
   // Q(k/2, x/2) by its finite recurrence, Abramowitz & Stegun 26.4.4 and 26.4.5.
+  if (std::isinf(x)) return 0.0;
   const double h = 0.5 * x;
   double tail, term;
   if (dof % 2 == 0) {
