@@ -1,6 +1,7 @@
 #include "canyon/fusion/error_state_filter.h"
 
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -51,6 +52,15 @@ Eigen::Matrix3d fix_covariance(const GnssFix& fix, double floor_m) {
   CANYON_CHECK(Eigen::LLT<Eigen::Matrix3d>(R).info() == Eigen::Success, "covariance of the GNSS fix at ", fix.t.iso(),
                " is not positive definite: diagonal ", R.diagonal().transpose());
   return R;
+}
+
+/// What rounding may take off an eigenvalue of H P H': an epsilon of each of the 9 x 9 terms of an element, and of the
+/// three elements of a row.
+double rounding_of_HPHt(const Eigen::Matrix<double, 3, 9>& H, const ErrorMatrix& P) {
+  const Eigen::Matrix<double, 3, 9> magnitude = H.cwiseAbs();
+  const Eigen::Matrix3d terms =
+      magnitude.lazyProduct(P.topLeftCorner<9, 9>().cwiseAbs().eval()).eval().lazyProduct(magnitude.transpose());
+  return 81.0 * std::numeric_limits<double>::epsilon() * terms.rowwise().sum().maxCoeff();
 }
 
 constexpr ModelRow<ImuGains> kImuGains[] = {
@@ -189,7 +199,7 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   const AntennaPosition antenna = antenna_position(state_, w_EU_U_, lever_A_B_ - lever_U_B_, age_s);
   const Eigen::Matrix<double, 3, 9>& H = antenna.H;
   report.innovation = fix.p_A_E - antenna.p_A_E;
-  const Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
+  Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
   if (P_.diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
     restart(report.innovation, R, antenna.H.leftCols<3>());
     report.accepted = true;
@@ -200,10 +210,20 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   const Columns3 PHt = P_.leftCols<9>().lazyProduct(H.transpose());
   Eigen::Matrix3d S = H.lazyProduct(PHt.topRows<9>()) + R;
   S = 0.5 * (S + S.transpose()).eval();
-  const Eigen::LLT<Eigen::Matrix3d> S_llt(S);
+  Eigen::LLT<Eigen::Matrix3d> S_llt(S);
+  if (S_llt.info() != Eigen::Success) {
+    // Both the antenna and the fix are known better than the terms of H P H' are rounded: the fix then counts as known
+    // to that rounding.
+    const double rounding = rounding_of_HPHt(H, P_);
+    R.diagonal().array() += rounding;
+    S.diagonal().array() += rounding;
+    S_llt.compute(S);
+  }
   CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
                S.diagonal().transpose());
   report.nis = report.innovation.dot(S_llt.solve(report.innovation));
+  // The square of more than 1e154 sigma is more than a double holds.
+  if (!std::isfinite(report.nis)) report.nis = std::numeric_limits<double>::infinity();
   if (config_.gate_sigma > 0.0 && chi_square_tail(report.nis, 3) < normal_two_sided_tail(config_.gate_sigma))
     return report;
   report.accepted = true;

@@ -73,9 +73,10 @@ class ErrorStateFilter {
   /// Corrects with a position of the antenna. A fix with status kNone changes nothing (dimension 0); so does one that
   /// the gate refuses (accepted false). The fix may be up to 0.1 s away from the last IMU sample: the antenna is then
   /// carried there with the estimated velocity. A fix that is not finite, or whose covariance is not positive definite,
-  /// is refused with a ProgramError that names the receiver. Where the position is not known to 1000 km (1-sigma),
-  /// after hours without a fix, the fix does not correct it but takes its place (accepted, dimension 0), the velocity
-  /// counts as unknown, and attitude and calibration stay.
+  /// is refused with a ProgramError that names the receiver. Where the antenna is known so well already that rounding
+  /// leaves no definite innovation covariance, the fix counts as known to that rounding only. Where the position is not
+  /// known to 1000 km (1-sigma), after hours without a fix, the fix does not correct it but takes its place (accepted,
+  /// dimension 0), the velocity counts as unknown, and attitude and calibration stay.
   UpdateReport update(const GnssFix& fix);
 
   NavEstimate estimate() const;
