@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "canyon/core/check.h"
 #include "canyon/core/earth/earth.h"
 #include "canyon/core/process/progress.h"
 
@@ -12,16 +14,24 @@ namespace {
 constexpr std::size_t kStatesPerLook = 4096;  // at whether the user wants to stop: some 10 ms
 constexpr double kStampRounding_s = 2e-9;     // a stamp and an interval's end, each rounded to 1 ns
 
+void check_sample(const ImuSample& s, GpsTime last) {
+  const bool finite = std::isfinite(s.dt_s) && s.dt_s > 0.0 && s.dtheta_U.allFinite() && s.dv_U.allFinite();
+  CANYON_CHECK(finite, "IMU sample at ", s.t.iso(), ": dt_s = ", s.dt_s, ", dtheta = ", s.dtheta_U.transpose(),
+               ", dv = ", s.dv_U.transpose());
+  CANYON_CHECK(s.t > last, "IMU sample at ", s.t.iso(9), " after one at ", last.iso(9));
+}
+
 }  // namespace
 
 std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavState& initial, Strapdown& strapdown) {
   strapdown.reset();
   NavState state = initial;
   std::vector<NavState> states = {initial};
-  GpsTime last{};
+  GpsTime last{std::numeric_limits<std::int64_t>::min()};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k % kStatesPerLook == 0) throw_if_cancelled();
     const ImuSample& s = samples[k];
+    check_sample(s, last);
     const double since_last_s = k > 0 ? s.t - last : s.dt_s;
     const bool contiguous = std::abs(since_last_s - s.dt_s) <= 0.5 * s.dt_s;
     if (!contiguous) strapdown.reset();

@@ -15,6 +15,7 @@ namespace canyon::fusion {
 /// before initial.t only let the integrator look back; of one whose interval holds initial.t, the part after it is
 /// taken as its share of the time. Where samples are missing between two (a gap of more than half an interval) the
 /// integrator forgets its past and the one after the gap stands for it: its mean rates are taken for the whole time.
+/// A sample that is not finite or not later than the one before it is refused with a ProgramError.
 std::vector<NavState> dead_reckon(std::span<const ImuSample> samples, const NavState& initial, Strapdown& strapdown);
 
 /// A state at rest at that place and heading, its attitude levelled with a specific force (of any length) measured
