@@ -1,0 +1,135 @@
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "canyon/core/stress/grid.h"
+#include "canyon/fusion/stress/at_rest.h"
+#include "canyon/fusion/stress/subjects.h"
+
+namespace canyon::fusion {
+namespace {
+
+using stress::kEpsilon;
+using stress::row;
+using Matrix = ErrorStateFilter::StateMatrix;
+
+/// Broken unless symmetric to the bit, with variances above zero, and with no eigenvalue of the correlations below what
+/// rounding of 15 of them makes (they are sums of 15 terms of size 1, each rounded in the update and in the solver).
+bool is_broken(const Matrix& P) {
+  if (!P.allFinite() || P != P.transpose() || !(P.diagonal().array() > 0.0).all()) return true;
+  const Eigen::Matrix<double, 15, 1> scale = P.diagonal().cwiseSqrt().cwiseInverse();
+  const Matrix correlation = scale.asDiagonal() * P * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(correlation, Eigen::EigenvaluesOnly);
+  return !(eigen.eigenvalues().minCoeff() > -2.0 * 15.0 * 15.0 * kEpsilon);
+}
+
+/// Predictions at 100 Hz with a fix every ten, from a position unknown by `ratio` times the fix's own sigma.
+StressFigure noise_ratio(double ratio, std::int64_t steps) {
+  FilterConfig config;
+  config.initial_position_sigma_m = std::min(1e5, ratio);
+  config.initial_velocity_sigma_m_s = 100.0;
+  RestingFilter rest(config, usual_noise(), 100.0);
+  const double sigma_m = config.initial_position_sigma_m / ratio;
+  int broken = is_broken(rest.filter.covariance()) ? 1 : 0;
+  for (std::int64_t k = 1; k <= steps; ++k) {
+    rest.predict();
+    const bool look = k < 200 || k % 997 == 0;
+    if (look) broken += is_broken(rest.filter.covariance()) ? 1 : 0;
+    if (k % 10 != 0) continue;
+    rest.filter.update(rest.fix(sigma_m));
+    if (look || k % 1000 == 0) broken += is_broken(rest.filter.covariance()) ? 1 : 0;
+  }
+  return {1.0 * broken, 0.0};
+}
+
+/// Biases that live for 0.1 ms and for 1e6 s in one state, gain errors beside them, 10 000 steps: the fast one's
+/// variance is its stationary one to an epsilon a step, the slow one's never grows beyond it, and all stays definite.
+StressFigure time_constants(double fast_s, double slow_s) {
+  ImuNoise noise = usual_noise();
+  noise.gyro.turn_on_bias_sigma = noise.accel.turn_on_bias_sigma = 0.0;
+  noise.gyro.in_run_bias_tau_s = fast_s;
+  noise.accel.in_run_bias_tau_s = slow_s;
+  noise.gyro.scale_sigma = noise.accel.scale_sigma = 1e-3;
+  FilterConfig config;
+  config.imu_gain_tau_s = slow_s;
+  RestingFilter rest(config, noise, 100.0);
+  constexpr std::int64_t kSteps = 10'000;
+  const double fast = noise.gyro.in_run_bias_sigma * noise.gyro.in_run_bias_sigma,
+               slow = noise.accel.in_run_bias_sigma * noise.accel.in_run_bias_sigma;
+  stress::Worst worst;
+  for (std::int64_t k = 1; k <= kSteps; ++k) {
+    rest.predict();
+    if (k % 100 == 0) rest.filter.update(rest.fix(1.0));
+    if (k % 500 != 490) continue;
+    const Matrix P = rest.filter.covariance();
+    worst.look(is_broken(P) ? stress::kInfinity : 0.0, 1.0);
+    const double step = kEpsilon * static_cast<double>(k);
+    const auto gyro = P.diagonal().segment<3>(ErrorIndex::kGyroBias),
+               accel = P.diagonal().segment<3>(ErrorIndex::kAccelBias);
+    // What a fix told of it 0.9 s ago is gone where that is many times its life.
+    if (fast_s < 0.02) worst.look(gyro.minCoeff() / fast - 1.0, step);
+    worst.look(std::max(0.0, gyro.maxCoeff() / fast - 1.0), step);
+    worst.look(std::max(0.0, accel.maxCoeff() / slow - 1.0), step);
+  }
+  return worst.figure();
+}
+
+/// White noise of the accelerometer alone, N^2: after T the horizontal variances are N^2 T and N^2 T^3 / 3. Steps of
+/// T / n with half the noise before and half after make 1 + 1 / (2 n^2) of the latter; gravity's pull back to the place
+/// is (w_s T)^2 of it at most and Coriolis (2 w_e T)^2.
+StressFigure rate(double rate_hz) {
+  ImuNoise noise;
+  noise.accel.white_per_sqrt_hz = 1e-3;
+  FilterConfig config;
+  config.initial_attitude_sigma_deg_roll_pitch = config.initial_attitude_sigma_deg_heading = 1e-6;
+  config.initial_position_sigma_m = config.initial_velocity_sigma_m_s = 1e-6;
+  RestingFilter rest(config, noise, rate_hz);
+  const double T = rate_hz > 1e3 ? 4.0 : std::max(10.0, 1.0 / rate_hz), n = std::round(T * rate_hz);
+  for (int k = 0; k < static_cast<int>(n); ++k) rest.predict();
+  const Eigen::Matrix3d R_WE = rest.frame.R_EW().transpose();
+  const Matrix P = rest.filter.covariance();
+  const Eigen::Matrix3d p = R_WE * P.block<3, 3>(3, 3) * R_WE.transpose(),
+                        v = R_WE * P.block<3, 3>(6, 6) * R_WE.transpose();
+  const double drive = 1e-6, swing = 9.81 / 6.4e6 * T * T, turn = std::pow(2.0 * Wgs84::rate_rad_s * T, 2);
+  const double start = 1e-12 * (1.0 + T * T) / (drive * T * T * T / 3.0) + 1e-12 / (drive * T);
+  stress::Worst worst;
+  for (int axis = 0; axis < 2; ++axis) {
+    worst.look(p(axis, axis) / (drive * T * T * T / 3.0) - 1.0, 0.5 / (n * n) * (1.0 + swing) + swing + turn + start);
+    worst.look(v(axis, axis) / (drive * T) - 1.0, swing + turn + start);
+  }
+  return worst.figure();
+}
+
+}  // namespace
+
+std::vector<StressCase> covariance_cases() {
+  const StressCase ratio = stress::mechanism(
+      StressGroup::kData, "a covariance over many updates at a large ratio of noises",
+      "P - K H P cancels to the 16th digit of what was: variances below zero, and an update that goes astray",
+      "symmetric to the bit, variances above zero, correlations definite to the rounding of 15 by 15 terms",
+      "covariances");
+  const StressCase constants =
+      stress::mechanism(StressGroup::kStiff, "time constants of ten decades in one state",
+                        "1 - dt / tau is -99 for the fast one, and 1 - e^(-2 dt / tau) cancels for the slow one",
+                        "each variance stays its stationary one to an epsilon a step", "of the bound");
+  const StressCase rates = stress::mechanism(
+      StressGroup::kStiff, "a covariance at rates from 0.01 to 10 000 Hz",
+      "noise per sample in place of per root hertz, or an order of the step less",
+      "N^2 T and N^2 T^3 / 3, to 1 / (2 n^2) of the step and what gravity and Coriolis do within T", "of the bound");
+  std::vector<StressCase> cases;
+  for (const double r : {1.0, 1e6, 1e9})
+    cases.push_back(
+        row(ratio, "covariance/noise_ratio_" + stress::text(r) + "_1e4_steps", [r] { return noise_ratio(r, 10'000); }));
+  cases.push_back(row(ratio, "covariance/noise_ratio_1e12_1e5_steps", [] { return noise_ratio(1e12, 100'000); }));
+  cases.push_back(row(ratio, "covariance/noise_ratio_1e12_1e7_steps", [] { return noise_ratio(1e12, 10'000'000); }));
+  cases.back().long_running = true;
+  for (const auto& [fast_s, slow_s] : {std::pair{1e-4, 1e6}, {1e-2, 1e4}, {1.0, 100.0}})
+    cases.push_back(row(constants,
+                        "covariance/biases_of_" + stress::text(fast_s) + "_and_" + stress::text(slow_s) + "_s",
+                        [f = fast_s, s = slow_s] { return time_constants(f, s); }));
+  for (const double rate_hz : {0.01, 1.0, 100.0, 10000.0})
+    cases.push_back(row(rates, "covariance/rate_" + stress::text(rate_hz) + "_hz", [=] { return rate(rate_hz); }));
+  return cases;
+}
+
+}  // namespace canyon::fusion

@@ -1,0 +1,227 @@
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "canyon/core/stress/grid.h"
+#include "canyon/fusion/stress/at_rest.h"
+#include "canyon/fusion/stress/subjects.h"
+
+namespace canyon::fusion {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using stress::kEpsilon;
+using stress::row;
+
+RestingFilter after_a_second(const FilterConfig& config = {}) {
+  RestingFilter rest(config, usual_noise(), 100.0);
+  for (int k = 0; k < 100; ++k) rest.predict();
+  return rest;
+}
+
+/// State and covariance as they stand, to be compared to the bit.
+struct Standing {
+  NavState state;
+  ErrorStateFilter::StateMatrix P;
+  explicit Standing(const ErrorStateFilter& f) : state(f.nav_state()), P(f.covariance()) {}
+  bool same(const ErrorStateFilter& f) const {
+    const NavState& s = f.nav_state();
+    return s.t == state.t && s.p_EU_E == state.p_EU_E && s.v_EU_E == state.v_EU_E &&
+           s.R_EU.coeffs() == state.R_EU.coeffs() && f.covariance() == P;
+  }
+};
+
+/// 1 where the fix is let through, or refused and yet something changed.
+int let_through(RestingFilter& rest, const GnssFix& fix) {
+  const Standing before(rest.filter);
+  return stress::not_refused([&] { rest.filter.update(fix); }) + (before.same(rest.filter) ? 0 : 1);
+}
+
+/// A fix that is known exactly, or exactly along one way: a covariance that is not positive definite.
+StressFigure rank_deficient_fixes() {
+  RestingFilter rest = after_a_second();
+  int passed = 0;
+  const Vector3d one = Vector3d(1.0, 2.0, -2.0) / 3.0;
+  for (const Matrix3d& R :
+       {Matrix3d(Matrix3d::Zero()), Matrix3d(one * one.transpose()), Matrix3d(Vector3d(1.0, 1.0, 0.0).asDiagonal()),
+        Matrix3d(-Matrix3d::Identity()), Matrix3d(Vector3d(1.0, -1e-30, 1.0).asDiagonal())}) {
+    GnssFix fix = rest.fix(1.0);
+    fix.covariance_E = R;
+    passed += let_through(rest, fix);
+  }
+  return {1.0 * passed, 0.0};
+}
+
+/// A fix a million million times better than the position: the variance that is left is the fix's, the rest of the
+/// correlations is rounding; after the next prediction the position's variance has grown by the velocity's times dt^2,
+/// and the correlations are definite again. Twice at one instant too.
+StressFigure nearly_perfect_fixes(double sigma_m) {
+  RestingFilter rest = after_a_second();
+  stress::Worst worst;
+  for (int round = 0; round < 20; ++round) {
+    for (int again = 0; again < 2; ++again) {
+      rest.filter.update(rest.fix(sigma_m));
+      const auto P = rest.filter.covariance();
+      worst.look(P == P.transpose() && P.allFinite() ? 0.0 : stress::kInfinity, 1.0);
+      // The antenna's variance: that of the fix, and roundings of what makes it, lever arms and attitude.
+      const double about = kEpsilon * 100.0 * P.diagonal().segment<3>(ErrorIndex::kTheta).maxCoeff();
+      const auto llt = Matrix3d(P.block<3, 3>(3, 3)).llt();
+      worst.look(llt.info() == Eigen::Success || sigma_m * sigma_m < about ? 0.0 : stress::kInfinity, 1.0);
+    }
+    rest.predict();
+    const Matrix3d v = rest.filter.covariance().block<3, 3>(6, 6), p = rest.filter.covariance().block<3, 3>(3, 3);
+    const double least = Eigen::SelfAdjointEigenSolver<Matrix3d>(p).eigenvalues().minCoeff();
+    const double white = 0.25 * std::pow(5e-4, 2) * 1e-6;  // what the white noise alone makes of it, N^2 dt^3 / 4
+    worst.look(least > 0.5 * white && v.llt().info() == Eigen::Success ? 0.0 : stress::kInfinity, 1.0);
+  }
+  return {worst.figure().figure, 0.0};
+}
+
+/// Fixes of a millimetre that contradict one another by `apart_m`, in turn: every number stays one, and each update
+/// tells by how much it was surprised.
+StressFigure contradictory_fixes(double apart_m) {
+  RestingFilter rest = after_a_second();
+  int wrong = 0;
+  for (int k = 0; k < 400; ++k) {
+    rest.predict();
+    if (k % 10 != 0) continue;
+    GnssFix fix = rest.fix(1e-3);
+    fix.p_A_E.x() += k % 20 == 0 ? apart_m : 0.0;
+    const UpdateReport report = rest.filter.update(fix);
+    const auto P = rest.filter.covariance();
+    wrong += report.innovation.allFinite() && std::isfinite(report.nis) && report.nis >= 0.0 ? 0 : 1;
+    wrong += P.allFinite() && P == P.transpose() && (P.diagonal().array() > 0.0).all() ? 0 : 1;
+    wrong += rest.filter.nav_state().p_EU_E.allFinite() ? 0 : 1;
+  }
+  return {1.0 * wrong, 0.0};
+}
+
+/// With a gate of 5 sigma an outlier of any size is told as not accepted, and changes nothing.
+StressFigure outliers() {
+  FilterConfig config;
+  config.gate_sigma = 5.0;
+  RestingFilter rest = after_a_second(config);
+  int wrong = 0;
+  for (const double off_m : {100.0, 1e9, -1e9, 1e30, 1e150, -1e200, 1e300}) {
+    GnssFix fix = rest.fix(1.0);
+    fix.p_A_E.y() += off_m;
+    const Standing before(rest.filter);
+    const UpdateReport report = rest.filter.update(fix);
+    wrong += !report.accepted && report.dimension == 3 && before.same(rest.filter) ? 0 : 1;
+  }
+  wrong += rest.filter.update(rest.fix(1.0)).accepted ? 0 : 1;
+  return {1.0 * wrong, 0.0};
+}
+
+/// Every number of a fix that the filter uses, not a number and infinite in turn; and a fix that is none changes
+/// nothing whatever is in it.
+StressFigure not_finite_fixes() {
+  RestingFilter rest = after_a_second();
+  int passed = 0;
+  for (const double bad : {std::nan(""), stress::kInfinity, -stress::kInfinity}) {
+    for (int i = 0; i < 3; ++i) {
+      GnssFix fix = rest.fix(1.0);
+      fix.p_A_E[i] = bad;
+      passed += let_through(rest, fix);
+      fix.status = FixStatus::kNone;
+      const Standing before(rest.filter);
+      passed += rest.filter.update(fix).dimension == 0 && before.same(rest.filter) ? 0 : 1;
+    }
+    for (int i = 0; i < 9; ++i) {
+      GnssFix fix = rest.fix(1.0);
+      fix.covariance_E(i / 3, i % 3) = bad;
+      passed += let_through(rest, fix);
+    }
+  }
+  return {1.0 * passed, 0.0};
+}
+
+/// From 0.1 s before the last sample to 0.1 s after it is taken, carried by the velocity; beside that it is refused.
+StressFigure late_and_early_fixes() {
+  int wrong = 0;
+  for (const std::int64_t age_ns : {-100'000'000, -1, 0, 1, 99'999'999, 100'000'000}) {
+    RestingFilter rest = after_a_second();
+    GnssFix fix = rest.fix(1.0);
+    fix.t.ns += age_ns;
+    wrong += rest.filter.update(fix).accepted ? 0 : 1;
+  }
+  RestingFilter rest = after_a_second();
+  for (const std::int64_t age_ns :
+       {-100'000'001LL, 100'000'001LL, -86'400'000'000'000LL, 86'400'000'000'000LL, 1LL << 60}) {
+    GnssFix fix = rest.fix(1.0);
+    fix.t.ns += age_ns;
+    wrong += let_through(rest, fix);
+  }
+  return {1.0 * wrong, 0.0};
+}
+
+/// Four hours without a fix: the position is not known on Earth. The first fix takes its place, to its own sigma, and
+/// the ones after it are taken as usual.
+StressFigure after_hours_without() {
+  RestingFilter rest({}, usual_noise(), 1.0);
+  for (int k = 0; k < 4 * 3600; ++k) rest.predict();
+  int wrong = 0;
+  const UpdateReport first = rest.filter.update(rest.fix(1.0));
+  wrong += first.accepted && first.dimension == 0 ? 0 : 1;
+  const auto P = rest.filter.covariance();
+  const GnssFix here = rest.fix(1.0);
+  const NavState& s = rest.filter.nav_state();
+  wrong += (s.p_EU_E + s.R_EU * Vector3d(0.3, -0.1, 1.2) - here.p_A_E).norm() < 1e-6 ? 0 : 1;
+  wrong += P.allFinite() && P == P.transpose() && P.diagonal().segment<3>(3).maxCoeff() < 10.0 ? 0 : 1;
+  for (int k = 0; k < 60; ++k) {
+    rest.predict();
+    wrong += rest.filter.update(rest.fix(1.0)).dimension == 3 ? 0 : 1;
+  }
+  const Eigen::Matrix3d p = rest.filter.covariance().block<3, 3>(3, 3);
+  wrong += p.llt().info() == Eigen::Success && p.diagonal().maxCoeff() < 2.0 ? 0 : 1;
+  return {1.0 * wrong, 0.0};
+}
+
+}  // namespace
+
+std::vector<StressCase> fix_cases() {
+  const auto group = StressGroup::kData;
+  const StressCase rank =
+      stress::mechanism(group, "a covariance without full rank",
+                        "R = 0 makes the innovation's covariance singular once P is, and its inverse "
+                        "infinite",
+                        "is refused by name, before anything has changed", "let through");
+  const StressCase perfect =
+      stress::mechanism(group, "a fix that leaves no variance",
+                        "what is left of P is rounding, of either sign, and the next innovation's "
+                        "covariance may not be definite",
+                        "P stays symmetric and its position definite, and the next prediction gives it back at least "
+                        "the white noise's part",
+                        "looks");
+  const StressCase contradiction =
+      stress::mechanism(group, "fixes that contradict one another", "velocities of 10^11 m/s, and a NIS that overflows",
+                        "state, covariance and NIS stay numbers", "looks");
+  const StressCase outlier = stress::mechanism(
+      group, "an outlier beyond the square root of what a double holds",
+      "its square is infinite, the tail of infinity no number, and a comparison with that lets it pass",
+      "not accepted, and nothing changed, to the bit", "fixes");
+  const StressCase broken =
+      stress::mechanism(group, "a fix that is not finite", "one number spoils state and covariance for good",
+                        "each of its numbers in turn is refused, before anything has changed", "let through");
+  const StressCase late = stress::mechanism(group, "a fix before or after the filter's time",
+                                            "a delayed fix is taken for the present one, or one of tomorrow",
+                                            "taken within 0.1 s, to the nanosecond, and refused beside it", "fixes");
+  const StressCase lost =
+      stress::mechanism(StressGroup::kLong, "a position that is not known on Earth",
+                        "gravity linear over 10^7 m pulls the update anywhere",
+                        "the first fix takes the position's place, and the filter goes on", "looks");
+  std::vector<StressCase> cases = {
+      row(rank, "fix/rank_deficient_covariance", rank_deficient_fixes),
+      row(outlier, "fix/outliers_to_1e300_m", outliers), row(broken, "fix/not_finite_field_by_field", not_finite_fixes),
+      row(late, "fix/late_and_early", late_and_early_fixes), row(lost, "fix/after_4_h_without", after_hours_without)};
+  for (const double sigma_m : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15})
+    cases.push_back(
+        row(perfect, "fix/sigma_" + stress::text(sigma_m) + "_m", [=] { return nearly_perfect_fixes(sigma_m); }));
+  for (const double apart_m : {1.0, 1e5, 1e9})
+    cases.push_back(row(contradiction, "fix/contradiction_of_" + stress::text(apart_m) + "_m",
+                        [=] { return contradictory_fixes(apart_m); }));
+  return cases;
+}
+
+}  // namespace canyon::fusion

@@ -1,0 +1,143 @@
+#include <vector>
+
+#include "canyon/core/stress/grid.h"
+#include "canyon/fusion/stress/at_rest.h"
+#include "canyon/fusion/stress/subjects.h"
+
+namespace canyon::fusion {
+namespace {
+
+using Eigen::Vector3d;
+using stress::row;
+
+/// Each number of a sample, not a number, infinite, or (the interval) not above zero; and nothing has changed.
+StressFigure not_finite_samples() {
+  RestingFilter rest({}, usual_noise(), 100.0);
+  rest.predict();
+  const NavState before = rest.filter.nav_state();
+  const auto P = rest.filter.covariance();
+  int passed = 0;
+  const auto offer = [&](const ImuSample& s) { passed += stress::not_refused([&] { rest.filter.predict(s); }); };
+  for (const double bad : {std::nan(""), stress::kInfinity, -stress::kInfinity}) {
+    for (int i = 0; i < 3; ++i) {
+      ImuSample s = rest.next_sample();
+      s.dtheta_U[i] = bad;
+      offer(s);
+      s = rest.next_sample();
+      s.dv_U[i] = bad;
+      offer(s);
+    }
+    ImuSample s = rest.next_sample();
+    s.dt_s = bad;
+    offer(s);
+  }
+  for (const double dt_s : {0.0, -0.01}) {
+    ImuSample s = rest.next_sample();
+    s.dt_s = dt_s;
+    offer(s);
+  }
+  const NavState& after = rest.filter.nav_state();
+  passed += after.t == before.t && after.p_EU_E == before.p_EU_E && rest.filter.covariance() == P ? 0 : 1;
+  return {1.0 * passed, 0.0};
+}
+
+/// A sample again, an old one, one after a gap of one and of many, one of next year.
+StressFigure out_of_order_samples() {
+  RestingFilter rest({}, usual_noise(), 100.0);
+  for (int k = 0; k < 5; ++k) rest.predict();
+  int passed = 0;
+  for (const std::int64_t k :
+       {std::int64_t{4}, std::int64_t{0}, std::int64_t{6}, std::int64_t{105}, std::int64_t{3'153'600'000}})
+    passed += stress::not_refused([&] { rest.filter.predict(rest_sample(rest.truth, k, 100.0)); });
+  rest.predict();  // the one that is due is taken all the same
+  return {1.0 * passed, 0.0};
+}
+
+std::vector<ImuSample> log_of(const NavState& truth, int count) {
+  std::vector<ImuSample> out;
+  for (int k = 0; k < count; ++k) out.push_back(rest_sample(truth, k, 10.0));
+  return out;
+}
+
+/// Free navigation of a log in which a sample comes twice, or an old one again, or one that is not finite.
+StressFigure bad_logs(const char* integrator) {
+  const NavState truth = resting_at(45.0, 7.0, 200.0);
+  int passed = 0;
+  const auto offer = [&](const std::vector<ImuSample>& log) {
+    passed += stress::not_refused([&] { dead_reckon(log, truth, *make_strapdown(integrator)); });
+  };
+  for (const std::size_t from : {std::size_t{4}, std::size_t{3}, std::size_t{0}}) {
+    auto log = log_of(truth, 10);
+    log.insert(log.begin() + 5, log[from]);
+    offer(log);
+  }
+  for (const double bad : {std::nan(""), stress::kInfinity}) {
+    for (int i = 0; i < 3; ++i) {
+      auto log = log_of(truth, 10);
+      log[5].dtheta_U[i] = bad;
+      offer(log);
+      log = log_of(truth, 10);
+      log[5].dv_U[i] = bad;
+      offer(log);
+    }
+    auto log = log_of(truth, 10);
+    log[5].dt_s = bad;
+    offer(log);
+  }
+  for (const double dt_s : {0.0, -0.1}) {
+    auto log = log_of(truth, 10);
+    log[5].dt_s = dt_s;
+    offer(log);
+  }
+  return {1.0 * passed, 0.0};
+}
+
+/// Rest with samples missing, one and a minute of them: the sample after the gap stands for it, and at rest that is the
+/// truth. Euler leaves half the Earth's turn within an interval out of the force: g w_e dt / 2 for as long, and twice
+/// that to either side in the position's trapezoid; the others are right to the square of that turn, and to rounding.
+StressFigure gaps(const char* integrator, double gap_s) {
+  const NavState truth = resting_at(45.0, 7.0, 200.0);
+  auto log = log_of(truth, 600 + static_cast<int>(gap_s * 10.0));
+  log.erase(log.begin() + 300, log.begin() + 300 + static_cast<int>(gap_s * 10.0));
+  const auto states = dead_reckon(log, truth, *make_strapdown(integrator));
+  const double all_s = states.back().t - truth.t, turn = Wgs84::rate_rad_s * (0.1 + gap_s);
+  const bool first_order = std::string(integrator) == "euler";
+  const double missed_m_s2 = 9.81 * (first_order ? turn : turn * turn);
+  const double rounding_m = 1e-6;  // 660 steps that may tilt by an epsilon each: g t^2 / 2 times 3e-13 at most
+  const double error_m = (states.back().p_EU_E - truth.p_EU_E).norm();
+  return {states.size() == log.size() + 1 ? error_m : stress::kInfinity,
+          missed_m_s2 * all_s * all_s / 2.0 + rounding_m};
+}
+
+}  // namespace
+
+std::vector<StressCase> sample_cases() {
+  const auto group = StressGroup::kData;
+  const StressCase broken =
+      stress::mechanism(group, "an inertial sample that is not finite",
+                        "one increment spoils attitude, and through it everything, for good",
+                        "each number in turn is refused, before anything has changed", "let through");
+  const StressCase order =
+      stress::mechanism(group, "inertial samples out of order, twice or missing",
+                        "a sample taken twice moves the state twice; over a gap the body stands still",
+                        "each is refused, the due one taken", "let through");
+  const StressCase logs = stress::mechanism(
+      group, "a log in which time does not increase",
+      "a sample that comes twice has no time to stand for, and the next one's change of rate is divided by it",
+      "is refused, and so is what is not finite in it", "let through");
+  StressCase gap = stress::mechanism(
+      group, "a gap in a log at rest", "the integrator looks back over the gap, or the time is lost",
+      "rest, to half the Earth's turn within the gap for euler, its square for the others, and rounding", "m");
+  gap.loose = "the bound adds the turn of the longest interval over the whole time";
+  std::vector<StressCase> cases = {row(broken, "sample/not_finite_field_by_field", not_finite_samples),
+                                   row(order, "sample/out_of_order", out_of_order_samples)};
+  for (const char* integrator : {"euler", "two_sample", "three_sample"})
+    cases.push_back(row(logs, std::string("sample/bad_logs_by_") + integrator, [=] { return bad_logs(integrator); }));
+  for (const char* integrator : {"euler", "two_sample", "three_sample"})
+    for (const double gap_s : {0.1, 60.0})
+      cases.push_back(row(gap, "sample/gap_of_" + stress::text(gap_s) + "_s_by_" + integrator,
+                          [=] { return gaps(integrator, gap_s); }));
+  return cases;
+}
+
+}  // namespace canyon::fusion

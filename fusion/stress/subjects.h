@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// The cases of this room, a file for each subject.
+namespace canyon::fusion {
+
+std::vector<StressCase> consistency_cases();
+std::vector<StressCase> covariance_cases();
+std::vector<StressCase> dead_reckoning_cases();
+std::vector<StressCase> fix_cases();
+std::vector<StressCase> sample_cases();
+std::vector<StressCase> unaided_cases();
+
+}  // namespace canyon::fusion
