@@ -20,13 +20,19 @@ ImuSample take_share(ImuSample& sample, double share) {
 }  // namespace
 
 Status Localizer::take(ImuSample sample, GpsTime t) {
-  while (!waiting_.empty()) {
+  while (!waiting_.empty() && waiting_.front().t < t) {
     const Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
     if (next.t > at_) CANYON_TRY_STATUS(predict(take_share(sample, (next.t - at_) / (t - at_)), next.t));
     CANYON_TRY_STATUS(next.work());
   }
-  return predict(sample, t);
+  CANYON_TRY_STATUS(predict(sample, t));
+  while (!waiting_.empty() && waiting_.front().t == t) {
+    const Waiting next = std::move(waiting_.front());
+    waiting_.pop_front();
+    CANYON_TRY_STATUS(next.work());
+  }
+  return Ok{};
 }
 
 Status Localizer::once_at(GpsTime t, std::function<Status()> work) {
@@ -43,7 +49,11 @@ Status Localizer::predict(const ImuSample& sample, GpsTime t) {
 }
 
 Result<fusion::UpdateReport> Localizer::update(const GnssFix& fix) {
-  const fusion::UpdateReport report = clock_.charge(Part::kFilter, [&] { return filter_.update(fix); });
+  // Whoever divides samples at the times of fixes knows what the unit's clock, which is never set, shows at at_.
+  GnssFix by_its_clock = fix;
+  by_its_clock.t.ns += filter_.nav_state().t.ns - at_.ns;
+  fusion::UpdateReport report = clock_.charge(Part::kFilter, [&] { return filter_.update(by_its_clock); });
+  report.t = fix.t;
   updates_ += report.dimension > 0 ? 1 : 0;
   return report;
 }

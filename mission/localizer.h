@@ -27,6 +27,7 @@ class Localizer {
   Status take(ImuSample sample, GpsTime t);
   /// Does `work` once the filter has come to t: at once, or within the sample that covers t, which is then divided.
   Status once_at(GpsTime t, std::function<Status()> work);
+  /// The fix is stamped in the time of at(); the unit's own clock may be any time off.
   Result<fusion::UpdateReport> update(const GnssFix& fix);
 
   std::int64_t predictions() const { return predictions_; }
