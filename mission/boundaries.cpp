@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <string>
 
@@ -19,6 +20,7 @@ constexpr double kTrueForce_m_s2 = 1e5;  // 10 000 g: no body stays whole
 constexpr double kTrueRate_rad_s = 1e3;  // gyroscopes of vehicles end at 35 rad/s
 constexpr double kBelieved_m = 1e12;     // an unaided filter that starts upside down drifts g t^2: 1e11 m in a day
 constexpr double kBelieved_m_s = 1e9;
+constexpr double kLongestSample_s = 1e3;
 constexpr double kReturn_m = 1e5;  // ten times the largest range that a LIDAR can be given
 
 /// The values of one message; what is refused first is told.
@@ -46,6 +48,15 @@ class Gate {
     return pass(what, pose.p, limit).pass("an attitude", pose.R.coeffs(), 2.0);
   }
 
+  /// NaN means "not measured" and passes.
+  Gate& pass_measured(const char* what, double value, double limit = kAnyFinite) {
+    return std::isnan(value) ? *this : pass(what, value, limit);
+  }
+  Gate& pass_all(const char* what, std::initializer_list<double> values) {
+    for (const double value : values) pass(what, value);
+    return *this;
+  }
+
   Status status() const {
     if (refused_.empty()) return Ok{};
     return Error{.what = "the computation could not finish: " + refused_, .exit_code = 1};
@@ -71,29 +82,66 @@ Status Boundaries::check(const KinematicState& motion) const {
 
 Status Boundaries::check(const ImuSample& sample) const {
   return Gate("the IMU", sample.t - start_)
+      .pass("an interval", sample.dt_s, kLongestSample_s)
       .pass("a turn", sample.dtheta_U, kTrueRate_rad_s * sample.dt_s)
       .pass("a velocity increment", sample.dv_U, kTrueForce_m_s2 * sample.dt_s)
       .status();
 }
 
+namespace {
+
+void check_fix(Gate& gate, const GnssFix& fix) {
+  if (fix.status == FixStatus::kNone) return;
+  gate.pass("a position", fix.p_A_E, kBelieved_m).pass("a covariance", fix.covariance_E);
+  if (!fix.v_A_E.array().isNaN().all()) gate.pass("a velocity", fix.v_A_E, kBelieved_m_s);
+  if (!fix.velocity_covariance_E.array().isNaN().all()) gate.pass("a velocity's covariance", fix.velocity_covariance_E);
+  gate.pass_measured("a clock", fix.clock_m);
+  // A DOP may be of any size, and is infinite where the geometry determines nothing.
+}
+
+void check_observation(Gate& gate, const GnssObservation& o) {
+  gate.pass("a pseudorange", o.pseudorange_m, kBelieved_m);
+  gate.pass_measured("a Doppler shift", o.doppler_hz).pass_measured("a carrier phase", o.carrier_phase_cycles);
+  gate.pass_measured("a C/N0", o.cn0_dbhz).pass_measured("a sigma", o.sigma_m);
+  gate.pass_all("a correction", {o.clock_m, o.correction_m});
+  for (const Eigen::Vector3d* satellite : {&o.p_E, &o.v_E})
+    if (!satellite->array().isNaN().all()) gate.pass("a satellite's place", *satellite, kBelieved_m);
+  const GnssSecondSignal& second = o.second;
+  for (const double value : {second.pseudorange_m, second.doppler_hz, second.carrier_phase_cycles, second.cn0_dbhz})
+    gate.pass_measured("a second signal", value);
+}
+
+void check_truth(Gate& gate, const GnssTruth& truth) {
+  gate.pass("a true position", truth.p_A_E, kBelieved_m).pass("a true velocity", truth.v_A_E, kBelieved_m_s);
+  gate.pass_all("a true clock", {truth.receiver_clock_m, truth.receiver_clock_rate_m_s});
+  for (const GnssObservationTruth& t : truth.satellites) {
+    gate.pass("a true range", t.range_m, kBelieved_m).pass("a true range rate", t.range_rate_m_s);
+    gate.pass_all("a true direction", {t.elevation_rad, t.azimuth_rad});
+    gate.pass_all("a true error", {t.multipath_m, t.ionosphere_m, t.troposphere_m, t.ephemeris_m, t.noise_m, t.base_m,
+                                   t.phase_centre_m, t.ionosphere_delay_m, t.troposphere_delay_m, t.carrier_multipath_m,
+                                   t.range_rate_multipath_m_s, t.ambiguity_cycles});
+  }
+}
+
+}  // namespace
+
 Status Boundaries::check(const gnss::GnssOutput& output) const {
   Gate gate("the GNSS receiver", output.fix.t - start_);
-  if (output.fix.status != FixStatus::kNone) {
-    gate.pass("a position", output.fix.p_A_E, kBelieved_m).pass("a covariance", output.fix.covariance_E);
-    if (!output.fix.v_A_E.array().isNaN().all()) gate.pass("a velocity", output.fix.v_A_E, kBelieved_m_s);
-  }
+  check_fix(gate, output.fix);
   for (const GnssObservation& observation : output.epoch.observations)
-    if (observation.used) gate.pass("a pseudorange", observation.pseudorange_m, kBelieved_m);
-  for (const GnssObservationTruth& truth : output.truth.satellites)
-    gate.pass("a true range", truth.range_m, kBelieved_m).pass("a true range rate", truth.range_rate_m_s);
+    if (observation.used) check_observation(gate, observation);
+  check_truth(gate, output.truth);
   return gate.status();
 }
 
 Status Boundaries::check(const lidar::LidarOutput& output) const {
   Gate gate("the LIDAR", output.scan.t - start_);
+  gate.pass("a period", output.scan.period_s, kLongestSample_s);
   for (const LidarPoint& point : output.scan.points)
     gate.pass("a return", Eigen::Vector3f(point.x, point.y, point.z), kReturn_m)
         .pass("an intensity or a time", Eigen::Vector2f(point.intensity, point.time_s));
+  for (const LidarPointTruth& truth : output.truth)
+    gate.pass("a true range or incidence", Eigen::Vector2f(truth.range_m, truth.cos_incidence));
   return gate.status();
 }
 
@@ -101,6 +149,8 @@ Status Boundaries::check(const NavEstimate& estimate) const {
   return Gate("the filter", estimate.t - start_)
       .pass("a position", estimate.X_WB, kBelieved_m)
       .pass("a velocity", estimate.v_WB_W, kBelieved_m_s)
+      .pass("a bias", estimate.gyro_bias_U)
+      .pass("a bias", estimate.accel_bias_U)
       .pass("a covariance", estimate.pose_covariance)
       .pass("a covariance", estimate.velocity_covariance_W)
       .status();
@@ -109,6 +159,8 @@ Status Boundaries::check(const NavEstimate& estimate) const {
 Status Boundaries::check(const Keyframe& keyframe) const {
   return Gate("the registration", keyframe.t - start_)
       .pass("a position", keyframe.X_WL_registered, kBelieved_m)
+      .pass("a prior position", keyframe.X_WL_prior, kBelieved_m)
+      .pass_measured("a residual", keyframe.rms_m)
       .status();
 }
 
@@ -129,12 +181,15 @@ Status Boundaries::check(const KeyframeRow& row) const {
   return Gate("the recorder", row.t - start_)
       .pass("a true position", row.X_WL_true, 2.0 * kTruePlace_m)
       .pass("a position", row.X_WL_registered, kBelieved_m)
+      .pass("a prior position", row.X_WL_prior, kBelieved_m)
+      .pass_measured("a residual", row.rms_m)
       .status();
 }
 
 Status Boundaries::check(const std::vector<lidar::MapPoint>& map, double t_s) const {
   Gate gate("the recorder", t_s);
-  for (const lidar::MapPoint& point : map) gate.pass("a map point", point.p_W);
+  for (const lidar::MapPoint& point : map)
+    gate.pass("a map point", point.p_W).pass("an intensity", static_cast<double>(point.intensity));
   return gate.status();
 }
 
