@@ -75,7 +75,8 @@ StressFigure ends() {
 std::vector<StressCase> chi_square_cases() {
   const auto group = StressGroup::kData;
   StressCase logarithms = stress::mechanism(
-      group, "cancellation of large logarithms", "a ln x - x - ln Gamma(a) is a small difference of numbers of 10^7",
+      group, "cancellation of large logarithms",
+      "a ln x - x - ln Gamma(a) is a small difference of numbers of 10^7 (found by this case, 2026-11-22: 2e-9)",
       "relative error below 1e-12, as chi_square.h says, by the finite sum in 64 bits of mantissa and what that leaves",
       "");
   const StressCase far = stress::mechanism(group, "tails of 1e-300",

@@ -75,7 +75,8 @@ StressFigure end_words() {
 std::vector<StressCase> random_cases() {
   const StressCase count = stress::mechanism(
       StressGroup::kData, "the random counter's ends",
-      "the batch adds to the low word without a carry, or goes on past the last index where one by one it starts anew",
+      "the batch adds to the low word without a carry, or goes on past the last index where one by one it starts anew "
+      "(found by this case, 2026-11-22)",
       "a batch is to the bit what its draws are one by one, at any index, entity and draw number: exact", "draws");
   const StressCase ends = stress::mechanism(
       StressGroup::kData, "the ends of the uniform interval",

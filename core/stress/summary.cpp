@@ -62,11 +62,13 @@ StressFigure weak_direction(double ratio) {
 
 std::vector<StressCase> summary_cases() {
   const StressCase overflow =
-      stress::mechanism(StressGroup::kData, "overflow of a mean", "the sum of the two in the middle is infinite",
+      stress::mechanism(StressGroup::kData, "overflow of a mean",
+                        "the sum of the two in the middle is infinite (found by this case, 2026-11-22)",
                         "the largest, the smallest and infinite values have their median: exact", "medians");
-  const StressCase order = stress::mechanism(StressGroup::kData, "an order that is none",
-                                             "sorting what is not a number leaves any order, and reads past the ends",
-                                             "no number, wherever in the list it stands", "medians");
+  const StressCase order = stress::mechanism(
+      StressGroup::kData, "an order that is none",
+      "sorting what is not a number leaves any order, and reads past the ends (found by this case, 2026-11-22)",
+      "no number, wherever in the list it stands", "medians");
   const StressCase weak = stress::mechanism(
       StressGroup::kData, "rank deficiency of a least-squares problem",
       "normal equations square the ratio of the directions, and the weak one's noise becomes the answer",

@@ -161,9 +161,10 @@ std::vector<StressCase> time_cases() {
       StressGroup::kLong, "a period that is added up", "a rate whose period is no whole number of nanoseconds drifts",
       "tick k lies within half a nanosecond of k / rate at the end of a day too: rounding to the nearest, no more",
       "ns");
-  const StressCase overflow = mechanism(StressGroup::kData, "overflow of 64 bits",
-                                        "the sum wraps around to an instant 584 years off, without a word",
-                                        "each of them is refused", "let through");
+  const StressCase overflow =
+      mechanism(StressGroup::kData, "overflow of 64 bits",
+                "the sum wraps around to an instant 584 years off, without a word (found by this case, 2026-11-22)",
+                "each of them is refused", "let through");
   std::vector<StressCase> cases = {
       row(calendar_field, "time/month_borders_1980_to_2261", month_borders),
       row(calendar_field, "time/leap_days", leap_days), row(week_count, "time/week_borders", week_borders),

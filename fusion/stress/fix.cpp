@@ -190,17 +190,17 @@ std::vector<StressCase> fix_cases() {
   const StressCase perfect =
       stress::mechanism(group, "a fix that leaves no variance",
                         "what is left of P is rounding, of either sign, and the next innovation's "
-                        "covariance may not be definite",
+                        "covariance may not be definite (found by this case, 2026-11-22: an internal error)",
                         "P stays symmetric and its position definite, and the next prediction gives it back at least "
                         "the white noise's part",
                         "looks");
   const StressCase contradiction =
       stress::mechanism(group, "fixes that contradict one another", "velocities of 10^11 m/s, and a NIS that overflows",
                         "state, covariance and NIS stay numbers", "looks");
-  const StressCase outlier = stress::mechanism(
-      group, "an outlier beyond the square root of what a double holds",
-      "its square is infinite, the tail of infinity no number, and a comparison with that lets it pass",
-      "not accepted, and nothing changed, to the bit", "fixes");
+  const StressCase outlier = stress::mechanism(group, "an outlier beyond the square root of what a double holds",
+                                               "its square is infinite, the tail of infinity no number, and a "
+                                               "comparison with that lets it pass (found by this case, 2026-11-22)",
+                                               "not accepted, and nothing changed, to the bit", "fixes");
   const StressCase broken =
       stress::mechanism(group, "a fix that is not finite", "one number spoils state and covariance for good",
                         "each of its numbers in turn is refused, before anything has changed", "let through");

@@ -121,10 +121,11 @@ std::vector<StressCase> sample_cases() {
       stress::mechanism(group, "inertial samples out of order, twice or missing",
                         "a sample taken twice moves the state twice; over a gap the body stands still",
                         "each is refused, the due one taken", "let through");
-  const StressCase logs = stress::mechanism(
-      group, "a log in which time does not increase",
-      "a sample that comes twice has no time to stand for, and the next one's change of rate is divided by it",
-      "is refused, and so is what is not finite in it", "let through");
+  const StressCase logs =
+      stress::mechanism(group, "a log in which time does not increase",
+                        "a sample that comes twice has no time to stand for, and the next one's change of rate is "
+                        "divided by it (found by this case, 2026-11-22: no number)",
+                        "is refused, and so is what is not finite in it", "let through");
   StressCase gap = stress::mechanism(
       group, "a gap in a log at rest", "the integrator looks back over the gap, or the time is lost",
       "rest, to half the Earth's turn within the gap for euler, its square for the others, and rounding", "m");

@@ -1,0 +1,106 @@
+#include "canyon/mission/autonomy/path.h"
+
+#include <vector>
+
+#include "canyon/core/stress/grid.h"
+#include "canyon/core/units.h"
+#include "canyon/mission/autonomy/local_grid.h"
+#include "canyon/mission/stress/subjects.h"
+
+namespace canyon::mission {
+namespace {
+
+using Eigen::Vector2d;
+using stress::row;
+
+/// How many of a path's answers are no numbers, or not on it: everywhere along it and beyond its ends.
+int broken(const Path& path, double spacing_m) {
+  int wrong = 0;
+  for (double s = -10.0; s <= path.length_m() + 10.0; s += 0.37) {
+    const Vector2d p = path.at(s), d = path.direction(s);
+    const double k = path.curvature(s);
+    wrong += p.allFinite() && d.allFinite() && std::isfinite(k) && std::abs(d.norm() - 1.0) < 1e-12 ? 0 : 1;
+    const double found = path.project(p, 0.0, path.length_m());
+    wrong += (path.at(found) - p).norm() <= spacing_m ? 0 : 1;
+    wrong += std::isfinite(path.offset(p + Vector2d(1.0, 1.0), s)) ? 0 : 1;
+  }
+  return wrong;
+}
+
+/// Points that repeat, legs of a millimetre, a way that turns on the spot, a spike, and one that stays on a line.
+StressFigure degenerate_ways() {
+  constexpr double kSpacing_m = 0.25;
+  const std::vector<std::vector<Vector2d>> ways = {
+      {{0, 0}, {0, 0}, {10, 0}, {10, 0}, {10, 10}}, {{0, 0}, {10, 0}, {0, 0}},
+      {{0, 0}, {20, 0}, {20, 1e-9}, {0, 1e-9}},     {{0, 0}, {0.0011, 0}, {0.0022, 0.0011}, {5, 5}},
+      {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 1e-12}}, {{0, 0}, {30, 0}, {30.002, 0.002}, {0, 30}},
+      {{0, 0}, {10, 0}, {1e-3, 1e-6}, {10, 2e-6}},
+  };
+  int wrong = 0;
+  for (const auto& way : ways)
+    for (const double radius_m : {0.0, 1e-9, 5.0, 1e6}) {
+      const Path path(way, radius_m, kSpacing_m);
+      wrong += path.empty() ? 1 : broken(path, kSpacing_m);
+    }
+  wrong += Path({}, 5.0).empty() && Path({{1, 1}}, 5.0).empty() && Path({{1, 1}, {1, 1}}, 5.0).empty() ? 0 : 1;
+  wrong += stress::not_refused([] { Path({{0, 0}, {1, 0}}, 5.0, 0.0); });
+  return {1.0 * wrong, 0.0};
+}
+
+/// A round of 40 m at 10^5 m from W's origin is the one at the origin: lengths to a rounding of the place for each of
+/// the points.
+StressFigure far_way() {
+  const std::vector<Vector2d> way = {{0, 0}, {40, 0}, {40, 40}, {0, 40}, {0, 1}};
+  std::vector<Vector2d> far = way;
+  for (Vector2d& p : far) p += Vector2d(1e5, -1e5);
+  const Path near_path(way, 6.0), far_path(far, 6.0);
+  const double each = 4.0 * stress::kEpsilon * 1.5e5;
+  stress::Worst worst;
+  worst.look(near_path.length_m() - far_path.length_m(), each * static_cast<double>(near_path.points().size()));
+  for (double s = 0.0; s < near_path.length_m(); s += 0.9)
+    worst.look((far_path.at(s) - near_path.at(s) - Vector2d(1e5, -1e5)).norm(),
+               each * static_cast<double>(near_path.points().size()));
+  return worst.figure();
+}
+
+/// The same wall before the vehicle, at W's origin and 10^5 m off: the same obstacles at the same distances. Cells are
+/// whole numbers of them from W's origin, so that the shift is one of them too.
+StressFigure far_grid(double off_m) {
+  const auto grid_at = [](double x_m) {
+    LocalGrid grid({});
+    std::vector<Eigen::Vector3f> wall;
+    for (float y = -5.0F; y <= 5.0F; y += 0.05F)
+      for (float z = 0.1F; z <= 2.0F; z += 0.3F) wall.emplace_back(8.1F, y, z);
+    const Pose here{Eigen::Quaterniond::Identity(), {x_m, -x_m, 0.0}};
+    grid.add(wall, here, here, 1.0);
+    grid.update_distances();
+    return grid;
+  };
+  const LocalGrid here = grid_at(0.0), far = grid_at(off_m);
+  int wrong = here.obstacles() == far.obstacles() && here.obstacles() > 30 ? 0 : 1;
+  for (double x = -24.9; x < 24.9; x += 0.5)
+    for (double y = -24.9; y < 24.9; y += 0.5)
+      wrong += here.distance_m({x, y}) == far.distance_m({x + off_m, y - off_m}) ? 0 : 1;
+  for (const double beyond : {1e6, -1e9, 1e15}) wrong += here.distance_m({beyond, 0.0}) == LocalGrid::kFar ? 0 : 1;
+  return {1.0 * wrong, 0.0};
+}
+
+}  // namespace
+
+std::vector<StressCase> path_cases() {
+  const auto group = StressGroup::kGeometry;
+  const StressCase degenerate = stress::mechanism(group, "legs without length and corners of half a turn",
+                                                  "a direction of 0 / 0, and the tangent of 90 degrees",
+                                                  "each answer along it is a number, and on the path", "answers");
+  StressCase far = stress::mechanism(group, "a way far from the origin", "arc lengths in single precision",
+                                     "the way at the origin, to roundings of its place", "of the bound");
+  far.loose = "the bound adds the roundings of all points, which cancel from leg to leg";
+  const StressCase grid = stress::mechanism(group, "a rolling grid far from its origin",
+                                            "cell numbers in single precision, or a remainder that is negative",
+                                            "the same obstacles, the same distances to the bit", "cells");
+  return {row(degenerate, "path/degenerate_ways", degenerate_ways), row(far, "path/100_km_off", far_way),
+          row(grid, "path/local_grid_64_km_off", [] { return far_grid(65536.0); }),
+          row(grid, "path/local_grid_64_km_off_to_the_west", [] { return far_grid(-65536.0); })};
+}
+
+}  // namespace canyon::mission

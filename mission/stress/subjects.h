@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// The cases of this room, a file for each subject.
+namespace canyon::mission {
+
+std::vector<StressCase> boundary_cases();
+std::vector<StressCase> localizer_cases();
+std::vector<StressCase> path_cases();
+std::vector<StressCase> schedule_cases();
+std::vector<StressCase> sprung_mass_cases();
+std::vector<StressCase> traffic_cases();
+std::vector<StressCase> vehicle_cases();
+
+}  // namespace canyon::mission

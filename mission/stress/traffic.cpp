@@ -1,0 +1,69 @@
+#include "canyon/scene/city/traffic.h"
+
+#include <vector>
+
+#include "canyon/core/stress/grid.h"
+#include "canyon/mission/stress/open_ground.h"
+#include "canyon/mission/stress/subjects.h"
+
+namespace canyon::mission {
+namespace {
+
+using stress::row;
+
+scene::Traffic traffic_of(const std::vector<double>& path_m, double speed_m_s, double start_s) {
+  scene::MovingConfig config;
+  config.path_m = path_m;
+  config.speed_m_s = speed_m_s;
+  config.start_s = start_s;
+  return *scene::Traffic::make({config}, open_ground());
+}
+
+/// It stands until it starts and at its end, however long that is, and in between it is where its speed has brought it,
+/// along legs of which some have no length: to a rounding of the time, which counts by the speed.
+StressFigure ways(double start_s) {
+  const double speed = 8.0;
+  const auto traffic = traffic_of({0, 0, 0, 0, 40, 0, 40, 0, 40, 30, 40, 30}, speed, start_s);
+  stress::Worst worst;
+  const auto look = [&](double t_s, double x, double y) {
+    const auto found = traffic.at(t_s);
+    const double rounding_m = 8.0 * stress::kEpsilon * (100.0 + speed * std::abs(t_s));
+    worst.look((found[0].X_WS.p.head<2>() - Eigen::Vector2d(x, y)).norm(), rounding_m);
+    worst.look(found[0].X_WS.R.norm() - 1.0, 8.0 * stress::kEpsilon);
+  };
+  for (const double before_s : {-1e300, -1.0, 0.0}) look(start_s + before_s, 0.0, 0.0);
+  look(start_s + 2.5, 20.0, 0.0);
+  look(start_s + 5.0, 40.0, 0.0);
+  look(start_s + 6.25, 40.0, 10.0);
+  for (const double after_s : {8.75, 100.0}) look(start_s + after_s, 40.0, 30.0);
+  // Far beyond the end rounding of the time no longer counts.
+  for (const double t_s : {2147483648.0, 1e12, 1e300})
+    worst.look((traffic.at(t_s)[0].X_WS.p.head<2>() - Eigen::Vector2d(40.0, 30.0)).norm(), 1e-12);
+  return worst.figure();
+}
+
+/// Without speed, or with no leg of any length, it stands for ever, upright and a rotation.
+StressFigure standing() {
+  stress::Worst worst;
+  for (const auto& traffic : {traffic_of({5, 6, 50, 60}, 0.0, 0.0), traffic_of({5, 6, 5, 6}, 100.0, 0.0)})
+    for (const double t_s : {0.0, 1.0, 1e9}) {
+      const Pose pose = traffic.at(t_s)[0].X_WS;
+      worst.look((pose.p.head<2>() - Eigen::Vector2d(5.0, 6.0)).norm(), 1e-12);
+      worst.look(((pose.R * Eigen::Vector3d::UnitZ()) - Eigen::Vector3d::UnitZ()).norm(), 8.0 * stress::kEpsilon);
+      worst.look(pose.R.norm() - 1.0, 8.0 * stress::kEpsilon);
+    }
+  return worst.figure();
+}
+
+}  // namespace
+
+std::vector<StressCase> traffic_cases() {
+  const StressCase way = stress::mechanism(
+      StressGroup::kGeometry, "a moving thing at the ends of its way, and where a leg has no length",
+      "it goes on beyond its end, turns to no direction at a repeated point, or is where it was a round ago",
+      "where its speed has brought it, to a rounding of the time; a rotation at all times", "of the bound");
+  return {row(way, "traffic/from_before_its_start_to_1e300_s", [] { return ways(0.0); }),
+          row(way, "traffic/start_after_1e6_s", [] { return ways(1e6); }), row(way, "traffic/that_stands", standing)};
+}
+
+}  // namespace canyon::mission

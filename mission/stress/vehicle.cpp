@@ -1,0 +1,144 @@
+#include "canyon/mission/motion/vehicle.h"
+
+#include <vector>
+
+#include "canyon/core/stress/grid.h"
+#include "canyon/core/units.h"
+#include "canyon/mission/boundaries.h"
+#include "canyon/mission/stress/open_ground.h"
+#include "canyon/mission/stress/subjects.h"
+
+namespace canyon::mission {
+namespace {
+
+using stress::kEpsilon;
+using stress::row;
+
+const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
+
+/// Amplitudes of the 24 waves of a road of class E together: each is the root of twice the variance of its band, whose
+/// ends have the same ratio from 0.05 to 1.4 cycles/m (ISO 8608: 4096e-6 m^3 at 0.1 cycles/m, falling with n^2).
+double roughest_m() {
+  double sum = 0.0;
+  for (int i = 0; i < 24; ++i) {
+    const double low = 0.05 * std::pow(28.0, i / 24.0), high = 0.05 * std::pow(28.0, (i + 1) / 24.0);
+    sum += std::sqrt(2.0 * 4096e-6 * 0.01 * (1.0 / low - 1.0 / high));
+  }
+  return sum;
+}
+
+/// The largest gain from road to body of x'' = w^2 (u - x) + 2 zeta w (u' - x').
+double largest_gain(double zeta) {
+  double most = 1.0;
+  for (double r = 0.01; r < 10.0; r *= 1.001) {
+    const double spring = 1.0 - r * r, damper = 2.0 * zeta * r;
+    most = std::max(most, std::sqrt((1.0 + damper * damper) / (spring * spring + damper * damper)));
+  }
+  return most;
+}
+
+/// Half a minute round a circle at 30 m/s on the roughest road: the body stays within what resonance can make of all
+/// waves at once (twice, as it also rings from the start), and every state passes the run's own gate.
+StressFigure roughest_road(double hz, double damping) {
+  VehicleConfig config;
+  config.suspension_hz = hz;
+  config.suspension_damping = damping;
+  config.roughness = "E";
+  config.max_speed_m_s = 30.0;
+  Vehicle vehicle(config, open_ground(), 3, kStart);
+  const Boundaries boundaries(kStart);
+  const double level_m = open_ground().ground(0.0, 0.0)->height_m;
+  stress::Worst worst;
+  for (int k = 0; k < 3000; ++k) {
+    const KinematicState& s = vehicle.advance({30.0, 1.0 / 60.0});
+    worst.look(s.X_WB.p.z() - level_m, 2.0 * largest_gain(damping) * roughest_m());
+    worst.look(boundaries.check(s).ok() && vehicle.on_terrain() ? 0.0 : stress::kInfinity, 1.0);
+  }
+  return worst.figure();
+}
+
+/// Commands of any size, from one end to the other at every step: the limits of speed, acceleration, steering and its
+/// rate hold, to four roundings.
+StressFigure wild_commands() {
+  VehicleConfig config;
+  config.roughness = "none";
+  Vehicle vehicle(config, open_ground(), 3, kStart);
+  stress::Worst worst;
+  const double most_curvature = std::tan(config.max_steering_deg * kDegree) / config.wheelbase_m;
+  const double rate = config.max_steering_rate_deg_s * kDegree * 0.01;
+  double steering = 0.0;
+  const double slack = 1.0 + 4.0 * kEpsilon * 1e3;
+  for (int k = 0; k < 4000; ++k) {
+    const double size = std::pow(10.0, (k * 7) % 309), sign = k % 2 == 0 ? 1.0 : -1.0;
+    const KinematicState& s = vehicle.advance({k % 500 < 300 ? size : -size, sign * size});
+    const double speed = vehicle.speed_m_s();
+    worst.look(speed, config.max_speed_m_s * slack);
+    worst.look(speed < 0.0 ? stress::kInfinity : 0.0, 1.0);
+    const double along = s.a_WB_W.head<2>().dot((s.X_WB.R * Eigen::Vector3d::UnitX()).head<2>());
+    worst.look(along, (along > 0.0 ? config.max_acceleration_m_s2 : config.max_deceleration_m_s2) * slack + 1e-9);
+    if (speed < 0.5) continue;
+    const double curvature = s.w_WB_B.z() / speed;
+    worst.look(curvature, most_curvature * slack + 1e-6);  // pitch and roll of the flat road are below 1e-4
+    const double now = std::atan(curvature * config.wheelbase_m);
+    if (k > 0 && steering != 0.0) worst.look(now - steering, rate + 1e-6);
+    steering = now;
+  }
+  return worst.figure();
+}
+
+StressFigure refused_commands() {
+  int passed = 0;
+  Vehicle vehicle({}, open_ground(), 3, kStart);
+  const Eigen::Vector3d before = vehicle.state().X_WB.p;
+  for (const double bad : {std::nan(""), stress::kInfinity, -stress::kInfinity}) {
+    passed += stress::not_refused([&] { vehicle.advance({bad, 0.0}); });
+    passed += stress::not_refused([&] { vehicle.advance({1.0, bad}); });
+  }
+  passed += vehicle.state().X_WB.p == before && vehicle.state().t == kStart ? 0 : 1;
+  return {1.0 * passed, 0.0};
+}
+
+/// Class E at 1e5 m from W's origin: within the waves' amplitudes, and between two places 1 mm apart no steeper than
+/// all of them at once; their phases of up to 9e5 rad know themselves to an epsilon.
+StressFigure far_roughness() {
+  const RoadRoughness road("E", 5);
+  stress::Worst worst;
+  const double most_m = roughest_m(), steepest = 2.0 * kPi * 1.4 * most_m;
+  for (double x = -1e5; x <= 1e5; x += 777.7) {
+    const Eigen::Vector2d p(x, 1e5 - 0.3 * x), beside = p + Eigen::Vector2d(1e-3, 0.0);
+    worst.look(road.height_m(p), most_m);
+    worst.look(road.height_m(beside) - road.height_m(p), steepest * (1e-3 + 8.0 * kEpsilon * 2e5));
+  }
+  worst.look(RoadRoughness("none", 5).height_m({1e5, -1e5}), 1e-300);
+  return worst.figure();
+}
+
+}  // namespace
+
+std::vector<StressCase> vehicle_cases() {
+  const StressCase rough = stress::mechanism(
+      StressGroup::kStiff, "a resonance that the road feeds",
+      "an explicit step feeds it beyond all bounds; one that damps lets no resonance be",
+      "within the waves' amplitudes times the largest gain, and every state passes the run's gate", "of the bound");
+  const StressCase commands = stress::mechanism(
+      StressGroup::kData, "commands beyond every limit",
+      "a limit of the square, or a tangent at 90 degrees of steering",
+      "speed, acceleration, steering and its rate stay within the vehicle's own limits", "of the bound");
+  const StressCase broken = stress::mechanism(StressGroup::kData, "a command that is not finite",
+                                              "it is clamped to a limit, and no number to none",
+                                              "is refused before anything has moved", "let through");
+  const StressCase far = stress::mechanism(StressGroup::kGeometry, "a wave's phase far from the origin",
+                                           "a phase in single precision, or waves that grow with it",
+                                           "within the amplitudes, no steeper than all waves at once", "of the bound");
+  std::vector<StressCase> cases;
+  for (const double hz : {0.3, 5.0})
+    for (const double damping : {0.05, 2.0})
+      cases.push_back(row(rough, "vehicle/roughest_road_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
+                          [=] { return roughest_road(hz, damping); }));
+  cases.push_back(row(commands, "vehicle/commands_to_1e308", wild_commands));
+  cases.push_back(row(broken, "vehicle/commands_not_finite", refused_commands));
+  cases.push_back(row(far, "vehicle/roughness_100_km_off", far_roughness));
+  return cases;
+}
+
+}  // namespace canyon::mission
