@@ -27,10 +27,11 @@ class IsotropicSensor final : public GnssSensor {
         direction_(seed, "gnss.isotropic.direction"),
         length_(seed, "gnss.isotropic.length") {}
 
-  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d&,
+  GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                      const scene::SceneAt&) override {
     CANYON_CHECK(index >= 0, "index = ", index);
-    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
+    CANYON_CHECK(p_A_W.allFinite() && v_A_W.allFinite(), "antenna at ", p_A_W.transpose(), ", velocity ",
+                 v_A_W.transpose());
     const auto sample = static_cast<std::uint64_t>(index);
     GnssOutput out;
     out.epoch.t = t;

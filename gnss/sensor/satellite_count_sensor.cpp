@@ -44,7 +44,8 @@ class SatelliteCountSensor final : public GnssSensor {
   GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                      const scene::SceneAt& scene) override {
     CANYON_CHECK(index >= 0, "index = ", index);
-    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
+    CANYON_CHECK(p_A_W.allFinite() && v_A_W.allFinite(), "antenna at ", p_A_W.transpose(), ", velocity ",
+                 v_A_W.transpose());
     ++counters_.epochs;
     GnssOutput out;
     out.epoch.t = out.truth.t = out.fix.t = t;

@@ -25,7 +25,8 @@ class WhiteNoiseSensor final : public GnssSensor {
   GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p_A_W, const Eigen::Vector3d& v_A_W,
                      const scene::SceneAt&) override {
     CANYON_CHECK(index >= 0, "index = ", index);
-    CANYON_CHECK(p_A_W.allFinite(), "antenna position = ", p_A_W.transpose());
+    CANYON_CHECK(p_A_W.allFinite() && v_A_W.allFinite(), "antenna at ", p_A_W.transpose(), ", velocity ",
+                 v_A_W.transpose());
     const auto sample = static_cast<std::uint64_t>(index);
     const Eigen::Vector3d sigma_m(config_.sigma_m, config_.sigma_m, config_.sigma_up_m);
     GnssOutput out;

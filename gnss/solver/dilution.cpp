@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include "canyon/core/check.h"
 #include "canyon/core/math/singular_values.h"
 #include "canyon/gnss/solver/position_solver.h"
@@ -13,7 +16,9 @@ Dop from_design(const Eigen::MatrixXd& H, bool clock) {
   // GDOP.
   const SingularValues svd(H);
   const Eigen::MatrixXd scaled = svd.V * svd.values.cwiseInverse().asDiagonal();
-  const Eigen::VectorXd variance = scaled.rowwise().squaredNorm();
+  // A singular value of 0 exactly: what has no part in its direction comes out as 0 * infinity.
+  const auto infinite = [](double v) { return std::isnan(v) ? std::numeric_limits<double>::infinity() : v; };
+  const Eigen::VectorXd variance = scaled.rowwise().squaredNorm().unaryExpr(infinite);
   dop.hdop = std::sqrt(variance(0) + variance(1));
   dop.vdop = std::sqrt(variance(2));
   dop.pdop = std::sqrt(variance.head<3>().sum());

@@ -39,7 +39,8 @@ class Problem {
   Problem(std::span<const RangeMeasurement> ranges, bool clocks) : ranges_(ranges) {
     if (clocks) clocks_ = ReceiverClocks(ranges);
     for (const auto& r : ranges) {
-      CANYON_CHECK(std::isfinite(r.range_m) && r.p_E.allFinite() && r.sigma_m > 0.0 && std::isfinite(r.shared_m),
+      CANYON_CHECK(std::isfinite(r.range_m) && r.p_E.allFinite() && r.sigma_m > 0.0 && std::isfinite(r.sigma_m) &&
+                       std::isfinite(r.shared_m),
                    "range_m = ", r.range_m, ", sigma_m = ", r.sigma_m, ", shared_m = ", r.shared_m);
       shared_ = shared_ || r.shared_m != 0.0;
       systems_.push_back(r.system);

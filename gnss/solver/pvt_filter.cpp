@@ -43,7 +43,7 @@ struct PvtFilter::Innovations {
     std::vector<Eigen::Index> out;
     for (Eigen::Index i = 0; i < value.size(); ++i) {
       const double s = H.row(i) * P * H.row(i).transpose() + variance[i];
-      if (value[i] * value[i] <= gate * s) out.push_back(i);
+      if (std::isfinite(s) && value[i] * value[i] <= gate * s) out.push_back(i);
     }
     return out;
   }

@@ -85,7 +85,8 @@ VelocitySolution solve_velocity(std::span<const RateMeasurement> rates, const Ei
   std::vector<Linear> lines;
   std::vector<Eigen::Vector3d> directions;
   for (const auto& r : rates) {
-    CANYON_CHECK(std::isfinite(r.rate_m_s) && r.p_E.allFinite() && r.v_E.allFinite() && r.sigma_m_s > 0.0,
+    CANYON_CHECK(std::isfinite(r.rate_m_s) && r.p_E.allFinite() && r.v_E.allFinite() && r.sigma_m_s > 0.0 &&
+                     std::isfinite(r.sigma_m_s),
                  "rate_m_s = ", r.rate_m_s, ", sigma_m_s = ", r.sigma_m_s);
     lines.push_back(linear(r, p_E));
     directions.push_back(lines.back().line);

@@ -15,6 +15,8 @@ Fresnel circular(std::complex<double> te, std::complex<double> tm) {
 }  // namespace
 
 Fresnel fresnel(std::complex<double> permittivity, double incidence_rad) {
+  // Where nothing changes nothing reflects; at grazing incidence the difference below would be all rounding.
+  if (permittivity == 1.0) return circular(0.0, 0.0);
   const double c = std::cos(incidence_rad), s = std::sin(incidence_rad);
   const std::complex<double> root = std::sqrt(permittivity - s * s);
   return circular((c - root) / (c + root), (permittivity * c - root) / (permittivity * c + root));

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// One subject a file; stress_cases() joins them.
+namespace canyon::gnss {
+
+std::vector<StressCase> orbit_cases();
+std::vector<StressCase> light_time_cases();
+std::vector<StressCase> dilution_cases();
+std::vector<StressCase> solver_cases();
+std::vector<StressCase> filter_cases();
+std::vector<StressCase> atmosphere_cases();
+std::vector<StressCase> paper_cases();
+std::vector<StressCase> process_cases();
+std::vector<StressCase> correlator_cases();
+std::vector<StressCase> lock_cases();
+std::vector<StressCase> wave_cases();
+std::vector<StressCase> product_cases();
+std::vector<StressCase> time_border_cases();
+std::vector<StressCase> place_cases();
+
+}  // namespace canyon::gnss

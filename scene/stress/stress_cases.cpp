@@ -1,0 +1,16 @@
+#include "canyon/scene/stress/stress_cases.h"
+
+#include <utility>
+
+#include "canyon/scene/stress/subjects.h"
+
+namespace canyon::scene {
+
+std::vector<StressCase> stress_cases() {
+  std::vector<StressCase> all;
+  for (const auto& subject : {ray_cases, far_cases, surface_cases, ground_cases, crown_cases})
+    for (StressCase& one : subject()) all.push_back(std::move(one));
+  return all;
+}
+
+}  // namespace canyon::scene

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// One subject a file; stress_cases() joins them.
+namespace canyon::scene {
+
+std::vector<StressCase> ray_cases();
+std::vector<StressCase> far_cases();
+std::vector<StressCase> surface_cases();
+std::vector<StressCase> ground_cases();
+std::vector<StressCase> crown_cases();
+
+}  // namespace canyon::scene
