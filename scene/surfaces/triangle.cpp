@@ -34,7 +34,8 @@ Eigen::Vector3d Triangle::closest_point(const Eigen::Vector3d& p) const {
 }
 
 bool Triangle::usable() const {
-  if (!(a.allFinite() && b.allFinite() && c.allFinite())) return false;
+  for (const Eigen::Vector3d& p : {a, b, c})
+    if (!(p.array().abs() <= kFarthest_m).all()) return false;
   const double longest_m = std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
   return area_normal().norm() > 1e-6 * longest_m;
 }

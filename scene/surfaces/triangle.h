@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "canyon/scene/farthest.h"
 #include "canyon/scene/scene.h"
 
 namespace canyon::scene {
@@ -20,7 +21,7 @@ struct Triangle {
   /// Nearest point of the triangle, its inside and edges included (Ericson, Real-Time Collision Detection,
   /// 2005, 5.1.5).
   Eigen::Vector3d closest_point(const Eigen::Vector3d& p) const;
-  /// Finite, and no altitude is below 1 micrometre.
+  /// Within kFarthest_m, and no altitude is below 1 micrometre.
   bool usable() const;
 };
 

@@ -36,14 +36,15 @@ void bridge(const Points& points, const std::vector<std::uint32_t>& hole, std::v
     const double x = a.x() + (m.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y());
     if (x < m.x() || x >= nearest_x) continue;
     nearest_x = x;
-    seen = a.x() > b.x() ? i : j;
+    // Where the ray meets a corner it sees that one.
+    seen = a.y() == m.y() ? i : b.y() == m.y() ? j : a.x() > b.x() ? i : j;
   }
   if (seen == polygon.size()) return;  // the hole lies outside: nothing to cut
   // Corners inside the triangle from m to the edge hide that end: the one closest to the ray is seen.
   const Eigen::Vector2d at(nearest_x, m.y()), p = points[polygon[seen]];
   double flattest = std::numeric_limits<double>::infinity();
   const Eigen::Vector2d &second = p.y() > m.y() ? at : p, &third = p.y() > m.y() ? p : at;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
+  for (std::size_t i = 0; p.y() != m.y() && i < polygon.size(); ++i) {
     const Eigen::Vector2d& q = points[polygon[i]];
     if (q == p || q.x() < m.x() || !covers(m, second, third, q)) continue;
     const Eigen::Vector2d d = q - m;

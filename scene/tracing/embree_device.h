@@ -5,6 +5,7 @@
 #include <string>
 
 #include "canyon/core/check.h"
+#include "canyon/scene/farthest.h"
 #include "canyon/scene/scene_at.h"
 #include "canyon/scene/surfaces/triangle.h"
 #include "canyon/scene/tracing/plane_ranges.h"
@@ -39,9 +40,11 @@ struct OutOfMemory : std::runtime_error {
 /// thread's next call. Lanes that are not traced meet nothing. Throws where a ray is not finite.
 const RTCRayHit16& trace(RTCSceneTy* scene, std::uint32_t mask, const RayPacket& rays);
 
-/// Throws unless the ray's numbers are finite.
+/// Throws unless the ray's numbers are finite, and within what Embree takes.
 inline void check_finite(const Ray& ray) {
-  CANYON_CHECK(ray.origin.allFinite() && ray.direction.allFinite() && !std::isnan(ray.max_m), "origin ",
+  CANYON_CHECK((ray.origin.array().abs() <= kFarthest_m).all() && (ray.direction.array().abs() <= kFarthest_m).all() &&
+                   !std::isnan(ray.max_m),
+               "origin ",
                ray.origin.transpose(), " direction ", ray.direction.transpose());
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "canyon/core/process/vector_clones.h"
+#include "canyon/scene/farthest.h"
 
 namespace canyon::scene {
 namespace {
@@ -52,14 +53,15 @@ CANYON_VECTOR_CLONES void hits_of(const TracedPacket& traced, const PlaneTable& 
 
 CANYON_VECTOR_CLONES bool load_lanes(const RayPacket& rays, const TracerLanes& lanes) {
   const auto copy = [](const float* from, float* to) { std::memcpy(to, from, kRays * sizeof(float)); };
+  constexpr auto kLargest = static_cast<float>(kFarthest_m * kFarthest_m);
   int not_finite = 0;
   int valid[kRays];
   for (std::size_t i = 0; i < kRays; ++i) {
     const float ox = rays.origin_x[i], oy = rays.origin_y[i], oz = rays.origin_z[i];
     const float dx = rays.direction_x[i], dy = rays.direction_y[i], dz = rays.direction_z[i];
-    // v - v is 0 for finite numbers and NaN else.
-    const float sum = ((ox - ox) + (oy - oy) + (oz - oz)) + ((dx - dx) + (dy - dy) + (dz - dz));
-    not_finite |= sum == 0.0f ? 0 : 1;
+    // A sum of squares is NaN, infinite or large if one of them is; 1e36 fits a float.
+    const float sum = ((ox * ox) + (oy * oy) + (oz * oz)) + ((dx * dx) + (dy * dy) + (dz * dz));
+    not_finite |= sum <= kLargest ? 0 : 1;
     valid[i] = rays.max_m[i] >= 0.0f ? -1 : 0;
   }
   std::memcpy(lanes.valid, valid, sizeof valid);

@@ -70,7 +70,7 @@ struct TracerLanes {
   int* valid;
 };
 /// Copies a packet and marks the lanes that are to be traced (max_m >= 0) with -1, others with 0. False if an origin or
-/// direction is infinite or NaN.
+/// direction is farther than kFarthest_m or NaN.
 bool load_lanes(const RayPacket& rays, const TracerLanes& lanes);
 
 }  // namespace canyon::scene
