@@ -152,7 +152,8 @@ StressFigure one_value() {
   for (const bool whole : {true, false}) {
     const IonexMaps maps = maps_of(12.5, whole);
     for (double lat = -90.0; lat <= 90.0; lat += 7.5)
-      for (const double lon : {-540.0, -180.0, -179.99999999999997, -177.5, 0.0, 175.0, 179.99999999999997, 180.0, 361.0})
+      for (const double lon :
+           {-540.0, -180.0, -179.99999999999997, -177.5, 0.0, 175.0, 179.99999999999997, 180.0, 361.0})
         for (const double s : {0.0, 1e-9, 3599.5, 7200.0, 14399.999999999, 14400.0})
           take_worst(out, std::abs(maps.vtec_tecu(lat * kDegree, lon * kDegree, kNoon + s) - 12.5));
   }
@@ -196,14 +197,15 @@ std::vector<StressCase> atmosphere_cases() {
            [] {
              return outside(
                  [](const SkyView& v) {
-                   return klobuchar_delay_m(kBuiltInKlobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad, v.azimuth_rad,
-                                            v.elevation_rad);
+                   return klobuchar_delay_m(kBuiltInKlobuchar, v.t, v.receiver.lat_rad, v.receiver.lon_rad,
+                                            v.azimuth_rad, v.elevation_rad);
                  },
                  1.0, 150.0);
            })
       .add("atmosphere/beidou_klobuchar_everywhere",
            [] {
-             return outside([](const SkyView& v) { return beidou_klobuchar_delay_m(kBuiltInKlobuchar, v); }, 1.0, 150.0);
+             return outside([](const SkyView& v) { return beidou_klobuchar_delay_m(kBuiltInKlobuchar, v); }, 1.0,
+                            150.0);
            })
       .add("atmosphere/single_layer_everywhere",
            [] { return outside([](const SkyView& v) { return make_single_layer(200.0)->delay_m(v); }, 30.0, 110.0); })
@@ -236,24 +238,25 @@ std::vector<StressCase> atmosphere_cases() {
   rows.add("atmosphere/klobuchar_over_a_day", [] { return over_the_day(kNoon); })
       .add("atmosphere/klobuchar_over_the_week", [] { return over_the_day(GpsTime::from_week_sow(1617, 0.0)); });
 
-  rows.of({StressGroup::kGeometry, "obliquity from the horizon to the zenith", "a shell below the receiver, an angle in degrees",
-           "closed forms at both ends", ""});
+  rows.of({StressGroup::kGeometry, "obliquity from the horizon to the zenith",
+           "a shell below the receiver, an angle in degrees", "closed forms at both ends", ""});
   rows.add("atmosphere/night_of_no_electrons", night).add("atmosphere/shell_obliquity", shell);
 
   rows.of({StressGroup::kGeometry, "the standard atmosphere at its seams",
            "two laws that do not meet at the tropopause, a height that is not held, a scale height of the wrong air",
            "hydrostatic balance to 5e-5 (rounded constants of ICAO: 2e-5), no jump at the seams", ""});
-  rows.add("atmosphere/hydrostatic_balance", hydrostatic)
-      .add("atmosphere/no_jump_at_the_seams", no_jump);
+  rows.add("atmosphere/hydrostatic_balance", hydrostatic).add("atmosphere/no_jump_at_the_seams", no_jump);
   rows.of({StressGroup::kGeometry, "a mapping function at both ends", "a season or latitude outside of the table",
            "1 at the zenith to 16 eps, falling all the way; any latitude and day", ""});
   rows.add("atmosphere/niell_at_all_latitudes_and_days", mapping);
 
   rows.of({StressGroup::kGeometry, "a map's wrap-around and border",
            "the column after the last, the row beyond the pole, the instant after the last map",
-           "a world of one value has it everywhere; the antimeridian is no seam; beside its time there is none", "TECU"});
+           "a world of one value has it everywhere; the antimeridian is no seam; beside its time there is none",
+           "TECU"});
   rows.add("atmosphere/map_of_one_value", one_value).add("atmosphere/map_across_the_antimeridian", antimeridian);
-  rows.of({StressGroup::kLong, "an instant beside the maps", "extrapolation, or the wrong map at the border", "no value", "values"});
+  rows.of({StressGroup::kLong, "an instant beside the maps", "extrapolation, or the wrong map at the border",
+           "no value", "values"});
   rows.add("atmosphere/beside_the_maps_time", beside_the_maps);
   return rows.take();
 }

@@ -22,7 +22,8 @@ StressFigure infinite_band(Modulation modulation) {
   take_worst(out, std::abs(R.at(0.0) - 1.0));
   take_worst(out, std::abs(R.at(0.5) - (boc ? -0.5 : 0.5)));
   take_worst(out, std::abs(R.slope(0.0)));
-  for (const double x : {1.0, std::nextafter(1.0, 2.0), 1.5, 1e3, 1e9, 1e300, std::numeric_limits<double>::infinity()}) {
+  for (const double x :
+       {1.0, std::nextafter(1.0, 2.0), 1.5, 1e3, 1e9, 1e300, std::numeric_limits<double>::infinity()}) {
     take_worst(out, std::abs(R.at(x)));
     take_worst(out, std::abs(R.at(-x)));
   }
@@ -39,7 +40,8 @@ StressFigure tail(Modulation modulation, double bandwidth_chips, double x) {
   const CodeCorrelation R(modulation, bandwidth_chips * chip_rate_hz(modulation));
   double weights = 0.0;
   for (const auto& kink : R.kinks()) weights += std::abs(kink.slope_change);
-  StressFigure out{0.0, weights / (std::pow(kPi, 3) * bandwidth_chips * bandwidth_chips * (x - 1.0)) + 16.0 * kEps * x * weights};
+  StressFigure out{
+      0.0, weights / (std::pow(kPi, 3) * bandwidth_chips * bandwidth_chips * (x - 1.0)) + 16.0 * kEps * x * weights};
   for (int k = 0; k < 100; ++k) {
     take_worst(out, std::abs(R.at(x + 0.01 * k)));
     take_worst(out, std::abs(R.at(x + 0.01 * k) - R.at(-x - 0.01 * k)));
@@ -51,8 +53,7 @@ StressFigure tail(Modulation modulation, double bandwidth_chips, double x) {
 StressFigure table_end(double bandwidth_chips) {
   const CodeCorrelation R(Modulation::kBpsk1, bandwidth_chips * 1.023e6);
   StressFigure out{0.0, 1e-6};
-  for (const double x : {4.0, -4.0})
-    take_worst(out, std::abs(R.at(std::nextafter(x, 0.0)) - R.at(x)));
+  for (const double x : {4.0, -4.0}) take_worst(out, std::abs(R.at(std::nextafter(x, 0.0)) - R.at(x)));
   // And inside: the correlation of a wide band is the triangle but for 2 / (pi^2 B) at its peak (Si's remainder).
   take_worst(out, std::max(0.0, std::abs(R.at(0.0) - 1.0) - 2.0 / (kPi * kPi * bandwidth_chips)));
   return out;
@@ -74,7 +75,8 @@ StressFigure sine_integrals() {
     take_worst(out, std::abs(sine_integral(x) - static_cast<double>(sum)));
     take_worst(out, std::abs(sine_integral(-x) + static_cast<double>(sum)));
   }
-  for (const double x : {1e6, 1e12, 1e300}) take_worst(out, std::max(0.0, std::abs(sine_integral(x) - 0.5 * kPi) - 1.0 / x));
+  for (const double x : {1e6, 1e12, 1e300})
+    take_worst(out, std::max(0.0, std::abs(sine_integral(x) - 0.5 * kPi) - 1.0 / x));
   return out;
 }
 
@@ -86,10 +88,10 @@ CorrelatorDesign coherent(double spacing) {
   return d;
 }
 
-/// An echo in phase, a of the direct amplitude, `delay` chips later. Coherent early minus late in an infinite band errs by
-/// a delay / (1 + a) up to (1 + a) d / 2, then by a d / 2 up to 1 - d / 2, falls, and by nothing from 1 + d / 2 on
-/// (van Nee 1993). Exact to rounding: 16 eps of where the corners lie, spacing and delay, and 2 eps of four correlations
-/// near 1, by a slope of 2 (1 + a).
+/// An echo in phase, a of the direct amplitude, `delay` chips later. Coherent early minus late in an infinite band errs
+/// by a delay / (1 + a) up to (1 + a) d / 2, then by a d / 2 up to 1 - d / 2, falls, and by nothing from 1 + d / 2 on
+/// (van Nee 1993). Exact to rounding: 16 eps of where the corners lie, spacing and delay, and 2 eps of four
+/// correlations near 1, by a slope of 2 (1 + a).
 StressFigure echo(double spacing, double amplitude, double delay_chips) {
   const CodeTracking loop(coherent(spacing));
   const double chip_m = loop.correlation().chip_m();
@@ -120,8 +122,9 @@ StressFigure noise(double spacing, double cn0_dbhz, double loop_hz, double integ
   d.spacing_chips = spacing, d.code_loop_hz = loop_hz, d.integration_s = integration_s;
   const CodeTracking loop(d);
   const double cn0 = std::pow(10.0, 0.1 * cn0_dbhz);
-  const double exact = loop.correlation().chip_m() * std::sqrt(loop_hz * (1.0 - 0.5 * loop_hz * integration_s) * spacing /
-                                                               (2.0 * cn0) * (1.0 + 2.0 / (integration_s * cn0 * (2.0 - spacing))));
+  const double exact =
+      loop.correlation().chip_m() * std::sqrt(loop_hz * (1.0 - 0.5 * loop_hz * integration_s) * spacing / (2.0 * cn0) *
+                                              (1.0 + 2.0 / (integration_s * cn0 * (2.0 - spacing))));
   return {std::abs(loop.noise_m(cn0_dbhz) / exact - 1.0), 64.0 * kEps / spacing};
 }
 
@@ -178,10 +181,12 @@ std::vector<StressCase> correlator_cases() {
       .add("correlators/echo_of_0.5_spacing_0.1_far_beyond", [] { return echo(0.1, 0.5, 1e6); })
       .add("correlators/echo_at_no_delay", [] { return echo(0.1, 0.9, 0.0); });
 
-  rows.of({StressGroup::kGeometry, "signals that cancel one another", "a quotient of zeros: a lock on nothing with a random delay",
+  rows.of({StressGroup::kGeometry, "signals that cancel one another",
+           "a quotient of zeros: a lock on nothing with a random delay",
            "no lock, or one of the amplitude that is left", "locks"});
-  rows.add("correlators/cancelled_whole", [] { return cancelled(0.0); })
-      .add("correlators/cancelled_but_for_1e-6", [] { return cancelled(1e-6); });
+  rows.add("correlators/cancelled_whole", [] { return cancelled(0.0); }).add("correlators/cancelled_but_for_1e-6", [] {
+    return cancelled(1e-6);
+  });
 
   rows.of({StressGroup::kStiff, "noise of a code loop at the ends of its design",
            "squaring loss at weak signals, 1 - B T / 2 of a loop as fast as its integration, a slope of a narrow pair",
@@ -190,8 +195,9 @@ std::vector<StressCase> correlator_cases() {
     double d, cn0, hz, s;
     const char* name;
   };
-  for (const Design& k : {Design{0.01, 60.0, 0.001, 0.001, "narrow_strong_slow"}, Design{1.0, 0.0, 20.0, 0.04, "wide_weak_fast"},
-                          Design{0.5, 25.0, 0.13, 0.02, "usual"}, Design{0.01, 0.0, 20.0, 0.049, "narrow_weak_fast"}})
+  for (const Design& k :
+       {Design{0.01, 60.0, 0.001, 0.001, "narrow_strong_slow"}, Design{1.0, 0.0, 20.0, 0.04, "wide_weak_fast"},
+        Design{0.5, 25.0, 0.13, 0.02, "usual"}, Design{0.01, 0.0, 20.0, 0.049, "narrow_weak_fast"}})
     rows.add(std::string("correlators/noise_") + k.name, [k] { return noise(k.d, k.cn0, k.hz, k.s); });
 
   rows.of({StressGroup::kStiff, "an echo that turns fast against the loops",
@@ -200,7 +206,8 @@ std::vector<StressCase> correlator_cases() {
   const double plateau_m = 0.5 * 0.05 * kSpeedOfLight / 1.023e6;
   rows.add("correlators/echo_turning_at_990_hz",
            [=] {
-             const double f = 990.0, sinc = 1.0 / (kPi * f * 0.02), x = 2.0 * kPi * f / 2.0, carrier = 0.5 * sinc * 60.0 / (2.0 * kPi * f);
+             const double f = 990.0, sinc = 1.0 / (kPi * f * 0.02), x = 2.0 * kPi * f / 2.0,
+                          carrier = 0.5 * sinc * 60.0 / (2.0 * kPi * f);
              const double h = sinc / (x * x) + sinc / x * carrier;
              return harmless({.delay_m = 100.0, .amplitude = 0.5, .doppler_hz = f}, 0.0, 1.01 * plateau_m * h);
            })

@@ -35,9 +35,9 @@ std::vector<Eigen::Vector3d> cone(int n, double alpha) {
   return lines;
 }
 
-/// Of that geometry, with d = 1 - cos(alpha): HDOP^2 = 4 / (n sin^2), VDOP^2 = (n + 1) / (n d^2), TDOP^2 = (n cos^2 + 1)
-/// / (n d^2). A change of G by delta changes its pseudoinverse by 2 |G+| |delta| of itself (Wedin 1973); lines round by
-/// eps each, so |delta| <= 2 eps sqrt(n + 1), and |G+| <= GDOP.
+/// Of that geometry, with d = 1 - cos(alpha): HDOP^2 = 4 / (n sin^2), VDOP^2 = (n + 1) / (n d^2), TDOP^2 = (n cos^2 +
+/// 1) / (n d^2). A change of G by delta changes its pseudoinverse by 2 |G+| |delta| of itself (Wedin 1973); lines round
+/// by eps each, so |delta| <= 2 eps sqrt(n + 1), and |G+| <= GDOP.
 StressFigure cone_dops(int n, double gdop) {
   // Near the zenith GDOP = sqrt(2 n + 2) / (sqrt(n) alpha^2 / 2).
   const double alpha = std::min(std::sqrt(2.0 * std::sqrt((2.0 * n + 2.0) / n) / gdop), 0.5 * kPi);
@@ -107,12 +107,16 @@ std::vector<StressCase> dilution_cases() {
   rows.add("dilution/all_on_a_cone", [] { return inverse_gdop(ring(6, 0.7)); })
       .add("dilution/all_in_the_horizon", [] { return inverse_gdop(ring(5, 0.0)); })
       .add("dilution/all_in_a_vertical_plane", [] { return inverse_gdop(fan(7)); })
-      .add("dilution/four_in_one_direction", [] { return inverse_gdop({4, Eigen::Vector3d(0.48, 0.6, 0.64)}); })
-      .add("dilution/three_and_one_twice", [] {
-        auto lines = cone(2, 0.8);
-        lines.push_back(lines.back());
-        return inverse_gdop(lines);
-      })
+      .add("dilution/four_in_one_direction",
+           [] {
+             return inverse_gdop({4, Eigen::Vector3d(0.48, 0.6, 0.64)});
+           })
+      .add("dilution/three_and_one_twice",
+           [] {
+             auto lines = cone(2, 0.8);
+             lines.push_back(lines.back());
+             return inverse_gdop(lines);
+           })
       .loose("two lines alike to the bit leave a singular value of 0 but for the decomposition's own underflow");
   return rows.take();
 }

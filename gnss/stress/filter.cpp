@@ -93,8 +93,8 @@ StressFigure exact_position(double sigma_m, double interval_s) {
   return out;
 }
 
-/// An epoch again, one from before, one far too late: each begins anew and none predicts over that time; a figure counts
-/// estimates that are not finite or do not say so.
+/// An epoch again, one from before, one far too late: each begins anew and none predicts over that time; a figure
+/// counts estimates that are not finite or do not say so.
 StressFigure odd_times() {
   StressFigure out;
   for (const double dt : {0.0, -1.0, -1e6, 121.0, 1e8}) {
@@ -127,8 +127,8 @@ StressFigure not_finite() {
         if (field == 5) next.rates[3].sigma_m_s = bad;
         try {
           const auto found = filter.update(kStart + 1.0, next.ranges, next.rates, next.truth_E);
-          const bool good = found.ok && found.p_E.allFinite() && found.v_E.allFinite() && found.covariance.allFinite() &&
-                            (found.p_E - next.truth_E).norm() < 1.0;
+          const bool good = found.ok && found.p_E.allFinite() && found.v_E.allFinite() &&
+                            found.covariance.allFinite() && (found.p_E - next.truth_E).norm() < 1.0;
           out.figure += good && !(field < 3 && found.ranges_used[3]) ? 0.0 : 1.0;
         } catch (const ProgramError&) {
         }
@@ -147,9 +147,9 @@ StressFigure predictions(double interval_s) {
   PvtFilter::Estimate last;
   const auto steps = static_cast<int>(std::lround(kSpan_s / interval_s));
   for (int k = 1; k <= steps; ++k) last = filter.update(kStart + k * (kSpan_s / steps), {}, {}, first.truth_E);
-  const Eigen::Matrix3d expected = begun.covariance.topLeftCorner<3, 3>() +
-                                   kSpan_s * kSpan_s * begun.covariance.bottomRightCorner<3, 3>() +
-                                   Eigen::Matrix3d::Identity() * std::pow(p.acceleration_m_s2, 2) * std::pow(kSpan_s, 3) / 3.0;
+  const Eigen::Matrix3d expected =
+      begun.covariance.topLeftCorner<3, 3>() + kSpan_s * kSpan_s * begun.covariance.bottomRightCorner<3, 3>() +
+      Eigen::Matrix3d::Identity() * std::pow(p.acceleration_m_s2, 2) * std::pow(kSpan_s, 3) / 3.0;
   const double error = (last.covariance.topLeftCorner<3, 3>() - expected).norm() / expected.norm();
   return {error, (64.0 + 8.0 * steps) * kEps};
 }
@@ -158,9 +158,9 @@ SatelliteId sv() {
   return {GnssSystem::kGps, 5};
 }
 
-/// A code without noise, whose phase has an offset of 1e8 m, one unit in whose last place is 1.5e-8 m. Each of the running
-/// mean's updates rounds by up to half of that (deviation unit / sqrt 12) and forgets as 1 - 1/N: sqrt(N / 2) of it in
-/// all, five deviations; and the sums at its ends two units.
+/// A code without noise, whose phase has an offset of 1e8 m, one unit in whose last place is 1.5e-8 m. Each of the
+/// running mean's updates rounds by up to half of that (deviation unit / sqrt 12) and forgets as 1 - 1/N: sqrt(N / 2)
+/// of it in all, five deviations; and the sums at its ends two units.
 StressFigure long_arc(int epochs, double time_constant_s) {
   CarrierSmoothing smoothing(time_constant_s);
   const double unit_m = std::ldexp(1.0, -26);
@@ -182,22 +182,23 @@ StressFigure divergence(double rate_m_s) {
   double bias_m = 0.0;
   for (int k = 0; k <= kEpochs; ++k) {
     const double ionosphere_m = rate_m_s * k, range_m = 2.2e7;
-    bias_m = smoothing
-                 .smooth(sv(), kStart + k, {.code_m = range_m + ionosphere_m, .phase_m = range_m - ionosphere_m})
+    bias_m = smoothing.smooth(sv(), kStart + k, {.code_m = range_m + ionosphere_m, .phase_m = range_m - ionosphere_m})
                  .code_m -
              range_m - ionosphere_m;
   }
   const double closed_m = -2.0 * rate_m_s * (kN - 1.0);
-  return {std::abs(bias_m - closed_m), std::abs(closed_m) * kN * std::exp(-(kEpochs - kN) / kN) + 0.5 * kN * kEps * 2.2e7};
+  return {std::abs(bias_m - closed_m),
+          std::abs(closed_m) * kN * std::exp(-(kEpochs - kN) / kN) + 0.5 * kN * kEps * 2.2e7};
 }
 
 }  // namespace
 
 std::vector<StressCase> filter_cases() {
   StressRows rows;
-  rows.of({StressGroup::kData, "a filter's covariance at the ends of its noise",
-           "a measurement far better than the prediction: the difference of nearly equal matrices turns negative or skew",
-           "symmetric and positive but for 64 eps of its largest element (Joseph's form, eleven terms)", "of the largest"});
+  rows.of(
+      {StressGroup::kData, "a filter's covariance at the ends of its noise",
+       "a measurement far better than the prediction: the difference of nearly equal matrices turns negative or skew",
+       "symmetric and positive but for 64 eps of its largest element (Joseph's form, eleven terms)", "of the largest"});
   for (const double sigma : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
     char name[48];
     std::snprintf(name, sizeof name, "filter/covariance_at_sigma_%.0e_m", sigma);
@@ -213,15 +214,17 @@ std::vector<StressCase> filter_cases() {
     std::snprintf(name, sizeof name, "filter/place_at_sigma_%.0e_m", sigma);
     rows.add(name, [sigma] { return exact_position(sigma, 1.0); });
   }
-  rows.add("filter/place_at_100_hz", [] { return exact_position(1.0, 0.01); })
-      .add("filter/place_at_0.01_hz", [] { return exact_position(1.0, 100.0); });
+  rows.add("filter/place_at_100_hz", [] { return exact_position(1.0, 0.01); }).add("filter/place_at_0.01_hz", [] {
+    return exact_position(1.0, 100.0);
+  });
 
   rows.of({StressGroup::kData, "epochs again, backwards, or after a gap",
            "a prediction over no time, back in time or over years makes the covariance zero, negative or endless",
            "each begins anew with finite numbers", "not anew"});
   rows.add("filter/odd_times", odd_times);
   rows.of({StressGroup::kData, "a range or rate that is not finite, in a filter that runs",
-           "a gate that compares NaN lets it pass, and every later estimate is NaN", "left out or refused, field by field", "taken"});
+           "a gate that compares NaN lets it pass, and every later estimate is NaN",
+           "left out or refused, field by field", "taken"});
   rows.add("filter/not_finite_field_by_field", not_finite);
 
   rows.of({StressGroup::kStiff, "predictions in many small steps or one",
@@ -242,8 +245,9 @@ std::vector<StressCase> filter_cases() {
   rows.of({StressGroup::kLong, "code and carrier that diverge",
            "the lag of a running mean behind a ramp, its sign or a count off by one",
            "-2 rate (N - 1) epochs; e^-39 of the beginning and N eps / 2 are left", "m"});
-  rows.add("filter/divergence_of_1_mm_s", [] { return divergence(1e-3); })
-      .add("filter/divergence_of_5_cm_s", [] { return divergence(-0.05); });
+  rows.add("filter/divergence_of_1_mm_s", [] { return divergence(1e-3); }).add("filter/divergence_of_5_cm_s", [] {
+    return divergence(-0.05);
+  });
   return rows.take();
 }
 

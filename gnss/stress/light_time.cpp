@@ -24,7 +24,8 @@ using Vector3L = Eigen::Matrix<long double, 3, 1>;
 /// light time is the root of a quadratic.
 class Straight final : public Constellation {
  public:
-  Straight(const Eigen::Vector3d& p, const Eigen::Vector3d& v, double clock_s = 0.0) : p_(p), v_(v), clock_s_(clock_s) {}
+  Straight(const Eigen::Vector3d& p, const Eigen::Vector3d& v, double clock_s = 0.0)
+      : p_(p), v_(v), clock_s_(clock_s) {}
   const std::vector<SatelliteId>& satellites() const override { return satellites_; }
   std::optional<SatelliteState> state(SatelliteId, GpsTime t) const override {
     const double s = t - kReceived;
@@ -117,7 +118,9 @@ StressFigure rate(double speed_m_s) {
   StressFigure out{0.0, 64.0 * kEps * (speed_m_s + kGpsEarthRate * 26.56e6)};
   for (int k = 0; k < 12; ++k) {
     const Straight one(place(k, 26.56e6), speed_m_s * place(7 * k % 12, 1.0));
-    const auto range_m = [&](long double s) { return one.travel_s(kAntenna, s) * static_cast<long double>(kSpeedOfLight); };
+    const auto range_m = [&](long double s) {
+      return one.travel_s(kAntenna, s) * static_cast<long double>(kSpeedOfLight);
+    };
     constexpr long double h = 0.25L;
     const long double slope = (8 * (range_m(h) - range_m(-h)) - (range_m(2 * h) - range_m(-2 * h))) / (12 * h);
     // At the exact instant of transmission, which GpsTime would round.
@@ -147,14 +150,16 @@ std::vector<StressCase> light_time_cases() {
            "the sign of the turn, or the turn applied about the wrong instant: 30 m at the horizon",
            "Sagnac's w / c (x_s y_r - y_s x_r), remainder (w tau)^2 p_s p_r / range", "m"});
   for (const double lon : {-80.0, -45.0, 0.0, 45.0, 80.0})
-    rows.add("light_time/sagnac_at_" + std::string(lon < 0 ? "west_" : "east_") + std::to_string(std::lround(std::abs(lon))),
-             [lon] { return sagnac(lon); });
+    rows.add(
+        "light_time/sagnac_at_" + std::string(lon < 0 ? "west_" : "east_") + std::to_string(std::lround(std::abs(lon))),
+        [lon] { return sagnac(lon); });
 
   rows.of({StressGroup::kLong, "a receiver clock far off",
            "the satellite is placed by the receiver's reading instead of its own: 4 m for each millisecond",
            "the same place whatever the clock: nanoseconds of the instants times 4.5 km/s", "m"});
   for (const double off : {0.0, 1e-3, -1.0, 86400.0})
-    rows.add("light_time/receiver_clock_off_" + std::string(off < 0 ? "minus_" : "") + std::to_string(std::lround(std::abs(off) * 1e3)) + "_ms",
+    rows.add("light_time/receiver_clock_off_" + std::string(off < 0 ? "minus_" : "") +
+                 std::to_string(std::lround(std::abs(off) * 1e3)) + "_ms",
              [off] { return from_pseudorange(off); });
 
   rows.of({StressGroup::kGeometry, "range rate of a fast satellite",

@@ -89,7 +89,9 @@ StressFigure slip_share(double cn0_dbhz, double interval_s) {
 StressFigure link() {
   LinkBudget budget;
   StressFigure out;
-  const auto wrong = [&](double found, double exact) { out.figure += std::abs(found - exact) <= 1e-12 * 200.0 ? 0.0 : 1.0; };
+  const auto wrong = [&](double found, double exact) {
+    out.figure += std::abs(found - exact) <= 1e-12 * 200.0 ? 0.0 : 1.0;
+  };
   wrong(budget.direct_cn0_dbhz(0.5 * kPi, 0.0), 45.0);
   wrong(budget.direct_cn0_dbhz(0.5 * kPi, 1e9), 45.0 - 28.0);
   wrong(budget.direct_cn0_dbhz(0.5 * kPi, 0.0, 0.0), 45.0 - 200.0);
@@ -115,8 +117,8 @@ std::vector<StressCase> lock_cases() {
     double hz, s;
     std::int64_t epochs;
   };
-  for (const Rate& r : {Rate{0.01, 1.0, 1}, Rate{1.0, 1.0, 1}, Rate{3.0, 1.0, 3}, Rate{10.0, 1.0, 10}, Rate{10.0, 0.3, 3},
-                        Rate{10.0, 0.0, 0}, Rate{1000.0, 0.7, 700}, Rate{1.0, 600.0, 600}}) {
+  for (const Rate& r : {Rate{0.01, 1.0, 1}, Rate{1.0, 1.0, 1}, Rate{3.0, 1.0, 3}, Rate{10.0, 1.0, 10},
+                        Rate{10.0, 0.3, 3}, Rate{10.0, 0.0, 0}, Rate{1000.0, 0.7, 700}, Rate{1.0, 600.0, 600}}) {
     char name[64];
     std::snprintf(name, sizeof name, "locks/threshold_at_%g_hz_after_%g_s", r.hz, r.s);
     rows.add(name, [r] { return at_threshold(r.hz, r.s, r.epochs); });
@@ -128,7 +130,8 @@ std::vector<StressCase> lock_cases() {
   rows.of({StressGroup::kStiff, "a Bessel function where its series and its expansion meet", "a jump at the seam",
            "2 d rho < 2e-5, and 2e-6 of its documented error", ""});
   rows.add("locks/bessel_seam", bessel_seam);
-  rows.of({StressGroup::kLong, "counts of rare and of frequent slips", "a probability taken as dt / mean: above 1 for long epochs",
+  rows.of({StressGroup::kLong, "counts of rare and of frequent slips",
+           "a probability taken as dt / mean: above 1 for long epochs",
            "1 - exp(-dt / mean), five deviations of 20,000", ""});
   rows.add("locks/slips_at_20_db_hz", [] { return slip_share(20.0, 0.1); })
       .add("locks/slips_at_20_db_hz_and_100_s", [] { return slip_share(20.0, 100.0); })

@@ -41,8 +41,8 @@ StressFigure anomaly_error(double e) {
   return out;
 }
 
-/// Residual |E - e sin E - M| after many whole turns, in units of 2 eps |M|: the double 2 pi by which M is reduced is off
-/// by 2.4e-16 for each turn (4e-17 of M), and E itself rounds by eps / 2 of M, twice at most in the residual.
+/// Residual |E - e sin E - M| after many whole turns, in units of 2 eps |M|: the double 2 pi by which M is reduced is
+/// off by 2.4e-16 for each turn (4e-17 of M), and E itself rounds by eps / 2 of M, twice at most in the residual.
 StressFigure residual_after_turns(double turns) {
   StressFigure out{0.0, 1.0};
   for (int k = 0; k < 64; ++k) {
@@ -99,8 +99,9 @@ StressFigure perigee_velocity(double e) {
 }
 
 /// Radius of a circle, and the return of the ground track after a turn of the node, k turns from 2010. The turn is
-/// known to 0.5 ns (2 um at 4 km/s). The rate of the node and its product with a day round by eps / 2 of 2 pi each, that of
-/// the satellite, twice as fast, by twice as much: eps * 2 pi and eps * 4 pi a day, at a constant rate and so smoothly.
+/// known to 0.5 ns (2 um at 4 km/s). The rate of the node and its product with a day round by eps / 2 of 2 pi each,
+/// that of the satellite, twice as fast, by twice as much: eps * 2 pi and eps * 4 pi a day, at a constant rate and so
+/// smoothly.
 StressFigure track_returns(std::int64_t turns) {
   const auto gps = make_nominal_gps();
   const long double rate = static_cast<long double>(kGpsEarthRate) + 4.4874e-7L * (kPi / 180.0L);
@@ -141,8 +142,8 @@ GlonassEphemeris glonass() {
 }
 
 /// There and back over `span_s`. A Runge-Kutta step's error of h^5 changes its sign with h, so that on the way back it
-/// undoes itself; what is left is of the next order, (n h)^5 n T r where each elementary differential has a weight below
-/// one, with n = 1.55e-4 rad/s.
+/// undoes itself; what is left is of the next order, (n h)^5 n T r where each elementary differential has a weight
+/// below one, with n = 1.55e-4 rad/s.
 StressFigure there_and_back(double span_s) {
   GlonassEphemeris there = glonass();
   const SatelliteState far = there.at(there.toe + span_s);
@@ -170,10 +171,11 @@ StressFigure beyond_a_day() {
 
 std::vector<StressCase> orbit_cases() {
   StressRows rows;
-  rows.of({StressGroup::kGeometry, "Kepler's equation near the parabola",
-           "at e -> 1 the derivative 1 - e cos E vanishes at the perigee: Newton's step leaves the bracket or stops early",
-           "E to the rounding of M, enlarged by 1 / (1 - e cos E); 86 anomalies from 1e-8 to 3.1 rad of either sign",
-           "of the rounding bound"});
+  rows.of(
+      {StressGroup::kGeometry, "Kepler's equation near the parabola",
+       "at e -> 1 the derivative 1 - e cos E vanishes at the perigee: Newton's step leaves the bracket or stops early",
+       "E to the rounding of M, enlarged by 1 / (1 - e cos E); 86 anomalies from 1e-8 to 3.1 rad of either sign",
+       "of the rounding bound"});
   for (const double e : {0.0, 0.1, 0.9, 0.99, 0.9999, 0.999999})
     rows.add("orbits/anomaly_at_e_" + text("%g", e), [e] { return anomaly_error(e); });
 
@@ -195,7 +197,9 @@ std::vector<StressCase> orbit_cases() {
 
   rows.of({StressGroup::kLong, "an angle that grows for decades",
            "rate times seconds since the epoch loses digits: 0.4 mm after 17 years, and not smoothly",
-           "the ground track returns after each turn of the node, at the same radius, but for 3 eps 2 pi a day of the rates' own rounding", "m"});
+           "the ground track returns after each turn of the node, at the same radius, but for 3 eps 2 pi a day of the "
+           "rates' own rounding",
+           "m"});
   for (const std::int64_t turns : {std::int64_t{1}, std::int64_t{366}, std::int64_t{36600}, std::int64_t{66000}})
     rows.add("orbits/ground_track_after_days_" + std::to_string(turns), [turns] { return track_returns(turns); });
 

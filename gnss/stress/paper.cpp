@@ -58,13 +58,14 @@ StressFigure ephemeris_term(bool corrected) {
   return out;
 }
 
-/// The printed dry term 2.2779 P / (1 - 0.00266 cos 2 lat - 0.0028 h) mm over the corrected one, 0.00028 in its place: at
-/// 20 km 5.4 % too much, its pole at 356 km out of reach of the heights that are covered.
+/// The printed dry term 2.2779 P / (1 - 0.00266 cos 2 lat - 0.0028 h) mm over the corrected one, 0.00028 in its place:
+/// at 20 km 5.4 % too much, its pole at 356 km out of reach of the heights that are covered.
 StressFigure dry_height(double height_m) {
   StressFigure out{0.0, 16.0 * kEps};
   for (const double lat : {-0.5 * kPi, 0.0, 0.25 * kPi, 0.5 * kPi}) {
     const double base = 1.0 - 0.00266 * std::cos(2.0 * lat), h_km = 1e-3 * height_m;
-    const double ratio = paper_dry_delay_m(1013.25, lat, height_m, 0.0028) / paper_dry_delay_m(1013.25, lat, height_m, 0.00028);
+    const double ratio =
+        paper_dry_delay_m(1013.25, lat, height_m, 0.0028) / paper_dry_delay_m(1013.25, lat, height_m, 0.00028);
     take_worst(out, std::abs(ratio - (base - 0.00028 * h_km) / (base - 0.0028 * h_km)));
     if (!(paper_dry_delay_m(1013.25, lat, height_m, 0.0028) > 0.0)) out.figure = 1.0;
   }
@@ -96,13 +97,17 @@ std::vector<StressCase> paper_cases() {
       .add("paper/ionosphere_of_500_tecu", [] { return unit_of_the_ionosphere(500.0); });
   rows.of({StressGroup::kStiff, "the paper's ephemeris term as printed and as corrected",
            "a power of ten of a ratio of radii: ten times too large for the exponent, an overflow near the ground",
-           "10.05 m printed, 1.087 m corrected at the reference radius over the equator; finite and falling outwards", "m"});
-  rows.add("paper/ephemeris_as_printed", [] { return ephemeris_term(false); })
-      .add("paper/ephemeris_as_corrected", [] { return ephemeris_term(true); });
-  rows.of({StressGroup::kStiff, "the paper's dry troposphere with height", "0.0028 for 0.00028 per km: a pole at 356 km",
+           "10.05 m printed, 1.087 m corrected at the reference radius over the equator; finite and falling outwards",
+           "m"});
+  rows.add("paper/ephemeris_as_printed", [] { return ephemeris_term(false); }).add("paper/ephemeris_as_corrected", [] {
+    return ephemeris_term(true);
+  });
+  rows.of({StressGroup::kStiff, "the paper's dry troposphere with height",
+           "0.0028 for 0.00028 per km: a pole at 356 km",
            "ratio of the denominators to 16 eps, positive from -400 m to 20 km", ""});
-  rows.add("paper/dry_term_at_minus_400_m", [] { return dry_height(-400.0); })
-      .add("paper/dry_term_at_20_km", [] { return dry_height(20e3); });
+  rows.add("paper/dry_term_at_minus_400_m", [] { return dry_height(-400.0); }).add("paper/dry_term_at_20_km", [] {
+    return dry_height(20e3);
+  });
   rows.of({StressGroup::kStiff, "the paper's wet troposphere without vapour", "a bare mapping taken as metres",
            "printed: 1 m at the zenith of dry air; corrected: none; 64 eps", "m"});
   rows.add("paper/wet_term_of_dry_air", wet_unit);

@@ -73,12 +73,13 @@ StressFigure all_errors_at(double lat_deg, double lon_deg, double h_m) {
   StressFigure out;
   const auto finite = [&](double x) { out.figure += std::isfinite(x) ? 0.0 : 1.0; };
   for (std::int64_t k = 0; k < 20; ++k) {
-    const GnssOutput got = (*sensor)->measure(k, tick(kStart, k, 2.0), Eigen::Vector3d::Zero(), Eigen::Vector3d(50.0, -50.0, 5.0),
-                                              scene::SceneAt(*scene));
+    const GnssOutput got = (*sensor)->measure(k, tick(kStart, k, 2.0), Eigen::Vector3d::Zero(),
+                                              Eigen::Vector3d(50.0, -50.0, 5.0), scene::SceneAt(*scene));
     out.figure += got.fix.status == FixStatus::kNone || got.fix.p_A_E.allFinite() ? 0.0 : 1.0;
     for (const auto& t : got.truth.satellites) {
-      for (const double x : {t.elevation_rad, t.azimuth_rad, t.range_m, t.range_rate_m_s, t.ionosphere_m, t.troposphere_m,
-                             t.ephemeris_m, t.noise_m, t.ionosphere_delay_m, t.troposphere_delay_m, t.multipath_m})
+      for (const double x :
+           {t.elevation_rad, t.azimuth_rad, t.range_m, t.range_rate_m_s, t.ionosphere_m, t.troposphere_m, t.ephemeris_m,
+            t.noise_m, t.ionosphere_delay_m, t.troposphere_delay_m, t.multipath_m})
         finite(x);
     }
     for (const auto& o : got.epoch.observations)
@@ -93,7 +94,8 @@ StressFigure heights() {
   const auto refused = [&](const Status& s) { return !s.ok() && !s.error().what.empty(); };
   for (const double h : {-500.1, -6378137.0, 20000.1, 1e7, kInf, -kInf, std::numeric_limits<double>::quiet_NaN()})
     out.figure += refused(check_antenna_height(h, Error{})) ? 0.0 : 1.0;
-  for (const double h : {-500.0, -400.0, 0.0, 8848.0, 20000.0}) out.figure += refused(check_antenna_height(h, Error{})) ? 1.0 : 0.0;
+  for (const double h : {-500.0, -400.0, 0.0, 8848.0, 20000.0})
+    out.figure += refused(check_antenna_height(h, Error{})) ? 1.0 : 0.0;
   for (const double lat : {-90.0, 0.0, 45.0, 90.0})
     for (const double h : {-500.0, 20000.0})
       out.figure += refused(check_antenna_height(ecef_from_geodetic({lat * kDegree, 0.3, h}), Error{})) ? 1.0 : 0.0;
@@ -104,8 +106,8 @@ StressFigure heights() {
   return out;
 }
 
-/// A satellite at an elevation, seen from the horizon at a place: what is put in comes back. Elevation by its sine loses
-/// half its digits at the zenith: sqrt(2 eps (1 + R / d)); elsewhere 16 eps R / d / cos(e).
+/// A satellite at an elevation, seen from the horizon at a place: what is put in comes back. Elevation by its sine
+/// loses half its digits at the zenith: sqrt(2 eps (1 + R / d)); elsewhere 16 eps R / d / cos(e).
 StressFigure horizon(double lat_deg) {
   StressFigure out{0.0, 1.0};
   const Geodetic g{lat_deg * kDegree, 3.1, 100.0};
@@ -117,7 +119,8 @@ StressFigure horizon(double lat_deg) {
       const Eigen::Vector3d enu(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
       const SkyView v = here.view(kStart, p + 2e7 * (R * enu));
       const double rounding = 16.0 * kEps;
-      take_worst(out, std::abs(v.elevation_rad - e) / std::min(rounding / std::max(std::cos(e), 1e-300), std::sqrt(2.0 * rounding)));
+      take_worst(out, std::abs(v.elevation_rad - e) /
+                          std::min(rounding / std::max(std::cos(e), 1e-300), std::sqrt(2.0 * rounding)));
       if (!(v.azimuth_rad >= 0.0 && v.azimuth_rad < 2.0 * kPi)) out.figure = kInf;
       if (e < 1.0) take_worst(out, std::abs(std::remainder(v.azimuth_rad - a, 2.0 * kPi)) / (rounding / std::cos(e)));
     }
@@ -157,17 +160,19 @@ std::vector<StressCase> place_cases() {
     double lat, lon, h;
     const char* name;
   };
-  const Place places[] = {{90.0, 0.0, 0.0, "north_pole"},       {-90.0, 77.0, 2800.0, "south_pole"},
-                          {0.0, 180.0, 0.0, "antimeridian"},    {-17.0, -179.9999999, 20000.0, "20_km"},
-                          {31.5, 35.5, -400.0, "minus_400_m"},  {89.9999999, -180.0, 100.0, "beside_the_pole"},
+  const Place places[] = {{90.0, 0.0, 0.0, "north_pole"},      {-90.0, 77.0, 2800.0, "south_pole"},
+                          {0.0, 180.0, 0.0, "antimeridian"},   {-17.0, -179.9999999, 20000.0, "20_km"},
+                          {31.5, 35.5, -400.0, "minus_400_m"}, {89.9999999, -180.0, 100.0, "beside_the_pole"},
                           {0.0, 0.0, -500.0, "minus_500_m"}};
   for (const Place& p : places)
     rows.add(std::string("places/fix_at_") + p.name, [p] { return fix_at(p.lat, p.lon, p.h); });
   rows.of({StressGroup::kGeometry, "every model of a receiver at the ends of the Earth",
-           "mappings at the horizon, a pierce point beyond the pole, weather beyond its table", "finite messages and truth", "not finite"});
+           "mappings at the horizon, a pierce point beyond the pole, weather beyond its table",
+           "finite messages and truth", "not finite"});
   for (const Place& p : places)
     rows.add(std::string("places/all_errors_at_") + p.name, [p] { return all_errors_at(p.lat, p.lon, p.h); });
-  rows.of({StressGroup::kGeometry, "heights that no model covers", "ten satellites seen through the Earth, 0.70 m of error",
+  rows.of({StressGroup::kGeometry, "heights that no model covers",
+           "ten satellites seen through the Earth, 0.70 m of error",
            "refused beyond -500 m and 20 km, at the Earth's centre, and where there is no number", "wrong"});
   rows.add("places/heights_beyond_the_models_refused", heights);
   rows.of({StressGroup::kGeometry, "elevation 0 and 90 degrees from poles and equator",
@@ -178,8 +183,9 @@ std::vector<StressCase> place_cases() {
     std::snprintf(name, sizeof name, "places/horizon_at_latitude_%s%g", lat < 0 ? "minus_" : "", std::abs(lat));
     rows.add(name, [lat] { return horizon(lat); });
   }
-  rows.of({StressGroup::kData, "a place or velocity that is not finite", "NaN compares false everywhere and ends as a fix",
-           "refused, or no fix; every sensor, field by field", "fixes"});
+  rows.of({StressGroup::kData, "a place or velocity that is not finite",
+           "NaN compares false everywhere and ends as a fix", "refused, or no fix; every sensor, field by field",
+           "fixes"});
   rows.add("places/not_finite_field_by_field", not_finite);
   return rows.take();
 }

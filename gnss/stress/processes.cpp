@@ -37,7 +37,8 @@ StressFigure gauss_markov(double tau_s, std::int64_t at_ns) {
   constexpr std::uint32_t kEntities = 1500;
   const GaussMarkov process(7, "stress.gauss_markov", tau_s);
   const GpsTime t{at_ns}, later = t + tau_s;
-  const Moments m = moments(kEntities, [&](std::uint32_t i) { return std::pair(process.at(i, t), process.at(i, later)); });
+  const Moments m =
+      moments(kEntities, [&](std::uint32_t i) { return std::pair(process.at(i, t), process.at(i, later)); });
   StressFigure out{0.0, 5.0 * std::sqrt(2.0 / kEntities) + 0.02};
   take_worst(out, std::abs(m.variance - 1.0));
   take_worst(out, std::abs(m.product - std::exp(-1.0)));
@@ -56,9 +57,9 @@ StressFigure across_nodes() {
   return out;
 }
 
-/// Variance 1, and the correlation of neighbouring epochs. A loop of rho keeps K = ln 1e-8 / ln rho draws, 1024 at most:
-/// then neighbours correlate by rho (1 - rho^(2 K - 2)) / (1 - rho^(2 K)), which for rho -> 1 lacks 1 / K of 1. Five
-/// deviations of N entities.
+/// Variance 1, and the correlation of neighbouring epochs. A loop of rho keeps K = ln 1e-8 / ln rho draws, 1024 at
+/// most: then neighbours correlate by rho (1 - rho^(2 K - 2)) / (1 - rho^(2 K)), which for rho -> 1 lacks 1 / K of 1.
+/// Five deviations of N entities.
 StressFigure loop_noise(double loop_hz, double interval_s) {
   constexpr std::uint32_t kEntities = 400;
   const LoopNoise noise(11, "stress.loop", loop_hz, interval_s);
@@ -111,31 +112,35 @@ StressFigure clock_rate_after(std::int64_t epochs) {
 std::vector<StressCase> process_cases() {
   StressRows rows;
   rows.of({StressGroup::kLong, "a process with memory, far from its own time",
-           "a recursion from its start: centuries of steps, or a count of nodes that overflows; nodes shorter than a nanosecond",
+           "a recursion from its start: centuries of steps, or a count of nodes that overflows; nodes shorter than a "
+           "nanosecond",
            "variance 1, correlation e^-1 after tau: 5 sqrt(2 / 1500) + 0.02 (false alarm 6e-7)", ""});
   struct At {
     double tau_s;
     std::int64_t ns;
     const char* name;
   };
-  for (const At& at : {At{1e-6, 1'000'000'000'000'000'123, "1e-6_s_in_2011"}, At{60.0, 0, "60_s_at_the_epoch"},
-                       At{60.0, 8'900'000'000'123'456'789, "60_s_in_2262"}, At{3600.0, 1'234'567'890'123'456'789, "1_h_in_2019"},
-                       At{1e6, 2'147'483'648'000'000'000, "1e6_s_at_2^31_s"}, At{1e9, 9'007'199'254'740'992, "1e9_s_at_2^53_ns"}})
+  for (const At& at :
+       {At{1e-6, 1'000'000'000'000'000'123, "1e-6_s_in_2011"}, At{60.0, 0, "60_s_at_the_epoch"},
+        At{60.0, 8'900'000'000'123'456'789, "60_s_in_2262"}, At{3600.0, 1'234'567'890'123'456'789, "1_h_in_2019"},
+        At{1e6, 2'147'483'648'000'000'000, "1e6_s_at_2^31_s"}, At{1e9, 9'007'199'254'740'992, "1e9_s_at_2^53_ns"}})
     rows.add(std::string("processes/gauss_markov_tau_") + at.name, [at] { return gauss_markov(at.tau_s, at.ns); });
   rows.of({StressGroup::kStiff, "a process between its nodes", "the wrong pair of nodes at a node: a jump",
            "two nanoseconds across a node change it by 12 * 4 ns / 7.5 s at most", ""});
   rows.add("processes/gauss_markov_across_nodes", across_nodes)
       .loose("the bound holds the steepest pair of neighbours, 12 deviations apart, which no draw comes near");
 
-  rows.of({StressGroup::kStiff, "a code loop against the epoch rate",
-           "a loop slow against the epochs needs draws without end, one fast against them none; a recursion needs the past",
-           "variance 1 and correlation exp(-4 B dt): 5 sqrt(2 / 400) + 1 / 1024", ""});
+  rows.of(
+      {StressGroup::kStiff, "a code loop against the epoch rate",
+       "a loop slow against the epochs needs draws without end, one fast against them none; a recursion needs the past",
+       "variance 1 and correlation exp(-4 B dt): 5 sqrt(2 / 400) + 1 / 1024", ""});
   struct Loop {
     double hz, interval_s;
     const char* name;
   };
-  for (const Loop& loop : {Loop{0.001, 1e-3, "1_mhz_at_1000_hz"}, Loop{0.13, 0.01, "0.13_hz_at_100_hz"},
-                           Loop{0.13, 0.5, "0.13_hz_at_2_hz"}, Loop{20.0, 1.0, "20_hz_at_1_hz"}, Loop{20.0, 100.0, "20_hz_at_0.01_hz"}})
+  for (const Loop& loop :
+       {Loop{0.001, 1e-3, "1_mhz_at_1000_hz"}, Loop{0.13, 0.01, "0.13_hz_at_100_hz"},
+        Loop{0.13, 0.5, "0.13_hz_at_2_hz"}, Loop{20.0, 1.0, "20_hz_at_1_hz"}, Loop{20.0, 100.0, "20_hz_at_0.01_hz"}})
     rows.add(std::string("processes/code_loop_") + loop.name, [loop] { return loop_noise(loop.hz, loop.interval_s); });
 
   rows.of({StressGroup::kLong, "a receiver clock over long times and long epochs",

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kRadius_m = 26559.7e3, kRate = 2.0 * 7.2921151467e-5;  // of the built-in GPS, within 1e-4 of it
-const GpsTime kStart = GpsTime::from_week_sow(1617, 600000.0);  // so that the week ends inside
+const GpsTime kStart = GpsTime::from_week_sow(1617, 600000.0);          // so that the week ends inside
 const SatelliteId kSv{GnssSystem::kGps, 1};
 
 PreciseOrbits sampled(double interval_s, int count) {
@@ -59,7 +59,8 @@ StressFigure interpolated(double interval_s, double place) {
   const double first = std::clamp(std::floor(place) - 4.0, 0.0, kCount - 10.0);
   const auto [product, lebesgue] = nodes_at(place - first);
   const double truncation = product / 3628800.0 * std::pow(1.0002 * kRate * interval_s, 10) * kRadius_m;
-  return {(found->p_E - make_nominal_gps()->state(kSv, t)->p_E).norm(), truncation + 16.0 * kEps * kRadius_m * std::max(lebesgue, 1.0)};
+  return {(found->p_E - make_nominal_gps()->state(kSv, t)->p_E).norm(),
+          truncation + 16.0 * kEps * kRadius_m * std::max(lebesgue, 1.0)};
 }
 
 /// No state beyond half an interval of a run, beside a missing epoch, before too short a run; a figure counts states.
@@ -108,17 +109,19 @@ StressFigure at_samples() {
 
 std::vector<StressCase> product_cases() {
   StressRows rows;
-  rows.of({StressGroup::kGeometry, "interpolation of an orbit's table, at its middle and its borders",
-           "nodes to one side only: the product of distances grows a hundredfold; a table whose last ten are never reached",
-           "product (n h)^10 r / 10! + 16 eps r Lebesgue's function", "m"});
+  rows.of(
+      {StressGroup::kGeometry, "interpolation of an orbit's table, at its middle and its borders",
+       "nodes to one side only: the product of distances grows a hundredfold; a table whose last ten are never reached",
+       "product (n h)^10 r / 10! + 16 eps r Lebesgue's function", "m"});
   struct At {
     double interval, place;
     const char* name;
   };
-  for (const At& at : {At{900.0, 20.5, "900_s_middle"}, At{900.0, 20.0, "900_s_at_a_sample"}, At{900.0, 0.5, "900_s_first_interval"},
-                       At{900.0, -0.5, "900_s_before_the_first"}, At{900.0, 39.5, "900_s_after_the_last"},
-                       At{300.0, 20.5, "300_s_middle"}, At{300.0, -0.5, "300_s_before_the_first"}, At{30.0, 20.5, "30_s_middle"},
-                       At{3600.0, 20.5, "3600_s_middle"}})
+  for (const At& at :
+       {At{900.0, 20.5, "900_s_middle"}, At{900.0, 20.0, "900_s_at_a_sample"}, At{900.0, 0.5, "900_s_first_interval"},
+        At{900.0, -0.5, "900_s_before_the_first"}, At{900.0, 39.5, "900_s_after_the_last"},
+        At{300.0, 20.5, "300_s_middle"}, At{300.0, -0.5, "300_s_before_the_first"}, At{30.0, 20.5, "30_s_middle"},
+        At{3600.0, 20.5, "3600_s_middle"}})
     rows.add(std::string("products/orbit_") + at.name, [at] { return interpolated(at.interval, at.place); });
   rows.of({StressGroup::kGeometry, "an interpolation whose nodes change", "a jump from one set of nodes to the next",
            "4 km/s times 2 ns and 32 eps r across each sample", "m"});

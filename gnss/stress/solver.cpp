@@ -27,9 +27,10 @@ const Geodetic kHere{0.5646, -1.586, 60.0};
 /// A satellite on a sphere of 26,560 km in the direction (azimuth, elevation) from the receiver, as seen at reception.
 Eigen::Vector3d satellite(const Geodetic& receiver, double azimuth_rad, double elevation_rad) {
   const Eigen::Vector3d r = ecef_from_geodetic(receiver);
-  const Eigen::Vector3d line = rotation_E_from_enu(receiver) *
-                               Eigen::Vector3d(std::sin(azimuth_rad) * std::cos(elevation_rad),
-                                               std::cos(azimuth_rad) * std::cos(elevation_rad), std::sin(elevation_rad));
+  const Eigen::Vector3d line =
+      rotation_E_from_enu(receiver) * Eigen::Vector3d(std::sin(azimuth_rad) * std::cos(elevation_rad),
+                                                      std::cos(azimuth_rad) * std::cos(elevation_rad),
+                                                      std::sin(elevation_rad));
   const double along = r.dot(line);
   return r + (-along + std::sqrt(along * along + 26.56e6 * 26.56e6 - r.squaredNorm())) * line;
 }
@@ -47,8 +48,7 @@ RangeMeasurement exact_range(const Geodetic& receiver, double azimuth_rad, doubl
 
 std::vector<RangeMeasurement> open_sky(const Geodetic& receiver, int n, double sigma_m = 1.0) {
   std::vector<RangeMeasurement> out{exact_range(receiver, 0.0, 1.35, sigma_m)};
-  for (int k = 1; k < n; ++k)
-    out.push_back(exact_range(receiver, 2.4 * k, 0.2 + 0.7 * (k % 4) / 3.0, sigma_m));
+  for (int k = 1; k < n; ++k) out.push_back(exact_range(receiver, 2.4 * k, 0.2 + 0.7 * (k % 4) / 3.0, sigma_m));
   return out;
 }
 
@@ -192,7 +192,8 @@ StressFigure velocity(double speed_m_s, double gdop) {
   std::vector<RateMeasurement> rates;
   for (int k = 0; k < 4; ++k) {
     const RangeMeasurement r = exact_range(kHere, 2.1 * k, k == 0 ? 0.5 * kPi : 0.5 * kPi - alpha);
-    RateMeasurement m{r.p_E, 3.9e3 * Eigen::Vector3d(std::cos(2.0 * k), std::sin(2.0 * k), 0.4).normalized(), 0.0, 0.05};
+    RateMeasurement m{r.p_E, 3.9e3 * Eigen::Vector3d(std::cos(2.0 * k), std::sin(2.0 * k), 0.4).normalized(), 0.0,
+                      0.05};
     m.rate_m_s = range_rate_m_s(m, p_E, v_E) + 30.0;
     rates.push_back(m);
   }
@@ -210,8 +211,10 @@ StressFigure velocity(double speed_m_s, double gdop) {
 std::vector<StressCase> solver_cases() {
   StressRows rows;
   rows.of({StressGroup::kGeometry, "a fix from a poor first guess, everywhere",
-           "at the poles and the Earth's centre latitude and its frame are singular; a linearised step from there overshoots",
-           "the true place to GDOP * 8 eps range; 7 latitudes, 5 longitudes, -400 m to 20 km", "of the rounding bound"});
+           "at the poles and the Earth's centre latitude and its frame are singular; a linearised step from there "
+           "overshoots",
+           "the true place to GDOP * 8 eps range; 7 latitudes, 5 longitudes, -400 m to 20 km",
+           "of the rounding bound"});
   rows.add("solver/guess_at_the_earths_centre_eight_satellites", [] { return everywhere(8, true); })
       .add("solver/guess_at_the_earths_centre_exactly_four", [] { return everywhere(4, true); })
       .add("solver/guess_at_the_truth_exactly_four", [] { return everywhere(4, false); });
@@ -228,8 +231,14 @@ std::vector<StressCase> solver_cases() {
   rows.of({StressGroup::kGeometry, "ranges that do not determine a place",
            "rounding makes a singular system solvable: a fix thousands of kilometres off, as if it were good",
            "no fix, with a reason", "fixes"});
-  rows.add("solver/all_on_a_cone_refused", [] { return taken({ring(4, 0.6), ring(5, 0.6), ring(9, 0.05), ring(4, 1.5)}); })
-      .add("solver/all_in_a_plane_refused", [] { return taken({meridian(4), meridian(7)}); })
+  rows.add("solver/all_on_a_cone_refused",
+           [] {
+             return taken({ring(4, 0.6), ring(5, 0.6), ring(9, 0.05), ring(4, 1.5)});
+           })
+      .add("solver/all_in_a_plane_refused",
+           [] {
+             return taken({meridian(4), meridian(7)});
+           })
       .add("solver/too_few_or_twice_the_same_refused", [] {
         auto three = open_sky(kHere, 3), twice = three;
         twice.push_back(twice.back());
@@ -247,9 +256,11 @@ std::vector<StressCase> solver_cases() {
     rows.add(std::string("solver/sigma_ratio_") + name + "_precise_last", [ratio] { return weights(ratio, true); });
   }
 
-  rows.of({StressGroup::kData, "a range that is wrong by far",
-           "the fit goes where the linear test is no longer true, and a good range is excluded in its place",
-           "that range alone is excluded, the place that of the others to GDOP * 8 eps range; beyond 1e8 m no fix will do", "m"});
+  rows.of(
+      {StressGroup::kData, "a range that is wrong by far",
+       "the fit goes where the linear test is no longer true, and a good range is excluded in its place",
+       "that range alone is excluded, the place that of the others to GDOP * 8 eps range; beyond 1e8 m no fix will do",
+       "m"});
   for (const double by : {1e2, 1e4, 1e6, 1e9, -1e6}) {
     char name[32];
     std::snprintf(name, sizeof name, "%s%.0e", by < 0 ? "minus_" : "", std::abs(by));
@@ -260,11 +271,13 @@ std::vector<StressCase> solver_cases() {
   rows.of({StressGroup::kData, "ranges that contradict one another by halves",
            "exclusions go on until too few are left to contradict, and what is left is told as a fix",
            "no fix within three exclusions", "fixes"});
-  rows.add("solver/two_halves_greedy", [] { return two_halves("greedy"); })
-      .add("solver/two_halves_leave_one_out", [] { return two_halves("leave_one_out"); });
+  rows.add("solver/two_halves_greedy", [] { return two_halves("greedy"); }).add("solver/two_halves_leave_one_out", [] {
+    return two_halves("leave_one_out");
+  });
 
   rows.of({StressGroup::kData, "a range, satellite, sigma or guess that is not finite",
-           "NaN compares false everywhere and ends as a position; an infinite sigma is a weight of zero that leaves no rank",
+           "NaN compares false everywhere and ends as a position; an infinite sigma is a weight of zero that leaves no "
+           "rank",
            "refused field by field, or no fix", "fixes"});
   rows.add("solver/not_finite_field_by_field", not_finite);
 

@@ -59,7 +59,7 @@ double apart_s(std::int64_t a_ns, std::int64_t b_ns) {
 KeplerEphemeris ephemeris(GnssSystem system, GpsTime t) {
   KeplerEphemeris r;
   r.sv = {system, 11};
-  r.message = system == GnssSystem::kBeidou ? NavigationMessage::kD1
+  r.message = system == GnssSystem::kBeidou    ? NavigationMessage::kD1
               : system == GnssSystem::kGalileo ? NavigationMessage::kInav
                                                : NavigationMessage::kLnav;
   r.toe = r.toc = t;
@@ -68,7 +68,8 @@ KeplerEphemeris ephemeris(GnssSystem system, GpsTime t) {
   return r;
 }
 
-/// Written as RINEX 3 and read again: the epochs come back to the nanosecond, the leap seconds of GLONASS's UTC included.
+/// Written as RINEX 3 and read again: the epochs come back to the nanosecond, the leap seconds of GLONASS's UTC
+/// included.
 StressFigure navigation(GnssSystem system) {
   StressFigure out;
   for (const GpsTime t : seconds_around()) {
@@ -103,7 +104,8 @@ StressFigure navigation(GnssSystem system) {
 StressFigure observations() {
   StressFigure out{0.0, 50e-9};
   for (const GpsTime border : borders())
-    for (const std::int64_t ns : {-1'000'000'000LL, -100LL, -51LL, -50LL, -49LL, -1LL, 0LL, 1LL, 49LL, 51LL, 59'999'999'960LL}) {
+    for (const std::int64_t ns :
+         {-1'000'000'000LL, -100LL, -51LL, -50LL, -49LL, -1LL, 0LL, 1LL, 49LL, 51LL, 59'999'999'960LL}) {
       const GpsTime t{border.ns + ns};
       const ObservationWriter writer({.first = t, .bands = {{GnssSystem::kGps, {1}}}});
       GnssEpoch epoch;
@@ -145,7 +147,8 @@ StressFigure nmea_places() {
   StressFigure out{0.0, 1.0};
   const GpsTime t = GpsTime::from_calendar(2010, 7, 1, 13, 0, 0.0);
   for (const double lat : {-90.0, -89.99999999999, -0.99999999999, -1e-12, 0.0, 59.99999999999, 90.0})
-    for (const double lon : {-180.0, -179.99999999999, -99.99999999999, -1e-12, 0.0, 0.99999999999, 179.99999999999, 180.0})
+    for (const double lon :
+         {-180.0, -179.99999999999, -99.99999999999, -1e-12, 0.0, 0.99999999999, 179.99999999999, 180.0})
       for (const double h : {-400.0, -0.0004, 0.0, 19999.9996}) {
         const Geodetic g{lat * kDegree, lon * kDegree, h};
         const auto read = parse_nmea(nmea_text(nmea_epoch(t, g)), "made.nmea");
@@ -253,17 +256,20 @@ StressFigure tables(const std::string& scale) {
     const GpsTime label{t.ns - (utc_scale ? t.leap_seconds() * kNsPerSecond : 0)};
     std::string sp3 = date(label, "#dP%4d %2d %2d %2d %2d %11.8f") + "       1 ORBIT IGS14 HLM  IGS\n";
     char line[128];
-    std::snprintf(line, sizeof line, "## %4d %15.8f %14.8f %5d %15.13f\n", label.week(), label.sow_s(), 900.0, 55378, 0.0);
+    std::snprintf(line, sizeof line, "## %4d %15.8f %14.8f %5d %15.13f\n", label.week(), label.sow_s(), 900.0, 55378,
+                  0.0);
     sp3 += line;
     sp3 += "+    1   G01\n%c M  cc " + scale + " ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc\n";
-    sp3 += date(label, "*  %4d %2d %2d %2d %2d %11.8f") + "\nPG01  15000.000000  20000.000000  10000.000000    123.456789\nEOF\n";
+    sp3 += date(label, "*  %4d %2d %2d %2d %2d %11.8f") +
+           "\nPG01  15000.000000  20000.000000  10000.000000    123.456789\nEOF\n";
     const auto orbits = parse_sp3_file(sp3, "made.sp3");
     if (!orbits.ok() || orbits->satellites.size() != 1) return {kNone, 0.0};
     take_worst(out, apart_s(orbits->satellites.begin()->second.front().t.ns, t.ns));
 
-    const std::string clk = padded("     3.00           C                                       ", "RINEX VERSION / TYPE") +
-                            padded("   " + scale, "TIME SYSTEM ID") + padded("", "END OF HEADER") +
-                            "AS G01 " + date(label, " %4d %02d %02d %02d %02d %9.6f") + "  1    1.000000000000E-04\n";
+    const std::string clk =
+        padded("     3.00           C                                       ", "RINEX VERSION / TYPE") +
+        padded("   " + scale, "TIME SYSTEM ID") + padded("", "END OF HEADER") + "AS G01 " +
+        date(label, " %4d %02d %02d %02d %02d %9.6f") + "  1    1.000000000000E-04\n";
     const auto clocks = parse_clock_file(clk, "made.clk");
     if (!clocks.ok()) return {kNone, 0.0};
     take_worst(out, apart_s(clocks->satellites.begin()->second.front().t.ns, t.ns));
@@ -283,14 +289,15 @@ std::vector<StressCase> time_border_cases() {
       .add("time_borders/navigation_beidou", [] { return navigation(GnssSystem::kBeidou); })
       .add("time_borders/navigation_glonass", [] { return navigation(GnssSystem::kGlonass); });
   rows.of({StressGroup::kLong, "an epoch that rounds up into the next minute, day or year",
-           "fields that read 60, or a second that is rounded after it was cut off", "half a unit of the format's last digit", "s"});
+           "fields that read 60, or a second that is rounded after it was cut off",
+           "half a unit of the format's last digit", "s"});
   rows.add("time_borders/observation_epochs", observations).add("time_borders/nmea_times", nmea_times);
   rows.of({StressGroup::kGeometry, "a place in degrees and minutes at poles, antimeridian and equator",
            "59.99999999 minutes that become 60, a sign lost with 0 degrees, 180 W and 180 E",
            "half a unit of the last digits: 0.093 mm by angle, 0.5 mm of height", "of half a unit"});
   rows.add("time_borders/nmea_places", nmea_places);
-  rows.of({StressGroup::kLong, "a second of week without its week", "a tie of half a week, a remainder of the wrong sign",
-           "of that second, at most half a week away", "s"});
+  rows.of({StressGroup::kLong, "a second of week without its week",
+           "a tie of half a week, a remainder of the wrong sign", "of that second, at most half a week away", "s"});
   rows.add("time_borders/nearest_second_of_week", nearest);
   rows.of({StressGroup::kLong, "years of two digits and dates that are none", "a pivot off by one; 29 February 2100",
            "1981 to 2079 each themselves; impossible dates and seconds refused", "differences"});
@@ -303,8 +310,9 @@ std::vector<StressCase> time_border_cases() {
   rows.add("time_borders/almanac_weeks", almanac_weeks);
   rows.of({StressGroup::kLong, "orbit and clock tables at the borders of weeks, years and leap seconds",
            "a time scale taken for another; fields that read 60", "the same nanosecond", "s"});
-  rows.add("time_borders/tables_in_gps_time", [] { return tables("GPS"); })
-      .add("time_borders/tables_in_utc", [] { return tables("UTC"); });
+  rows.add("time_borders/tables_in_gps_time", [] { return tables("GPS"); }).add("time_borders/tables_in_utc", [] {
+    return tables("UTC");
+  });
   return rows.take();
 }
 

@@ -24,8 +24,8 @@ using Complex = std::complex<double>;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// At even whole x = 2^k, exp(j pi x^2 / 2) = 1: C = 1/2 + O(1 / (pi^2 x^3)), S = 1/2 - 1 / (pi x). The documented 1e-10
-/// and that next term.
+/// At even whole x = 2^k, exp(j pi x^2 / 2) = 1: C = 1/2 + O(1 / (pi^2 x^3)), S = 1/2 - 1 / (pi x). The documented
+/// 1e-10 and that next term.
 StressFigure at_powers_of_two(int k) {
   const double x = std::ldexp(1.0, k), next = 1.0 / (kPi * kPi * x * x * x);
   const Complex value = fresnel_integral(x), other = fresnel_integral(-x);
@@ -48,7 +48,8 @@ StressFigure small_arguments() {
       sum += weight * std::complex<long double>(cosl(half_pi * t * t), sinl(half_pi * t * t));
     }
     const std::complex<long double> exact = sum * (h / 3.0L);
-    take_worst(out, std::abs(fresnel_integral(x) - Complex(static_cast<double>(exact.real()), static_cast<double>(exact.imag()))));
+    take_worst(out, std::abs(fresnel_integral(x) -
+                             Complex(static_cast<double>(exact.real()), static_cast<double>(exact.imag()))));
   }
   return out;
 }
@@ -57,7 +58,8 @@ StressFigure small_arguments() {
 /// eps, the integral far out having no more.
 StressFigure deep_shadow(double nu) {
   const double exact = 1.0 / (std::sqrt(2.0) * kPi * nu);
-  return {std::abs(std::abs(knife_edge_field(nu)) / exact - 1.0), 4.0 / std::pow(kPi * nu * nu, 2) + 8.0 * kEps / exact};
+  return {std::abs(std::abs(knife_edge_field(nu)) / exact - 1.0),
+          4.0 / std::pow(kPi * nu * nu, 2) + 8.0 * kEps / exact};
 }
 
 /// Far lit the field is 1 with ripples of 1 / (sqrt 2 pi nu) and the same terms.
@@ -90,8 +92,8 @@ StressFigure air() {
   return out;
 }
 
-/// Grazing every surface is a mirror of the same sense: TE and TM to -1, as 2 c / sqrt(eps - 1) and 2 c eps / sqrt(eps -
-/// 1) of their distance; and nothing ever reflects more than comes. A figure is the worst share of these bounds.
+/// Grazing every surface is a mirror of the same sense: TE and TM to -1, as 2 c / sqrt(eps - 1) and 2 c eps / sqrt(eps
+/// - 1) of their distance; and nothing ever reflects more than comes. A figure is the worst share of these bounds.
 StressFigure grazing(Complex permittivity) {
   StressFigure out{0.0, 1.0};
   const double root = std::sqrt(std::abs(permittivity - 1.0));
@@ -204,8 +206,9 @@ StressFigure at_the_wall() {
   StressFigure out;
   const auto scene = wall(4.0);
   for (const double x : {4.0, std::nextafter(4.0, 0.0), std::nextafter(4.0, 5.0), 4.0 - 1e-9, 4.0 + 1e-9})
-    for (const Eigen::Vector3d& s : {Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0),
-                                     Eigen::Vector3d(-0.6, 0, 0.8), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-1e-9, 0, 1)}) {
+    for (const Eigen::Vector3d& s :
+         {Eigen::Vector3d(-1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-0.6, 0, 0.8),
+          Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(-1e-9, 0, 1)}) {
       const SignalPaths found = paths_of(*scene, {x, 0.0, 0.0}, s.normalized());
       out.figure += std::isfinite(std::abs(found.direct)) && std::isfinite(found.foliage_m) ? 0.0 : 1.0;
       for (const SignalPath& echo : found.echoes)
@@ -229,7 +232,8 @@ std::vector<StressCase> wave_cases() {
   rows.add("waves/fresnel_integral_up_to_5", small_arguments);
 
   rows.of({StressGroup::kGeometry, "a knife edge from deep shadow to far lit",
-           "1/2 (1 + j) less an integral that is nearly it; a sign of nu", "1 / (sqrt 2 pi nu) of the field, or ripples of it", ""});
+           "1/2 (1 + j) less an integral that is nearly it; a sign of nu",
+           "1 / (sqrt 2 pi nu) of the field, or ripples of it", ""});
   for (const double nu : {3.0, 30.0, 1e3, 1e5}) {
     char name[64];
     std::snprintf(name, sizeof name, "%g", nu);
@@ -241,19 +245,26 @@ std::vector<StressCase> wave_cases() {
   rows.of({StressGroup::kGeometry, "a surface that does not reflect, at grazing",
            "1 - sin^2 loses all digits at grazing: air becomes a mirror", "none at permittivity 1: 32 eps", ""});
   rows.add("waves/air_reflects_nothing", air);
-  rows.of({StressGroup::kGeometry, "reflection at grazing incidence", "a quotient of two small numbers; TM of the wrong sign",
+  rows.of({StressGroup::kGeometry, "reflection at grazing incidence",
+           "a quotient of two small numbers; TM of the wrong sign",
            "-1 but for 2 c / root and 2 eps c / root; never above 1", "of the bounds"});
   rows.add("waves/grazing_glass", [] { return grazing(6.27); })
-      .add("waves/grazing_wet_ground", [] { return grazing({20.0, -5.0}); })
+      .add("waves/grazing_wet_ground",
+           [] {
+             return grazing({20.0, -5.0});
+           })
       .add("waves/grazing_nearly_air", [] { return grazing(1.0001); })
-      .add("waves/grazing_metal", [] { return grazing({1.0, -1e7}); });
+      .add("waves/grazing_metal", [] {
+        return grazing({1.0, -1e7});
+      });
   rows.of({StressGroup::kStiff, "a slab without thickness, or endless",
-           "an exponential that overflows, a phase of a million turns", "none, none of half a wave, or the half-space; 64 eps", ""});
+           "an exponential that overflows, a phase of a million turns",
+           "none, none of half a wave, or the half-space; 64 eps", ""});
   rows.add("waves/slab_of_no_thickness", [] { return slab(0.0); })
       .add("waves/slab_of_10_m", [] { return slab(10.0); })
       .add("waves/slab_of_1e9_m", [] { return slab(1e9); });
-  rows.of({StressGroup::kGeometry, "facets without area, at no distance, endlessly rough", "0 / 0 and overflows of squares",
-           "factors between 0 and 1", "outside"});
+  rows.of({StressGroup::kGeometry, "facets without area, at no distance, endlessly rough",
+           "0 / 0 and overflows of squares", "factors between 0 and 1", "outside"});
   rows.add("waves/factors_at_their_ends", factors);
   rows.of({StressGroup::kGeometry, "power over several reflections in turned planes",
            "phases between planes of incidence that are no rotation", "power 1 off conductors: 64 eps a bounce", ""});
@@ -265,11 +276,12 @@ std::vector<StressCase> wave_cases() {
     double d, e, a;
     const char* name;
   };
-  for (const Place& p : {Place{0.0078125, 0.3, 0.2, "8_mm"}, Place{4.0, 0.0, 0.0, "square_on"}, Place{4.0, 1.5, 0.0, "satellite_overhead"},
-                         Place{512.0, 0.3, 1.0, "512_m"}, Place{4.0, 0.2, 1.56, "grazing"}})
+  for (const Place& p :
+       {Place{0.0078125, 0.3, 0.2, "8_mm"}, Place{4.0, 0.0, 0.0, "square_on"},
+        Place{4.0, 1.5, 0.0, "satellite_overhead"}, Place{512.0, 0.3, 1.0, "512_m"}, Place{4.0, 0.2, 1.56, "grazing"}})
     rows.add(std::string("waves/wall_") + p.name, [p] { return excess(p.d, p.e, p.a); });
-  rows.of({StressGroup::kGeometry, "an antenna in the plane of a wall", "an image in the same place, a beam without opening",
-           "finite ways and fields, or none", "not finite"});
+  rows.of({StressGroup::kGeometry, "an antenna in the plane of a wall",
+           "an image in the same place, a beam without opening", "finite ways and fields, or none", "not finite"});
   rows.add("waves/antenna_at_the_wall", at_the_wall);
   return rows.take();
 }

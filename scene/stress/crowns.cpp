@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// A ball of radius 4 m passed at `beside_m` of its middle from `away_m`: 2 sqrt(r^2 - b^2). The distance squared cancels
-/// to eps (away^2 + r^2), of which the chord makes that over itself; at the tangent its root.
+/// A ball of radius 4 m passed at `beside_m` of its middle from `away_m`: 2 sqrt(r^2 - b^2). The distance squared
+/// cancels to eps (away^2 + r^2), of which the chord makes that over itself; at the tangent its root.
 StressFigure ball(double away_m, double beside_m) {
   SceneParts parts = made::nothing();
   parts.foliage.push_back({{3.0, 5.0, 8.0}, {4.0, 4.0, 4.0}, 1.0});
@@ -22,7 +22,8 @@ StressFigure ball(double away_m, double beside_m) {
   const double cancel = 16.0 * kEps * (away_m * away_m + 16.0);
   StressFigure out{0.0, 1.0};
   for (int k = 0; k < 64; ++k) {
-    const Eigen::Vector3d d = Eigen::Vector3d(std::sin(1.0 * k), std::cos(1.7 * k), std::sin(2.3 * k + 0.5)).normalized();
+    const Eigen::Vector3d d =
+        Eigen::Vector3d(std::sin(1.0 * k), std::cos(1.7 * k), std::sin(2.3 * k + 0.5)).normalized();
     const Eigen::Vector3d o = Eigen::Vector3d(3.0, 5.0, 8.0) - away_m * d + beside_m * d.unitOrthogonal();
     const double exact = beside_m < 4.0 ? 2.0 * std::sqrt(16.0 - beside_m * beside_m) : 0.0;
     const double bound = exact > 0.0 ? cancel / exact + 16.0 * kEps * away_m : 2.0 * std::sqrt(cancel);
@@ -43,7 +44,8 @@ StressFigure inside() {
   const auto expect = [&](const Eigen::Vector3d& o, const Eigen::Vector3d& d, double reach, double exact) {
     take_worst(out, std::abs(now.foliage_m(o, d, reach) - 1.5 * exact));
   };
-  const Eigen::Vector3d m(0.0, 0.0, 8.0), x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d m(0.0, 0.0, 8.0), x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
+                                          z = Eigen::Vector3d::UnitZ();
   expect(m, x, 1e5, 4.0), expect(m, y, 1e5, 2.0), expect(m, z, 1e5, 1.0), expect(m, -z, 1e5, 1.0);
   expect(m, x, 1.5, 1.5), expect(m, x, 0.0, 0.0), expect(m - 10.0 * x, x, 6.0, 0.0), expect(m - 10.0 * x, x, 7.0, 1.0);
   expect(m + 5.0 * x, x, 1e5, 0.0), expect(m + 4.0 * x, x, 1e5, 0.0), expect(m - 4.0 * x, x, 1e5, 8.0);
@@ -51,8 +53,8 @@ StressFigure inside() {
   return out;
 }
 
-/// A forest of n x n crowns 16 m apart, passed straight through along a row: n chords of 8 m, from far outside. Cells of
-/// the grid may not lose one.
+/// A forest of n x n crowns 16 m apart, passed straight through along a row: n chords of 8 m, from far outside. Cells
+/// of the grid may not lose one.
 StressFigure row_of(int n, double away_m) {
   SceneParts parts = made::nothing();
   for (int i = 0; i < n; ++i)
@@ -83,15 +85,18 @@ std::vector<StressCase> crown_cases() {
     double away, beside;
     const char* name;
   };
-  for (const Way& w : {Way{20.0, 0.0, "through_the_middle"}, Way{20.0, 4.0, "tangent"}, Way{20.0, 3.999999, "just_inside"},
-                       Way{20.0, 4.000001, "just_outside"}, Way{1e4, 2.0, "from_10_km"}, Way{1e4, 4.0, "tangent_from_10_km"}})
+  for (const Way& w :
+       {Way{20.0, 0.0, "through_the_middle"}, Way{20.0, 4.0, "tangent"}, Way{20.0, 3.999999, "just_inside"},
+        Way{20.0, 4.000001, "just_outside"}, Way{1e4, 2.0, "from_10_km"}, Way{1e4, 4.0, "tangent_from_10_km"}})
     rows.add(std::string("crowns/ball_") + w.name, [w] { return ball(w.away, w.beside); });
-  rows.of({StressGroup::kGeometry, "a way that begins or ends in a crown", "what lies behind is counted, or the reach is not kept",
-           "what lies ahead, times the density; 16 eps", "m"});
+  rows.of({StressGroup::kGeometry, "a way that begins or ends in a crown",
+           "what lies behind is counted, or the reach is not kept", "what lies ahead, times the density; 16 eps", "m"});
   rows.add("crowns/from_inside", inside);
-  rows.of({StressGroup::kGeometry, "a row of a forest, along the cells of its grid", "a crown on a cell's border is in none of two cells",
-           "n chords of 8 m", "m"});
-  rows.add("crowns/row_of_50", [] { return row_of(50, 100.0); }).add("crowns/row_of_50_from_10_km", [] { return row_of(50, 1e4); });
+  rows.of({StressGroup::kGeometry, "a row of a forest, along the cells of its grid",
+           "a crown on a cell's border is in none of two cells", "n chords of 8 m", "m"});
+  rows.add("crowns/row_of_50", [] { return row_of(50, 100.0); }).add("crowns/row_of_50_from_10_km", [] {
+    return row_of(50, 1e4);
+  });
   return rows.take();
 }
 

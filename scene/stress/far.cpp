@@ -14,8 +14,8 @@ constexpr double kHalfUlp = 0x1p-24;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
-/// A box of 64 x 32 x 16 m whose corners are whole metres, about a far place; rays from inside it. Each range is that to
-/// the box's sides, as if it stood at the origin: half a unit of single precision, and a direction's reciprocal.
+/// A box of 64 x 32 x 16 m whose corners are whole metres, about a far place; rays from inside it. Each range is that
+/// to the box's sides, as if it stood at the origin: half a unit of single precision, and a direction's reciprocal.
 StressFigure far_box(double x_m, double y_m, double z_m, bool packets) {
   const Eigen::Vector3d middle(x_m, y_m, z_m), half(32.0, 16.0, 8.0);
   SceneParts parts = made::nothing();
@@ -58,7 +58,8 @@ StressFigure packet_like_single(double x_m) {
     for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
       const double turn = 0.1 * p + 0.002 * static_cast<double>(i);
       const Eigen::Vector3f o = (middle - about).cast<float>();
-      const Eigen::Vector3f d = Eigen::Vector3d(std::cos(turn), std::sin(turn), 0.3 * std::sin(p)).normalized().cast<float>();
+      const Eigen::Vector3f d =
+          Eigen::Vector3d(std::cos(turn), std::sin(turn), 0.3 * std::sin(p)).normalized().cast<float>();
       packet.origin_x[i] = o.x(), packet.origin_y[i] = o.y(), packet.origin_z[i] = o.z();
       packet.direction_x[i] = d.x(), packet.direction_y[i] = d.y(), packet.direction_z[i] = d.z();
       packet.max_m[i] = i == 11 ? -1.0f : 1e4f;
@@ -70,7 +71,8 @@ StressFigure packet_like_single(double x_m) {
                     {packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]},
                     packet.max_m[i]};
       const Hit one = now.trace(ray);
-      const bool same = packet.max_m[i] < 0.0f ? hits.triangle[i] == Hit::kMiss : one.range_m == hits.range_m[i] && one.hit();
+      const bool same =
+          packet.max_m[i] < 0.0f ? hits.triangle[i] == Hit::kMiss : one.range_m == hits.range_m[i] && one.hit();
       out.figure += same ? 0.0 : 1.0;
     }
   }
@@ -101,8 +103,8 @@ StressFigure on_borders() {
   return out;
 }
 
-/// Walls every 512 m, seen by level rays that run exactly along borders of tiles and through their corners: range to the
-/// next wall, half a unit.
+/// Walls every 512 m, seen by level rays that run exactly along borders of tiles and through their corners: range to
+/// the next wall, half a unit.
 StressFigure along_borders(double turn) {
   SceneParts parts = made::nothing();
   made::add_square(parts, {0.0, 0.0, -64.0}, 4096.0);
@@ -143,8 +145,8 @@ std::shared_ptr<const RigidShape> cube() {
   return std::make_shared<const RigidShape>("cube", ObjectKind::kVehicle, parts.mesh);
 }
 
-/// A moving cube of 2 m, turned about its middle, met from 10 m away square on to its face: range 9 m whatever the place
-/// and the turn. A rotation by a quaternion rounds by some eps of 1 m, a place by eps of its coordinates.
+/// A moving cube of 2 m, turned about its middle, met from 10 m away square on to its face: range 9 m whatever the
+/// place and the turn. A rotation by a quaternion rounds by some eps of 1 m, a place by eps of its coordinates.
 StressFigure moving(double place_m, double yaw_rad) {
   SceneParts parts = made::nothing();
   made::add_square(parts, {place_m, place_m, -1.0}, 64.0);
@@ -177,11 +179,14 @@ std::vector<StressCase> far_cases() {
     rows.add("far/box_at_" + name + "_m_in_packets", [x] { return far_box(x, -x, 0.0, true); });
   }
   rows.add("far/box_20000_m_high", [] { return far_box(100.0, 0.0, 20000.0, false); });
-  rows.of({StressGroup::kGeometry, "packets about an origin of their own", "an origin added twice, or rounded to single precision",
-           "the same as single rays, to the bit", "differences"});
-  rows.add("far/packets_at_0_m", [] { return packet_like_single(0.0); })
-      .add("far/packets_at_1e6_m", [] { return packet_like_single(1e6); });
-  rows.of({StressGroup::kGeometry, "rays on the borders of tiles", "a point on a border belongs to no tile, or a ray is lost between two",
+  rows.of({StressGroup::kGeometry, "packets about an origin of their own",
+           "an origin added twice, or rounded to single precision", "the same as single rays, to the bit",
+           "differences"});
+  rows.add("far/packets_at_0_m", [] { return packet_like_single(0.0); }).add("far/packets_at_1e6_m", [] {
+    return packet_like_single(1e6);
+  });
+  rows.of({StressGroup::kGeometry, "rays on the borders of tiles",
+           "a point on a border belongs to no tile, or a ray is lost between two",
            "the ground at 16 m, everywhere and to the bit", "misses"});
   rows.add("far/down_on_tile_borders", on_borders);
   rows.of({StressGroup::kGeometry, "rays along the borders of tiles and through their corners",
@@ -191,8 +196,11 @@ std::vector<StressCase> far_cases() {
       .add("far/through_tile_corners_downwards", [] { return along_borders(-0.25 * kPi); });
   rows.of({StressGroup::kGeometry, "a scene of a planet's size", "more tiles than a count holds; a border at infinity",
            "it is made, and the near wall's range holds to half a unit", ""});
-  rows.add("far/two_walls_2e7_m_apart", [] { return wide(2e7); }).add("far/two_walls_1e30_m_apart", [] { return wide(1e30); });
-  rows.of({StressGroup::kGeometry, "a moving thing far from the origin", "a pose in single precision: a car shakes by decimetres",
+  rows.add("far/two_walls_2e7_m_apart", [] { return wide(2e7); }).add("far/two_walls_1e30_m_apart", [] {
+    return wide(1e30);
+  });
+  rows.of({StressGroup::kGeometry, "a moving thing far from the origin",
+           "a pose in single precision: a car shakes by decimetres",
            "9 m square on to its face: two half units and 8 eps of the coordinates", "m"});
   rows.add("far/cube_at_0_m", [] { return moving(0.0, 0.3); })
       .add("far/cube_at_100_km", [] { return moving(1e5, 1.1); })

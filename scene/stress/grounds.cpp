@@ -19,7 +19,8 @@ namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-/// 7 + x / 4 - y / 8 + x y / 64 on whole places: bilinear, and so met everywhere; samples are exact in single precision.
+/// 7 + x / 4 - y / 8 + x y / 64 on whole places: bilinear, and so met everywhere; samples are exact in single
+/// precision.
 Elevation grid(double west, double north, int columns, int rows, double step = 2.0) {
   Elevation out;
   out.west = west, out.north = north, out.step_x = out.step_y = step;
@@ -40,7 +41,8 @@ StressFigure bilinear(double west, double north) {
   for (double x = 0.0; x <= 128.0; x += 0.5)
     for (double y = 0.0; y >= -64.0; y -= 0.5) {
       const auto h = e.height({west + x, north + y});
-      take_worst(out, h ? std::abs(*h - (7.0 + x / 4.0 - y / 8.0 + x * y / 64.0)) : std::numeric_limits<double>::quiet_NaN());
+      take_worst(
+          out, h ? std::abs(*h - (7.0 + x / 4.0 - y / 8.0 + x * y / 64.0)) : std::numeric_limits<double>::quiet_NaN());
     }
   return out;
 }
@@ -72,11 +74,12 @@ StressFigure borders_and_holes() {
 }
 
 /// The built-in terrain against the triangles that are made of it, at and beyond its corners, diagonals, borders: the
-/// same height. Corners on whole metres are themselves: 16 eps of 512 m; others are floats, off by half a unit of 512 m (3e-5
-/// m) by the slope, and 4e-6 m of heights.
+/// same height. Corners on whole metres are themselves: 16 eps of 512 m; others are floats, off by half a unit of 512 m
+/// (3e-5 m) by the slope, and 4e-6 m of heights.
 StressFigure city_terrain(double cell_m, double hill_m, double slope_percent) {
   CityConfig config;
-  config.extent_m = 1024.0, config.terrain_cell_m = cell_m, config.hill_height_m = hill_m, config.slope_percent = slope_percent;
+  config.extent_m = 1024.0, config.terrain_cell_m = cell_m, config.hill_height_m = hill_m,
+  config.slope_percent = slope_percent;
   const city::Terrain terrain(config);
   SceneParts parts = made::nothing();
   terrain.add_to(parts);
@@ -84,35 +87,39 @@ StressFigure city_terrain(double cell_m, double hill_m, double slope_percent) {
   for (double x = -510.0; x < 511.0; x += 17.0)
     for (double y = -510.0; y < 511.0; y += 17.0) steepest = std::max(steepest, terrain.normal(x, y).head<2>().norm());
   const auto scene = made::scene_of(std::move(parts));
-  const bool exact = std::fmod(1024.0, cell_m) == 0.0;
+  const bool exact = cell_m > 1024.0 || std::fmod(1024.0, cell_m) == 0.0;
   StressFigure out{0.0, exact ? 16.0 * kEps * 512.0 : 3.1e-5 * 2.0 * std::max(steepest, 0.01) + 8e-6};
   for (double x = -512.0; x <= 512.0; x += 16.0 / 3.0)
     for (double y = -512.0; y <= 512.0; y += 16.0) {
       const auto ground = scene->ground(std::clamp(x, -511.9999, 511.9999), std::clamp(y, -511.9999, 511.9999));
-      take_worst(out, ground ? std::abs(ground->height_m - terrain.height(std::clamp(x, -511.9999, 511.9999), std::clamp(y, -511.9999, 511.9999)))
+      take_worst(out, ground ? std::abs(ground->height_m - terrain.height(std::clamp(x, -511.9999, 511.9999),
+                                                                          std::clamp(y, -511.9999, 511.9999)))
                              : std::numeric_limits<double>::quiet_NaN());
     }
   // Beyond its square the border's height; 0 at the origin, where a corner stands there.
   take_worst(out, std::abs(terrain.height(1e9, 0.0) - terrain.height(512.0, 0.0)));
-  if (std::lround(1024.0 / cell_m) % 2 == 0) take_worst(out, std::abs(terrain.height(0.0, 0.0)));
+  if (cell_m <= 512.0 && std::lround(1024.0 / cell_m) % 2 == 0) take_worst(out, std::abs(terrain.height(0.0, 0.0)));
   return out;
 }
 
-/// Ground of a scene on a slope of 1/8: height and normal by closed form, none beyond its border, none of NaN.
+/// Ground of a scene on a slope of 1/8, or 1/1024 where that would be higher than mountains: height and normal by
+/// closed form, none beyond its border, none of NaN.
 StressFigure ground_of_slope(double half_m) {
   SceneParts parts = made::nothing();
   MeshBuilder mesh(parts);
   mesh.begin_object("terrain", ObjectKind::kTerrain);
-  const auto at = [&](double x, double y) { return Eigen::Vector3d(x, y, x / 8.0); };
-  mesh.quad(at(-half_m, -half_m), at(half_m, -half_m), at(half_m, half_m), at(-half_m, half_m), mesh.material("asphalt"));
+  const double slope = half_m > 2048.0 ? 1.0 / 1024.0 : 0.125;
+  const auto at = [&](double x, double y) { return Eigen::Vector3d(x, y, slope * x); };
+  mesh.quad(at(-half_m, -half_m), at(half_m, -half_m), at(half_m, half_m), at(-half_m, half_m),
+            mesh.material("asphalt"));
   const auto scene = made::scene_of(std::move(parts));
-  const Eigen::Vector3d normal = Eigen::Vector3d(-0.125, 0.0, 1.0).normalized();
-  StressFigure out{0.0, 8.0 * kEps * half_m};
+  const Eigen::Vector3d normal = Eigen::Vector3d(-slope, 0.0, 1.0).normalized();
+  StressFigure out{0.0, 8.0 * kEps * (slope * half_m + 1.0)};
   for (int k = -99; k <= 99; ++k) {
     const double x = half_m * k / 100.0, y = half_m * std::sin(k);
     const auto ground = scene->ground(x, y);
     if (!ground) return {std::numeric_limits<double>::infinity(), 1.0};
-    take_worst(out, std::abs(ground->height_m - x / 8.0));
+    take_worst(out, std::abs(ground->height_m - slope * x));
     take_worst(out, (ground->normal_W - normal).norm());
   }
   const double bad = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
@@ -122,7 +129,8 @@ StressFigure ground_of_slope(double half_m) {
 }
 
 /// Ground with a large cell beside small ones has no crack: rays down on a closed net of places all meet it, and on a
-/// plane, which every triangulation holds, at its height, to the half unit of single precision of its corners.
+/// plane, which every triangulation holds, at its height: corners stand on whole metres, and 16 eps of heights are
+/// left.
 StressFigure ground_without_cracks(double cell_m, double extent_m) {
   GroundDetail detail;
   detail.add({0.3 * extent_m, 0.1 * extent_m}, {0.32 * extent_m, 0.12 * extent_m});
@@ -138,12 +146,13 @@ StressFigure ground_without_cracks(double cell_m, double extent_m) {
   SceneParts parts = made::nothing();
   add_ground(ground, "asphalt", parts);
   const auto scene = made::scene_of(std::move(parts));
-  StressFigure out{0.0, 4.0 * 0x1p-24 * extent_m};
-  for (int i = 0; i <= 256; ++i)
-    for (int j = 0; j <= 256; ++j) {
-      const double x = extent_m * (i / 256.0 - 0.5) * 0.999, y = extent_m * (j / 256.0 - 0.5) * 0.999;
+  StressFigure out{0.0, 16.0 * kEps * extent_m * 3.0 / 64.0};
+  for (int i = 0; i <= 128; ++i)
+    for (int j = 0; j <= 128; ++j) {
+      const double x = extent_m * (i / 128.0 - 0.5) * 0.999, y = extent_m * (j / 128.0 - 0.5) * 0.999;
       const auto found = scene->ground(x, y);
-      take_worst(out, found ? std::abs(found->height_m - (x / 16.0 + y / 32.0)) : std::numeric_limits<double>::quiet_NaN());
+      take_worst(out,
+                 found ? std::abs(found->height_m - (x / 16.0 + y / 32.0)) : std::numeric_limits<double>::quiet_NaN());
     }
   return out;
 }
@@ -156,7 +165,10 @@ StressFigure hardly_known() {
   const GroundPlan plan(wish, GroundDetail{}, {}, 1e6);
   GroundMesh ground(plan);
   const Eigen::Vector2d known = ground.places.at(ground.places.size() / 2);
-  out.figure += fill_ground(ground, [&](const Eigen::Vector2d& p) { return p == known ? std::optional(5.5) : std::nullopt; }) ? 0.0 : 1.0;
+  out.figure +=
+      fill_ground(ground, [&](const Eigen::Vector2d& p) { return p == known ? std::optional(5.5) : std::nullopt; })
+          ? 0.0
+          : 1.0;
   for (const double h : ground.height_m) out.figure += h == 5.5 ? 0.0 : 1.0;
   GroundMesh unknown(plan);
   out.figure += fill_ground(unknown, [](const Eigen::Vector2d&) { return std::optional<double>{}; }) ? 1.0 : 0.0;
@@ -164,19 +176,32 @@ StressFigure hardly_known() {
   return out;
 }
 
-/// The smooth surface through heights of a plane is that plane, however few or far away they stand: local regression is
-/// exact for it. Normal equations of weights over 1e3 m lose cond * eps; 1e-6 of the heights' reach is left for them.
-StressFigure fit_of_plane(double offset_m) {
-  std::vector<Eigen::Vector3d> heights;
+/// The smooth surface through scattered heights does not know where the origin is: moved by `offset_m`, it moves along.
+/// Places round by eps / 2 of the offset, of which slopes below 1 make no more.
+StressFigure moved_fit(double offset_m) {
+  std::vector<Eigen::Vector3d> here, there;
   for (int k = 0; k < 400; ++k) {
-    const double x = offset_m + 300.0 * std::sin(1.0 * k), y = 300.0 * std::sin(1.7 * k + 0.4);
-    heights.emplace_back(x, y, 3.0 + (x - offset_m) / 16.0 - y / 32.0);
+    const double x = 300.0 * std::sin(1.0 * k), y = 300.0 * std::sin(1.7 * k + 0.4),
+                 z = 3.0 + x / 16.0 + std::sin(0.9 * k);
+    here.emplace_back(x, y, z), there.emplace_back(offset_m + x, y, z);
   }
-  const GroundFit fit(heights);
-  StressFigure out{0.0, 1e-6};
+  const GroundFit at_home(here), away(there);
+  StressFigure out{0.0, 0.5 * kEps * offset_m};
   for (int k = 0; k < 200; ++k) {
-    const double x = 250.0 * std::sin(2.1 * k), y = 250.0 * std::sin(0.7 * k);
-    take_worst(out, std::abs(fit({offset_m + x, y}) - (3.0 + x / 16.0 - y / 32.0)));
+    const double x = std::round(250.0 * std::sin(2.1 * k)), y = 250.0 * std::sin(0.7 * k);
+    take_worst(out, std::abs(away({offset_m + x, y}) - at_home({x, y})));
+  }
+  return out;
+}
+
+/// Through heights that are all one it is that one, to the bit, near and 1e7 m away, of 400, of seven, of one.
+StressFigure level_fit() {
+  StressFigure out;
+  for (const int n : {1, 7, 400}) {
+    std::vector<Eigen::Vector3d> heights;
+    for (int k = 0; k < n; ++k) heights.emplace_back(1e6 + 300.0 * std::sin(k), 300.0 * std::cos(1.7 * k), 5.5);
+    const GroundFit fit(heights);
+    for (const double x : {1e6, 1e6 + 290.0, 0.0, -1e7}) take_worst(out, std::abs(fit({x, 3.0}) - 5.5));
   }
   return out;
 }
@@ -185,39 +210,47 @@ StressFigure fit_of_plane(double offset_m) {
 
 std::vector<StressCase> ground_cases() {
   StressRows rows;
-  rows.of({StressGroup::kGeometry, "bilinear heights up to the last sample", "the cell after the last, indices from a rounded quotient",
+  rows.of({StressGroup::kGeometry, "bilinear heights up to the last sample",
+           "the cell after the last, indices from a rounded quotient",
            "a bilinear form is met everywhere: 16 eps of heights", "m"});
-  rows.add("grounds/bilinear_at_the_origin", [] { return bilinear(0.0, 0.0); })
-      .add("grounds/bilinear_at_utm", [] { return bilinear(500000.0, 5600000.0); });
-  rows.of({StressGroup::kData, "a grid's holes and borders, of one row, of steps of 0", "NaN that is taken for a height, a division by the step",
+  rows.add("grounds/bilinear_at_the_origin", [] { return bilinear(0.0, 0.0); }).add("grounds/bilinear_at_utm", [] {
+    return bilinear(500000.0, 5600000.0);
+  });
+  rows.of({StressGroup::kData, "a grid's holes and borders, of one row, of steps of 0",
+           "NaN that is taken for a height, a division by the step",
            "no height beside it or in a hole, the samples' own elsewhere", "wrong"});
   rows.add("grounds/borders_and_holes", borders_and_holes);
-  rows.of({StressGroup::kGeometry, "terrain as a function and as triangles", "the other diagonal; a border's cell off by one",
-           "the same height to the corners' single precision", "m"});
+  rows.of({StressGroup::kGeometry, "terrain as a function and as triangles",
+           "the other diagonal; a border's cell off by one", "the same height to the corners' single precision", "m"});
   struct Cell {
     double cell, hill, slope;
     const char* name;
   };
-  for (const Cell& c : {Cell{4.0, 6.0, 3.0, "usual"}, Cell{5.3, 6.0, 3.0, "of_broken_cells"}, Cell{32.0, 60.0, 8.0, "steep_and_coarse"}, Cell{1024.0, 6.0, 3.0, "one_cell"},
-                        Cell{5000.0, 6.0, 3.0, "larger_than_all"}, Cell{3.0, 0.0, 0.0, "level"}})
+  for (const Cell& c :
+       {Cell{4.0, 6.0, 3.0, "usual"}, Cell{5.3, 6.0, 3.0, "of_broken_cells"}, Cell{32.0, 60.0, 8.0, "steep_and_coarse"},
+        Cell{1024.0, 6.0, 3.0, "one_cell"}, Cell{5000.0, 6.0, 3.0, "larger_than_all"}, Cell{3.0, 0.0, 0.0, "level"}})
     rows.add(std::string("grounds/terrain_") + c.name, [c] { return city_terrain(c.cell, c.hill, c.slope); });
   rows.of({StressGroup::kGeometry, "the ground under a point, from small to very large triangles",
-           "a height by a ray in single precision; ground of places that are none", "the slope's height to 8 eps, none beyond its border", "m"});
+           "a height by a ray in single precision; ground of places that are none",
+           "the slope's height to 8 eps, none beyond its border", "m"});
   for (const double half : {1.0, 1024.0, 1e5, 1e7}) {
     char name[48];
     std::snprintf(name, sizeof name, "grounds/slope_of_%.0e_m", half);
     rows.add(name, [half] { return ground_of_slope(half); });
   }
   rows.of({StressGroup::kGeometry, "ground of cells of many sizes", "cracks where small cells touch large ones",
-           "ground everywhere; a plane's height to four half units of single precision", "m"});
+           "ground everywhere; a plane's height to 16 eps", "m"});
   rows.add("grounds/without_cracks_1_km", [] { return ground_without_cracks(5.0, 1000.0); })
       .add("grounds/without_cracks_60_km", [] { return ground_without_cracks(20.0, 60000.0); });
-  rows.of({StressGroup::kData, "ground whose height is hardly known", "means of nothing", "the one height everywhere, or unknown", "wrong"});
+  rows.of({StressGroup::kData, "ground whose height is hardly known", "means of nothing",
+           "the one height everywhere, or unknown", "wrong"});
   rows.add("grounds/known_at_one_place", hardly_known);
-  rows.of({StressGroup::kStiff, "a plane through scattered heights, far from the origin",
-           "sums of squares of coordinates of 1e6 m: no digit is left of their differences", "the plane: 1e-6 m", "m"});
-  rows.add("grounds/fit_of_a_plane", [] { return fit_of_plane(0.0); }).loose("the bound is what normal equations 1e3 m wide may lose; few are so wide")
-      .add("grounds/fit_of_a_plane_at_1e6_m", [] { return fit_of_plane(1e6); }).loose("the bound is what normal equations 1e3 m wide may lose; few are so wide");
+  rows.of({StressGroup::kStiff, "a surface through scattered heights, far from the origin",
+           "sums of squares of coordinates of 1e6 m: no digit is left of their differences",
+           "moved with its heights to eps / 2 of the way; level heights to the bit", "m"});
+  rows.add("grounds/fit_moved_by_1e6_m", [] { return moved_fit(1e6); })
+      .add("grounds/fit_moved_by_1e9_m", [] { return moved_fit(1e9); })
+      .add("grounds/fit_of_level_heights", level_fit);
   return rows.take();
 }
 

@@ -52,7 +52,7 @@ inline void add_box(SceneParts& parts, const Eigen::Vector3d& middle_W, const Ei
 struct BruteHit {
   double range_m = std::numeric_limits<double>::infinity();
   std::uint32_t triangle = Hit::kMiss;
-  double approach = 0.0;  ///< |normal . direction|
+  double approach = 0.0;                                    ///< |normal . direction|
   double edge_m = std::numeric_limits<double>::infinity();  ///< of the nearest edge of any triangle to its crossing
 };
 

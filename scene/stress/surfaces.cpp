@@ -43,7 +43,8 @@ StressFigure degenerate(float at_m) {
   const auto scene = made::scene_of(std::move(parts));
   StressFigure out;
   out.figure += scene->dropped_triangles() == 7 && scene->mesh().triangles.size() == 1 ? 0.0 : 1.0;
-  const Hit hit = SceneAt(*scene).trace({a.cast<double>() + Eigen::Vector3d(0.0, 0.0, 4.0), {0.0f, 0.0f, -1.0f}, kEndless});
+  const Hit hit =
+      SceneAt(*scene).trace({a.cast<double>() + Eigen::Vector3d(0.0, 0.0, 4.0), {0.0f, 0.0f, -1.0f}, kEndless});
   out.figure += hit.hit() && hit.range_m == 4.0f ? 0.0 : 1.0;
   out.figure += scene->extent().min.allFinite() && scene->extent().max.allFinite() ? 0.0 : 1.0;
   return out;
@@ -54,7 +55,9 @@ StressFigure nothing_at_all() {
   StressFigure out;
   for (const bool needle : {false, true}) {
     SceneParts parts = made::nothing();
-    if (needle) MeshBuilder(parts).triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0}, (MeshBuilder(parts).begin_object("n", ObjectKind::kTerrain), 0));
+    if (needle)
+      MeshBuilder(parts).triangle({0, 0, 0}, {1, 0, 0}, {2, 0, 0},
+                                  (MeshBuilder(parts).begin_object("n", ObjectKind::kTerrain), 0));
     const auto scene = made::scene_of(std::move(parts));
     const SceneAt now(*scene);
     out.figure += now.trace({Eigen::Vector3d::Zero(), Eigen::Vector3f::UnitX(), kEndless}).hit() ? 1.0 : 0.0;
@@ -67,8 +70,9 @@ StressFigure nothing_at_all() {
   return out;
 }
 
-/// Distance to a box of 64 x 32 x 16 m, from outside and inside, over its faces, edges and corners: closed form. Nearest
-/// points are sums of products with weights to some eps: 16 eps of the largest coordinate, here relative to the box.
+/// Distance to a box of 64 x 32 x 16 m, from outside and inside, over its faces, edges and corners: closed form.
+/// Nearest points are sums of products with weights to some eps: 16 eps of the largest coordinate, here relative to the
+/// box.
 StressFigure nearest_to_box(double x_m) {
   const Eigen::Vector3d middle(x_m, 0.0, 0.0), half(32.0, 16.0, 8.0);
   SceneParts parts = made::nothing();
@@ -125,14 +129,13 @@ StressFigure square_with_holes(int n) {
 /// Rings without area, of fewer than three corners, all in one place: no triangle of any area, and an end. A figure
 /// counts triangles with area.
 StressFigure without_area() {
-  const std::vector<std::vector<std::vector<Eigen::Vector2d>>> sets{
-      {},
-      {{}},
-      {{{0, 0}}},
-      {{{0, 0}, {1, 1}}},
-      {{{1, 1}, {1, 1}, {1, 1}, {1, 1}}},
-      {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {1, 0}}},
-      {{{0, 0}, {5, 5}, {0, 0}, {5, 5}}}};
+  const std::vector<std::vector<std::vector<Eigen::Vector2d>>> sets{{},
+                                                                    {{}},
+                                                                    {{{0, 0}}},
+                                                                    {{{0, 0}, {1, 1}}},
+                                                                    {{{1, 1}, {1, 1}, {1, 1}, {1, 1}}},
+                                                                    {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {1, 0}}},
+                                                                    {{{0, 0}, {5, 5}, {0, 0}, {5, 5}}}};
   StressFigure out;
   for (const auto& rings : sets) {
     std::vector<Eigen::Vector2d> all;
@@ -154,7 +157,9 @@ StressFigure tower(int sides, double radius_m) {
   double area = 0.0;
   for (int k = 0; k < sides; ++k) {
     const double a = 2.0 * kPi * k / sides, b = 2.0 * kPi * ((k + 1) % sides) / sides;
-    const auto at = [&](double turn, double z) { return Eigen::Vector3d(radius_m * std::cos(turn), radius_m * std::sin(turn), z); };
+    const auto at = [&](double turn, double z) {
+      return Eigen::Vector3d(radius_m * std::cos(turn), radius_m * std::sin(turn), z);
+    };
     mesh.quad(at(a, 0), at(b, 0), at(b, 64), at(a, 64), mesh.material("brick"));
     area += 64.0 * 2.0 * radius_m * std::sin(kPi / sides);
   }
@@ -166,7 +171,8 @@ StressFigure tower(int sides, double radius_m) {
     double farthest = 0.0;
     for (const std::uint32_t i : f.triangles) {
       const Triangle t = Triangle::of(scene->mesh(), i);
-      for (const Eigen::Vector3d& p : {t.a, t.b, t.c}) farthest = std::max(farthest, std::abs(f.normal_W.dot(p) - f.offset_m));
+      for (const Eigen::Vector3d& p : {t.a, t.b, t.c})
+        farthest = std::max(farthest, std::abs(f.normal_W.dot(p) - f.offset_m));
     }
     take_worst(out, farthest / 0.01);
     take_worst(out, farthest / (f.flatness_m + 1e-9));
@@ -184,11 +190,14 @@ StressFigure far_wall(double x_m) {
   StressFigure out;
   const auto& facets = scene->facets().facets();
   if (facets.size() != 1) return {1.0, 0.0};
-  out.figure += facets[0].area_m2 == 1024.0 && facets[0].normal_W == -Eigen::Vector3d::UnitX() && facets[0].fills_rectangle &&
-                        facets[0].offset_m == -x_m
+  out.figure += facets[0].area_m2 == 1024.0 && facets[0].normal_W == -Eigen::Vector3d::UnitX() &&
+                        facets[0].fills_rectangle && facets[0].offset_m == -x_m
                     ? 0.0
                     : 1.0;
-  out.figure += facet_contains(facets[0], *scene, {x_m, -x_m, 0.0}) && facet_contains(facets[0], *scene, {x_m, 16.0 - x_m, 16.0}) ? 0.0 : 1.0;
+  out.figure +=
+      facet_contains(facets[0], *scene, {x_m, -x_m, 0.0}) && facet_contains(facets[0], *scene, {x_m, 16.0 - x_m, 16.0})
+          ? 0.0
+          : 1.0;
   out.figure += facet_contains(facets[0], *scene, {x_m, 17.0 - x_m, 0.0}) ? 1.0 : 0.0;
   out.figure += scene->edges().edges().size() == 4 ? 0.0 : 1.0;
   return out;
@@ -198,35 +207,51 @@ StressFigure far_wall(double x_m) {
 
 std::vector<StressCase> surface_cases() {
   StressRows rows;
-  rows.of({StressGroup::kGeometry, "triangles that are none", "a normal of 0 / 0, an extent of NaN, a tree that is never left",
+  rows.of({StressGroup::kGeometry, "triangles that are none",
+           "a normal of 0 / 0, an extent of NaN, a tree that is never left",
            "dropped and counted; the one good triangle is met at 4 m", "wrong"});
   rows.add("surfaces/degenerate_triangles", [] { return degenerate(0.0f); })
       .add("surfaces/degenerate_triangles_at_1e6_m", [] { return degenerate(1e6f); });
-  rows.of({StressGroup::kGeometry, "a scene of nothing", "an extent without points, a grid without cells", "no answer, no end of the program", "wrong"});
+  rows.of({StressGroup::kGeometry, "a scene of nothing", "an extent without points, a grid without cells",
+           "no answer, no end of the program", "wrong"});
   rows.add("surfaces/scene_of_nothing", nothing_at_all);
   rows.of({StressGroup::kGeometry, "the nearest point over faces, edges and corners",
-           "the wrong region of a triangle: a distance to its plane, or to a farther edge", "distance to a box, closed form; 16 eps", "m"});
+           "the wrong region of a triangle: a distance to its plane, or to a farther edge",
+           "distance to a box, closed form; 16 eps", "m"});
   rows.add("surfaces/nearest_to_a_box", [] { return nearest_to_box(0.0); })
       .add("surfaces/nearest_to_a_box_at_1e6_m", [] { return nearest_to_box(1e6); })
       .loose("the box's coordinates are whole metres, which cancel exactly; the bound is for any");
-  rows.of({StressGroup::kGeometry, "polygons with many teeth, holes and far away", "an ear that is none; areas of products of coordinates that cancel",
+  rows.of({StressGroup::kGeometry, "polygons with many teeth, holes and far away",
+           "an ear that is none; areas of products of coordinates that cancel",
            "the polygon's area to 4 n eps, none of its triangles the wrong way round", "m^2"});
   rows.add("surfaces/square_with_2_holes_in_a_row", [] { return square_with_holes(2); });
-  rows.add("surfaces/comb_of_200_teeth", [] { return cut_up({comb(200, {0, 0})}, 200 * 100.0 + 399.0); })
-      .add("surfaces/comb_at_1e7_m", [] { return cut_up({comb(40, {1e7, -1e7})}, 40 * 100.0 + 79.0); })
+  rows.add("surfaces/comb_of_200_teeth",
+           [] {
+             return cut_up({comb(200, {0, 0})}, 200 * 100.0 + 399.0);
+           })
+      .add("surfaces/comb_at_1e7_m",
+           [] {
+             return cut_up({comb(40, {1e7, -1e7})}, 40 * 100.0 + 79.0);
+           })
       .add("surfaces/square_with_60_holes", [] { return square_with_holes(60); })
       .add("surfaces/square_of_repeated_and_needless_corners", [] {
         return cut_up({{{0, 0}, {0, 0}, {1, 0}, {2, 0}, {4, 0}, {4, 2}, {4, 2}, {4, 4}, {2, 4}, {0, 4}, {0, 1}}}, 16.0);
       });
-  rows.of({StressGroup::kGeometry, "polygons without area", "no ear is found: a search without end", "no triangle with area", "triangles"});
+  rows.of({StressGroup::kGeometry, "polygons without area", "no ear is found: a search without end",
+           "no triangle with area", "triangles"});
   rows.add("surfaces/polygons_without_area", without_area);
-  rows.of({StressGroup::kGeometry, "a round wall between facets and none", "each neighbour within tolerance of the last: one facet around the whole tower",
+  rows.of({StressGroup::kGeometry, "a round wall between facets and none",
+           "each neighbour within tolerance of the last: one facet around the whole tower",
            "no corner farther than 1 cm from its facet's plane, no area lost", "of the tolerance"});
-  rows.add("surfaces/tower_of_64_sides", [] { return tower(64, 16.0); })
-      .add("surfaces/tower_of_3600_sides", [] { return tower(3600, 100.0); });
-  rows.of({StressGroup::kGeometry, "a wall's facet and edges far from the origin", "offsets and areas of coordinates that cancel",
-           "its area, plane, rectangle and four edges, exactly", "wrong"});
-  rows.add("surfaces/wall_at_0_m", [] { return far_wall(0.0); }).add("surfaces/wall_at_1e7_m", [] { return far_wall(1e7); });
+  rows.add("surfaces/tower_of_64_sides", [] { return tower(64, 16.0); }).add("surfaces/tower_of_3600_sides", [] {
+    return tower(3600, 100.0);
+  });
+  rows.of({StressGroup::kGeometry, "a wall's facet and edges far from the origin",
+           "offsets and areas of coordinates that cancel", "its area, plane, rectangle and four edges, exactly",
+           "wrong"});
+  rows.add("surfaces/wall_at_0_m", [] { return far_wall(0.0); }).add("surfaces/wall_at_1e7_m", [] {
+    return far_wall(1e7);
+  });
   return rows.take();
 }
 

@@ -44,8 +44,7 @@ const RTCRayHit16& trace(RTCSceneTy* scene, std::uint32_t mask, const RayPacket&
 inline void check_finite(const Ray& ray) {
   CANYON_CHECK((ray.origin.array().abs() <= kFarthest_m).all() && (ray.direction.array().abs() <= kFarthest_m).all() &&
                    !std::isnan(ray.max_m),
-               "origin ",
-               ray.origin.transpose(), " direction ", ray.direction.transpose());
+               "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
 }
 
 inline Plane plane_of(const Triangle& t) {

@@ -190,9 +190,8 @@ void Tracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hits) c
 
 bool Tracer::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, const RaySpan& span,
                       std::uint32_t mask) const {
-  CANYON_CHECK((origin_W.array().abs() <= kFarthest_m).all() && direction.allFinite(), "origin ", origin_W.transpose(),
-               " direction ",
-               direction.transpose());
+  CANYON_CHECK((origin_W.array().abs() <= kFarthest_m).all() && (direction.array().abs() <= kFarthest_m).all(),
+               "origin ", origin_W.transpose(), " direction ", direction.transpose());
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRay query = embree_->ray(origin_W, direction, span, mask);
@@ -201,8 +200,7 @@ bool Tracer::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& di
 }
 
 std::uint32_t Tracer::terrain_triangle(double x, double y) const {
-  if (embree_->members[0].empty() || !(std::abs(x) <= kFarthest_m) || !(std::abs(y) <= kFarthest_m))
-    return Hit::kMiss;
+  if (embree_->members[0].empty() || !(std::abs(x) <= kFarthest_m) || !(std::abs(y) <= kFarthest_m)) return Hit::kMiss;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit query{};

@@ -177,9 +177,9 @@ Hit TiledTracer::trace(const Ray& ray, double from_m) const {
 
 Hit TiledTracer::trace(const Ray& ray) const {
   if (!tiled()) return tracer(*tiles_[0]).trace(ray, {0.0, ray.max_m});
-  CANYON_CHECK((ray.origin.array().abs() <= kFarthest_m).all() && ray.direction.allFinite() && !std::isnan(ray.max_m),
-               "origin ",
-               ray.origin.transpose(), " direction ", ray.direction.transpose());
+  CANYON_CHECK((ray.origin.array().abs() <= kFarthest_m).all() && (ray.direction.array().abs() <= kFarthest_m).all() &&
+                   !std::isnan(ray.max_m),
+               "origin ", ray.origin.transpose(), " direction ", ray.direction.transpose());
   return trace(ray, 0.0);
 }
 
@@ -233,9 +233,8 @@ void TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hi
 bool TiledTracer::occluded(const Eigen::Vector3d& origin_W, const Eigen::Vector3f& direction, float min_m, float max_m,
                            std::uint32_t mask) const {
   if (!tiled()) return tracer(*tiles_[0]).occluded(origin_W, direction, {min_m, max_m}, mask);
-  CANYON_CHECK((origin_W.array().abs() <= kFarthest_m).all() && direction.allFinite(), "origin ", origin_W.transpose(),
-               " direction ",
-               direction.transpose());
+  CANYON_CHECK((origin_W.array().abs() <= kFarthest_m).all() && (direction.array().abs() <= kFarthest_m).all(),
+               "origin ", origin_W.transpose(), " direction ", direction.transpose());
   bool met = false;
   follow(origin_W, direction, min_m, max_m, [&](const Tracer& tracer, const RaySpan& span) {
     met = tracer.occluded(origin_W, direction, span, mask);

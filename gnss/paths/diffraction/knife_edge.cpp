@@ -30,8 +30,9 @@ Complex continued_fraction(double x) {
   return 0.5 * Complex(1.0, 1.0) * (1.0 - erfc);
 }
 
-/// From 1e3 on two terms of the asymptotic series are exact to 1e-16. The phase pi x^2 / 2 counts modulo 4 in x^2, whose
-/// own rounding would be whole turns: its two halves are reduced apart. From 1e10 on nothing is left of the ripples.
+/// From 1e3 on two terms of the asymptotic series are exact to 1e-16. The phase pi x^2 / 2 counts modulo 4 in x^2,
+/// whose own rounding would be whole turns: its two halves are reduced apart. From 1e10 on nothing is left of the
+/// ripples.
 Complex far_out(double x) {
   if (x > 1e10) return {0.5, 0.5};
   const double square = x * x, rest = std::fma(x, x, -square);
