@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <cmath>
+
 #include "canyon/lidar/sweep_motion.h"
 
 namespace canyon::lidar {
@@ -18,6 +20,7 @@ LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_
   std::size_t hint = 0;
   for (LidarPoint point : scan.points) {
     if (!sweep.covers(point.time_s)) continue;
+    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) continue;
     const Eigen::Vector3d p = sweep.at(point.time_s, hint) * Eigen::Vector3d(point.x, point.y, point.z);
     point.x = static_cast<float>(p.x());
     point.y = static_cast<float>(p.y());

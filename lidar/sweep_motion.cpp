@@ -14,7 +14,7 @@ using Numbers = Eigen::Matrix<double, 12, 1>;  // of a placement
 // What a chord between two nodes may be off the arc; and nodes are never closer than this.
 constexpr double kChordAngle_rad = 3e-8;
 constexpr double kChordWay_m = 1e-6;
-constexpr double kClosest_s = 0.05e-3;
+constexpr double kClosest_s = 5e-6;        // keeps them up to 5000 deg/s
 constexpr double kTimeTolerance_s = 1e-8;  // a point's time_s in single precision: 4 ns at 0.1 s
 
 /// A chord over h deviates from an arc of rate w by (w h)^2 / 8 in direction, and in place by the acceleration times

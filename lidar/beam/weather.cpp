@@ -28,8 +28,12 @@ double kim_exponent(double v_km) {
   if (v_km > 1.0) return 0.16 * v_km + 0.34;
   return std::max(0.0, v_km - 0.5);
 }
+/// Through less than a millimetre nothing comes anyway, and the powers of it overflow.
+constexpr double kLeastVisibility_m = 1e-3;
+
 double by_visibility(double visibility_m, double wavelength_nm, double exponent) {
-  return 3.912 / visibility_m * std::pow(wavelength_nm / 550.0, -exponent);  // 2 % contrast at 550 nm
+  return 3.912 / std::max(visibility_m, kLeastVisibility_m) *
+         std::pow(wavelength_nm / 550.0, -exponent);  // 2 % contrast at 550 nm
 }
 
 }  // namespace
@@ -69,7 +73,7 @@ ModelTable<ExtinctionLaw> snow_laws() {
 // Coefficients as remembered from Esmail et al. 2017 (a free-space optical link in dust storms), not checked against
 // it.
 double dust_extinction_1_m(double visibility_m) {
-  return 52.0 * kPerDbPerKm * std::pow(1e-3 * visibility_m, -1.05);  // dB/km by km
+  return 52.0 * kPerDbPerKm * std::pow(1e-3 * std::max(visibility_m, kLeastVisibility_m), -1.05);  // dB/km by km
 }
 
 void visit(FieldVisitor& f, WeatherConfig& c) {

@@ -31,7 +31,7 @@ void visit(FieldVisitor& f, WeatherConfig& c);
 using ExtinctionLaw = double(double amount, double wavelength_nm);
 /// By rain rate, mm/h.
 ModelTable<ExtinctionLaw> rain_laws();
-/// By visibility, m.
+/// By visibility, m; held at 1 mm from below, here and of dust.
 ModelTable<ExtinctionLaw> fog_laws();
 /// By snowfall as water, mm/h.
 ModelTable<ExtinctionLaw> snow_laws();

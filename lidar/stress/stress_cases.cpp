@@ -1,0 +1,16 @@
+#include "canyon/lidar/stress/stress_cases.h"
+
+#include <utility>
+
+#include "canyon/lidar/stress/subjects.h"
+
+namespace canyon::lidar {
+
+std::vector<StressCase> stress_cases() {
+  std::vector<StressCase> all;
+  for (const auto& subject : {motion_cases, light_cases, receiver_cases, packet_cases, cloud_cases, registration_cases})
+    for (StressCase& one : subject()) all.push_back(std::move(one));
+  return all;
+}
+
+}  // namespace canyon::lidar

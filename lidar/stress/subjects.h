@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/core/stress_case.h"
+
+/// One subject a file; stress_cases() joins them.
+namespace canyon::lidar {
+
+std::vector<StressCase> motion_cases();
+std::vector<StressCase> light_cases();
+std::vector<StressCase> receiver_cases();
+std::vector<StressCase> packet_cases();
+std::vector<StressCase> cloud_cases();
+std::vector<StressCase> registration_cases();
+
+}  // namespace canyon::lidar
