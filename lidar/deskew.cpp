@@ -1,7 +1,6 @@
 #include "canyon/lidar/deskew.h"
 
 #include <algorithm>
-
 #include <cmath>
 
 #include "canyon/lidar/sweep_motion.h"

@@ -104,8 +104,7 @@ class Scene {
   static constexpr double kMinEdge_m = 0.5;
   const EdgeIndex& edges() const;
 
-  /// Height of the terrain (ObjectKind::kTerrain, below 10 km) at x, y in W and its upward unit normal; nullopt
-  /// outside.
+  /// Height of the terrain (ObjectKind::kTerrain only) at x, y in W and its upward unit normal; nullopt outside.
   struct Ground {
     double height_m = 0.0;
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();

@@ -241,7 +241,7 @@ std::vector<StressCase> ground_cases() {
   rows.of({StressGroup::kGeometry, "ground of cells of many sizes", "cracks where small cells touch large ones",
            "ground everywhere; a plane's height to 16 eps", "m"});
   rows.add("grounds/without_cracks_1_km", [] { return ground_without_cracks(5.0, 1000.0); })
-      .add("grounds/without_cracks_60_km", [] { return ground_without_cracks(20.0, 60000.0); });
+      .add("grounds/without_cracks_60_km", [] { return ground_without_cracks(40.0, 60000.0); });
   rows.of({StressGroup::kData, "ground whose height is hardly known", "means of nothing",
            "the one height everywhere, or unknown", "wrong"});
   rows.add("grounds/known_at_one_place", hardly_known);
