@@ -191,4 +191,17 @@ void propagate_covariance(ErrorMatrix& P, const StepJacobian& step, const Increm
   if (processes.with_gains && processes.gain_tau_s > 0.0) decay_gains(P, processes, step.dt_s);
 }
 
+void propagate_errors(ErrorMatrix& errors, const StepJacobian& step, const Increments& in,
+                      const Calibration& calibration, const ErrorProcesses& processes) {
+  constexpr int kGains = Index::kAll - kMoving;
+  const RowMatrix<6, Index::kAll> increments =
+      processes.with_gains ? increment_errors<kGains, Index::kAll>(errors.bottomRows<kGains>(), in, calibration)
+                           : increment_errors<6, Index::kAll>(errors.middleRows<6>(kMoving), in, calibration);
+  errors.topRows<kMoving>() = apply<Index::kAll>(step, errors.topRows<kMoving>(), increments).eval();
+  errors.middleRows<3>(Index::kGyroBias) *= processes.gyro_bias.decay(step.dt_s);
+  errors.middleRows<3>(Index::kAccelBias) *= processes.accel_bias.decay(step.dt_s);
+  if (processes.with_gains && processes.gain_tau_s > 0.0)
+    errors.bottomRows<Index::kAll - Index::kNavigation>() *= std::exp(-step.dt_s / processes.gain_tau_s);
+}
+
 }  // namespace canyon::fusion

@@ -85,4 +85,8 @@ struct ErrorProcesses {
 void propagate_covariance(ErrorMatrix& P, const StepJacobian& step, const Increments& in,
                           const Calibration& calibration, const ErrorProcesses& processes);
 
+/// Errors over one step, column by column: what propagate_covariance() does to its rows, without noise.
+void propagate_errors(ErrorMatrix& errors, const StepJacobian& step, const Increments& in,
+                      const Calibration& calibration, const ErrorProcesses& processes);
+
 }  // namespace canyon::fusion

@@ -160,6 +160,7 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
   const Increments in = calibration_.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
   const StepJacobian step(state_, in, gravity_gradient_);
   propagate_covariance(P_, step, in, calibration_, processes_);
+  if (response_ != nullptr) response_->predicted(step, in, calibration_, processes_);
 
   strapdown_->advance(state_, in);
   state_.t = imu.t;
@@ -230,6 +231,7 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
 
   const Eigen::Matrix3d S_inverse = S_llt.solve(Eigen::Matrix3d::Identity());
   const Columns3 K = PHt.lazyProduct(S_inverse);
+  if (response_ != nullptr) response_->corrected(K, H);
 
   // Joseph: (I - K H) P (I - K H)' + K R K', as two rank-3 corrections from the left and from the right.
   add_outer(P_, -K, PHt);
@@ -263,6 +265,10 @@ void ErrorStateFilter::inject(const Eigen::Matrix<double, Index::kAll, 1>& error
   rows.leftCols<3>() = 0.5 * (P_theta + P_theta.transpose());
   P_.topRows<3>() = rows;
   P_.leftCols<3>() = rows.transpose();
+}
+
+Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
+  return antenna_position(state_, w_EU_U_, -lever_U_B_, 0.0).H;
 }
 
 NavEstimate ErrorStateFilter::estimate() const {

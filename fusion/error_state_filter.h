@@ -12,6 +12,7 @@
 #include "canyon/core/imu_noise.h"
 #include "canyon/core/messages.h"
 #include "canyon/fusion/error_propagation.h"
+#include "canyon/fusion/fix_response.h"
 #include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {
@@ -79,6 +80,11 @@ class ErrorStateFilter {
   /// dimension 0), the velocity counts as unknown, and attitude and calibration stay.
   UpdateReport update(const GnssFix& fix);
 
+  /// From now on tells how the estimate depends on the fixes; null: nobody. It must outlive this.
+  void watch(FixResponse* response) { response_ = response; }
+  /// d (B's origin, in E) / d [theta, p, v], as AntennaPosition::H.
+  Eigen::Matrix<double, 3, 9> body_jacobian() const;
+
   NavEstimate estimate() const;
   /// Of the 15 states, in the order of the class comment; SI.
   StateMatrix covariance() const { return P_.topLeftCorner<kStates, kStates>(); }
@@ -102,6 +108,7 @@ class ErrorStateFilter {
   Eigen::Matrix3d gravity_gradient_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gravity_gradient_at_E_ = Eigen::Vector3d::Zero();
   ErrorMatrix P_ = ErrorMatrix::Zero();
+  FixResponse* response_ = nullptr;
 };
 
 }  // namespace canyon::fusion

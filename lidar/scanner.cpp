@@ -54,6 +54,14 @@ Pose sensor_in_body(const LidarConfig& config) {
   return {rotation_from({.yaw_rad = angles[0], .pitch_rad = angles[1], .roll_rad = angles[2]}), config.mount_m};
 }
 
+bool follows_shots_alone(const LidarConfig& c) {
+  const WeatherConfig& w = c.weather;
+  const bool clear_air =
+      w.rain_mm_h <= 0.0 && w.fog_visibility_m <= 0.0 && w.snow_mm_h <= 0.0 && w.dust_visibility_m <= 0.0;
+  return c.model.name == "single_ray" && c.detector.name == "ideal" && c.see_through == Transparent{} && clear_air &&
+         c.crosstalk.probability <= 0.0 && c.azimuth_steps != 0 && c.latency_s == 0.0;
+}
+
 Result<std::unique_ptr<Scanner>> make_scanner(const LidarConfig& config, std::uint64_t seed) {
   CANYON_TRY(BeamTable table, load_beam_table(config.beams));
   CANYON_TRY_STATUS(validate(config, table));

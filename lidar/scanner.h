@@ -10,6 +10,7 @@
 #include "canyon/core/result.h"
 #include "canyon/core/truth.h"
 #include "canyon/lidar/beam/no_surface.h"
+#include "canyon/lidar/kept_room.h"
 #include "canyon/lidar/lidar_config.h"
 #include "canyon/scene/scene_at.h"
 
@@ -57,6 +58,10 @@ class Scanner {
   }
   /// So long before its stamp the first shot of scan `index` may be fired, s: `truth` must reach back to there.
   virtual double reach_s(std::int64_t index) const = 0;
+  /// From the next scan on, until it is called again: what its readers keep of it; null: all. Returns that lie outside
+  /// may then be missing, the others are the same bits in the same order. A scanner whose shots depend on more than
+  /// themselves follows all of them as ever (follows_shots_alone).
+  virtual void keep(const KeptRoom*) {}
   virtual std::int64_t rays() const = 0;  ///< fired so far
 };
 

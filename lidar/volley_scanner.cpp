@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <span>
 
 #include "canyon/core/check.h"
@@ -112,6 +113,12 @@ class VolleyScanner final : public Scanner {
     out.scan.points.resize(written);
     out.truth.resize(written);
     rays_ += static_cast<std::int64_t>(sweep.cycles * pattern_.lasers() * model_->rays_per_shot());
+    rays_ -= not_fired_.exchange(0);
+  }
+
+  void keep(const KeptRoom* room) override {
+    kept_.reset();
+    if (room != nullptr && follows_shots_alone(config_)) kept_ = *room;
   }
 
   void true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
@@ -240,8 +247,42 @@ class VolleyScanner final : public Scanner {
         const std::size_t packet = laser * Volley::kPacketsPerLaser + k;
         lay_out(sweep, laser, volley.first_cycle + k * Volley::kLanes, volley.placements[k], late_s,
                 static_cast<float>(reach_m_), volley.aims[packet], volley.rays[packet]);
+        if (kept_) shorten(*kept_, volley.aims[packet], volley.rays[packet]);
       }
     });
+  }
+
+  /// Rays end where no return from beyond is kept; those that would meet nothing before are not fired.
+  void shorten(const KeptRoom& room, const AimPacket& aim, scene::RayPacket& rays) const {
+    // Heights change by as much as B's axis turns, times the distance; origins of shots lie within 0.2 m of L's.
+    constexpr double kOrigin_m = 0.2;
+    const double arm_m = X_BL_.p.norm() + kOrigin_m;
+    const double slack_m = room.moved_m + room.turned_rad * arm_m + kOrigin_m;
+    const double noise_m =
+        10.0 * (config_.range_noise_m + config_.report.range_bias_m) + config_.report.range_quantum_m;
+    const Eigen::Vector3d up_L = X_BL_.R.conjugate() * Eigen::Vector3d::UnitZ();
+    std::int64_t not_fired = 0;
+    for (std::size_t i = 0; i < Volley::kLanes; ++i) {
+      if (!(rays.max_m[i] >= 0)) continue;
+      const double rise = up_L.x() * static_cast<double>(aim.direction_x[i]) +
+                          up_L.y() * static_cast<double>(aim.direction_y[i]) +
+                          up_L.z() * static_cast<double>(aim.direction_z[i]);
+      double reach_m = room.reach_m + arm_m + room.moved_m;
+      if (rise > room.turned_rad)
+        reach_m = std::min(reach_m, (room.high_m - X_BL_.p.z() + slack_m) / (rise - room.turned_rad));
+      if (-rise > room.turned_rad)
+        reach_m = std::min(reach_m, (X_BL_.p.z() - room.low_m + slack_m) / (-rise - room.turned_rad));
+      reach_m += noise_m;
+      const bool too_near = reach_m < config_.report.min_range_m - noise_m;
+      const bool empty = rise >= 0.0 && reach_m + arm_m < room.clear_m && reach_m < room.above_ground_m;
+      if (too_near || empty) {
+        rays.max_m[i] = -1.0f;
+        ++not_fired;
+      } else {
+        rays.max_m[i] = std::min(rays.max_m[i], static_cast<float>(reach_m));
+      }
+    }
+    if (not_fired > 0) not_fired_ += not_fired;
   }
 
   /// True directions about the nominal ones. Stream "lidar.angle", entity = laser, index = firing cycle, n = axis.
@@ -294,6 +335,8 @@ class VolleyScanner final : public Scanner {
   RandomStream angle_noise_;
   std::vector<VolleyReturns> returns_;  // by volley; kept from scan to scan
   std::int64_t rays_ = 0;
+  std::optional<KeptRoom> kept_;
+  mutable std::atomic<std::int64_t> not_fired_ = 0;  // of the present scan
 };
 
 }  // namespace

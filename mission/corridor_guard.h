@@ -21,6 +21,8 @@ class CorridorGuard {
   /// What may be left out with the body there, t_s after the start: all that a piece of the corridor allows which it
   /// is in.
   gnss::PathOmissions at(double t_s, const Pose& X_WB);
+  /// The piece that at() has found last; null: none, or the corridor was left.
+  const PlannedPlace* place() const { return left_ || corridor_.empty() ? nullptr : &corridor_[last_]; }
   /// When and where the corridor was left, in words; none: never.
   const std::optional<std::string>& left() const { return left_; }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "canyon/core/units.h"
 #include "canyon/lidar/deskew.h"
 #include "canyon/mission/mission_run.h"
 
@@ -61,6 +63,7 @@ Status MissionRun::take_gnss(const Due& due) {
   const Eigen::Vector3d p_A_W = truth.X_WB * lever;
   const Eigen::Vector3d v_A_W = truth.v_WB_W + truth.X_WB.R * truth.w_WB_B.cross(lever);
   gnss_->leave_out(corridor_.at(truth.t - mission_.start, truth.X_WB));
+  if (corridor_.left()) gnss_->leave_out(gnss::RangeOmissions{});
   gnss::GnssOutput output =
       clock_.charge(Part::kGnss, [&] { return gnss_->measure(due.k, truth.t, p_A_W, v_A_W, scene_); });
   CANYON_TRY_STATUS(boundaries_.check(output));
@@ -68,6 +71,7 @@ Status MissionRun::take_gnss(const Due& due) {
   GnssRow row;
   row.fix = output.fix;
   row.p_A_W_true = p_A_W;
+  row.range_gain = output.range_gain;
   const auto withhold_s = config_.run.withhold_fixes_after_s;
   row.withheld = withhold_s && truth.t - mission_.start >= *withhold_s;
   for (const GnssObservationTruth& satellite : output.truth.satellites) {
@@ -110,14 +114,71 @@ Status MissionRun::take_scan(const Due& due) {
   if (withhold_s && due.t - mission_.start >= *withhold_s) return Ok{};
   if (!scan_is_wanted(due.t)) return Ok{};
 
-  lidar::Scanner::InstancesAt moving;
-  if (!mission_.traffic.empty())
-    moving = [&](double after_s) { return mission_.traffic.at(due.t - mission_.start + after_s); };
   lidar::LidarOutput output;
-  clock_.charge(Part::kLidar, [&] { scanner_->scan(due.k, due.t, true_motion_, scene_, moving, output); });
+  clock_.charge(Part::kLidar, [&] { fire(due, output); });
   CANYON_TRY_STATUS(boundaries_.check(output));
   ++record_.counters["lidar_scans"];
   return localizer_.once_at(due.t, [this, scan = std::move(output.scan)] { return use_scan(scan); });
+}
+
+void MissionRun::fire(const Due& due, lidar::LidarOutput& output) {
+  lidar::Scanner::InstancesAt moving;
+  if (!mission_.traffic.empty())
+    moving = [&](double after_s) { return mission_.traffic.at(due.t - mission_.start + after_s); };
+  const auto kept = omissions_.unkept_rays ? autonomy_->keeps() : std::nullopt;
+  const auto room = kept ? kept_room(*kept, due.t) : std::nullopt;
+  scanner_->keep(room ? &*room : nullptr);
+  scanner_->scan(due.k, due.t, true_motion_, scene_, moving, output);
+  if (!room || static_cast<int>(output.scan.points.size()) >= kept->enough) return;
+  scanner_->keep(nullptr);  // so few that it matters how many
+  scanner_->scan(due.k, due.t, true_motion_, scene_, moving, output);
+}
+
+namespace {
+
+/// By how much B's z axis is turned, and B's origin moved, between a stamp and any pose of the revolution before it.
+/// Between poses it is interpolated: a tenth more covers that.
+std::pair<double, double> unsteadiness(const Trajectory& motion, const Pose& X_WB, GpsTime from) {
+  double turned_rad = 0.0, moved_m = 0.0;
+  for (const StampedPose& pose : motion.poses()) {
+    if (pose.t - from < -0.1) continue;
+    const Eigen::Vector3d up = X_WB.R.conjugate() * (pose.X_WB.R * Eigen::Vector3d::UnitZ());
+    turned_rad = std::max(turned_rad, std::atan2(up.head<2>().norm(), up.z()));
+    moved_m = std::max(moved_m, (pose.X_WB.p - X_WB.p).norm());
+  }
+  return {1.1 * turned_rad + 1e-3, 1.1 * moved_m + 0.01};
+}
+
+}  // namespace
+
+/// None where the filter has not come to t, as what the deskewing will believe is not known yet, and where it will drop
+/// returns of its own at the run's beginning.
+std::optional<lidar::KeptRoom> MissionRun::kept_room(const KeptReturns& kept, GpsTime t) {
+  if (localizer_.at() != t) return std::nullopt;
+  const Trajectory& motion = config_.run.truth_as_pose ? true_motion_ : estimated_motion_;
+  const double period_s = 1.0 / config_.lidar.rate_hz;
+  if (motion.poses().front().t - t > -period_s) return std::nullopt;
+  const Pose believed = estimate(t).X_WB;
+  const auto [turned_rad, moved_m] = unsteadiness(motion, believed, t + -period_s);
+  const double height_m = std::max(std::abs(kept.low_m), std::abs(kept.high_m));
+  const double tilt_cos = (believed.R * Eigen::Vector3d::UnitZ()).z();
+  lidar::KeptRoom room{.low_m = kept.low_m, .high_m = kept.high_m, .turned_rad = turned_rad, .moved_m = moved_m};
+  if (!(tilt_cos > 0.5)) return std::nullopt;
+  // The square's corner, level in W: at most so far along the tilted ground plane, and up or down from it.
+  room.reach_m = (std::sqrt(2.0) * kept.half_size_m + height_m) / tilt_cos + height_m;
+
+  const KinematicState truth = truth_at(t);
+  corridor_.at(t - mission_.start, truth.X_WB);
+  const PlannedPlace* place = corridor_.place();
+  if (place == nullptr) return room;
+  const auto [truly_turned_rad, truly_moved_m] = unsteadiness(true_motion_, truth.X_WB, t + -period_s);
+  const double cos_tilt = (truth.X_WB.R * Eigen::Vector3d::UnitZ()).z();
+  const double tilt_rad =
+      std::acos(std::min(1.0, cos_tilt)) + truly_turned_rad + 10.0 * config_.lidar.angle_noise_deg * kDegree;
+  const double free_m = (truth.X_WB * X_BL_.p).z() - truly_moved_m - place->around.ground_top_m;
+  room.clear_m = place->around.clear_m - truly_moved_m;
+  room.above_ground_m = std::max(0.0, free_m / std::sin(std::max(tilt_rad, 1e-3)));
+  return room;
 }
 
 void MissionRun::forget_motion_before(GpsTime t) {
@@ -128,7 +189,8 @@ void MissionRun::forget_motion_before(GpsTime t) {
 /// An autonomy that does not look leaves the map, which takes keyframes only. Whether a scan becomes one is known
 /// before it is made, if the filter has come there.
 bool MissionRun::scan_is_wanted(GpsTime t) const {
-  return autonomy_->looks() || (!omissions_.keyframes && (localizer_.at() != t || mapper_.wants(estimate(t))));
+  return (autonomy_->looks() && !omissions_.autonomy) ||
+         (!omissions_.keyframes && (localizer_.at() != t || mapper_.wants(estimate(t))));
 }
 
 Status MissionRun::use_scan(const LidarScan& scan) {
@@ -146,12 +208,14 @@ Status MissionRun::use_scan(const LidarScan& scan) {
 
   if (!omissions_.keyframes && !deskewed.points.empty()) CANYON_TRY_STATUS(map_scan(deskewed, now));
 
+  if (omissions_.autonomy) return Ok{};
   const NavEstimate seen = with_correction(now);
   clock_.charge(Part::kAutonomy, [&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); });
   return Ok{};
 }
 
 Status MissionRun::ask_autonomy(const Due& due) {
+  if (omissions_.autonomy) return Ok{};
   const NavEstimate seen = with_correction(estimate(due.t));
   const DriveCommand command = clock_.charge(Part::kAutonomy, [&] { return autonomy_->drive(seen); });
   if (is_finite(command)) {

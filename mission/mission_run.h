@@ -52,6 +52,8 @@ class MissionRun {
   Status use_fix();
   Status record_fix();
   bool scan_is_wanted(GpsTime t) const;
+  void fire(const Due& due, lidar::LidarOutput& output);
+  std::optional<lidar::KeptRoom> kept_room(const KeptReturns& kept, GpsTime t);
   void forget_motion_before(GpsTime t);
   Status use_scan(const LidarScan& scan);
   Status map_scan(const LidarScan& deskewed, const NavEstimate& now);

@@ -6,6 +6,8 @@
 
 #include "canyon/core/motion/route_segment.h"
 #include "canyon/gnss/paths/path_omissions.h"
+#include "canyon/gnss/receiver/modes/delay_omissions.h"
+#include "canyon/lidar/clearance.h"
 #include "canyon/mission/config/mission_config.h"
 
 namespace canyon::mission {
@@ -14,6 +16,7 @@ namespace canyon::mission {
 struct PlannedPlace {
   RouteSegment segment;
   gnss::PathOmissions paths;
+  lidar::Clearance around;
 };
 
 /// What a run leaves out (study/plan decides it): nothing, unless it is told otherwise.
@@ -22,12 +25,19 @@ struct Omissions {
   bool registration = false;  ///< keyframes are not aligned; only where no one works with registered poses
   bool maps = false;          ///< no cells are kept, and nothing is scored
   bool keyframes = false;     ///< none are chosen; nothing may be made of them
+  bool autonomy = false;      ///< it is neither shown nor asked anything; only on a tape
+  bool unkept_rays = false;   ///< those whose returns the autonomy would drop; only where it alone takes scans
 
   // Because it cannot act there.
   std::vector<PlannedPlace> corridor;                                 ///< empty: nothing is known of places
   double corridor_until_s = std::numeric_limits<double>::infinity();  ///< after the start; the sky moves on
 
-  bool any() const { return registration || maps || keyframes || !corridor.empty(); }
+  // Because it acts by less than is asked for, or cancels.
+  gnss::RangeOmissions ranges;
+
+  bool any() const {
+    return registration || maps || keyframes || autonomy || unkept_rays || !corridor.empty() || ranges.any();
+  }
 };
 
 /// False where something that is not left out works with what is.

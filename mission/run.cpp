@@ -34,6 +34,8 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
       maps_(config.run, !omissions_.maps, lidar::registers(config.registration), clock) {
+  CANYON_CHECK(open_loop_ || !omissions_.autonomy, "nobody drives");
+  gnss_->leave_out(omissions_.ranges);
   record_.config = config;
   record_.files = mission.files;
   record_.frame = mission.scene->frame();
@@ -141,6 +143,8 @@ void MissionRun::count_work() {
   counters["gnss_facets_tested"] = gnss.facets_tested;
   counters["gnss_reflected_paths"] = gnss.reflected_paths;
   counters["gnss_diffracted_paths"] = gnss.diffracted_paths;
+  counters["gnss_delays_computed"] = gnss.delays_computed;
+  counters["gnss_epochs_in_full"] = gnss.epochs_in_full;
   counters["lidar_rays"] = scanner_->rays();
   for (const char* scans : {"lidar_scans", "lidar_returns"}) counters.try_emplace(scans, 0);
   counters["filter_predictions"] = localizer_.predictions();

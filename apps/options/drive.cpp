@@ -84,14 +84,14 @@ void declare_plan_options(Arguments& arguments, PlanOptions& options) {
 
 namespace {
 
-Status follow_plan(const PlanOptions& options, study::Comparison& comparison) {
+Status follow_plan(const PlanOptions& options, bool open_loop, study::Comparison& comparison) {
   if (options.plan.empty()) return Ok{};
   if (options.plan.ends_with(".toml"))
     return Error{.file = "--plan",
                  .what = "\"" + options.plan + "\" is a mission file",
                  .expected = "a plan file, or the mission before --plan"};
   CANYON_TRY(const auto outputs, study::outputs_of(split_list(options.outputs), "--for"));
-  return study::follow_plan(options.plan == kMakePlan ? "" : options.plan, outputs, comparison);
+  return study::follow_plan(options.plan == kMakePlan ? "" : options.plan, outputs, open_loop, comparison);
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
                  .what = "is for open loops",
                  .expected = "--open-loop beside it"};
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
-  CANYON_TRY_STATUS(follow_plan(leave_out, comparison));
+  CANYON_TRY_STATUS(follow_plan(leave_out, loop.open_loop, comparison));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));

@@ -15,6 +15,7 @@
 #include "canyon/study/plan/cost.h"
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/plan/plan_table.h"
+#include "canyon/study/plan/tolerated.h"
 #include "canyon/study/plan/verify.h"
 #include "canyon/study/results/tolerance.h"
 
@@ -25,6 +26,7 @@ namespace {
 struct Options {
   MissionOptions mission;
   std::string fidelity = "high", outputs = "outcome,position,map,clouds", tolerances, write;
+  bool open_loop = false;
   double corridor_m = study::PlanRequest::kCorridor_m;
   std::optional<std::int64_t> verify;
 };
@@ -33,6 +35,8 @@ void print_json(const study::Plan& plan, const study::PredictedCost& cost,
                 const std::optional<study::Verification>& verification) {
   Json json{{"mission", plan.mission}, {"fidelity", plan.fidelity}};
   json["effects"] = study::effects_json(plan);
+  json["tolerances"] = study::tolerances_json(plan);
+  json["position_bounds"] = study::position_bounds_json(plan);
   json["full_cpu_s"] = or_null(cost.full_s);
   json["planned_cpu_s"] = or_null(cost.planned_s);
   if (verification) {
@@ -45,6 +49,7 @@ void print_json(const study::Plan& plan, const study::PredictedCost& cost,
                                   {"epochs", effect.epochs},
                                   {"violations", effect.violations},
                                   {"bound", effect.bound},
+                                  {"unit", effect.unit},
                                   {"largest_difference", or_null(effect.largest_difference)}});
   }
   std::printf("%s\n", json_text(json).c_str());
@@ -54,7 +59,8 @@ Result<int> run(const Options& options) {
   set_threads(options.mission.common.threads);
   CANYON_TRY(const auto outputs, study::outputs_of(split_list(options.outputs), "--for"));
   const auto asked = options.tolerances.empty() ? std::vector<std::string>() : split_list(options.tolerances);
-  CANYON_TRY_STATUS(study::tolerances_of(asked, "--tolerance"));
+  CANYON_TRY(const auto tolerances, study::tolerances_of(asked, "--tolerance"));
+  CANYON_TRY_STATUS(study::check_reached(tolerances, "--tolerance"));
   CANYON_TRY(const auto file, load_mission(options.mission));
   CANYON_TRY_STATUS(file.check_fidelities({options.fidelity}, "--fidelity"));
   std::optional<StagedFile> written;
@@ -65,7 +71,9 @@ Result<int> run(const Options& options) {
   CANYON_TRY(const auto comparison, study::prepare_comparison(file, study::plan_runs({options.fidelity}, false)));
   const auto& config = comparison.configs.front();
   const auto& mission = comparison.missions.front();
-  CANYON_TRY(auto plan, study::make_plan(config, mission, {options.fidelity, outputs, options.corridor_m}));
+  CANYON_TRY(auto plan,
+             study::make_plan(config, mission,
+                              {options.fidelity, outputs, options.corridor_m, options.open_loop, tolerances}));
   CANYON_TRY(const Tape tape, mission::drive_route(config, mission));
   CANYON_TRY(const auto cost, study::measure_cost(config, mission, tape, plan));
   std::optional<study::Verification> verification;
@@ -101,9 +109,11 @@ VerbAction declare(Arguments& arguments) {
       .default_shown();
   arguments
       .option("--tolerance", options->tolerances,
-              "how far a figure may move over the run, in its own unit, with commas between (canyon keys --figures); "
-              "without it, and where no bound reaches the figure, not at all")
+              "how far a figure may move over the run, in its own unit, with commas between (canyon keys --figures): "
+              "what acts by less is left out too; without it nothing moves at all")
       .type("FIGURE=VALUE");
+  arguments.flag("--open-loop", options->open_loop,
+                 "the plan is for runs on a tape, which the autonomy does not drive");
   arguments.option("--corridor", options->corridor_m, "how far beside the planned route the plan holds, m")
       .default_shown()
       .within(0.5, 100.0);

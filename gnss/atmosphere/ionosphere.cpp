@@ -19,14 +19,20 @@ Result<std::unique_ptr<IonosphereModel>> make_layer(const ModelParameters& own, 
 }
 
 constexpr ModelRow<MakeIonosphere> kModels[] = {
-    {"none", make_none, "no delay"},
-    {"single_layer", make_layer, "thin shell at 350 km times the zenith delay of vtec_tecu",
+    {"none", {make_none, largest_at_lowest}, "no delay"},
+    {"single_layer",
+     {make_layer, largest_at_lowest},
+     "thin shell at 350 km times the zenith delay of vtec_tecu",
      parameters_of<ElectronContent>},
     {"klobuchar", make_klobuchar, "the broadcast model, with the navigation file's coefficients"},
     {"ionex", make_ionex, "global maps of the vertical electron content, of ionex_file", ionex_parameters},
-    {"paper", make_paper_ionosphere, "Lear's mapping (Durst & Goodin 2012) times the zenith delay of vtec_tecu",
+    {"paper",
+     {make_paper_ionosphere, largest_at_lowest},
+     "Lear's mapping (Durst & Goodin 2012) times the zenith delay of vtec_tecu",
      parameters_of<ElectronContent>},
-    {"paper_printed", make_paper_printed_ionosphere, "as printed: the bare mapping, taken as metres"},
+    {"paper_printed",
+     {make_paper_printed_ionosphere, largest_at_lowest},
+     "as printed: the bare mapping, taken as metres"},
 };
 
 }  // namespace
@@ -37,6 +43,10 @@ void visit(FieldVisitor& f, ElectronContent& c) {
 
 ModelTable<MakeIonosphere> ionosphere_models() {
   return kModels;
+}
+
+double largest_at_lowest(const IonosphereModel& model, const SkyView& lowest) {
+  return model.delay_m(lowest);
 }
 
 double vertical_ionosphere_m(double vtec_tecu) {

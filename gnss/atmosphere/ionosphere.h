@@ -4,6 +4,7 @@
 #include <span>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/core/need.h"
 #include "canyon/gnss/atmosphere/klobuchar.h"
 #include "canyon/gnss/sky_view.h"
 
@@ -32,7 +33,14 @@ struct IonosphereSetup {
   std::vector<std::string>* warnings = nullptr;
 };
 
-using MakeIonosphere = Result<std::unique_ptr<IonosphereModel>>(const ModelParameters& own, const IonosphereSetup& at);
+/// The largest delay that a model gives anywhere at or above a view's elevation.
+using LargestIonosphere = double(const IonosphereModel& model, const SkyView& lowest);
+/// Of a model whose delay falls with elevation, and depends on nothing else.
+LargestIonosphere largest_at_lowest;
+
+using MakeIonosphere =
+    MakerAndNeed<Result<std::unique_ptr<IonosphereModel>>(const ModelParameters& own, const IonosphereSetup& at),
+                 LargestIonosphere>;
 ModelTable<MakeIonosphere> ionosphere_models();
 
 std::unique_ptr<IonosphereModel> make_single_layer(double vtec_tecu);

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/core/need.h"
 #include "canyon/gnss/atmosphere/weather.h"
 #include "canyon/gnss/sky_view.h"
 
@@ -25,7 +26,10 @@ struct SiteWeather {
 };
 void visit(FieldVisitor& f, SiteWeather& c);
 
-using MakeTroposphere = std::unique_ptr<TroposphereModel>(const ModelParameters& own);
+/// The largest delay that a model gives anywhere at or above a view's elevation, and at or above its height.
+using LargestTroposphere = double(const TroposphereModel& model, const SkyView& lowest);
+
+using MakeTroposphere = MakerAndNeed<std::unique_ptr<TroposphereModel>(const ModelParameters& own), LargestTroposphere>;
 ModelTable<MakeTroposphere> troposphere_models();
 
 std::unique_ptr<TroposphereModel> make_saastamoinen_niell(const MeasuredWeather& measured);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/core/need.h"
 #include "canyon/gnss/satellites/constellation.h"
 
 namespace canyon::gnss {
@@ -30,8 +31,13 @@ struct EphemerisErrorSetup {
   std::vector<std::string>* warnings = nullptr;
 };
 
-using MakeEphemerisError = Result<std::unique_ptr<EphemerisError>>(const ModelParameters& own,
-                                                                   const EphemerisErrorSetup& at);
+/// The largest range error that a model gives, in either direction, m; of random ones that of
+/// GaussMarkov::kMostSigmas.
+using LargestEphemerisError = double(const ModelParameters& own);
+
+using MakeEphemerisError =
+    MakerAndNeed<Result<std::unique_ptr<EphemerisError>>(const ModelParameters& own, const EphemerisErrorSetup& at),
+                 LargestEphemerisError>;
 ModelTable<MakeEphemerisError> ephemeris_error_models();
 
 std::unique_ptr<EphemerisError> make_gauss_markov_ephemeris(std::uint64_t seed, double sigma_m, double tau_s);
@@ -41,6 +47,7 @@ std::unique_ptr<EphemerisError> make_paper_printed_ephemeris();
 std::unique_ptr<EphemerisError> make_paper_corrected_ephemeris();
 Result<std::unique_ptr<EphemerisError>> make_gauss_markov(const ModelParameters& own, const EphemerisErrorSetup& at);
 void gauss_markov_parameters(ModelParameters& section);
+LargestEphemerisError largest_gauss_markov_m, largest_orbit_clock_2010_m, largest_orbit_clock_2021_m;
 Result<std::unique_ptr<EphemerisError>> make_broadcast_minus_sp3(const ModelParameters& own,
                                                                  const EphemerisErrorSetup& at);
 void broadcast_minus_sp3_parameters(ModelParameters& section);

@@ -31,21 +31,27 @@ GaussMarkov::GaussMarkov(std::uint64_t seed, std::string_view name, double tau_s
   CANYON_CHECK(node_ns_ > 0, "tau_s = ", tau_s);
 }
 
-double GaussMarkov::at(std::uint32_t entity, GpsTime t) const {
+GaussMarkov::Nodes GaussMarkov::nodes_of(std::uint32_t entity, std::int64_t first) const {
   static const std::array<double, kMemory> weights = make_weights();
-  CANYON_CHECK(t.ns >= 0, "t = ", t.ns, " ns");
-  const std::int64_t node = t.ns / node_ns_;
-  const double s = static_cast<double>(t.ns % node_ns_) / static_cast<double>(node_ns_);
-
-  // Draws of nodes node - 127 ... node + 1; the indices are shifted so that they stay positive at the GPS epoch.
+  // Draws of nodes first - 127 ... first + 1; the indices are shifted so that they stay positive at the GPS epoch.
   std::array<double, kMemory + 1> w{};
-  draws_.fill_normal(w, entity, static_cast<std::uint64_t>(node) + 1);
-  double now = 0.0, next = 0.0;
+  draws_.fill_normal(w, entity, static_cast<std::uint64_t>(first) + 1);
+  Nodes nodes{.first = first};
   for (std::size_t j = 0; j < kMemory; ++j) {
-    now += weights[j] * w[kMemory - 1 - j];
-    next += weights[j] * w[kMemory - j];
+    nodes.now += weights[j] * w[kMemory - 1 - j];
+    nodes.next += weights[j] * w[kMemory - j];
   }
-  return ((1.0 - s) * now + s * next) / std::sqrt((1.0 - s) * (1.0 - s) + s * s + 2.0 * s * (1.0 - s) * kPhi);
+  return nodes;
+}
+
+double GaussMarkov::at(std::uint32_t entity, GpsTime t) const {
+  CANYON_CHECK(t.ns >= 0, "t = ", t.ns, " ns");
+  const std::int64_t first = t.ns / node_ns_;
+  const double s = static_cast<double>(t.ns % node_ns_) / static_cast<double>(node_ns_);
+  Nodes& nodes = last_[entity];
+  if (nodes.first != first) nodes = nodes_of(entity, first);
+  return ((1.0 - s) * nodes.now + s * nodes.next) /
+         std::sqrt((1.0 - s) * (1.0 - s) + s * s + 2.0 * s * (1.0 - s) * kPhi);
 }
 
 }  // namespace canyon::gnss

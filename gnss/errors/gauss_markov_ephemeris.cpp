@@ -39,6 +39,10 @@ void gauss_markov_parameters(ModelParameters& section) {
   section.add<GaussMarkovParameters>();
 }
 
+double largest_gauss_markov_m(const ModelParameters& own) {
+  return GaussMarkov::kMostSigmas * own.get<GaussMarkovParameters>().sigma_m;
+}
+
 Result<std::unique_ptr<EphemerisError>> make_gauss_markov(const ModelParameters& own, const EphemerisErrorSetup& at) {
   const auto& p = own.get<GaussMarkovParameters>();
   return make_gauss_markov_ephemeris(at.seed, p.sigma_m, p.tau_s);

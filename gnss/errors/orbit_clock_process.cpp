@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/core/units.h"
@@ -61,7 +62,26 @@ class OrbitClockProcess final : public EphemerisError {
   GaussMarkov radial_, along_, cross_, clock_;
 };
 
+/// Normal, and widest where the satellite stands lowest: the line of sight is off its radius by 14 degrees at most
+/// (GPS from the horizon). There radial and clock parts cancel least, and the others come in most.
+double largest_m(const OrbitClockStatistics& s, double scale) {
+  constexpr double kSin = 0.25, kCos = 0.96;
+  const double rho = s.radial_clock_correlation;
+  const double shared_m =
+      std::max(std::abs(rho * s.clock_m - kCos * s.radial_m), std::abs(rho * s.clock_m - s.radial_m));
+  const double own_m = std::sqrt(1.0 - rho * rho) * s.clock_m;
+  const double across_m = kSin * std::max(s.along_m, s.cross_m);
+  return GaussMarkov::kMostSigmas * scale * std::sqrt(shared_m * shared_m + own_m * own_m + across_m * across_m);
+}
+
 }  // namespace
+
+double largest_orbit_clock_2010_m(const ModelParameters&) {
+  return largest_m(k2010, 1.0);
+}
+double largest_orbit_clock_2021_m(const ModelParameters&) {
+  return largest_m(k2010, k2021Scale);
+}
 
 std::unique_ptr<EphemerisError> make_orbit_clock_2010(std::uint64_t seed) {
   return std::make_unique<OrbitClockProcess>(seed, k2010, 1.0);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -117,32 +118,13 @@ class PseudorangeSensor final : public GnssSensor {
       second_paths = trace(
           p_A_W, sights, [this](GnssSystem system) { return second_band(system, config_.tracking.second_frequency); },
           scene);
-    std::vector<CorrectionInput> inputs;
-    std::vector<std::size_t> truth_of;  // index of the truth record of each observation
-    for (std::size_t i = 0; i < sights.size(); ++i) {
-      GnssObservationTruth truth = describe(epoch, sights[i], paths[i]);
-      truth.tracked =
-          observe(epoch, sights[i], paths[i], second_paths.empty() ? nullptr : &second_paths[i], truth, inputs);
-      if (truth.tracked) truth_of.push_back(i);
-      out.truth.satellites.push_back(truth);
-    }
-
-    const ReceiverParts receiver{*parts_.constellation,
-                                 *parts_.mode,
-                                 *parts_.solver,
-                                 *parts_.weighting,
-                                 config_.position.max_gdop,
-                                 frame_.origin_E(),
-                                 filter_ ? &*filter_ : nullptr};
-    std::vector<Correction> corrections;
-    out.fix = compute_fix(receiver, t, out.epoch, inputs, corrections);
-    for (std::size_t k = 0; k < corrections.size(); ++k)
-      keep_residual(corrections[k], out.truth.satellites[truth_of[k]]);
+    receive_epoch(epoch, sights, paths, second_paths);
     return std::move(out);
   }
 
   GnssCounters counters() const override { return counters_; }
   void leave_out(const PathOmissions& omissions) override { leave_out_ = omissions; }
+  void leave_out(const RangeOmissions& omissions) override { ranges_ = omissions; }
   bool has_satellites() const override { return true; }
   std::vector<std::string> warnings() const override { return parts_.warnings; }
 
@@ -186,15 +168,84 @@ class PseudorangeSensor final : public GnssSensor {
     second_.locks.begin_epoch(index);
   }
 
-  std::vector<Sight> satellites_above_mask(const Epoch& epoch) const {
+  /// Measures what has been traced, and solves it: without what is left out, and in full where the promise that came
+  /// with it might not hold.
+  void receive_epoch(Epoch& epoch, const std::vector<Sight>& sights, const std::vector<SignalPaths>& paths,
+                     const std::vector<SignalPaths>& second_paths) {
+    const bool promised = ranges_.any() && ranges_.bound_m > 0.0;
+    if (!promised) {
+      solve_epoch(epoch, sights, paths, second_paths, ranges_.delays);
+      return;
+    }
+    const SignalLocks first = first_.locks, second = second_.locks;
+    const GnssOutput empty = epoch.out;
+    if (solve_epoch(epoch, sights, paths, second_paths, ranges_.delays)) return;
+    ++counters_.epochs_in_full;
+    first_.locks = first;
+    second_.locks = second;
+    epoch.out = empty;
+    solve_epoch(epoch, sights, paths, second_paths, {});
+  }
+
+  /// Whether the promise of what is left out holds.
+  bool solve_epoch(Epoch& epoch, const std::vector<Sight>& sights, const std::vector<SignalPaths>& paths,
+                   const std::vector<SignalPaths>& second_paths, const DelayOmissions& leave_out) {
+    GnssOutput& out = epoch.out;
+    std::vector<CorrectionInput> inputs;
+    std::vector<std::size_t> truth_of;  // index of the truth record of each observation
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      GnssObservationTruth truth = describe(epoch, sights[i], paths[i]);
+      truth.tracked = observe(epoch, sights[i], paths[i], second_paths.empty() ? nullptr : &second_paths[i], leave_out,
+                              truth, inputs);
+      if (truth.tracked) truth_of.push_back(i);
+      out.truth.satellites.push_back(truth);
+    }
+    const ReceiverParts receiver{*parts_.constellation,
+                                 *parts_.mode,
+                                 *parts_.solver,
+                                 *parts_.weighting,
+                                 config_.position.max_gdop,
+                                 frame_.origin_E(),
+                                 filter_ ? &*filter_ : nullptr};
+    std::vector<Correction> corrections;
+    PositionSolution solution;
+    out.fix = compute_fix(receiver, epoch.t, out.epoch, inputs, corrections, &solution);
+    out.range_gain = solution.ok ? solution.range_gain : kNaN;
+    for (std::size_t k = 0; k < corrections.size(); ++k)
+      keep_residual(corrections[k], ranges_.bound_m > 0.0 ? leave_out : DelayOmissions{},
+                    out.truth.satellites[truth_of[k]]);
+    return out.range_gain <= ranges_.most_gain &&
+           decisions_hold(solution, out.epoch, ranges_.bound_m, config_.position.max_gdop);
+  }
+
+  /// A satellite that was last seen below the mask, and when it may have risen above it at the earliest.
+  struct Below {
+    GpsTime t;
+    Eigen::Vector3d p_A_W;
+    double by_rad;
+
+    /// No line of sight turns faster than the fastest satellite, 3.9 km/s, and the ground under the antenna, 0.5 km/s,
+    /// turn that of the nearest, 18,000 km away: 2.5e-4 rad/s. An antenna that is elsewhere sees it in another place. A
+    /// minute later it is looked at in any case, as ephemerides change.
+    bool still(const Epoch& epoch) const {
+      return std::abs(epoch.t - t) < 60.0 && 3e-4 * std::abs(epoch.t - t) + (epoch.p_A_W - p_A_W).norm() / 5e6 < by_rad;
+    }
+  };
+
+  std::vector<Sight> satellites_above_mask(const Epoch& epoch) {
     const Eigen::Vector3d& p_A_E = epoch.out.truth.p_A_E;
     std::vector<Sight> sights;
     for (const SatelliteId sv : parts_.constellation->satellites()) {
+      const auto below = below_.find(sv);
+      if (below != below_.end() && below->second.still(epoch)) continue;
       const auto signal = transmission_to(*parts_.constellation, sv, epoch.t, p_A_E, epoch.out.epoch.t);
       if (!signal) continue;
       const Eigen::Vector3d satellite_E = signal->p_E();
       const SkyView view = epoch.horizon.view(epoch.t, satellite_E);
-      if (view.elevation_rad < config_.mask_deg * kDegree) continue;
+      if (const double by_rad = config_.mask_deg * kDegree - view.elevation_rad; by_rad > 0.0) {
+        below_.insert_or_assign(sv, Below{epoch.t, epoch.p_A_W, by_rad});
+        continue;
+      }
       sights.push_back({sv, *signal, view, frame_.R_EW().transpose() * (satellite_E - p_A_E).normalized()});
     }
     return sights;
@@ -309,16 +360,24 @@ class PseudorangeSensor final : public GnssSensor {
     return m;
   }
 
+  RangeDelays delays(const Epoch& epoch, const Sight& sight, double ionosphere_from_l1,
+                     const DelayOmissions& leave_out) {
+    RangeDelays raw;
+    if (!leave_out.ionosphere) raw.ionosphere_m = ionosphere_from_l1 * parts_.ionosphere->delay_m(sight.view);
+    if (!leave_out.troposphere) raw.troposphere_m = parts_.troposphere->delay_m(sight.view);
+    if (!leave_out.ephemeris)
+      raw.ephemeris_m = parts_.ephemeris_error->range_m(sight.sv, sight.signal.state, epoch.out.truth.p_A_E, epoch.t);
+    counters_.delays_computed += !leave_out.ionosphere + !leave_out.troposphere + !leave_out.ephemeris;
+    return raw;
+  }
+
   /// Measures one satellite, completes its truth record and appends the observation. False, and nothing appended, if it
   /// is not tracked at its first band; a second signal that is not is left out.
   bool observe(Epoch& epoch, const Sight& sight, const SignalPaths& paths, const SignalPaths* second_paths,
-               GnssObservationTruth& truth, std::vector<CorrectionInput>& inputs) {
+               const DelayOmissions& leave_out, GnssObservationTruth& truth, std::vector<CorrectionInput>& inputs) {
     const int band = first_band(sight.sv.system);
     const double from_l1 = kL1Hz / sight.carrier_hz(band);
-    const RangeDelays raw{
-        from_l1 * from_l1 * parts_.ionosphere->delay_m(sight.view), parts_.troposphere->delay_m(sight.view),
-        parts_.ephemeris_error->range_m(sight.sv, sight.signal.state, epoch.out.truth.p_A_E, epoch.t)};
-    const RangeDelays acting = parts_.mode->acting(raw);
+    const RangeDelays acting = parts_.mode->acting(delays(epoch, sight, from_l1 * from_l1, leave_out));
     truth.phase_centre_m = config_.link.antenna_phase_centre
                                ? parts_.link.antenna->phase_centre_m(epoch.horizon.R_E_enu().transpose() *
                                                                      (frame_.R_EW() * sight.direction_W))
@@ -349,7 +408,8 @@ class PseudorangeSensor final : public GnssSensor {
     truth.carrier_multipath_m = first.reception.carrier_error_m;
     truth.range_rate_multipath_m_s = first.reception.range_rate_error_m_s;
     truth.ambiguity_cycles = first.ambiguity_cycles;
-    CorrectionInput input{sight.sv, epoch.t, sight.view, {}, sight.signal.range_m, acting, from_l1 * from_l1, {}};
+    CorrectionInput input{sight.sv, epoch.t,           sight.view, {},       sight.signal.range_m,
+                          acting,   from_l1 * from_l1, {},         leave_out};
     if (second.tracked) {
       o.second.band = other_band;
       o.second.pseudorange_m = second.pseudorange_m;
@@ -368,14 +428,19 @@ class PseudorangeSensor final : public GnssSensor {
     return true;
   }
 
-  /// The truth record keeps what the receiver's corrections leave.
-  static void keep_residual(const Correction& c, GnssObservationTruth& truth) {
+  /// The truth record keeps what the receiver's corrections leave; what was left out it does not know.
+  static void keep_residual(const Correction& c, const DelayOmissions& leave_out, GnssObservationTruth& truth) {
     truth.ionosphere_m -= c.modelled.ionosphere_m;
     truth.troposphere_m -= c.modelled.troposphere_m;
     truth.ephemeris_m -= c.modelled.ephemeris_m;
     truth.noise_m -= c.noise_m;
     truth.multipath_m -= c.multipath_m;
     truth.base_m -= c.base_m;
+    if (leave_out.ionosphere) truth.ionosphere_delay_m = kNaN;
+    if (leave_out.troposphere) truth.troposphere_delay_m = kNaN;
+    if (leave_out.ionosphere_difference) truth.ionosphere_m = kNaN;
+    if (leave_out.troposphere_difference) truth.troposphere_m = kNaN;
+    if (leave_out.ephemeris) truth.ephemeris_m = kNaN;
   }
 
   GnssConfig config_;
@@ -384,6 +449,8 @@ class PseudorangeSensor final : public GnssSensor {
   SignalStreams first_, second_;
   std::optional<PvtFilter> filter_;
   PathOmissions leave_out_;
+  RangeOmissions ranges_;
+  std::map<SatelliteId, Below> below_;
   std::vector<std::pair<PathOmissions, std::unique_ptr<PathModel>>> reduced_;
   std::int64_t last_index_ = -2;
   GnssCounters counters_;

@@ -7,20 +7,24 @@
 namespace canyon::gnss {
 namespace {
 
-std::vector<Need> no_needs(const GnssConfig&, const GnssSurroundings&, const RouteSegment&) {
+std::vector<Need> no_path_needs(const GnssConfig&, const GnssSurroundings&, const RouteSegment&) {
   return {};
 }
+std::vector<Need> no_delay_needs(const GnssConfig&, const GnssSurroundings&) {
+  return {};
+}
+constexpr SensorNeeds kNoNeeds{no_path_needs, no_delay_needs};
 
 constexpr ModelRow<MakeSensor> kSensors[] = {
     {"pseudorange",
-     {make_pseudorange_sensor, pseudorange_needs},
+     {make_pseudorange_sensor, &kPseudorangeNeeds},
      "satellites, delays, paths in the scene, receiver and solver"},
     {"truth_plus_isotropic",
-     {make_isotropic_sensor, no_needs},
+     {make_isotropic_sensor, &kNoNeeds},
      "truth plus a random direction times U(min, max), independent per fix",
      isotropic_parameters},
     {"truth_plus_white",
-     {make_white_noise_sensor, no_needs},
+     {make_white_noise_sensor, &kNoNeeds},
      "truth plus white Gaussian noise per axis",
      white_noise_parameters},
     {"satellite_count",

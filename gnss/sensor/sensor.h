@@ -10,6 +10,7 @@
 #include "canyon/core/truth.h"
 #include "canyon/gnss/paths/counters.h"
 #include "canyon/gnss/paths/path_omissions.h"
+#include "canyon/gnss/receiver/modes/delay_omissions.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
@@ -19,6 +20,7 @@ struct GnssOutput {
   GnssEpoch epoch;  ///< empty for models that do not form pseudoranges
   GnssFix fix;
   GnssTruth truth;
+  double range_gain = kNaN;  ///< of the fix: how far it moves at most where every range moves by 1 m (PositionSolution)
 };
 
 /// A GNSS receiver in the scene. `index` is the number of the epoch since the start (the random streams' sample index).
@@ -38,6 +40,9 @@ class GnssSensor {
   /// From the next epoch on, until it is called again: what has been shown to change nothing where the antenna will be
   /// (gnss/sensor/sensor_need.h) is not computed. A sensor that has none of it to leave out does nothing.
   virtual void leave_out(const PathOmissions&) {}
+  /// The same of what the ranges are made of. An epoch is measured in full where the promise that comes with it might
+  /// not hold: where the receiver could decide otherwise, or the position is moved by more.
+  virtual void leave_out(const RangeOmissions&) {}
   /// False where fixes come without satellites: counts of them and DOP jumps are then undefined.
   virtual bool has_satellites() const { return false; }
   /// What a user should be told once: damaged records of the navigation file that were skipped, one line each.

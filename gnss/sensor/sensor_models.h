@@ -21,10 +21,16 @@ struct SensorSetup {
 
 struct GnssSurroundings;
 /// States which effects of the sensor that depend on places act along a piece of a route (gnss/sensor/sensor_need.h).
-using StateSensorNeeds = std::vector<Need>(const GnssConfig& config, const GnssSurroundings& around,
-                                           const RouteSegment& segment);
+using StatePlaceNeeds = std::vector<Need>(const GnssConfig& config, const GnssSurroundings& around,
+                                          const RouteSegment& segment);
+/// States how far leaving out a delay moves a range, wherever the antenna is along the route.
+using StateRangeNeeds = std::vector<Need>(const GnssConfig& config, const GnssSurroundings& around);
+struct SensorNeeds {
+  StatePlaceNeeds* places;
+  StateRangeNeeds* ranges;
+};
 using MakeSensor = MakerAndNeed<Result<std::unique_ptr<GnssSensor>>(const ModelParameters& own, const SensorSetup& at),
-                                StateSensorNeeds>;
+                                const SensorNeeds>;
 ModelTable<MakeSensor> sensor_models();
 
 /// truth_plus_isotropic: the fix is the truth plus an isotropic direction times U(min, max); see isotropic_sensor.cpp.
@@ -41,6 +47,8 @@ void satellite_count_parameters(ModelParameters& section);
 
 /// pseudorange: satellites, delays, paths, receiver and solver; see pseudorange_sensor.cpp.
 Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const ModelParameters& own, const SensorSetup& at);
-StateSensorNeeds pseudorange_needs;
+StatePlaceNeeds pseudorange_path_needs;
+StateRangeNeeds pseudorange_delay_needs;
+inline constexpr SensorNeeds kPseudorangeNeeds{pseudorange_path_needs, pseudorange_delay_needs};
 
 }  // namespace canyon::gnss

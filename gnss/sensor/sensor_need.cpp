@@ -25,8 +25,9 @@ Need does_not_say(const std::string& model) {
 
 }  // namespace
 
-Result<GnssSurroundings> GnssSurroundings::make(const GnssConfig& config, const scene::Scene& scene, bool things_move,
-                                                GpsTime start, GpsTime end, const std::vector<RouteSegment>& route) {
+Result<GnssSurroundings> GnssSurroundings::make(const GnssConfig& config, const scene::Scene& scene,
+                                                const std::vector<scene::SweptRoom>& moving, GpsTime start, GpsTime end,
+                                                const std::vector<RouteSegment>& route) {
   CANYON_TRY(const SatelliteSource source, make_satellite_source(config.satellites, start, end));
   Eigen::Vector3d low = Eigen::Vector3d::Constant(1e30), high = -low;
   double wide_m = config.lever_arm_m.norm();
@@ -41,19 +42,24 @@ Result<GnssSurroundings> GnssSurroundings::make(const GnssConfig& config, const 
     }
   }
   const Ball place{0.5 * (low + high), 0.5 * (high - low).norm() + 2.0 * wide_m};
-  return GnssSurroundings{scene, things_move,
+  return GnssSurroundings{scene,
                           sky_span(*source.constellation, scene.frame(), start, end, place, config.mask_deg * kDegree),
-                          ObstacleHeights(scene)};
+                          ObstacleHeights(scene, moving), start, low.z()};
 }
 
 std::vector<Need> gnss_needs(const GnssConfig& config, const GnssSurroundings& around, const RouteSegment& segment) {
   const auto& row = model_row(sensor_models(), config.model.name);
   if (row.make.need == nullptr) return {does_not_say(config.model.name)};
-  return row.make.need(config, around, segment);
+  return row.make.need->places(config, around, segment);
 }
 
-std::vector<Need> pseudorange_needs(const GnssConfig& config, const GnssSurroundings& around,
-                                    const RouteSegment& segment) {
+std::vector<Need> gnss_range_needs(const GnssConfig& config, const GnssSurroundings& around) {
+  const auto& row = model_row(sensor_models(), config.model.name);
+  return row.make.need != nullptr ? row.make.need->ranges(config, around) : std::vector<Need>{};
+}
+
+std::vector<Need> pseudorange_path_needs(const GnssConfig& config, const GnssSurroundings& around,
+                                         const RouteSegment& segment) {
   const Eigen::Vector3d& lever = config.lever_arm_m;
   const PathQuestion question{
       .segment = segment,
@@ -61,7 +67,6 @@ std::vector<Need> pseudorange_needs(const GnssConfig& config, const GnssSurround
       .antenna_above_m = std::min(lever.z(), lever.z() * std::cos(RouteSegment::kMostTilt_rad)) -
                          lever.head<2>().norm() * std::sin(RouteSegment::kMostTilt_rad),
       .scene = around.scene,
-      .things_move = around.things_move,
       .sky = around.sky,
       .heights = around.heights,
       .limits = path_limits(config)};

@@ -14,17 +14,25 @@ namespace canyon::gnss {
 /// Where a sensor is asked what it needs: what all pieces of a route share.
 struct GnssSurroundings {
   const scene::Scene& scene;
-  bool things_move = false;  ///< in the scene, beside the vehicle
   SkySpan sky;
   ObstacleHeights heights;
+  GpsTime start;
+  double low_m = 0.0;  ///< lowest place of the route, in W
 
   /// For a vehicle that stays within `route` from start to end. Errors as make_satellite_source.
-  static Result<GnssSurroundings> make(const GnssConfig& config, const scene::Scene& scene, bool things_move,
-                                       GpsTime start, GpsTime end, const std::vector<RouteSegment>& route);
+  static Result<GnssSurroundings> make(const GnssConfig& config, const scene::Scene& scene,
+                                       const std::vector<scene::SweptRoom>& moving, GpsTime start, GpsTime end,
+                                       const std::vector<RouteSegment>& route);
 };
 
 /// What the configured sensor says of its effects on a piece of the route; empty: it has none that depend on places.
 std::vector<Need> gnss_needs(const GnssConfig& config, const GnssSurroundings& around, const RouteSegment& segment);
+
+/// What it says of the delays of its ranges: how far leaving one out moves a range at most, along the whole route.
+std::vector<Need> gnss_range_needs(const GnssConfig& config, const GnssSurroundings& around);
+
+/// Those that are not needed.
+DelayOmissions delays_of(const std::vector<Need>& needs);
 
 /// What may be left out where these needs hold.
 PathOmissions omissions_of(const std::vector<Need>& needs);

@@ -1,5 +1,7 @@
 #include "canyon/gnss/solver/fault_exclusion.h"
 
+#include <array>
+
 #include "canyon/core/math/chi_square.h"
 
 namespace canyon::gnss {
@@ -12,6 +14,23 @@ std::vector<std::size_t> without(const std::vector<std::size_t>& members, std::s
   auto out = members;
   out.erase(out.begin() + static_cast<std::ptrdiff_t>(position));
   return out;
+}
+
+/// The threshold that an epoch's test needs, kept by degrees of freedom: it is the root of a series, and a run asks for
+/// the same few over and over.
+double threshold_of(double false_alarm, int degrees_of_freedom) {
+  constexpr int kKept = 64;
+  thread_local double kept_for = 0.0;
+  thread_local std::array<double, kKept> kept{};
+  if (degrees_of_freedom < 0 || degrees_of_freedom >= kKept)
+    return chi_square_threshold(false_alarm, degrees_of_freedom);
+  if (kept_for != false_alarm) {
+    kept.fill(-1.0);
+    kept_for = false_alarm;
+  }
+  double& threshold = kept[static_cast<std::size_t>(degrees_of_freedom)];
+  if (threshold < 0.0) threshold = chi_square_threshold(false_alarm, degrees_of_freedom);
+  return threshold;
 }
 
 RangeSubset exclude_none(const RangeSubset&, const SubsetFitter&) {
@@ -70,7 +89,7 @@ IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, co
   const auto passes = [&](const RangeFit& fit) {
     test.statistic = fit.statistic;
     test.degrees_of_freedom = fit.degrees_of_freedom;
-    test.threshold = chi_square_threshold(p.false_alarm, fit.degrees_of_freedom);
+    test.threshold = threshold_of(p.false_alarm, fit.degrees_of_freedom);
     return test.statistic <= test.threshold;
   };
 

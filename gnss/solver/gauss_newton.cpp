@@ -58,6 +58,7 @@ class Problem {
   Eigen::VectorXd& state() { return state_; }
   const Eigen::MatrixXd& A() const { return A_; }
   const Eigen::VectorXd& b() const { return b_; }
+  double sigma_m(Eigen::Index i) const { return ranges_[static_cast<std::size_t>(i)].sigma_m; }
   const std::vector<double>& residuals_m() const { return residuals_m_; }
   double shared() const { return shared_ ? state_[state_.size() - 1] : 0.0; }
 
@@ -124,6 +125,9 @@ void describe(Problem& problem, const Eigen::MatrixXd& covariance, RangeFit& out
   out.covariance_E = covariance.topLeftCorner<3, 3>();
   out.residuals_m = problem.residuals_m();
   out.statistic = problem.b().squaredNorm();
+  out.range_gain = 0.0;
+  for (Eigen::Index i = 0; i < problem.range_count(); ++i)
+    out.range_gain += (covariance.topRows<3>() * problem.A().row(i).transpose()).norm() / problem.sigma_m(i);
   out.degrees_of_freedom = static_cast<int>(problem.range_count() - problem.unknowns_without_prior());
   for (Eigen::Index i = 0; i < problem.range_count(); ++i) {
     out.weighted.push_back(problem.b()[i]);

@@ -19,7 +19,8 @@ struct RangeFit {
   std::vector<double> weighted;  ///< residual / sigma
   /// Part of a range's own variance that its residual keeps, 0..1: 0 = the fit follows the range, whatever it says.
   std::vector<double> redundancy;
-  double statistic = kNaN;  ///< sum of (residual / sigma)^2, with the prior of the shared error
+  double range_gain = kNaN;  ///< sum over the ranges of |d p_E / d range|
+  double statistic = kNaN;   ///< sum of (residual / sigma)^2, with the prior of the shared error
   int degrees_of_freedom = 0;
   int iterations = 0;
 };

@@ -75,6 +75,7 @@ PositionSolution solve_ranges(std::span<const RangeMeasurement> ranges, const Ei
   out.ok = true;
   out.p_E = fit.p_E;
   out.covariance_E = fit.covariance_E;
+  out.range_gain = fit.range_gain;
   out.dop = fit.dop;
   if (clocks) {
     const ReceiverClocks order(fitter.subset(subset.members));

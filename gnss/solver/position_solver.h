@@ -45,6 +45,9 @@ struct PositionSolution {
   double clock_m = kNaN;  ///< receiver clock of the first system in use, in the order of GnssSystem (GPS first)
   std::array<double, 6> system_clock_m{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};  ///< by GnssSystem; NaN where not solved
   Eigen::Matrix3d covariance_E = Eigen::Matrix3d::Constant(kNaN);            ///< of p_E from the sigmas, m^2
+  /// Sum over the ranges in use of |d p_E / d range| at the weights of this epoch: ranges that move by up to b each, in
+  /// whatever direction, move p_E by this times b at most.
+  double range_gain = kNaN;
   Dop dop;                          ///< without weights; of the last geometry, also where ok is false and there was one
   std::vector<double> residuals_m;  ///< measured minus fitted, of all ranges, excluded ones too; empty if not ok
   std::vector<bool> used;           ///< false: excluded as faulty; as long as residuals_m

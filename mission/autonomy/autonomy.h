@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,15 @@ struct PriorKnowledge {
 Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets,
                                   const Eigen::Vector2d& start_m);
 
+/// What an autonomy keeps of the scans that it is shown: returns between two heights over the ground plane of the
+/// vehicle as it believes (along B's z, from B's origin), within a square about it. Of a scan of fewer returns than
+/// `enough` it may keep none.
+struct KeptReturns {
+  double low_m = 0.0, high_m = 0.0;
+  double half_size_m = 0.0;
+  int enough = 0;
+};
+
 /// Drives the vehicle on estimates and scans alone; never sees truth.
 class Autonomy {
  public:
@@ -67,6 +77,7 @@ class Autonomy {
   /// A deskewed scan in L at its stamp, placed by the estimate at that stamp.
   virtual void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) = 0;
   virtual bool looks() const { return true; }  ///< false: nothing it sees changes what it does
+  virtual std::optional<KeptReturns> keeps() const { return std::nullopt; }  ///< none: whatever it is shown
   virtual DriveCommand drive(const NavEstimate& estimate) = 0;
   virtual AutonomyState state() const = 0;
   virtual int next_waypoint() const = 0;  ///< 0-based; number of waypoints when done

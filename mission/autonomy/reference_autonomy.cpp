@@ -42,6 +42,14 @@ class ReferenceAutonomy final : public Autonomy {
     plan(estimate);
   }
 
+  std::optional<KeptReturns> keeps() const override {
+    const LocalGridConfig& grid = own_.grid;
+    return KeptReturns{.low_m = grid.min_depth_m,
+                       .high_m = grid.max_obstacle_height_m,
+                       .half_size_m = grid.half_size_m + 2.0 * grid.cell_m,
+                       .enough = kEnoughReturns};
+  }
+
   DriveCommand drive(const NavEstimate& estimate) override {
     const bool stands = driver_.update(estimate);
     const double speed = estimate.v_WB_W.head<2>().norm();

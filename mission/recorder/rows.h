@@ -31,6 +31,7 @@ struct GnssRow {
   Eigen::Vector3d p_A_W_true = Eigen::Vector3d::Zero();
   bool has_satellites = false;  ///< does the sensor know any; their counts and DOP jumps are else undefined
   bool withheld = false;
+  double range_gain = kNaN;  ///< as of gnss::GnssOutput
   fusion::UpdateReport update;
 };
 

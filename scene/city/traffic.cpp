@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "canyon/core/config/text.h"
 #include "canyon/scene/mesh_builder.h"
@@ -131,6 +132,28 @@ std::vector<Instance> Traffic::at(double t_s) const {
     Eigen::Matrix3d R;
     R << left.cross(up), left, up;
     out.push_back({m.shape, m.name, {Eigen::Quaterniond(R), {p.x(), p.y(), ground ? ground->height_m : 0.0}}});
+  }
+  return out;
+}
+
+std::vector<SweptRoom> Traffic::swept() const {
+  constexpr double kStep_m = 1.0, kBetween_m = 0.5;  // between heights that are looked at; what lies between them
+  std::vector<SweptRoom> out;
+  for (const Moving& m : moving_) {
+    double reach_m = 0.0;
+    for (const Eigen::Vector3f& corner : m.shape->mesh().vertices)
+      reach_m = std::max(reach_m, static_cast<double>(corner.norm()));
+    for (std::size_t k = 0; k == 0 || k + 1 < m.path_W.size(); ++k) {
+      const Eigen::Vector2d a = m.path_W[k], b = m.path_W[std::min(k + 1, m.path_W.size() - 1)];
+      SweptRoom room{a, b, reach_m, -std::numeric_limits<double>::infinity()};
+      const int steps = static_cast<int>(std::ceil((b - a).norm() / kStep_m)) + 1;
+      for (int i = 0; i <= steps; ++i) {
+        const Eigen::Vector2d p = a + (b - a) * i / steps;
+        const auto ground = scene_->ground(p.x(), p.y());
+        room.top_m = std::max(room.top_m, (ground ? ground->height_m : 0.0) + reach_m + kBetween_m);
+      }
+      out.push_back(room);
+    }
   }
   return out;
 }

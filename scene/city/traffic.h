@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "canyon/core/config/config.h"
 #include "canyon/scene/tracing/instances.h"
 
@@ -25,6 +27,18 @@ std::vector<std::string> moving_shapes();
 /// That each way has points, all of them within the rectangle; what can be told before there is terrain.
 Status check_ways(const std::vector<MovingConfig>& moving, const Eigen::Vector2d& low_W, const Eigen::Vector2d& high_W);
 
+/// Where a moving thing may ever be along one leg of its way: within a distance of the leg, and below a height in W.
+struct SweptRoom {
+  Eigen::Vector2d from_W, to_W;
+  double radius_m = 0.0, top_m = 0.0;
+
+  /// The rectangle in W that holds it.
+  Eigen::AlignedBox2d around() const {
+    const Eigen::Vector2d wide = Eigen::Vector2d::Constant(radius_m);
+    return {from_W.cwiseMin(to_W) - wide, from_W.cwiseMax(to_W) + wide};
+  }
+};
+
 /// What moves in a scene, over time: on the terrain, headed along its way. A function of time alone, so runs that share
 /// a scene meet the same traffic.
 class Traffic {
@@ -34,6 +48,8 @@ class Traffic {
 
   bool empty() const { return moving_.empty(); }
   std::vector<Instance> at(double t_s) const;
+  /// All that they ever take, whichever way they are tilted.
+  std::vector<SweptRoom> swept() const;
 
  private:
   struct Moving {

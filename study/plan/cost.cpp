@@ -6,8 +6,8 @@
 #include "canyon/core/process/cpu_time.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/study/plan/readers.h"
-#include "canyon/study/plan/replay.h"
-#include "canyon/study/plan/run_pair.h"
+#include "canyon/study/plan/replay/replay.h"
+#include "canyon/study/plan/replay/run_pair.h"
 
 namespace canyon::study {
 
@@ -77,6 +77,8 @@ Result<PredictedCost> measure_cost(const mission::MissionConfig& config, const m
   set_saved(plan, kMaps, saved_s(mission::Part::kScoring));
   set_saved(plan, kKeyframes, 0.0);  // their choice alone; what is made of them has its own lines
   set_saved(plan, kScans, saved_s(mission::Part::kLidar));
+  set_saved(plan, kUnkeptRays, saved_s(mission::Part::kLidar));
+  set_saved(plan, kAutonomy, saved_s(mission::Part::kAutonomy));
   set_saved(plan, kMovedScene, 0.0);  // a scene in which nothing moves is not made anew anyway
   if (!plan.omissions.corridor.empty()) CANYON_TRY_STATUS(measure_gnss(config, mission, tape, plan));
   return PredictedCost{scale * pair.full.total_s(), scale * pair.planned.total_s()};

@@ -5,14 +5,16 @@
 
 namespace canyon::study {
 
-Status follow_plan(const std::string& path, const std::vector<Output>& outputs, Comparison& comparison) {
+Status follow_plan(const std::string& path, const std::vector<Output>& outputs, bool open_loop,
+                   Comparison& comparison) {
   CANYON_CHECK(comparison.plans.empty(), "a plan is followed already");
   for (std::size_t i = 0; i < comparison.plan.size(); ++i) {
     mission::MissionConfig& config = comparison.configs[i];
     const mission::PreparedMission& mission = comparison.missions[i];
     const RunPlan& run = comparison.plan[i];
-    auto plan = path.empty() ? make_plan(config, mission, {.fidelity = run.name, .outputs = outputs})
-                             : read_plan(path, config, mission);
+    auto plan = path.empty()
+                    ? make_plan(config, mission, {.fidelity = run.name, .outputs = outputs, .open_loop = open_loop})
+                    : read_plan(path, config, mission, open_loop);
     if (!plan) {
       Error error = plan.error();
       if (comparison.plan.size() > 1 && !path.empty()) error.what = "run " + run.name + ": " + error.what;

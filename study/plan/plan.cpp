@@ -8,6 +8,7 @@
 #include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/study/plan/corridor.h"
 #include "canyon/study/plan/readers.h"
+#include "canyon/study/plan/tolerated.h"
 
 namespace canyon::study {
 
@@ -56,28 +57,39 @@ Result<Plan> make_plan(const mission::MissionConfig& config, const mission::Prep
             .fidelity = request.fidelity,
             .outputs = request.outputs,
             .half_width_m = request.half_width_m,
+            .tolerances = request.tolerances,
             .effects = {},
+            .figure_bounds = {},
+            .epoch_t_s = {},
+            .epoch_bound_m = {},
             .omissions = {}};
-  const std::vector<Need> readers = reader_needs(config, mission, request.outputs);
+  const std::vector<Need> readers = reader_needs(config, mission, request.outputs, request.open_loop);
   leave_out_unread(readers, plan.omissions);
   for (const Need& need : readers) plan.effects.push_back({.need = need, .segment = "whole run"});
 
   const std::vector<RouteSegment> corridor = corridor_of(mission, request.half_width_m);
-  CANYON_TRY(const auto around,
-             gnss::GnssSurroundings::make(config.gnss, *mission.scene, !mission.traffic.empty(), mission.start,
-                                          mission.start + mission.time_limit_s, corridor));
+  const std::vector<scene::SweptRoom> moving = mission.traffic.swept();
+  CANYON_TRY(const auto around, gnss::GnssSurroundings::make(config.gnss, *mission.scene, moving, mission.start,
+                                                             mission.start + mission.time_limit_s, corridor));
   plan.omissions.corridor_until_s = mission.time_limit_s;
   std::vector<PlannedEffect> pieces;
   for (const RouteSegment& segment : corridor) {
     throw_if_cancelled();
     const std::vector<Need> needs = gnss::gnss_needs(config.gnss, around, segment);
-    if (needs.empty()) break;
     add_piece(needs, segment, pieces);
-    plan.omissions.corridor.push_back({segment, gnss::omissions_of(needs)});
+    plan.omissions.corridor.push_back({segment, gnss::omissions_of(needs), {}});
   }
+  if (plan.omissions.unkept_rays) {
+    const auto clear = lidar::clearances(*mission.scene, moving, corridor);
+    for (std::size_t i = 0; i < clear.size(); ++i) plan.omissions.corridor[i].around = clear[i];
+  }
+  CANYON_TRY_STATUS(leave_out_tolerated(gnss::gnss_range_needs(config.gnss, around), config, mission, plan));
   // A corridor in which nothing is left out needs no watching.
-  const auto keeps_all = [](const mission::PlannedPlace& place) { return place.paths == gnss::PathOmissions{}; };
-  if (std::all_of(plan.omissions.corridor.begin(), plan.omissions.corridor.end(), keeps_all))
+  const auto keeps_all = [](const mission::PlannedPlace& place) {
+    return place.paths == gnss::PathOmissions{} && place.around.clear_m <= 0.0;
+  };
+  if (plan.omissions.ranges.bound_m <= 0.0 &&
+      std::all_of(plan.omissions.corridor.begin(), plan.omissions.corridor.end(), keeps_all))
     plan.omissions.corridor.clear();
   for (PlannedEffect& effect : by_effect(pieces)) plan.effects.push_back(std::move(effect));
   return plan;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,16 @@
 
 namespace canyon::study {
 
+/// By a figure's key (study/results/figures.h), in the figure's own unit.
+using FigureValues = std::map<std::string, double>;
+
 /// One line of a plan: what was found of one effect on one stretch of the route.
 struct PlannedEffect {
   Need need;
   std::string segment;                ///< "whole run", "120-180 m" of the route
   double start_m = 0.0, end_m = 0.0;  ///< both 0 for a whole run
   double saved_cpu_s = kNaN;          ///< over the nominal mission, measured (study/plan/cost.h); NaN: not measured
+  FigureValues moves{};               ///< by figure: how far leaving it out moves it at most; what has a tolerance
   bool whole_run() const { return end_m <= start_m; }
 };
 
@@ -24,7 +29,10 @@ struct Plan {
   std::string mission, fidelity;
   std::vector<Output> outputs;
   double half_width_m = 0.0;  ///< of the corridor for which it holds
+  FigureValues tolerances;    ///< that it was made for
   std::vector<PlannedEffect> effects;
+  FigureValues figure_bounds;                    ///< how far all that is left out moves them at most
+  std::vector<double> epoch_t_s, epoch_bound_m;  ///< the estimate of position, from each fix of the route to the next
   mission::Omissions omissions;
 };
 
@@ -33,12 +41,15 @@ struct PlanRequest {
   std::string fidelity;
   std::vector<Output> outputs;
   double half_width_m = kCorridor_m;
+  bool open_loop = false;     ///< for runs on a tape
+  FigureValues tolerances{};  ///< of figures that a bound reaches (study/plan/tolerated.h)
   /// Half of a street's lane and more: the reference autonomy leaves its line by 3.5 m at most, as it believes.
   static constexpr double kCorridor_m = 5.0;
 };
 
 /// Asks who reads what the run makes, and every model that can say it whether its effects can act along the route, from
-/// the start to the time limit of the mission. Nothing is driven. Errors as of the GNSS sensor's files.
+/// the start to the time limit of the mission. Nothing is driven, unless there are tolerances: they are carried along
+/// the route. Errors as of the GNSS sensor's files, and as of leave_out_tolerated().
 Result<Plan> make_plan(const mission::MissionConfig& config, const mission::PreparedMission& mission,
                        const PlanRequest& request);
 

@@ -9,12 +9,13 @@
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/version.h"
+#include "canyon/study/plan/tolerated.h"
 
 namespace canyon::study {
 
 namespace {
 
-constexpr const char* kKind = "canyon-plan-1";
+constexpr const char *kKind = "canyon-plan-2", *kFormerKind = "canyon-plan-1";
 
 /// Of all that a plan depends on but the scene's own geometry: the keys, and what stands in the files that they name.
 std::string mission_hash(const mission::MissionConfig& config, const mission::PreparedMission& mission) {
@@ -38,6 +39,8 @@ Json place_json(const mission::PlannedPlace& place) {
           {"no_foliage", paths.foliage},
           {"no_diffraction", paths.diffraction},
           {"most_reflections", paths.most_reflections},
+          {"clear_m", place.around.clear_m},
+          {"ground_top_m", place.around.ground_top_m},
           {"points_m", points}};
 }
 
@@ -54,8 +57,43 @@ mission::PlannedPlace place_of(const nlohmann::json& json) {
   place.paths.foliage = json.at("no_foliage");
   place.paths.diffraction = json.at("no_diffraction");
   place.paths.most_reflections = json.at("most_reflections");
+  place.around.clear_m = json.at("clear_m");
+  place.around.ground_top_m = json.at("ground_top_m");
   for (const auto& p : json.at("points_m")) segment.points_W.emplace_back(p.at(0), p.at(1), p.at(2));
   return place;
+}
+
+Json ranges_json(const gnss::RangeOmissions& ranges) {
+  const gnss::DelayOmissions& delays = ranges.delays;
+  return {{"ionosphere", delays.ionosphere},       {"ionosphere_difference", delays.ionosphere_difference},
+          {"troposphere", delays.troposphere},     {"troposphere_difference", delays.troposphere_difference},
+          {"ephemeris", delays.ephemeris},         {"bound_m", ranges.bound_m},
+          {"most_gain", or_null(ranges.most_gain)}};
+}
+
+/// Throws nlohmann's exceptions where something is missing or of another type.
+gnss::RangeOmissions ranges_of(const nlohmann::json& json) {
+  gnss::RangeOmissions ranges;
+  ranges.delays = {.ionosphere = json.at("ionosphere"),
+                   .ionosphere_difference = json.at("ionosphere_difference"),
+                   .troposphere = json.at("troposphere"),
+                   .troposphere_difference = json.at("troposphere_difference"),
+                   .ephemeris = json.at("ephemeris")};
+  ranges.bound_m = json.at("bound_m");
+  if (const auto& gain = json.at("most_gain"); !gain.is_null()) ranges.most_gain = gain;
+  return ranges;
+}
+
+/// What is left out beyond a bound of 0 has a tolerance that it was made for, and a finite gain to watch.
+bool sound(const Plan& plan) {
+  const gnss::RangeOmissions& ranges = plan.omissions.ranges;
+  if (!(ranges.bound_m >= 0.0) || !(ranges.most_gain >= 0.0)) return false;
+  if (ranges.bound_m > 0.0 && (plan.tolerances.empty() || !std::isfinite(ranges.most_gain))) return false;
+  for (const auto& [figure, tolerance] : plan.tolerances) {
+    const auto bound = plan.figure_bounds.find(figure);
+    if (!(tolerance > 0.0) || (bound != plan.figure_bounds.end() && !(bound->second <= tolerance))) return false;
+  }
+  return check_reached(plan.tolerances, "").ok() && plan.epoch_t_s.size() == plan.epoch_bound_m.size();
 }
 
 bool sound(const mission::PlannedPlace& place) {
@@ -77,8 +115,18 @@ bool fill(const nlohmann::json& json, Plan& plan) {
   plan.omissions.registration = out.at("registration");
   plan.omissions.maps = out.at("maps");
   plan.omissions.keyframes = out.at("keyframes");
+  plan.omissions.autonomy = out.at("autonomy");
+  plan.omissions.unkept_rays = out.at("unkept_rays");
   plan.omissions.corridor_until_s = out.at("corridor_until_s");
   for (const auto& place : out.at("corridor")) plan.omissions.corridor.push_back(place_of(place));
+  plan.omissions.ranges = ranges_of(out.at("ranges"));
+  for (const auto& asked : json.at("tolerances")) {
+    const std::string figure = asked.at("figure");
+    plan.tolerances[figure] = asked.at("tolerance");
+    plan.figure_bounds[figure] = asked.at("bound");
+  }
+  for (const auto& t : json.at("position_bounds").at("t_s")) plan.epoch_t_s.push_back(t);
+  for (const auto& bound : json.at("position_bounds").at("position_m")) plan.epoch_bound_m.push_back(bound);
   for (const auto& line : json.at("effects")) {
     PlannedEffect effect;
     effect.need.effect = line.at("effect");
@@ -86,6 +134,9 @@ bool fill(const nlohmann::json& json, Plan& plan) {
     for (const Verdict v : {Verdict::kNeeded, Verdict::kNotNeeded})
       if (verdict == canyon::name(v)) effect.need.verdict = v;
     effect.need.reason = line.at("reason");
+    if (const auto& bound = line.at("bound"); !bound.is_null()) effect.need.bound = bound;
+    effect.need.bound_unit = line.at("bound_unit");
+    for (const auto& [figure, move] : line.at("moves").items()) effect.moves[figure] = move;
     effect.segment = line.at("segment");
     effect.start_m = line.at("start_m");
     effect.end_m = line.at("end_m");
@@ -119,7 +170,7 @@ Json effects_json(const Plan& plan) {
   Json effects = Json::array();
   for (const PlannedEffect& effect : plan.effects) {
     const Need& need = effect.need;
-    const bool bounded = need.verdict == Verdict::kNotNeeded;
+    const bool left_out = need.verdict == Verdict::kNotNeeded, bounded = left_out || need.bound > 0.0;
     effects.push_back({{"effect", need.effect},
                        {"segment", effect.segment},
                        {"needed", need.verdict != Verdict::kNotNeeded},
@@ -127,11 +178,27 @@ Json effects_json(const Plan& plan) {
                        {"reason", need.reason},
                        {"bound", bounded ? Json(need.bound) : Json(nullptr)},
                        {"bound_unit", need.bound_unit},
-                       {"saved_cpu_s", bounded ? or_null(effect.saved_cpu_s) : Json(0.0)},
+                       {"moves", effect.moves},
+                       {"saved_cpu_s", left_out ? or_null(effect.saved_cpu_s) : Json(0.0)},
                        {"start_m", effect.start_m},
                        {"end_m", effect.end_m}});
   }
   return effects;
+}
+
+Json tolerances_json(const Plan& plan) {
+  Json out = Json::array();
+  for (const auto& [figure, tolerance] : plan.tolerances) {
+    const auto bound = plan.figure_bounds.find(figure);
+    out.push_back({{"figure", figure},
+                   {"tolerance", tolerance},
+                   {"bound", bound == plan.figure_bounds.end() ? 0.0 : bound->second}});
+  }
+  return out;
+}
+
+Json position_bounds_json(const Plan& plan) {
+  return {{"t_s", plan.epoch_t_s}, {"position_m", plan.epoch_bound_m}};
 }
 
 Json left_out_json(const Plan& plan) {
@@ -154,21 +221,30 @@ std::string plan_text(const Plan& plan, const mission::MissionConfig& config, co
                   {"scene_hash", mission.scene->hash()},
                   {"outputs", outputs},
                   {"half_width_m", plan.half_width_m},
+                  {"tolerances", tolerances_json(plan)},
+                  {"position_bounds", position_bounds_json(plan)},
                   {"effects", effects_json(plan)},
                   {"leave_out",
                    {{"registration", plan.omissions.registration},
                     {"maps", plan.omissions.maps},
                     {"keyframes", plan.omissions.keyframes},
+                    {"autonomy", plan.omissions.autonomy},
+                    {"unkept_rays", plan.omissions.unkept_rays},
+                    {"ranges", ranges_json(plan.omissions.ranges)},
                     {"corridor_until_s", plan.omissions.corridor_until_s},
                     {"corridor", corridor}}}};
   return json_text(json, 1) + "\n";
 }
 
 Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& config,
-                       const mission::PreparedMission& mission) {
+                       const mission::PreparedMission& mission, bool open_loop) {
   CANYON_TRY(const std::string text, read_text_file(path));
   CANYON_TRY(const nlohmann::json json, parse_json(text, path));
   const Error no_plan{.file = path, .what = "is no plan", .expected = "a file of canyon plan --write"};
+  if (json.is_object() && json_string(json, "kind") == kFormerKind)
+    return Error{.file = path,
+                 .what = std::string("is a plan of the form ") + kFormerKind + ", which knows no tolerances",
+                 .expected = std::string(kKind) + ": make it again with canyon plan --write"};
   if (!json.is_object() || json_string(json, "kind") != kKind) return no_plan;
   CANYON_TRY_STATUS(check(json, path, config, mission));
   Plan plan;
@@ -178,8 +254,14 @@ Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& co
     return no_plan;
   }
   const auto& corridor = plan.omissions.corridor;
-  if (!std::all_of(corridor.begin(), corridor.end(), sound) || !mission::can_leave_out(config, plan.omissions))
+  const auto sound_place = [](const mission::PlannedPlace& place) { return sound(place); };
+  if (!sound(plan) || !std::all_of(corridor.begin(), corridor.end(), sound_place) ||
+      !mission::can_leave_out(config, plan.omissions))
     return no_plan;
+  if (plan.omissions.autonomy && !open_loop)
+    return Error{.file = path,
+                 .what = "is a plan for an open loop, in which nobody drives",
+                 .expected = "--open-loop, or a plan made without it"};
   return plan;
 }
 

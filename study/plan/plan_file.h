@@ -12,6 +12,10 @@ namespace canyon::study {
 /// `effects` of `canyon plan --json` and of a plan file.
 nlohmann::ordered_json effects_json(const Plan& plan);
 
+/// `tolerances`: {figure, tolerance, bound} each, and `position_bounds`: {t_s, position_m}, epoch by epoch.
+nlohmann::ordered_json tolerances_json(const Plan& plan);
+nlohmann::ordered_json position_bounds_json(const Plan& plan);
+
 /// Of these what is left out: {effect, segment, reason} each.
 nlohmann::ordered_json left_out_json(const Plan& plan);
 
@@ -20,8 +24,9 @@ nlohmann::ordered_json left_out_json(const Plan& plan);
 std::string plan_text(const Plan& plan, const mission::MissionConfig& config, const mission::PreparedMission& mission);
 
 /// Reads it back for this mission. An Error, with file and line, for what is no plan; for one of another version,
-/// mission, fidelity or scene, and for one that leaves out what the mission reads.
+/// mission, fidelity or scene, for one that leaves out what the mission reads, and for one without an autonomy in a
+/// closed loop.
 Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& config,
-                       const mission::PreparedMission& mission);
+                       const mission::PreparedMission& mission, bool open_loop = false);
 
 }  // namespace canyon::study

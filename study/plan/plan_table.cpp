@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "canyon/core/math/median.h"
+
 namespace canyon::study {
 
 namespace {
@@ -24,10 +26,12 @@ struct Row {
   bool measured = true;
 };
 
-std::vector<Row> rows(const Plan& plan, Verdict verdict) {
+/// Those left out with an effect, or all others of a verdict.
+std::vector<Row> rows(const Plan& plan, Verdict verdict, bool with_effect) {
   std::vector<Row> out;
   for (const PlannedEffect& line : plan.effects) {
-    if (line.need.verdict != verdict) continue;
+    const bool acts = line.need.verdict == Verdict::kNotNeeded && line.need.bound > 0.0;
+    if (line.need.verdict != verdict || acts != with_effect) continue;
     auto row = std::find_if(out.begin(), out.end(), [&](const Row& r) { return r.effect == line.need.effect; });
     if (row == out.end()) {
       out.push_back(
@@ -51,16 +55,32 @@ std::vector<Row> rows(const Plan& plan, Verdict verdict) {
   return out;
 }
 
-void add_rows(const Plan& plan, Verdict verdict, const char* title, std::string& out) {
-  const std::vector<Row> found = rows(plan, verdict);
+void add_rows(const Plan& plan, Verdict verdict, const char* title, std::string& out, bool with_effect = false) {
+  const std::vector<Row> found = rows(plan, verdict, with_effect);
   if (found.empty()) return;
   const bool left_out = verdict == Verdict::kNotNeeded;
   out += text("%-30s %-14s %9s  %s\n", title, "where", left_out ? "saves" : "", "why");
   for (const Row& row : found) {
     const std::string saved = !left_out ? "" : !row.measured ? "-" : text("%.2f s", row.saved_s);
-    out += text("  %-28s %-14s %9s  ", row.effect.c_str(), row.where.c_str(), saved.c_str()) + row.reason + "\n";
+    out += text("  %-28s %-14s %9s  ", row.effect.c_str(), row.where.c_str(), saved.c_str());
+    if (with_effect) out += text("a range by %.2g %s at most: ", row.bound, row.unit.c_str());
+    out += row.reason + "\n";
   }
   out += "\n";
+}
+
+/// What the tolerances come to.
+std::string tolerances_text(const Plan& plan) {
+  std::string out;
+  for (const auto& [figure, tolerance] : plan.tolerances) {
+    const auto bound = plan.figure_bounds.find(figure);
+    out += text("%s moves by %.3g at most, the tolerance is %.3g.\n", figure.c_str(),
+                bound == plan.figure_bounds.end() ? 0.0 : bound->second, tolerance);
+  }
+  if (!plan.epoch_bound_m.empty())
+    out += text("The estimate of position moves by %.3g m at most in the median epoch, by %.3g m in the worst.\n",
+                median(plan.epoch_bound_m), *std::max_element(plan.epoch_bound_m.begin(), plan.epoch_bound_m.end()));
+  return out + (out.empty() ? "" : "\n");
 }
 
 std::string outputs_text(const Plan& plan) {
@@ -75,8 +95,10 @@ std::string plan_table(const Plan& plan, const PredictedCost& cost, double nomin
   std::string out =
       "Plan for " + plan.mission + ", fidelity " + plan.fidelity + ". Read will be: " + outputs_text(plan) + ".\n\n";
   add_rows(plan, Verdict::kNotNeeded, "Left out, with no effect at all", out);
+  add_rows(plan, Verdict::kNotNeeded, "Left out, as it acts by less", out, true);
   add_rows(plan, Verdict::kNeeded, "Needed", out);
   add_rows(plan, Verdict::kUndecidable, "Kept, as it may act", out);
+  out += tolerances_text(plan);
   if (std::isfinite(cost.full_s))
     out +=
         text("CPU time of the nominal mission (%.0f s), predicted: %.1f s in full, %.1f s as planned (%.2f x less).\n",
@@ -90,13 +112,19 @@ std::string plan_table(const Plan& plan, const PredictedCost& cost, double nomin
 }
 
 std::string verification_table(const Verification& verification) {
-  std::string out = text("%-32s %8s %11s  %s\n", "Verified: left out", "epochs", "violations", "largest difference");
+  std::string out =
+      text("%-44s %8s %11s  %s\n", "Verified: left out", "epochs", "violations", "largest difference, and the bound");
   for (const VerifiedEffect& effect : verification.effects)
-    out += text("  %-30s %8lld %11lld  %s\n", effect.effect.c_str(), static_cast<long long>(effect.epochs),
-                static_cast<long long>(effect.violations),
-                effect.violations == 0 && effect.bound <= 0.0 ? "none, to the bit"
-                                                              : text("%g", effect.largest_difference).c_str());
+    out +=
+        text("  %-42s %8lld %11lld  %s\n", effect.effect.c_str(), static_cast<long long>(effect.epochs),
+             static_cast<long long>(effect.violations),
+             (effect.bound > 0.0 ? text("%.3g %s of %.3g", effect.largest_difference, effect.unit.c_str(), effect.bound)
+              : effect.violations == 0 ? std::string("none, to the bit")
+                                       : text("%g", effect.largest_difference))
+                 .c_str());
   if (verification.effects.empty()) out += "  nothing is left out\n";
+  if (std::isfinite(verification.tightness()))
+    out += text("Tightness, the median of bound / largest difference: %.1f\n", verification.tightness());
   return out;
 }
 

@@ -7,8 +7,9 @@
 #include "canyon/core/math/median.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/gnss/paths/need/path_question.h"
-#include "canyon/study/plan/replay.h"
-#include "canyon/study/plan/run_pair.h"
+#include "canyon/study/plan/replay/replay.h"
+#include "canyon/study/plan/replay/run_pair.h"
+#include "canyon/study/plan/verify_ranges.h"
 
 namespace canyon::study {
 
@@ -84,7 +85,9 @@ Status verify_places(const mission::MissionConfig& config, const mission::Prepar
 Status verify_unread(mission::MissionConfig config, const mission::PreparedMission& mission, const Tape& tape,
                      const Plan& plan, std::int64_t epochs, Verification& verification) {
   mission::Omissions unread = plan.omissions;
-  unread.corridor.clear();
+  if (!unread.unkept_rays) unread.corridor.clear();
+  for (mission::PlannedPlace& place : unread.corridor) place.paths = {};
+  if (unread.ranges.bound_m > 0.0) unread.ranges = {};
   if (!unread.any()) return Ok{};
   VerifiedEffect found{.effect = kUnread};
   while (found.epochs < epochs) {
@@ -132,6 +135,7 @@ Result<Verification> verify_plan(const mission::MissionConfig& config, const mis
   Verification verification;
   CANYON_TRY_STATUS(verify_unread(config, mission, tape, plan, epochs, verification));
   CANYON_TRY_STATUS(verify_places(config, mission, tape, plan, epochs, verification));
+  CANYON_TRY_STATUS(verify_ranges(config, mission, tape, plan, epochs, verification));
   return verification;
 }
 

@@ -11,10 +11,11 @@ namespace canyon::study {
 
 /// What was found of one effect that a plan leaves out.
 struct VerifiedEffect {
-  std::string effect;
+  std::string effect{};
   std::int64_t epochs = 0;      ///< at which it was left out and compared
   std::int64_t violations = 0;  ///< of those, with a difference beyond the bound
-  double bound = 0.0;
+  std::string unit{};           ///< of bound and difference
+  double bound = 0.0;           ///< the largest that was promised at one of them
   double largest_difference = 0.0;
 };
 
@@ -27,8 +28,12 @@ struct Verification {
 };
 
 /// Replays the tape with and without each omission and counts every difference beyond its bound:
-/// - what cannot act: `epochs` epochs of the GNSS sensor, anywhere in the corridor (study/plan/replay.h), without each
+/// - what cannot act: `epochs` epochs of the GNSS sensor, anywhere in the corridor (study/plan/replay/replay.h),
+/// without each
 ///   effect by itself and without all of them;
+/// - what acts by less than a tolerance: the same epochs, each range in its own unit and each fix, and whole runs on
+/// the
+///   tape, each estimate of position (study/plan/verify_ranges.h);
 /// - what nobody reads: whole runs on the tape, of the mission's seed and those that follow, until `epochs` rows are
 ///   compared.
 Result<Verification> verify_plan(const mission::MissionConfig& config, const mission::PreparedMission& mission,

@@ -27,7 +27,7 @@ void ObstacleHeights::each_square(const Eigen::Vector2d& low, const Eigen::Vecto
       visit(squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)]);
 }
 
-ObstacleHeights::ObstacleHeights(const scene::Scene& scene) {
+ObstacleHeights::ObstacleHeights(const scene::Scene& scene, const std::vector<scene::SweptRoom>& moving) {
   const scene::Mesh& mesh = scene.mesh();
   if (mesh.triangles.empty()) return;
   const Eigen::Vector3d size = scene.extent().max - scene.extent().min;
@@ -55,6 +55,28 @@ ObstacleHeights::ObstacleHeights(const scene::Scene& scene) {
         square.solid_top_m = std::max(square.solid_top_m, top_m);
       }
     });
+  }
+  for (const scene::SweptRoom& room : moving) add(room);
+}
+
+void ObstacleHeights::add(const scene::SweptRoom& room) {
+  const Eigen::AlignedBox2d around = room.around();
+  // Square by square, so that a way across the town does not fill the rectangle around it.
+  RouteSegment way;
+  way.points_W = {{room.from_W.x(), room.from_W.y(), 0.0}, {room.to_W.x(), room.to_W.y(), 0.0}};
+  const auto index = [&](double x, double from, int count) {
+    return std::clamp(static_cast<int>(std::floor((x - from) / cell_m_)), 0, count - 1);
+  };
+  const double wide_m = room.radius_m + std::sqrt(0.5) * cell_m_;
+  for (int y = index(around.min().y(), origin_.y(), rows_); y <= index(around.max().y(), origin_.y(), rows_); ++y) {
+    for (int x = index(around.min().x(), origin_.x(), columns_); x <= index(around.max().x(), origin_.x(), columns_);
+         ++x) {
+      const Eigen::Vector2d middle = origin_ + cell_m_ * Eigen::Vector2d(x + 0.5, y + 0.5);
+      if (way.distance_m(middle) > wide_m) continue;
+      Square& square =
+          squares_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
+      square.solid_top_m = std::max(square.solid_top_m, static_cast<float>(room.top_m + 1e-3));
+    }
   }
 }
 

@@ -5,15 +5,17 @@
 #include <Eigen/Core>
 
 #include "canyon/core/motion/route_segment.h"
+#include "canyon/scene/city/traffic.h"
 #include "canyon/scene/scene.h"
 
 namespace canyon::gnss {
 
-/// How high the static scene reaches, by squares of the ground: an upper bound of the horizon of any place in it, made
-/// without a ray. Trees are left out, as they do not block (SceneAt::blocked_towards).
+/// How high the scene reaches, what moves in it wherever it may come, by squares of the ground: an upper bound of the
+/// horizon of any place in it, made without a ray. Trees are left out, as they do not block (SceneAt::blocked_towards).
 class ObstacleHeights {
  public:
-  explicit ObstacleHeights(const scene::Scene& scene);
+  /// `moving`: where things may stand that move.
+  explicit ObstacleHeights(const scene::Scene& scene, const std::vector<scene::SweptRoom>& moving = {});
 
   /// No part of the static scene stands higher than this above W's horizontal, seen from any point that lies
   /// `above_m` or more over the segment's lower end and not below the ground; pi / 2 where nothing can be said: a
@@ -32,6 +34,7 @@ class ObstacleHeights {
     float slope = 0.0F;  ///< steepest of the terrain's triangles that touch it, rise over run
     bool terrain() const { return terrain_top_m > -1e29F; }
   };
+  void add(const scene::SweptRoom& room);
   template <class Visit>
   void each_square(const Eigen::Vector2d& low, const Eigen::Vector2d& high, const Visit& visit);
 

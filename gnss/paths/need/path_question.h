@@ -18,7 +18,6 @@ struct PathQuestion {
   double antenna_reach_m = 0.0;  ///< |antenna in B|
   double antenna_above_m = 0.0;  ///< least height of the antenna over B, however the body is tilted
   const scene::Scene& scene;
-  bool things_move = false;  ///< something moves in the scene beside the vehicle
   const SkySpan& sky;
   const ObstacleHeights& heights;
   PathParameters limits;

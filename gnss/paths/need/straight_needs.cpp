@@ -23,10 +23,6 @@ std::string text(const char* format, Values... values) {
 
 Need occlusion_need(const PathQuestion& q) {
   Need need{.effect = kOcclusion, .reason = "something may stand before a satellite"};
-  if (q.things_move) {
-    need.reason = "things move in the scene";
-    return need;
-  }
   // The ground falls away from W's horizontal, whose raster this is.
   const double horizon_rad = q.heights.horizon_rad(q.segment, q.antenna_above_m, q.antenna_reach_m);
   need.reason = horizon_rad < 0.49 * kPi

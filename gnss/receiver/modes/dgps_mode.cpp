@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/atmosphere/niell.h"
@@ -36,11 +37,11 @@ class Dgps final : public ReceiverMode {
   Correction correction(const CorrectionInput& in) const override {
     const double elevation_rad = in.true_view.elevation_rad;
     RangeDelays residual;
-    if (at_.ionosphere)
+    if (at_.ionosphere && !in.leave_out.ionosphere_difference)
       residual.ionosphere_m = 1e-3 * p_.ionosphere_gradient_mm_per_km * p_.baseline_km *
                               ionosphere_.at(in.sv.entity(), in.t) * single_layer_obliquity(elevation_rad) *
                               in.ionosphere_from_l1;
-    if (at_.troposphere)
+    if (at_.troposphere && !in.leave_out.troposphere_difference)
       residual.troposphere_m = 1e-3 * p_.troposphere_gradient_mm_per_km * p_.baseline_km * troposphere_.at(0, in.t) *
                                niell_wet(elevation_rad, in.true_view.receiver.lat_rad);
     residual.ephemeris_m = in.acting.ephemeris_m * 1e3 * p_.baseline_km / in.range_m;
@@ -62,6 +63,41 @@ class Dgps final : public ReceiverMode {
   GaussMarkov ionosphere_, troposphere_, base_;
 };
 
+// What satellites do at most, seen from the ground: no range of GPS, Galileo, GLONASS, BeiDou or QZSS changes faster
+// (speed times the sine of the nadir angle, and the radial speed of an eccentric orbit), none is shorter.
+constexpr double kMostRangeRate_m_s = 1100.0;
+constexpr double kShortestRange_m = 1.8e7;
+// Of ranges in double precision, from measuring to correcting: some ten sums of 3e7 m.
+constexpr double kRounding_m = 1e-7;
+// First signals lie at 1561 MHz (B1I) and above.
+constexpr double kMostFromL1 = 1.02;
+
+std::string text(const char* format, double a, double b) {
+  char out[160];
+  std::snprintf(out, sizeof out, format, a, b);
+  return out;
+}
+
+/// A delay that is subtracted as it acts does not cancel to the bit: it makes the receiver believe in another time of
+/// transmission, delay / c earlier, and so in a satellite that stands elsewhere by its speed times that.
+Need cancelled(const char* effect, double delay_m) {
+  return {.effect = effect,
+          .verdict = Verdict::kNotNeeded,
+          .bound = delay_m * kMostRangeRate_m_s / kSpeedOfLight + kRounding_m,
+          .bound_unit = "m",
+          .reason = text("the base sees it too: of %.1f m what the satellite moves by meanwhile is left, at %g m/s",
+                         delay_m, kMostRangeRate_m_s)};
+}
+
+Need difference(const char* effect, double vertical_sigma_m, double mapping, double baseline_km) {
+  return {.effect = effect,
+          .verdict = Verdict::kNotNeeded,
+          .bound = GaussMarkov::kMostSigmas * vertical_sigma_m * mapping + kRounding_m,
+          .bound_unit = "m",
+          .reason = text("at %g km from the base it is %.2g m (1-sigma) for the lowest satellite", baseline_km,
+                         vertical_sigma_m * mapping)};
+}
+
 }  // namespace
 
 void visit(FieldVisitor& f, DgpsParameters& c) {
@@ -72,6 +108,28 @@ void visit(FieldVisitor& f, DgpsParameters& c) {
            "dgps: 1-sigma of the difference of the zenith wet delay to the base");
   f.number("base_error_scale", c.base_error_scale, {0.0, 100.0},
            "dgps: base station's own error, 1 = ground accuracy designator B");
+}
+
+std::vector<Need> dgps_needs(const ModelParameters& own, const DelayQuestion& q) {
+  const auto& p = own.get<DgpsParameters>();
+  const double km = p.baseline_km;
+  std::vector<Need> needs;
+  if (q.ionosphere_m > 0.0) needs.push_back(cancelled(kIonosphere, *q.ionosphere_m));
+  if (q.ionosphere_m != 0.0)
+    needs.push_back(difference(kIonosphereDifference, 1e-3 * p.ionosphere_gradient_mm_per_km * km,
+                               kMostFromL1 * single_layer_obliquity(q.lowest_elevation_rad), km));
+  if (q.troposphere_m > 0.0) needs.push_back(cancelled(kTroposphere, *q.troposphere_m));
+  if (q.troposphere_m != 0.0)
+    needs.push_back(difference(kTroposphereDifference, 1e-3 * p.troposphere_gradient_mm_per_km * km,
+                               niell_wet(q.lowest_elevation_rad, q.lat_rad), km));
+  if (q.ephemeris_m > 0.0) {
+    Need need = cancelled(kEphemeris, *q.ephemeris_m);
+    const double left_m = *q.ephemeris_m * 1e3 * km / kShortestRange_m;
+    need.bound += left_m;
+    need.reason = text("of %.1f m at most the base, %g km away, leaves the part baseline / range", *q.ephemeris_m, km);
+    needs.push_back(std::move(need));
+  }
+  return needs;
 }
 
 std::unique_ptr<ReceiverMode> make_dgps(const ModelParameters& own, const ReceiverModeSetup& at) {

@@ -112,7 +112,7 @@ void snapshot_fix(const PositionSolution& solution, FixStatus status, double max
 }  // namespace
 
 GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
-                    std::vector<Correction>& corrections) {
+                    std::vector<Correction>& corrections, PositionSolution* last) {
   auto& observations = epoch.observations;
   CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
                " observations");
@@ -151,7 +151,18 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
     filtered_fix(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
   else if (solution.ok)
     snapshot_fix(solution, receiver.mode.status(), receiver.max_gdop, rates, epoch, fix);
+  if (last != nullptr) *last = std::move(solution);
   return fix;
+}
+
+bool decisions_hold(const PositionSolution& solution, const GnssEpoch& epoch, double bound_m, double max_gdop) {
+  if (!solution.ok || !(1.01 * solution.dop.gdop < max_gdop)) return false;
+  const IntegrityTest& test = solution.integrity;
+  if (test.status == IntegrityTest::Status::kNotTested) return true;
+  if (test.status != IntegrityTest::Status::kPassed) return false;
+  double weights = 0.0;
+  for (const GnssObservation& o : epoch.observations) weights += 1.0 / (o.sigma_m * o.sigma_m);
+  return std::sqrt(test.statistic) + bound_m * std::sqrt(weights) < 0.99 * std::sqrt(test.threshold);
 }
 
 }  // namespace canyon::gnss

@@ -25,11 +25,18 @@ struct ReceiverParts {
 
 /// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,
 /// clock, correction, sigma, used) and solves them. `inputs` runs parallel to epoch.observations; its receivers_view is
-/// filled in. `corrections` gets what was subtracted. The fix carries the time `t` and not the receiver clock's reading
-/// epoch.t: a receiver corrects its own time tag with the clock that it solves. With a filter the fix is the filter's:
-/// it begins with a least squares of its own, and once it runs it is given all satellites, few or many, whatever the
-/// epoch's own solution made of them, and tests each against what it expects.
+/// filled in. `corrections` gets what was subtracted, `last` the epoch's own least squares. The fix carries the time
+/// `t` and not the receiver clock's reading epoch.t: a receiver corrects its own time tag with the clock that it
+/// solves. With a filter the fix is the filter's: it begins with a least squares of its own, and once it runs it is
+/// given all satellites, few or many, whatever the epoch's own solution made of them, and tests each against what it
+/// expects.
 GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
-                    std::vector<Correction>& corrections);
+                    std::vector<Correction>& corrections, PositionSolution* last = nullptr);
+
+/// Whether ranges that move by up to bound_m each leave every decision of this epoch as it is: which satellites are
+/// used, and that there is a fix. The square root of the chi-square statistic moves by bound_m sqrt(sum 1 / sigma^2) at
+/// most, since a residual's projection shortens it; what weights and geometry change on the way from a poorer guess
+/// is within 1 % of it. An epoch that has been repaired by exclusions, or has no fix, never holds.
+bool decisions_hold(const PositionSolution& solution, const GnssEpoch& epoch, double bound_m, double max_gdop);
 
 }  // namespace canyon::gnss

@@ -30,6 +30,17 @@ class DgpsPaper final : public ReceiverMode {
   bool corrects_atmosphere() const override { return false; }
 };
 
+/// What acting() takes away before it acts.
+Need taken_away(const char* effect) {
+  return {.effect = effect, .verdict = Verdict::kNotNeeded, .bound_unit = "m", .reason = "this mode removes it whole"};
+}
+std::vector<Need> dual_paper_needs(const ModelParameters&, const DelayQuestion&) {
+  return {taken_away(kIonosphere)};
+}
+std::vector<Need> dgps_paper_needs(const ModelParameters&, const DelayQuestion&) {
+  return {taken_away(kIonosphere), taken_away(kEphemeris)};
+}
+
 std::unique_ptr<ReceiverMode> make_single_uncorrected(const ModelParameters&, const ReceiverModeSetup&) {
   return std::make_unique<SingleUncorrected>();
 }
@@ -50,11 +61,15 @@ constexpr ModelRow<MakeReceiverMode> kModes[] = {
      "two frequencies: ionosphere-free combination with its noise, standard troposphere subtracted (residual "
      "atmosphere)",
      parameters_of<SingleFrequencyParameters>},
-    {"dual_paper", make_dual_paper, "the paper's dual band: no ionosphere, the rest acts in full (raw atmosphere)"},
-    {"dgps", make_dgps,
+    {"dual_paper",
+     {make_dual_paper, dual_paper_needs},
+     "the paper's dual band: no ionosphere, the rest acts in full (raw atmosphere)"},
+    {"dgps",
+     {make_dgps, dgps_needs},
      "differential: what the base station sees is subtracted, residuals grow with the baseline (residual atmosphere)",
      parameters_of<DgpsParameters>},
-    {"dgps_paper", make_dgps_paper,
+    {"dgps_paper",
+     {make_dgps_paper, dgps_paper_needs},
      "the paper's differential mode: only the troposphere acts, in full (raw atmosphere)"},
 };
 

@@ -9,6 +9,7 @@
 #include "canyon/core/model_table.h"
 #include "canyon/gnss/atmosphere/ionosphere.h"
 #include "canyon/gnss/atmosphere/troposphere.h"
+#include "canyon/gnss/receiver/modes/delay_omissions.h"
 
 namespace canyon::gnss {
 
@@ -48,6 +49,7 @@ struct CorrectionInput {
   RangeDelays acting;                      ///< what acts on the rover's range, at its own carrier
   double ionosphere_from_l1 = 1.0;         ///< delay there per delay at L1: (L1 / carrier)^2
   std::optional<FrequencyDifference> two;  ///< none: only the first signal is tracked
+  DelayOmissions leave_out;
 };
 
 /// Mode of operation: which errors act on the range, and which of them the receiver removes.
@@ -71,7 +73,9 @@ struct ReceiverModeSetup {
   KlobucharCoefficients klobuchar{};
 };
 
-using MakeReceiverMode = std::unique_ptr<ReceiverMode>(const ModelParameters& own, const ReceiverModeSetup& at);
+using MakeReceiverMode =
+    MakerAndNeed<std::unique_ptr<ReceiverMode>(const ModelParameters& own, const ReceiverModeSetup& at),
+                 StateDelayNeeds>;
 ModelTable<MakeReceiverMode> receiver_modes();
 
 /// Key of what is subtracted for the ionosphere with one frequency: in mode single, and in mode dual for a satellite
@@ -97,5 +101,6 @@ void visit(FieldVisitor& f, DgpsParameters& c);
 std::unique_ptr<ReceiverMode> make_single(const ModelParameters& own, const ReceiverModeSetup& at);
 std::unique_ptr<ReceiverMode> make_dual(const ModelParameters& own, const ReceiverModeSetup& at);
 std::unique_ptr<ReceiverMode> make_dgps(const ModelParameters& own, const ReceiverModeSetup& at);
+StateDelayNeeds dgps_needs;
 
 }  // namespace canyon::gnss

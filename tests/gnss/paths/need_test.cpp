@@ -93,7 +93,6 @@ struct Asked {
             .antenna_reach_m = 1.3,
             .antenna_above_m = 1.0,
             .scene = *scene,
-            .things_move = false,
             .sky = sky,
             .heights = heights,
             .limits = limits};
@@ -192,11 +191,21 @@ TEST(PathNeeds, AMaskLoweredByFiveDegreesFlipsTheVerdict) {
   }
 }
 
-TEST(PathNeeds, ThingsThatMoveMayHideWhatever) {
+// A bus of 3 m beside a mask of 10 degrees hides nothing from 30 m away on; nearer it may.
+TEST(PathNeeds, ThingsThatMoveCountWhereTheyMayCome) {
   const Asked asked(Field{}, corridor({0, 0}));
-  PathQuestion question = asked.question();
-  question.things_move = true;
-  EXPECT_EQ(specular_needs(0, question)[0].verdict, Verdict::kUndecidable);
+  for (const double away_m : {12.0, 80.0}) {
+    const std::vector<scene::SweptRoom> bus{{{-150.0, away_m}, {150.0, away_m}, 6.3, 6.8}};
+    const ObstacleHeights heights(*asked.scene, bus);
+    const PathQuestion question{.segment = asked.segment,
+                                .antenna_reach_m = 1.3,
+                                .antenna_above_m = 1.0,
+                                .scene = *asked.scene,
+                                .sky = asked.sky,
+                                .heights = heights,
+                                .limits = asked.limits};
+    EXPECT_EQ(specular_needs(0, question)[0].verdict, away_m < 50.0 ? Verdict::kUndecidable : Verdict::kNotNeeded);
+  }
 }
 
 // Fields with a few houses: wherever the antenna is in the piece and whichever satellite is looked at, the search in

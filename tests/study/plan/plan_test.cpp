@@ -7,51 +7,21 @@
 #include "canyon/mission/route_tape.h"
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/plan/readers.h"
-#include "canyon/study/plan/run_pair.h"
+#include "canyon/study/plan/replay/run_pair.h"
 #include "canyon/study/plan/verify.h"
-#include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/study/plan/planned.h"
 #include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::study {
 namespace {
 
 using mission::testing::RecordedRun;
-using mission::testing::scenes;
-using mission::testing::short_config;
+using testing::kDriving;
+using testing::Planned;
 
 constexpr const char* kRegistered = "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"gicp\"\n";
 constexpr const char* kEmpty =
     "[time]\nlimit_s = 6.0\n[scene]\nempty = true\n[[autonomy.waypoint]]\nname = \"1\"\np_m = [213.9, 109.9]\n";
-
-/// A mission that has been prepared, and a plan for it.
-struct Planned {
-  Planned(const std::string& fidelity, const std::string& extra, const std::vector<Output>& outputs)
-      : config(short_config(fidelity, fidelity, extra)),
-        mission(*mission::prepare(config, scenes())),
-        plan(*make_plan(config, mission, {.fidelity = fidelity, .outputs = outputs})) {}
-
-  Verdict verdict(const std::string& effect) const {
-    for (const PlannedEffect& line : plan.effects)
-      if (line.need.effect == effect) return line.need.verdict;
-    ADD_FAILURE() << effect;
-    return Verdict::kUndecidable;
-  }
-  RecordedRun drive(bool as_planned) const {
-    RecordedRun run;
-    const auto used = as_planned ? mission::without(config, plan.omissions) : config;
-    auto record = mission::run_mission(
-        used, mission, nullptr,
-        {.tape = nullptr, .recorder = &run, .autonomy = nullptr, .omissions = as_planned ? &plan.omissions : nullptr});
-    static_cast<mission::RunRecord&>(run) = *std::move(record);
-    return run;
-  }
-
-  mission::MissionConfig config;
-  mission::PreparedMission mission;
-  Plan plan;
-};
-
-const std::vector<Output> kDriving{Output::kOutcome, Output::kPosition};
 
 TEST(Readers, RegistrationIsReadByMapsAndByAnAutonomyThatTakesItsPoses) {
   EXPECT_EQ(Planned("low", kRegistered, kDriving).verdict(kRegistration), Verdict::kNotNeeded);
@@ -87,7 +57,8 @@ TEST(Plan, WhatNobodyReadsChangesNoBitOfTheRestAndIsNotMade) {
     EXPECT_EQ(less.counters.at(made), 0) << made;
   }
   EXPECT_TRUE(less.prior_map.empty());
-  EXPECT_EQ(full.counters.at("lidar_rays"), less.counters.at("lidar_rays")) << "the autonomy looks";
+  EXPECT_EQ(full.counters.at("lidar_scans"), less.counters.at("lidar_scans")) << "the autonomy looks";
+  EXPECT_LT(less.counters.at("lidar_returns"), full.counters.at("lidar_returns")) << "but keeps what is near";
 }
 
 TEST(Plan, AnOpenFieldTracesNoRayAndIndexesNothing) {
@@ -100,6 +71,45 @@ TEST(Plan, AnOpenFieldTracesNoRayAndIndexesNothing) {
   for (std::size_t i = 0; i < full.nav.size(); ++i)
     EXPECT_EQ(full.nav[i].estimate.X_WB.p, less.nav[i].estimate.X_WB.p) << i;
   EXPECT_THAT(less.warnings, ::testing::Not(::testing::Contains(::testing::HasSubstr("corridor"))));
+}
+
+TEST(Plan, InAnOpenLoopNobodyReadsWhatTheAutonomySees) {
+  const Planned planned("high", kRegistered, {Output::kPosition}, true);
+  EXPECT_EQ(planned.verdict(kAutonomy), Verdict::kNotNeeded);
+  EXPECT_EQ(planned.verdict(kScans), Verdict::kNotNeeded);
+  const auto tape = mission::drive_route(planned.config, planned.mission);
+  ASSERT_TRUE(tape.ok());
+  const RecordedRun full = planned.drive(false, &*tape), less = planned.drive(true, &*tape);
+  EXPECT_GT(full.counters.at("lidar_rays"), 0);
+  EXPECT_EQ(less.counters.at("lidar_rays"), 0);
+  ASSERT_EQ(full.nav.size(), less.nav.size());
+  for (std::size_t i = 0; i < full.nav.size(); ++i)
+    EXPECT_EQ(full.nav[i].estimate.X_WB.p, less.nav[i].estimate.X_WB.p) << i;
+  EXPECT_EQ(Planned("high", kRegistered, kDriving, true).verdict(kScans), Verdict::kNeeded) << "somebody asks";
+}
+
+TEST(Plan, InAnOpenFieldShotsUpwardsAreNotFired) {
+  const Planned planned("high", kEmpty, kDriving);
+  const RecordedRun full = planned.drive(false), less = planned.drive(true);
+  EXPECT_LT(less.counters.at("lidar_rays"), 0.7 * static_cast<double>(full.counters.at("lidar_rays")));
+  ASSERT_EQ(full.nav.size(), less.nav.size());
+  for (std::size_t i = 0; i < full.nav.size(); ++i)
+    EXPECT_EQ(full.nav[i].command.curvature_1_m, less.nav[i].command.curvature_1_m) << i;
+}
+
+// In a dense quarter nearly all may act: what is left out there would be a mistake of the bounds.
+TEST(Plan, InADenseQuarterNineTenthsOfThePathEffectsAreKept) {
+  const Planned planned("high", "[time]\nlimit_s = 6.0\n", kDriving);
+  double kept_m = 0.0, all_m = 0.0;
+  int effects = 0;
+  for (const PlannedEffect& line : planned.plan.effects) {
+    if (line.whole_run()) continue;
+    all_m += line.end_m - line.start_m;
+    kept_m += line.need.verdict == Verdict::kNotNeeded ? 0.0 : line.end_m - line.start_m;
+    ++effects;
+  }
+  EXPECT_GE(effects, 5);
+  EXPECT_GE(kept_m, 0.9 * all_m);
 }
 
 TEST(Plan, AVehicleBesideTheCorridorGetsEverythingBack) {
@@ -134,7 +144,7 @@ TEST(Verify, CountsWhatIsLeftOutWrongly) {
     everywhere.low_m = -100.0;
     everywhere.high_m = 200.0;
     wrong.omissions.corridor = {
-        {everywhere, {.occlusion = true, .foliage = true, .diffraction = true, .most_reflections = 0}}};
+        {everywhere, {.occlusion = true, .foliage = true, .diffraction = true, .most_reflections = 0}, {}}};
     const auto found = verify_plan(planned.config, planned.mission, *tape, wrong, 60);
     ASSERT_TRUE(found.ok());
     EXPECT_GT(found->violations(), 0) << effect;
@@ -190,8 +200,16 @@ TEST_F(PlanFileTest, OfAnotherMissionSceneOrVersionIsRefused) {
               ::testing::StartsWith(": is a plan for another scene, expected one for the scene of this mission ("));
   EXPECT_THAT(refusal(with("\"version\": \"", "\"version\": \"9."), planned_.config),
               ::testing::StartsWith(": is a plan of canyon 9."));
+  EXPECT_EQ(
+      refusal(with("canyon-plan-2", "canyon-plan-1"), planned_.config),
+      ": is a plan of the form canyon-plan-1, which knows no tolerances, expected canyon-plan-2: make it again with "
+      "canyon plan --write");
+  EXPECT_EQ(refusal(with("\"autonomy\": false", "\"autonomy\": true"), planned_.config),
+            ": is a plan for an open loop, in which nobody drives, expected --open-loop, or a plan made without it");
   EXPECT_EQ(refusal("{}", planned_.config), ": is no plan, expected a file of canyon plan --write");
-  for (const auto& [from, to] : {std::pair("\"half_width_m\"", "\"width\""), std::pair("\"outcome\"", "\"weather\"")})
+  for (const auto& [from, to] :
+       {std::pair("\"half_width_m\"", "\"width\""), std::pair("\"bound_m\": 0.0", "\"bound_m\": 0.1"),
+        std::pair("\"tolerances\": [", "\"tolerances\": [7"), std::pair("\"outcome\"", "\"weather\"")})
     EXPECT_EQ(refusal(with(from, to), planned_.config), ": is no plan, expected a file of canyon plan --write") << to;
 }
 

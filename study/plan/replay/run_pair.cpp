@@ -1,4 +1,4 @@
-#include "canyon/study/plan/run_pair.h"
+#include "canyon/study/plan/replay/run_pair.h"
 
 #include <algorithm>
 #include <cstring>
@@ -33,11 +33,15 @@ bool same(const Pose& a, const Pose& b) {
   return same(a.p, b.p) && same(a.R.coeffs(), b.R.coeffs());
 }
 
+bool same_command(const mission::NavRow& a, const mission::NavRow& b) {
+  return a.command.speed_m_s == b.command.speed_m_s && a.command.curvature_1_m == b.command.curvature_1_m &&
+         a.waypoint == b.waypoint && a.state == b.state;
+}
+
 bool same(const mission::NavRow& a, const mission::NavRow& b) {
   return a.t == b.t && same(a.X_WB_true, b.X_WB_true) && a.true_speed_m_s == b.true_speed_m_s &&
          same(a.estimate.X_WB, b.estimate.X_WB) && same(a.estimate.v_WB_W, b.estimate.v_WB_W) &&
-         same(a.estimate.pose_covariance, b.estimate.pose_covariance) && a.command.speed_m_s == b.command.speed_m_s &&
-         a.command.curvature_1_m == b.command.curvature_1_m && a.waypoint == b.waypoint && a.state == b.state;
+         same(a.estimate.pose_covariance, b.estimate.pose_covariance);
 }
 
 bool same(const GnssFix& a, const GnssFix& b) {
@@ -45,12 +49,12 @@ bool same(const GnssFix& a, const GnssFix& b) {
          a.satellites == b.satellites;
 }
 
-template <class Row>
-void compare(const std::vector<Row>& a, const std::vector<Row>& b, RunPair& pair) {
+template <class Row, class Same>
+void compare(const std::vector<Row>& a, const std::vector<Row>& b, const Same& equal, RunPair& pair) {
   const std::size_t both = std::min(a.size(), b.size()), all = std::max(a.size(), b.size());
   pair.epochs += static_cast<std::int64_t>(all);
   pair.violations += static_cast<std::int64_t>(all - both);
-  for (std::size_t i = 0; i < both; ++i) pair.violations += same(a[i], b[i]) ? 0 : 1;
+  for (std::size_t i = 0; i < both; ++i) pair.violations += equal(a[i], b[i]) ? 0 : 1;
 }
 
 }  // namespace
@@ -69,8 +73,18 @@ Result<RunPair> drive_pair(mission::MissionConfig config, const mission::Prepare
   pair.simulated_s = whole.simulated_s;
   pair.full = whole.clock;
   pair.planned = less.clock;
-  compare(full.nav, planned.nav, pair);
-  compare(full.fixes, planned.fixes, pair);
+  compare(
+      full.nav, planned.nav,
+      [&](const auto& a, const auto& b) { return same(a, b) && (omissions.autonomy || same_command(a, b)); }, pair);
+  for (std::size_t i = 0; i < std::max(full.nav.size(), planned.nav.size()); ++i) {
+    if (i < std::min(full.nav.size(), planned.nav.size()))
+      pair.apart.push_back(
+          {full.nav[i].t - mission.start, (full.nav[i].estimate.X_WB.p - planned.nav[i].estimate.X_WB.p).norm()});
+    else
+      pair.apart.push_back({kNaN, std::numeric_limits<double>::infinity()});
+  }
+  compare(
+      full.fixes, planned.fixes, [](const auto& a, const auto& b) { return same(a, b); }, pair);
   return pair;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "canyon/core/files/tape.h"
 #include "canyon/mission/config/mission_file.h"
@@ -15,6 +16,11 @@ namespace canyon::study {
 struct RunPair {
   std::int64_t epochs = 0;      ///< rows of estimates and of fixes compared
   std::int64_t violations = 0;  ///< of those, how many are not the same to the bit
+  /// How far the two estimates of position are apart, row by row of estimates; a row that only one run has, infinitely.
+  struct Apart {
+    double t_s, position_m;
+  };
+  std::vector<Apart> apart;
   double simulated_s = 0.0;
   mission::PartClock full, planned;  ///< CPU time of each
 };

@@ -1,4 +1,4 @@
-#include "canyon/study/plan/replay.h"
+#include "canyon/study/plan/replay/replay.h"
 
 #include <algorithm>
 #include <cmath>

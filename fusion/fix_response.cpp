@@ -1,0 +1,37 @@
+#include "canyon/fusion/fix_response.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace canyon::fusion {
+
+void FixResponse::predicted(const StepJacobian& step, const Increments& in, const Calibration& calibration,
+                            const ErrorProcesses& processes) {
+  propagate_errors(since_, step, in, calibration, processes);
+}
+
+void FixResponse::corrected(const Columns3& K, const Eigen::Matrix<double, 3, 9>& H) {
+  for (Columns3& response : responses_) {
+    const Columns3 before = since_ * response;
+    response = before - K * (H * before.topRows<9>());
+  }
+  responses_.push_back(moved_m_ * K);
+  since_.setIdentity();
+}
+
+FixResponse::Moved FixResponse::moved(const Eigen::Matrix<double, 3, 9>& J, const Eigen::Vector3d& up_E) const {
+  const Eigen::Matrix<double, 3, ErrorIndex::kAll> now = J * since_.topRows<9>();
+  Moved out;
+  for (const Columns3& response : responses_) {
+    const Eigen::Matrix3d by_fix = now * response;
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> square;
+    square.computeDirect(by_fix * by_fix.transpose(), Eigen::EigenvaluesOnly);
+    out.any_m += std::sqrt(std::max(square.eigenvalues()[2], 0.0));
+    out.up_m += (up_E.transpose() * by_fix).norm();
+  }
+  return out;
+}
+
+}  // namespace canyon::fusion

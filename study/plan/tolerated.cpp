@@ -1,0 +1,169 @@
+#include "canyon/study/plan/tolerated.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "canyon/core/process/cpu_time.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/gnss/sensor/sensor_need.h"
+#include "canyon/mission/route_tape.h"
+#include "canyon/study/plan/replay/position_chain.h"
+#include "canyon/study/plan/replay/replay.h"
+
+namespace canyon::study {
+
+namespace {
+
+constexpr std::int64_t kEpochs = 200;  // that a saving is measured at
+constexpr int kRepeats = 3;            // of which the fastest counts
+
+double most(const PositionChain& chain) {
+  return chain.any.empty() ? 0.0 : *std::max_element(chain.any.begin(), chain.any.end());
+}
+double rms(const PositionChain& chain) {
+  return chain.rms();
+}
+double rms_up(const PositionChain& chain) {
+  return chain.rms_up();
+}
+
+/// Figures of the estimate's error, and what moves them at most where the estimate is moved: an RMS by the RMS of the
+/// moves, the largest error and a percentile by the largest of them.
+struct Reached {
+  const char* figure;
+  double (*per_metre)(const PositionChain&);
+};
+constexpr Reached kReached[] = {
+    {"position_error_rms_m", rms},       {"position_error_e_rms_m", rms}, {"position_error_n_rms_m", rms},
+    {"position_error_up_rms_m", rms_up}, {"position_error_p95_m", most},  {"position_error_max_m", most},
+};
+
+const Reached* reached(const std::string& figure) {
+  for (const Reached& row : kReached)
+    if (figure == row.figure) return &row;
+  return nullptr;
+}
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char out[200];
+  std::snprintf(out, sizeof out, format, values...);
+  return out;
+}
+
+/// CPU time of all epochs of the replay without these delays.
+Result<double> seconds_of(GnssReplay& replay, const gnss::DelayOmissions& leave_out) {
+  double least_s = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < kRepeats; ++k) {
+    throw_if_cancelled();
+    CANYON_TRY(const auto sensor, replay.sensor());
+    sensor->leave_out(gnss::RangeOmissions{.delays = leave_out});
+    CpuAccount account;
+    {
+      const ChargeCpu charge(&account);
+      for (const auto& epoch : replay.epochs()) replay.measure(*sensor, epoch, {});
+    }
+    least_s = std::min(least_s, account.seconds());
+  }
+  return least_s;
+}
+
+/// What leaving out each saves over the nominal mission.
+Status measure(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
+               std::vector<PlannedEffect>& candidates) {
+  GnssReplay replay(config, mission, tape, {}, kEpochs);
+  const double times = mission.nominal_s * config.gnss.rate_hz / static_cast<double>(kEpochs);
+  CANYON_TRY(const double full_s, seconds_of(replay, {}));
+  for (PlannedEffect& candidate : candidates) {
+    CANYON_TRY(const double less_s, seconds_of(replay, gnss::delays_of({candidate.need})));
+    candidate.saved_cpu_s = std::max(0.0, times * (full_s - less_s));
+  }
+  return Ok{};
+}
+
+/// The figure that does not allow this much more; null: all do.
+const char* exceeded(const Plan& plan, const PlannedEffect& candidate) {
+  for (const auto& [figure, tolerance] : plan.tolerances) {
+    const auto so_far = plan.figure_bounds.find(figure);
+    if ((so_far == plan.figure_bounds.end() ? 0.0 : so_far->second) + candidate.moves.at(figure) > tolerance)
+      return reached(figure)->figure;
+  }
+  return nullptr;
+}
+
+void keep(PlannedEffect& effect, const std::string& why) {
+  effect.need.verdict = Verdict::kNeeded;
+  effect.need.reason = text("moves a range by up to %.2g m", effect.need.bound) + why + "; " + effect.need.reason;
+  effect.saved_cpu_s = kNaN;
+}
+
+}  // namespace
+
+Status check_reached(const FigureValues& tolerances, const std::string& option) {
+  for (const auto& [figure, tolerance] : tolerances) {
+    if (reached(figure) != nullptr) continue;
+    std::string known;
+    for (const Reached& row : kReached) known += (known.empty() ? "" : ", ") + std::string(row.figure);
+    return Error{.file = option,
+                 .key = figure,
+                 .what = "no bound reaches this figure, so nothing could be left out for it",
+                 .expected = "one of " + known};
+  }
+  return Ok{};
+}
+
+void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEffect>& candidates, Plan& plan) {
+  // Of equal savings per bound the smaller bound first.
+  std::sort(candidates.begin(), candidates.end(), [](const PlannedEffect& a, const PlannedEffect& b) {
+    const double of_a = a.saved_cpu_s / a.need.bound, of_b = b.saved_cpu_s / b.need.bound;
+    return of_a != of_b ? of_a > of_b : a.need.bound < b.need.bound;
+  });
+  std::vector<Need> chosen;
+  gnss::RangeOmissions& ranges = plan.omissions.ranges;
+  for (PlannedEffect& candidate : candidates) {
+    for (const auto& [figure, tolerance] : plan.tolerances)
+      candidate.moves[figure] = candidate.need.bound * reached(figure)->per_metre(chain);
+    if (const char* figure = exceeded(plan, candidate)) {
+      keep(candidate, text(", %s by %.2g: more than is left of the tolerance", figure, candidate.moves.at(figure)));
+      continue;
+    }
+    for (const auto& [figure, move] : candidate.moves) plan.figure_bounds[figure] += move;
+    ranges.bound_m += candidate.need.bound;
+    chosen.push_back(candidate.need);
+  }
+  if (chosen.empty()) return;
+  ranges.delays = ranges.delays | gnss::delays_of(chosen);
+  ranges.most_gain = chain.most_gain;
+  plan.epoch_t_s = chain.fix_t_s;
+  for (const double per_metre : chain.any) plan.epoch_bound_m.push_back(ranges.bound_m * per_metre);
+}
+
+Status leave_out_tolerated(const std::vector<Need>& needs, const mission::MissionConfig& config,
+                           const mission::PreparedMission& mission, Plan& plan) {
+  std::vector<PlannedEffect> candidates, lines;
+  for (const Need& need : needs) {
+    PlannedEffect line{.need = need, .segment = "whole run"};
+    if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && config.fusion.gate_sigma > 0.0) {
+      line.need.verdict = Verdict::kUndecidable;
+      line.need.reason = "the filter's gate decides which fixes it takes";
+    }
+    const bool left_out = line.need.verdict == Verdict::kNotNeeded, free = left_out && need.bound <= 0.0;
+    if (free) plan.omissions.ranges.delays = plan.omissions.ranges.delays | gnss::delays_of({line.need});
+    if (left_out && !free && plan.tolerances.empty()) keep(line, ", and no tolerance is given");
+    const bool candidate = left_out && !free && !plan.tolerances.empty();
+    (candidate ? candidates : lines).push_back(std::move(line));
+  }
+  if (!candidates.empty()) {
+    CANYON_TRY(const Tape tape, mission::drive_route(config, mission));
+    CANYON_TRY(const PositionChain chain, position_chain(config, mission, tape));
+    CANYON_TRY_STATUS(measure(config, mission, tape, candidates));
+    choose_within_tolerances(chain, candidates, plan);
+  }
+  for (PlannedEffect& line : lines) plan.effects.push_back(std::move(line));
+  for (PlannedEffect& line : candidates) plan.effects.push_back(std::move(line));
+  return Ok{};
+}
+
+}  // namespace canyon::study

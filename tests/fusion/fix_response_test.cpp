@@ -1,0 +1,116 @@
+// What the filter says of its own response is what comes of it where fixes are really moved.
+#include "canyon/fusion/fix_response.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/SVD>
+
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/error_state_filter.h"
+
+namespace canyon::fusion {
+namespace {
+
+constexpr int kFixes = 20, kSamplesPerFix = 50;
+const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
+const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
+const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
+
+ImuNoise noise() {
+  ImuNoise n;
+  n.gyro = {.white_per_sqrt_hz = 4.4e-5,
+            .turn_on_bias_sigma = 1.5e-5,
+            .in_run_bias_sigma = 2.4e-6,
+            .in_run_bias_tau_s = 1000.0,
+            .scale_sigma = 5e-4,
+            .misalignment_sigma_rad = 1e-3};
+  n.accel = {.white_per_sqrt_hz = 1e-3,
+             .turn_on_bias_sigma = 7e-3,
+             .in_run_bias_sigma = 5e-4,
+             .in_run_bias_tau_s = 1000.0,
+             .scale_sigma = 3e-4,
+             .misalignment_sigma_rad = 1e-3};
+  return n;
+}
+
+/// A body at rest that is told it accelerates and turns a little, so that all states are coupled: what matters here is
+/// the filter, not whether the motion makes sense.
+ImuSample sample(std::int64_t k) {
+  ImuSample s;
+  s.t = tick(kStart, k + 1, 100.0);
+  s.dt_s = 0.01;
+  s.dtheta_U = {0.0, 0.0, 0.002};
+  s.dv_U = {0.01, 0.02, 0.0979};
+  return s;
+}
+
+/// Where B ends after all fixes, each of which is moved by `moves`; `response`, if any, is told everything.
+Eigen::Vector3d place_after(const std::vector<Eigen::Vector3d>& moves, FixResponse* response,
+                            const std::vector<double>& expected = {}, FixResponse::Moved* moved = nullptr) {
+  ErrorStateFilter filter({}, noise(), kFrame, kImu, kAntenna);
+  filter.initialize(kStart, Pose{}, Eigen::Vector3d::Zero());
+  if (response != nullptr) filter.watch(response);
+  std::int64_t k = 0;
+  for (int fix = 0; fix < kFixes; ++fix) {
+    for (int i = 0; i < kSamplesPerFix; ++i) filter.predict(sample(k++));
+    GnssFix z;
+    z.t = filter.nav_state().t;
+    z.status = FixStatus::kDifferential;
+    const double t = z.t - kStart;
+    z.p_A_E = kFrame.to_E(kAntenna + Eigen::Vector3d(0.5 * t * t, t * t, 0.0)) + moves[static_cast<std::size_t>(fix)];
+    z.covariance_E = 0.25 * Eigen::Matrix3d::Identity();
+    if (response != nullptr) response->expect(expected[static_cast<std::size_t>(fix)]);
+    filter.update(z);
+  }
+  for (int i = 0; i < kSamplesPerFix / 2; ++i) filter.predict(sample(k++));
+  if (moved != nullptr) *moved = response->moved(filter.body_jacobian(), kFrame.R_EW().col(2));
+  return kFrame.R_EW() * filter.estimate().X_WB.p;
+}
+
+const std::vector<Eigen::Vector3d> kUnmoved(kFixes, Eigen::Vector3d::Zero());
+
+// The derivative by one fix, found by moving it by 1 cm along each axis: what is of second order is 1 cm of the
+// position's scale in the linearization, below 1e-3 of the response, of which the test allows 1 %.
+TEST(FixResponse, OfOneFixIsTheDerivativeOfTheEstimate) {
+  constexpr double kMove_m = 0.01;
+  const Eigen::Vector3d unmoved = place_after(kUnmoved, nullptr);
+  for (const std::size_t fix : {0u, 7u, 19u}) {
+    Eigen::Matrix3d derivative;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto moves = kUnmoved;
+      moves[fix][axis] = kMove_m;
+      derivative.col(axis) = (place_after(moves, nullptr) - unmoved) / kMove_m;
+    }
+    std::vector<double> expected(kFixes, 0.0);
+    expected[fix] = 1.0;
+    FixResponse response;
+    FixResponse::Moved moved;
+    place_after(kUnmoved, &response, expected, &moved);
+    const double largest = Eigen::JacobiSVD<Eigen::Matrix3d>(derivative).singularValues()[0];
+    EXPECT_NEAR(moved.any_m, largest, 0.01 * largest) << fix;
+    const double up = (kFrame.R_EW().col(2).transpose() * derivative).norm();
+    EXPECT_NEAR(moved.up_m, up, 0.01 * largest) << fix;
+  }
+}
+
+// Whatever the directions in which all fixes are moved, the estimate stays within the sum; a constant bias, which a
+// filter lets pass whole, comes near it.
+TEST(FixResponse, TheSumBoundsEveryChoiceOfDirections) {
+  constexpr double kMove_m = 0.01;
+  FixResponse response;
+  FixResponse::Moved moved;
+  const Eigen::Vector3d unmoved = place_after(kUnmoved, &response, std::vector<double>(kFixes, kMove_m), &moved);
+  const RandomStream stream(3, "test.directions");
+  for (std::uint64_t trial = 0; trial < 20; ++trial) {
+    auto moves = kUnmoved;
+    for (std::uint32_t fix = 0; fix < kFixes; ++fix) moves[fix] = kMove_m * stream.direction(fix, trial);
+    EXPECT_LE((place_after(moves, nullptr) - unmoved).norm(), moved.any_m) << trial;
+  }
+  const std::vector<Eigen::Vector3d> bias(kFixes, kMove_m * Eigen::Vector3d::UnitX());
+  const double by_bias = (place_after(bias, nullptr) - unmoved).norm();
+  EXPECT_LE(by_bias, moved.any_m);
+  EXPECT_GT(by_bias, 0.2 * moved.any_m);
+}
+
+}  // namespace
+}  // namespace canyon::fusion
