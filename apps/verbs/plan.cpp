@@ -43,6 +43,7 @@ void print_json(const study::Plan& plan, const study::PredictedCost& cost,
     json["verified_epochs"] = verification->epochs();
     json["violations"] = verification->violations();
     json["tightness"] = or_null(verification->tightness());
+    json["position_tightness"] = or_null(verification->position_tightness());
     json["verified"] = Json::array();
     for (const auto& effect : verification->effects)
       json["verified"].push_back({{"effect", effect.effect},

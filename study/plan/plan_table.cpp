@@ -124,7 +124,8 @@ std::string verification_table(const Verification& verification) {
                  .c_str());
   if (verification.effects.empty()) out += "  nothing is left out\n";
   if (std::isfinite(verification.tightness()))
-    out += text("Tightness, the median of bound / largest difference: %.1f\n", verification.tightness());
+    out += text("Tightness, the median of bound / largest difference: %.1f of ranges, %.1f of positions\n",
+                verification.tightness(), verification.position_tightness());
   return out;
 }
 

@@ -122,10 +122,10 @@ std::int64_t Verification::violations() const {
   return sum;
 }
 
-double Verification::tightness() const {
+double Verification::tightness(bool of_position) const {
   std::vector<double> ratios;
   for (const VerifiedEffect& effect : effects)
-    if (effect.bound > 0.0 && effect.largest_difference > 0.0)
+    if (effect.of_position == of_position && effect.bound > 0.0 && effect.largest_difference > 0.0)
       ratios.push_back(effect.bound / effect.largest_difference);
   return ratios.empty() ? kNaN : median(std::move(ratios));
 }

@@ -15,6 +15,7 @@ struct VerifiedEffect {
   std::int64_t epochs = 0;      ///< at which it was left out and compared
   std::int64_t violations = 0;  ///< of those, with a difference beyond the bound
   std::string unit{};           ///< of bound and difference
+  bool of_position = false;     ///< what the effect does to fixes and estimates, beside what it does in its own unit
   double bound = 0.0;           ///< the largest that was promised at one of them
   double largest_difference = 0.0;
 };
@@ -23,8 +24,14 @@ struct Verification {
   std::vector<VerifiedEffect> effects;
   std::int64_t epochs() const;  ///< each counts once, however many effects were left out at it
   std::int64_t violations() const;
-  /// Median over effects with a bound above 0 of bound / largest difference; NaN where there is none.
-  double tightness() const;
+  /// Median over effects with a bound above 0 of bound / largest difference, in their own units; NaN where there is
+  /// none.
+  double tightness() const { return tightness(false); }
+  /// The same of what they do to position.
+  double position_tightness() const { return tightness(true); }
+
+ private:
+  double tightness(bool of_position) const;
 };
 
 /// Replays the tape with and without each omission and counts every difference beyond its bound:

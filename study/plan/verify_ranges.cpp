@@ -62,8 +62,8 @@ double fixes_apart_m(const gnss::GnssOutput& a, const gnss::GnssOutput& b) {
 
 Status verify_epochs(GnssReplay& replay, const std::vector<gnss::GnssOutput>& full, const Asked& asked,
                      Verification& verification) {
-  VerifiedEffect ranges{.effect = asked.name + ": ranges", .unit = "m"},
-      fixes{.effect = asked.name + ": fixes", .unit = "m"};
+  VerifiedEffect ranges{.effect = asked.name + ": ranges", .unit = "m"};
+  VerifiedEffect fixes{.effect = asked.name + ": fixes", .unit = "m", .of_position = true};
   CANYON_TRY(const auto sensor, replay.sensor());
   sensor->leave_out(asked.ranges);
   for (std::size_t k = 0; k < full.size(); ++k) {
@@ -90,7 +90,7 @@ double bound_at(const Plan& plan, double t_s) {
 
 Status verify_runs(mission::MissionConfig config, const mission::PreparedMission& mission, const Tape& tape,
                    const Plan& plan, std::int64_t epochs, Verification& verification) {
-  VerifiedEffect found{.effect = "all that acts by less: estimates", .unit = "m"};
+  VerifiedEffect found{.effect = "all that acts by less: estimates", .unit = "m", .of_position = true};
   mission::Omissions only_ranges;
   only_ranges.ranges = plan.omissions.ranges;
   config.autonomy.model.name = "route_follower";  // nobody looks, and nothing is mapped
