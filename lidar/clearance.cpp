@@ -15,9 +15,9 @@ struct Piece {
   const RouteSegment& segment;
   Rectangle around;
   double clear_m = Clearance::kMost_m;
-  double ground_top_m;
+  double ground_slope = 0.0;
 
-  explicit Piece(const RouteSegment& s) : segment(s), ground_top_m(s.high_m) {
+  explicit Piece(const RouteSegment& s) : segment(s) {
     for (const Eigen::Vector3d& p : s.points_W) around.extend(Eigen::Vector2d(p.head<2>()));
   }
   /// From a body's origin anywhere in the piece. Half a step between the polyline's points may lie nearer.
@@ -44,13 +44,13 @@ void each_triangle(const scene::Scene& scene, bool terrain, const Visit& visit) 
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if ((scene.objects()[mesh.object[i]].kind == scene::ObjectKind::kTerrain) != terrain) continue;
     Rectangle what;
-    double top_m = -1e30;
-    for (const auto corner : mesh.triangles[i]) {
-      const Eigen::Vector3d p = mesh.vertices[corner].cast<double>();
-      what.extend(Eigen::Vector2d(p.head<2>()));
-      top_m = std::max(top_m, p.z());
+    Eigen::Matrix3d corners;
+    for (int k = 0; k < 3; ++k) {
+      corners.col(k) = mesh.vertices[mesh.triangles[i][static_cast<std::size_t>(k)]].cast<double>();
+      what.extend(Eigen::Vector2d(corners.col(k).head<2>()));
     }
-    visit(what, top_m);
+    const Eigen::Vector3d across = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
+    visit(what, across.head<2>().norm() / std::max(std::abs(across.z()), 1e-9));
   }
 }
 
@@ -68,12 +68,12 @@ std::vector<Clearance> clearances(const scene::Scene& scene, const std::vector<s
       piece.stands(round(crown.center_W.head<2>(), crown.radii_m.maxCoeff()));
     for (const scene::SweptRoom& room : moving) piece.stands(room.around());
   }
-  each_triangle(scene, true, [&](const Rectangle& what, double top_m) {
+  each_triangle(scene, true, [&](const Rectangle& what, double slope) {
     for (Piece& piece : pieces)
-      if (top_m > piece.ground_top_m && piece.distance_m(what) <= piece.clear_m) piece.ground_top_m = top_m;
+      if (slope > piece.ground_slope && piece.distance_m(what) <= piece.clear_m) piece.ground_slope = slope;
   });
   std::vector<Clearance> out;
-  for (const Piece& piece : pieces) out.push_back({piece.clear_m, piece.ground_top_m});
+  for (const Piece& piece : pieces) out.push_back({piece.clear_m, piece.ground_slope});
   return out;
 }
 

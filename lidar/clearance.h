@@ -9,10 +9,10 @@
 namespace canyon::lidar {
 
 /// What stands around a piece of a route: the least horizontal distance from a body's origin in it to anything but
-/// terrain (buildings, crowns, the ways of what moves), at most kMost_m, and how high the terrain rises within that.
+/// terrain (buildings, crowns, the ways of what moves), at most kMost_m, and how steep the terrain is within that.
 struct Clearance {
   double clear_m = 0.0;
-  double ground_top_m = 0.0;  ///< in W
+  double ground_slope = 0.0;  ///< rise over run, of its steepest triangle
 
   static constexpr double kMost_m = 30.0;
 };

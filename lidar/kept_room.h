@@ -15,9 +15,9 @@ struct KeptRoom {
   double reach_m = 0.0;              ///< from B's origin
   double turned_rad = 0.0;           ///< of B's z axis
   double moved_m = 0.0;              ///< of B's origin
-  /// But for the ground nothing stands within this distance of B's origin, horizontally; a shot that does not point
-  /// down in B, and goes no farther than `above_ground_m` (from L), does not meet the ground. 0: nothing is known.
-  double clear_m = 0.0, above_ground_m = 0.0;
+  /// But for the ground nothing stands within this distance of B's origin, horizontally. There the ground stays below L
+  /// by `above_ground_m` - distance x `ground_rise`, measured along B's z axis. 0: nothing is known.
+  double clear_m = 0.0, above_ground_m = 0.0, ground_rise = 0.0;
 };
 
 /// Whether a shot's return depends on nothing that lies beyond it: one ray a beam, a detector without memory of

@@ -274,7 +274,8 @@ class VolleyScanner final : public Scanner {
         reach_m = std::min(reach_m, (X_BL_.p.z() - room.low_m + slack_m) / (-rise - room.turned_rad));
       reach_m += noise_m;
       const bool too_near = reach_m < config_.report.min_range_m - noise_m;
-      const bool empty = rise >= 0.0 && reach_m + arm_m < room.clear_m && reach_m < room.above_ground_m;
+      const bool empty = rise >= 0.0 && reach_m + arm_m < room.clear_m &&
+                         room.above_ground_m - kOrigin_m > reach_m * (room.ground_rise - rise);
       if (too_near || empty) {
         rays.max_m[i] = -1.0f;
         ++not_fired;

@@ -173,11 +173,13 @@ std::optional<lidar::KeptRoom> MissionRun::kept_room(const KeptReturns& kept, Gp
   if (place == nullptr) return room;
   const auto [truly_turned_rad, truly_moved_m] = unsteadiness(true_motion_, truth.X_WB, t + -period_s);
   const double cos_tilt = (truth.X_WB.R * Eigen::Vector3d::UnitZ()).z();
-  const double tilt_rad =
-      std::acos(std::min(1.0, cos_tilt)) + truly_turned_rad + 10.0 * config_.lidar.angle_noise_deg * kDegree;
-  const double free_m = (truth.X_WB * X_BL_.p).z() - truly_moved_m - place->around.ground_top_m;
+  // A shot climbs in W by its rise in B less the tilt, the ground by its slope at most, from under the vehicle on.
+  constexpr double kSuspension_m = 0.5;
+  const double tilt_rad = std::acos(std::min(1.0, cos_tilt)) + truly_turned_rad;
   room.clear_m = place->around.clear_m - truly_moved_m;
-  room.above_ground_m = std::max(0.0, free_m / std::sin(std::max(tilt_rad, 1e-3)));
+  room.ground_rise = place->around.ground_slope + tilt_rad + 10.0 * config_.lidar.angle_noise_deg * kDegree;
+  room.above_ground_m = (truth.X_WB * X_BL_.p).z() - truth.X_WB.p.z() - kSuspension_m - truly_moved_m -
+                        place->around.ground_slope * X_BL_.p.norm();
   return room;
 }
 

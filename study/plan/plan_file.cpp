@@ -40,7 +40,7 @@ Json place_json(const mission::PlannedPlace& place) {
           {"no_diffraction", paths.diffraction},
           {"most_reflections", paths.most_reflections},
           {"clear_m", place.around.clear_m},
-          {"ground_top_m", place.around.ground_top_m},
+          {"ground_slope", place.around.ground_slope},
           {"points_m", points}};
 }
 
@@ -58,7 +58,7 @@ mission::PlannedPlace place_of(const nlohmann::json& json) {
   place.paths.diffraction = json.at("no_diffraction");
   place.paths.most_reflections = json.at("most_reflections");
   place.around.clear_m = json.at("clear_m");
-  place.around.ground_top_m = json.at("ground_top_m");
+  place.around.ground_slope = json.at("ground_slope");
   for (const auto& p : json.at("points_m")) segment.points_W.emplace_back(p.at(0), p.at(1), p.at(2));
   return place;
 }

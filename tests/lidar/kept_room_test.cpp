@@ -91,7 +91,8 @@ TEST(KeptRoom, WhereNothingStandsShotsUpwardsAreNotFired) {
                       .turned_rad = 0.001,
                       .moved_m = 0.0,
                       .clear_m = 25.0,
-                      .above_ground_m = 100.0};
+                      .above_ground_m = 1.8,
+                      .ground_rise = 0.0};
   const Scans s = scans(yard(40.0), config, room);
   expect_same(kept(s.full.scan, config, room, 20.0), kept(s.less.scan, config, room, 20.0));
   // Of sixteen beams from -15 to 15 degrees eight point up; that of 1 degree may leave the room through its side.
