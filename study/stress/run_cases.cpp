@@ -4,9 +4,9 @@
 #include <exception>
 #include <set>
 
+#include "canyon/core/messages.h"
 #include "canyon/core/process/cpu_time.h"
 #include "canyon/core/process/progress.h"
-#include "canyon/core/messages.h"
 
 namespace canyon::study {
 namespace {

@@ -20,7 +20,7 @@ struct CaseResult {
   StressFigure found;  ///< NaN where it threw
   CaseVerdict verdict = CaseVerdict::kFails;
   std::string thrown{};  ///< what it threw, if it did
-  double cpu_s = 0.0;  ///< of all threads
+  double cpu_s = 0.0;    ///< of all threads
 };
 
 CaseResult run_case(const StressCase& one);
