@@ -88,10 +88,12 @@ TEST(Plan, InAnOpenLoopNobodyReadsWhatTheAutonomySees) {
   EXPECT_EQ(Planned("high", kRegistered, kDriving, true).verdict(kScans), Verdict::kNeeded) << "somebody asks";
 }
 
+// The ground there is nowhere steeper than 4.3 degrees: four of the sixteen beams, from 9 to 15 degrees upwards, climb
+// out of the local grid before they could meet it, however the body is tilted on it. The first scans are fired in full.
 TEST(Plan, InAnOpenFieldShotsUpwardsAreNotFired) {
   const Planned planned("high", kEmpty, kDriving);
   const RecordedRun full = planned.drive(false), less = planned.drive(true);
-  EXPECT_LT(less.counters.at("lidar_rays"), 0.7 * static_cast<double>(full.counters.at("lidar_rays")));
+  EXPECT_LT(less.counters.at("lidar_rays"), 0.8 * static_cast<double>(full.counters.at("lidar_rays")));
   ASSERT_EQ(full.nav.size(), less.nav.size());
   for (std::size_t i = 0; i < full.nav.size(); ++i)
     EXPECT_EQ(full.nav[i].command.curvature_1_m, less.nav[i].command.curvature_1_m) << i;
