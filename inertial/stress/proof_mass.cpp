@@ -68,6 +68,10 @@ StressFigure exact(double resonance_hz, double quality, double step_s) {
   const Eigen::Matrix2d P = thermal * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d miss = step.phi * P * step.phi.transpose() + step.covariance - P;
   const double fade = 2.0 * static_cast<double>(-a.real() * angle);
+  // A unit input held over the step moves w x to 1 / w of what a displacement has lost.
+  const double w = 2.0 * kPi * resonance_hz;
+  worst.look(step.gamma(0) * w - static_cast<double>(1.0L - from_x.real()),
+             (10.0 + doublings) * kEpsilon + 2.0 * overlap * roundings / std::max(1.0, 0.5 * fade));
   worst.look(miss.cwiseAbs().maxCoeff() / thermal,
              (10.0 + doublings) * kEpsilon + 2.0 * roundings / std::max(1.0, fade));
   return worst.figure();
