@@ -134,11 +134,14 @@ StressFigure gnss_truth() {
     add_values(fields, [=](M& m) -> Eigen::Vector3d& { return m.truth.*vector; });
   for (auto number : {&GnssTruth::receiver_clock_m, &GnssTruth::receiver_clock_rate_m_s})
     add<M>(fields, [=](M& m) -> double& { return m.truth.*number; });
-  for (auto number :
-       {&T::elevation_rad, &T::azimuth_rad, &T::range_m, &T::range_rate_m_s, &T::multipath_m, &T::ionosphere_m,
-        &T::troposphere_m, &T::ephemeris_m, &T::noise_m, &T::base_m, &T::phase_centre_m, &T::ionosphere_delay_m,
-        &T::troposphere_delay_m, &T::carrier_multipath_m, &T::range_rate_multipath_m_s, &T::ambiguity_cycles})
+  for (auto number : {&T::elevation_rad, &T::azimuth_rad, &T::range_m, &T::range_rate_m_s})
     add<M>(fields, [=](M& m) -> double& { return m.truth.satellites[0].*number; });
+  // An error that a plan leaves out is not made.
+  for (auto number : {&T::multipath_m, &T::ionosphere_m, &T::troposphere_m, &T::ephemeris_m, &T::noise_m, &T::base_m,
+                      &T::phase_centre_m, &T::ionosphere_delay_m, &T::troposphere_delay_m, &T::carrier_multipath_m,
+                      &T::range_rate_multipath_m_s, &T::ambiguity_cycles})
+    add<M>(
+        fields, [=](M& m) -> double& { return m.truth.satellites[0].*number; }, true);
   return field_by_field(good_gnss(), fields);
 }
 
