@@ -148,6 +148,7 @@ std::vector<StressCase> process_cases() {
            "h0 t / 2 + 2 pi^2 h-2 t^3 / 3 and the start, 600 seeds: 5 sqrt(2 / 600)", ""});
   rows.add("processes/clock_after_100_s_at_10_hz", [] { return clock_variance(0.1, 1000); })
       .add("processes/clock_after_two_days_at_0.01_hz", [] { return clock_variance(100.0, 1728); })
+      .add("processes/clock_after_one_epoch_of_1e6_s", [] { return clock_variance(1e6, 1); })
       .add("processes/clock_after_a_month_at_0.001_hz", [] { return clock_variance(1000.0, 2592); });
   rows.of({StressGroup::kLong, "a receiver clock's rate after many epochs", "an offset whose digits swallow its rate",
            "the offset moves by rate * dt: 5.5 sigma of its noise and its own digits", "m"});
