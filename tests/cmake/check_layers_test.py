@@ -68,8 +68,8 @@ class CheckLayers(unittest.TestCase):
     def test_what_needs_no_scene_sees_none(self):
         self.assert_breach(
             {"gnss/rinex/reader.cpp": '#include "canyon/gnss/sensor/sensor.h"\n#include "canyon/scene/scene.h"\n'},
-            'gnss/rinex/reader.cpp:1: "canyon/gnss/sensor/sensor.h": only gnss/paths/*, gnss/receiver/*, gnss/sensor/* may include it',
-            'gnss/rinex/reader.cpp:2: "canyon/scene/scene.h": only gnss/paths/*, gnss/receiver/*, gnss/sensor/* may include it')
+            'gnss/rinex/reader.cpp:1: "canyon/gnss/sensor/sensor.h": only gnss/paths/*, gnss/receiver/*, gnss/sensor/*, gnss/stress/* may include it',
+            'gnss/rinex/reader.cpp:2: "canyon/scene/scene.h": only gnss/paths/*, gnss/receiver/*, gnss/sensor/*, gnss/stress/* may include it')
 
     def test_a_full_folder_wants_rooms(self):
         self.assert_breach(

@@ -49,7 +49,7 @@ struct CorrectionInput {
   RangeDelays acting;                      ///< what acts on the rover's range, at its own carrier
   double ionosphere_from_l1 = 1.0;         ///< delay there per delay at L1: (L1 / carrier)^2
   std::optional<FrequencyDifference> two;  ///< none: only the first signal is tracked
-  DelayOmissions leave_out;
+  DelayOmissions leave_out{};
 };
 
 /// Mode of operation: which errors act on the range, and which of them the receiver removes.

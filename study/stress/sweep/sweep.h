@@ -17,7 +17,7 @@ struct SweepOptions {
   TrialSetup setup;
   std::uint64_t seed = 1;  ///< of the pairs, and of the order where time is limited
   std::int64_t pairs = 500;
-  std::optional<double> budget_s;  ///< wall time; what is not tried by then is told. None: all are tried
+  std::optional<double> budget_s{};  ///< wall time; what is not tried by then is told. None: all are tried
   bool show_progress = true;
 };
 
