@@ -180,7 +180,7 @@ std::vector<StressCase> place_cases() {
            "16 eps / cos(e), and at the zenith the root of 32 eps", "of the bound"});
   for (const double lat : {-90.0, -45.0, 0.0, 89.9999999, 90.0}) {
     char name[64];
-    std::snprintf(name, sizeof name, "places/horizon_at_latitude_%s%g", lat < 0 ? "minus_" : "", std::abs(lat));
+    std::snprintf(name, sizeof name, "places/horizon_at_latitude_%s%.9g", lat < 0 ? "minus_" : "", std::abs(lat));
     rows.add(name, [lat] { return horizon(lat); });
   }
   rows.of({StressGroup::kData, "a place or velocity that is not finite",

@@ -104,8 +104,9 @@ TEST_F(Interruption, LidarScanAtAnyMoment) {
 
 TEST_F(Interruption, PlanTradeoffAndStressAtAnyMoment) {
   for (const double moment_s : {0.05, 0.6, 2.5}) {
-    expect_clean_end({"plan", "mission.toml", "--write", "a.plan", "--verify", "100000"}, moment_s);
-    expect_clean_end({"tradeoff", "mission.toml", "--part", "fusion", "--out", "out"}, moment_s, SIGTERM);
+    expect_clean_end({"plan", "mission.toml", "--write", "given.plan", "--force", "--verify", "100000"}, moment_s);
+    expect_clean_end({"tradeoff", "mission.toml", "--part", "fusion", "--out", "given_out", "--force"}, moment_s,
+                     SIGTERM);
     expect_clean_end({"stress", "--long"}, moment_s);
     expect_clean_end({"stress", "mission.toml"}, moment_s, SIGTERM);
   }
@@ -114,17 +115,18 @@ TEST_F(Interruption, PlanTradeoffAndStressAtAnyMoment) {
 // Twenty moments that nobody has chosen.
 TEST_F(Interruption, EveryLongVerbAtRandomMomentsNightly) {
   const std::vector<std::vector<std::string>> verbs{
-      {"compare", "--out", "out"},
-      {"run", "mission.toml", "--out", "out"},
-      {"plan", "mission.toml", "--write", "a.plan", "--verify", "100000"},
-      {"tradeoff", "mission.toml", "--out", "out"},
+      {"compare", "--out", "given_out", "--force"},
+      {"run", "mission.toml", "--out", "given_out", "--force"},
+      {"plan", "mission.toml", "--write", "given.plan", "--force", "--verify", "100000"},
+      {"tradeoff", "mission.toml", "--out", "given_out", "--force"},
       {"stress", "--long"},
       {"stress", "mission.toml"},
-      {"scene", "make", "--out", "city.json"},
-      {"gnss", "simulate", "--at", "32.3,-90.9,50", "--duration", "100000", "--rinex-obs", "a.rnx"},
-      {"gnss", "map", "--out", "map"},
-      {"imu", "simulate", "--path", "circle", "--duration", "100000", "--out", "log.csv"},
-      {"lidar", "scan", "--at", "213.9,30,0,90", "--scans", "1000000", "--beams", "hdl32e", "--out", "scans"}};
+      {"scene", "make", "city", "--out", "given_city.json", "--force"},
+      {"gnss", "simulate", "--at", "32.3,-90.9,50", "--duration", "100000", "--rinex-obs", "given.rnx", "--force"},
+      {"gnss", "map", "--out", "given_map", "--force"},
+      {"imu", "simulate", "--path", "circle", "--duration", "100000", "--out", "given_log.csv", "--force"},
+      {"lidar", "scan", "--at", "213.9,30,0,90", "--scans", "1000000", "--beams", "hdl32e", "--out", "given_scans",
+       "--force"}};
   const RandomStream stream(15, "test.interruption");
   for (std::size_t verb = 0; verb < verbs.size(); ++verb)
     for (std::uint64_t k = 0; k < 20; ++k)
