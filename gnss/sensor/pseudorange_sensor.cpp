@@ -1,72 +1,22 @@
-#include <algorithm>
 #include <cmath>
-#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "canyon/core/check.h"
-#include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
-#include "canyon/gnss/receiver/carrier_noise.h"
-#include "canyon/gnss/receiver/loop_noise.h"
 #include "canyon/gnss/receiver/modes/receiver_fix.h"
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/sensor/gnss_config.h"
+#include "canyon/gnss/sensor/pseudorange_parts.h"
+#include "canyon/gnss/sensor/satellites_in_view.h"
 #include "canyon/gnss/sensor/sensor_need.h"
+#include "canyon/gnss/sensor/signal_tracker.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/gnss/solver/velocity.h"
 
 namespace canyon::gnss {
 namespace {
-
-/// One kind of signal in the receiver: how it is tracked, and how noisy that is.
-struct Channel {
-  std::unique_ptr<MultipathRule> multipath;
-  std::unique_ptr<CodeTracking> tracking;
-};
-
-/// All that a pseudorange is made of; one model per effect.
-struct PseudorangeParts {
-  std::shared_ptr<const Constellation> constellation;
-  std::unique_ptr<IonosphereModel> ionosphere;
-  std::unique_ptr<TroposphereModel> troposphere;
-  std::unique_ptr<EphemerisError> ephemeris_error;
-  std::unique_ptr<PathModel> paths;
-  PathParameters path_limits;                  ///< that they were made with
-  std::array<Channel, kModulations> channels;  ///< by Modulation
-  std::unique_ptr<ReceiverClock> clock;
-  std::unique_ptr<ReceiverMode> mode;
-  std::unique_ptr<PositionSolver> solver;
-  std::unique_ptr<RangeWeighting> weighting;
-  LinkBudget link;
-  SignalLockParameters locks;
-  std::vector<std::string> warnings;
-};
-
-/// Which signal's peak is tracked, as a number that stays the same from epoch to epoch.
-std::uint64_t identity(const SignalPaths& paths, int source) {
-  if (source < 0) return 1;
-  const SignalPath& p = paths.echoes[static_cast<std::size_t>(source)];
-  std::uint64_t hash = 14695981039346656037u;
-  const auto mix = [&hash](std::uint64_t value) { hash = (hash ^ value) * 1099511628211u; };
-  mix(static_cast<std::uint64_t>(p.reflections));
-  mix(static_cast<std::uint64_t>(p.diffractions));
-  for (const std::uint32_t facet : p.facets) mix(facet);
-  return hash;
-}
-
-/// Streams of one of the receiver's signals, and what it is locked to.
-struct SignalStreams {
-  SignalStreams(const std::string& prefix, const TrackingConfig& config, const SignalLockParameters& lock_parameters)
-      : code(lock_parameters.seed, prefix + "code_noise", config.code_loop_hz, lock_parameters.interval_s),
-        carrier(lock_parameters.seed, prefix + "carrier_noise"),
-        doppler(lock_parameters.seed, prefix + "doppler_noise"),
-        locks(lock_parameters) {}
-
-  LoopNoise code;
-  RandomStream carrier, doppler;
-  SignalLocks locks;
-};
 
 /// Forms pseudoranges, carrier phases and Dopplers from first principles and solves them. An epoch at GPS time t:
 ///
@@ -85,8 +35,9 @@ class PseudorangeSensor final : public GnssSensor {
       : config_(config),
         frame_(frame),
         parts_(std::move(parts)),
-        first_("gnss.", config.tracking, parts_.locks),
-        second_("gnss.second.", config.tracking, parts_.locks) {
+        in_view_(parts_.constellation, frame, config.mask_deg * kDegree),
+        first_("gnss.", config.tracking, parts_),
+        second_("gnss.second.", config.tracking, parts_) {
     if (config_.position.estimator != Estimator::kKalman) return;
     PvtFilterParameters p;
     p.acceleration_m_s2 = config_.position.estimator_acceleration_m_s2;
@@ -100,7 +51,7 @@ class PseudorangeSensor final : public GnssSensor {
     CANYON_CHECK(p_A_W.allFinite() && v_A_W.allFinite(), "antenna at ", p_A_W.transpose(), ", velocity ",
                  v_A_W.transpose());
     begin_epoch(index);
-    Epoch epoch{index, t, p_A_W, v_A_W, Horizon(frame_.to_E(p_A_W)), {}};
+    Epoch epoch{t, Horizon(frame_.to_E(p_A_W)), {}, {}};
     GnssOutput& out = epoch.out;
     out.truth.t = t;
     out.truth.p_A_E = frame_.to_E(p_A_W);
@@ -108,8 +59,10 @@ class PseudorangeSensor final : public GnssSensor {
     out.truth.receiver_clock_m = parts_.clock->offset_m(index);
     out.truth.receiver_clock_rate_m_s = parts_.clock->rate_m_s(index);
     out.epoch.t = t + out.truth.receiver_clock_m / kSpeedOfLight;
+    epoch.antenna = {index, frame_.R_EW().transpose() * epoch.horizon.R_E_enu().col(2), v_A_W,
+                     out.truth.receiver_clock_m, out.truth.receiver_clock_rate_m_s};
 
-    const std::vector<Sight> sights = satellites_above_mask(epoch);
+    const std::vector<Sight> sights = in_view_.at(t, out.epoch.t, out.truth.p_A_E, epoch.horizon);
     const std::vector<SignalPaths> paths = trace(
         p_A_W, sights, [](GnssSystem system) { return first_band(system); }, scene);
     // Fields, and so which ways are worth following, depend on the carrier.
@@ -129,43 +82,24 @@ class PseudorangeSensor final : public GnssSensor {
   std::vector<std::string> warnings() const override { return parts_.warnings; }
 
  private:
-  struct Sight {
-    SatelliteId sv;
-    Transmission signal;
-    SkyView view;
-    Eigen::Vector3d direction_W;
-
-    double carrier_hz(int band) const { return gnss::carrier_hz(sv.system, band, signal.state.frequency_channel); }
-  };
-
   /// What all satellites of an epoch share.
   struct Epoch {
-    std::int64_t index;
     GpsTime t;
-    Eigen::Vector3d p_A_W, v_A_W;
     Horizon horizon;
+    ReceivingAntenna antenna;
     GnssOutput out;
-  };
-
-  struct Measured {
-    bool tracked = false;
-    double pseudorange_m = kNaN, doppler_hz = kNaN, carrier_phase_cycles = kNaN, cn0_dbhz = kNaN;
-    bool slipped = false;
-    double noise_m = 0.0, multipath_m = 0.0;
-    Reception reception;
-    double ambiguity_cycles = 0.0;
   };
 
   void begin_epoch(std::int64_t index) {
     ++counters_.epochs;
     if (index != last_index_ + 1) {
-      first_.locks.restart();
-      second_.locks.restart();
+      first_.restart();
+      second_.restart();
       if (filter_) filter_->reset();
     }
     last_index_ = index;
-    first_.locks.begin_epoch(index);
-    second_.locks.begin_epoch(index);
+    first_.begin_epoch(index);
+    second_.begin_epoch(index);
   }
 
   /// Measures what has been traced, and solves it: without what is left out, and in full where the promise that came
@@ -177,12 +111,12 @@ class PseudorangeSensor final : public GnssSensor {
       solve_epoch(epoch, sights, paths, second_paths, ranges_.delays);
       return;
     }
-    const SignalLocks first = first_.locks, second = second_.locks;
+    const SignalLocks first = first_.locks(), second = second_.locks();
     const GnssOutput empty = epoch.out;
     if (solve_epoch(epoch, sights, paths, second_paths, ranges_.delays)) return;
     ++counters_.epochs_in_full;
-    first_.locks = first;
-    second_.locks = second;
+    first_.set_locks(first);
+    second_.set_locks(second);
     epoch.out = empty;
     solve_epoch(epoch, sights, paths, second_paths, {});
   }
@@ -216,39 +150,6 @@ class PseudorangeSensor final : public GnssSensor {
                     out.truth.satellites[truth_of[k]]);
     return out.range_gain <= ranges_.most_gain &&
            decisions_hold(solution, out.epoch, ranges_.bound_m, config_.position.max_gdop);
-  }
-
-  /// A satellite that was last seen below the mask, and when it may have risen above it at the earliest.
-  struct Below {
-    GpsTime t;
-    Eigen::Vector3d p_A_W;
-    double by_rad;
-
-    /// No line of sight turns faster than the fastest satellite, 3.9 km/s, and the ground under the antenna, 0.5 km/s,
-    /// turn that of the nearest, 18,000 km away: 2.5e-4 rad/s. An antenna that is elsewhere sees it in another place. A
-    /// minute later it is looked at in any case, as ephemerides change.
-    bool still(const Epoch& epoch) const {
-      return std::abs(epoch.t - t) < 60.0 && 3e-4 * std::abs(epoch.t - t) + (epoch.p_A_W - p_A_W).norm() / 5e6 < by_rad;
-    }
-  };
-
-  std::vector<Sight> satellites_above_mask(const Epoch& epoch) {
-    const Eigen::Vector3d& p_A_E = epoch.out.truth.p_A_E;
-    std::vector<Sight> sights;
-    for (const SatelliteId sv : parts_.constellation->satellites()) {
-      const auto below = below_.find(sv);
-      if (below != below_.end() && below->second.still(epoch)) continue;
-      const auto signal = transmission_to(*parts_.constellation, sv, epoch.t, p_A_E, epoch.out.epoch.t);
-      if (!signal) continue;
-      const Eigen::Vector3d satellite_E = signal->p_E();
-      const SkyView view = epoch.horizon.view(epoch.t, satellite_E);
-      if (const double by_rad = config_.mask_deg * kDegree - view.elevation_rad; by_rad > 0.0) {
-        below_.insert_or_assign(sv, Below{epoch.t, epoch.p_A_W, by_rad});
-        continue;
-      }
-      sights.push_back({sv, *signal, view, frame_.R_EW().transpose() * (satellite_E - p_A_E).normalized()});
-    }
-    return sights;
   }
 
   /// The configured model of propagation, without what is left out; made when it is first asked for.
@@ -294,72 +195,6 @@ class PseudorangeSensor final : public GnssSensor {
     return truth;
   }
 
-  const Channel& channel(GnssSystem system, int band) const {
-    return parts_.channels[static_cast<std::size_t>(config_.tracking.modulation.value_or(modulation_of(system, band)))];
-  }
-
-  Reception receive_signals(const Epoch& epoch, const Sight& sight, const SignalPaths& paths, const Channel& channel,
-                            double wavelength_m) const {
-    const Eigen::Vector3d up_W = frame_.R_EW().transpose() * epoch.horizon.R_E_enu().col(2);
-    std::vector<ReceivedSignal> echoes;
-    for (const auto& p : paths.echoes)
-      echoes.push_back(receive(p, parts_.link, up_W, sight.direction_W, epoch.v_A_W, wavelength_m));
-    std::optional<ReceivedSignal> direct;
-    if (paths.line_of_sight) {
-      direct.emplace();
-      direct->cn0_dbhz = parts_.link.direct_cn0_dbhz(sight.view.elevation_rad, paths.foliage_m, std::abs(paths.direct));
-      direct->phase_rad = std::arg(paths.direct);
-    }
-    return channel.multipath->receive(direct, echoes, wavelength_m);
-  }
-
-  /// One signal of one satellite. `acting` has the ionosphere of the first band.
-  Measured measure_signal(const Epoch& epoch, const Sight& sight, const SignalPaths& paths, int band,
-                          SignalStreams& streams, const GnssObservationTruth& truth, const RangeDelays& acting) const {
-    const SatelliteState& state = sight.signal.state;
-    const double carrier = sight.carrier_hz(band);
-    const double wavelength_m = kSpeedOfLight / carrier;
-    const Channel& own = channel(sight.sv.system, band);
-    Measured m;
-    m.reception = receive_signals(epoch, sight, paths, own, wavelength_m);
-    const Reception& r = m.reception;
-    const auto lock = streams.locks.update(sight.sv, r.tracked ? r.cn0_dbhz : kNaN, identity(paths, r.source));
-    if (!lock.tracked) return m;
-
-    m.tracked = true;
-    m.cn0_dbhz = r.cn0_dbhz;
-    m.slipped = lock.slipped;
-    m.ambiguity_cycles = lock.ambiguity_cycles;
-    m.multipath_m = r.error_m;
-    const std::uint32_t entity = sight.sv.entity();
-    const auto sample = static_cast<std::uint64_t>(epoch.index);
-    const TrackingConfig& tracking = config_.tracking;
-    const double scale = tracking.thermal_noise_scale, T = 1e-3 * tracking.integration_ms;
-    m.noise_m = scale * own.tracking->noise_m(r.cn0_dbhz) * streams.code.at(entity, epoch.index);
-
-    const double ratio = sight.carrier_hz(first_band(sight.sv.system)) / carrier;
-    const double ionosphere_m = acting.ionosphere_m * ratio * ratio;
-    const double common_m = sight.signal.range_m + epoch.out.truth.receiver_clock_m -
-                            kSpeedOfLight * state.clock_of_band_s(band) + acting.troposphere_m + acting.ephemeris_m +
-                            truth.phase_centre_m;
-    m.pseudorange_m = common_m + ionosphere_m + r.error_m + m.noise_m;
-    const double phase_noise = scale * carrier_phase_noise_rad(r.cn0_dbhz, tracking.carrier_loop_hz, T) / (2.0 * kPi) *
-                               streams.carrier.normal(entity, sample);
-    m.carrier_phase_cycles =
-        (common_m - ionosphere_m + r.carrier_error_m) / wavelength_m + phase_noise + lock.ambiguity_cycles;
-    const double rate_m_s = truth.range_rate_m_s + epoch.out.truth.receiver_clock_rate_m_s -
-                            kSpeedOfLight * state.clock_rate * (1.0 - truth.range_rate_m_s / kSpeedOfLight) +
-                            r.range_rate_error_m_s;
-    m.doppler_hz = -rate_m_s / wavelength_m + scale * doppler_noise_hz(r.cn0_dbhz, tracking.carrier_loop_hz, T) *
-                                                  streams.doppler.normal(entity, sample);
-    CANYON_CHECK(std::isfinite(m.pseudorange_m) && std::isfinite(m.cn0_dbhz) && std::isfinite(m.carrier_phase_cycles) &&
-                     std::isfinite(m.doppler_hz),
-                 "pseudorange sensor, ", sight.sv.str(), ": pseudorange_m = ", m.pseudorange_m,
-                 ", carrier_phase_cycles = ", m.carrier_phase_cycles, ", doppler_hz = ", m.doppler_hz,
-                 ", cn0_dbhz = ", m.cn0_dbhz);
-    return m;
-  }
-
   RangeDelays delays(const Epoch& epoch, const Sight& sight, double ionosphere_from_l1,
                      const DelayOmissions& leave_out) {
     RangeDelays raw;
@@ -383,11 +218,11 @@ class PseudorangeSensor final : public GnssSensor {
                                                                      (frame_.R_EW() * sight.direction_W))
                                : 0.0;
 
-    const Measured first = measure_signal(epoch, sight, paths, band, first_, truth, acting);
+    const ArrivingRange range{truth.range_rate_m_s, acting, truth.phase_centre_m};
+    const SignalMeasurement first = first_.measure(epoch.antenna, sight, paths, band, range);
     const int other_band = second_band(sight.sv.system, config_.tracking.second_frequency);
-    Measured second;
-    if (second_paths != nullptr)
-      second = measure_signal(epoch, sight, *second_paths, other_band, second_, truth, acting);
+    SignalMeasurement second;
+    if (second_paths != nullptr) second = second_.measure(epoch.antenna, sight, *second_paths, other_band, range);
     if (!first.tracked) return false;
     if (!transmission_from_pseudorange(*parts_.constellation, sight.sv, epoch.out.epoch.t, first.pseudorange_m))
       return false;
@@ -403,7 +238,7 @@ class PseudorangeSensor final : public GnssSensor {
     truth.ionosphere_m = truth.ionosphere_delay_m = acting.ionosphere_m;
     truth.troposphere_m = truth.troposphere_delay_m = acting.troposphere_m;
     truth.ephemeris_m = acting.ephemeris_m;
-    truth.multipath_m = first.multipath_m;
+    truth.multipath_m = first.reception.error_m;
     truth.noise_m = first.noise_m;
     truth.carrier_multipath_m = first.reception.carrier_error_m;
     truth.range_rate_multipath_m_s = first.reception.range_rate_error_m_s;
@@ -421,7 +256,7 @@ class PseudorangeSensor final : public GnssSensor {
       input.two.emplace();
       input.two->gain = 1.0 / (ratio * ratio - 1.0);
       input.two->noise_m = second.noise_m - first.noise_m;
-      input.two->multipath_m = second.multipath_m - first.multipath_m;
+      input.two->multipath_m = second.reception.error_m - first.reception.error_m;
     }
     epoch.out.epoch.observations.push_back(o);
     inputs.push_back(input);
@@ -446,84 +281,20 @@ class PseudorangeSensor final : public GnssSensor {
   GnssConfig config_;
   LocalFrame frame_;
   PseudorangeParts parts_;
-  SignalStreams first_, second_;
+  SatellitesInView in_view_;
+  SignalTracker first_, second_;
   std::optional<PvtFilter> filter_;
   PathOmissions leave_out_;
   RangeOmissions ranges_;
-  std::map<SatelliteId, Below> below_;
   std::vector<std::pair<PathOmissions, std::unique_ptr<PathModel>>> reduced_;
   std::int64_t last_index_ = -2;
   GnssCounters counters_;
 };
 
-SignalLockParameters lock_parameters(const GnssConfig& c, std::uint64_t seed) {
-  return {.seed = seed,
-          .interval_s = 1.0 / c.rate_hz,
-          .threshold_dbhz = c.locks.tracking_threshold_dbhz,
-          .reacquisition_margin_db = c.locks.reacquisition_margin_db,
-          .reacquisition_s = c.locks.reacquisition_s,
-          .carrier_loop_hz = c.tracking.carrier_loop_hz,
-          .integration_s = 1e-3 * c.tracking.integration_ms,
-          .slips = c.tracking.thermal_noise_scale > 0.0};
-}
-
-/// Satellites, and what acts on their signals outside the scene.
-Result<KlobucharCoefficients> add_sky(const SensorSetup& at, PseudorangeParts& parts) {
-  const GnssConfig& c = at.config;
-  CANYON_TRY(const SatelliteSource source, make_satellite_source(c.satellites, at.start, at.end));
-  parts.constellation = source.constellation;
-  parts.warnings = source.warnings;
-  CANYON_TRY(parts.ionosphere, c.ionosphere.make("gnss.ionosphere",
-                                                 IonosphereSetup{source.klobuchar, at.start, at.end, &parts.warnings}));
-  CANYON_TRY(parts.troposphere, c.troposphere.make("gnss.troposphere"));
-  CANYON_TRY(parts.ephemeris_error,
-             c.ephemeris_error.make("gnss.ephemeris_error",
-                                    EphemerisErrorSetup{at.seed, source.constellation, c.satellites.systems,
-                                                        source.navigation.has_ephemeris(), &parts.warnings}));
-  return source.klobuchar;
-}
-
-/// Builds the models that the configuration names; an Error names the key.
-Result<PseudorangeParts> make_parts(const SensorSetup& at) {
-  const GnssConfig& c = at.config;
-  PseudorangeParts parts;
-  CANYON_TRY(const KlobucharCoefficients klobuchar, add_sky(at, parts));
-  for (std::size_t i = 0; i < kModulations; ++i) {
-    const CorrelatorDesign design = c.tracking.channel(static_cast<Modulation>(i));
-    CANYON_TRY(parts.channels[i].multipath,
-               c.reception.multipath_rule.make(
-                   "gnss.multipath_rule",
-                   MultipathParameters{c.reception.cutoff_m(), c.locks.tracking_threshold_dbhz, design}));
-    parts.channels[i].tracking = std::make_unique<CodeTracking>(design);
-  }
-  parts.path_limits = path_limits(c);
-  parts.path_limits.cutoff_m = parts.channels[0].multipath->reach_m();
-  CANYON_TRY(parts.paths, make_propagation(c.propagation, parts.path_limits));
-  CANYON_TRY(parts.clock,
-             c.receiver_clock.make("gnss.receiver_clock", ReceiverClockParameters{at.seed, 1.0 / c.rate_hz}));
-  CANYON_TRY(parts.mode, c.mode.make("gnss.mode", ReceiverModeSetup{at.seed, parts.ionosphere->acts(),
-                                                                    parts.troposphere->acts(), klobuchar}));
-  CANYON_TRY(parts.solver, c.position.solver.make("gnss.solver", c.position.parameters()));
-  CANYON_TRY(parts.weighting,
-             c.position.weighting.make("gnss.weighting", RangeWeightingParameters{c.position.solver_sigma_m}));
-  CANYON_TRY(parts.link, c.link.budget());
-  parts.locks = lock_parameters(c, at.seed);
-  if (!parts.solver->solves_clock() && !parts.clock->perfect())
-    return Error{
-        "", 0, "gnss.receiver_clock",
-        "is \"" + c.receiver_clock.name + "\", but solver \"" + c.position.solver.name + "\" has no unknown for it",
-        "\"none\""};
-  if (!parts.solver->solves_clock() && c.position.estimator == Estimator::kKalman)
-    return Error{"", 0, "gnss.estimator",
-                 "is \"kalman\", but the solver " + c.position.solver.name + " has no receiver clock",
-                 "solver \"least_squares\""};
-  return parts;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const ModelParameters&, const SensorSetup& at) {
-  CANYON_TRY(PseudorangeParts parts, make_parts(at));
+  CANYON_TRY(PseudorangeParts parts, make_pseudorange_parts(at));
   return std::unique_ptr<GnssSensor>(
       std::make_unique<PseudorangeSensor>(at.config, at.scene.frame(), std::move(parts)));
 }
