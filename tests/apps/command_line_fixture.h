@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -37,8 +38,10 @@ observe = "building 273"
 class CommandLineTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("canyon_cli_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
+    // A number that comes again would find what a killed process of that number has left.
+    std::string name = (std::filesystem::path(::testing::TempDir()) / "canyon-cli-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr) << name;
+    folder_ = name;
     write("mission.toml", kMission);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
