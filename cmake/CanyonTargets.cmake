@@ -10,7 +10,9 @@ function(canyon_precompile target root)
                                            $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
   if(target STREQUAL root)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional>
-                              <span> <string> <string_view> <vector> <Eigen/Core> <Eigen/Geometry> ${ARGN})
+                              <span> <string> <string_view> <vector> <Eigen/Core> <Eigen/Geometry>
+                              <canyon/core/config/config.h> <canyon/core/earth/local_frame.h> <canyon/core/messages.h>
+                              <canyon/core/result.h> ${ARGN})
   else()
     target_precompile_headers(${target} REUSE_FROM ${root})
   endif()

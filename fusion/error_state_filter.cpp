@@ -271,6 +271,10 @@ Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
   return antenna_position(state_, w_EU_U_, -lever_U_B_, 0.0).H;
 }
 
+ErrorStateFilter::StateMatrix ErrorStateFilter::covariance() const {
+  return P_.topLeftCorner<kStates, kStates>();
+}
+
 NavEstimate ErrorStateFilter::estimate() const {
   const Eigen::Matrix3d R_WE = frame_.R_EW().transpose();
   const Eigen::Matrix3d R_EB = state_.R_EU.toRotationMatrix();  // axes of U are parallel to B

@@ -6,29 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "canyon/core/config/config.h"
 #include "canyon/core/earth/local_frame.h"
 #include "canyon/core/imu_noise.h"
 #include "canyon/core/messages.h"
 #include "canyon/core/motion/true_motion.h"
 #include "canyon/core/result.h"
 #include "canyon/inertial/error_chain.h"
+#include "canyon/inertial/imu_config.h"
 
 namespace canyon::inertial {
-
-/// [imu] of a mission file.
-struct ImuConfig {
-  std::string sensor = "high_grade_mems";  ///< entry of inertial/catalogue
-  std::string gyroscope;                   ///< entry whose gyroscope goes with a sensor that is an accelerometer alone
-  std::string errors = "datasheet";        ///< row of inertial/error_chain
-  std::vector<std::string> leave_out;      ///< links of the error chain that are switched off
-  double rate_hz = 100.0;
-  Eigen::Vector3d lever_arm_m{0.0, 0.0, 0.4};  ///< U in B; axes of U parallel to B
-  std::vector<double> temperature_times_s;     ///< profile of the unit's temperature; empty: as its figures hold
-  std::vector<double> temperatures_c;
-  Eigen::Vector3d vibration_m_s2 = Eigen::Vector3d::Zero();  ///< RMS of vibration too fast for the samples
-};
-void visit(FieldVisitor& f, ImuConfig& c);
 
 /// An IMU: exact increments of the true motion, then its error chain.
 class ImuModel {

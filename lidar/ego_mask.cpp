@@ -10,6 +10,9 @@ void visit(FieldVisitor& f, EgoConfig& c) {
   f.vector3("ego_max_m", c.max_m, {-100, 100}, "its highest corner; the same as ego_min_m = no box");
 }
 
+EgoMask::EgoMask(const EgoConfig& box, const Pose& X_BL)
+    : min_B_(box.min_m), max_B_(box.max_m), X_BL_(X_BL), any_(((box.max_m - box.min_m).array() > 0).all()) {}
+
 void EgoMask::hide(const AimPacket& aim, scene::RayPacket& rays) const {
   for (std::size_t i = 0; i < AimPacket::kShots; ++i) {
     const Eigen::Vector3d o = X_BL_ * Eigen::Vector3d(aim.origin_x[i], aim.origin_y[i], aim.origin_z[i]);

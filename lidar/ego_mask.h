@@ -16,8 +16,7 @@ void visit(FieldVisitor& f, EgoConfig& c);
 /// them dropped. A box without volume hides nothing.
 class EgoMask {
  public:
-  EgoMask(const EgoConfig& box, const Pose& X_BL)
-      : min_B_(box.min_m), max_B_(box.max_m), X_BL_(X_BL), any_(((box.max_m - box.min_m).array() > 0).all()) {}
+  EgoMask(const EgoConfig& box, const Pose& X_BL);
 
   bool any() const { return any_; }
   /// Sets max_m of hidden shots to -1.

@@ -4,6 +4,9 @@
 #include <memory>
 
 #include "canyon/core/motion/true_motion.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/lidar/scanner.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/corridor_guard.h"
 #include "canyon/mission/localizer.h"

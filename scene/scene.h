@@ -107,7 +107,7 @@ class Scene {
   /// Height of the terrain (ObjectKind::kTerrain only) at x, y in W and its upward unit normal; nullopt outside.
   struct Ground {
     double height_m = 0.0;
-    Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d normal_W{0, 0, 1};
     std::uint16_t material = 0;  ///< index into materials()
   };
   std::optional<Ground> ground(double x, double y) const;

@@ -11,18 +11,18 @@ namespace canyon {
 /// W is fixed to the Earth, so velocities are the same vectors in W and E up to the constant rotation R_EW.
 class LocalFrame {
  public:
-  LocalFrame() : LocalFrame(Geodetic{}) {}
+  LocalFrame();
   explicit LocalFrame(const Geodetic& origin);
 
   const Geodetic& origin() const { return origin_; }
   const Eigen::Matrix3d& R_EW() const { return R_EW_; }
   const Eigen::Vector3d& origin_E() const { return origin_E_; }
 
-  Eigen::Vector3d to_E(const Eigen::Vector3d& p_W) const { return origin_E_ + R_EW_ * p_W; }
-  Eigen::Vector3d to_W(const Eigen::Vector3d& p_E) const { return R_EW_.transpose() * (p_E - origin_E_); }
-  Geodetic to_geodetic(const Eigen::Vector3d& p_W) const { return geodetic_from_ecef(to_E(p_W)); }
-  Eigen::Vector3d from_geodetic(const Geodetic& g) const { return to_W(ecef_from_geodetic(g)); }
-  Pose X_EW() const { return {Eigen::Quaterniond(R_EW_), origin_E_}; }
+  Eigen::Vector3d to_E(const Eigen::Vector3d& p_W) const;
+  Eigen::Vector3d to_W(const Eigen::Vector3d& p_E) const;
+  Geodetic to_geodetic(const Eigen::Vector3d& p_W) const;
+  Eigen::Vector3d from_geodetic(const Geodetic& g) const;
+  Pose X_EW() const;
 
  private:
   Geodetic origin_;

@@ -108,6 +108,18 @@ double wrap_pi(double angle_rad) {
   return wrapped <= -kPi ? kPi : wrapped;
 }
 
+Pose Pose::inverse() const {
+  return {R.conjugate(), -(R.conjugate() * p)};
+}
+
+Pose Pose::operator*(const Pose& o) const {
+  return {(R * o.R).normalized(), R * o.p + p};
+}
+
+Eigen::Vector3d Pose::operator*(const Eigen::Vector3d& p_B) const {
+  return R * p_B + p;
+}
+
 Pose Pose::exp(const Vector6d& xi) {
   const Eigen::Vector3d rotation = xi.head<3>();
   return {so3_exp(rotation), so3_left_jacobian(rotation) * xi.tail<3>()};

@@ -41,9 +41,9 @@ struct Pose {
 
   static Pose exp(const Vector6d& xi);
   Vector6d log() const;
-  Pose inverse() const { return {R.conjugate(), -(R.conjugate() * p)}; }
-  Pose operator*(const Pose& o) const { return {(R * o.R).normalized(), R * o.p + p}; }
-  Eigen::Vector3d operator*(const Eigen::Vector3d& p_B) const { return R * p_B + p; }
+  Pose inverse() const;
+  Pose operator*(const Pose& o) const;
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p_B) const;
   Eigen::Matrix4d matrix() const;
   static Pose from_matrix(const Eigen::Matrix4d& T);
 };

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {

@@ -7,6 +7,7 @@
 #include "canyon/gnss/paths/beam.h"
 #include "canyon/gnss/paths/bounce.h"
 #include "canyon/gnss/paths/skyline.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {

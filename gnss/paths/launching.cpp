@@ -8,6 +8,7 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
 #include "canyon/gnss/paths/path_model.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/scene/surfaces/triangle.h"
 
 namespace canyon::gnss {

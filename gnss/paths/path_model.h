@@ -15,7 +15,10 @@
 #include "canyon/gnss/paths/diffraction/fresnel.h"
 #include "canyon/gnss/paths/path_omissions.h"
 #include "canyon/gnss/paths/plane_waves.h"
-#include "canyon/scene/scene_at.h"
+
+namespace canyon::scene {
+class SceneAt;
+}
 
 namespace canyon::gnss {
 
@@ -34,8 +37,8 @@ struct SignalPath {
   /// right-hand, and that arrives left-hand. Reflections, roughness and diffraction are in it; foliage, the antenna's
   /// pattern and the phase of the longer way (-2 pi excess / wavelength) are not.
   std::complex<double> copolar, crosspolar;
-  Eigen::Vector3d arrival_W = Eigen::Vector3d::UnitZ();  ///< unit, from the antenna to where the signal comes from
-  double foliage_m = 0.0;                                ///< way through tree crowns, all legs
+  Eigen::Vector3d arrival_W{0, 0, 1};  ///< unit, from the antenna to where the signal comes from
+  double foliage_m = 0.0;              ///< way through tree crowns, all legs
   int reflections = 0;
   int diffractions = 0;
   /// Reflectors in order from the antenna, the first `reflections` of them: index into Scene::facets(), or kTerrain.

@@ -1,4 +1,5 @@
 #include "canyon/gnss/paths/path_model.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {

@@ -1,12 +1,14 @@
 #include <algorithm>
 
 #include "canyon/core/check.h"
+#include "canyon/core/earth/local_frame.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sky_view.h"
+#include "canyon/scene/scene.h"
 
 namespace canyon::gnss {
 namespace {

@@ -11,7 +11,11 @@
 #include "canyon/gnss/paths/counters.h"
 #include "canyon/gnss/paths/path_omissions.h"
 #include "canyon/gnss/receiver/modes/delay_omissions.h"
-#include "canyon/scene/scene_at.h"
+
+namespace canyon::scene {
+class Scene;
+class SceneAt;
+}  // namespace canyon::scene
 
 namespace canyon::gnss {
 

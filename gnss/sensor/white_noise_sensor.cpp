@@ -1,6 +1,8 @@
 #include "canyon/core/check.h"
+#include "canyon/core/earth/local_frame.h"
 #include "canyon/core/random/random.h"
 #include "canyon/gnss/sensor/sensor_models.h"
+#include "canyon/scene/scene.h"
 
 namespace canyon::gnss {
 namespace {

@@ -6,7 +6,10 @@
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/surfaces.h"
 #include "canyon/lidar/beam/volley.h"
-#include "canyon/scene/scene_at.h"
+
+namespace canyon::scene {
+class SceneAt;
+}
 
 namespace canyon::lidar {
 

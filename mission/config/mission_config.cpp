@@ -1,4 +1,5 @@
 #include "canyon/mission/config/mission_config.h"
+#include "canyon/inertial/imu_model.h"
 
 namespace canyon::mission {
 

@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "canyon/core/config/config.h"
-#include "canyon/fusion/error_state_filter.h"
+#include "canyon/core/imu_noise.h"
+#include "canyon/core/result.h"
+#include "canyon/fusion/filter_config.h"
 #include "canyon/gnss/sensor/gnss_config.h"
-#include "canyon/inertial/imu_model.h"
+#include "canyon/inertial/imu_config.h"
+#include "canyon/lidar/lidar_config.h"
 #include "canyon/lidar/registration/registration.h"
-#include "canyon/lidar/scanner.h"
 #include "canyon/mission/autonomy/autonomy.h"
-#include "canyon/mission/motion/vehicle.h"
+#include "canyon/mission/motion/vehicle_config.h"
 #include "canyon/scene/scene_source.h"
 
 namespace canyon::mission {

@@ -2,6 +2,8 @@
 
 #include "canyon/core/check.h"
 #include "canyon/core/files/files.h"
+#include "canyon/inertial/imu_model.h"
+#include "canyon/lidar/scanner.h"
 #include "canyon/mission/config/consistency.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/config/place_checks.h"

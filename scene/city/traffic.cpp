@@ -136,6 +136,11 @@ std::vector<Instance> Traffic::at(double t_s) const {
   return out;
 }
 
+Eigen::AlignedBox2d SweptRoom::around() const {
+  const Eigen::Vector2d wide = Eigen::Vector2d::Constant(radius_m);
+  return {from_W.cwiseMin(to_W) - wide, from_W.cwiseMax(to_W) + wide};
+}
+
 std::vector<SweptRoom> Traffic::swept() const {
   constexpr double kStep_m = 1.0, kBetween_m = 0.5;  // between heights that are looked at; what lies between them
   std::vector<SweptRoom> out;

@@ -33,10 +33,7 @@ struct SweptRoom {
   double radius_m = 0.0, top_m = 0.0;
 
   /// The rectangle in W that holds it.
-  Eigen::AlignedBox2d around() const {
-    const Eigen::Vector2d wide = Eigen::Vector2d::Constant(radius_m);
-    return {from_W.cwiseMin(to_W) - wide, from_W.cwiseMax(to_W) + wide};
-  }
+  Eigen::AlignedBox2d around() const;
 };
 
 /// What moves in a scene, over time: on the terrain, headed along its way. A function of time alone, so runs that share

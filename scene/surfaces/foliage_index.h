@@ -11,7 +11,7 @@ namespace canyon::scene {
 /// of the built-in city have clumps of leaves as triangles in the mesh too).
 struct Foliage {
   Eigen::Vector3d center_W = Eigen::Vector3d::Zero();
-  Eigen::Vector3d radii_m = Eigen::Vector3d::Ones();
+  Eigen::Vector3d radii_m{1, 1, 1};
   /// One-sided leaf area per volume of crown. Of leaves turned every way, a beam meets half their area: it stays clear
   /// over d metres with probability exp(-0.5 density d).
   double leaf_density_m2_m3 = kReferenceLeafDensity;
@@ -56,7 +56,7 @@ class FoliageIndex {
   double cell_m_ = 0.0, per_m_ = 0.0;                                               ///< edge of a cell, and its inverse
   Eigen::Vector3d low_ = Eigen::Vector3d::Zero(), high_ = Eigen::Vector3d::Zero();  ///< of all crowns
   /// All crowns lie where slope_ . (x, y, z) is within these: a layer as steep as the ground, which rays soon leave.
-  Eigen::Vector3d slope_ = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d slope_{0, 0, 1};
   double floor_m_ = 0.0, ceiling_m_ = 0.0;
   int columns_ = 0, rows_ = 0;
   std::vector<Cell> cells_;

@@ -1,4 +1,5 @@
 #include "canyon/study/plan/readers.h"
+#include "canyon/lidar/kept_room.h"
 
 #include <algorithm>
 #include <cstdio>

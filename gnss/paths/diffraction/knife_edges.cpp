@@ -6,6 +6,7 @@
 
 #include "canyon/gnss/paths/diffraction/diffraction.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {

@@ -7,6 +7,7 @@
 #include "canyon/core/math/median.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/gnss/antenna_height.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 

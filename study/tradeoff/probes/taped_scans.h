@@ -1,5 +1,6 @@
 #pragma once
 
+#include "canyon/core/motion/true_motion.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/study/tradeoff/probes/probe.h"
 

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+
+#include "canyon/core/config/config.h"
+
+namespace canyon::mission {
+
+/// [vehicle] of a mission file: a kinematic bicycle with a sprung body on the scene's terrain.
+/// B sits at the centre of the rear axle at ground level, x forward, y left, z up.
+struct VehicleConfig {
+  Eigen::Vector2d start_m{0, 0};   ///< rear axle in W
+  double start_heading_deg = 0.0;  ///< from true north, clockwise
+  double wheelbase_m = 1.8;
+  double track_m = 1.3;
+  double length_m = 2.6;  ///< of the body, for collisions; rear overhang = (length - wheelbase) / 2
+  double width_m = 1.5;
+  double height_m = 1.6;
+  double max_speed_m_s = 6.0;
+  double max_acceleration_m_s2 = 1.5;
+  double max_deceleration_m_s2 = 3.0;
+  double max_steering_deg = 32.0;
+  double max_steering_rate_deg_s = 45.0;
+  double suspension_hz = 1.6;       ///< undamped natural frequency of heave, pitch and roll
+  double suspension_damping = 0.6;  ///< damping ratio
+  std::string roughness = "B";      ///< ISO 8608 road class, or "none"
+};
+void visit(FieldVisitor& f, VehicleConfig& c);
+
+}  // namespace canyon::mission
