@@ -15,7 +15,7 @@ namespace canyon::inertial {
 double LinearPlant::gain(double frequency_hz) const {
   const std::complex<double> jw(0.0, 2.0 * kPi * frequency_hz);
   const Eigen::MatrixXcd resolvent = jw * Eigen::MatrixXcd::Identity(size(), size()) - A.cast<std::complex<double>>();
-  const Eigen::VectorXcd response = resolvent.fullPivLu().solve(B.cast<std::complex<double>>());
+  const Eigen::VectorXcd response = resolvent.partialPivLu().solve(B.cast<std::complex<double>>());
   return std::abs((C.cast<std::complex<double>>() * response)(0));
 }
 
