@@ -203,6 +203,7 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
   if (P_.diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
     restart(report.innovation, R, antenna.H.leftCols<3>());
+    if (response_ != nullptr) response_->restarted(antenna.H.leftCols<3>());
     report.accepted = true;
     return report;
   }

@@ -21,6 +21,19 @@ void FixResponse::corrected(const Columns3& K, const Eigen::Matrix<double, 3, 9>
   since_.setIdentity();
 }
 
+void FixResponse::restarted(const Eigen::Matrix3d& H_theta) {
+  using Index = ErrorIndex;
+  for (Columns3& response : responses_) {
+    response = since_ * response;
+    response.middleRows<3>(Index::kPosition) = -H_theta * response.middleRows<3>(Index::kTheta);
+    response.middleRows<3>(Index::kVelocity).setZero();
+  }
+  Columns3 placed = Columns3::Zero();
+  placed.middleRows<3>(Index::kPosition) = moved_m_ * Eigen::Matrix3d::Identity();
+  responses_.push_back(placed);
+  since_.setIdentity();
+}
+
 FixResponse::Moved FixResponse::moved(const Eigen::Matrix<double, 3, 9>& J, const Eigen::Vector3d& up_E) const {
   const Eigen::Matrix<double, 3, ErrorIndex::kAll> now = J * since_.topRows<9>();
   Moved out;

@@ -26,6 +26,10 @@ class FixResponse {
   void predicted(const StepJacobian& step, const Increments& in, const Calibration& calibration,
                  const ErrorProcesses& processes);
   void corrected(const Columns3& K, const Eigen::Matrix<double, 3, 9>& H);
+  /// A filter that was lost and takes its place from a fix: the antenna is where that says, at the lever arm whose
+  /// dependence on the attitude is H's first three columns, and the velocity is forgotten. Attitude and sensor errors
+  /// stay, and with them what earlier fixes did to them.
+  void restarted(const Eigen::Matrix3d& H_theta);
 
   /// How far a place in E is moved at most, m, that depends on the present errors of theta, p and v as J says.
   struct Moved {

@@ -48,8 +48,9 @@ ImuSample sample(std::int64_t k) {
 
 /// Where B ends after all fixes, each of which is moved by `moves`; `response`, if any, is told everything.
 Eigen::Vector3d place_after(const std::vector<Eigen::Vector3d>& moves, FixResponse* response,
-                            const std::vector<double>& expected = {}, FixResponse::Moved* moved = nullptr) {
-  ErrorStateFilter filter({}, noise(), kFrame, kImu, kAntenna);
+                            const std::vector<double>& expected = {}, FixResponse::Moved* moved = nullptr,
+                            const FilterConfig& config = {}) {
+  ErrorStateFilter filter(config, noise(), kFrame, kImu, kAntenna);
   filter.initialize(kStart, Pose{}, Eigen::Vector3d::Zero());
   if (response != nullptr) filter.watch(response);
   std::int64_t k = 0;
@@ -95,6 +96,29 @@ TEST(FixResponse, OfOneFixIsTheDerivativeOfTheEstimate) {
   }
 }
 
+// 2026-11-22: a filter that was lost takes its place from a fix, and the response knew nothing of that.
+TEST(FixResponse, OfAFixThatALostFilterStartsAgainFrom) {
+  FilterConfig lost;
+  lost.initial_position_sigma_m = 2e6;
+  constexpr double kMove_m = 0.01;
+  const Eigen::Vector3d unmoved = place_after(kUnmoved, nullptr, {}, nullptr, lost);
+  for (const std::size_t fix : {0u, 1u, 19u}) {
+    Eigen::Matrix3d derivative;
+    for (int axis = 0; axis < 3; ++axis) {
+      auto moves = kUnmoved;
+      moves[fix][axis] = kMove_m;
+      derivative.col(axis) = (place_after(moves, nullptr, {}, nullptr, lost) - unmoved) / kMove_m;
+    }
+    std::vector<double> expected(kFixes, 0.0);
+    expected[fix] = 1.0;
+    FixResponse response;
+    FixResponse::Moved moved;
+    place_after(kUnmoved, &response, expected, &moved, lost);
+    const double largest = Eigen::JacobiSVD<Eigen::Matrix3d>(derivative).singularValues()[0];
+    EXPECT_NEAR(moved.any_m, largest, 0.01 * largest) << fix;
+  }
+}
+
 // Whatever the directions in which all fixes are moved, the estimate stays within the sum; a constant bias, which a
 // filter lets pass whole, comes near it.
 TEST(FixResponse, TheSumBoundsEveryChoiceOfDirections) {
@@ -112,6 +136,32 @@ TEST(FixResponse, TheSumBoundsEveryChoiceOfDirections) {
   const double by_bias = (place_after(bias, nullptr) - unmoved).norm();
   EXPECT_LE(by_bias, moved.any_m);
   EXPECT_GT(by_bias, 0.2 * moved.any_m);
+}
+
+// 2026-11-22: the bound of the chain, halved, is broken by a choice of directions: each fix is moved towards where it
+// carries the place along one direction, found by moving it alone.
+TEST(FixResponse, HalfTheSumIsExceededInTheWorstDirections) {
+  constexpr double kMove_m = 0.01;
+  FixResponse response;
+  FixResponse::Moved moved;
+  const Eigen::Vector3d unmoved = place_after(kUnmoved, &response, std::vector<double>(kFixes, kMove_m), &moved);
+  double most_m = 0.0;
+  for (const Eigen::Vector3d& along :
+       {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval(), Eigen::Vector3d::UnitZ().eval()}) {
+    auto worst = kUnmoved;
+    for (std::size_t fix = 0; fix < kFixes; ++fix) {
+      Eigen::Vector3d gain;
+      for (int axis = 0; axis < 3; ++axis) {
+        auto moves = kUnmoved;
+        moves[fix][axis] = kMove_m;
+        gain[axis] = along.dot(place_after(moves, nullptr) - unmoved);
+      }
+      worst[fix] = kMove_m * gain.normalized();
+    }
+    most_m = std::max(most_m, (place_after(worst, nullptr) - unmoved).norm());
+  }
+  EXPECT_LE(most_m, 1.01 * moved.any_m);  // what is of second order, as above
+  EXPECT_GT(most_m, 0.5 * moved.any_m);
 }
 
 }  // namespace
