@@ -30,9 +30,13 @@ void ObstacleHeights::each_square(const Eigen::Vector2d& low, const Eigen::Vecto
 ObstacleHeights::ObstacleHeights(const scene::Scene& scene, const std::vector<scene::SweptRoom>& moving) {
   const scene::Mesh& mesh = scene.mesh();
   if (mesh.triangles.empty()) return;
-  const Eigen::Vector3d size = scene.extent().max - scene.extent().min;
-  cell_m_ = std::max(4.0, std::max(size.x(), size.y()) / kMostColumns);
-  origin_ = scene.extent().min.head<2>();
+  ground_ = {scene.extent().min.head<2>(), scene.extent().max.head<2>()};
+  // What moves may come from beyond the ground.
+  Eigen::AlignedBox2d all = ground_;
+  for (const scene::SweptRoom& room : moving) all.extend(room.around());
+  const Eigen::Vector2d size = all.sizes();
+  cell_m_ = std::max(4.0, size.maxCoeff() / kMostColumns);
+  origin_ = all.min();
   columns_ = static_cast<int>(std::floor(size.x() / cell_m_)) + 1;
   rows_ = static_cast<int>(std::floor(size.y() / cell_m_)) + 1;
   squares_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
@@ -98,7 +102,7 @@ double ObstacleHeights::horizon_rad(const RouteSegment& segment, double above_m,
         tangent = std::max(tangent, solid_m / distance_m);
       }
       if (distance_m <= kNear_m) {
-        if (!square.terrain()) return 0.5 * kPi;
+        if (!square.terrain() && ground_.contains(middle)) return 0.5 * kPi;
         tangent = std::max(tangent, static_cast<double>(square.slope));
       } else if (terrain_m > 0.0) {
         tangent = std::max(tangent, terrain_m / distance_m);

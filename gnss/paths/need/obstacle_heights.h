@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "canyon/core/motion/route_segment.h"
 #include "canyon/scene/city/traffic.h"
@@ -39,6 +40,7 @@ class ObstacleHeights {
   void each_square(const Eigen::Vector2d& low, const Eigen::Vector2d& high, const Visit& visit);
 
   double cell_m_ = 4.0;
+  Eigen::AlignedBox2d ground_;  ///< of the static scene; squares beyond it hold what moves there
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   int columns_ = 0, rows_ = 0;
   std::vector<Square> squares_;

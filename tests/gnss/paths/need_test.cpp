@@ -208,6 +208,25 @@ TEST(PathNeeds, ThingsThatMoveCountWhereTheyMayCome) {
   }
 }
 
+// 2026-11-22: a bus on the road beside the field was dropped, since no square of the ground lay there.
+TEST(PathNeeds, ThingsThatMoveBeyondTheGroundCount) {
+  const Asked asked(Field{}, corridor({0, 150}));
+  const RouteSegment at_the_edge = corridor({0, 190});
+  for (const bool bus : {false, true}) {
+    std::vector<scene::SweptRoom> moving;
+    if (bus) moving = {{{-150.0, 212.0}, {150.0, 212.0}, 6.3, 6.8}};
+    const ObstacleHeights heights(*asked.scene, moving);
+    const PathQuestion question{.segment = at_the_edge,
+                                .antenna_reach_m = 1.3,
+                                .antenna_above_m = 1.0,
+                                .scene = *asked.scene,
+                                .sky = asked.sky,
+                                .heights = heights,
+                                .limits = asked.limits};
+    EXPECT_EQ(specular_needs(0, question)[0].verdict, bus ? Verdict::kUndecidable : Verdict::kNotNeeded);
+  }
+}
+
 // Fields with a few houses: wherever the antenna is in the piece and whichever satellite is looked at, the search in
 // full and without what is not needed give the same, to the bit.
 TEST(PathNeeds, WhatIsNotNeededIsNeverFound) {
