@@ -19,6 +19,7 @@ struct MeasuredModel {
   double error_sigma = kNaN;    ///< by block bootstrap
   Interval error_interval;
   double undefined_share = 0.0;                ///< of the values, that only this model or only the reference has
+  double common_error = kNaN;                  ///< against truth: RMS over the vectors that every model with any has
   double cpu_s = kNaN;                         ///< median over the repetitions, per simulated second
   double cpu_low_s = kNaN, cpu_high_s = kNaN;  ///< the least and the most of them
   double simulated_s = kNaN;                   ///< that one repetition stands for

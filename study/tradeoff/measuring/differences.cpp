@@ -54,4 +54,27 @@ double rms(const Differences& d) {
   return total.count > 0.0 ? std::sqrt(total.sum / total.count) : kNaN;
 }
 
+std::vector<double> common_rms(const std::vector<const Samples*>& all) {
+  std::vector<double> sums(all.size(), 0.0), out(all.size(), kNaN);
+  std::vector<std::size_t> taking_part;
+  for (std::size_t r = 0; r < all.size(); ++r)
+    if (std::isfinite(rms(differences(*all[r], nullptr)))) taking_part.push_back(r);
+  if (taking_part.empty()) return out;
+  const Samples& first = *all[taking_part.front()];
+  double count = 0.0;
+  for (std::size_t i = 0; i < first.values.size(); ++i) {
+    for (std::size_t k = 0; k < first.values[i].size(); k += first.dimension) {
+      const bool common = std::all_of(taking_part.begin(), taking_part.end(), [&](std::size_t r) {
+        return i < all[r]->values.size() && has(all[r]->values[i], k, first.dimension);
+      });
+      if (!common) continue;
+      count += 1.0;
+      for (const std::size_t r : taking_part)
+        for (std::size_t c = k; c < k + first.dimension; ++c) sums[r] += all[r]->values[i][c] * all[r]->values[i][c];
+    }
+  }
+  for (const std::size_t r : taking_part) out[r] = count > 0.0 ? std::sqrt(sums[r] / count) : kNaN;
+  return out;
+}
+
 }  // namespace canyon::study

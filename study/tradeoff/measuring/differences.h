@@ -17,6 +17,9 @@ struct Differences {
 /// `b` null: against zero, which is the truth where a probe knows it.
 Differences differences(const Samples& a, const Samples* b);
 
+/// Of each against the truth, over the vectors that all of them have; those without any count as absent, and are NaN.
+std::vector<double> common_rms(const std::vector<const Samples*>& all);
+
 /// Root mean square over all of them; NaN without any.
 double rms(const Differences& d);
 

@@ -14,8 +14,12 @@ bool overlap(const MeasuredModel& a, const MeasuredModel& b) {
   return a.cpu_low_s <= b.cpu_high_s && b.cpu_low_s <= a.cpu_high_s;
 }
 
+/// What is undefined more often may be so where others err most: it dominates nothing.
 bool dominates(const MeasuredModel& a, const MeasuredModel& b) {
-  return a.error <= b.error && a.cpu_s <= b.cpu_s && (a.error < b.error || a.cpu_s < b.cpu_s);
+  const bool common = std::isfinite(a.common_error) && std::isfinite(b.common_error);
+  const double of_a = common ? a.common_error : a.error, of_b = common ? b.common_error : b.error;
+  return of_a <= of_b && a.cpu_s <= b.cpu_s && a.undefined_share <= b.undefined_share &&
+         (of_a < of_b || a.cpu_s < b.cpu_s);
 }
 
 }  // namespace

@@ -83,6 +83,13 @@ MeasuredModel model_of(const Contenders& c, const std::vector<Repeated>& runs, s
   return model;
 }
 
+void compare_in_common(const std::vector<Repeated>& runs, std::vector<MeasuredModel>& models) {
+  std::vector<const Samples*> all;
+  for (const Repeated& run : runs) all.push_back(&run.first.samples);
+  const std::vector<double> common = common_rms(all);
+  for (std::size_t i = 0; i < models.size(); ++i) models[i].common_error = common[i];
+}
+
 }  // namespace
 
 bool MeasuredLadder::order_holds() const {
@@ -100,6 +107,7 @@ Status measure(const Contenders& c, int repetitions, std::uint64_t seed, Measure
     MeasuredModel& model = out.models.back();
     model.resolved = model.is_reference || !(model.error < out.reference_error);
   }
+  if (out.against_truth) compare_in_common(runs, out.models);
   mark_front(out.models);
   out.fit = fit_time(out.models);
   return Ok{};

@@ -9,7 +9,8 @@ namespace canyon::study {
 /// alone, so that no reference can fake it (Roache, Verification and Validation in Computational Science and
 /// Engineering, 1998, section 5.10; for steps of unequal ratio the equation of Celik et al., J. Fluids Eng. 130 (2008)
 /// 078001, eq. 3, as ASME V&V 20-2009 has it, solved by bisection: its fixed point diverges where r12 is much larger
-/// than r23). NaN where a difference is not above `rounding`, or no order from 0.001 to 30 fits.
+/// than r23). Negative where differences grow as steps fall: the values go apart. -30 or 30 where they do so faster
+/// than that; NaN only where a difference is not above `rounding`.
 double observed_order(double h1, double h2, double h3, double e12, double e23, double rounding);
 
 /// What the finest of two values at steps h1 > h2 still errs: e12 / ((h1 / h2)^p - 1) (Richardson 1911; Roache 1998,

@@ -32,7 +32,8 @@ std::string ties(const std::vector<std::string>& names) {
 
 std::string tradeoff_csv(const Tradeoff& tradeoff) {
   std::string out =
-      "part,key,of,probe,model,error,error_unit,error_is,error_sigma,undefined_share,cpu_s_per_s,cpu_low_s_per_s,"
+      "part,key,of,probe,model,error,error_unit,error_is,error_sigma,undefined_share,common_error,cpu_s_per_s,cpu_low_"
+      "s_per_s,"
       "cpu_high_s_per_s,simulated_s,work,memory_mb,on_front,in_use,is_reference,resolved,tied_with,order_observed,"
       "order_theory,reference_error\n";
   for (const MeasuredLadder& ladder : tradeoff.ladders)
@@ -47,6 +48,7 @@ std::string tradeoff_csv(const Tradeoff& tradeoff) {
                                    ladder.against_truth ? "error" : "difference to finest",
                                    cell(model.error_sigma),
                                    cell(model.undefined_share),
+                                   cell(model.common_error),
                                    cell(model.cpu_s),
                                    cell(model.cpu_low_s),
                                    cell(model.cpu_high_s),

@@ -22,6 +22,7 @@ Json model_json(const MeasuredModel& model, const MeasuredLadder& ladder) {
   out["error_low"] = or_null(model.error_interval.low);
   out["error_high"] = or_null(model.error_interval.high);
   out["undefined_share"] = model.undefined_share;
+  out["common_error"] = or_null(model.common_error);
   out["cpu_s"] = or_null(model.cpu_s);
   out["cpu_low_s"] = or_null(model.cpu_low_s);
   out["cpu_high_s"] = or_null(model.cpu_high_s);

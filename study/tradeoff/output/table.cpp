@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/core/config/text.h"
@@ -35,7 +36,6 @@ std::string remarks(const MeasuredModel& model) {
   if (model.on_front) add("front");
   if (model.in_use) add("in use");
   if (!model.resolved) add("unresolved");
-  if (model.undefined_share >= 5e-4) add(printed("%.1f %% undefined", 100.0 * model.undefined_share));
   if (!model.tied_with.empty()) add("tied in time with " + few_of(model.tied_with));
   return text;
 }
@@ -53,14 +53,23 @@ std::string order_text(const MeasuredLadder& ladder) {
 std::string ladder_table(const MeasuredLadder& ladder) {
   const std::string of = ladder.of.empty() ? "" : " of " + ladder.of;
   std::string out = ladder.part + ": " + ladder.key + of + "\n  " + ladder.meaning + "\n";
-  TextTable table({(ladder.against_truth ? "error, " : "difference to finest, ") + ladder.unit, "CPU, ms per s",
-                   "spread", "work", "MB"},
-                  "");
-  for (const MeasuredModel& model : ladder.models)
-    table.line("  " + model.name,
-               {error_text(model), three(1e3 * model.cpu_s), three(1e3 * (model.cpu_high_s - model.cpu_low_s)),
-                std::to_string(model.work), three(model.memory_mb)},
-               "  " + remarks(model));
+  const bool undefined = std::any_of(ladder.models.begin(), ladder.models.end(),
+                                     [](const MeasuredModel& model) { return model.undefined_share > 0.0; });
+  const bool common = undefined && ladder.against_truth;
+  std::vector<std::string> head{(ladder.against_truth ? "error, " : "difference to finest, ") + ladder.unit};
+  if (undefined) head.emplace_back("undefined");
+  if (common) head.emplace_back("where all are defined");
+  for (const char* column : {"CPU, ms per s", "spread", "work", "MB"}) head.emplace_back(column);
+  TextTable table(head, "");
+  for (const MeasuredModel& model : ladder.models) {
+    std::vector<std::string> cells{error_text(model)};
+    if (undefined) cells.push_back(printed("%.3g %%", 100.0 * model.undefined_share));
+    if (common) cells.push_back(three(model.common_error));
+    for (const std::string& cell : {three(1e3 * model.cpu_s), three(1e3 * (model.cpu_high_s - model.cpu_low_s)),
+                                    std::to_string(model.work), three(model.memory_mb)})
+      cells.push_back(cell);
+    table.line("  " + model.name, cells, "  " + remarks(model));
+  }
   out += table.str();
   if (!ladder.against_truth)
     out +=

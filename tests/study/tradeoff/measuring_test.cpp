@@ -73,6 +73,54 @@ TEST(Measuring, AnOrderThatARowDoesNotKeepIsFlagged) {
   EXPECT_TRUE(measured(1.0, std::nullopt).order_holds());
 }
 
+// 2026-11-22: an integrator that gets worse at its finest step kept the order of its coarse ones.
+TEST(Measuring, AnOrderThatIsLostAtFineRungsIsFlagged) {
+  EXPECT_LT(observed_order(0.4, 0.2, 0.1, 1.0, 2.0, 0.0), -0.9);  // doubling as the step halves: order -1
+  EXPECT_NEAR(observed_order(0.4, 0.2, 0.1, 1.0, 2.0, 0.0), -1.0, 1e-9);
+  EXPECT_NEAR(observed_order(0.4, 0.2, 0.1, 1.0, 1.0, 0.0), 0.0, 1e-9);
+  Contenders c;
+  for (const auto& [h, error] : {std::pair(8.0, 64.0), {4.0, 16.0}, {2.0, 4.0}, {1.0, 24.0}}) {
+    c.names.push_back(std::to_string(static_cast<int>(h)));
+    c.values.push_back(h);
+    c.probes.push_back(std::make_unique<SaidProbe>(error, 1.0));
+  }
+  MeasuredLadder ladder;
+  ladder.order_must_hold = true;
+  ladder.order_theory = 2.0;
+  ASSERT_TRUE(measure(c, 5, 1, ladder));
+  EXPECT_LT(ladder.order_observed, 0.0);
+  EXPECT_FALSE(ladder.order_holds());
+}
+
+// 2026-11-22: a solver that refuses the hard epochs looked better than one that takes all of them.
+TEST(Measuring, RungsAreComparedOverWhatAllOfThemHave) {
+  class Refusing final : public Probe {
+   public:
+    explicit Refusing(bool refuses) : refuses_(refuses) {}
+    Result<ProbeRun> run() override {
+      ProbeRun run;
+      run.samples.values = {{3.0}, {refuses_ ? kNaN : 40.0}, {refuses_ ? 4.0 : 3.0}};
+      run.cpu_s = refuses_ ? 0.5 : 1.0;
+      run.work = 1;
+      return run;
+    }
+    bool refuses_;
+  };
+  Contenders c;
+  for (const bool refuses : {true, false}) {
+    c.names.push_back(refuses ? "picky" : "all");
+    c.values.push_back(std::nullopt);
+    c.probes.push_back(std::make_unique<Refusing>(refuses));
+  }
+  MeasuredLadder ladder;
+  ASSERT_TRUE(measure(c, 5, 1, ladder));
+  EXPECT_LT(ladder.models[0].error, ladder.models[1].error);
+  EXPECT_DOUBLE_EQ(ladder.models[0].common_error, std::sqrt(12.5));
+  EXPECT_DOUBLE_EQ(ladder.models[1].common_error, 3.0);
+  EXPECT_NEAR(ladder.models[0].undefined_share, 1.0 / 3.0, 1e-15);
+  EXPECT_TRUE(ladder.models[1].on_front);
+}
+
 TEST(Measuring, DifferencesToARungAndWhatItErrsItself) {
   Contenders c;
   for (const double h : {4.0, 2.0, 1.0}) {
@@ -135,6 +183,14 @@ TEST(Front, HoldsWhatNothingBeats) {
   EXPECT_THAT(models[0].tied_with, IsEmpty());
   EXPECT_THAT(models[1].tied_with, ElementsAre("worse"));
   EXPECT_THAT(models[2].tied_with, ElementsAre("middle"));
+}
+
+// 2026-11-22: what is undefined for a third of the epochs dominated what has them all.
+TEST(Front, WhatIsUndefinedMoreOftenDominatesNothing) {
+  std::vector<MeasuredModel> models{model("picky", 1.0, 0.9, 1.0, 1.1), model("all", 2.0, 1.9, 2.0, 2.1)};
+  models[0].undefined_share = 0.3;
+  mark_front(models);
+  EXPECT_TRUE(models[0].on_front && models[1].on_front);
 }
 
 // Who changes places on the front when times are drawn anew was tied: each time's own interval holds both draws.
