@@ -10,7 +10,7 @@
 
 namespace canyon::apps {
 
-Status write_tradeoff_files(const study::Tradeoff& tradeoff, StagedDirectory& staged) {
+Status write_tradeoff_files(const study::Tradeoff& tradeoff, const StagedDirectory& staged) {
   const std::string folder = staged.staging_path();
   const std::string summary = json_text(study::tradeoff_json(tradeoff), 2) + "\n";
   CANYON_TRY_STATUS(write_text_file(folder + "/summary.json", summary));
@@ -20,7 +20,7 @@ Status write_tradeoff_files(const study::Tradeoff& tradeoff, StagedDirectory& st
   CANYON_TRY(const std::string page, report::tradeoff_page(folder + "/summary.json"));
   CANYON_TRY_STATUS(write_text_file(folder + "/report.html", page));
   throw_if_cancelled();
-  return staged.commit();
+  return Ok{};
 }
 
 }  // namespace canyon::apps

@@ -6,7 +6,7 @@
 namespace canyon::apps {
 
 /// What was measured, as files of a directory that has been staged: summary.json, tradeoff.csv, fidelities.csv where
-/// missions were measured as a whole, report.html. Then the directory gets its name.
-Status write_tradeoff_files(const study::Tradeoff& tradeoff, StagedDirectory& staged);
+/// missions were measured as a whole, report.html. The directory has no name yet.
+Status write_tradeoff_files(const study::Tradeoff& tradeoff, const StagedDirectory& staged);
 
 }  // namespace canyon::apps

@@ -58,6 +58,9 @@ Result<Comparison> prepare_tradeoff(const mission::MissionFile& file, const Trad
   if (asked_for(options, "mission"))
     for (const std::string& name : file.fidelities())
       if (name != options.fidelity) fidelities.push_back(name);
+  // What a recording says of its receiver is a mistake of the call, not of one ladder.
+  if (options.recording != nullptr)
+    CANYON_TRY_STATUS(with_receiver(file, *options.recording).resolve(options.fidelity));
   CANYON_TRY(Comparison comparison, prepare_comparison(file, plan_runs(fidelities, false)));
   CANYON_TRY_STATUS(choose_tape(tape, comparison));
   return comparison;

@@ -23,8 +23,12 @@ Result<Chosen> choose_settings(const Question& question, const mission::MissionF
 Result<Tradeoff> choose_and_describe(const Question& question, const mission::MissionFile& file,
                                      const TradeoffOptions& options, const Comparison& comparison, int seeds);
 
+/// That the answer can be written there, asked before anything is measured: paths in a mission file hold from its own
+/// folder only, and a fidelity "tradeoff" must not be there yet. `path` empty: the built-in mission.
+Status check_writable(const std::string& path, const mission::MissionFile& file, const std::string& written_to);
+
 /// A mission file that names the answer: what `path` holds (empty: the built-in mission), and after it a fidelity
-/// "tradeoff" laid over the one that was asked for. Paths in it hold from the same folder only, which is checked.
+/// "tradeoff" laid over the one that was asked for. It is read back before it is given.
 Result<std::string> mission_with(const Chosen& chosen, const std::string& fidelity, const std::string& path,
                                  const std::string& written_to);
 

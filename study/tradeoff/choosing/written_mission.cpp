@@ -1,12 +1,16 @@
 #include <filesystem>
 #include <map>
 
+#include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
 #include "canyon/study/tradeoff/choosing/choose.h"
+#include "canyon/study/tradeoff/choosing/movable_keys.h"
 #include "canyon/study/tradeoff/ladders/rungs.h"
 
 namespace canyon::study {
 namespace {
+
+constexpr const char* kWrittenFidelity = "tradeoff";
 
 /// A value as TOML writes it.
 std::string toml_value(const std::string& text) {
@@ -25,13 +29,32 @@ Status check_folder(const std::string& mission, const std::string& written_to) {
                .expected = "a file in " + from.string()};
 }
 
+/// What was written must be what is read.
+Status check_read_back(const std::string& text, const Chosen& chosen, const std::string& written_to) {
+  CANYON_TRY(const auto file, mission::MissionFile::parse(text, written_to));
+  CANYON_TRY(mission::MissionConfig config, file.resolve(kWrittenFidelity));
+  CANYON_TRY(mission::MissionConfig asked, with_settings(file, kWrittenFidelity, chosen.settings));
+  const auto keys = [](mission::MissionConfig& c) { return fields_as_json([&c](FieldVisitor& f) { visit(f, c); }); };
+  if (keys(config) == keys(asked)) return Ok{};
+  return Error{.file = written_to, .what = "would not be read back as the settings that were chosen", .exit_code = 1};
+}
+
 }  // namespace
+
+Status check_writable(const std::string& path, const mission::MissionFile& file, const std::string& written_to) {
+  if (!path.empty()) CANYON_TRY_STATUS(check_folder(path, written_to));
+  for (const std::string& name : file.fidelities())
+    if (name == kWrittenFidelity)
+      return Error{.file = "--write",
+                   .what = path + " has a fidelity \"" + name + "\" already",
+                   .expected = "a mission file without [fidelity." + name + "]"};
+  return Ok{};
+}
 
 Result<std::string> mission_with(const Chosen& chosen, const std::string& fidelity, const std::string& path,
                                  const std::string& written_to) {
   std::string text = std::string("base = \"") + mission::kDefaultMission + "\"\n";
   if (!path.empty()) {
-    CANYON_TRY_STATUS(check_folder(path, written_to));
     CANYON_TRY(text, read_text_file(path));
   }
   if (!text.empty() && text.back() != '\n') text += '\n';
@@ -43,6 +66,7 @@ Result<std::string> mission_with(const Chosen& chosen, const std::string& fideli
     sections[key.substr(0, dot)] += key.substr(dot + 1) + " = " + toml_value(value) + "\n";
   }
   for (const auto& [section, keys] : sections) text += "[fidelity.tradeoff." + section + "]\n" + keys;
+  CANYON_TRY_STATUS(check_read_back(text, chosen, written_to));
   return text;
 }
 

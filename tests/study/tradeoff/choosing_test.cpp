@@ -67,6 +67,21 @@ TEST(Question, IsReadOrItsMistakeTold) {
   EXPECT_THAT(mistake("", 1.0, "map_rms"), HasSubstr("--figure: \"map_rms\" is no figure"));
 }
 
+// 2026-11-22: a second [fidelity.tradeoff] was appended, and `--fidelity tradeoff` became the base of itself.
+TEST(Question, AMissionThatHasAnAnswerIsRefusedBeforeAnythingIsMeasured) {
+  const auto file =
+      mission::MissionFile::parse("base = \"vicksburg\"\n[fidelity.tradeoff]\nbase = \"low\"\n", "my.toml");
+  ASSERT_TRUE(file) << file.error().str();
+  const auto status = check_writable("my.toml", *file, "answer.toml");
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().str(),
+            "--write: my.toml has a fidelity \"tradeoff\" already, expected a mission file without "
+            "[fidelity.tradeoff]");
+  const auto without = mission::MissionFile::parse("base = \"vicksburg\"\n", "my.toml");
+  EXPECT_TRUE(check_writable("my.toml", *without, "answer.toml").ok());
+  EXPECT_FALSE(check_writable("my.toml", *without, "elsewhere/answer.toml").ok());
+}
+
 TEST(Question, TheAnswersMissionIsReadAgain) {
   Chosen chosen;
   chosen.found = true;

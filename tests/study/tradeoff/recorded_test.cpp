@@ -8,6 +8,8 @@
 
 #include "canyon/core/files/files.h"
 #include "canyon/study/tradeoff/measuring/measure.h"
+#include "canyon/study/tradeoff/recorded/recorded_drive.h"
+#include "canyon/study/tradeoff/tradeoff.h"
 #include "canyon/tests/study/tradeoff/short_drive.h"
 
 namespace canyon::study {
@@ -88,6 +90,18 @@ TEST(RecordedDrive, KeysOfTheReceiverLieOverTheFidelity) {
   const auto config = with_receiver(testing::short_drive_file(), **read).resolve("high");
   ASSERT_TRUE(config) << config.error().str();
   EXPECT_EQ(config->gnss.link.antenna.name, "patch");
+}
+
+// 2026-11-22: a typo in what recorded became a line of ladders that are left out, and exit status 0.
+TEST(RecordedDrive, AMistakeInTheReceiverIsOneOfTheCall) {
+  RecordedDrive drive;
+  drive.name = "drive.toml";
+  drive.receiver = {{"gnss.antena", setting_node("patch")}};
+  TradeoffOptions options{.parts = {kRecordedPart}, .recording = &drive};
+  const auto comparison = prepare_tradeoff(testing::short_drive_file(), options, {});
+  ASSERT_FALSE(comparison.ok());
+  EXPECT_EQ(comparison.error().exit_code, 2);
+  EXPECT_THAT(comparison.error().str(), ::testing::HasSubstr("antena"));
 }
 
 }  // namespace
