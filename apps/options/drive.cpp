@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -79,19 +80,24 @@ void declare_plan_options(Arguments& arguments, PlanOptions& options) {
           "here for each run")
       .type("FILE")
       .value_optional(kMakePlan);
-  arguments.option("--for", options.outputs, "what somebody will read, for a plan that is made here").default_shown();
+  arguments.option("--for", options.outputs,
+                   "what somebody will read, with commas between: outcome, position, map, clouds; without it all four, "
+                   "or what the file's plan was made for");
 }
 
 namespace {
 
-Status follow_plan(const PlanOptions& options, bool open_loop, study::Comparison& comparison) {
+Status follow_plan(const PlanOptions& options, study::Comparison& comparison) {
   if (options.plan.empty()) return Ok{};
   if (options.plan.ends_with(".toml"))
     return Error{.file = "--plan",
                  .what = "\"" + options.plan + "\" is a mission file",
                  .expected = "a plan file, or the mission before --plan"};
-  CANYON_TRY(const auto outputs, study::outputs_of(split_list(options.outputs), "--for"));
-  return study::follow_plan(options.plan == kMakePlan ? "" : options.plan, outputs, open_loop, comparison);
+  std::optional<std::vector<study::Output>> outputs;
+  if (!options.outputs.empty()) {
+    CANYON_TRY(outputs, study::outputs_of(split_list(options.outputs), "--for"));
+  }
+  return study::follow_plan(options.plan == kMakePlan ? "" : options.plan, outputs, comparison);
 }
 
 }  // namespace
@@ -108,11 +114,11 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
                  .what = "is for open loops",
                  .expected = "--open-loop beside it"};
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
-  CANYON_TRY_STATUS(follow_plan(leave_out, loop.open_loop, comparison));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
   if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
+  CANYON_TRY_STATUS(follow_plan(leave_out, comparison));
   CANYON_TRY(auto results, study::compare(comparison, staged.staging_path(), !options.common.json));
   if (figures.seeds)
     CANYON_TRY_STATUS(

@@ -26,8 +26,8 @@ void declare_figures_option(Arguments& arguments, FigureOptions& options);
 
 /// What a run may leave out.
 struct PlanOptions {
-  std::string plan;                                     ///< empty: nothing; "make", or a plan file
-  std::string outputs = "outcome,position,map,clouds";  ///< of a plan that is made here
+  std::string plan;     ///< empty: nothing; "make", or a plan file
+  std::string outputs;  ///< that somebody will read; empty: not said
 };
 void declare_plan_options(Arguments& arguments, PlanOptions& options);
 

@@ -97,4 +97,11 @@ Result<Tape> read_tape(const std::string& path) {
   return tape;
 }
 
+std::string tape_hash(const Tape& tape) {
+  std::string bytes;
+  bytes.reserve(tape.nodes.size() * kNodeBytes);
+  for (const TapeNode& node : tape.nodes) append_tape_node(bytes, node);
+  return sha256_hex(bytes);
+}
+
 }  // namespace canyon

@@ -38,4 +38,7 @@ Result<Tape> read_tape(const std::string& path);
 std::string tape_header(const Tape& tape);
 void append_tape_node(std::string& out, const TapeNode& node);
 
+/// SHA-256 of its motion: of the nodes as a file holds them, whatever the tape is called.
+std::string tape_hash(const Tape& tape);
+
 }  // namespace canyon

@@ -12,7 +12,7 @@ struct GnssCounters {
   std::int64_t facets_tested = 0;
   std::int64_t reflected_paths = 0;
   std::int64_t diffracted_paths = 0;
-  std::int64_t delays_computed = 0;  ///< models of atmosphere and ephemeris asked for one signal
+  std::int64_t delays_computed = 0;  ///< models of atmosphere, ephemeris and differences to a base, asked for a signal
   std::int64_t epochs_in_full = 0;   ///< measured again, with the delays that had been left out
 };
 

@@ -144,6 +144,7 @@ class PseudorangeSensor final : public GnssSensor {
     std::vector<Correction> corrections;
     PositionSolution solution;
     out.fix = compute_fix(receiver, epoch.t, out.epoch, inputs, corrections, &solution);
+    counters_.delays_computed += static_cast<std::int64_t>(corrections.size()) * parts_.mode->asks(leave_out);
     out.range_gain = solution.ok ? solution.range_gain : kNaN;
     for (std::size_t k = 0; k < corrections.size(); ++k)
       keep_residual(corrections[k], ranges_.bound_m > 0.0 ? leave_out : DelayOmissions{},

@@ -62,6 +62,8 @@ Result<Plan> make_plan(const mission::MissionConfig& config, const mission::Prep
             .figure_bounds = {},
             .epoch_t_s = {},
             .epoch_bound_m = {},
+            .tape_hash = {},
+            .seeds = {},
             .omissions = {}};
   const std::vector<Need> readers = reader_needs(config, mission, request.outputs, request.open_loop);
   leave_out_unread(readers, plan.omissions);
@@ -83,7 +85,8 @@ Result<Plan> make_plan(const mission::MissionConfig& config, const mission::Prep
     const auto clear = lidar::clearances(*mission.scene, moving, corridor);
     for (std::size_t i = 0; i < clear.size(); ++i) plan.omissions.corridor[i].around = clear[i];
   }
-  CANYON_TRY_STATUS(leave_out_tolerated(gnss::gnss_range_needs(config.gnss, around), config, mission, plan));
+  CANYON_TRY_STATUS(
+      leave_out_tolerated(gnss::gnss_range_needs(config.gnss, around), config, mission, request.open_loop, plan));
   // A corridor in which nothing is left out needs no watching.
   const auto keeps_all = [](const mission::PlannedPlace& place) {
     return place.paths == gnss::PathOmissions{} && place.around.clear_m <= 0.0;

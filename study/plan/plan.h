@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ struct PlannedEffect {
   Need need;
   std::string segment;                ///< "whole run", "120-180 m" of the route
   double start_m = 0.0, end_m = 0.0;  ///< both 0 for a whole run
+  std::int64_t saved_work = 0;        ///< of a delay: models asked less often, over the replayed epochs (docs/plan.md)
   double saved_cpu_s = kNaN;          ///< over the nominal mission, measured (study/plan/cost.h); NaN: not measured
   FigureValues moves{};               ///< by figure: how far leaving it out moves it at most; what has a tolerance
   bool whole_run() const { return end_m <= start_m; }
@@ -32,7 +34,9 @@ struct Plan {
   FigureValues tolerances;    ///< that it was made for
   std::vector<PlannedEffect> effects;
   FigureValues figure_bounds;                    ///< how far all that is left out moves them at most
-  std::vector<double> epoch_t_s, epoch_bound_m;  ///< the estimate of position, from each fix of the route to the next
+  std::vector<double> epoch_t_s, epoch_bound_m;  ///< the estimate of position, row by row of a run
+  std::string tape_hash;                         ///< of the motion along which these bounds hold; empty: there are none
+  std::vector<std::int64_t> seeds;               ///< whose runs on it they were taken from
   mission::Omissions omissions;
 };
 

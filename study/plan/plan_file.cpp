@@ -15,7 +15,7 @@ namespace canyon::study {
 
 namespace {
 
-constexpr const char *kKind = "canyon-plan-2", *kFormerKind = "canyon-plan-1";
+constexpr const char *kKind = "canyon-plan-3", *kAnyKind = "canyon-plan-";
 
 /// Of all that a plan depends on but the scene's own geometry: the keys, and what stands in the files that they name.
 std::string mission_hash(const mission::MissionConfig& config, const mission::PreparedMission& mission) {
@@ -93,6 +93,8 @@ bool sound(const Plan& plan) {
     const auto bound = plan.figure_bounds.find(figure);
     if (!(tolerance > 0.0) || (bound != plan.figure_bounds.end() && !(bound->second <= tolerance))) return false;
   }
+  if (ranges.bound_m > 0.0 && (plan.outputs != std::vector<Output>{Output::kPosition} || plan.tape_hash.empty()))
+    return false;
   return check_reached(plan.tolerances, "").ok() && plan.epoch_t_s.size() == plan.epoch_bound_m.size();
 }
 
@@ -125,8 +127,11 @@ bool fill(const nlohmann::json& json, Plan& plan) {
     plan.tolerances[figure] = asked.at("tolerance");
     plan.figure_bounds[figure] = asked.at("bound");
   }
-  for (const auto& t : json.at("position_bounds").at("t_s")) plan.epoch_t_s.push_back(t);
-  for (const auto& bound : json.at("position_bounds").at("position_m")) plan.epoch_bound_m.push_back(bound);
+  const auto& bounds = json.at("position_bounds");
+  plan.tape_hash = bounds.at("tape_hash");
+  for (const auto& seed : bounds.at("seeds")) plan.seeds.push_back(seed);
+  for (const auto& t : bounds.at("t_s")) plan.epoch_t_s.push_back(t);
+  for (const auto& bound : bounds.at("position_m")) plan.epoch_bound_m.push_back(bound);
   for (const auto& line : json.at("effects")) {
     PlannedEffect effect;
     effect.need.effect = line.at("effect");
@@ -164,6 +169,21 @@ Status check(const nlohmann::json& json, const std::string& path, const mission:
   return Ok{};
 }
 
+/// Bounds hold along one motion, and where an estimate moves nobody.
+Status check_tape_of(const Plan& plan, const std::string& path, const Tape* tape) {
+  if (tape == nullptr)
+    return Error{.file = path,
+                 .what = "lets the estimate move within a tolerance, and in a closed loop the vehicle with it",
+                 .expected = "--open-loop, or a plan made without --tolerance"};
+  if (const std::string hash = tape_hash(*tape); hash != plan.tape_hash)
+    return Error{
+        .file = path,
+        .what = "has bounds that hold along another tape (" + plan.tape_hash.substr(0, 12) + "…, not " +
+                hash.substr(0, 12) + "…)",
+        .expected = "the mission's own route with the seed that the plan was made for, and --seeds for others"};
+  return Ok{};
+}
+
 }  // namespace
 
 Json effects_json(const Plan& plan) {
@@ -198,7 +218,10 @@ Json tolerances_json(const Plan& plan) {
 }
 
 Json position_bounds_json(const Plan& plan) {
-  return {{"t_s", plan.epoch_t_s}, {"position_m", plan.epoch_bound_m}};
+  return {{"tape_hash", plan.tape_hash},
+          {"seeds", plan.seeds},
+          {"t_s", plan.epoch_t_s},
+          {"position_m", plan.epoch_bound_m}};
 }
 
 Json left_out_json(const Plan& plan) {
@@ -237,15 +260,16 @@ std::string plan_text(const Plan& plan, const mission::MissionConfig& config, co
 }
 
 Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& config,
-                       const mission::PreparedMission& mission, bool open_loop) {
+                       const mission::PreparedMission& mission, const Tape* tape) {
   CANYON_TRY(const std::string text, read_text_file(path));
   CANYON_TRY(const nlohmann::json json, parse_json(text, path));
   const Error no_plan{.file = path, .what = "is no plan", .expected = "a file of canyon plan --write"};
-  if (json.is_object() && json_string(json, "kind") == kFormerKind)
+  const std::string kind = json.is_object() ? json_string(json, "kind") : std::string();
+  if (kind != kKind && kind.starts_with(kAnyKind))
     return Error{.file = path,
-                 .what = std::string("is a plan of the form ") + kFormerKind + ", which knows no tolerances",
+                 .what = "is a plan of the form " + kind,
                  .expected = std::string(kKind) + ": make it again with canyon plan --write"};
-  if (!json.is_object() || json_string(json, "kind") != kKind) return no_plan;
+  if (kind != kKind) return no_plan;
   CANYON_TRY_STATUS(check(json, path, config, mission));
   Plan plan;
   try {
@@ -258,7 +282,8 @@ Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& co
   if (!sound(plan) || !std::all_of(corridor.begin(), corridor.end(), sound_place) ||
       !mission::can_leave_out(config, plan.omissions))
     return no_plan;
-  if (plan.omissions.autonomy && !open_loop)
+  if (plan.omissions.ranges.bound_m > 0.0) CANYON_TRY_STATUS(check_tape_of(plan, path, tape));
+  if (plan.omissions.autonomy && tape == nullptr)
     return Error{.file = path,
                  .what = "is a plan for an open loop, in which nobody drives",
                  .expected = "--open-loop, or a plan made without it"};

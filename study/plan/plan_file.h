@@ -4,6 +4,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "canyon/core/files/tape.h"
 #include "canyon/core/result.h"
 #include "canyon/study/plan/plan.h"
 
@@ -12,7 +13,8 @@ namespace canyon::study {
 /// `effects` of `canyon plan --json` and of a plan file.
 nlohmann::ordered_json effects_json(const Plan& plan);
 
-/// `tolerances`: {figure, tolerance, bound} each, and `position_bounds`: {t_s, position_m}, epoch by epoch.
+/// `tolerances`: {figure, tolerance, bound} each, and `position_bounds`: {tape_hash, seeds, t_s, position_m}, row by
+/// row.
 nlohmann::ordered_json tolerances_json(const Plan& plan);
 nlohmann::ordered_json position_bounds_json(const Plan& plan);
 
@@ -23,10 +25,11 @@ nlohmann::ordered_json left_out_json(const Plan& plan);
 /// mission's configuration (without its seed, which decides nothing of a plan) and the scene that it was made for.
 std::string plan_text(const Plan& plan, const mission::MissionConfig& config, const mission::PreparedMission& mission);
 
-/// Reads it back for this mission. An Error, with file and line, for what is no plan; for one of another version,
-/// mission, fidelity or scene, for one that leaves out what the mission reads, and for one without an autonomy in a
-/// closed loop.
+/// Reads it back for this mission, which is driven along `tape`; nullptr: in a closed loop. An Error, with file and
+/// line, for what is no plan; for one of another version, mission, fidelity or scene, for one that leaves out what the
+/// mission reads, for one without an autonomy or with a tolerance in a closed loop, and for one with a tolerance that
+/// holds along another tape.
 Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& config,
-                       const mission::PreparedMission& mission, bool open_loop = false);
+                       const mission::PreparedMission& mission, const Tape* tape = nullptr);
 
 }  // namespace canyon::study

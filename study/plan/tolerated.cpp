@@ -53,9 +53,13 @@ std::string text(const char* format, Values... values) {
   return out;
 }
 
-/// CPU time of all epochs of the replay without these delays.
-Result<double> seconds_of(GnssReplay& replay, const gnss::DelayOmissions& leave_out) {
-  double least_s = std::numeric_limits<double>::infinity();
+/// CPU time and counted work of all epochs of the replay without these delays.
+struct Cost {
+  double cpu_s = std::numeric_limits<double>::infinity();
+  std::int64_t work = 0;
+};
+Result<Cost> cost_of(GnssReplay& replay, const gnss::DelayOmissions& leave_out) {
+  Cost cost;
   for (int k = 0; k < kRepeats; ++k) {
     throw_if_cancelled();
     CANYON_TRY(const auto sensor, replay.sensor());
@@ -65,30 +69,32 @@ Result<double> seconds_of(GnssReplay& replay, const gnss::DelayOmissions& leave_
       const ChargeCpu charge(&account);
       for (const auto& epoch : replay.epochs()) replay.measure(*sensor, epoch, {});
     }
-    least_s = std::min(least_s, account.seconds());
+    cost.cpu_s = std::min(cost.cpu_s, account.seconds());
+    cost.work = sensor->counters().delays_computed;
   }
-  return least_s;
+  return cost;
 }
 
-/// What leaving out each saves over the nominal mission.
+/// What leaving out each saves: work at the replayed epochs, which decides, and CPU time over the nominal mission.
 Status measure(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
                std::vector<PlannedEffect>& candidates) {
   GnssReplay replay(config, mission, tape, {}, kEpochs);
   const double times = mission.nominal_s * config.gnss.rate_hz / static_cast<double>(kEpochs);
-  CANYON_TRY(const double full_s, seconds_of(replay, {}));
+  CANYON_TRY(const Cost full, cost_of(replay, {}));
   for (PlannedEffect& candidate : candidates) {
-    CANYON_TRY(const double less_s, seconds_of(replay, gnss::delays_of({candidate.need})));
-    candidate.saved_cpu_s = std::max(0.0, times * (full_s - less_s));
+    CANYON_TRY(const Cost less, cost_of(replay, gnss::delays_of({candidate.need})));
+    candidate.saved_work = full.work - less.work;
+    candidate.saved_cpu_s = std::max(0.0, times * (full.cpu_s - less.cpu_s));
   }
   return Ok{};
 }
 
-/// The figure that does not allow this much more; null: all do.
+/// The figure that does not allow this much more, or of which nothing is known; null: all do.
 const char* exceeded(const Plan& plan, const PlannedEffect& candidate) {
   for (const auto& [figure, tolerance] : plan.tolerances) {
     const auto so_far = plan.figure_bounds.find(figure);
-    if ((so_far == plan.figure_bounds.end() ? 0.0 : so_far->second) + candidate.moves.at(figure) > tolerance)
-      return reached(figure)->figure;
+    const double sum = (so_far == plan.figure_bounds.end() ? 0.0 : so_far->second) + candidate.moves.at(figure);
+    if (!(sum <= tolerance)) return reached(figure)->figure;
   }
   return nullptr;
 }
@@ -97,6 +103,15 @@ void keep(PlannedEffect& effect, const std::string& why) {
   effect.need.verdict = Verdict::kNeeded;
   effect.need.reason = text("moves a range by up to %.2g m", effect.need.bound) + why + "; " + effect.need.reason;
   effect.saved_cpu_s = kNaN;
+}
+
+/// Why no tolerance bounds what comes of a moved estimate; empty: they do.
+std::string beyond_tolerances(const Plan& plan, bool open_loop) {
+  if (!open_loop) return "undecidable in a closed loop: what is believed of the position moves the vehicle";
+  for (const Output output : plan.outputs)
+    if (output != Output::kPosition)
+      return std::string("and nothing bounds what --for ") + name(output) + " makes of a moved estimate";
+  return {};
 }
 
 }  // namespace
@@ -115,9 +130,11 @@ Status check_reached(const FigureValues& tolerances, const std::string& option) 
 }
 
 void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEffect>& candidates, Plan& plan) {
-  // Of equal savings per bound the smaller bound first.
-  std::sort(candidates.begin(), candidates.end(), [](const PlannedEffect& a, const PlannedEffect& b) {
-    const double of_a = a.saved_cpu_s / a.need.bound, of_b = b.saved_cpu_s / b.need.bound;
+  // By counted work, so that the same mission has the same plan each time. Of equal savings per bound the smaller bound
+  // first.
+  std::stable_sort(candidates.begin(), candidates.end(), [](const PlannedEffect& a, const PlannedEffect& b) {
+    const double of_a = static_cast<double>(a.saved_work) / a.need.bound;
+    const double of_b = static_cast<double>(b.saved_work) / b.need.bound;
     return of_a != of_b ? of_a > of_b : a.need.bound < b.need.bound;
   });
   std::vector<Need> chosen;
@@ -125,6 +142,10 @@ void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEff
   for (PlannedEffect& candidate : candidates) {
     for (const auto& [figure, tolerance] : plan.tolerances)
       candidate.moves[figure] = candidate.need.bound * reached(figure)->per_metre(chain);
+    if (candidate.saved_work <= 0) {
+      keep(candidate, ", and leaving it out saves no work");
+      continue;
+    }
     if (const char* figure = exceeded(plan, candidate)) {
       keep(candidate, text(", %s by %.2g: more than is left of the tolerance", figure, candidate.moves.at(figure)));
       continue;
@@ -136,18 +157,24 @@ void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEff
   if (chosen.empty()) return;
   ranges.delays = ranges.delays | gnss::delays_of(chosen);
   ranges.most_gain = chain.most_gain;
-  plan.epoch_t_s = chain.fix_t_s;
+  plan.epoch_t_s = chain.t_s;
+  plan.seeds = chain.seeds;
   for (const double per_metre : chain.any) plan.epoch_bound_m.push_back(ranges.bound_m * per_metre);
 }
 
 Status leave_out_tolerated(const std::vector<Need>& needs, const mission::MissionConfig& config,
-                           const mission::PreparedMission& mission, Plan& plan) {
+                           const mission::PreparedMission& mission, bool open_loop, Plan& plan) {
   std::vector<PlannedEffect> candidates, lines;
   for (const Need& need : needs) {
     PlannedEffect line{.need = need, .segment = "whole run"};
     if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && config.fusion.gate_sigma > 0.0) {
       line.need.verdict = Verdict::kUndecidable;
       line.need.reason = "the filter's gate decides which fixes it takes";
+    }
+    const bool acts = line.need.verdict == Verdict::kNotNeeded && need.bound > 0.0;
+    if (const std::string why = beyond_tolerances(plan, open_loop); acts && !plan.tolerances.empty() && !why.empty()) {
+      line.need.verdict = Verdict::kUndecidable;
+      line.need.reason = text("moves a range by up to %.2g m, ", need.bound) + why;
     }
     const bool left_out = line.need.verdict == Verdict::kNotNeeded, free = left_out && need.bound <= 0.0;
     if (free) plan.omissions.ranges.delays = plan.omissions.ranges.delays | gnss::delays_of({line.need});
@@ -160,6 +187,7 @@ Status leave_out_tolerated(const std::vector<Need>& needs, const mission::Missio
     CANYON_TRY(const PositionChain chain, position_chain(config, mission, tape));
     CANYON_TRY_STATUS(measure(config, mission, tape, candidates));
     choose_within_tolerances(chain, candidates, plan);
+    if (plan.omissions.ranges.bound_m > 0.0) plan.tape_hash = tape_hash(tape);
   }
   for (PlannedEffect& line : lines) plan.effects.push_back(std::move(line));
   for (PlannedEffect& line : candidates) plan.effects.push_back(std::move(line));

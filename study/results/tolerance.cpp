@@ -23,7 +23,8 @@ Result<Tolerances> tolerances_of(const std::vector<std::string>& texts, const st
     const bool read = end.ec == std::errc() && end.ptr == value_text.data() + value_text.size();
     if (!read || !(value > 0.0) || !std::isfinite(value))
       return Error{.file = option, .key = figure, .what = "\"" + value_text + "\"", .expected = "a number above 0"};
-    tolerances[figure] = value;
+    if (!tolerances.emplace(figure, value).second)
+      return Error{.file = option, .key = figure, .what = "stands there twice", .expected = "one value for a figure"};
   }
   return tolerances;
 }

@@ -54,6 +54,10 @@ class Dgps final : public ReceiverMode {
     c.base_m = p_.base_error_scale * base_sigma_m * base_.at(in.sv.entity(), in.t);
     return c;
   }
+  int asks(const DelayOmissions& leave_out) const override {
+    return (at_.ionosphere && !leave_out.ionosphere_difference) +
+           (at_.troposphere && !leave_out.troposphere_difference);
+  }
   FixStatus status() const override { return FixStatus::kDifferential; }
   bool corrects_atmosphere() const override { return true; }
 

@@ -59,6 +59,8 @@ class ReceiverMode {
   /// The part of the raw delays that acts on the range at all; all of it, but for dgps_paper.
   virtual RangeDelays acting(const RangeDelays& raw) const { return raw; }
   virtual Correction correction(const CorrectionInput& in) const = 0;
+  /// How many models a correction asks beside those of the delays that act.
+  virtual int asks(const DelayOmissions&) const { return 0; }
   virtual FixStatus status() const = 0;
   virtual bool dual_frequency() const { return false; }
   /// Does it correct for the atmosphere, so that a residual is left, or do the raw delays act?

@@ -14,15 +14,28 @@ namespace {
 /// Epochs of poorer geometry than this share of all are measured in full: they cost little and would set every bound.
 constexpr double kShareLeftOut = 0.95;
 
-struct Rows final : mission::Recorder {
+/// What a run tells its filter, and the rows that it writes, in their order.
+struct Event {
+  GpsTime t;
+  bool is_row = false;  ///< else a fix
+  GnssFix fix{};
+  double gain = 0.0;
+};
+
+struct Events final : mission::Recorder {
   std::vector<ImuSample> imu_samples;
-  std::vector<mission::GnssRow> fixes;
+  std::vector<Event> events;
   Status imu(const ImuSample& sample) override {
     imu_samples.push_back(sample);
     return Ok{};
   }
   Status gnss(const mission::GnssRow& row) override {
-    if (row.update.dimension > 0) fixes.push_back(row);
+    // One that the filter takes its place from is accepted too, though it corrects nothing.
+    if (row.update.accepted) events.push_back({row.fix.t, false, row.fix, row.range_gain});
+    return Ok{};
+  }
+  Status epoch(const mission::NavRow& row) override {
+    events.push_back({.t = row.t, .is_row = true});
     return Ok{};
   }
 };
@@ -33,52 +46,62 @@ double rms_of(const std::vector<double>& values) {
   return values.empty() ? 0.0 : std::sqrt(square / static_cast<double>(values.size()));
 }
 
+struct Driven {
+  mission::MissionConfig config;
+  mission::RunRecord record;
+  Events events;
+};
+
 /// The sensors and the filter alone: nobody looks, and nothing is mapped.
-Result<mission::RunRecord> drive(mission::MissionConfig config, const mission::PreparedMission& mission,
-                                 const Tape& tape, Rows& rows) {
+Status drive(const mission::PreparedMission& mission, const Tape& tape, Driven& run) {
   mission::Omissions unread;
   unread.registration = unread.maps = unread.keyframes = true;
+  mission::MissionConfig config = run.config;
   config.autonomy.model.name = "route_follower";
   config.autonomy.map = mission::MapPose::kPrior;
-  return mission::run_mission(mission::without(config, unread), mission, nullptr,
-                              {.tape = &tape, .recorder = &rows, .autonomy = nullptr, .omissions = &unread});
+  CANYON_TRY(run.record,
+             mission::run_mission(mission::without(config, unread), mission, nullptr,
+                                  {.tape = &tape, .recorder = &run.events, .autonomy = nullptr, .omissions = &unread}));
+  return Ok{};
 }
 
-double most_gain_of(const std::vector<mission::GnssRow>& fixes) {
+double most_gain_of(const std::vector<Driven>& runs) {
   std::vector<double> gains;
-  for (const mission::GnssRow& row : fixes)
-    if (std::isfinite(row.range_gain)) gains.push_back(row.range_gain);
+  for (const Driven& run : runs)
+    for (const Event& event : run.events.events)
+      if (!event.is_row && std::isfinite(event.gain)) gains.push_back(event.gain);
   if (gains.empty()) return 0.0;
   const auto at = static_cast<std::ptrdiff_t>(kShareLeftOut * static_cast<double>(gains.size() - 1));
   std::nth_element(gains.begin(), gains.begin() + at, gains.end());
   return gains[static_cast<std::size_t>(at)];
 }
 
-/// The run's filter once more, with what follows its fixes.
-void follow(fusion::ErrorStateFilter& filter, const LocalFrame& frame, GpsTime start, const Rows& rows,
-            PositionChain& chain) {
+/// The run's filter once more, with what follows its fixes: raises the rows to what they are moved by.
+void follow(const Events& given, double most_gain, const LocalFrame& frame, GpsTime start,
+            fusion::ErrorStateFilter& filter, PositionChain& chain) {
   fusion::FixResponse response;
   filter.watch(&response);
   const Eigen::Vector3d up_E = frame.R_EW().col(2);
-  const auto moved = [&] { return response.moved(filter.body_jacobian(), up_E); };
-  auto sample = rows.imu_samples.begin();
-  for (const mission::GnssRow& row : rows.fixes) {
+  auto sample = given.imu_samples.begin();
+  std::size_t row = 0;
+  for (const Event& event : given.events) {
     throw_if_cancelled();
-    for (; sample != rows.imu_samples.end() && sample->t - row.fix.t < 0.5 * sample->dt_s; ++sample)
+    for (; sample != given.imu_samples.end() && sample->t - event.t < 0.5 * sample->dt_s; ++sample)
       filter.predict(*sample);
-    if (!chain.any.empty()) {
-      const auto before = moved();
-      chain.any.back() = std::max(chain.any.back(), before.any_m);
-      chain.up.back() = std::max(chain.up.back(), before.up_m);
+    if (!event.is_row) {
+      response.expect(event.gain <= most_gain ? event.gain : 0.0);
+      filter.update(event.fix);
+      continue;
     }
-    const double gain = row.range_gain <= chain.most_gain ? row.range_gain : 0.0;
-    response.expect(gain);
-    filter.update(row.fix);
-    const auto after = moved();
-    chain.fix_t_s.push_back(row.fix.t - start);
-    chain.fix.push_back(gain);
-    chain.any.push_back(after.any_m);
-    chain.up.push_back(after.up_m);
+    const auto moved = response.moved(filter.body_jacobian(), up_E);
+    if (row == chain.t_s.size()) {
+      chain.t_s.push_back(event.t - start);
+      chain.any.push_back(0.0);
+      chain.up.push_back(0.0);
+    }
+    chain.any[row] = std::max(chain.any[row], moved.any_m);
+    chain.up[row] = std::max(chain.up[row], moved.up_m);
+    ++row;
   }
 }
 
@@ -91,22 +114,25 @@ double PositionChain::rms_up() const {
   return rms_of(up);
 }
 
-double PositionChain::most_after(double t_s) const {
-  const auto next = std::upper_bound(fix_t_s.begin(), fix_t_s.end(), t_s + 1e-6);
-  return next == fix_t_s.begin() ? 0.0 : any[static_cast<std::size_t>(next - fix_t_s.begin() - 1)];
-}
-
 Result<PositionChain> position_chain(const mission::MissionConfig& config, const mission::PreparedMission& mission,
-                                     const Tape& tape) {
-  Rows rows;
-  CANYON_TRY(const auto record, drive(config, mission, tape, rows));
-  CANYON_TRY(const auto noise, mission::noise_told_to_filter(config));
+                                     const Tape& tape, int seeds) {
+  std::vector<Driven> runs;
   PositionChain chain;
-  chain.most_gain = most_gain_of(rows.fixes);
-  fusion::ErrorStateFilter filter(config.fusion, noise, mission.scene->frame(), config.imu.lever_arm_m,
-                                  config.gnss.lever_arm_m);
-  filter.initialize(mission.start, record.initial_X_WB, record.initial_v_WB_W);
-  follow(filter, mission.scene->frame(), mission.start, rows, chain);
+  for (int k = 0; k < seeds; ++k) {
+    Driven run{.config = config, .record = {}, .events = {}};
+    run.config.run.seed += k;
+    CANYON_TRY_STATUS(drive(mission, tape, run));
+    chain.seeds.push_back(run.config.run.seed);
+    runs.push_back(std::move(run));
+  }
+  chain.most_gain = most_gain_of(runs);
+  for (const Driven& run : runs) {
+    CANYON_TRY(const auto noise, mission::noise_told_to_filter(run.config));
+    const LocalFrame& frame = mission.scene->frame();
+    fusion::ErrorStateFilter filter(config.fusion, noise, frame, config.imu.lever_arm_m, config.gnss.lever_arm_m);
+    filter.initialize(mission.start, run.record.initial_X_WB, run.record.initial_v_WB_W);
+    follow(run.events, chain.most_gain, frame, mission.start, filter, chain);
+  }
   return chain;
 }
 
