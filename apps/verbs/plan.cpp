@@ -41,12 +41,18 @@ void print_json(const study::Plan& plan, const study::PredictedCost& cost,
   json["planned_cpu_s"] = or_null(cost.planned_s);
   if (verification) {
     json["verified_epochs"] = verification->epochs();
+    json["verified_by_kind"] = Json::object();
+    for (const auto kind :
+         {study::Verified::kPlaces, study::Verified::kRanges, study::Verified::kEstimates, study::Verified::kReaders})
+      json["verified_by_kind"][study::name(kind)] = verification->epochs(kind);
     json["violations"] = verification->violations();
     json["tightness"] = or_null(verification->tightness());
     json["position_tightness"] = or_null(verification->position_tightness());
     json["verified"] = Json::array();
     for (const auto& effect : verification->effects)
       json["verified"].push_back({{"effect", effect.effect},
+                                  {"kind", study::name(effect.kind)},
+                                  {"replayed", effect.replayed},
                                   {"epochs", effect.epochs},
                                   {"violations", effect.violations},
                                   {"bound", effect.bound},

@@ -11,8 +11,9 @@ struct PredictedCost {
 };
 
 /// Measures on this machine what a plan saves, and writes it into its effects: the run's first kSample_s on the tape,
-/// twice, part by part; and kEpochs epochs of the GNSS sensor spread over it, with and without each effect. Scaled to
-/// the mission's nominal time. A difference below the clock's own scatter counts as nothing.
+/// with and without, part by part; and kEpochs epochs of the GNSS sensor drawn from it, with and without each effect.
+/// All twice: a difference that is not larger than the two measurements differ counts as nothing. Scaled to the
+/// mission's nominal time. Nothing of a plan depends on it.
 Result<PredictedCost> measure_cost(const mission::MissionConfig& config, const mission::PreparedMission& mission,
                                    const Tape& tape, Plan& plan);
 

@@ -113,15 +113,16 @@ std::string plan_table(const Plan& plan, const PredictedCost& cost, double nomin
 
 std::string verification_table(const Verification& verification) {
   std::string out =
-      text("%-44s %8s %11s  %s\n", "Verified: left out", "epochs", "violations", "largest difference, and the bound");
+      text("%-44s %16s %11s  %s\n", "Verified: left out", "epochs", "violations", "largest difference, and the bound");
   for (const VerifiedEffect& effect : verification.effects)
-    out +=
-        text("  %-42s %8lld %11lld  %s\n", effect.effect.c_str(), static_cast<long long>(effect.epochs),
-             static_cast<long long>(effect.violations),
-             (effect.bound > 0.0 ? text("%.3g %s of %.3g", effect.largest_difference, effect.unit.c_str(), effect.bound)
-              : effect.violations == 0 ? std::string("none, to the bit")
-                                       : text("%g", effect.largest_difference))
-                 .c_str());
+    out += text(
+        "  %-42s %16s %11lld  %s\n", effect.effect.c_str(),
+        text("%lld of %lld", static_cast<long long>(effect.epochs), static_cast<long long>(effect.replayed)).c_str(),
+        static_cast<long long>(effect.violations),
+        (effect.bound > 0.0 ? text("%.3g %s of %.3g", effect.largest_difference, effect.unit.c_str(), effect.bound)
+         : effect.violations == 0 ? std::string("none, to the bit")
+                                  : text("%g", effect.largest_difference))
+            .c_str());
   if (verification.effects.empty()) out += "  nothing is left out\n";
   if (std::isfinite(verification.tightness()))
     out += text("Tightness, the median of bound / largest difference: %.1f of ranges, %.1f of positions\n",

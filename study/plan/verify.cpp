@@ -9,6 +9,7 @@
 #include "canyon/gnss/paths/need/path_question.h"
 #include "canyon/study/plan/replay/replay.h"
 #include "canyon/study/plan/replay/run_pair.h"
+#include "canyon/study/plan/replay/tape_pieces.h"
 #include "canyon/study/plan/verify_ranges.h"
 
 namespace canyon::study {
@@ -55,6 +56,7 @@ Result<VerifiedEffect> verify_place_effect(GnssReplay& replay, const Plan& plan,
       leave_out = effect == kAllPaths ? all : only(effect.c_str(), all);
     }
     const gnss::GnssOutput output = replay.measure(*sensor, epoch, leave_out);
+    ++found.replayed;
     if (leave_out == gnss::PathOmissions{}) continue;
     ++found.epochs;
     const double difference = difference_m(full[k], output);
@@ -89,17 +91,20 @@ Status verify_unread(mission::MissionConfig config, const mission::PreparedMissi
   for (mission::PlannedPlace& place : unread.corridor) place.paths = {};
   if (unread.ranges.bound_m > 0.0) unread.ranges = {};
   if (!unread.any()) return Ok{};
-  VerifiedEffect found{.effect = kUnread};
-  while (found.epochs < epochs) {
-    throw_if_cancelled();
+  VerifiedEffect found{.effect = kUnread, .kind = Verified::kReaders};
+  config.time.limit_s = 0.0;  // a piece is as long as it is
+  for (std::int64_t before = -1; found.epochs < epochs && found.epochs > before;) {
+    before = found.epochs;
     const double rows_s = config.run.epoch_rate_hz + config.gnss.rate_hz;
-    const double left_s = static_cast<double>(epochs - found.epochs) / rows_s + 1.0;
-    CANYON_TRY(const RunPair pair, drive_pair(config, mission, tape, unread, std::max(left_s, 2.0)));
-    found.epochs += pair.epochs;
-    found.violations += pair.violations;
-    ++config.run.seed;
-    if (pair.epochs == 0) break;
+    for (const Tape& piece : spread_pieces(tape, static_cast<double>(epochs - found.epochs) / rows_s + 1.0)) {
+      throw_if_cancelled();
+      CANYON_TRY(const RunPair pair, drive_pair(config, mission, piece, unread));
+      found.epochs += pair.epochs;
+      found.violations += pair.violations;
+      ++config.run.seed;
+    }
   }
+  found.replayed = found.epochs;
   if (found.violations > 0) found.largest_difference = kNaN;
   verification.effects.push_back(std::move(found));
   return Ok{};
@@ -107,13 +112,30 @@ Status verify_unread(mission::MissionConfig config, const mission::PreparedMissi
 
 }  // namespace
 
-std::int64_t Verification::epochs() const {
-  std::int64_t in_runs = 0, in_places = 0;
-  for (const VerifiedEffect& effect : effects) {
-    auto& of_kind = effect.effect == kUnread ? in_runs : in_places;
-    of_kind = std::max(of_kind, effect.epochs);
+const char* name(Verified kind) {
+  switch (kind) {
+    case Verified::kPlaces:
+      return "places";
+    case Verified::kRanges:
+      return "ranges";
+    case Verified::kEstimates:
+      return "estimates";
+    case Verified::kReaders:
+      break;
   }
-  return in_runs + in_places;
+  return "readers";
+}
+
+std::int64_t Verification::epochs(Verified kind) const {
+  std::int64_t most = 0;
+  for (const VerifiedEffect& effect : effects)
+    if (effect.kind == kind) most = std::max(most, effect.epochs);
+  return most;
+}
+
+std::int64_t Verification::epochs() const {
+  return std::max(epochs(Verified::kPlaces), epochs(Verified::kRanges)) + epochs(Verified::kEstimates) +
+         epochs(Verified::kReaders);
 }
 
 std::int64_t Verification::violations() const {

@@ -62,15 +62,15 @@ double fixes_apart_m(const gnss::GnssOutput& a, const gnss::GnssOutput& b) {
 
 Status verify_epochs(GnssReplay& replay, const std::vector<gnss::GnssOutput>& full, const Asked& asked,
                      Verification& verification) {
-  VerifiedEffect ranges{.effect = asked.name + ": ranges", .unit = "m"};
-  VerifiedEffect fixes{.effect = asked.name + ": fixes", .unit = "m", .of_position = true};
+  VerifiedEffect ranges{.effect = asked.name + ": ranges", .kind = Verified::kRanges, .unit = "m"};
+  VerifiedEffect fixes{.effect = asked.name + ": fixes", .kind = Verified::kRanges, .unit = "m", .of_position = true};
   CANYON_TRY(const auto sensor, replay.sensor());
   sensor->leave_out(asked.ranges);
   for (std::size_t k = 0; k < full.size(); ++k) {
     throw_if_cancelled();
     const gnss::GnssOutput output = replay.measure(*sensor, replay.epochs()[k], {});
-    ++ranges.epochs;
-    ++fixes.epochs;
+    ++ranges.replayed, ++ranges.epochs;
+    ++fixes.replayed, ++fixes.epochs;
     count(ranges_apart_m(full[k], output), asked.ranges.bound_m, ranges);
     const bool watched = output.range_gain <= asked.ranges.most_gain;
     count(fixes_apart_m(full[k], output), watched ? asked.ranges.bound_m * output.range_gain : 0.0, fixes);
@@ -90,18 +90,20 @@ double bound_at(const Plan& plan, double t_s) {
 
 Status verify_runs(mission::MissionConfig config, const mission::PreparedMission& mission, const Tape& tape,
                    const Plan& plan, std::int64_t epochs, Verification& verification) {
-  VerifiedEffect found{.effect = "all that acts by less: estimates", .unit = "m", .of_position = true};
+  VerifiedEffect found{
+      .effect = "all that acts by less: estimates", .kind = Verified::kEstimates, .unit = "m", .of_position = true};
   mission::Omissions only_ranges;
   only_ranges.ranges = plan.omissions.ranges;
   config.autonomy.model.name = "route_follower";  // nobody looks, and nothing is mapped
   config.autonomy.map = mission::MapPose::kPrior;
   config.registration.method.name = "none";
   config.run.withhold_scans_after_s = 0.0;
+  config.run.seed += static_cast<std::int64_t>(plan.seeds.size());  // those that the bounds were taken from
   while (found.epochs < epochs) {
     throw_if_cancelled();
     CANYON_TRY(const RunPair pair, drive_pair(config, mission, tape, only_ranges));
     for (const RunPair::Apart& row : pair.apart) {
-      ++found.epochs;
+      ++found.replayed, ++found.epochs;
       count(row.position_m, bound_at(plan, row.t_s), found);
     }
     if (pair.apart.empty()) break;

@@ -8,7 +8,8 @@ namespace canyon::study {
 /// - of each by itself and of all together: how far ranges move as the receiver sees them (corrected, less the distance
 ///   of the satellite that it computed) from the true antenna, against the bound in that unit; and how far the fix
 ///   moves, against the bound times that epoch's sum of |d position / d range|;
-/// - of all together, in whole runs of the mission's seed and those after it: how far the estimate of position moves,
+/// - of all together, in whole runs of seeds after those that the bounds were taken from: how far the estimate of
+/// position moves,
 ///   row by row, against the plan's bound for that time.
 Status verify_ranges(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
                      const Plan& plan, std::int64_t epochs, Verification& verification);

@@ -51,11 +51,32 @@ TEST_F(PlanVerbTest, ARunFollowsWhatItWrote) {
   EXPECT_FALSE(Json::parse(read("planned/manifest.json"))["left_out"]["high"].empty());
   EXPECT_TRUE(Json::parse(read("full/manifest.json"))["left_out"].empty());
 
+  // 2026-11-22: --for beside a plan file was not looked at.
+  EXPECT_EQ(canyon("run mission.toml --out maps --for map --plan a.plan"), 2);
+  EXPECT_THAT(read("stderr"), HasSubstr("a.plan: is a plan for runs of which nobody reads map"));
+
   EXPECT_EQ(canyon("run mission.toml --fidelity low --out low --plan a.plan"), 2);
   EXPECT_THAT(read("stderr"), HasSubstr("a.plan: is a plan for another mission (\"vicksburg\", fidelity high)"));
 }
 
+// 2026-11-22: a plan with a tolerance was followed in a closed loop and on any tape.
+TEST_F(PlanVerbTest, AToleranceIsOfOneTape) {
+  ASSERT_EQ(canyon("plan mission.toml --for position --open-loop --tolerance position_error_rms_m=0.05 --write a.plan "
+                   "--json"),
+            0)
+      << read("stderr");
+  const Json plan = Json::parse(read("stdout"));
+  EXPECT_EQ(plan["position_bounds"]["seeds"].size(), 3u);
+  EXPECT_EQ(plan["position_bounds"]["tape_hash"].get<std::string>().size(), 64u);
+  EXPECT_EQ(canyon("run mission.toml --open-loop --out open --plan=a.plan"), 0) << read("stderr");
+  EXPECT_EQ(canyon("run mission.toml --out closed --plan=a.plan"), 2);
+  EXPECT_THAT(read("stderr"), HasSubstr("a.plan: "));
+  EXPECT_EQ(canyon("run mission.toml --open-loop --seed 99 --out other --plan=a.plan"), 2);
+  EXPECT_THAT(read("stderr"), HasSubstr("a.plan: has bounds that hold along another tape ("));
+}
+
 TEST_F(PlanVerbTest, BadInputIsOneLine) {
+  expect_refusal("--tolerance position_error_rms_m=1,position_error_rms_m=2", "stands there twice");
   expect_refusal("--for outcome,positions", "--for: unknown name \"positions\"");
   expect_refusal("--tolerance position_error_rms_m=0",
                  "--tolerance: position_error_rms_m: \"0\", expected a number above 0");

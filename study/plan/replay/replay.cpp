@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
 #include "canyon/gnss/paths/need/path_question.h"
 
 namespace canyon::study {
@@ -26,6 +27,42 @@ double apart(double a, double b) {
   return std::isnan(d) ? std::numeric_limits<double>::infinity() : d;
 }
 
+template <class Values>
+double apart_in(const Values& a, const Values& b) {
+  double most = 0.0;
+  for (Eigen::Index i = 0; i < a.size(); ++i) most = std::max(most, apart(a.data()[i], b.data()[i]));
+  return most;
+}
+
+double apart(const GnssFix& a, const GnssFix& b) {
+  return std::max({apart_in(a.p_A_E, b.p_A_E), apart_in(a.covariance_E, b.covariance_E), apart_in(a.v_A_E, b.v_A_E),
+                   apart_in(a.velocity_covariance_E, b.velocity_covariance_E), apart(a.clock_m, b.clock_m),
+                   apart(a.dop.gdop, b.dop.gdop), apart(a.dop.pdop, b.dop.pdop), apart(a.dop.hdop, b.dop.hdop),
+                   apart(a.dop.vdop, b.dop.vdop), apart(a.dop.tdop, b.dop.tdop)});
+}
+
+/// Of the same names in either: a first and a second signal.
+template <class Signal>
+double signals_apart(const Signal& a, const Signal& b) {
+  return std::max({apart(a.pseudorange_m, b.pseudorange_m), apart(a.doppler_hz, b.doppler_hz),
+                   apart(a.carrier_phase_cycles, b.carrier_phase_cycles), apart(a.cn0_dbhz, b.cn0_dbhz)});
+}
+
+double apart(const GnssObservation& a, const GnssObservation& b) {
+  return std::max({signals_apart(a, b), signals_apart(a.second, b.second), apart(a.sigma_m, b.sigma_m),
+                   apart_in(a.p_E, b.p_E), apart_in(a.v_E, b.v_E), apart(a.clock_m, b.clock_m),
+                   apart(a.correction_m, b.correction_m)});
+}
+
+/// What is no number.
+bool of_one_kind(const GnssFix& a, const GnssFix& b) {
+  return a.t == b.t && a.status == b.status && a.satellites == b.satellites && a.reason == b.reason;
+}
+bool of_one_kind(const GnssObservation& a, const GnssObservation& b) {
+  return a.sv == b.sv && a.band == b.band && a.used == b.used && a.slipped == b.slipped &&
+         a.second.band == b.second.band && a.second.slipped == b.second.slipped;
+}
+
 }  // namespace
 
 GnssReplay::GnssReplay(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
@@ -34,23 +71,30 @@ GnssReplay::GnssReplay(const mission::MissionConfig& config, const mission::Prep
   const RandomStream stream(static_cast<std::uint64_t>(config.run.seed), "plan.replay");
   const scene::Scene& scene = *mission.scene;
   const auto& corridor = omissions.corridor;
-  const double last = static_cast<double>(tape.nodes.size() - 1);
+  const double until_s =
+      corridor.empty() ? tape.duration_s() : std::min(omissions.corridor_until_s, mission.time_limit_s);
   for (std::int64_t k = 0; k < count; ++k) {
-    const double share = count > 1 ? static_cast<double>(k) / static_cast<double>(count - 1) : 0.0;
-    const KinematicState& truth = tape.nodes[static_cast<std::size_t>(std::llround(share * last))].motion;
-    const double t_s = truth.t - tape.nodes.front().motion.t;
+    const auto draw = static_cast<std::uint64_t>(k);
+    // A plan holds anywhere on its route at any time of its span, whichever way the body heads: nothing of this is as
+    // the tape had it.
+    const double t_s =
+        until_s * (static_cast<double>(k) + stream.uniform(0.0, 1.0, 1, draw)) / static_cast<double>(count);
+    const double last = static_cast<double>(tape.nodes.size() - 1);
+    const KinematicState& truth = tape.nodes[static_cast<std::size_t>(last * stream.uniform(0.0, 1.0, 2, draw))].motion;
     Pose X_WB = truth.X_WB;
     const std::size_t on = place_of(omissions, t_s, X_WB);
     if (on < corridor.size()) {
       const double half_m = corridor[on].segment.half_width_m;
-      const double side_m = stream.uniform(-half_m, half_m, 0, static_cast<std::uint64_t>(k));
+      const double side_m = stream.uniform(-half_m, half_m, 0, draw);
       Pose moved{X_WB.R, X_WB * Eigen::Vector3d(0.0, side_m, 0.0)};
       const auto here = scene.ground(X_WB.p.x(), X_WB.p.y()), there = scene.ground(moved.p.x(), moved.p.y());
       if (here && there) moved.p.z() = X_WB.p.z() + there->height_m - here->height_m;
       if (here && there && place_of(omissions, t_s, moved) < corridor.size()) X_WB = moved;
     }
-    epochs_.push_back(
-        {k, mission.start + t_s, place_of(omissions, t_s, X_WB), X_WB * config.gnss.lever_arm_m, truth.v_WB_W});
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(stream.uniform(-kPi, kPi, 3, draw), Eigen::Vector3d::UnitZ()));
+    const Eigen::Vector3d v_WB_W = X_WB.R * (turn * (X_WB.R.conjugate() * truth.v_WB_W));
+    X_WB.R = (X_WB.R * turn).normalized();
+    epochs_.push_back({k, mission.start + t_s, place_of(omissions, t_s, X_WB), X_WB * config.gnss.lever_arm_m, v_WB_W});
   }
 }
 
@@ -81,23 +125,17 @@ gnss::PathOmissions only(const char* effect, const gnss::PathOmissions& all, con
 double difference_m(const gnss::GnssOutput& a, const gnss::GnssOutput& b) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const auto &of_a = a.epoch.observations, &of_b = b.epoch.observations;
-  if (a.fix.status != b.fix.status || of_a.size() != of_b.size()) return kInfinite;
-  double most = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    most = std::max(most, apart(a.fix.p_A_E[axis], b.fix.p_A_E[axis]));
-    most = std::max(most, apart(a.fix.v_A_E[axis], b.fix.v_A_E[axis]));
-    for (int column = 0; column < 3; ++column)
-      most = std::max(most, apart(a.fix.covariance_E(axis, column), b.fix.covariance_E(axis, column)));
-  }
+  if (a.epoch.t != b.epoch.t || !of_one_kind(a.fix, b.fix) || of_a.size() != of_b.size()) return kInfinite;
+  double most = apart(a.fix, b.fix);
   for (std::size_t i = 0; i < of_a.size(); ++i) {
-    if (of_a[i].sv != of_b[i].sv || of_a[i].used != of_b[i].used || of_a[i].slipped != of_b[i].slipped)
-      return kInfinite;
-    most = std::max({most, apart(of_a[i].pseudorange_m, of_b[i].pseudorange_m),
-                     apart(of_a[i].cn0_dbhz, of_b[i].cn0_dbhz), apart(of_a[i].doppler_hz, of_b[i].doppler_hz),
-                     apart(of_a[i].carrier_phase_cycles, of_b[i].carrier_phase_cycles),
-                     apart(of_a[i].second.pseudorange_m, of_b[i].second.pseudorange_m)});
+    if (!of_one_kind(of_a[i], of_b[i])) return kInfinite;
+    most = std::max(most, apart(of_a[i], of_b[i]));
   }
   return most;
+}
+
+bool same(const GnssFix& a, const GnssFix& b) {
+  return of_one_kind(a, b) && apart(a, b) == 0.0;
 }
 
 }  // namespace canyon::study

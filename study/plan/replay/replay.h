@@ -14,9 +14,10 @@ namespace canyon::study {
 /// Epochs of a mission's GNSS sensor by themselves, without vehicle and filter, at places of a plan's corridor.
 class GnssReplay {
  public:
-  /// `count` instants spread evenly over the tape, the k-th as epoch k. The body stands as on the tape, moved by up to
-  /// the half-width of the corridor to either side (stream "plan.replay" of the mission's seed), on the ground there;
-  /// where that is not within the corridor, it is not moved. `mission` must outlive this.
+  /// `count` instants spread over the time for which the plan holds (without a corridor: over the tape's), the k-th as
+  /// epoch k. The body stands anywhere on the tape's way, whenever it was there, moved by up to the half-width of the
+  /// corridor to either side, on the ground there, and heads anywhere (stream "plan.replay" of the mission's seed);
+  /// where that is not within the corridor, it is not moved aside. `mission` must outlive this.
   GnssReplay(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
              const mission::Omissions& omissions, std::int64_t count);
 
@@ -43,9 +44,12 @@ class GnssReplay {
 /// Of an effect by its name: what leaving out that one alone means where `all` may be left out.
 gnss::PathOmissions only(const char* effect, const gnss::PathOmissions& all, const gnss::PathOmissions& others = {});
 
-/// How far two outputs of one epoch differ, in metres of range or position: 0 if they are the same to the bit, infinite
-/// where other satellites are tracked or used, or the fix is of another kind. C/N0, carrier and Doppler that differ
-/// alone count as the largest of them in their own units.
+/// How far two outputs of one epoch differ, in metres of range or position: 0 if every field of fix and observations is
+/// the same to the bit, infinite where other satellites are tracked or used, or the fix is of another kind. What else
+/// differs alone (C/N0, carrier, Doppler, velocity, covariance) counts as the largest of it in its own unit.
 double difference_m(const gnss::GnssOutput& a, const gnss::GnssOutput& b);
+
+/// To the bit, every field.
+bool same(const GnssFix& a, const GnssFix& b);
 
 }  // namespace canyon::study

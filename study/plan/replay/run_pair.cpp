@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "canyon/mission/run.h"
+#include "canyon/study/plan/replay/replay.h"
 
 namespace canyon::study {
 
@@ -44,11 +45,6 @@ bool same(const mission::NavRow& a, const mission::NavRow& b) {
          same(a.estimate.pose_covariance, b.estimate.pose_covariance);
 }
 
-bool same(const GnssFix& a, const GnssFix& b) {
-  return a.t == b.t && a.status == b.status && same(a.p_A_E, b.p_A_E) && same(a.covariance_E, b.covariance_E) &&
-         a.satellites == b.satellites;
-}
-
 template <class Row, class Same>
 void compare(const std::vector<Row>& a, const std::vector<Row>& b, const Same& equal, RunPair& pair) {
   const std::size_t both = std::min(a.size(), b.size()), all = std::max(a.size(), b.size());
@@ -84,7 +80,7 @@ Result<RunPair> drive_pair(mission::MissionConfig config, const mission::Prepare
       pair.apart.push_back({kNaN, std::numeric_limits<double>::infinity()});
   }
   compare(
-      full.fixes, planned.fixes, [](const auto& a, const auto& b) { return same(a, b); }, pair);
+      full.fixes, planned.fixes, [](const GnssFix& a, const GnssFix& b) { return study::same(a, b); }, pair);
   return pair;
 }
 

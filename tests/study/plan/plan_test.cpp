@@ -1,13 +1,18 @@
 #include "canyon/study/plan/plan.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
 #include "canyon/mission/route_tape.h"
+#include "canyon/study/plan/follow.h"
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/plan/readers.h"
+#include "canyon/study/plan/replay/replay.h"
 #include "canyon/study/plan/replay/run_pair.h"
+#include "canyon/study/plan/replay/tape_pieces.h"
 #include "canyon/study/plan/verify.h"
 #include "canyon/tests/study/plan/planned.h"
 #include "canyon/tests/support/temporary_folder.h"
@@ -153,6 +158,104 @@ TEST(Verify, CountsWhatIsLeftOutWrongly) {
   }
 }
 
+// 2026-11-22: whole runs were the first seconds of one seed, so that what nobody keeps was looked at on the first
+// metres.
+TEST(Verify, PiecesReachFromTheTapesStartToItsEnd) {
+  Tape tape{.source = "test", .scene_hash = {}, .traffic = {}, .nodes = {}};
+  for (int k = 0; k <= 10'000; ++k) {
+    TapeNode node;
+    node.motion.t.ns = 10'000'000LL * k;  // 100 s
+    node.distance_m = 0.1 * k;
+    tape.nodes.push_back(node);
+  }
+  const std::vector<Tape> pieces = spread_pieces(tape, 20.0);
+  ASSERT_EQ(pieces.size(), 6u);
+  double sum_s = 0.0;
+  for (const Tape& piece : pieces) {
+    EXPECT_EQ(piece.nodes.front().motion.t.ns, 0);
+    EXPECT_EQ(piece.nodes.front().distance_m, 0.0);
+    EXPECT_GE(piece.duration_s(), kShortestPiece_s);
+    sum_s += piece.duration_s();
+  }
+  EXPECT_NEAR(sum_s, 20.0, 6 * 0.01);
+  EXPECT_EQ(spread_pieces(tape, 1.0).size(), 1u);
+  EXPECT_EQ(spread_pieces(tape, 1e3).front().nodes.size(), tape.nodes.size());
+  EXPECT_EQ(spread_pieces(tape, 99.9).size(), 20u);
+}
+
+// 2026-11-22: places, times and headings came one with another, as on the tape.
+TEST(Verify, EpochsAreDrawnFromAllThatAPlanHoldsFor) {
+  const Planned planned("high", kEmpty, kDriving);
+  const auto tape = mission::drive_route(planned.config, planned.mission);
+  ASSERT_TRUE(tape.ok());
+  const GnssReplay replay(planned.config, planned.mission, *tape, planned.plan.omissions, 60);
+  double earliest_m = 1e9, latest_m = -1e9, last_s = 0.0;
+  int quarters[4] = {};
+  for (const auto& epoch : replay.epochs()) {
+    const double t_s = epoch.t - planned.mission.start;
+    EXPECT_GE(t_s, last_s);
+    last_s = t_s;
+    if (t_s > 0.5 * planned.plan.omissions.corridor_until_s) {
+      earliest_m = std::min(earliest_m, epoch.p_A_W.y());
+      latest_m = std::max(latest_m, epoch.p_A_W.y());
+    }
+    if (epoch.v_A_W.head<2>().norm() > 0.5) ++quarters[2 * (epoch.v_A_W.x() > 0.0) + (epoch.v_A_W.y() > 0.0)];
+  }
+  const double length_m = (tape->nodes.back().motion.X_WB.p - tape->nodes.front().motion.X_WB.p).norm();
+  EXPECT_GT(latest_m - earliest_m, 0.5 * length_m) << "the first half of the way at the second half of the time";
+  for (const int count : quarters) EXPECT_GT(count, 0);
+  EXPECT_GT(last_s, 0.95 * planned.plan.omissions.corridor_until_s);
+}
+
+// 2026-11-22: C/N0 and Doppler of the second band were not looked at, nor a fix's velocity.
+TEST(Verify, EveryFieldIsCompared) {
+  gnss::GnssOutput output;
+  output.epoch.observations.resize(1);
+  const auto differs = [&](const auto& change) {
+    gnss::GnssOutput other = output;
+    change(other);
+    return difference_m(output, other) > 0.0;
+  };
+  EXPECT_EQ(difference_m(output, output), 0.0);
+  EXPECT_TRUE(differs([](auto& o) { o.epoch.observations[0].second.cn0_dbhz = 40.0; }));
+  EXPECT_TRUE(differs([](auto& o) { o.epoch.observations[0].second.doppler_hz = 1.0; }));
+  EXPECT_TRUE(differs([](auto& o) { o.epoch.observations[0].second.carrier_phase_cycles = 1.0; }));
+  EXPECT_TRUE(differs([](auto& o) { o.epoch.observations[0].second.slipped = true; }));
+  EXPECT_TRUE(differs([](auto& o) { o.epoch.observations[0].sigma_m = 1.0; }));
+  EXPECT_TRUE(differs([](auto& o) { o.epoch.observations[0].correction_m = 1.0; }));
+  EXPECT_TRUE(differs([](auto& o) { o.fix.clock_m = 1.0; }));
+  EXPECT_TRUE(differs([](auto& o) { o.fix.dop.gdop = 1.0; }));
+  GnssFix fix, faster;
+  faster.v_A_E.x() = 1.0;
+  EXPECT_TRUE(same(fix, fix));
+  EXPECT_FALSE(same(fix, faster));
+}
+
+// 2026-11-22: --for beside a plan file was not looked at, and a run without maps followed for whoever reads them.
+TEST(Follow, APlanThatLeavesOutWhatIsReadIsRefused) {
+  const std::string path = canyon::testing::temporary_file("followed.plan");
+  auto file = mission::MissionFile::parse(std::string(mission::testing::kShortMission) + "[time]\nlimit_s = 6.0\n",
+                                          "short.toml");
+  ASSERT_TRUE(file.ok());
+  auto comparison = prepare_comparison(*file, plan_runs({"low"}, false));
+  ASSERT_TRUE(comparison.ok());
+  const auto& config = comparison->configs.front();
+  const auto& mission = comparison->missions.front();
+  const auto plan = make_plan(config, mission, {.fidelity = "low", .outputs = kDriving});
+  ASSERT_TRUE(plan.ok());
+  ASSERT_TRUE(write_text_file(path, plan_text(*plan, config, mission)).ok());
+  const auto refused = follow_plan(path, std::vector<Output>{Output::kMap}, *comparison);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().str().substr(path.size()),
+            ": is a plan for runs of which nobody reads map, expected --for outcome,position, or a plan made for what "
+            "is to be read");
+  EXPECT_EQ(refused.error().exit_code, 2);
+  EXPECT_TRUE(follow_plan(path, std::vector<Output>{Output::kPosition}, *comparison).ok());
+  comparison->plans.clear();
+  comparison->configs.front() = *file->resolve("low");
+  EXPECT_TRUE(follow_plan(path, std::nullopt, *comparison).ok());
+}
+
 class PlanFileTest : public ::testing::Test {
  protected:
   PlanFileTest() : planned_("high", kEmpty, kDriving), path_(canyon::testing::temporary_file("a.plan")) {
@@ -202,10 +305,8 @@ TEST_F(PlanFileTest, OfAnotherMissionSceneOrVersionIsRefused) {
               ::testing::StartsWith(": is a plan for another scene, expected one for the scene of this mission ("));
   EXPECT_THAT(refusal(with("\"version\": \"", "\"version\": \"9."), planned_.config),
               ::testing::StartsWith(": is a plan of canyon 9."));
-  EXPECT_EQ(
-      refusal(with("canyon-plan-2", "canyon-plan-1"), planned_.config),
-      ": is a plan of the form canyon-plan-1, which knows no tolerances, expected canyon-plan-2: make it again with "
-      "canyon plan --write");
+  EXPECT_EQ(refusal(with("canyon-plan-3", "canyon-plan-2"), planned_.config),
+            ": is a plan of the form canyon-plan-2, expected canyon-plan-3: make it again with canyon plan --write");
   EXPECT_EQ(refusal(with("\"autonomy\": false", "\"autonomy\": true"), planned_.config),
             ": is a plan for an open loop, in which nobody drives, expected --open-loop, or a plan made without it");
   EXPECT_EQ(refusal("{}", planned_.config), ": is no plan, expected a file of canyon plan --write");
