@@ -42,7 +42,9 @@ bool same_command(const mission::NavRow& a, const mission::NavRow& b) {
 bool same(const mission::NavRow& a, const mission::NavRow& b) {
   return a.t == b.t && same(a.X_WB_true, b.X_WB_true) && a.true_speed_m_s == b.true_speed_m_s &&
          same(a.estimate.X_WB, b.estimate.X_WB) && same(a.estimate.v_WB_W, b.estimate.v_WB_W) &&
-         same(a.estimate.pose_covariance, b.estimate.pose_covariance);
+         same(a.estimate.pose_covariance, b.estimate.pose_covariance) &&
+         same(a.estimate.velocity_covariance_W, b.estimate.velocity_covariance_W) &&
+         same(a.estimate.gyro_bias_U, b.estimate.gyro_bias_U) && same(a.estimate.accel_bias_U, b.estimate.accel_bias_U);
 }
 
 template <class Row, class Same>
