@@ -27,14 +27,16 @@ struct ChildEnd {
 
 /// Forks a process that works in `folder`, with stdout and stderr in the files `out` and `err`, and whose exit status
 /// is what `body` returns; 3 and the exception's text on stderr if one leaves it. Nothing that runs at a program's end
-/// runs in it. The calling process must have no other threads, unless all that `body` does is to execute a program.
+/// runs in it. It is the first of a process group of its own, so that what a terminal sends goes to the caller alone,
+/// and ends when the calling thread does, or when the caller is interrupted for good. The calling process must have no
+/// other threads, unless all that `body` does is to execute a program.
 ProcessId start_child(const std::function<int()>& body, const std::filesystem::path& folder,
                       const std::filesystem::path& out, const std::filesystem::path& err, const ChildLimits& limits);
 
 /// Waits for any child; returns its process and how it ended, without what it printed. Throws Cancelled when the user
 /// asks to stop: end_child() those that are left.
 std::pair<ProcessId, ChildEnd> wait_for_a_child();
-/// Kills it and waits until it is gone.
+/// Kills it and all that it has started, and waits until it is gone.
 void end_child(ProcessId child);
 
 /// What is wrong with that end in any case: a signal, too much time or memory. Empty if nothing is.

@@ -1,8 +1,12 @@
 #include "canyon/core/process/staging_litter.h"
 
 #include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <map>
+#include <set>
+
+#include <sys/wait.h>
 
 namespace canyon {
 namespace {
@@ -17,6 +21,7 @@ struct Litter {
     std::vector<std::string> parents;
   };
   std::map<std::string, Output> outputs;  ///< by the path as given
+  std::set<pid_t> processes;
   std::atomic<bool> committed{false};
 };
 Litter& litter() {
@@ -38,6 +43,13 @@ void forget_litter(const std::string& path) {
   litter().outputs.erase(path);
 }
 
+void add_litter_process(int process) {
+  litter().processes.insert(process);
+}
+void forget_litter_process(int process) {
+  litter().processes.erase(process);
+}
+
 std::unique_lock<std::mutex> hold_litter() {
   return std::unique_lock(litter().mutex);
 }
@@ -51,6 +63,8 @@ bool anything_committed() {
 
 void remove_litter_for_good() {
   litter().mutex.lock();  // and never unlocked
+  for (const pid_t process : litter().processes) kill(-process, SIGKILL);
+  for (const pid_t process : litter().processes) waitpid(process, nullptr, 0);  // another thread may have been first
   for (const auto& [name, output] : litter().outputs) {
     const std::string& path = output.absolute;
     std::error_code ignored;

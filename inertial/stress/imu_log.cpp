@@ -7,6 +7,7 @@
 #include <fstream>
 #include <vector>
 
+#include "canyon/core/process/staging_litter.h"
 #include "canyon/core/stress/grid.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/stress/subjects.h"
@@ -24,9 +25,13 @@ class LogFile {
     path_ = (std::filesystem::temp_directory_path() /
              ("canyon_stress_" + std::to_string(::getpid()) + "_" + std::to_string(count++) + ".csv"))
                 .string();
+    add_litter(path_, {});
     std::ofstream(path_) << text;
   }
-  ~LogFile() { std::remove(path_.c_str()); }
+  ~LogFile() {
+    std::remove(path_.c_str());
+    forget_litter(path_);
+  }
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
   const std::string& path() const { return path_; }

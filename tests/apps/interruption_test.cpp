@@ -63,6 +63,17 @@ class Interruption : public testing::CommandLineTest {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, std::chrono::duration<double>(Clock::now() - asked).count()};
   }
 
+  /// How many processes work in the folder or below it.
+  static int processes_in(const std::string& folder) {
+    int count = 0;
+    std::error_code code;
+    for (const auto& entry : fs::directory_iterator("/proc", code)) {
+      const std::string at = fs::read_symlink(entry.path() / "cwd", code).string();
+      count += !code && at.starts_with(folder) ? 1 : 0;
+    }
+    return count;
+  }
+
   /// A verb that ended by itself before the signal came is complete; any other is interrupted.
   void expect_clean_end(const std::vector<std::string>& words, double moment_s, int signal = SIGINT) const {
     const Ended ended = interrupted(words, moment_s, signal);
@@ -153,6 +164,13 @@ TEST_F(Interruption, TwoRequestsLeaveNoLitterEither) {
     const Ended ended = interrupted({"compare", "--out", "out"}, moment_s, SIGTERM, 2);
     EXPECT_EQ(ended.status, 130);
     EXPECT_THAT(leftovers(), ::testing::IsEmpty());
+  }
+  // 2026-11-22: /tmp/canyon-stress-* stayed, and its trials went on.
+  for (const double moment_s : {0.3, 1.0, 2.0}) {
+    const Ended ended = interrupted({"stress", "mission.toml"}, moment_s, SIGTERM, 2);
+    EXPECT_EQ(ended.status, 130);
+    EXPECT_THAT(leftovers(), ::testing::IsEmpty());
+    EXPECT_EQ(processes_in(folder_.string()), 0);
   }
 }
 
