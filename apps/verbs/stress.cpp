@@ -56,14 +56,14 @@ Result<int> sweep(const Options& options) {
   CANYON_TRY_STATUS(file.check_fidelities({options.fidelity}, "--fidelity"));
   CANYON_TRY(auto config, file.resolve(options.fidelity));
   const auto keys = study::swept_keys([&config](FieldVisitor& f) { visit(f, config); });
-  const study::Sweep found =
-      study::sweep_mission(keys, {.setup = {.program = std::filesystem::read_symlink("/proc/self/exe").string(),
-                                            .mission = path,
-                                            .fidelity = options.fidelity},
-                                  .seed = static_cast<std::uint64_t>(options.seed),
-                                  .pairs = options.pairs,
-                                  .budget_s = options.budget_s,
-                                  .show_progress = !options.common.json});
+  CANYON_TRY(const study::Sweep found,
+             study::sweep_mission(keys, {.setup = {.program = std::filesystem::read_symlink("/proc/self/exe").string(),
+                                                   .mission = path,
+                                                   .fidelity = options.fidelity},
+                                         .seed = static_cast<std::uint64_t>(options.seed),
+                                         .pairs = options.pairs,
+                                         .budget_s = options.budget_s,
+                                         .show_progress = !options.common.json}));
   if (options.common.json) {
     Json json{{"cases", Json::array()}};
     json.update(study::sweep_json(found));

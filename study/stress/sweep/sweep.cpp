@@ -1,15 +1,19 @@
 #include "canyon/study/stress/sweep/sweep.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
+#include <limits>
 #include <map>
 #include <set>
 
-#include "canyon/core/check.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/core/process/staging_litter.h"
 #include "canyon/core/random/random.h"
 
 namespace canyon::study {
@@ -17,25 +21,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder for trials, gone with this.
+/// A folder for trials, gone with this, or with an interruption.
 class Workshop {
  public:
-  Workshop() {
-    std::string name = (fs::temp_directory_path() / "canyon-stress-XXXXXX").string();
-    CANYON_CHECK(mkdtemp(name.data()) != nullptr, "no folder like ", name);
-    folder_ = name;
-  }
+  explicit Workshop(std::string folder) : folder_(std::move(folder)) { add_litter(folder_, {}); }
   ~Workshop() {
     std::error_code ignored;
     fs::remove_all(folder_, ignored);
+    forget_litter(folder_);
   }
   Workshop(const Workshop&) = delete;
   Workshop& operator=(const Workshop&) = delete;
-  fs::path place(std::size_t trial) const { return folder_ / std::to_string(trial); }
+  fs::path place(std::size_t trial) const { return fs::path(folder_) / std::to_string(trial); }
 
  private:
-  fs::path folder_;
+  std::string folder_;
 };
+
+Result<std::string> make_folder() {
+  std::error_code code;
+  const fs::path temporary = fs::temp_directory_path(code);
+  std::string name = (temporary / "canyon-stress-XXXXXX").string();
+  if (!code && mkdtemp(name.data()) != nullptr) return name;
+  const std::string why = code ? code.message() : std::strerror(errno);
+  return Error{.file = name, .what = "cannot be made (" + why + ")", .expected = "TMPDIR to be a writable folder"};
+}
 
 /// Trials that run at this moment.
 class Running {
@@ -44,15 +54,69 @@ class Running {
     for (const auto& [child, trial] : trials_) end_child(child);
   }
   std::size_t size() const { return trials_.size(); }
-  void add(pid_t child, std::size_t trial) { trials_[child] = trial; }
-  std::size_t take(pid_t child) {
+  void add(ProcessId child, std::size_t trial) { trials_[child] = trial; }
+  std::size_t take(ProcessId child) {
     const std::size_t trial = trials_.at(child);
     trials_.erase(child);
     return trial;
   }
 
  private:
-  std::map<pid_t, std::size_t> trials_;
+  std::map<ProcessId, std::size_t> trials_;
+};
+
+/// The wall time that is left.
+class Budget {
+ public:
+  explicit Budget(std::optional<double> budget_s) : budget_s_(budget_s) {}
+  double left_s() const {
+    const double used_s = std::chrono::duration<double>(Clock::now() - started_).count();
+    return budget_s_ ? *budget_s_ - used_s : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::optional<double> budget_s_;
+  Clock::time_point started_ = Clock::now();
+};
+
+/// Runs trials, by their numbers; 0 is the mission as it stands.
+class Trials {
+ public:
+  Trials(TrialSetup setup, const std::vector<Settings>& settings, const Budget& budget, std::string folder)
+      : setup_(std::move(setup)), settings_(settings), budget_(budget), workshop_(std::move(folder)) {}
+
+  std::size_t running() const { return running_.size(); }
+  /// As the mission as it stands has shown what setting up takes.
+  void set_up_takes(double cpu_s) { setup_.limits.cpu_s = cpu_s + setup_.cpu_per_simulated_s * setup_.simulated_s; }
+
+  Status start(std::size_t trial) {
+    throw_if_cancelled();
+    TrialSetup setup = setup_;
+    setup.limits.wall_s = std::min(setup.limits.wall_s, std::max(1e-3, budget_.left_s()));
+    CANYON_TRY(const ProcessId child, start_trial(setup, settings_[trial], workshop_.place(trial)));
+    running_.add(child, trial);
+    return Ok{};
+  }
+  /// Which one has ended, and how; nothing for one that the budget has cut off.
+  std::pair<std::size_t, std::optional<TrialEnd>> wait() {
+    const auto [child, end] = wait_for_a_child();
+    throw_if_cancelled();
+    const std::size_t trial = running_.take(child);
+    std::optional<TrialEnd> out;
+    if (end.signal != SIGALRM || budget_.left_s() > 0.0)
+      out = judge_trial(setup_, settings_[trial], end, workshop_.place(trial));
+    std::error_code ignored;
+    fs::remove_all(workshop_.place(trial), ignored);
+    return {trial, out};
+  }
+
+ private:
+  TrialSetup setup_;
+  const std::vector<Settings>& settings_;
+  const Budget& budget_;
+  Workshop workshop_;
+  Running running_;  // ended before their folder goes
 };
 
 std::size_t drawn(const RandomStream& stream, std::uint64_t draw, std::size_t count) {
@@ -82,14 +146,28 @@ void shuffle(std::uint64_t seed, std::vector<Settings>& settings) {
 void count(const std::vector<Settings>& tried, Sweep& sweep) {
   std::set<std::string> keys;
   for (const Settings& settings : tried) {
+    if (settings.empty()) continue;
     if (settings.size() == 1) keys.insert(settings.front().first);
     ++(settings.size() == 1 ? sweep.values_tried : sweep.pairs_tried);
   }
   sweep.keys_tried = static_cast<std::int64_t>(keys.size());
 }
 
+Sweep summed_up(const std::vector<Settings>& settings, const std::map<std::size_t, TrialEnd>& ends) {
+  Sweep sweep;
+  std::vector<Settings> tried;
+  for (const auto& [trial, end] : ends) {
+    tried.push_back(settings[trial]);
+    sweep.refused += end.refused ? 1 : 0;
+    if (!end.what.empty()) sweep.failures.push_back({settings[trial], end.what});
+  }
+  count(tried, sweep);
+  sweep.not_tried = static_cast<std::int64_t>(settings.size() - tried.size());
+  return sweep;
+}
+
 std::string text_of(const Settings& settings) {
-  std::string text;
+  std::string text = settings.empty() ? "the mission as it stands" : "";
   for (const auto& [key, value] : settings) text += (text.empty() ? "" : " ") + key + "=" + value;
   return text;
 }
@@ -105,38 +183,30 @@ std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const Sw
   return out;
 }
 
-Sweep sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options) {
-  using Clock = std::chrono::steady_clock;
+Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options) {
+  const Budget budget(options.budget_s);
   std::vector<Settings> settings = sweep_settings(keys, options);
-  const Workshop workshop;
-  Running running;
-  Sweep sweep;
+  settings.insert(settings.begin(), Settings{});  // the mission as it stands
+  CANYON_TRY(std::string folder, make_folder());
+  Trials trials(options.setup, settings, budget, std::move(folder));
   std::map<std::size_t, TrialEnd> ends;  // in the order of the settings, whatever ends first
   Progress progress("stress", static_cast<double>(settings.size()), options.show_progress);
-  const auto started = Clock::now();
-  const auto in_time = [&] {
-    return !options.budget_s || std::chrono::duration<double>(Clock::now() - started).count() < *options.budget_s;
-  };
-  std::size_t next = 0;
-  while (running.size() > 0 || (next < settings.size() && in_time())) {
-    while (next < settings.size() && in_time() && running.size() < static_cast<std::size_t>(threads())) {
-      running.add(start_trial(options.setup, settings[next], workshop.place(next)), next);
-      ++next;
-    }
-    const auto [child, end] = wait_for_a_child();
-    const std::size_t trial = running.take(child);
-    ends[trial] = judge_trial(options.setup, end, workshop.place(trial));
-    fs::remove_all(workshop.place(trial));
+  const auto wait = [&] {
+    if (auto [trial, end] = trials.wait(); end) ends[trial] = *end;
     progress.advance(1.0);
+  };
+  CANYON_TRY_STATUS(trials.start(0));
+  wait();
+  const bool sound = ends.contains(0) && ends[0].what.empty() && !ends[0].refused;
+  if (sound) trials.set_up_takes(ends[0].cpu_s);
+  if (ends.contains(0) && ends[0].refused) ends[0].what = "is refused: " + ends[0].said;
+  std::size_t next = sound ? 1 : settings.size();
+  while (trials.running() > 0 || (next < settings.size() && budget.left_s() > 0.0)) {
+    while (next < settings.size() && budget.left_s() > 0.0 && trials.running() < static_cast<std::size_t>(threads()))
+      CANYON_TRY_STATUS(trials.start(next++));
+    wait();
   }
-  sweep.not_tried = static_cast<std::int64_t>(settings.size() - next);
-  settings.resize(next);
-  count(settings, sweep);
-  for (const auto& [trial, end] : ends) {
-    sweep.refused += end.refused ? 1 : 0;
-    if (!end.what.empty()) sweep.failures.push_back({settings[trial], end.what});
-  }
-  return sweep;
+  return summed_up(settings, ends);
 }
 
 std::string sweep_table(const Sweep& sweep) {

@@ -17,12 +17,12 @@ struct SweepOptions {
   TrialSetup setup;
   std::uint64_t seed = 1;  ///< of the pairs, and of the order where time is limited
   std::int64_t pairs = 500;
-  std::optional<double> budget_s{};  ///< wall time; what is not tried by then is told. None: all are tried
+  std::optional<double> budget_s{};  ///< wall time; what has not ended by then counts as not tried. None: all are
   bool show_progress = true;
 };
 
 struct SweepFailure {
-  Settings settings;
+  Settings settings;  ///< none: the mission as it stands
   std::string what;
 };
 
@@ -37,9 +37,10 @@ struct Sweep {
 /// "stress.pairs" of the seed. With a budget all of it shuffled, by the stream "stress.order".
 std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const SweepOptions& options);
 
-/// Drives the mission for some seconds with every one of them, each in a process of its own, as many side by side as
-/// there are processors. Throws Cancelled, and leaves nothing behind.
-Sweep sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options);
+/// Drives the mission for some seconds as it stands, then with every one of them, each in a process of its own, as many
+/// side by side as there are processors. If the first fails or is refused, that is all that is found. An Error if there
+/// is no place for the trials' files. Throws Cancelled, and leaves nothing behind.
+Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options);
 
 std::string sweep_table(const Sweep& sweep);
 /// {keys_tried, values_tried, pairs_tried, refused, not_tried, failures: [{settings, what}]}

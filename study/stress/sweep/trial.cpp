@@ -1,40 +1,56 @@
 #include "canyon/study/stress/sweep/trial.h"
 
 #include <algorithm>
-#include <cctype>
+#include <cstdlib>
+#include <regex>
 #include <sstream>
+#include <string_view>
 
 #include <unistd.h>
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
+#include "canyon/study/stress/sweep/finite_results.h"
 
 namespace canyon::study {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kResults = "results";
+constexpr const char *kResults = "results", *kTemporary = "tmp";
+
+/// The simulated time, or a swept limit that is shorter.
+double shortest(const TrialSetup& setup, const Settings& settings) {
+  double limit_s = setup.simulated_s;
+  for (const auto& [key, value] : settings)
+    if (const double swept_s = std::strtod(value.c_str(), nullptr); key == "time.limit_s" && swept_s > 0.0)
+      limit_s = std::min(limit_s, swept_s);
+  return limit_s;
+}
 
 std::vector<std::string> command_line(const TrialSetup& setup, const Settings& settings) {
   std::vector<std::string> words{setup.program, "run"};
   if (!setup.mission.empty()) words.push_back(setup.mission);
   words.insert(words.end(), {"--fidelity", setup.fidelity, "--out", kResults, "--json", "--threads", "1"});
-  bool limited = false;
-  for (const auto& [key, value] : settings) {
-    words.insert(words.end(), {"--set", key + "=" + value});
-    limited = limited || key == "time.limit_s";
-  }
-  if (!limited) words.insert(words.end(), {"--set", "time.limit_s=" + number_text(setup.simulated_s)});
+  for (const auto& [key, value] : settings) words.insert(words.end(), {"--set", key + "=" + value});
+  // The last one counts: a limit that is tried is read, but no trial is longer than the others.
+  words.insert(words.end(), {"--set", "time.limit_s=" + number_text(shortest(setup, settings))});
   return words;
 }
 
-int execute(std::vector<std::string> words) {
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  execv(argv[0], argv.data());
-  return 4;
+/// The variables of this process, but for the folder of temporary files.
+std::vector<std::string> environment(const fs::path& temporary) {
+  std::vector<std::string> variables{"TMPDIR=" + temporary.string()};
+  for (char** at = environ; *at != nullptr; ++at)
+    if (!std::string_view(*at).starts_with("TMPDIR=")) variables.emplace_back(*at);
+  return variables;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+  std::vector<char*> out;
+  for (std::string& word : words) out.push_back(word.data());
+  out.push_back(nullptr);
+  return out;
 }
 
 /// The lines of stderr that are no warnings.
@@ -50,77 +66,82 @@ std::string quoted(const std::string& text) {
   return "\"" + text.substr(0, 300) + (text.size() > 300 ? "...\"" : "\"");
 }
 
-/// Whether a file of results holds nan or inf as a word of its own.
-bool holds_no_number(const std::string& text) {
-  for (const std::string word : {"nan", "inf", "NaN", "Infinity"}) {
-    for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
-      const auto apart = [&text](std::size_t i) {
-        return i >= text.size() || (std::isalnum(static_cast<unsigned char>(text[i])) == 0 && text[i] != '_');
-      };
-      if ((at == 0 || apart(at - 1)) && apart(at + word.size())) return true;
-    }
-  }
-  return false;
+/// What is wrong with results and what was printed of them.
+std::string wrong_results(const fs::path& folder) {
+  const auto wrong = not_finite_in_results(folder / kResults);
+  if (!wrong.empty()) return wrong;
+  const auto printed = read_text_file((folder / "out").string());
+  if (!printed) return printed.error().str();
+  const auto wrong_print = not_finite_in_json(*printed, "summary.json");
+  return wrong_print.empty() ? "" : "printed: " + wrong_print;
 }
 
-/// Estimates and truth are numbers in every row: a field that is empty there stands for one that is not finite.
-bool has_holes(const std::string& nav_csv) {
-  return nav_csv.find(",,") != std::string::npos;
+/// The first entry of the folder that is none of these; "" if there is none.
+std::string other_than(const fs::path& folder, const std::vector<std::string>& expected) {
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code))
+    if (std::ranges::find(expected, at->path().filename().string()) == expected.end())
+      return at->path().filename().string();
+  return code ? "a folder that cannot be read (" + code.message() + ")" : "";
 }
 
-std::string wrong_results(const fs::path& folder, const std::string& fidelity) {
-  const fs::path results = folder / kResults;
-  for (const auto& entry : fs::recursive_directory_iterator(results)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension != ".csv" && extension != ".json") continue;
-    const auto text = read_text_file(entry.path().string());
-    if (!text) return "cannot be read: " + text.error().str();
-    if (holds_no_number(*text)) return "a number that is not finite in " + entry.path().filename().string();
-  }
-  const auto nav = read_text_file((results / "epochs" / (fidelity + "_nav.csv")).string());
-  if (!nav) return "no estimates: " + nav.error().str();
-  if (has_holes(*nav)) return "an estimate that is not finite in " + fidelity + "_nav.csv";
-  return "";
-}
-
-/// What lies in the folder beside the results and what was printed.
+/// What lies in the folder beside the results and what was printed, and among the temporary files.
 std::string left_behind(const fs::path& folder, bool with_results) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "out" && name != "err" && !(with_results && name == kResults)) return "left behind: " + name;
-  }
-  return "";
+  const std::string beside =
+      other_than(folder, with_results ? std::vector<std::string>{"out", "err", kTemporary, kResults}
+                                      : std::vector<std::string>{"out", "err", kTemporary});
+  if (!beside.empty()) return "left behind: " + beside;
+  const std::string temporary = other_than(folder / kTemporary, {});
+  return temporary.empty() ? "" : "left behind in TMPDIR: " + temporary;
 }
 
-std::string wrong_refusal(const std::string& err) {
+/// Whether a line begins with "FILE:LINE: ", or has a key of the settings in it.
+bool names_the_place(const std::string& line, const Settings& settings) {
+  static const std::regex file_and_line("^[^ ]+:[0-9]+: ");
+  const bool of_a_file = std::regex_search(line, file_and_line) && !line.starts_with("--set:");
+  return of_a_file || std::ranges::any_of(settings, [&](const auto& one) { return line.find(one.first) != line.npos; });
+}
+
+std::string wrong_refusal(const std::string& err, const Settings& settings) {
   const auto lines = error_lines(err);
   if (lines.size() != 1) return "an error of " + std::to_string(lines.size()) + " lines: " + quoted(err);
   for (const char* words : {"check failed", "internal error", "terminate called"})
     if (lines[0].find(words) != std::string::npos) return "an internal error: " + quoted(lines[0]);
   if (lines[0].find("expected") == std::string::npos) return "does not say what was expected: " + quoted(lines[0]);
+  if (!names_the_place(lines[0], settings)) return "names neither a key that was set nor a line: " + quoted(lines[0]);
   return "";
 }
 
 }  // namespace
 
-pid_t start_trial(const TrialSetup& setup, const Settings& settings, const fs::path& folder) {
-  fs::create_directories(folder);
-  const auto words = command_line(setup, settings);
-  return start_child([&words] { return execute(words); }, folder, folder / "out", folder / "err", setup.limits);
+Result<ProcessId> start_trial(const TrialSetup& setup, const Settings& settings, const fs::path& folder) {
+  for (const fs::path& made : {folder, folder / kTemporary}) {
+    std::error_code code;  // not its parents: an interruption may just have taken them away
+    if (!fs::create_directory(made, code))
+      return Error{.file = made.string(), .what = "cannot be made (" + code.message() + ")", .expected = "a folder"};
+  }
+  auto words = command_line(setup, settings), variables = environment(folder / kTemporary);
+  const auto arguments = pointers(words), with = pointers(variables);
+  const auto execute = [&] {
+    execve(arguments[0], arguments.data(), with.data());
+    return 4;
+  };
+  return start_child(execute, folder, folder / "out", folder / "err", setup.limits);
 }
 
-TrialEnd judge_trial(const TrialSetup& setup, const ChildEnd& end, const fs::path& folder) {
+TrialEnd judge_trial(const TrialSetup& setup, const Settings& settings, const ChildEnd& end, const fs::path& folder) {
   const auto printed = read_text_file((folder / "err").string());
   const std::string err = printed ? *printed : "";
-  TrialEnd out{.refused = end.exit_status == 2, .what = breach(end, setup.limits)};
+  TrialEnd out{.refused = false, .what = breach(end, setup.limits), .said = err, .cpu_s = end.cpu_s};
   if (!out.what.empty()) return out;
   if (end.exit_status != 0 && end.exit_status != 2)
     out.what = "exit status " + std::to_string(end.exit_status) + ": " + quoted(err);
   else if (end.exit_status == 2)
-    out.what = wrong_refusal(err);
+    out.what = wrong_refusal(err, settings);
   else
-    out.what = wrong_results(folder, setup.fidelity);
+    out.what = wrong_results(folder);
   if (out.what.empty()) out.what = left_behind(folder, end.exit_status == 0);
+  out.refused = end.exit_status == 2 && out.what.empty();
   return out;
 }
 
