@@ -3,28 +3,41 @@
 
     mutants.py draw --seed 1 --count 30            writes them to tests/mutations.toml
     mutants.py try [--only 3,7] [--work FOLDER]    puts each into a copy of the tree, builds it there, runs the short suite
-    mutants.py check                               that each line of mutations.toml still stands where it says
+    mutants.py check                               that each line of the list still stands where it says
+    mutants.py --list FILE draw|try|check ...      another list, as of a second seed
 
 A fault is a wrong sign, factor, index, order of subtraction, comparison, constant (by 10) or trigonometric function, or a guard
-that is not there; it is drawn from all lines that could have one, file by file, so that no long file has them all. `try` prints
-a line for each: killed (by which cases), survived, or does not compile (drawn again by hand), and ends with status 1 if fewer
-than --least are killed.
+that is not there. It is drawn from all lines of the numerical folders that could have one, headers too, every line alike, and
+then one of the faults that the line could have; the only other rule is that the list has faults in 15 files at least.
+
+A row that has been proved to change nothing says so, `equivalent = "why"`, and stands beside the count: the next draw has taken
+its place. One that survives says which case is missing, `missing = "case"`. Both are kept when the same seed is drawn again.
+
+`try` begins with an empty folder and the tree as it is, which must hold. Then it prints a line for each fault: killed, and by
+what (a case that failed, a crash, a hang: ten times as long as the tree as it is, another exit status), survived, or does not
+compile. It ends with status 1 if fewer than --least are killed.
 """
 import argparse
 import json
 import pathlib
 import random
 import re
+import resource
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 LIST = ROOT / "tests/mutations.toml"
-FOLDERS = ["core/earth", "core/math", "core/motion", "core/random", "scene/ground", "scene/tracing", "gnss/satellites", "gnss/errors",
-           "gnss/atmosphere", "gnss/paths", "gnss/receiver", "gnss/solver", "inertial/motion", "inertial/mems", "inertial/errors",
-           "lidar/beam", "lidar/receiver", "lidar/registration", "fusion", "mission/motion", "mission/scoring"]
+FLOORS = ["core", "scene", "gnss", "inertial", "lidar", "fusion", "mission"]
+# Rooms of configurations, texts and files, and the cases themselves.
+NOT_NUMERICAL = ["core/config", "core/files", "core/output", "core/process", "core/printable_text", "scene/importers", "gnss/rinex", "gnss/nmea", "gnss/tables",
+                 "inertial/catalogue", "lidar/files", "mission/config", "mission/recorder"] + [floor + "/stress" for floor in FLOORS]
+LEAST_FILES = 15
+MEMORY_BYTES = 8 << 30
 
 # (what it is, what is looked for, what takes its place)
 KINDS = [
@@ -50,10 +63,11 @@ KINDS = [
 
 
 def sources():
-    for folder in FOLDERS:
-        for path in sorted((ROOT / folder).rglob("*.cpp")):
-            if "/stress/" not in path.as_posix():
-                yield path.relative_to(ROOT).as_posix()
+    for floor in FLOORS:
+        for path in sorted((ROOT / floor).rglob("*")):
+            name = path.relative_to(ROOT).as_posix()
+            if path.suffix in (".cpp", ".h") and not name.startswith(tuple(room + end for room in NOT_NUMERICAL for end in "/.")):
+                yield name
 
 
 def faults(name):
@@ -71,25 +85,50 @@ def faults(name):
     return out
 
 
-def draw(seed, count):
-    """`count` faults, one from each of as many files, as TOML."""
+def spread(lines, count):
+    """The first `count` of the shuffled lines, the last ones exchanged for later ones until 15 files have one."""
+    taken, rest = lines[:count], lines[count:]
+    while len({name for name, _ in taken}) < min(LEAST_FILES, count) and rest:
+        files = [name for name, _ in taken]
+        taken.pop(max(i for i, name in enumerate(files) if files.count(name) > 1))
+        taken.append(rest.pop(0))
+    return taken, rest
+
+
+def draw(seed, count, known):
+    """`count` faults that count, and the equivalent ones of `known` that are drawn on the way, as rows of the list."""
     generator = random.Random(seed)
-    names = [name for name in sources() if faults(name)]
-    rows = []
-    for name in generator.sample(names, count):
-        kinds = sorted({kind for _, kind, _, _ in faults(name)})
-        kind = generator.choice(kinds)
-        number, kind, before, after = generator.choice([fault for fault in faults(name) if fault[1] == kind])
-        rows.append((name, number, kind, before, after))
-    text = f"# Drawn by tests/mutants/mutants.py draw --seed {seed} --count {count}.\nseed = {seed}\n"
-    for name, number, kind, before, after in rows:
-        text += f"\n[[mutant]]\nfile = {json.dumps(name)}\nline = {number}\nkind = \"{kind}\"\n"
-        text += f"before = {json.dumps(before.strip())}\nafter = {json.dumps(after.strip())}\n"
+    by_line = {}
+    for name in sources():
+        for fault in faults(name):
+            by_line.setdefault((name, fault[0]), []).append(fault)
+    lines = sorted(by_line)
+    generator.shuffle(lines)
+    chosen = {line: generator.choice(by_line[line]) for line in lines}
+    remarks = {(row["file"], row["before"], row["after"]): row for row in known}
+
+    def row(line):
+        number, kind, before, after = chosen[line]
+        out = {"file": line[0], "line": number, "kind": kind, "before": before.strip(), "after": after.strip()}
+        old = remarks.get((out["file"], out["before"], out["after"]), {})
+        return out | {key: old[key] for key in ("equivalent", "missing") if key in old}
+
+    taken, rest = spread(lines, count)
+    rows = [row(line) for line in taken]
+    while sum("equivalent" not in each for each in rows) < count and rest:
+        rows.append(row(rest.pop(0)))
+    return rows, len(lines)
+
+
+def list_text(seed, count, rows, lines):
+    text = f"# Drawn by tests/mutants/mutants.py draw --seed {seed} --count {count}, from {lines} lines.\nseed = {seed}\n"
+    for each in rows:
+        text += "\n[[mutant]]\n" + "".join(f"{key} = {json.dumps(value, ensure_ascii=False)}\n" for key, value in each.items())
     return text
 
 
-def read_list():
-    return tomllib.loads(LIST.read_text(encoding="utf-8"))["mutant"]
+def read_list(path):
+    return tomllib.loads(path.read_text(encoding="utf-8"))["mutant"] if path.exists() else []
 
 
 def place_of(mutant, root):
@@ -108,59 +147,93 @@ def apply(mutant, root):
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
-def attempt(mutant, work, jobs):
-    """(verdict, which cases) of one fault in the copy of the tree."""
+def limits():
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+
+
+def run_suite(work, jobs, timeout_s):
+    """(what became of the short suite, which cases or what else), "held" if nothing."""
+    try:
+        ran = subprocess.run([work / "build/release/bin/canyon", "stress", "--json", "--threads", str(jobs)], capture_output=True,
+                             text=True, timeout=timeout_s, check=False, preexec_fn=limits)
+    except subprocess.TimeoutExpired:
+        return "hang", [f"no end after {timeout_s:.0f} s"]
+    if ran.returncode < 0:
+        return "crash", [signal.Signals(-ran.returncode).name]
+    try:
+        cases = json.loads(ran.stdout)["cases"]
+    except (ValueError, KeyError):
+        return "crash", [f"exit status {ran.returncode}: {ran.stderr.strip()[:200]}"]
+    failed = [case["name"] for case in cases if not case["pass"] and "open" not in case]
+    if failed or ran.returncode == 1:
+        return "case failed", failed
+    return ("held", []) if ran.returncode == 0 else ("other exit", [f"exit status {ran.returncode}"])
+
+
+def build(work, jobs):
+    return subprocess.run(["ninja", "-C", work / "build/release", f"-j{jobs}", "canyon"], capture_output=True, text=True, check=False)
+
+
+def attempt(mutant, work, jobs, timeout_s):
+    """(verdict, by what) of one fault in the copy of the tree."""
     original = (ROOT / mutant["file"]).read_text(encoding="utf-8")
     apply(mutant, work)
     try:
-        built = subprocess.run(["ninja", "-C", work / "build/release", f"-j{jobs}", "canyon"], capture_output=True, text=True, check=False)
-        if built.returncode != 0:
+        if build(work, jobs).returncode != 0:
             return "does not compile", []
-        try:
-            ran = subprocess.run([work / "build/release/bin/canyon", "stress", "--json", "--threads", str(jobs)], capture_output=True,
-                                 text=True, timeout=900, check=False)
-        except subprocess.TimeoutExpired:
-            return "killed", ["no end after 900 s"]
-        if ran.returncode not in (0, 1):
-            return "killed", [f"exit status {ran.returncode}"]
-        failed = [case["name"] for case in json.loads(ran.stdout)["cases"] if not case["pass"] and "open" not in case]
-        return ("killed", failed) if failed else ("survived", [])
+        what, by = run_suite(work, jobs, timeout_s)
+        return ("survived", []) if what == "held" else ("killed", [what] + by)
     finally:
         (work / mutant["file"]).write_text(original, encoding="utf-8")
 
 
-def copy_of_tree(work):
-    shutil.copytree(ROOT, work, symlinks=True, dirs_exist_ok=True, ignore=shutil.ignore_patterns("build", ".git", "results"))
-    for command in (["cmake", "--preset", "release", "-DCANYON_TESTS=OFF"], ["ninja", "-C", "build/release", "canyon"]):
-        subprocess.run(command, cwd=work, check=True, stdout=subprocess.DEVNULL)
+def copy_of_tree(work, jobs):
+    """The tree as it is, in an empty folder and with times of today: nothing of a try before it is taken for up to date."""
+    shutil.rmtree(work, ignore_errors=True)
+    shutil.copytree(ROOT, work, symlinks=True, copy_function=shutil.copy, ignore=shutil.ignore_patterns("build", ".git", "results"))
+    subprocess.run(["cmake", "--preset", "release", "-DCANYON_TESTS=OFF"], cwd=work, check=True, stdout=subprocess.DEVNULL)
+    built = build(work, jobs)
+    if built.returncode != 0:
+        sys.exit("the tree as it is does not build:\n" + built.stdout[-2000:])
 
 
 def try_all(options):
     work = pathlib.Path(options.work).resolve()
-    copy_of_tree(work)
+    copy_of_tree(work, options.jobs)
+    started = time.monotonic()
+    what, by = run_suite(work, options.jobs, 1800.0)
+    timeout_s = max(60.0, 10.0 * (time.monotonic() - started))
+    if what != "held":
+        sys.exit(f"the tree as it is: {what}: {', '.join(by)}")
     only = {int(each) for each in options.only.split(",")} if options.only else None
     killed = tried = 0
-    for number, mutant in enumerate(read_list(), 1):
-        if only and number not in only:
+    for number, mutant in enumerate(read_list(options.list), 1):
+        if (only and number not in only) or "equivalent" in mutant:
             continue
-        verdict, cases = attempt(mutant, work, options.jobs)
+        verdict, by = attempt(mutant, work, options.jobs, timeout_s)
         tried += 1
         killed += verdict == "killed"
-        print(f"{number:2} {verdict:16} {mutant['kind']:10} {mutant['file']}:{mutant['line']}: {mutant['after']}"
-              + (f"   [{len(cases)}: {cases[0]}]" if cases else ""), flush=True)
+        why = f"   [{by[0]}: {len(by) - 1}, {by[1] if len(by) > 1 else ''}]" if by else ""
+        print(f"{number:2} {verdict:16} {mutant['kind']:10} {mutant['file']}:{mutant['line']}: {mutant['after']}{why}", flush=True)
     print(f"{killed} of {tried} killed")
     return 0 if killed >= options.least else 1
 
 
-def check():
-    lost = [mutant for mutant in read_list() if not (ROOT / mutant["file"]).exists() or place_of(mutant, ROOT) is None]
+def check(path):
+    rows = read_list(path)
+    lost = [mutant for mutant in rows if not (ROOT / mutant["file"]).exists() or place_of(mutant, ROOT) is None]
     for mutant in lost:
         print(f"{mutant['file']}:{mutant['line']}: {mutant['before']!r} is no more: draw again")
+    counted = [mutant for mutant in rows if "equivalent" not in mutant]
+    if len(counted) < 30 or len({mutant["file"] for mutant in counted}) < LEAST_FILES:
+        print(f"{path}: {len(counted)} faults in {len({mutant['file'] for mutant in counted})} files, of 30 in {LEAST_FILES}")
+        return 1
     return 1 if lost else 0
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--list", type=pathlib.Path, default=LIST)
     verbs = parser.add_subparsers(dest="verb", required=True)
     drawing = verbs.add_parser("draw")
     drawing.add_argument("--seed", type=int, required=True)
@@ -173,9 +246,10 @@ def main():
     verbs.add_parser("check")
     options = parser.parse_args()
     if options.verb == "draw":
-        LIST.write_text(draw(options.seed, options.count), encoding="utf-8")
+        rows, lines = draw(options.seed, options.count, read_list(options.list))
+        options.list.write_text(list_text(options.seed, options.count, rows, lines), encoding="utf-8")
         return 0
-    return check() if options.verb == "check" else try_all(options)
+    return check(options.list) if options.verb == "check" else try_all(options)
 
 
 if __name__ == "__main__":
