@@ -54,8 +54,14 @@ class StressRows {
 };
 
 /// The larger of two, and NaN if either is NaN, which std::max would swallow.
-inline double worse(double a, double b) {
-  return a >= b ? a : b > a ? b : std::numeric_limits<double>::quiet_NaN();
+template <class Number>
+Number worse(Number a, Number b) {
+  return a >= b ? a : b > a ? b : std::numeric_limits<Number>::quiet_NaN();
+}
+
+/// How far x lies beyond what is allowed: 0 up to there, and NaN for NaN.
+inline double beyond(double x, double allowed) {
+  return x <= allowed ? 0.0 : x - allowed;
 }
 
 /// The larger share of a bound, for figures that are errors in units of what each of them may be: no more than 1.

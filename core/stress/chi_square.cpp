@@ -39,7 +39,7 @@ StressFigure tail(double dof) {
   double worst = 0.0;
   for (const double sigmas : {-4.0, -1.0, 0.0, 1.0, 5.0, 8.0, 20.0}) {
     const double x = deviations_off(dof, sigmas), exact = even_tail(static_cast<int>(dof / 2), 0.5 * x);
-    worst = std::max(worst, std::abs(chi_square_tail(x, dof) / exact - 1.0));
+    worst = worse(worst, std::abs(chi_square_tail(x, dof) / exact - 1.0));
   }
   const double reference = 3.0 * 0.5 * dof * std::log(0.5 * dof + 2.0) * 0x1p-64;
   return {worst, 1e-12 + reference};
@@ -51,7 +51,7 @@ StressFigure thresholds() {
   double worst = 0.0;
   for (const double dof : {0.5, 1.0, 3.0, 100.0, 1e4})
     for (const double p : {1e-300, 1e-100, 1e-15, 1e-6, 0.5, 0.999})
-      worst = std::max(worst, std::abs(chi_square_tail(chi_square_threshold(p, dof), dof) / p - 1.0));
+      worst = worse(worst, std::abs(chi_square_tail(chi_square_threshold(p, dof), dof) / p - 1.0));
   return {worst, 3e-12};
 }
 

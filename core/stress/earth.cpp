@@ -50,7 +50,8 @@ StressFigure local_frames(double lat_deg, double lon_deg) {
       worst.look((frame.from_geodetic(frame.to_geodetic(p_W)) - p_W).norm(), 16.0 * kEpsilon * Wgs84::a_m);
     }
   const Eigen::Matrix3d& R = frame.R_EW();
-  worst.look((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 4.0 * kEpsilon);
+  worst.look((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+             4.0 * kEpsilon);
   return worst.figure();
 }
 
@@ -79,7 +80,7 @@ StressFigure gravity_gradient() {
       // Each column: truncation 1.5e-15 (24 g / a^3 h^2 / 6), and two values with ten roundings of g each over 200 m.
       const double bound = 1.5e-15 + 20.0 * kEpsilon * 9.8 / (2.0 * kStep_m);
       worst.look(G.trace() - 2.0 * Wgs84::rate_rad_s * Wgs84::rate_rad_s, 3.0 * bound);
-      worst.look((G - G.transpose()).cwiseAbs().maxCoeff(), 2.0 * bound);
+      worst.look((G - G.transpose()).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 2.0 * bound);
     }
   return worst.figure();
 }

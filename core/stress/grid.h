@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "canyon/core/check.h"
 #include "canyon/core/stress_case.h"
+#include "canyon/core/stress_rows.h"
 
 /// What the rooms stress/ of all floors write their cases with.
 namespace canyon::stress {
@@ -48,11 +50,12 @@ inline std::string text(double x) {
 }
 
 /// The worst of many looks, each against a bound of its own: the figure is a part of that bound. What is not a number
-/// is as bad as can be.
+/// is as bad as can be, and so is a bound that is none: not above 0, or infinite.
 class Worst {
  public:
   void look(double error, double bound) {
-    const double part = error == 0.0 ? 0.0 : std::abs(error) / bound;
+    const bool bounds = bound > 0.0 && bound < kInfinity;
+    const double part = bounds ? std::abs(error) / bound : kInfinity;
     worst_ = part <= worst_ ? worst_ : (std::isnan(part) ? kInfinity : part);
   }
   StressFigure figure() const { return {worst_, 1.0}; }
@@ -61,13 +64,14 @@ class Worst {
   double worst_ = 0.0;
 };
 
-/// 1 where `act` is not refused with a ProgramError: of refusals, the figure counts what is let through.
+/// 1 where `act` is not refused with a ProgramError that says these words: of refusals, the figure counts what is let
+/// through, or was found out by another check than the one that is meant.
 template <class Act>
-int not_refused(Act&& act) {
+int not_refused(Act&& act, std::string_view words = "") {
   try {
     std::forward<Act>(act)();
-  } catch (const ProgramError&) {
-    return 0;
+  } catch (const ProgramError& error) {
+    return std::string_view(error.what()).find(words) == std::string_view::npos ? 1 : 0;
   }
   return 1;
 }

@@ -38,7 +38,7 @@ StressFigure logarithm() {
       for (const double x : {std::ldexp(m, e), std::nextafter(std::ldexp(m, e), 1.0)}) {
         if (x >= 1.0 || x < 0x1p-53) continue;
         const long double exact = std::log(static_cast<long double>(x));
-        worst = std::max(worst, static_cast<double>(std::abs((random_math::log_positive(x) - exact) / exact)));
+        worst = worse(worst, static_cast<double>(std::abs((random_math::log_positive(x) - exact) / exact)));
       }
   return {random_math::log_positive(1.0) == 0.0 ? worst : stress::kInfinity, 1e-15};
 }
@@ -51,8 +51,8 @@ StressFigure turns() {
     for (const double u : {i / 4096.0, std::nextafter(i / 4096.0, 0.0), std::nextafter(i / 4096.0, 1.0)}) {
       const auto [sine, cosine] = random_math::sin_cos_turns(u);
       const long double angle = kTurn * static_cast<long double>(u);
-      worst = std::max(worst, static_cast<double>(std::abs(sine - std::sin(angle))));
-      worst = std::max(worst, static_cast<double>(std::abs(cosine - std::cos(angle))));
+      worst = worse(worst, static_cast<double>(std::abs(sine - std::sin(angle))));
+      worst = worse(worst, static_cast<double>(std::abs(cosine - std::cos(angle))));
     }
   return {worst, 3e-16};
 }

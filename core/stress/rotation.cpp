@@ -50,7 +50,8 @@ StressFigure right_jacobian() {
       const Eigen::Matrix3d V = skew(v);
       const Eigen::Matrix3d exact =
           Eigen::Matrix3d::Identity() - static_cast<double>(linear) * V + static_cast<double>(square) * V * V;
-      worst.look((so3_right_jacobian(v) - exact).cwiseAbs().maxCoeff(), 10.0 * kEpsilon * std::max(1.0, angle));
+      worst.look((so3_right_jacobian(v) - exact).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+                 10.0 * kEpsilon * std::max(1.0, angle));
     }
   return worst.figure();
 }

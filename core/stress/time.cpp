@@ -115,7 +115,7 @@ StressFigure ticks_of_a_day(double rate_hz) {
     const GpsTime t = tick(start, k, rate_hz);
     const long double exact_ns = static_cast<long double>(k) * 1e9L / static_cast<long double>(rate_hz);
     const double miss_ns = static_cast<double>(static_cast<long double>(t.ns - start.ns) - exact_ns);
-    worst_ns = std::max(worst_ns, t > before ? std::abs(miss_ns) : stress::kInfinity);
+    worst_ns = worse(worst_ns, t > before ? std::abs(miss_ns) : stress::kInfinity);
     before = t;
   }
   return {worst_ns, 0.5 + 1e-4};

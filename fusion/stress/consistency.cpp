@@ -47,7 +47,7 @@ StressFigure band(std::int64_t count) {
   const double n = 3.0 * static_cast<double>(count);
   const double low = chi_square_threshold(1.0 - 0.5e-3, n) / static_cast<double>(count),
                high = chi_square_threshold(0.5e-3, n) / static_cast<double>(count);
-  return {std::max(std::abs(b.low / low - 1.0), std::abs(b.high / high - 1.0)), 0.01 * std::pow(30.0 / n, 1.5)};
+  return {worse(std::abs(b.low / low - 1.0), std::abs(b.high / high - 1.0)), 0.01 * std::pow(30.0 / n, 1.5)};
 }
 
 /// A covariance that is none has no normalised square.

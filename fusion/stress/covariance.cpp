@@ -20,7 +20,7 @@ bool is_broken(const Matrix& P) {
   const Eigen::Matrix<double, 15, 1> scale = P.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix correlation = scale.asDiagonal() * P * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(correlation, Eigen::EigenvaluesOnly);
-  return !(eigen.eigenvalues().minCoeff() > -2.0 * 15.0 * 15.0 * kEpsilon);
+  return !(eigen.eigenvalues().minCoeff<Eigen::PropagateNaN>() > -2.0 * 15.0 * 15.0 * kEpsilon);
 }
 
 /// Predictions at 100 Hz with a fix every ten, from a position unknown by `ratio` times the fix's own sigma.
@@ -67,9 +67,9 @@ StressFigure time_constants(double fast_s, double slow_s) {
     const auto gyro = P.diagonal().segment<3>(ErrorIndex::kGyroBias),
                accel = P.diagonal().segment<3>(ErrorIndex::kAccelBias);
     // What a fix told of it 0.9 s ago is gone where that is many times its life.
-    if (fast_s < 0.02) worst.look(gyro.minCoeff() / fast - 1.0, step);
-    worst.look(std::max(0.0, gyro.maxCoeff() / fast - 1.0), step);
-    worst.look(std::max(0.0, accel.maxCoeff() / slow - 1.0), step);
+    if (fast_s < 0.02) worst.look(gyro.minCoeff<Eigen::PropagateNaN>() / fast - 1.0, step);
+    worst.look(beyond(gyro.maxCoeff<Eigen::PropagateNaN>() / fast, 1.0), step);
+    worst.look(beyond(accel.maxCoeff<Eigen::PropagateNaN>() / slow, 1.0), step);
   }
   return worst.figure();
 }

@@ -55,7 +55,7 @@ StressFigure table_end(double bandwidth_chips) {
   StressFigure out{0.0, 1e-6};
   for (const double x : {4.0, -4.0}) take_worst(out, std::abs(R.at(std::nextafter(x, 0.0)) - R.at(x)));
   // And inside: the correlation of a wide band is the triangle but for 2 / (pi^2 B) at its peak (Si's remainder).
-  take_worst(out, std::max(0.0, std::abs(R.at(0.0) - 1.0) - 2.0 / (kPi * kPi * bandwidth_chips)));
+  take_worst(out, beyond(std::abs(R.at(0.0) - 1.0), 2.0 / (kPi * kPi * bandwidth_chips)));
   return out;
 }
 
@@ -70,13 +70,12 @@ StressFigure sine_integrals() {
     const long double h = static_cast<long double>(x) / n;
     long double sum = 0.5L * (f(0.0L) + f(x));
     for (int k = 1; k < n; ++k) sum += f(k * h);
-    sum = sum * h - h * h / 12.0L * (df(x) - (x < 1e-3 ? -static_cast<long double>(x) / 3.0L : df(0.0L)) * 0.0L);
+    sum = sum * h - h * h / 12.0L * df(x);  // df(0) = 0
     if (x < 1e-3) sum = x - static_cast<long double>(x) * x * x / 18.0L;
     take_worst(out, std::abs(sine_integral(x) - static_cast<double>(sum)));
     take_worst(out, std::abs(sine_integral(-x) + static_cast<double>(sum)));
   }
-  for (const double x : {1e6, 1e12, 1e300})
-    take_worst(out, std::max(0.0, std::abs(sine_integral(x) - 0.5 * kPi) - 1.0 / x));
+  for (const double x : {1e6, 1e12, 1e300}) take_worst(out, beyond(std::abs(sine_integral(x) - 0.5 * kPi), 1.0 / x));
   return out;
 }
 

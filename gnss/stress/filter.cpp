@@ -57,24 +57,27 @@ Measured exact(double t_s, double sigma_m) {
 double not_positive(const Eigen::Matrix<double, 6, 6>& P) {
   if (!P.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(P);
-  const double largest = eigen.eigenvalues().maxCoeff();
-  const double skew = (P - P.transpose()).cwiseAbs().maxCoeff() / largest;
-  return worse(skew, -eigen.eigenvalues().minCoeff() / largest);
+  const double largest = eigen.eigenvalues().maxCoeff<Eigen::PropagateNaN>();
+  const double skew = (P - P.transpose()).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / largest;
+  return worse(skew, -eigen.eigenvalues().minCoeff<Eigen::PropagateNaN>() / largest);
 }
 
+/// Of an innovation, times GDOP.
+constexpr double kPositionRounding_m = 8.0 * kEps * 2.2e7 * 4.0;
+
 /// After `updates` of exact measurements of that sigma. Joseph's form is symmetric and positive but for the rounding of
-/// products of eleven terms, 3 * 11 eps of the largest element, from one update to the next: it contracts.
+/// products of eleven terms, 3 * 11 eps of the largest element, from one update to the next: it contracts. Meanwhile
+/// the position stays as exact as exact_position() says. In units of these bounds.
 StressFigure covariance(double sigma_m, double interval_s, int updates) {
   PvtFilter filter{{}};
-  StressFigure out{0.0, 64.0 * kEps};
-  double worst_m = 0.0;
+  StressFigure out{0.0, 1.0};
   for (int k = 0; k < updates; ++k) {
     const Measured now = exact(interval_s * (k % 50), sigma_m);
     if (k % 50 == 0) filter.reset();
     const auto found = filter.update(kStart + interval_s * k, now.ranges, now.rates, now.truth_E);
     if (!found.ok) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-    take_worst(out, not_positive(found.covariance));
-    worst_m = worse(worst_m, (found.p_E - now.truth_E).norm());
+    take_worst(out, not_positive(found.covariance) / (64.0 * kEps));
+    take_worst(out, (found.p_E - now.truth_E).norm() / (2.0 * kPositionRounding_m));
   }
   return out;
 }
@@ -83,8 +86,7 @@ StressFigure covariance(double sigma_m, double interval_s, int updates) {
 /// it, and the prediction that it corrects carries as much.
 StressFigure exact_position(double sigma_m, double interval_s) {
   PvtFilter filter{{}};
-  const double rounding_m = 8.0 * kEps * 2.2e7 * 4.0;
-  StressFigure out{0.0, 2.0 * rounding_m};
+  StressFigure out{0.0, 2.0 * kPositionRounding_m};
   for (int k = 0; k < 50; ++k) {
     const Measured now = exact(interval_s * k, sigma_m);
     const auto found = filter.update(kStart + interval_s * k, now.ranges, now.rates, now.truth_E);

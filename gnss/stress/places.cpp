@@ -172,7 +172,7 @@ std::vector<StressCase> place_cases() {
   for (const Place& p : places)
     rows.add(std::string("places/all_errors_at_") + p.name, [p] { return all_errors_at(p.lat, p.lon, p.h); });
   rows.of({StressGroup::kGeometry, "heights that no model covers",
-           "ten satellites seen through the Earth, 0.70 m of error",
+           "ten satellites seen through the Earth, 0.70 m of error (2026-11-22)",
            "refused beyond -500 m and 20 km, at the Earth's centre, and where there is no number", "wrong"});
   rows.add("places/heights_beyond_the_models_refused", heights);
   rows.of({StressGroup::kGeometry, "elevation 0 and 90 degrees from poles and equator",

@@ -168,7 +168,7 @@ StressFigure nearest() {
       const GpsTime found = nearest_with_sow(sow, near);
       const double apart = std::abs(found - near);
       take_worst(out, found.ns >= 0 ? std::abs(found.sow_s() - sow) : 0.0);
-      take_worst(out, std::max(0.0, apart - 302400.0));
+      take_worst(out, beyond(apart, 302400.0));
     }
   return out;
 }

@@ -73,7 +73,7 @@ StressFigure far_lit(double nu) {
 StressFigure shadow_border() {
   StressFigure out{std::abs(knife_edge_field(0.0) - 0.5), 8.0 * kEps};
   for (const double nu : {1e-300, 1e-12, -1e-12})
-    take_worst(out, std::max(0.0, std::abs(knife_edge_field(nu) - 0.5) - std::abs(nu)));
+    take_worst(out, beyond(std::abs(knife_edge_field(nu) - 0.5), std::abs(nu)));
   // The lit and the shadowed side of one edge make up the free field (Babinet).
   for (double nu = 0.0; nu < 8.0; nu += 0.01)
     take_worst(out, std::abs(knife_edge_field(nu) + knife_edge_field(-nu) - 1.0));
@@ -87,7 +87,7 @@ StressFigure air() {
   for (const double c : {1.0, 0.5, 1e-2, 1e-4, 1e-6, 1e-8, 0.0}) {
     const double incidence = std::acos(c);
     const Fresnel f = fresnel(1.0, incidence);
-    take_worst(out, std::max(std::abs(f.te), std::abs(f.tm)));
+    take_worst(out, worse(std::abs(f.te), std::abs(f.tm)));
   }
   return out;
 }
@@ -108,7 +108,7 @@ StressFigure grazing(Complex permittivity) {
   }
   for (int k = 0; k <= 1000; ++k) {
     const Fresnel f = fresnel(permittivity, 0.5 * kPi * k / 1000.0);
-    take_worst(out, std::max(std::abs(f.te), std::abs(f.tm)) / (1.0 + 8.0 * kEps));
+    take_worst(out, worse(std::abs(f.te), std::abs(f.tm)) / (1.0 + 8.0 * kEps));
   }
   return out;
 }

@@ -33,7 +33,7 @@ StressFigure large_mean(const std::string& kind) {
   const auto a = deviation(kind, small, whole(kSamples), factors), b = deviation(kind, large, whole(kSamples), factors);
   double worst = a.size() == 3 && b.size() == 3 ? 0.0 : stress::kInfinity;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    worst = std::max(worst, std::abs(a[i].deviation - b[i].deviation));
+    worst = worse(worst, std::abs(a[i].deviation - b[i].deviation));
   return {worst, 2.0 * 0.5 * 1.2e-7};
 }
 
@@ -45,7 +45,7 @@ StressFigure constant(double value) {
   double worst = 0.0;
   for (const std::string& kind : deviation_kinds())
     for (const DeviationPoint& p : deviation(kind, rate, whole(kSamples), factors))
-      worst = std::max(worst, std::isfinite(p.low + p.high + p.edf) ? p.deviation : stress::kInfinity);
+      worst = worse(worst, std::isfinite(p.low + p.high + p.edf) ? p.deviation : stress::kInfinity);
   constexpr double n = kSamples;
   return {worst, n * n * stress::kEpsilon * stress::kEpsilon * std::abs(value)};
 }

@@ -42,8 +42,11 @@ StressFigure saturation() {
     const double kept = std::clamp(over, -1.0, 1.0);
     const double unit = s.dt_s * (1.0 + 4.0 * kEpsilon), slack = 8.0 * kEpsilon;
     wrong += std::abs(over) < 1.0 && (s.dtheta_U != in.dtheta_U || s.dv_U != in.dv_U) ? 1 : 0;
-    wrong += (s.dtheta_U.array() - kept * rate * s.dt_s).abs().maxCoeff() <= slack * rate * unit ? 0 : 1;
-    wrong += (s.dv_U.array() + kept * force * s.dt_s).abs().maxCoeff() <= slack * force * unit ? 0 : 1;
+    wrong += (s.dtheta_U.array() - kept * rate * s.dt_s).abs().maxCoeff<Eigen::PropagateNaN>() <= slack * rate * unit
+                 ? 0
+                 : 1;
+    wrong +=
+        (s.dv_U.array() + kept * force * s.dt_s).abs().maxCoeff<Eigen::PropagateNaN>() <= slack * force * unit ? 0 : 1;
   }
   return {1.0 * wrong, 0.0};
 }
@@ -81,7 +84,7 @@ StressFigure clock_of_a_day(double rate_hz) {
     const double nominal_ns =
         1e9 / rate_hz - static_cast<double>((tick({}, k + 1, rate_hz).ns - tick({}, k, rate_hz).ns));
     chain->corrupt(k, s);
-    if (before.ns != 0) worst_ns = std::max(worst_ns, std::abs((s.t - before - s.dt_s) * 1e9 + nominal_ns));
+    if (before.ns != 0) worst_ns = worse(worst_ns, std::abs((s.t - before - s.dt_s) * 1e9 + nominal_ns));
     before = s.t;
   }
   return {worst_ns, 1.0 + 0.01};

@@ -49,7 +49,8 @@ StressFigure small_circle(double speed_m_s) {
 }
 
 /// A cone of half angle a, one whole turn of it in two samples: about the body's own axis -(1 - cos a) of a turn, and
-/// the Earth's rate that is along it on average, cos a of its vertical part.
+/// the Earth's rate that is along it on average, cos a of its vertical part. To the quadrature's word, which itself may
+/// be no more than its tolerance, or 200 epsilons of the two turns that such a rate, 4 pi f at most, makes.
 StressFigure coning(double cone_deg, double cone_hz) {
   MotionConfig config;
   config.path = "coning";
@@ -60,8 +61,12 @@ StressFigure coning(double cone_deg, double cone_hz) {
   const auto first = increments(motion, 0.0, 0.5 * period_s), second = increments(motion, 0.5 * period_s, period_s);
   const double up = Wgs84::rate_rad_s * std::sin(config.lat_deg * kDegree);
   const double exact = -(1.0 - c) * 2.0 * kPi + c * up * period_s;
-  return {std::abs(first.sample.dtheta_U.z() + second.sample.dtheta_U.z() - exact),
-          first.within.dtheta_rad + second.within.dtheta_rad + 8.0 * kEpsilon * 2.0 * kPi};
+  Worst worst;
+  worst.look(first.sample.dtheta_U.z() + second.sample.dtheta_U.z() - exact,
+             first.within.dtheta_rad + second.within.dtheta_rad + 8.0 * kEpsilon * 2.0 * kPi);
+  for (const Reached& half : {first, second})
+    worst.look(half.within.dtheta_rad, std::max(1e-12, 200.0 * kEpsilon * 2.0 * kPi));
+  return worst.figure();
 }
 
 /// A shaker at 100 kHz and 10 000 g in samples of 5 ms, 500.5 periods each: A / w (cos(w t0) - cos(w t1)) along east,
@@ -85,7 +90,8 @@ StressFigure shaker() {
 }
 
 /// At rest: as much rate as the Earth has, as much force as gravity has there, at the angle between them. To the
-/// quadrature's word, and to ten roundings of the place for the direction.
+/// quadrature's word, which is its tolerance at most where nothing changes, and to ten roundings of the place for the
+/// direction.
 StressFigure rest(double lat_deg, double lon_deg, double height_m, double pitch_deg, double roll_deg) {
   MotionConfig config;
   config.lat_deg = lat_deg;
@@ -106,11 +112,14 @@ StressFigure rest(double lat_deg, double lon_deg, double height_m, double pitch_
   const double along = -earth_rate_E().dot(g_E) * length_s * length_s;
   worst.look(sample.dtheta_U.dot(sample.dv_U) - along,
              within.dtheta_rad * 0.1 + within.dv_m_s * 1e-6 + 2.0 * round * 1e-7);
+  worst.look(within.dtheta_rad, 1e-12);
+  worst.look(within.dv_m_s, 1e-12);
   return worst.figure();
 }
 
 /// A whole number of rounds later the same increments come out: to both quadratures' word, in which an epsilon of the
-/// time counts as it turns and accelerates the body.
+/// time counts as it turns and accelerates the body; with less than 1 rad/s and 12 m/s^2, and eight such epsilons, the
+/// word itself has its limit.
 StressFigure rounds_later(double later_s) {
   MotionConfig config;
   config.path = "figure_eight";
@@ -122,9 +131,15 @@ StressFigure rounds_later(double later_s) {
   for (const double t_s : {0.5, 7.25, 16.0, 40.125}) {
     const auto early = increments(motion, t_s, t_s + 0.0078125);
     const auto late = increments(motion, t_s + later_s, t_s + later_s + 0.0078125);
-    worst.look((late.sample.dtheta_U - early.sample.dtheta_U).cwiseAbs().maxCoeff(),
+    const double moment_s = 8.0 * kEpsilon * (t_s + later_s);
+    for (const Reached& one : {early, late}) {
+      worst.look(one.within.dtheta_rad, 1e-12 + moment_s * 1.0);
+      worst.look(one.within.dv_m_s, 1e-12 + moment_s * 12.0);
+    }
+    worst.look((late.sample.dtheta_U - early.sample.dtheta_U).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
                early.within.dtheta_rad + late.within.dtheta_rad);
-    worst.look((late.sample.dv_U - early.sample.dv_U).cwiseAbs().maxCoeff(), early.within.dv_m_s + late.within.dv_m_s);
+    worst.look((late.sample.dv_U - early.sample.dv_U).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+               early.within.dv_m_s + late.within.dv_m_s);
   }
   return worst.figure();
 }
@@ -141,7 +156,7 @@ std::vector<StressCase> increment_cases() {
   const StressCase cone = stress::mechanism(
       StressGroup::kStiff, "coning of a whole turn within two samples",
       "sums of rotation vectors instead of rates lose the cone's own turn, or find it twice",
-      "-(1 - cos a) of a turn about the body's axis and the Earth's part, to the quadrature's word", "rad");
+      "-(1 - cos a) of a turn about the body's axis and the Earth's part, to the quadrature's word", "of the bound");
   StressCase shake = stress::mechanism(
       StressGroup::kStiff, "500 periods of a vibration within a sample", "too few points see another, slow vibration",
       "A / w times the difference of cosines, to 1e-11 of the amplitude over the sample", "m/s");

@@ -56,7 +56,7 @@ StressFigure exact(double resonance_hz, double quality, double step_s) {
   const Complex from_v = critical ? angle * ea : (ea - eb) / (a - b);
 
   const double norm = static_cast<double>(angle) * (1.0 + 1.0 / quality);
-  const double doublings = std::max(0.0, std::ceil(std::log2(4.0 * norm)));
+  const double doublings = beyond(std::ceil(std::log2(4.0 * norm)), 0.0);
   const double roundings = kEpsilon * (17.0 * std::exp2(doublings) + 4.0 * norm);
   const double overlap = critical ? 1.0 + static_cast<double>(angle) : 1.0;
   const double left = std::max(1e-290, static_cast<double>(std::abs(ea)) * overlap * overlap);
@@ -72,7 +72,7 @@ StressFigure exact(double resonance_hz, double quality, double step_s) {
   const double w = 2.0 * kPi * resonance_hz;
   worst.look(step.gamma(0) * w - static_cast<double>(1.0L - from_x.real()),
              (10.0 + doublings) * kEpsilon + 2.0 * overlap * roundings / std::max(1.0, 0.5 * fade));
-  worst.look(miss.cwiseAbs().maxCoeff() / thermal,
+  worst.look(miss.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / thermal,
              (10.0 + doublings) * kEpsilon + 2.0 * roundings / std::max(1.0, fade));
   return worst.figure();
 }
@@ -84,11 +84,11 @@ long double rk4_factor(const Complex& z) {
 /// The longest step over w at which |R(lambda h)| <= 1 for both rates, by halving.
 double rk4_border_over_w(double quality) {
   const auto rates = rates_over_w(quality);
-  const long double fastest = std::max(std::abs(rates[0]), std::abs(rates[1]));
+  const long double fastest = worse(std::abs(rates[0]), std::abs(rates[1]));
   long double low = 1.0L / fastest, high = 4.0L / fastest;
   for (int i = 0; i < 80; ++i) {
     const long double y = 0.5L * (low + high);
-    (std::max(rk4_factor(rates[0] * y), rk4_factor(rates[1] * y)) <= 1.0L ? low : high) = y;
+    (worse(rk4_factor(rates[0] * y), rk4_factor(rates[1] * y)) <= 1.0L ? low : high) = y;
   }
   return static_cast<double>(low);
 }
@@ -115,7 +115,7 @@ StressFigure implicit_growth(DiscretizePlant* scheme) {
   for (const double hz : {10.0, 5e3, 1e6})
     for (const double quality : {0.1, 0.5, 10.0, 1e6})
       for (const double step_s : {1e-5, 1e-3, 0.1, 1.0})
-        growth = std::max(growth, spectral_radius(scheme(mechanics(hz, quality), step_s).phi) - 1.0);
+        growth = worse(growth, spectral_radius(scheme(mechanics(hz, quality), step_s).phi) - 1.0);
   return {growth, 20.0 * kEpsilon};
 }
 
@@ -149,7 +149,7 @@ StressFigure overload(double resonance_hz, double quality) {
   double largest = 0.0, last = 0.0;
   for (std::int64_t k = 0; k < 40; ++k) {
     last = element.advance(k, k < 20 ? 50.0 * kStandardGravity : 0.0) / step_s;
-    largest = std::max(largest, std::isfinite(last) ? std::abs(last) : stress::kInfinity);
+    largest = worse(largest, std::abs(last));
   }
   stress::Worst worst;
   worst.look(largest, (most + noise) * (1.0 + 10.0 * kEpsilon));

@@ -144,7 +144,7 @@ StressFigure gain() {
     c.full_overlap_m = overlap;
     const double least = std::max(overlap, 0.01);
     for (const double r : {0.0, 1e-300, 1e-3, 1.0, 50.0, 1e5, 1e30}) {
-      const double exact = 10.0 * 50.0 * 50.0 / std::pow(std::max(r, least), 2);
+      const double exact = 10.0 * 50.0 * 50.0 / std::pow(worse(r, least), 2);
       take_worst(out, std::abs(signal_gain(c, r) / exact - 1.0));
     }
   }

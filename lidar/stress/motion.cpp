@@ -117,7 +117,8 @@ std::unique_ptr<scene::Scene> room(const Eigen::Vector3d& middle) {
 
 double off_the_room(const Eigen::Vector3d& p) {
   const Eigen::Vector3d beyond = p.cwiseAbs() - Eigen::Vector3d(16.0, 12.0, 4.0);
-  return beyond.maxCoeff() > 0.0 ? beyond.cwiseMax(0.0).norm() : -beyond.maxCoeff();
+  return beyond.maxCoeff<Eigen::PropagateNaN>() > 0.0 ? beyond.cwiseMax(0.0).norm()
+                                                      : -beyond.maxCoeff<Eigen::PropagateNaN>();
 }
 
 /// Points of a turning sensor, each put where it was seen from, lie on the room's walls. Directions in single
@@ -144,7 +145,8 @@ StressFigure walls_of_a_room(const std::string& beams, double deg_s, double late
 }
 
 /// Every echo model and detector, from within a wall, on it, 1 mm above level ground, and over nothing: finite points
-/// within the limits. A figure counts others.
+/// within the limits. A figure counts others. And it sees: 2 m above the ground seven of 16 lasers meet it within 40 m,
+/// 2520 shots, of which a fifth are asked for.
 StressFigure everywhere_finite(const char* model, const char* detector) {
   scene::SceneParts parts;
   parts.name = "ground and wall";
@@ -178,6 +180,7 @@ StressFigure everywhere_finite(const char* model, const char* detector) {
               ? 0.0
               : 1.0;
     }
+    if (at == Eigen::Vector3d(0, 0, 2)) out.figure += got.scan.points.size() >= 504 ? 0.0 : 1e6;
     for (const LidarPointTruth& t : got.truth)
       out.figure += std::isfinite(t.range_m) && t.cos_incidence >= 0.0f && t.cos_incidence <= 1.0001f ? 0.0 : 1.0;
   }

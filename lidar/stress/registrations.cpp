@@ -76,8 +76,8 @@ bool keeps_promise(const RegistrationResult& r, bool guess_finite) {
   bool covariance = r.covariance.array().isNaN().all();
   if (r.covariance.allFinite()) {
     const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(r.covariance);
-    const double largest = eigen.eigenvalues().maxCoeff();
-    covariance = eigen.eigenvalues().minCoeff() > -1e-12 * largest &&
+    const double largest = eigen.eigenvalues().maxCoeff<Eigen::PropagateNaN>();
+    covariance = eigen.eigenvalues().minCoeff<Eigen::PropagateNaN>() > -1e-12 * largest &&
                  (r.covariance - r.covariance.transpose()).norm() <= 1e-9 * largest;
   }
   return pose && covariance && (r.status != RegistrationStatus::kConverged || r.covariance.allFinite());

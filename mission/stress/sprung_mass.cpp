@@ -31,7 +31,8 @@ Response step_response(long double zeta, long double angle) {
 }
 
 /// A step rounds what it carries, of size 1 + 2 zeta, by eight epsilons, and knows its angle w h to eight; errors live
-/// as long as the slower pole does. All far below the 1e-9 that is asked for.
+/// as long as the slower pole does. All far below the 1e-9 that is asked for. The shortest step is that of the largest
+/// imu.rate_hz.
 StressFigure step_of_the_road(double hz, double zeta, double step_s) {
   const double w = 2.0 * kPi * hz;
   const double slow = w * (zeta <= 1.0 ? zeta : zeta - std::sqrt(zeta * zeta - 1.0));
@@ -70,7 +71,7 @@ StressFigure rest() {
   double worst = 0.0;
   for (int k = 0; k < 1'000'000; ++k) {
     const SprungMass::State& s = mass.advance(60.123, 0.01);
-    worst = std::max({worst, std::abs(s.x - 60.123), std::abs(s.v), std::abs(s.a)});
+    for (const double error : {s.x - 60.123, s.v, s.a}) worst = worse(worst, std::abs(error));
   }
   return {worst, 0.0};
 }
@@ -125,7 +126,7 @@ std::vector<StressCase> sprung_mass_cases() {
   std::vector<StressCase> cases;
   for (const double hz : {0.3, 1.6, 5.0})
     for (const double zeta : {0.05, 0.6, 1.0, 2.0})
-      for (const double step_s : {0.001, 0.01, 0.1})
+      for (const double step_s : {0.0002, 0.001, 0.01, 0.1})
         cases.push_back(row(stiff,
                             "sprung_mass/" + stress::text(hz) + "_hz_damping_" + stress::text(zeta) + "_step_" +
                                 stress::text(step_s) + "_s",

@@ -5,6 +5,7 @@
 #include "canyon/core/stress/grid.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/boundaries.h"
+#include "canyon/mission/motion/sprung_mass.h"
 #include "canyon/mission/stress/open_ground.h"
 #include "canyon/mission/stress/subjects.h"
 
@@ -18,27 +19,50 @@ const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
 
 /// Amplitudes of the 24 waves of a road of class E together: each is the root of twice the variance of its band, whose
 /// ends have the same ratio from 0.05 to 1.4 cycles/m (ISO 8608: 4096e-6 m^3 at 0.1 cycles/m, falling with n^2).
+double amplitude_m(int i) {
+  const double low = 0.05 * std::pow(28.0, i / 24.0), high = 0.05 * std::pow(28.0, (i + 1) / 24.0);
+  return std::sqrt(2.0 * 4096e-6 * 0.01 * (1.0 / low - 1.0 / high));
+}
 double roughest_m() {
   double sum = 0.0;
-  for (int i = 0; i < 24; ++i) {
-    const double low = 0.05 * std::pow(28.0, i / 24.0), high = 0.05 * std::pow(28.0, (i + 1) / 24.0);
-    sum += std::sqrt(2.0 * 4096e-6 * 0.01 * (1.0 / low - 1.0 / high));
-  }
+  for (int i = 0; i < 24; ++i) sum += amplitude_m(i);
   return sum;
 }
+/// The root of the variance of all of them.
+double road_sigma_m() {
+  double sum = 0.0;
+  for (int i = 0; i < 24; ++i) sum += 0.5 * std::pow(amplitude_m(i), 2);
+  return std::sqrt(sum);
+}
 
-/// The largest gain from road to body of x'' = w^2 (u - x) + 2 zeta w (u' - x').
+/// The gain from road to body of x'' = w^2 (u - x) + 2 zeta w (u' - x'), at r times its own frequency, and the largest.
+double gain(double zeta, double r) {
+  const double spring = 1.0 - r * r, damper = 2.0 * zeta * r;
+  return std::sqrt((1.0 + damper * damper) / (spring * spring + damper * damper));
+}
 double largest_gain(double zeta) {
   double most = 1.0;
-  for (double r = 0.01; r < 10.0; r *= 1.001) {
-    const double spring = 1.0 - r * r, damper = 2.0 * zeta * r;
-    most = std::max(most, std::sqrt((1.0 + damper * damper) / (spring * spring + damper * damper)));
-  }
+  for (double r = 0.01; r < 10.0; r *= 1.001) most = worse(most, gain(zeta, r));
   return most;
 }
 
+/// A road of waves of 1 mm at the body's own frequency, in steps of 1 ms: after 20 s, when what rang at the start is
+/// e^(-zeta w 20 s) or less, the body swings by the gain times 1 mm. A road that stands for h
+/// is sinc(w h / 2) of the wave; that, and the largest sample of a swing, are (w h)^2 / 24 and / 8 of it.
+StressFigure resonance(double hz, double damping) {
+  const double w = 2.0 * kPi * hz, h = 1e-3, start_s = 20.0 / std::min(1.0, hz);
+  SprungMass mass(w, damping, 0.0);
+  double swing_m = 0.0;
+  for (int k = 0; k * h < start_s + 2.0 / hz; ++k) {
+    const SprungMass::State& s = mass.advance(1e-3 * std::sin(w * h * k), h);
+    if (k * h >= start_s) swing_m = worse(swing_m, std::abs(s.x));
+  }
+  return {std::abs(swing_m / (1e-3 * gain(damping, 1.0)) - 1.0), w * h * w * h + std::exp(-damping * w * start_s)};
+}
+
 /// Half a minute round a circle at 30 m/s on the roughest road: the body stays within what resonance can make of all
-/// waves at once (twice, as it also rings from the start), and every state passes the run's own gate.
+/// waves at once (twice, as it also rings from the start), and every state passes the run's own gate. And it moves: at
+/// least half of what the longest wave alone makes of it, met head-on or slower.
 StressFigure roughest_road(double hz, double damping) {
   VehicleConfig config;
   config.suspension_hz = hz;
@@ -49,11 +73,16 @@ StressFigure roughest_road(double hz, double damping) {
   const Boundaries boundaries(kStart);
   const double level_m = open_ground().ground(0.0, 0.0)->height_m;
   stress::Worst worst;
+  double lowest_m = stress::kInfinity, highest_m = -stress::kInfinity;
   for (int k = 0; k < 3000; ++k) {
     const KinematicState& s = vehicle.advance({30.0, 1.0 / 60.0});
+    lowest_m = std::min(lowest_m, s.X_WB.p.z());
+    highest_m = worse(highest_m, s.X_WB.p.z());
     worst.look(s.X_WB.p.z() - level_m, 2.0 * largest_gain(damping) * roughest_m());
     worst.look(boundaries.check(s).ok() && vehicle.on_terrain() ? 0.0 : stress::kInfinity, 1.0);
   }
+  const double longest_hz = 30.0 * 0.05 * std::pow(28.0, 1.0 / 24.0);
+  worst.look(0.5 * amplitude_m(0) * gain(damping, longest_hz / hz), 0.5 * (highest_m - lowest_m));
   return worst.figure();
 }
 
@@ -104,11 +133,14 @@ StressFigure far_roughness() {
   const RoadRoughness road("E", 5);
   stress::Worst worst;
   const double most_m = roughest_m(), steepest = 2.0 * kPi * 1.4 * most_m;
+  double highest_m = 0.0;
   for (double x = -1e5; x <= 1e5; x += 777.7) {
     const Eigen::Vector2d p(x, 1e5 - 0.3 * x), beside = p + Eigen::Vector2d(1e-3, 0.0);
     worst.look(road.height_m(p), most_m);
+    highest_m = worse(highest_m, std::abs(road.height_m(p)));
     worst.look(road.height_m(beside) - road.height_m(p), steepest * (1e-3 + 8.0 * kEpsilon * 2e5));
   }
+  worst.look(road_sigma_m(), highest_m);  // of 258 places; a road that is flat there has none
   worst.look(RoadRoughness("none", 5).height_m({1e5, -1e5}), 1e-300);
   return worst.figure();
 }
@@ -135,6 +167,13 @@ std::vector<StressCase> vehicle_cases() {
     for (const double damping : {0.05, 2.0})
       cases.push_back(row(rough, "vehicle/roughest_road_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
                           [=] { return roughest_road(hz, damping); }));
+  const StressCase swings = stress::mechanism(
+      StressGroup::kStiff, "a body at its own frequency", "a scheme that damps what it should let swing",
+      "the gain sqrt(1 + 4 zeta^2) / (2 zeta), to the road's step times w and what still rings", "");
+  for (const double hz : {0.3, 5.0})
+    for (const double damping : {0.05, 2.0})
+      cases.push_back(row(swings, "vehicle/resonance_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
+                          [=] { return resonance(hz, damping); }));
   cases.push_back(row(commands, "vehicle/commands_to_1e308", wild_commands));
   cases.push_back(row(broken, "vehicle/commands_not_finite", refused_commands));
   cases.push_back(row(far, "vehicle/roughness_100_km_off", far_roughness));

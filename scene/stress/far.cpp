@@ -4,6 +4,8 @@
 
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
+#include "canyon/scene/city/city.h"
+#include "canyon/scene/scene_cost.h"
 #include "canyon/scene/stress/made_scenes.h"
 #include "canyon/scene/stress/subjects.h"
 
@@ -166,10 +168,32 @@ StressFigure moving(double place_m, double yaw_rad) {
   return out;
 }
 
+/// 3000 m in cells of 0.5 m is 72 million triangles of ground alone, and is refused in those words; of 1000 m in cells
+/// of 20 m what was made is what was foretold, whose streets are counted to a tenth.
+StressFigure size_foretold() {
+  CityConfig city;
+  city.extent_m = 3000.0, city.terrain_cell_m = 0.5;
+  const SceneCost cost = predicted_cost(city);
+  const Status looked = check_cost(cost, kMaxTriangles, "scene.extent_m", "a smaller one");
+  StressFigure out{0.0, 1.0};
+  take_worst(out, beyond(72e6, cost.triangles));
+  if (looked.ok() || looked.error().str().find(cost_text(cost)) == std::string::npos) out.figure = 2.0;
+  city.extent_m = 1000.0, city.terrain_cell_m = 20.0;
+  const double made = static_cast<double>(make_city(city).mesh.triangles.size());
+  take_worst(out, std::abs(made / predicted_cost(city).triangles - 1.0) / 0.1);
+  return out;
+}
+
 }  // namespace
 
 std::vector<StressCase> far_cases() {
   StressRows rows;
+  rows.of({StressGroup::kGeometry, "a city larger than memory",
+           "made for 84 s before anything else is looked at, with nothing to foretell it (2026-11-22)",
+           "two triangles a cell and what stands in the streets by the area: refused, and a small one as foretold to a "
+           "tenth",
+           "of the bound"});
+  rows.add("far/city_of_3000_m_in_cells_of_half_a_metre", size_foretold);
   rows.of({StressGroup::kGeometry, "coordinates far from the origin",
            "single precision resolves 1 mm at 10 km and 1 m at 1e7 m: ranges in steps",
            "of a box of whole metres its own ranges, to half a unit, wherever it stands", ""});

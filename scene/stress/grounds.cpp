@@ -85,7 +85,7 @@ StressFigure city_terrain(double cell_m, double hill_m, double slope_percent) {
   terrain.add_to(parts);
   double steepest = 0.0;
   for (double x = -510.0; x < 511.0; x += 17.0)
-    for (double y = -510.0; y < 511.0; y += 17.0) steepest = std::max(steepest, terrain.normal(x, y).head<2>().norm());
+    for (double y = -510.0; y < 511.0; y += 17.0) steepest = worse(steepest, terrain.normal(x, y).head<2>().norm());
   const auto scene = made::scene_of(std::move(parts));
   const bool exact = cell_m > 1024.0 || std::fmod(1024.0, cell_m) == 0.0;
   StressFigure out{0.0, exact ? 16.0 * kEps * 512.0 : 3.1e-5 * 2.0 * std::max(steepest, 0.01) + 8e-6};

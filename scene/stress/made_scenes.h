@@ -68,7 +68,7 @@ inline BruteHit try_all(const Mesh& mesh, const Ray& ray) {
     const double u = s.dot(p) / det, v = d.dot(q) / det, range_m = e2.dot(q) / det;
     if (!(range_m > 0.0)) continue;
     // How far the crossing of its plane is from its border, by the smallest of the barycentric heights.
-    const double area2 = e1.cross(e2).norm(), longest = std::max({e1.norm(), e2.norm(), (t.c - t.b).norm()});
+    const double area2 = e1.cross(e2).norm(), longest = worse(worse(e1.norm(), e2.norm()), (t.c - t.b).norm());
     const double margin_m = std::min({u, v, 1.0 - u - v}) * area2 / longest;
     best.edge_m = std::min(best.edge_m, std::abs(margin_m));
     if (margin_m >= 0.0 && range_m < best.range_m)

@@ -125,7 +125,7 @@ StressFigure in_the_plane() {
         if (!hit.hit()) continue;
         const Eigen::Vector3d p = ray.origin + hit.range_m * ray.direction.cast<double>();
         const bool on_it = std::isfinite(hit.range_m) && hit.range_m >= 0.0f && hit.normal.allFinite() &&
-                           std::max(std::abs(p.y()), std::abs(p.z())) <= 4.0 + 1e-3;
+                           worse(std::abs(p.y()), std::abs(p.z())) <= 4.0 + 1e-3;
         out.figure += on_it ? 0.0 : 1.0;
       }
   return out;

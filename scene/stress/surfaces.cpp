@@ -82,7 +82,8 @@ StressFigure nearest_to_box(double x_m) {
   for (int k = 0; k < 4000; ++k) {
     const Eigen::Vector3d o(60.0 * std::sin(1.0 * k), 40.0 * std::sin(1.7 * k), 30.0 * std::sin(2.3 * k));
     const Eigen::Vector3d beyond = o.cwiseAbs() - half;
-    const double exact = beyond.maxCoeff() > 0.0 ? beyond.cwiseMax(0.0).norm() : -beyond.maxCoeff();
+    const double exact = beyond.maxCoeff<Eigen::PropagateNaN>() > 0.0 ? beyond.cwiseMax(0.0).norm()
+                                                                      : -beyond.maxCoeff<Eigen::PropagateNaN>();
     const NearestSurface found = SceneAt(*scene).nearest(middle + o, 1000.0);
     take_worst(out, std::abs(found.distance_m - exact));
     take_worst(out, std::abs((found.point_W - middle - o).norm() - exact));
@@ -95,7 +96,7 @@ StressFigure cut_up(const std::vector<std::vector<Eigen::Vector2d>>& rings, doub
   std::vector<Eigen::Vector2d> all;
   double reach = 0.0;
   for (const auto& ring : rings) all.insert(all.end(), ring.begin(), ring.end());
-  for (const auto& p : all) reach = std::max(reach, (p - all.front()).norm());
+  for (const auto& p : all) reach = worse(reach, (p - all.front()).norm());
   double sum = 0.0, least = 0.0;
   for (const auto& t : triangulate(rings)) {
     const Eigen::Vector2d u = all[t[1]] - all[t[0]], v = all[t[2]] - all[t[0]];
@@ -172,7 +173,7 @@ StressFigure tower(int sides, double radius_m) {
     for (const std::uint32_t i : f.triangles) {
       const Triangle t = Triangle::of(scene->mesh(), i);
       for (const Eigen::Vector3d& p : {t.a, t.b, t.c})
-        farthest = std::max(farthest, std::abs(f.normal_W.dot(p) - f.offset_m));
+        farthest = worse(farthest, std::abs(f.normal_W.dot(p) - f.offset_m));
     }
     take_worst(out, farthest / 0.01);
     take_worst(out, farthest / (f.flatness_m + 1e-9));

@@ -13,7 +13,7 @@ namespace {
 
 CaseVerdict judge(const CaseResult& result) {
   const bool holds = result.thrown.empty() && std::isfinite(result.found.figure) && std::isfinite(result.found.bound) &&
-                     result.found.figure <= result.found.bound;
+                     result.found.figure <= result.found.bound && bound_is_tight(result);
   if (holds) return CaseVerdict::kHolds;
   return result.stress_case.open.empty() ? CaseVerdict::kFails : CaseVerdict::kOpen;
 }

@@ -8,7 +8,7 @@
 namespace canyon::study {
 
 enum class CaseVerdict {
-  kHolds,
+  kHolds,  ///< figure and bound are numbers, it is not over the bound, and the bound is tight
   kFails,
   kOpen  ///< does not hold, and an issue says that it is to be mended
 };

@@ -43,6 +43,7 @@ std::size_t count(const std::vector<CaseResult>& results, CaseVerdict verdict) {
 std::string explanation(const CaseResult& result) {
   std::string text = "  " + result.stress_case.name + " " + name(result.verdict) + ": ";
   if (!result.thrown.empty()) text += "it threw: " + result.thrown + ". ";
+  if (!bound_is_tight(result)) text += "a bound over 1000 times its figure says nothing of it. ";
   text += "expected: " + result.stress_case.expected + ".";
   if (!result.stress_case.open.empty()) text += " To be mended: " + result.stress_case.open + ".";
   return text + "\n";

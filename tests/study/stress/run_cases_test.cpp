@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/messages.h"
+#include "canyon/core/stress/grid.h"
 #include "canyon/study/stress/cases.h"
 #include "canyon/study/stress/stress_output.h"
 
@@ -67,8 +68,32 @@ TEST(RunCase, ABoundAThousandTimesTooWideNeedsAReason) {
   EXPECT_TRUE(bound_is_tight(run_case(one("a/b", 0.0, 1000.0))));
   StressCase wide = one("a/b", 1.0, 1001.0);
   EXPECT_FALSE(bound_is_tight(run_case(wide)));
+  // 2026-11-22: this was looked at in the tests alone, and the verb said that it holds.
+  EXPECT_EQ(run_case(wide).verdict, CaseVerdict::kFails);
+  EXPECT_THAT(stress_table({run_case(wide)}), HasSubstr("a bound over 1000 times its figure says nothing of it. "));
   wide.loose = "the worst of all CPUs";
   EXPECT_TRUE(bound_is_tight(run_case(wide)));
+}
+
+// 2026-11-22: an infinite bound, or one below 0, let every error pass.
+TEST(Worst, ABoundThatIsNoneIsAsBadAsCanBe) {
+  for (const double bound : {0.0, -1.0, stress::kInfinity, kNaN}) {
+    stress::Worst worst;
+    worst.look(1e-9, bound);
+    EXPECT_EQ(worst.figure().figure, stress::kInfinity) << bound;
+  }
+  stress::Worst worst;
+  worst.look(0.0, kNaN);
+  worst.look(kNaN, 1.0);
+  worst.look(1.0, 2.0);
+  EXPECT_EQ(worst.figure().figure, stress::kInfinity);
+}
+
+TEST(NotRefused, IsWhatIsRefusedInOtherWords) {
+  const auto refuse = [] { throw ProgramError("covariance of a fix"); };
+  EXPECT_EQ(stress::not_refused(refuse, "covariance"), 0);
+  EXPECT_EQ(stress::not_refused(refuse, "interval"), 1);
+  EXPECT_EQ(stress::not_refused([] {}), 1);
 }
 
 TEST(ChooseCases, ByNameBySubjectByGroupAndByLength) {
@@ -93,6 +118,13 @@ TEST(ChooseCases, WhatThereIsNotIsNamedWithTheNearest) {
   EXPECT_EQ(error({.names = {}, .group = "stif", .long_form = false}),
             "--group: unknown name \"stif\", expected one of \"stiff\", \"geometry\", \"data\", \"long\"; nearest is "
             "\"stiff\"");
+}
+
+// 2026-11-22: no case at all was exit status 0.
+TEST(ChooseCases, NamesWithNothingOfTheGroupAreTold) {
+  const std::vector<StressCase> all{one("gauss_markov/short", 0, 0)};
+  EXPECT_EQ(choose_cases(all, {.names = {"gauss_markov"}, .group = "geometry", .long_form = false}).error().str(),
+            "--group: none of gauss_markov is of group \"geometry\", expected one of \"stiff\"");
 }
 
 TEST(StressList, IsAMarkdownTableOfMechanisms) {

@@ -55,7 +55,7 @@ TEST(SweptKeys, OfAMissionAreNearlyAll) {
   mission::MissionConfig config;
   const auto all = swept_keys([&config](FieldVisitor& f) { visit(f, config); });
   const auto numeric = std::count_if(all.begin(), all.end(), [](const SweptKey& key) { return key.numeric; });
-  EXPECT_GE(numeric, 140);
+  EXPECT_GE(numeric, 157);
 }
 
 TEST(SweepSettings, PairsAreOfTwoKeysAndTheSameForASeed) {
