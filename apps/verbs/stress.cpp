@@ -22,14 +22,34 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> what;
   study::CaseChoice cases;
-  std::string fidelity = "high";
-  std::int64_t seed = 1, pairs = 500;
+  std::string fidelity;  // empty: not given
+  std::optional<std::int64_t> seed, pairs;
   std::optional<double> budget_s;
   bool list = false;
 };
 
 bool is_mission(const std::string& name) {
   return name.ends_with(".toml") || name == mission::kDefaultMission;
+}
+
+/// An option of the other form is a mistake, not to be passed over.
+Status refuse(bool given, const char* option, bool mission) {
+  if (!given) return Ok{};
+  return Error{.file = option,
+               .what = mission ? "is for cases, not for a mission" : "is for a mission, not for cases",
+               .expected = mission ? "cases, or the mission without it" : "a mission, or cases without it"};
+}
+
+Status check_form(const Options& o, bool mission) {
+  if (mission) {
+    CANYON_TRY_STATUS(refuse(!o.cases.group.empty(), "--group", mission));
+    CANYON_TRY_STATUS(refuse(o.cases.long_form, "--long", mission));
+    return refuse(o.list, "--list", mission);
+  }
+  CANYON_TRY_STATUS(refuse(!o.fidelity.empty(), "--fidelity", mission));
+  CANYON_TRY_STATUS(refuse(o.pairs.has_value(), "--pairs", mission));
+  CANYON_TRY_STATUS(refuse(o.seed.has_value(), "--seed", mission));
+  return refuse(o.budget_s.has_value(), "--budget-s", mission);
 }
 
 Result<int> run_cases(Options options) {
@@ -53,15 +73,16 @@ Result<int> sweep(const Options& options) {
   const std::string& name = options.what.front();
   const std::string path = name == mission::kDefaultMission ? "" : std::filesystem::absolute(name).string();
   CANYON_TRY(const auto file, mission::MissionFile::load(path));
-  CANYON_TRY_STATUS(file.check_fidelities({options.fidelity}, "--fidelity"));
-  CANYON_TRY(auto config, file.resolve(options.fidelity));
+  const std::string fidelity = options.fidelity.empty() ? "high" : options.fidelity;
+  CANYON_TRY_STATUS(file.check_fidelities({fidelity}, "--fidelity"));
+  CANYON_TRY(auto config, file.resolve(fidelity));
   const auto keys = study::swept_keys([&config](FieldVisitor& f) { visit(f, config); });
   CANYON_TRY(const study::Sweep found,
              study::sweep_mission(keys, {.setup = {.program = std::filesystem::read_symlink("/proc/self/exe").string(),
                                                    .mission = path,
-                                                   .fidelity = options.fidelity},
-                                         .seed = static_cast<std::uint64_t>(options.seed),
-                                         .pairs = options.pairs,
+                                                   .fidelity = fidelity},
+                                         .seed = static_cast<std::uint64_t>(options.seed.value_or(1)),
+                                         .pairs = options.pairs.value_or(500),
                                          .budget_s = options.budget_s,
                                          .show_progress = !options.common.json}));
   if (options.common.json) {
@@ -78,9 +99,10 @@ Result<int> run(const Options& options) {
   set_threads(options.common.threads);
   bool missions = false;
   for (const std::string& name : options.what) missions = missions || is_mission(name);
-  if (!missions) return run_cases(options);
-  if (options.what.size() > 1)
+  if (missions && options.what.size() > 1)
     return Error{.file = "command line", .what = "a mission and more", .expected = "one mission, or cases"};
+  CANYON_TRY_STATUS(check_form(options, missions));
+  if (!missions) return run_cases(options);
   return sweep(options);
 }
 
@@ -95,12 +117,12 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--group", options->cases.group, with_rows("cases of one group", study::stress_groups()));
   arguments.flag("--long", options->cases.long_form, "also the cases that take long");
   arguments.flag("--list", options->list, "say what the cases are, as docs/stress.md does, and run none");
-  arguments.option("--fidelity", options->fidelity, "that a mission is driven at").default_shown();
-  arguments.option("--pairs", options->pairs, "of keys at once, drawn with the seed, after every key by itself")
-      .default_shown()
+  arguments.option("--fidelity", options->fidelity, "that a mission is driven at; else high");
+  arguments
+      .option("--pairs", options->pairs,
+              "of a mission's keys at once, drawn with the seed, after each by itself; else 500")
       .within(std::int64_t{0}, std::int64_t{1'000'000});
-  arguments.option("--seed", options->seed, "of the pairs, and of the order under --budget-s")
-      .default_shown()
+  arguments.option("--seed", options->seed, "of the pairs, and of the order under --budget-s; else 1")
       .within(std::int64_t{0}, kLargestSeed);
   arguments.option("--budget-s", options->budget_s, "seconds that a mission's trials may take, in random order")
       .within(1e-3, 1e9);

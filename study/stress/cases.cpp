@@ -43,6 +43,16 @@ bool named(const std::vector<std::string>& names, const StressCase& one) {
                      [&](const std::string& name) { return name == one.name || name == subject(one.name); });
 }
 
+/// Of cases that are none of that group: those that they have.
+Error none_of_group(const CaseChoice& choice, const std::vector<StressCase>& all) {
+  std::set<std::string> has;
+  for (const StressCase& one : all)
+    if (named(choice.names, one)) has.insert(row_of(stress_groups(), one.group).name);
+  return Error{.file = "--group",
+               .what = "none of " + plain_list(choice.names) + " is of group \"" + choice.group + "\"",
+               .expected = "one of " + quoted_list({has.begin(), has.end()})};
+}
+
 }  // namespace
 
 ModelTable<StressGroup> stress_groups() {
@@ -65,10 +75,12 @@ Result<std::vector<StressCase>> choose_cases(std::vector<StressCase> all, const 
     if (std::none_of(all.begin(), all.end(), [&](const StressCase& one) { return named({name}, one); }))
       return unknown_case(name, subjects, all);
   if (!choice.group.empty()) CANYON_TRY_STATUS(choose(stress_groups(), choice.group, "--group"));
+  const std::vector<StressCase> before = all;
   std::erase_if(all, [&](const StressCase& one) {
     if (!choice.group.empty() && row_of(stress_groups(), one.group).name != choice.group) return true;
     return choice.names.empty() ? one.long_running && !choice.long_form : !named(choice.names, one);
   });
+  if (all.empty() && !choice.names.empty()) return none_of_group(choice, before);
   return all;
 }
 

@@ -21,7 +21,8 @@ struct CaseChoice {
   bool long_form = false;          ///< also those that take long; those that are named run in any case
 };
 
-/// Those, in their order. An Error for a name or a group that there is not, with the nearest.
+/// Those, in their order. An Error for a name or a group that there is not, with the nearest, and for names that have
+/// nothing of the group.
 Result<std::vector<StressCase>> choose_cases(std::vector<StressCase> all, const CaseChoice& choice);
 
 }  // namespace canyon::study
