@@ -35,6 +35,7 @@ constexpr MayBeAbsent kRows[] = {
     {"keyframes", "rms_m", "iterations", "0", "nothing was matched"},
     {"fixes", kPosition, "status", "none", "no fix"},
     {"fixes", kVelocity, "", "", "the receiver gives no velocity"},
+    {"manifest.json", "commit", "", "", "the program was built of a source without its history"},
     {"summary.json", "building", "", "", "a waypoint without a building"},
     {"summary.json", "two_by_two", "", "", "not four runs"},
     {"summary.json", "failure", "outcome", "success", "none"},
