@@ -2,13 +2,11 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 
 namespace canyon {
 namespace {
-
-using stress::row;
 
 /// Q(n, h) = sum over j < n of e^-h h^j / j!, for 2 n degrees of freedom, in 64 bits of mantissa: its logarithms of up
 /// to 10^7, of which it is the difference, leave three roundings of them.
@@ -74,27 +72,26 @@ StressFigure ends() {
 
 std::vector<StressCase> chi_square_cases() {
   const auto group = StressGroup::kData;
-  StressCase logarithms = stress::mechanism(
+  StressMechanism logarithms{
       group, "cancellation of large logarithms",
       "a ln x - x - ln Gamma(a) is a small difference of numbers of 10^7 (found by this case, 2026-11-22: 2e-9)",
       "relative error below 1e-12, as chi_square.h says, by the finite sum in 64 bits of mantissa and what that leaves",
-      "");
-  const StressCase far = stress::mechanism(group, "tails of 1e-300",
-                                           "1 - P is 0 from 1e-16 on, so a threshold of a rare event is infinite",
-                                           "the tail at its threshold is the probability again to 3e-12: twice the "
-                                           "tail's error, and an ulp of the threshold",
-                                           "");
-  const StressCase edge = stress::mechanism(group, "a function's argument at its ends",
-                                            "0 ln 0, infinity minus infinity, or a loop that counts to no number",
-                                            "0, infinity and no number give 1, 0 and a refusal: exact", "answers");
+      ""};
+  const StressMechanism far{group, "tails of 1e-300",
+                            "1 - P is 0 from 1e-16 on, so a threshold of a rare event is infinite",
+                            "the tail at its threshold is the probability again to 3e-12: twice the "
+                            "tail's error, and an ulp of the threshold",
+                            ""};
+  const StressMechanism edge{group, "a function's argument at its ends",
+                             "0 ln 0, infinity minus infinity, or a loop that counts to no number",
+                             "0, infinity and no number give 1, 0 and a refusal: exact", "answers"};
   logarithms.loose = "the bound is what the header promises at any degrees of freedom";
-  std::vector<StressCase> cases;
+  StressRows rows;
   for (const double dof : {2.0, 20.0, 2e3, 2e5, 2e6})
-    cases.push_back(
-        row(logarithms, "chi_square/tail_of_" + stress::text(dof) + "_degrees", [dof] { return tail(dof); }));
-  cases.push_back(row(far, "chi_square/thresholds_to_1e-300", thresholds));
-  cases.push_back(row(edge, "chi_square/ends", ends));
-  return cases;
+    rows.of(logarithms).add("chi_square/tail_of_" + stress::text(dof) + "_degrees", [dof] { return tail(dof); });
+  rows.of(far).add("chi_square/thresholds_to_1e-300", thresholds);
+  rows.of(edge).add("chi_square/ends", ends);
+  return rows.take();
 }
 
 }  // namespace canyon

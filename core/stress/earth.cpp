@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "canyon/core/earth/local_frame.h"
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 
 namespace canyon {
@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 using stress::Worst;
 
 const double kHeights_m[] = {-400.0, 0.0, 100.0, 20000.0};
@@ -101,35 +100,37 @@ StressFigure everywhere() {
 
 std::vector<StressCase> earth_cases() {
   const auto group = StressGroup::kGeometry;
-  const StressCase pole =
-      stress::mechanism(group, "the poles and the antimeridian of geodetic coordinates",
-                        "longitude is 0 / 0 at a pole, the height p / cos(latitude) - N loses all digits there, 180 "
-                        "and -180 degrees differ",
-                        "places at -400 m to 20 km come back to 8 epsilons of Earth's radius (1e-8 m)", "of the bound");
-  const StressCase frame = stress::mechanism(group, "a local frame where directions end",
-                                             "east and north are undefined at a pole, and flip with the longitude",
-                                             "places 100 km off come back over geodetic coordinates to 16 epsilons of "
-                                             "Earth's radius; the axes stay orthonormal",
-                                             "of the bound");
-  const StressCase printed = stress::mechanism(
+  const StressMechanism pole{
+      group, "the poles and the antimeridian of geodetic coordinates",
+      "longitude is 0 / 0 at a pole, the height p / cos(latitude) - N loses all digits there, 180 "
+      "and -180 degrees differ",
+      "places at -400 m to 20 km come back to 8 epsilons of Earth's radius (1e-8 m)", "of the bound"};
+  const StressMechanism frame{group, "a local frame where directions end",
+                              "east and north are undefined at a pole, and flip with the longitude",
+                              "places 100 km off come back over geodetic coordinates to 16 epsilons of "
+                              "Earth's radius; the axes stay orthonormal",
+                              "of the bound"};
+  const StressMechanism printed{
       group, "gravity at the ends of its formula", "a series in latitude that is wrong by 1e-6 m/s^2 at its ends",
       "what the standard prints at poles and equator, to a unit of its last decimal, where it is cut off",
-      "of the bound");
-  const StressCase difference = stress::mechanism(
+      "of the bound"};
+  const StressMechanism difference{
       group, "differences of a nearly constant vector",
       "a step that is too short leaves the rounding of g, one too long the third derivative",
-      "the gradient has the trace 2 w^2 and is symmetric, to truncation and ten roundings of g", "of the bound");
-  const StressCase centre = stress::mechanism(group, "places where the formula means nothing",
-                                              "1 / r at Earth's centre, or a negative root within the focal disc",
-                                              "finite from the centre to a hundred radii", "places");
-  return {row(pole, "earth/place_and_back_at_the_poles", [] { return there_and_back(kPolar_deg); }),
-          row(pole, "earth/place_and_back_at_the_antimeridian", [] { return there_and_back(kOrdinary_deg); }),
-          row(frame, "earth/local_frame_at_the_north_pole", [] { return local_frames(90.0, 17.0); }),
-          row(frame, "earth/local_frame_at_the_south_pole", [] { return local_frames(-90.0, 180.0); }),
-          row(frame, "earth/local_frame_at_the_antimeridian", [] { return local_frames(-16.0, 180.0); }),
-          row(printed, "earth/gravity_at_poles_and_equator", printed_gravity),
-          row(difference, "earth/gravity_gradient", gravity_gradient),
-          row(centre, "earth/from_the_centre_to_a_hundred_radii", everywhere)};
+      "the gradient has the trace 2 w^2 and is symmetric, to truncation and ten roundings of g", "of the bound"};
+  const StressMechanism centre{group, "places where the formula means nothing",
+                               "1 / r at Earth's centre, or a negative root within the focal disc",
+                               "finite from the centre to a hundred radii", "places"};
+  StressRows rows;
+  rows.of(pole).add("earth/place_and_back_at_the_poles", [] { return there_and_back(kPolar_deg); });
+  rows.of(pole).add("earth/place_and_back_at_the_antimeridian", [] { return there_and_back(kOrdinary_deg); });
+  rows.of(frame).add("earth/local_frame_at_the_north_pole", [] { return local_frames(90.0, 17.0); });
+  rows.of(frame).add("earth/local_frame_at_the_south_pole", [] { return local_frames(-90.0, 180.0); });
+  rows.of(frame).add("earth/local_frame_at_the_antimeridian", [] { return local_frames(-16.0, 180.0); });
+  rows.of(printed).add("earth/gravity_at_poles_and_equator", printed_gravity);
+  rows.of(difference).add("earth/gravity_gradient", gravity_gradient);
+  rows.of(centre).add("earth/from_the_centre_to_a_hundred_radii", everywhere);
+  return rows.take();
 }
 
 }  // namespace canyon

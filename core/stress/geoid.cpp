@@ -2,14 +2,13 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 
 namespace canyon {
 namespace {
 
-using stress::row;
 using stress::Worst;
 
 /// A hundred terms of at most 110 m, whose weights' magnitudes sum to below 9 (two polynomials of ten points each,
@@ -63,20 +62,23 @@ StressFigure beyond_the_table() {
 
 std::vector<StressCase> geoid_cases() {
   const auto group = StressGroup::kGeometry;
-  const StressCase border =
-      stress::mechanism(group, "the border of a table",
-                        "the polynomial's points beyond a pole or the last column are read beside the table",
-                        "one height at a pole from all sides, and no jump over Greenwich, the antimeridian, a row or a "
-                        "column: rounding of "
-                        "a hundred terms, and slope",
-                        "of the bound");
-  const StressCase beyond = stress::mechanism(group, "an argument beyond the table",
-                                              "a latitude an ulp beyond the pole, or none at all, indexes memory",
-                                              "each of them is refused", "let through");
-  StressCase pole = row(border, "geoid/one_height_at_a_pole", one_height_at_a_pole);
-  pole.loose = "on a row of the table all weights but ten are zero, so that little is summed";
-  return {pole, row(border, "geoid/across_its_borders", across_borders),
-          row(beyond, "geoid/beyond_its_table", beyond_the_table)};
+  const StressMechanism border{
+      group, "the border of a table",
+      "the polynomial's points beyond a pole or the last column are read beside the table",
+      "one height at a pole from all sides, and no jump over Greenwich, the antimeridian, a row or a "
+      "column: rounding of "
+      "a hundred terms, and slope",
+      "of the bound"};
+  const StressMechanism beyond{group, "an argument beyond the table",
+                               "a latitude an ulp beyond the pole, or none at all, indexes memory",
+                               "each of them is refused", "let through"};
+  StressRows rows;
+  rows.of(border)
+      .add("geoid/one_height_at_a_pole", one_height_at_a_pole)
+      .loose("on a row of the table all weights but ten are zero, so that little is summed");
+  rows.of(border).add("geoid/across_its_borders", across_borders);
+  rows.of(beyond).add("geoid/beyond_its_table", beyond_the_table);
+  return rows.take();
 }
 
 }  // namespace canyon

@@ -5,14 +5,12 @@
 
 #include "canyon/core/config/config.h"
 #include "canyon/core/files/line_reader.h"
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 
 namespace canyon {
 
 namespace {
-
-using stress::row;
 
 struct OneNumber {
   double x = 1.0;
@@ -72,13 +70,15 @@ StressFigure text_columns() {
 }  // namespace
 
 std::vector<StressCase> number_cases() {
-  const StressCase text = stress::mechanism(
+  const StressMechanism text{
       StressGroup::kData, "text that reads as no number",
       "\"nan\" and \"1e999\" are numbers to the standard library, and no comparison with a range refuses the first",
-      "each is refused, and what a double holds is read to the bit: exact", "lines");
-  return {row(text, "number/not_finite_in_a_mission", refused_numbers),
-          row(text, "number/largest_and_smallest_in_a_mission", read_numbers),
-          row(text, "number/not_finite_in_a_table", text_columns)};
+      "each is refused, and what a double holds is read to the bit: exact", "lines"};
+  StressRows rows;
+  rows.of(text).add("number/not_finite_in_a_mission", refused_numbers);
+  rows.of(text).add("number/largest_and_smallest_in_a_mission", read_numbers);
+  rows.of(text).add("number/not_finite_in_a_table", text_columns);
+  return rows.take();
 }
 
 }  // namespace canyon

@@ -4,13 +4,11 @@
 #include <vector>
 
 #include "canyon/core/random/random_math.h"
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 
 namespace canyon {
 namespace {
-
-using stress::row;
 
 /// A batch of draws against the draws one by one, at the ends of the entities and draw numbers too.
 StressFigure batch_from(std::uint64_t first) {
@@ -73,23 +71,25 @@ StressFigure end_words() {
 }  // namespace
 
 std::vector<StressCase> random_cases() {
-  const StressCase count = stress::mechanism(
+  const StressMechanism count{
       StressGroup::kData, "the random counter's ends",
       "the batch adds to the low word without a carry, or goes on past the last index where one by one it starts anew "
       "(found by this case, 2026-11-22)",
-      "a batch is to the bit what its draws are one by one, at any index, entity and draw number: exact", "draws");
-  const StressCase ends = stress::mechanism(
+      "a batch is to the bit what its draws are one by one, at any index, entity and draw number: exact", "draws"};
+  const StressMechanism ends{
       StressGroup::kData, "the ends of the uniform interval",
       "log(0), 1 itself as a uniform number, or a sine that has lost its sign at a border of quarters",
       "the errors that random_math.h states: 1e-15 of the logarithm, 3e-16 of sine and cosine, by 64 bits of mantissa",
-      "");
-  return {row(count, "random/batch_from_index_0", [] { return batch_from(0); }),
-          row(count, "random/batch_over_32_bits_of_blocks", [] { return batch_from((std::uint64_t{1} << 33) - 70); }),
-          row(count, "random/batch_over_53_bits", [] { return batch_from((std::uint64_t{1} << 53) - 71); }),
-          row(count, "random/batch_over_the_last_index", [] { return batch_from(0 - std::uint64_t{75}); }),
-          row(ends, "random/logarithm_to_its_ends", logarithm),
-          row(ends, "random/sine_and_cosine_of_turns", turns),
-          row(ends, "random/words_of_zeros_and_ones", end_words)};
+      ""};
+  StressRows rows;
+  rows.of(count).add("random/batch_from_index_0", [] { return batch_from(0); });
+  rows.of(count).add("random/batch_over_32_bits_of_blocks", [] { return batch_from((std::uint64_t{1} << 33) - 70); });
+  rows.of(count).add("random/batch_over_53_bits", [] { return batch_from((std::uint64_t{1} << 53) - 71); });
+  rows.of(count).add("random/batch_over_the_last_index", [] { return batch_from(0 - std::uint64_t{75}); });
+  rows.of(ends).add("random/logarithm_to_its_ends", logarithm);
+  rows.of(ends).add("random/sine_and_cosine_of_turns", turns);
+  rows.of(ends).add("random/words_of_zeros_and_ones", end_words);
+  return rows.take();
 }
 
 }  // namespace canyon

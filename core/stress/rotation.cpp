@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 
 namespace canyon {
@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 using stress::Worst;
 
 std::vector<Vector3d> axes() {
@@ -117,56 +116,51 @@ StressFigure million_parts() {
 
 std::vector<StressCase> rotation_cases() {
   const auto group = StressGroup::kGeometry;
-  const StressCase branch = stress::mechanism(
+  const StressMechanism branch{
       group, "branch points of the rotation's logarithm",
       "0 / 0 at no turn; at half a turn acos loses eight digits and the sign of the axis is lost",
       "exp then log is the identity to 10 epsilons of the angle, from 1e-300 rad to half a turn: relative roundings",
-      "of the bound");
-  const StressCase join = stress::mechanism(
+      "of the bound"};
+  const StressMechanism join{
       group, "a series that meets a closed form",
       "a threshold that is too high leaves the series' next term, one too low the closed form's cancellation",
       "the right Jacobian agrees with coefficients in 64 bits of mantissa to 10 epsilons, at 90 angles on both sides",
-      "of the bound");
-  const StressCase gimbal = stress::mechanism(
+      "of the bound"};
+  const StressMechanism gimbal{
       group, "gimbal lock",
       "near the vertical yaw and roll each come from two tiny elements, with errors of eps / cos(pitch) that do not "
       "cancel",
-      "the angles give the attitude again to 20 epsilons, however near the vertical it looks", "of the bound");
-  const StressCase wrap = stress::mechanism(
+      "the angles give the attitude again to 20 epsilons, however near the vertical it looks", "of the bound"};
+  const StressMechanism wrap{
       group, "an angle at its wrap", "-pi and pi both come out, or a tiny negative heading becomes 2 pi itself",
-      "within (-pi, pi] and [0, 2 pi), the same direction to an epsilon of the angle", "of the bound");
-  const StressCase far =
-      stress::mechanism(group, "a half turn far from the origin",
-                        "the inverse of the translation's Jacobian is 0 / 0 or loses digits there",
-                        "exp then log of a pose 10^7 m away is the identity to 30 epsilons of the way", "of the bound");
-  const StressCase growth =
-      stress::mechanism(StressGroup::kLong, "rounding of an attitude over many steps",
-                        "the quaternion's norm drifts and shears the rotation",
-                        "a full turn in a million parts closes to 2 epsilons a part, all the same way at worst", "rad");
-  return {row(branch, "rotation/exp_log_of_tiny_angles",
-              [] {
-                return there_and_back({1e-300, 1e-160, 1e-100, 1e-30, 1e-16, 1e-8});
-              }),
-          row(branch, "rotation/exp_log_around_the_series_end",
-              [] {
-                return there_and_back({0.99e-4, 1e-4, 1.01e-4, 1e-3, 0.1, 1.0, 2.0});
-              }),
-          row(branch, "rotation/exp_log_at_half_a_turn",
-              [] {
-                return there_and_back({kPi - 1e-3, kPi - 1e-8, kPi - 1e-12, kPi - 1e-15, kPi});
-              }),
-          row(join, "rotation/right_jacobian_1e-12_to_6_rad", right_jacobian),
-          row(gimbal, "rotation/angles_at_pitch_90_deg",
-              [] {
-                return near_the_vertical({0.0, 1e-16});
-              }),
-          row(gimbal, "rotation/angles_near_pitch_90_deg",
-              [] {
-                return near_the_vertical({1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4});
-              }),
-          row(wrap, "rotation/angles_at_their_wrap", wrapped_angles),
-          row(far, "rotation/pose_of_half_a_turn_at_1e7_m", far_poses),
-          row(growth, "rotation/full_turn_in_1e6_parts", million_parts)};
+      "within (-pi, pi] and [0, 2 pi), the same direction to an epsilon of the angle", "of the bound"};
+  const StressMechanism far{group, "a half turn far from the origin",
+                            "the inverse of the translation's Jacobian is 0 / 0 or loses digits there",
+                            "exp then log of a pose 10^7 m away is the identity to 30 epsilons of the way",
+                            "of the bound"};
+  const StressMechanism growth{StressGroup::kLong, "rounding of an attitude over many steps",
+                               "the quaternion's norm drifts and shears the rotation",
+                               "a full turn in a million parts closes to 2 epsilons a part, all the same way at worst",
+                               "rad"};
+  StressRows rows;
+  rows.of(branch).add("rotation/exp_log_of_tiny_angles", [] {
+    return there_and_back({1e-300, 1e-160, 1e-100, 1e-30, 1e-16, 1e-8});
+  });
+  rows.of(branch).add("rotation/exp_log_around_the_series_end", [] {
+    return there_and_back({0.99e-4, 1e-4, 1.01e-4, 1e-3, 0.1, 1.0, 2.0});
+  });
+  rows.of(branch).add("rotation/exp_log_at_half_a_turn", [] {
+    return there_and_back({kPi - 1e-3, kPi - 1e-8, kPi - 1e-12, kPi - 1e-15, kPi});
+  });
+  rows.of(join).add("rotation/right_jacobian_1e-12_to_6_rad", right_jacobian);
+  rows.of(gimbal).add("rotation/angles_at_pitch_90_deg", [] { return near_the_vertical({0.0, 1e-16}); });
+  rows.of(gimbal).add("rotation/angles_near_pitch_90_deg", [] {
+    return near_the_vertical({1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4});
+  });
+  rows.of(wrap).add("rotation/angles_at_their_wrap", wrapped_angles);
+  rows.of(far).add("rotation/pose_of_half_a_turn_at_1e7_m", far_poses);
+  rows.of(growth).add("rotation/full_turn_in_1e6_parts", million_parts);
+  return rows.take();
 }
 
 }  // namespace canyon

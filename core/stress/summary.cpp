@@ -4,13 +4,11 @@
 
 #include "canyon/core/math/median.h"
 #include "canyon/core/math/singular_values.h"
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 
 namespace canyon {
 namespace {
-
-using stress::row;
 
 StressFigure medians() {
   constexpr double kMost = std::numeric_limits<double>::max(), kLeast = std::numeric_limits<double>::denorm_min();
@@ -61,24 +59,24 @@ StressFigure weak_direction(double ratio) {
 }  // namespace
 
 std::vector<StressCase> summary_cases() {
-  const StressCase overflow =
-      stress::mechanism(StressGroup::kData, "overflow of a mean",
-                        "the sum of the two in the middle is infinite (found by this case, 2026-11-22)",
-                        "the largest, the smallest and infinite values have their median: exact", "medians");
-  const StressCase order = stress::mechanism(
+  const StressMechanism overflow{StressGroup::kData, "overflow of a mean",
+                                 "the sum of the two in the middle is infinite (found by this case, 2026-11-22)",
+                                 "the largest, the smallest and infinite values have their median: exact", "medians"};
+  const StressMechanism order{
       StressGroup::kData, "an order that is none",
       "sorting what is not a number leaves any order, and reads past the ends (found by this case, 2026-11-22)",
-      "no number, wherever in the list it stands", "medians");
-  const StressCase weak = stress::mechanism(
+      "no number, wherever in the list it stands", "medians"};
+  const StressMechanism weak{
       StressGroup::kData, "rank deficiency of a least-squares problem",
       "normal equations square the ratio of the directions, and the weak one's noise becomes the answer",
-      "values to 20 epsilons of the largest; below the threshold the weak direction is left alone", "of the bound");
-  std::vector<StressCase> cases = {row(overflow, "median/of_largest_values", medians),
-                                   row(order, "median/of_no_numbers", medians_of_no_numbers)};
+      "values to 20 epsilons of the largest; below the threshold the weak direction is left alone", "of the bound"};
+  StressRows rows;
+  rows.of(overflow).add("median/of_largest_values", medians);
+  rows.of(order).add("median/of_no_numbers", medians_of_no_numbers);
   for (const double ratio : {1.0, 1e-6, 1e-12, 0.0})
-    cases.push_back(row(weak, "singular_values/second_direction_weaker_by_" + stress::text(ratio),
-                        [ratio] { return weak_direction(ratio); }));
-  return cases;
+    rows.of(weak).add("singular_values/second_direction_weaker_by_" + stress::text(ratio),
+                      [ratio] { return weak_direction(ratio); });
+  return rows.take();
 }
 
 }  // namespace canyon

@@ -2,14 +2,11 @@
 
 #include <cstdint>
 
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 
 namespace canyon {
 namespace {
-
-using stress::mechanism;
-using stress::row;
 
 bool survives_text(GpsTime t) {
   const auto read = GpsTime::parse(t.iso(9), "stress");
@@ -141,42 +138,44 @@ StressFigure overflows() {
 
 std::vector<StressCase> time_cases() {
   const auto group = StressGroup::kGeometry;
-  const StressCase calendar_field =
-      mechanism(group, "a calendar field at its border",
-                "years counted from January lose the leap day; rounding 59.9999999996 s does not carry into the minute",
-                "every instant reads back from its text and its fields to the nanosecond: exact", "instants");
-  const StressCase week_count =
-      mechanism(group, "the count of weeks at its borders",
-                "a week taken modulo 1024, or seconds of week that round up to 604800",
-                "first and last nanosecond of each of 14700 weeks keep week and second: exact", "instants");
-  const StressCase leap = mechanism(
+  const StressMechanism calendar_field{
+      group, "a calendar field at its border",
+      "years counted from January lose the leap day; rounding 59.9999999996 s does not carry into the minute",
+      "every instant reads back from its text and its fields to the nanosecond: exact", "instants"};
+  const StressMechanism week_count{group, "the count of weeks at its borders",
+                                   "a week taken modulo 1024, or seconds of week that round up to 604800",
+                                   "first and last nanosecond of each of 14700 weeks keep week and second: exact",
+                                   "instants"};
+  const StressMechanism leap{
       group, "an inserted second",
       "the table is off by one row or one second, or 23:59:60 is taken where there is none",
-      "over the end of every half-year UTC goes on second by second, two at the 18 leap seconds: exact", "instants");
-  const StressCase large = mechanism(
+      "over the end of every half-year UTC goes on second by second, two at the 18 leap seconds: exact", "instants"};
+  const StressMechanism large{
       StressGroup::kLong, "more nanoseconds than a double holds",
       "an instant that passes through a double loses its nanoseconds from 104 days on, through 32 bits from 2048 on",
-      "instants plus durations of up to 10^15 ns come out exact, and so do their differences", "instants");
-  const StressCase ticks = mechanism(
+      "instants plus durations of up to 10^15 ns come out exact, and so do their differences", "instants"};
+  const StressMechanism ticks{
       StressGroup::kLong, "a period that is added up", "a rate whose period is no whole number of nanoseconds drifts",
       "tick k lies within half a nanosecond of k / rate at the end of a day too: rounding to the nearest, no more",
-      "ns");
-  const StressCase overflow =
-      mechanism(StressGroup::kData, "overflow of 64 bits",
-                "the sum wraps around to an instant 584 years off, without a word (found by this case, 2026-11-22)",
-                "each of them is refused", "let through");
-  std::vector<StressCase> cases = {
-      row(calendar_field, "time/month_borders_1980_to_2261", month_borders),
-      row(calendar_field, "time/leap_days", leap_days), row(week_count, "time/week_borders", week_borders),
-      row(leap, "time/leap_seconds", leap_seconds), row(overflow, "time/beyond_2272_is_refused", overflows)};
-  cases.push_back(row(large, "time/near_31_bits_of_seconds",
-                      [] { return durations_from((std::int64_t{1} << 31) * kNsPerSecond); }));
-  cases.push_back(row(large, "time/near_53_bits_of_ns", [] { return durations_from(std::int64_t{1} << 53); }));
-  cases.push_back(row(large, "time/near_62_bits_of_ns", [] { return durations_from(std::int64_t{1} << 62); }));
+      "ns"};
+  const StressMechanism overflow{
+      StressGroup::kData, "overflow of 64 bits",
+      "the sum wraps around to an instant 584 years off, without a word (found by this case, 2026-11-22)",
+      "each of them is refused", "let through"};
+  StressRows rows;
+  rows.of(calendar_field).add("time/month_borders_1980_to_2261", month_borders);
+  rows.of(calendar_field).add("time/leap_days", leap_days);
+  rows.of(week_count).add("time/week_borders", week_borders);
+  rows.of(leap).add("time/leap_seconds", leap_seconds);
+  rows.of(overflow).add("time/beyond_2272_is_refused", overflows);
+  rows.of(large).add("time/near_31_bits_of_seconds",
+                     [] { return durations_from((std::int64_t{1} << 31) * kNsPerSecond); });
+  rows.of(large).add("time/near_53_bits_of_ns", [] { return durations_from(std::int64_t{1} << 53); });
+  rows.of(large).add("time/near_62_bits_of_ns", [] { return durations_from(std::int64_t{1} << 62); });
   for (const double rate_hz : {0.01, 0.3, 9.99, 300.0, 10000.0})
-    cases.push_back(row(ticks, "time/ticks_of_a_day_at_" + stress::text(rate_hz) + "_hz",
-                        [rate_hz] { return ticks_of_a_day(rate_hz); }));
-  return cases;
+    rows.of(ticks).add("time/ticks_of_a_day_at_" + stress::text(rate_hz) + "_hz",
+                       [rate_hz] { return ticks_of_a_day(rate_hz); });
+  return rows.take();
 }
 
 }  // namespace canyon

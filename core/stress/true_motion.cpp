@@ -3,15 +3,14 @@
 #include <array>
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
 #include "canyon/core/stress/subjects.h"
+#include "canyon/core/stress_rows.h"
 
 namespace canyon {
 namespace {
 
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 using stress::Worst;
 
 /// Value and two derivatives of 0.5 s - 0.3 s^2 + 0.2 s^3 - 0.4 s^4 + 0.1 s^5.
@@ -129,28 +128,28 @@ StressFigure spin() {
 }  // namespace
 
 std::vector<StressCase> true_motion_cases() {
-  const StressCase tiny = stress::mechanism(
+  const StressMechanism tiny{
       StressGroup::kStiff, "difference quotients over tiny and long steps",
       "positions 100 km off are subtracted and divided by h^2: a term too many of them, or a step in the wrong unit",
       "a motion of fifth degree is met at five instants of the step to 31, 120 / h and 360 / h^2 times four roundings",
-      "of the bound");
-  const StressCase border =
-      stress::mechanism(StressGroup::kGeometry, "instants at and beside what is known",
-                        "equal times divide by zero, an instant beside the end is extrapolated by the fifth power",
-                        "a node is itself to the bit, beside the known is refused", "answers");
-  const StressCase turn = stress::mechanism(
+      "of the bound"};
+  const StressMechanism border{
+      StressGroup::kGeometry, "instants at and beside what is known",
+      "equal times divide by zero, an instant beside the end is extrapolated by the fifth power",
+      "a node is itself to the bit, beside the known is refused", "answers"};
+  const StressMechanism turn{
       StressGroup::kGeometry, "a turn per step near its limit", "beyond half a turn the short way is the other one",
-      "1 rad and more is refused; 2000 deg/s is followed within a step of 0.35 rad", "of the bound");
-  std::vector<StressCase> cases;
+      "1 rad and more is refused; 2000 deg/s is followed within a step of 0.35 rad", "of the bound"};
+  StressRows rows;
   for (const std::int64_t step_ns :
        {std::int64_t{1}, std::int64_t{1000}, std::int64_t{1'000'000}, std::int64_t{10'000'000}, kNsPerSecond,
         1000 * kNsPerSecond, 100'000 * kNsPerSecond})
-    cases.push_back(row(tiny, "true_motion/step_of_" + stress::text(1e-9 * static_cast<double>(step_ns)) + "_s",
-                        [step_ns] { return over_one_step(step_ns); }));
-  cases.push_back(row(border, "true_motion/instants_at_its_borders", borders));
-  cases.push_back(row(turn, "true_motion/turns_of_1_rad_are_refused", fast_turns));
-  cases.push_back(row(turn, "true_motion/2000_deg_s_at_100_hz", spin));
-  return cases;
+    rows.of(tiny).add("true_motion/step_of_" + stress::text(1e-9 * static_cast<double>(step_ns)) + "_s",
+                      [step_ns] { return over_one_step(step_ns); });
+  rows.of(border).add("true_motion/instants_at_its_borders", borders);
+  rows.of(turn).add("true_motion/turns_of_1_rad_are_refused", fast_turns);
+  rows.of(turn).add("true_motion/2000_deg_s_at_100_hz", spin);
+  return rows.take();
 }
 
 }  // namespace canyon

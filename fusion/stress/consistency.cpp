@@ -3,14 +3,13 @@
 #include <vector>
 
 #include "canyon/core/math/chi_square.h"
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/fusion/stress/subjects.h"
 
 namespace canyon::fusion {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 
 /// The finite sums against the incomplete gamma function of core, good to 1e-12, over all degrees of freedom. A sum of
 /// dof / 2 positive terms, each by one product more, rounds by an epsilon each; e^-h knows its h to an epsilon of it.
@@ -69,27 +68,26 @@ StressFigure indefinite() {
 
 std::vector<StressCase> consistency_cases() {
   const auto group = StressGroup::kData;
-  const StressCase sum =
-      stress::mechanism(group, "a finite sum of a tail", "terms of alternating parity, or one too few",
-                        "the incomplete gamma function's, to an epsilon a term and of x", "of the bound");
-  const StressCase edge = stress::mechanism(
-      group, "a test's statistic at its ends", "infinity times zero is no number, and passes every gate",
-      "0 and infinity give 1 and 0, what is no number is refused: exact", "answers");
-  const StressCase many =
-      stress::mechanism(StressGroup::kLong, "a mean of very many squares",
-                        "quantiles of 10^6 degrees of freedom lose their digits, and the band "
-                        "the mean",
-                        "the exact quantiles, to 1 % at 30 degrees and less with their number to the power 3/2", "");
-  const StressCase none =
-      stress::mechanism(group, "a covariance that is none", "a negative square that lowers the mean",
-                        "is told as no number; and 10^-200 to 10^200 do not matter", "answers");
-  std::vector<StressCase> cases = {row(sum, "consistency/tails_of_1_to_100_degrees", tails),
-                                   row(edge, "consistency/ends_of_the_tail", ends),
-                                   row(none, "consistency/indefinite_covariances", indefinite)};
+  const StressMechanism sum{group, "a finite sum of a tail", "terms of alternating parity, or one too few",
+                            "the incomplete gamma function's, to an epsilon a term and of x", "of the bound"};
+  const StressMechanism edge{group, "a test's statistic at its ends",
+                             "infinity times zero is no number, and passes every gate",
+                             "0 and infinity give 1 and 0, what is no number is refused: exact", "answers"};
+  const StressMechanism many{StressGroup::kLong, "a mean of very many squares",
+                             "quantiles of 10^6 degrees of freedom lose their digits, and the band "
+                             "the mean",
+                             "the exact quantiles, to 1 % at 30 degrees and less with their number to the power 3/2",
+                             ""};
+  const StressMechanism none{group, "a covariance that is none", "a negative square that lowers the mean",
+                             "is told as no number; and 10^-200 to 10^200 do not matter", "answers"};
+  StressRows rows;
+  rows.of(sum).add("consistency/tails_of_1_to_100_degrees", tails);
+  rows.of(edge).add("consistency/ends_of_the_tail", ends);
+  rows.of(none).add("consistency/indefinite_covariances", indefinite);
   for (const std::int64_t count : {10, 1000, 100'000})
-    cases.push_back(row(many, "consistency/band_of_" + stress::text(static_cast<double>(count)) + "_values",
-                        [=] { return band(count); }));
-  return cases;
+    rows.of(many).add("consistency/band_of_" + stress::text(static_cast<double>(count)) + "_values",
+                      [=] { return band(count); });
+  return rows.take();
 }
 
 }  // namespace canyon::fusion

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/subjects.h"
 
@@ -10,7 +10,6 @@ namespace canyon::fusion {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 using Matrix = ErrorStateFilter::StateMatrix;
 
 /// Broken unless symmetric to the bit, with variances above zero, and with no eigenvalue of the correlations below what
@@ -103,33 +102,32 @@ StressFigure rate(double rate_hz) {
 }  // namespace
 
 std::vector<StressCase> covariance_cases() {
-  const StressCase ratio = stress::mechanism(
+  const StressMechanism ratio{
       StressGroup::kData, "a covariance over many updates at a large ratio of noises",
       "P - K H P cancels to the 16th digit of what was: variances below zero, and an update that goes astray",
       "symmetric to the bit, variances above zero, correlations definite to the rounding of 15 by 15 terms",
-      "covariances");
-  const StressCase constants =
-      stress::mechanism(StressGroup::kStiff, "time constants of ten decades in one state",
-                        "1 - dt / tau is -99 for the fast one, and 1 - e^(-2 dt / tau) cancels for the slow one",
-                        "each variance stays its stationary one to an epsilon a step", "of the bound");
-  const StressCase rates = stress::mechanism(
+      "covariances"};
+  const StressMechanism constants{
+      StressGroup::kStiff, "time constants of ten decades in one state",
+      "1 - dt / tau is -99 for the fast one, and 1 - e^(-2 dt / tau) cancels for the slow one",
+      "each variance stays its stationary one to an epsilon a step", "of the bound"};
+  const StressMechanism rates{
       StressGroup::kStiff, "a covariance at rates from 0.01 to 10 000 Hz",
       "noise per sample in place of per root hertz, or an order of the step less",
-      "N^2 T and N^2 T^3 / 3, to 1 / (2 n^2) of the step and what gravity and Coriolis do within T", "of the bound");
-  std::vector<StressCase> cases;
+      "N^2 T and N^2 T^3 / 3, to 1 / (2 n^2) of the step and what gravity and Coriolis do within T", "of the bound"};
+  StressRows rows;
   for (const double r : {1.0, 1e6, 1e9})
-    cases.push_back(
-        row(ratio, "covariance/noise_ratio_" + stress::text(r) + "_1e4_steps", [r] { return noise_ratio(r, 10'000); }));
-  cases.push_back(row(ratio, "covariance/noise_ratio_1e12_1e5_steps", [] { return noise_ratio(1e12, 100'000); }));
-  cases.push_back(row(ratio, "covariance/noise_ratio_1e12_1e7_steps", [] { return noise_ratio(1e12, 10'000'000); }));
-  cases.back().long_running = true;
+    rows.of(ratio).add("covariance/noise_ratio_" + stress::text(r) + "_1e4_steps",
+                       [r] { return noise_ratio(r, 10'000); });
+  rows.of(ratio).add("covariance/noise_ratio_1e12_1e5_steps", [] { return noise_ratio(1e12, 100'000); });
+  rows.of(ratio).add("covariance/noise_ratio_1e12_1e7_steps", [] { return noise_ratio(1e12, 10'000'000); });
+  rows.long_running();
   for (const auto& [fast_s, slow_s] : {std::pair{1e-4, 1e6}, {1e-2, 1e4}, {1.0, 100.0}})
-    cases.push_back(row(constants,
-                        "covariance/biases_of_" + stress::text(fast_s) + "_and_" + stress::text(slow_s) + "_s",
-                        [f = fast_s, s = slow_s] { return time_constants(f, s); }));
+    rows.of(constants).add("covariance/biases_of_" + stress::text(fast_s) + "_and_" + stress::text(slow_s) + "_s",
+                           [f = fast_s, s = slow_s] { return time_constants(f, s); });
   for (const double rate_hz : {0.01, 1.0, 100.0, 10000.0})
-    cases.push_back(row(rates, "covariance/rate_" + stress::text(rate_hz) + "_hz", [=] { return rate(rate_hz); }));
-  return cases;
+    rows.of(rates).add("covariance/rate_" + stress::text(rate_hz) + "_hz", [=] { return rate(rate_hz); });
+  return rows.take();
 }
 
 }  // namespace canyon::fusion

@@ -1,6 +1,6 @@
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/fusion/rounding_growth.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/subjects.h"
@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 using stress::Worst;
 
 /// Half an hour of rest in steps of a second, at places and attitudes where angles are undefined: nothing but rounding,
@@ -101,36 +100,31 @@ StressFigure late_instants() {
 
 std::vector<StressCase> dead_reckoning_cases() {
   const auto group = StressGroup::kGeometry;
-  StressCase place =
-      stress::mechanism(group, "navigation where latitude, longitude or heading end",
+  StressMechanism place{group, "navigation where latitude, longitude or heading end",
                         "a wander angle or transport rate of v tan(latitude) / R is infinite at a pole",
-                        "rest for half an hour: nothing but rounding, below what is said of it", "of the bound");
+                        "rest for half an hour: nothing but rounding, below what is said of it", "of the bound"};
   place.loose = "the bound holds at any attitude; where axes fall together most roundings cancel or are none";
-  const StressCase level = stress::mechanism(group, "a level from any force",
-                                             "roll and pitch from a force along x, upside down, or far from 1 g long",
-                                             "the force points up, to ten roundings", "of the bound");
-  const StressCase fast = stress::mechanism(
-      StressGroup::kStiff, "a third of a radian and half a g within a step",
-      "series of the rotation's powers are cut off: 1e-3 of the velocity at 0.35 rad",
-      "the closed form of a constant rate and force, to what Coriolis does not see of a step", "of the bound");
-  const StressCase late =
-      stress::mechanism(StressGroup::kLong, "steps of a nanosecond at late instants",
-                        "the time is added up in double seconds, and stands still",
-                        "whole nanoseconds, and positions to an epsilon of Earth's radius a step", "of the bound");
-  std::vector<StressCase> cases;
-  cases.push_back(row(place, "dead_reckoning/rest_at_the_north_pole", [] { return rest(90, 0, 0, {0, 0, 1}); }));
-  cases.push_back(row(place, "dead_reckoning/rest_at_the_south_pole", [] { return rest(-90, 30, -400, {0.1, 0, 1}); }));
-  cases.push_back(row(place, "dead_reckoning/rest_at_the_antimeridian", [] {
-    return rest(0, 180, 20000, {0, 0, -1});
-  }));
-  cases.push_back(row(place, "dead_reckoning/rest_nose_up", [] { return rest(51, 7, 100, {1, 0, 0}); }));
-  cases.push_back(row(place, "dead_reckoning/rest_nose_down", [] { return rest(51, 7, 100, {-1, 1e-9, 0}); }));
-  cases.push_back(row(level, "dead_reckoning/level_from_any_force", levelling));
+  const StressMechanism level{group, "a level from any force",
+                              "roll and pitch from a force along x, upside down, or far from 1 g long",
+                              "the force points up, to ten roundings", "of the bound"};
+  const StressMechanism fast{StressGroup::kStiff, "a third of a radian and half a g within a step",
+                             "series of the rotation's powers are cut off: 1e-3 of the velocity at 0.35 rad",
+                             "the closed form of a constant rate and force, to what Coriolis does not see of a step",
+                             "of the bound"};
+  const StressMechanism late{StressGroup::kLong, "steps of a nanosecond at late instants",
+                             "the time is added up in double seconds, and stands still",
+                             "whole nanoseconds, and positions to an epsilon of Earth's radius a step", "of the bound"};
+  StressRows rows;
+  rows.of(place).add("dead_reckoning/rest_at_the_north_pole", [] { return rest(90, 0, 0, {0, 0, 1}); });
+  rows.of(place).add("dead_reckoning/rest_at_the_south_pole", [] { return rest(-90, 30, -400, {0.1, 0, 1}); });
+  rows.of(place).add("dead_reckoning/rest_at_the_antimeridian", [] { return rest(0, 180, 20000, {0, 0, -1}); });
+  rows.of(place).add("dead_reckoning/rest_nose_up", [] { return rest(51, 7, 100, {1, 0, 0}); });
+  rows.of(place).add("dead_reckoning/rest_nose_down", [] { return rest(51, 7, 100, {-1, 1e-9, 0}); });
+  rows.of(level).add("dead_reckoning/level_from_any_force", levelling);
   for (const double dt_s : {0.01, 0.001})
-    cases.push_back(
-        row(fast, "dead_reckoning/2000_deg_s_50_g_step_" + stress::text(dt_s) + "_s", [=] { return spin(dt_s); }));
-  cases.push_back(row(late, "dead_reckoning/steps_of_1_ns_at_late_instants", late_instants));
-  return cases;
+    rows.of(fast).add("dead_reckoning/2000_deg_s_50_g_step_" + stress::text(dt_s) + "_s", [=] { return spin(dt_s); });
+  rows.of(late).add("dead_reckoning/steps_of_1_ns_at_late_instants", late_instants);
+  return rows.take();
 }
 
 }  // namespace canyon::fusion

@@ -2,7 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/subjects.h"
 
@@ -12,7 +12,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 
 RestingFilter after_a_second(const FilterConfig& config = {}) {
   RestingFilter rest(config, usual_noise(), 100.0);
@@ -184,46 +183,45 @@ StressFigure after_hours_without() {
 
 std::vector<StressCase> fix_cases() {
   const auto group = StressGroup::kData;
-  const StressCase rank =
-      stress::mechanism(group, "a covariance without full rank",
-                        "R = 0 makes the innovation's covariance singular once P is, and its inverse "
-                        "infinite",
-                        "is refused by name, before anything has changed", "let through");
-  const StressCase perfect =
-      stress::mechanism(group, "a fix that leaves no variance",
-                        "what is left of P is rounding, of either sign, and the next innovation's "
-                        "covariance may not be definite (found by this case, 2026-11-22: an internal error)",
-                        "P stays symmetric and its position definite, and the next prediction gives it back at least "
-                        "the white noise's part",
-                        "looks");
-  const StressCase contradiction =
-      stress::mechanism(group, "fixes that contradict one another", "velocities of 10^11 m/s, and a NIS that overflows",
-                        "state, covariance and NIS stay numbers", "looks");
-  const StressCase outlier = stress::mechanism(group, "an outlier beyond the square root of what a double holds",
-                                               "its square is infinite, the tail of infinity no number, and a "
-                                               "comparison with that lets it pass (found by this case, 2026-11-22)",
-                                               "not accepted, and nothing changed, to the bit", "fixes");
-  const StressCase broken =
-      stress::mechanism(group, "a fix that is not finite", "one number spoils state and covariance for good",
-                        "each of its numbers in turn is refused, before anything has changed", "let through");
-  const StressCase late = stress::mechanism(group, "a fix before or after the filter's time",
-                                            "a delayed fix is taken for the present one, or one of tomorrow",
-                                            "taken within 0.1 s, to the nanosecond, and refused beside it", "fixes");
-  const StressCase lost =
-      stress::mechanism(StressGroup::kLong, "a position that is not known on Earth",
-                        "gravity linear over 10^7 m pulls the update anywhere",
-                        "the first fix takes the position's place, and the filter goes on", "looks");
-  std::vector<StressCase> cases = {
-      row(rank, "fix/rank_deficient_covariance", rank_deficient_fixes),
-      row(outlier, "fix/outliers_to_1e300_m", outliers), row(broken, "fix/not_finite_field_by_field", not_finite_fixes),
-      row(late, "fix/late_and_early", late_and_early_fixes), row(lost, "fix/after_4_h_without", after_hours_without)};
+  const StressMechanism rank{group, "a covariance without full rank",
+                             "R = 0 makes the innovation's covariance singular once P is, and its inverse "
+                             "infinite",
+                             "is refused by name, before anything has changed", "let through"};
+  const StressMechanism perfect{
+      group, "a fix that leaves no variance",
+      "what is left of P is rounding, of either sign, and the next innovation's "
+      "covariance may not be definite (found by this case, 2026-11-22: an internal error)",
+      "P stays symmetric and its position definite, and the next prediction gives it back at least "
+      "the white noise's part",
+      "looks"};
+  const StressMechanism contradiction{group, "fixes that contradict one another",
+                                      "velocities of 10^11 m/s, and a NIS that overflows",
+                                      "state, covariance and NIS stay numbers", "looks"};
+  const StressMechanism outlier{group, "an outlier beyond the square root of what a double holds",
+                                "its square is infinite, the tail of infinity no number, and a "
+                                "comparison with that lets it pass (found by this case, 2026-11-22)",
+                                "not accepted, and nothing changed, to the bit", "fixes"};
+  const StressMechanism broken{group, "a fix that is not finite", "one number spoils state and covariance for good",
+                               "each of its numbers in turn is refused, before anything has changed", "let through"};
+  const StressMechanism late{group, "a fix before or after the filter's time",
+                             "a delayed fix is taken for the present one, or one of tomorrow",
+                             "taken within 0.1 s, to the nanosecond, and refused beside it", "fixes"};
+  const StressMechanism lost{StressGroup::kLong, "a position that is not known on Earth",
+                             "gravity linear over 10^7 m pulls the update anywhere",
+                             "the first fix takes the position's place, and the filter goes on", "looks"};
+  StressRows rows;
+  rows.of(rank).add("fix/rank_deficient_covariance", rank_deficient_fixes);
+  rows.of(outlier).add("fix/outliers_to_1e300_m", outliers);
+  rows.of(broken).add("fix/not_finite_field_by_field", not_finite_fixes);
+  rows.of(late).add("fix/late_and_early", late_and_early_fixes);
+  rows.of(lost).add("fix/after_4_h_without", after_hours_without);
   for (const double sigma_m : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15})
-    cases.push_back(
-        row(perfect, "fix/sigma_" + stress::text(sigma_m) + "_m", [=] { return nearly_perfect_fixes(sigma_m); }));
+    rows.of(perfect).add("fix/sigma_" + stress::text(sigma_m) + "_m", [=] { return nearly_perfect_fixes(sigma_m); });
   for (const double apart_m : {1.0, 1e5, 1e9})
-    cases.push_back(row(contradiction, "fix/contradiction_of_" + stress::text(apart_m) + "_m",
-                        [=] { return contradictory_fixes(apart_m); }));
-  return cases;
+    rows.of(contradiction).add("fix/contradiction_of_" + stress::text(apart_m) + "_m", [=] {
+      return contradictory_fixes(apart_m);
+    });
+  return rows.take();
 }
 
 }  // namespace canyon::fusion

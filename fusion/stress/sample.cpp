@@ -1,6 +1,6 @@
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/subjects.h"
 
@@ -8,7 +8,6 @@ namespace canyon::fusion {
 namespace {
 
 using Eigen::Vector3d;
-using stress::row;
 
 /// Each number of a sample, not a number, infinite, or (the interval) not above zero; and nothing has changed.
 StressFigure not_finite_samples() {
@@ -113,32 +112,30 @@ StressFigure gaps(const char* integrator, double gap_s) {
 
 std::vector<StressCase> sample_cases() {
   const auto group = StressGroup::kData;
-  const StressCase broken =
-      stress::mechanism(group, "an inertial sample that is not finite",
-                        "one increment spoils attitude, and through it everything, for good",
-                        "each number in turn is refused, before anything has changed", "let through");
-  const StressCase order =
-      stress::mechanism(group, "inertial samples out of order, twice or missing",
-                        "a sample taken twice moves the state twice; over a gap the body stands still",
-                        "each is refused, the due one taken", "let through");
-  const StressCase logs =
-      stress::mechanism(group, "a log in which time does not increase",
-                        "a sample that comes twice has no time to stand for, and the next one's change of rate is "
-                        "divided by it (found by this case, 2026-11-22: no number)",
-                        "is refused, and so is what is not finite in it", "let through");
-  StressCase gap = stress::mechanism(
+  const StressMechanism broken{group, "an inertial sample that is not finite",
+                               "one increment spoils attitude, and through it everything, for good",
+                               "each number in turn is refused, before anything has changed", "let through"};
+  const StressMechanism order{group, "inertial samples out of order, twice or missing",
+                              "a sample taken twice moves the state twice; over a gap the body stands still",
+                              "each is refused, the due one taken", "let through"};
+  const StressMechanism logs{group, "a log in which time does not increase",
+                             "a sample that comes twice has no time to stand for, and the next one's change of rate is "
+                             "divided by it (found by this case, 2026-11-22: no number)",
+                             "is refused, and so is what is not finite in it", "let through"};
+  StressMechanism gap{
       group, "a gap in a log at rest", "the integrator looks back over the gap, or the time is lost",
-      "rest, to half the Earth's turn within the gap for euler, its square for the others, and rounding", "m");
+      "rest, to half the Earth's turn within the gap for euler, its square for the others, and rounding", "m"};
   gap.loose = "the bound adds the turn of the longest interval over the whole time";
-  std::vector<StressCase> cases = {row(broken, "sample/not_finite_field_by_field", not_finite_samples),
-                                   row(order, "sample/out_of_order", out_of_order_samples)};
+  StressRows rows;
+  rows.of(broken).add("sample/not_finite_field_by_field", not_finite_samples);
+  rows.of(order).add("sample/out_of_order", out_of_order_samples);
   for (const char* integrator : {"euler", "two_sample", "three_sample"})
-    cases.push_back(row(logs, std::string("sample/bad_logs_by_") + integrator, [=] { return bad_logs(integrator); }));
+    rows.of(logs).add(std::string("sample/bad_logs_by_") + integrator, [=] { return bad_logs(integrator); });
   for (const char* integrator : {"euler", "two_sample", "three_sample"})
     for (const double gap_s : {0.1, 60.0})
-      cases.push_back(row(gap, "sample/gap_of_" + stress::text(gap_s) + "_s_by_" + integrator,
-                          [=] { return gaps(integrator, gap_s); }));
-  return cases;
+      rows.of(gap).add("sample/gap_of_" + stress::text(gap_s) + "_s_by_" + integrator,
+                       [=] { return gaps(integrator, gap_s); });
+  return rows.take();
 }
 
 }  // namespace canyon::fusion

@@ -1,7 +1,7 @@
 #include <array>
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/fusion/rounding_growth.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/subjects.h"
@@ -10,7 +10,6 @@ namespace canyon::fusion {
 namespace {
 
 using Eigen::Vector3d;
-using stress::row;
 
 /// The state moved by constant increments, `each` called after every step.
 template <class Each>
@@ -147,38 +146,39 @@ StressFigure attitude_of_a_day() {
 
 std::vector<StressCase> unaided_cases() {
   const auto group = StressGroup::kLong;
-  const StressCase vertical = stress::mechanism(
+  const StressMechanism vertical{
       group, "the unstable height of unaided navigation",
       "gravity of a constant size leaves the height neutral, one that grows with height makes it swing",
-      "grows by sqrt(2 g / R) a second, within 1 %: flattening and the Earth's turn are 0.4 %", "");
-  const StressCase horizontal = stress::mechanism(
-      group, "Schuler's swing of the horizontal", "gravity that does not turn with the place lets the error run away",
-      "a period of 84.4 min, within 1 %: the ellipsoid's radii differ by 0.7 %", "");
-  const StressCase beat = stress::mechanism(group, "Foucault's beat of the swing",
-                                            "a Coriolis term of the wrong sign, half or twice its size, or left out",
-                                            "the plane turns by w_e sin(latitude), within 1 % after six hours", "");
-  const StressCase overtaken = stress::mechanism(
+      "grows by sqrt(2 g / R) a second, within 1 %: flattening and the Earth's turn are 0.4 %", ""};
+  const StressMechanism horizontal{group, "Schuler's swing of the horizontal",
+                                   "gravity that does not turn with the place lets the error run away",
+                                   "a period of 84.4 min, within 1 %: the ellipsoid's radii differ by 0.7 %", ""};
+  const StressMechanism beat{group, "Foucault's beat of the swing",
+                             "a Coriolis term of the wrong sign, half or twice its size, or left out",
+                             "the plane turns by w_e sin(latitude), within 1 % after six hours", ""};
+  const StressMechanism overtaken{
       group, "a figure that rounding has overtaken",
       "rounding grows as e^(t / 570 s): after some hours it is 10^9 m and says nothing of sensor or integrator "
       "(2026-11-22: it was printed as the integrator's error)",
-      "never more than what is said of it, and told from where on", "of the bound");
-  const StressCase attitude =
-      stress::mechanism(group, "attitude over a day", "a quaternion that is not normalised, or an Earth rate by halves",
-                        "8640 steps round by two epsilons each at most", "rad");
-  std::vector<StressCase> cases;
+      "never more than what is said of it, and told from where on", "of the bound"};
+  const StressMechanism attitude{group, "attitude over a day",
+                                 "a quaternion that is not normalised, or an Earth rate by halves",
+                                 "8640 steps round by two epsilons each at most", "rad"};
+  StressRows rows;
   for (const double lat_deg : {0.0, 45.0, 90.0})
-    cases.push_back(row(vertical, "unaided/vertical_channel_at_" + stress::text(lat_deg) + "_deg",
-                        [=] { return vertical_growth(lat_deg); }));
+    rows.of(vertical).add("unaided/vertical_channel_at_" + stress::text(lat_deg) + "_deg",
+                          [=] { return vertical_growth(lat_deg); });
   for (const double lat_deg : {0.0, 45.0, -70.0})
-    cases.push_back(row(horizontal, "unaided/schuler_period_at_" + stress::text(lat_deg) + "_deg",
-                        [=] { return schuler_period(lat_deg); }));
+    rows.of(horizontal).add("unaided/schuler_period_at_" + stress::text(lat_deg) + "_deg", [=] {
+      return schuler_period(lat_deg);
+    });
   for (const double lat_deg : {60.0, -60.0})
-    cases.push_back(row(beat, "unaided/foucault_beat_at_" + stress::text(lat_deg) + "_deg",
-                        [=] { return foucault_beat(lat_deg); }));
-  cases.push_back(row(overtaken, "unaided/rounding_below_its_bound", rounding_below_its_bound));
-  cases.push_back(row(overtaken, "unaided/rounding_is_told", rounding_is_told));
-  cases.push_back(row(attitude, "unaided/attitude_of_a_day", attitude_of_a_day));
-  return cases;
+    rows.of(beat).add("unaided/foucault_beat_at_" + stress::text(lat_deg) + "_deg",
+                      [=] { return foucault_beat(lat_deg); });
+  rows.of(overtaken).add("unaided/rounding_below_its_bound", rounding_below_its_bound);
+  rows.of(overtaken).add("unaided/rounding_is_told", rounding_is_told);
+  rows.of(attitude).add("unaided/attitude_of_a_day", attitude_of_a_day);
+  return rows.take();
 }
 
 }  // namespace canyon::fusion

@@ -17,7 +17,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 const GpsTime kNoon = GpsTime::from_calendar(2010, 7, 1, 12, 0, 0.0);
 
 /// Every place and direction; an answer that is not finite, or outside [least, most], counts.
@@ -74,7 +74,7 @@ StressFigure over_the_day(GpsTime midnight) {
 
 /// Of zero electrons by day there is still the night's 5 ns, times the obliquity.
 StressFigure night() {
-  StressFigure out{0.0, 4.0 * kEps * 10.0};
+  StressFigure out{0.0, 4.0 * kEpsilon * 10.0};
   for (double e = 0.0; e <= 0.5 * kPi; e += 0.01) {
     const double x = 0.53 - e / kPi, exact = kSpeedOfLight * 5e-9 * (1.0 + 16.0 * x * x * x);
     take_worst(out, std::abs(klobuchar_delay_m({}, kNoon, 0.5, 0.0, 1.0, e) - exact));
@@ -85,7 +85,7 @@ StressFigure night() {
 /// A shell's obliquity: 1 at the zenith, 1 / sqrt(1 - (R / (R + h))^2) at the horizon; in between it falls. At the
 /// horizon the root of a small difference enlarges rounding by 1 / (1 - s^2) = 10.
 StressFigure shell() {
-  StressFigure out{0.0, 64.0 * kEps};
+  StressFigure out{0.0, 64.0 * kEpsilon};
   const double s = 6378.137 / 6728.137;
   take_worst(out, std::abs(single_layer_obliquity(0.5 * kPi) - 1.0));
   take_worst(out, std::abs(single_layer_obliquity(0.0) * std::sqrt((1.0 - s) * (1.0 + s)) - 1.0));
@@ -121,7 +121,7 @@ StressFigure no_jump() {
 
 /// A mapping is 1 at the zenith by its construction, to a few roundings, and falls all the way from the horizon.
 StressFigure mapping() {
-  StressFigure out{0.0, 16.0 * kEps};
+  StressFigure out{0.0, 16.0 * kEpsilon};
   for (const double lat : {-90.0, -75.0, -40.0, -15.0, 0.0, 15.0, 50.0, 75.0, 90.0})
     for (const double day : {1.0, 28.0, 210.5, 366.99}) {
       take_worst(out, std::abs(niell_wet(0.5 * kPi, lat * kDegree) - 1.0));
@@ -148,7 +148,7 @@ IonexMaps maps_of(double tecu, bool whole_turn) {
 
 /// Of a world of one value every point has that value: weights sum to 1 to 8 eps, at any longitude and over the poles.
 StressFigure one_value() {
-  StressFigure out{0.0, 8.0 * kEps * 12.5};
+  StressFigure out{0.0, 8.0 * kEpsilon * 12.5};
   for (const bool whole : {true, false}) {
     const IonexMaps maps = maps_of(12.5, whole);
     for (double lat = -90.0; lat <= 90.0; lat += 7.5)
@@ -176,7 +176,7 @@ StressFigure antimeridian() {
   for (auto& map : maps.maps)
     for (std::size_t i = 0; i < map.vtec_tecu.size(); ++i)
       map.vtec_tecu[i] = 20.0 + 5.0 * std::cos(2.0 * kPi * static_cast<double>(i % 73) / 72.0);
-  StressFigure out{0.0, 2e-9 / 5.0 * 0.5 + 64.0 * kEps * 25.0};
+  StressFigure out{0.0, 2e-9 / 5.0 * 0.5 + 64.0 * kEpsilon * 25.0};
   for (const double s : {0.0, 1234.5, 7200.0, 9999.0}) {
     const auto at = [&](double lon) { return maps.vtec_tecu(0.4, lon * kDegree, kNoon + s); };
     take_worst(out, std::abs(at(180.0 - 1e-9) - at(-180.0 + 1e-9)));

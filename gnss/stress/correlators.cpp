@@ -12,12 +12,12 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 
 /// Piecewise linear: 1 at 0, -1/2 of BOC(1,1) at half a chip, nothing from one chip on, whatever the distance.
 StressFigure infinite_band(Modulation modulation) {
   const CodeCorrelation R(modulation, 0.0);
-  StressFigure out{0.0, 8.0 * kEps};
+  StressFigure out{0.0, 8.0 * kEpsilon};
   const bool boc = modulation == Modulation::kBoc11;
   take_worst(out, std::abs(R.at(0.0) - 1.0));
   take_worst(out, std::abs(R.at(0.5) - (boc ? -0.5 : 0.5)));
@@ -40,8 +40,8 @@ StressFigure tail(Modulation modulation, double bandwidth_chips, double x) {
   const CodeCorrelation R(modulation, bandwidth_chips * chip_rate_hz(modulation));
   double weights = 0.0;
   for (const auto& kink : R.kinks()) weights += std::abs(kink.slope_change);
-  StressFigure out{
-      0.0, weights / (std::pow(kPi, 3) * bandwidth_chips * bandwidth_chips * (x - 1.0)) + 16.0 * kEps * x * weights};
+  StressFigure out{0.0, weights / (std::pow(kPi, 3) * bandwidth_chips * bandwidth_chips * (x - 1.0)) +
+                            16.0 * kEpsilon * x * weights};
   for (int k = 0; k < 100; ++k) {
     take_worst(out, std::abs(R.at(x + 0.01 * k)));
     take_worst(out, std::abs(R.at(x + 0.01 * k) - R.at(-x - 0.01 * k)));
@@ -103,7 +103,8 @@ StressFigure echo(double spacing, double amplitude, double delay_chips) {
   else if (delay_chips <= 1.0 - half)
     exact = amplitude * half;
   if (!lock) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-  return {std::abs(lock->delay_m / chip_m - exact), 2.0 * kEps + 16.0 * kEps * (spacing + std::min(delay_chips, 2.0))};
+  return {std::abs(lock->delay_m / chip_m - exact),
+          2.0 * kEpsilon + 16.0 * kEpsilon * (spacing + std::min(delay_chips, 2.0))};
 }
 
 /// Two signals that cancel: no lock, or the amplitude of what is left; a figure counts locks of more than that.
@@ -124,7 +125,7 @@ StressFigure noise(double spacing, double cn0_dbhz, double loop_hz, double integ
   const double exact =
       loop.correlation().chip_m() * std::sqrt(loop_hz * (1.0 - 0.5 * loop_hz * integration_s) * spacing / (2.0 * cn0) *
                                               (1.0 + 2.0 / (integration_s * cn0 * (2.0 - spacing))));
-  return {std::abs(loop.noise_m(cn0_dbhz) / exact - 1.0), 64.0 * kEps / spacing};
+  return {std::abs(loop.noise_m(cn0_dbhz) / exact - 1.0), 64.0 * kEpsilon / spacing};
 }
 
 /// An echo beyond the chip, or 80 dB down, or turning fast, must not count; a figure is how far the code moves, m.

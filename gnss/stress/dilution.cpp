@@ -13,7 +13,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 
 /// A frame that has nothing to do with the axes, so that no zeros help.
 Eigen::Matrix3d some_frame() {
@@ -45,7 +45,7 @@ StressFigure cone_dops(int n, double gdop) {
   const double h2 = 4.0 / (n * s * s), v2 = (n + 1.0) / (n * d * d), t2 = (n * c * c + 1.0) / (n * d * d);
   const Dop dop = dilution_of_precision(turned(cone(n, alpha)), some_frame(), true);
   const double exact = std::sqrt(h2 + v2 + t2);
-  StressFigure out{0.0, 4.0 * std::sqrt(n + 1.0) * kEps * exact + 32.0 * kEps};
+  StressFigure out{0.0, 4.0 * std::sqrt(n + 1.0) * kEpsilon * exact + 32.0 * kEpsilon};
   take_worst(out, std::abs(dop.gdop / exact - 1.0));
   take_worst(out, std::abs(dop.vdop / std::sqrt(v2) - 1.0));
   take_worst(out, std::abs(dop.tdop / std::sqrt(t2) - 1.0));
@@ -56,7 +56,7 @@ StressFigure cone_dops(int n, double gdop) {
 /// that four can have.
 StressFigure tetrahedron() {
   const Dop dop = dilution_of_precision(turned(cone(3, std::acos(-1.0 / 3.0))), some_frame(), true);
-  StressFigure out{0.0, 64.0 * kEps};
+  StressFigure out{0.0, 64.0 * kEpsilon};
   take_worst(out, std::abs(dop.gdop - std::sqrt(2.5)));
   take_worst(out, std::abs(dop.pdop - 1.5));
   take_worst(out, std::abs(dop.tdop - 0.5));
@@ -66,7 +66,8 @@ StressFigure tetrahedron() {
 /// The smallest singular value is no more than the rounding of the lines, sqrt(n) eps; so 1 / GDOP is.
 StressFigure inverse_gdop(const std::vector<Eigen::Vector3d>& lines) {
   const Dop dop = dilution_of_precision(turned(lines), some_frame(), true);
-  return {std::isnan(dop.gdop) ? dop.gdop : 1.0 / dop.gdop, 4.0 * std::sqrt(static_cast<double>(lines.size())) * kEps};
+  return {std::isnan(dop.gdop) ? dop.gdop : 1.0 / dop.gdop,
+          4.0 * std::sqrt(static_cast<double>(lines.size())) * kEpsilon};
 }
 
 std::vector<Eigen::Vector3d> ring(int n, double elevation_rad) {

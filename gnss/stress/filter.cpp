@@ -17,7 +17,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 const GpsTime kStart = GpsTime::from_week_sow(1617, 388800.0);
 const Geodetic kHere{0.5646, -1.586, 60.0};
 const Eigen::Vector3d kVelocity_E(6.0, -8.0, 3.0);
@@ -63,7 +63,7 @@ double not_positive(const Eigen::Matrix<double, 6, 6>& P) {
 }
 
 /// Of an innovation, times GDOP.
-constexpr double kPositionRounding_m = 8.0 * kEps * 2.2e7 * 4.0;
+constexpr double kPositionRounding_m = 8.0 * kEpsilon * 2.2e7 * 4.0;
 
 /// After `updates` of exact measurements of that sigma. Joseph's form is symmetric and positive but for the rounding of
 /// products of eleven terms, 3 * 11 eps of the largest element, from one update to the next: it contracts. Meanwhile
@@ -76,7 +76,7 @@ StressFigure covariance(double sigma_m, double interval_s, int updates) {
     if (k % 50 == 0) filter.reset();
     const auto found = filter.update(kStart + interval_s * k, now.ranges, now.rates, now.truth_E);
     if (!found.ok) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-    take_worst(out, not_positive(found.covariance) / (64.0 * kEps));
+    take_worst(out, not_positive(found.covariance) / (64.0 * kEpsilon));
     take_worst(out, (found.p_E - now.truth_E).norm() / (2.0 * kPositionRounding_m));
   }
   return out;
@@ -153,7 +153,7 @@ StressFigure predictions(double interval_s) {
       begun.covariance.topLeftCorner<3, 3>() + kSpan_s * kSpan_s * begun.covariance.bottomRightCorner<3, 3>() +
       Eigen::Matrix3d::Identity() * std::pow(p.acceleration_m_s2, 2) * std::pow(kSpan_s, 3) / 3.0;
   const double error = (last.covariance.topLeftCorner<3, 3>() - expected).norm() / expected.norm();
-  return {error, (64.0 + 8.0 * steps) * kEps};
+  return {error, (64.0 + 8.0 * steps) * kEpsilon};
 }
 
 SatelliteId sv() {
@@ -190,7 +190,7 @@ StressFigure divergence(double rate_m_s) {
   }
   const double closed_m = -2.0 * rate_m_s * (kN - 1.0);
   return {std::abs(bias_m - closed_m),
-          std::abs(closed_m) * kN * std::exp(-(kEpochs - kN) / kN) + 0.5 * kN * kEps * 2.2e7};
+          std::abs(closed_m) * kN * std::exp(-(kEpochs - kN) / kN) + 0.5 * kN * kEpsilon * 2.2e7};
 }
 
 }  // namespace

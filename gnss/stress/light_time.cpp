@@ -13,7 +13,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 const GpsTime kReceived = GpsTime::from_week_sow(1617, 388800.0);
 const SatelliteId kSv{GnssSystem::kGps, 1};
 const Eigen::Vector3d kAntenna(-0.8e6, -5.3e6, 3.4e6);
@@ -108,14 +108,14 @@ StressFigure from_pseudorange(double off_s) {
   const double pseudorange_m = sent->range_m + kSpeedOfLight * (off_s - satellite_clock_s);
   const auto seen = transmission_from_pseudorange(one, kSv, kReceived + off_s, pseudorange_m);
   // Two rounded instants, the pseudorange's own digits (eps c off), and the light time's 1e-5 m of range (33 fs).
-  const double time_s = 1.5e-9 + 4.0 * kEps * std::abs(off_s);
+  const double time_s = 1.5e-9 + 4.0 * kEpsilon * std::abs(off_s);
   return {(seen->state.p_E - sent->state.p_E).norm(), 4.5e3 * time_s};
 }
 
 /// Range rate against the central difference of the exact range. "Exact" by its docstring; what is left are roundings:
 /// each of some 64 operations by eps of the satellite's speed in E.
 StressFigure rate(double speed_m_s) {
-  StressFigure out{0.0, 64.0 * kEps * (speed_m_s + kGpsEarthRate * 26.56e6)};
+  StressFigure out{0.0, 64.0 * kEpsilon * (speed_m_s + kGpsEarthRate * 26.56e6)};
   for (int k = 0; k < 12; ++k) {
     const Straight one(place(k, 26.56e6), speed_m_s * place(7 * k % 12, 1.0));
     const auto range_m = [&](long double s) {

@@ -18,7 +18,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -34,7 +34,7 @@ StressFigure anomaly_error(double e) {
     const double E = std::min(std::pow(10.0, k / 10.0), 3.1);
     const long double exact = static_cast<long double>(E) - static_cast<long double>(e) * sinl(E);
     const double M = static_cast<double>(exact);
-    const double bound = (0.5 * kEps * M + 3.0 * kEps * E) / (1.0 - e * std::cos(E)) + 2.0 * kEps * E;
+    const double bound = (0.5 * kEpsilon * M + 3.0 * kEpsilon * E) / (1.0 - e * std::cos(E)) + 2.0 * kEpsilon * E;
     take_worst(out, std::abs(eccentric_anomaly(M, e) - E) / bound);
     take_worst(out, std::abs(eccentric_anomaly(-M, e) + E) / bound);
   }
@@ -49,7 +49,7 @@ StressFigure residual_after_turns(double turns) {
     const double e = 0.999 * k / 63.0, M = 2.0 * kPi * turns + 0.1 * k - 3.0;
     const double E = eccentric_anomaly(M, e);
     const long double residual = static_cast<long double>(E) - e * sinl(E) - M;
-    take_worst(out, static_cast<double>(fabsl(residual)) / (2.0 * kEps * std::abs(M)));
+    take_worst(out, static_cast<double>(fabsl(residual)) / (2.0 * kEpsilon * std::abs(M)));
   }
   return out;
 }
@@ -60,13 +60,7 @@ StressFigure taken_anomalies() {
   const std::array<std::array<double, 2>, 7> wrong{
       {{1.0, 1.0}, {1.0, 1.5}, {1.0, -1e-300}, {1.0, kNotANumber}, {kNotANumber, 0.1}, {kInf, 0.1}, {-kInf, 0.1}}};
   StressFigure out;
-  for (const auto& [M, e] : wrong) {
-    try {
-      eccentric_anomaly(M, e);
-      out.figure += 1.0;
-    } catch (const ProgramError&) {
-    }
-  }
+  for (const auto& pair : wrong) out.figure += stress::not_refused([&pair] { eccentric_anomaly(pair[0], pair[1]); });
   return out;
 }
 
@@ -88,7 +82,7 @@ StressFigure perigee_velocity(double e) {
   constexpr double h = 0.05;
   const double a = r.sqrt_a * r.sqrt_a, rp = a * (1.0 - e);
   const double rate = std::sqrt(kGpsMu * (1.0 + e) / (rp * rp * rp));
-  StressFigure out{0.0, 1.5 * 16.0 * kEps * a / (1.0 - e) / h + std::pow(h, 4) / 30.0 * rp * std::pow(rate, 5)};
+  StressFigure out{0.0, 1.5 * 16.0 * kEpsilon * a / (1.0 - e) / h + std::pow(h, 4) / 30.0 * rp * std::pow(rate, 5)};
   for (int k = -5; k <= 5; ++k) {
     const GpsTime t = r.toe + 0.1 * k;
     const auto p = [&](double dt) { return r.at(t + dt).p_E; };
@@ -108,7 +102,7 @@ StressFigure track_returns(std::int64_t turns) {
   const GpsTime t0 = GpsTime::from_calendar(2010, 7, 1, 13, 0, 0.0);
   const auto turn_ns = static_cast<std::int64_t>(llroundl(2e9L * std::numbers::pi_v<long double> / rate * turns));
   const double days = static_cast<double>(turn_ns) / 8.64e13;
-  const double angle = 24.0 * kEps * 2.0 * kPi + 3.0 * kEps * 2.0 * kPi * days;
+  const double angle = 24.0 * kEpsilon * 2.0 * kPi + 3.0 * kEpsilon * 2.0 * kPi * days;
   StressFigure out{0.0, 26559.7e3 * angle + 4e3 * 1e-9};
   for (const SatelliteId sv : gps->satellites()) {
     const auto now = gps->state(sv, t0), then = gps->state(sv, GpsTime{t0.ns + turn_ns});
@@ -123,7 +117,7 @@ StressFigure track_returns(std::int64_t turns) {
 StressFigure nominal_velocity(int year) {
   const auto all = make_nominal("GRECJ");
   const GpsTime t = GpsTime::from_calendar(year, 2, 28, 23, 59, 59.5);
-  StressFigure out{0.0, 1.5 * 16.0 * kEps * 2.0 * kPi * 42.2e6};
+  StressFigure out{0.0, 1.5 * 16.0 * kEpsilon * 2.0 * kPi * 42.2e6};
   for (const SatelliteId sv : all->satellites()) {
     const auto p = [&](double dt) { return all->state(sv, t + dt)->p_E; };
     const Eigen::Vector3d slope = (8.0 * (p(1.0) - p(-1.0)) - (p(2.0) - p(-2.0))) / 12.0;
@@ -157,13 +151,8 @@ StressFigure there_and_back(double span_s) {
 StressFigure beyond_a_day() {
   StressFigure out;
   const GlonassEphemeris r = glonass();
-  for (const double s : {86400.5, -86400.5, 1e6, -1e9}) {
-    try {
-      (void)r.at(r.toe + s);
-      out.figure += 1.0;
-    } catch (const ProgramError&) {
-    }
-  }
+  for (const double s : {86400.5, -86400.5, 1e6, -1e9})
+    out.figure += stress::not_refused([&] { (void)r.at(r.toe + s); });
   return out;
 }
 

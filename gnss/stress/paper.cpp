@@ -14,7 +14,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 const GpsTime kT = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 std::shared_ptr<IonosphereModel> ionosphere(const char* name, double tecu) {
@@ -28,7 +28,7 @@ std::shared_ptr<IonosphereModel> ionosphere(const char* name, double tecu) {
 StressFigure unit_of_the_ionosphere(double tecu) {
   const auto printed = ionosphere("paper_printed", tecu), corrected = ionosphere("paper", tecu);
   const double zenith_m = 40.3 * tecu * 1e16 / (1575.42e6 * 1575.42e6);
-  StressFigure out{0.0, 8.0 * kEps * 6.0 * std::max(zenith_m, 1.0)};
+  StressFigure out{0.0, 8.0 * kEpsilon * 6.0 * std::max(zenith_m, 1.0)};
   for (double e = 0.0; e <= 0.5 * kPi; e += 0.01) {
     const SkyView view{kT, {0.56, -1.5, 0.0}, e, 1.0};
     const double s = std::sin(e), mapping = 2.037 / (std::sqrt(s * s + 0.076) + s);
@@ -50,7 +50,7 @@ StressFigure ephemeris_term(bool corrected) {
   };
   const double ns_m2 = 0.299792458 * 0.299792458;
   const double exact = corrected ? std::sqrt(1.0 + ns_m2 + 0.0918) : std::sqrt(100.0 + ns_m2 + 0.918);
-  StressFigure out{std::abs(at(26550e3, 0.0) - exact), 16.0 * kEps * exact};
+  StressFigure out{std::abs(at(26550e3, 0.0) - exact), 16.0 * kEpsilon * exact};
   const double poles = at(26550e3, 1.0), other = at(26550e3, -1.0), square = corrected ? 1.0 : 100.0;
   take_worst(out, std::abs(poles * poles - other * other - square) / (2.0 * exact));
   for (double r = 6.4e6; r < 1e8; r *= 1.1)
@@ -61,7 +61,7 @@ StressFigure ephemeris_term(bool corrected) {
 /// The printed dry term 2.2779 P / (1 - 0.00266 cos 2 lat - 0.0028 h) mm over the corrected one, 0.00028 in its place:
 /// at 20 km 5.4 % too much, its pole at 356 km out of reach of the heights that are covered.
 StressFigure dry_height(double height_m) {
-  StressFigure out{0.0, 16.0 * kEps};
+  StressFigure out{0.0, 16.0 * kEpsilon};
   for (const double lat : {-0.5 * kPi, 0.0, 0.25 * kPi, 0.5 * kPi}) {
     const double base = 1.0 - 0.00266 * std::cos(2.0 * lat), h_km = 1e-3 * height_m;
     const double ratio =
@@ -80,7 +80,7 @@ StressFigure wet_unit() {
   const double corrected = make_paper_corrected_troposphere(dry_air)->delay_m(zenith);
   const double dry_printed = 2.2779 / (1.0 - 0.00266 * std::cos(1.12));
   // Without vapour nothing wet is left of the corrected one; the printed one has its metre all the same.
-  StressFigure out{std::abs(printed - dry_printed - 1.0), 64.0 * kEps};
+  StressFigure out{std::abs(printed - dry_printed - 1.0), 64.0 * kEpsilon};
   take_worst(out, std::abs(corrected - dry_printed));
   return out;
 }

@@ -18,8 +18,8 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using stress::kEpsilon;
+using stress::kInfinity;
 const GpsTime kStart = GpsTime::from_week_sow(1617, 604790.0);  // the week ends in ten seconds
 
 std::unique_ptr<scene::Scene> empty_scene(const Geodetic& origin) {
@@ -52,7 +52,7 @@ StressFigure fix_at(double lat_deg, double lon_deg, double h_m) {
   for (std::int64_t k = 0; k < 30; ++k) {
     const GnssOutput got = (*sensor)->measure(k, tick(kStart, k, 2.0), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
                                               scene::SceneAt(*scene));
-    if (got.fix.status == FixStatus::kNone) return {kInf, 1.0};
+    if (got.fix.status == FixStatus::kNone) return {kInfinity, 1.0};
     const double error_m = (got.fix.p_A_E - scene->frame().origin_E()).norm();
     take_worst(out, error_m / (got.fix.dop.gdop * 2.0 * (1e-5 + 0.5e-9 * 900.0)));
   }
@@ -92,7 +92,8 @@ StressFigure all_errors_at(double lat_deg, double lon_deg, double h_m) {
 StressFigure heights() {
   StressFigure out;
   const auto refused = [&](const Status& s) { return !s.ok() && !s.error().what.empty(); };
-  for (const double h : {-500.1, -6378137.0, 20000.1, 1e7, kInf, -kInf, std::numeric_limits<double>::quiet_NaN()})
+  for (const double h :
+       {-500.1, -6378137.0, 20000.1, 1e7, kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()})
     out.figure += refused(check_antenna_height(h, Error{})) ? 0.0 : 1.0;
   for (const double h : {-500.0, -400.0, 0.0, 8848.0, 20000.0})
     out.figure += refused(check_antenna_height(h, Error{})) ? 1.0 : 0.0;
@@ -102,7 +103,7 @@ StressFigure heights() {
   out.figure += refused(check_antenna_height(Eigen::Vector3d::Zero().eval(), Error{})) ? 0.0 : 1.0;
   out.figure += refused(check_antenna_height(Eigen::Vector3d(1e-300, 0.0, 0.0), Error{})) ? 0.0 : 1.0;
   out.figure += refused(check_antenna_height(Eigen::Vector3d(kNaN, 6.4e6, 0.0), Error{})) ? 0.0 : 1.0;
-  out.figure += refused(check_antenna_height(Eigen::Vector3d(kInf, 6.4e6, 0.0), Error{})) ? 0.0 : 1.0;
+  out.figure += refused(check_antenna_height(Eigen::Vector3d(kInfinity, 6.4e6, 0.0), Error{})) ? 0.0 : 1.0;
   return out;
 }
 
@@ -118,10 +119,10 @@ StressFigure horizon(double lat_deg) {
     for (const double a : {0.0, 0.5 * kPi, kPi, 6.28}) {
       const Eigen::Vector3d enu(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
       const SkyView v = here.view(kStart, p + 2e7 * (R * enu));
-      const double rounding = 16.0 * kEps;
+      const double rounding = 16.0 * kEpsilon;
       take_worst(out, std::abs(v.elevation_rad - e) /
                           std::min(rounding / std::max(std::cos(e), 1e-300), std::sqrt(2.0 * rounding)));
-      if (!(v.azimuth_rad >= 0.0 && v.azimuth_rad < 2.0 * kPi)) out.figure = kInf;
+      if (!(v.azimuth_rad >= 0.0 && v.azimuth_rad < 2.0 * kPi)) out.figure = kInfinity;
       if (e < 1.0) take_worst(out, std::abs(std::remainder(v.azimuth_rad - a, 2.0 * kPi)) / (rounding / std::cos(e)));
     }
   return out;
@@ -132,7 +133,7 @@ StressFigure not_finite() {
   const auto scene = empty_scene({0.5, 1.0, 50.0});
   StressFigure out;
   for (const char* model : {"pseudorange", "truth_plus_isotropic", "truth_plus_white", "satellite_count"})
-    for (const double bad : {kNaN, kInf, -kInf})
+    for (const double bad : {kNaN, kInfinity, -kInfinity})
       for (int field = 0; field < 6; ++field) {
         GnssConfig c = errors_off();
         c.model.name = model;

@@ -13,7 +13,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 
 struct Moments {
   double variance = 0.0, product = 0.0;
@@ -104,7 +104,7 @@ StressFigure clock_rate_after(std::int64_t epochs) {
   const auto clock = make_tcxo({.seed = 5, .interval_s = dt});
   const double before = clock->offset_m(epochs), rate = clock->rate_m_s(epochs), after = clock->offset_m(epochs + 1);
   const double sigma_m = kSpeedOfLight * std::sqrt(1e-19 * dt + 2.0 * kPi * kPi * 2e-20 * dt * dt * dt / 3.0);
-  return {std::abs(after - before - rate * dt), 5.5 * sigma_m + 4.0 * kEps * std::abs(before)};
+  return {std::abs(after - before - rate * dt), 5.5 * sigma_m + 4.0 * kEpsilon * std::abs(before)};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 constexpr double kRadius_m = 26559.7e3, kRate = 2.0 * 7.2921151467e-5;  // of the built-in GPS, within 1e-4 of it
 const GpsTime kStart = GpsTime::from_week_sow(1617, 600000.0);          // so that the week ends inside
 const SatelliteId kSv{GnssSystem::kGps, 1};
@@ -60,7 +60,7 @@ StressFigure interpolated(double interval_s, double place) {
   const auto [product, lebesgue] = nodes_at(place - first);
   const double truncation = product / 3628800.0 * std::pow(1.0002 * kRate * interval_s, 10) * kRadius_m;
   return {(found->p_E - make_nominal_gps()->state(kSv, t)->p_E).norm(),
-          truncation + 16.0 * kEps * kRadius_m * std::max(lebesgue, 1.0)};
+          truncation + 16.0 * kEpsilon * kRadius_m * std::max(lebesgue, 1.0)};
 }
 
 /// No state beyond half an interval of a run, beside a missing epoch, before too short a run; a figure counts states.
@@ -96,7 +96,7 @@ StressFigure beside() {
 /// apart it moves by 4 km/s * 2 ns, and rounds.
 StressFigure at_samples() {
   const auto precise = make_precise(sampled(900.0, 30));
-  StressFigure out{0.0, 2e-9 * 4000.0 + 32.0 * kEps * kRadius_m};
+  StressFigure out{0.0, 2e-9 * 4000.0 + 32.0 * kEpsilon * kRadius_m};
   for (int k = 1; k < 29; ++k) {
     const std::int64_t ns = (kStart + k * 900.0).ns;
     const auto a = precise->state(kSv, GpsTime{ns - 1}), b = precise->state(kSv, GpsTime{ns + 1});

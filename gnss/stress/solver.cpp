@@ -16,10 +16,10 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using stress::kEpsilon;
+using stress::kInfinity;
 /// What rounding leaves of a range of 2.6e7 m: some eight operations.
-constexpr double kRangeRounding_m = 8.0 * kEps * 2.6e7;
+constexpr double kRangeRounding_m = 8.0 * kEpsilon * 2.6e7;
 constexpr double kClock_m = 3e5;
 
 const Geodetic kHere{0.5646, -1.586, 60.0};
@@ -141,7 +141,7 @@ StressFigure outlier(const char* exclusion, double by_m) {
   ranges[6].range_m += by_m;
   const auto found = make_least_squares({.fault_exclusion = exclusion})->solve(ranges, ecef_from_geodetic(kHere));
   StressFigure out{error_m(found, kHere), kRangeRounding_m * (found.ok ? found.dop.gdop : 1.0)};
-  if (found.ok && (found.used[6] || found.satellites_used() != 9)) out.figure = kInf;
+  if (found.ok && (found.used[6] || found.satellites_used() != 9)) out.figure = kInfinity;
   if (!found.ok && std::abs(by_m) > 1e8 && !found.reason.empty()) out.figure = 0.0;
   return out;
 }
@@ -165,7 +165,7 @@ StressFigure two_halves(const char* exclusion) {
 /// Field by field, what is not finite: refused by a check, or without a fix. A figure counts fixes.
 StressFigure not_finite() {
   StressFigure out;
-  for (const double bad : {kNaN, kInf, -kInf})
+  for (const double bad : {kNaN, kInfinity, -kInfinity})
     for (int field = 0; field < 5; ++field) {
       auto ranges = open_sky(kHere, 6);
       Eigen::Vector3d guess = ecef_from_geodetic(kHere);
@@ -203,7 +203,7 @@ StressFigure velocity(double speed_m_s, double gdop) {
   std::vector<Eigen::Vector3d> lines;
   for (const auto& r : rates) lines.push_back((r.p_E - p_E).normalized());
   const double true_gdop = dilution_of_precision(lines, rotation_E_from_enu(kHere), true).gdop;
-  return {error, 4.0 * kEps * (4e3 + speed_m_s) * true_gdop};
+  return {error, 4.0 * kEpsilon * (4e3 + speed_m_s) * true_gdop};
 }
 
 }  // namespace

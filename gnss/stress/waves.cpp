@@ -21,8 +21,8 @@ namespace canyon::gnss {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using stress::kEpsilon;
+using stress::kInfinity;
 
 /// At even whole x = 2^k, exp(j pi x^2 / 2) = 1: C = 1/2 + O(1 / (pi^2 x^3)), S = 1/2 - 1 / (pi x). The documented
 /// 1e-10 and that next term.
@@ -38,7 +38,7 @@ StressFigure at_powers_of_two(int k) {
 /// Across the seam of series and continued fraction, and from nothing on: Simpson in long double, h = x / 20,000, whose
 /// error is h^4 / 180 x (pi x)^4 < 1e-13; at the seam the series' largest terms are e^(2 pi) = 535: 2 * 535 eps.
 StressFigure small_arguments() {
-  StressFigure out{0.0, 1e-13 + 2.0 * 535.0 * kEps};
+  StressFigure out{0.0, 1e-13 + 2.0 * 535.0 * kEpsilon};
   for (const double x : {0.0, 1e-300, 1e-9, 0.1, 1.0, 1.9999999, 2.0, 2.0000001, 3.7, 5.0}) {
     constexpr int n = 20000;
     const long double h = static_cast<long double>(x) / n, half_pi = 0.5L * std::numbers::pi_v<long double>;
@@ -59,7 +59,7 @@ StressFigure small_arguments() {
 StressFigure deep_shadow(double nu) {
   const double exact = 1.0 / (std::sqrt(2.0) * kPi * nu);
   return {std::abs(std::abs(knife_edge_field(nu)) / exact - 1.0),
-          4.0 / std::pow(kPi * nu * nu, 2) + 8.0 * kEps / exact};
+          4.0 / std::pow(kPi * nu * nu, 2) + 8.0 * kEpsilon / exact};
 }
 
 /// Far lit the field is 1 with ripples of 1 / (sqrt 2 pi nu) and the same terms.
@@ -71,7 +71,7 @@ StressFigure far_lit(double nu) {
 
 /// At the shadow's border half of the field; beside it F changes by |dF/dnu| = 1 / sqrt 2 at most.
 StressFigure shadow_border() {
-  StressFigure out{std::abs(knife_edge_field(0.0) - 0.5), 8.0 * kEps};
+  StressFigure out{std::abs(knife_edge_field(0.0) - 0.5), 8.0 * kEpsilon};
   for (const double nu : {1e-300, 1e-12, -1e-12})
     take_worst(out, beyond(std::abs(knife_edge_field(nu) - 0.5), std::abs(nu)));
   // The lit and the shadowed side of one edge make up the free field (Babinet).
@@ -83,7 +83,7 @@ StressFigure shadow_border() {
 /// What reflects nothing, at all incidences up to grazing: a medium of permittivity 1. With c = cos i, a rounding of
 /// s^2 = 1 - c^2 by eps changes the root sqrt(1 - s^2) by eps / c, which is below c / 1000 as long as c > 1e-6.
 StressFigure air() {
-  StressFigure out{0.0, 32.0 * kEps};
+  StressFigure out{0.0, 32.0 * kEpsilon};
   for (const double c : {1.0, 0.5, 1e-2, 1e-4, 1e-6, 1e-8, 0.0}) {
     const double incidence = std::acos(c);
     const Fresnel f = fresnel(1.0, incidence);
@@ -103,12 +103,12 @@ StressFigure grazing(Complex permittivity) {
     if (share > 0.05) continue;
     const Fresnel f = fresnel(permittivity, std::acos(c));
     const double cosine = std::cos(std::acos(c));
-    take_worst(out, std::abs(f.te + 1.0) / (2.0 * cosine / root * (1.0 + 2.0 * share) + 8.0 * kEps));
-    take_worst(out, std::abs(f.tm + 1.0) / (2.0 * share * (1.0 + 2.0 * share) + 8.0 * kEps));
+    take_worst(out, std::abs(f.te + 1.0) / (2.0 * cosine / root * (1.0 + 2.0 * share) + 8.0 * kEpsilon));
+    take_worst(out, std::abs(f.tm + 1.0) / (2.0 * share * (1.0 + 2.0 * share) + 8.0 * kEpsilon));
   }
   for (int k = 0; k <= 1000; ++k) {
     const Fresnel f = fresnel(permittivity, 0.5 * kPi * k / 1000.0);
-    take_worst(out, worse(std::abs(f.te), std::abs(f.tm)) / (1.0 + 8.0 * kEps));
+    take_worst(out, worse(std::abs(f.te), std::abs(f.tm)) / (1.0 + 8.0 * kEpsilon));
   }
   return out;
 }
@@ -116,7 +116,7 @@ StressFigure grazing(Complex permittivity) {
 /// Slabs: of no thickness none is reflected, endless ones reflect as a half-space, and half a wave thick without loss
 /// none. A slab's phase of 2 pi d / wavelength n rounds by eps of it.
 StressFigure slab(double thickness_m) {
-  StressFigure out{0.0, 64.0 * kEps};
+  StressFigure out{0.0, 64.0 * kEpsilon};
   const double wavelength = kL1WavelengthM;
   for (const double i : {0.0, 0.7, 1.5}) {
     if (thickness_m == 0.0) {
@@ -149,7 +149,7 @@ StressFigure factors() {
 /// The field of bounces along a straight corner: every further one at the same two walls, with coefficients of a
 /// perfect conductor, keeps |field| = 1: rotations of phase do not lose power. 64 eps a bounce.
 StressFigure conductor_bounces() {
-  StressFigure out{0.0, 3.0 * 64.0 * kEps};
+  StressFigure out{0.0, 3.0 * 64.0 * kEpsilon};
   for (double tilt = 0.0; tilt <= 1.5; tilt += 0.1) {
     Eigen::Vector3d way(std::cos(tilt), 0.1 * std::sin(tilt), -std::sin(tilt));
     way.normalize();
@@ -197,8 +197,8 @@ StressFigure excess(double d_m, double elevation_rad, double azimuth_rad) {
   const Eigen::Vector3d satellite(-std::cos(elevation_rad) * std::cos(azimuth_rad),
                                   std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad));
   const SignalPaths found = paths_of(*scene, {0.0, 0.0, 0.0}, satellite);
-  if (found.echoes.size() != 1 || !found.line_of_sight) return {kInf, 0.0};
-  return {std::abs(found.echoes[0].excess_m - 2.0 * d_m * -satellite.x()), 32.0 * kEps * std::max(d_m, 1.0)};
+  if (found.echoes.size() != 1 || !found.line_of_sight) return {kInfinity, 0.0};
+  return {std::abs(found.echoes[0].excess_m - 2.0 * d_m * -satellite.x()), 32.0 * kEpsilon * std::max(d_m, 1.0)};
 }
 
 /// On the wall, in it, or along it nothing may come that is not finite; a figure counts.

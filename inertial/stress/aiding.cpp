@@ -1,7 +1,7 @@
 #include <array>
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/inertial/aiding/barometer.h"
 #include "canyon/inertial/aiding/odometer.h"
 #include "canyon/inertial/aiding/standard_atmosphere.h"
@@ -11,7 +11,6 @@ namespace canyon::inertial {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 
 /// Height to pressure and back over the whole table, and clamped beside it. A rounding of the power is one of the
 /// pressure, and of T0 / L = 44 km in height; there are eight.
@@ -74,24 +73,24 @@ StressFigure ticks(double speed_m_s, double metres_per_tick) {
 }  // namespace
 
 std::vector<StressCase> aiding_cases() {
-  const StressCase table =
-      stress::mechanism(StressGroup::kGeometry, "the ends of the standard atmosphere",
-                        "beyond 44 km the base of the power is negative, and the pressure no number",
-                        "height and back to eight roundings, clamped to its ends beside them", "of the bound");
-  const StressCase lag = stress::mechanism(
+  const StressMechanism table{StressGroup::kGeometry, "the ends of the standard atmosphere",
+                              "beyond 44 km the base of the power is negative, and the pressure no number",
+                              "height and back to eight roundings, clamped to its ends beside them", "of the bound"};
+  const StressMechanism lag{
       StressGroup::kStiff, "a lag far shorter or longer than the samples",
       "an explicit step overshoots where dt > lag; where dt << lag the difference of two large terms has no digits",
-      "the closed form of a first-order lag behind a ramp and a rest, to eight roundings of its terms", "of the bound");
-  const StressCase count = stress::mechanism(
+      "the closed form of a first-order lag behind a ramp and a rest, to eight roundings of its terms", "of the bound"};
+  const StressMechanism count{
       StressGroup::kLong, "fractions that a count leaves over", "each sample rounds its own ticks, and the sum drifts",
-      "the distance over a tick's length, less than one tick off after 20 000 samples", "ticks");
-  std::vector<StressCase> cases = {row(table, "aiding/standard_atmosphere_to_its_ends", atmosphere)};
+      "the distance over a tick's length, less than one tick off after 20 000 samples", "ticks"};
+  StressRows rows;
+  rows.of(table).add("aiding/standard_atmosphere_to_its_ends", atmosphere);
   for (const auto& [lag_s, rate_hz] : {std::pair{1e-6, 0.1}, {1e-3, 10.0}, {1e3, 1000.0}})
-    cases.push_back(row(lag, "aiding/barometer_lag_" + stress::text(lag_s) + "_s_at_" + stress::text(rate_hz) + "_hz",
-                        [lag_s = lag_s, rate_hz = rate_hz] { return lagging(lag_s, rate_hz); }));
-  cases.push_back(row(count, "aiding/odometer_slower_than_a_tick", [] { return ticks(0.0123, 100.0); }));
-  cases.push_back(row(count, "aiding/odometer_1e7_ticks_a_sample", [] { return ticks(-1000.0 / 3.0, 1e-6); }));
-  return cases;
+    rows.of(lag).add("aiding/barometer_lag_" + stress::text(lag_s) + "_s_at_" + stress::text(rate_hz) + "_hz",
+                     [lag_s = lag_s, rate_hz = rate_hz] { return lagging(lag_s, rate_hz); });
+  rows.of(count).add("aiding/odometer_slower_than_a_tick", [] { return ticks(0.0123, 100.0); });
+  rows.of(count).add("aiding/odometer_1e7_ticks_a_sample", [] { return ticks(-1000.0 / 3.0, 1e-6); });
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

@@ -4,13 +4,11 @@
 #include <vector>
 
 #include "canyon/core/random/random.h"
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/inertial/stress/subjects.h"
 
 namespace canyon::inertial {
 namespace {
-
-using stress::row;
 
 constexpr std::size_t kSamples = 4'000;
 
@@ -86,29 +84,26 @@ StressFigure refused_stamps() {
 
 std::vector<StressCase> deviation_cases() {
   const auto group = StressGroup::kData;
-  const StressCase mean =
-      stress::mechanism(group, "noise on a mean 10^9 times as large",
-                        "sums of the raw channel reach 10^13 and hold the noise to no digit",
-                        "the same as without the mean, to the roundings of the data themselves", "");
-  const StressCase still = stress::mechanism(group, "a channel that stands still",
-                                             "a logarithm of zero in the slope makes the interval no number",
-                                             "zero, to n^2 squared epsilons of the value, and a finite interval", "");
-  const StressCase stamps =
-      stress::mechanism(StressGroup::kLong, "stamps near 2^31 s in double seconds",
-                        "intervals of 0.01 s that are good to 2e-5 of themselves look "
-                        "like gaps or jitter",
-                        "one segment, the interval of its ends, jitter below the last bit", "of the bound");
-  const StressCase refusal =
-      stress::mechanism(group, "stamps that do not increase", "an interval of zero or no number divides",
-                        "each is refused", "let through");
-  std::vector<StressCase> cases;
+  const StressMechanism mean{group, "noise on a mean 10^9 times as large",
+                             "sums of the raw channel reach 10^13 and hold the noise to no digit",
+                             "the same as without the mean, to the roundings of the data themselves", ""};
+  const StressMechanism still{group, "a channel that stands still",
+                              "a logarithm of zero in the slope makes the interval no number",
+                              "zero, to n^2 squared epsilons of the value, and a finite interval", ""};
+  const StressMechanism stamps{StressGroup::kLong, "stamps near 2^31 s in double seconds",
+                               "intervals of 0.01 s that are good to 2e-5 of themselves look "
+                               "like gaps or jitter",
+                               "one segment, the interval of its ends, jitter below the last bit", "of the bound"};
+  const StressMechanism refusal{group, "stamps that do not increase", "an interval of zero or no number divides",
+                                "each is refused", "let through"};
+  StressRows rows;
   for (const std::string& kind : deviation_kinds())
-    cases.push_back(row(mean, "deviation/" + kind + "_on_a_mean_of_1e9", [kind] { return large_mean(kind); }));
+    rows.of(mean).add("deviation/" + kind + "_on_a_mean_of_1e9", [kind] { return large_mean(kind); });
   for (const double value : {0.1, 1e9})
-    cases.push_back(row(still, "deviation/of_a_constant_" + stress::text(value), [value] { return constant(value); }));
-  cases.push_back(row(stamps, "deviation/stamps_near_31_bits_of_seconds", late_stamps));
-  cases.push_back(row(refusal, "deviation/stamps_refused", refused_stamps));
-  return cases;
+    rows.of(still).add("deviation/of_a_constant_" + stress::text(value), [value] { return constant(value); });
+  rows.of(stamps).add("deviation/stamps_near_31_bits_of_seconds", late_stamps);
+  rows.of(refusal).add("deviation/stamps_refused", refused_stamps);
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/stress/subjects.h"
 
@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 
 std::unique_ptr<ErrorChain> chain_of(const CatalogueEntry& entry, double rate_hz) {
   return *make_error_chain("full", {.entry = entry, .seed = 4, .rate_hz = rate_hz});
@@ -170,42 +169,41 @@ StressFigure refused_samples() {
 
 std::vector<StressCase> error_chain_cases() {
   const auto group = StressGroup::kData;
-  const StressCase range = stress::mechanism(
+  const StressMechanism range{
       group, "an input beyond the range",
       "a limit that wraps around, is taken of the vector's length, or of the wrong unit",
-      "2000 deg/s and 50 g stay, with their sign, whatever comes in; within, the input to the bit", "samples");
-  const StressCase steps = stress::mechanism(
+      "2000 deg/s and 50 g stay, with their sign, whatever comes in; within, the input to the bit", "samples"};
+  const StressMechanism steps{
       group, "a step of the output against the size of the input",
       "beyond 2^51 steps the adding of 1.5 x 2^52 rounds to other steps, below half a step all is zero",
-      "half a step, or four roundings of the input where that is more", "of the bound");
-  const StressCase drift = stress::mechanism(
-      StressGroup::kLong, "a clock's error over a day", "stamps and intervals that are added up part ways",
-      "the interval is the difference of the stamps: half a nanosecond each", "ns");
-  const StressCase border = stress::mechanism(
+      "half a step, or four roundings of the input where that is more", "of the bound"};
+  const StressMechanism drift{StressGroup::kLong, "a clock's error over a day",
+                              "stamps and intervals that are added up part ways",
+                              "the interval is the difference of the stamps: half a nanosecond each", "ns"};
+  const StressMechanism border{
       group, "the border of a block of samples", "noise that depends on how many samples were asked for together",
-      "a batch over the border is to the bit what its samples are backwards, one by one", "samples");
-  const StressCase loss = stress::mechanism(
+      "a batch over the border is to the bit what its samples are backwards, one by one", "samples"};
+  const StressMechanism loss{
       group, "samples that do not arrive", "groups that follow one another last longer, and the share is another",
-      "the share, to six standard deviations of 20 000 draws, and the last sample repeated, never a new one", "");
-  const StressCase delay =
-      stress::mechanism(group, "a delay longer than the run", "the buffer is read before its beginning",
-                        "the first sample's motion, all along", "samples");
-  const StressCase refusal = stress::mechanism(group, "a sample that is not of the chain's own rate",
-                                               "noise of another interval is added without a word",
-                                               "each is refused, also an interval that is no number", "let through");
-  std::vector<StressCase> cases = {row(range, "error_chain/2000_deg_s_and_50_g", saturation),
-                                   row(border, "error_chain/batch_over_a_block", order_of_samples),
-                                   row(delay, "error_chain/latency_beyond_the_run", latency_beyond_the_run),
-                                   row(refusal, "error_chain/intervals_refused", refused_samples)};
+      "the share, to six standard deviations of 20 000 draws, and the last sample repeated, never a new one", ""};
+  const StressMechanism delay{group, "a delay longer than the run", "the buffer is read before its beginning",
+                              "the first sample's motion, all along", "samples"};
+  const StressMechanism refusal{group, "a sample that is not of the chain's own rate",
+                                "noise of another interval is added without a word",
+                                "each is refused, also an interval that is no number", "let through"};
+  StressRows rows;
+  rows.of(range).add("error_chain/2000_deg_s_and_50_g", saturation);
+  rows.of(border).add("error_chain/batch_over_a_block", order_of_samples);
+  rows.of(delay).add("error_chain/latency_beyond_the_run", latency_beyond_the_run);
+  rows.of(refusal).add("error_chain/intervals_refused", refused_samples);
   for (const double step : {1e-12, 1e-3, 10.0})
-    cases.push_back(
-        row(steps, "error_chain/resolution_" + stress::text(step) + "_deg_s", [=] { return quantization(step); }));
+    rows.of(steps).add("error_chain/resolution_" + stress::text(step) + "_deg_s", [=] { return quantization(step); });
   for (const double rate_hz : {10.0, 333.0, 5000.0})
-    cases.push_back(row(drift, "error_chain/clock_after_a_day_at_" + stress::text(rate_hz) + "_hz",
-                        [=] { return clock_of_a_day(rate_hz); }));
-  cases.push_back(row(loss, "error_chain/losses_of_24.5_percent", [] { return losses(24.5, 1.0); }));
-  cases.push_back(row(loss, "error_chain/losses_of_0.1_percent_7_long", [] { return losses(0.1, 7.0); }));
-  return cases;
+    rows.of(drift).add("error_chain/clock_after_a_day_at_" + stress::text(rate_hz) + "_hz",
+                       [=] { return clock_of_a_day(rate_hz); });
+  rows.of(loss).add("error_chain/losses_of_24.5_percent", [] { return losses(24.5, 1.0); });
+  rows.of(loss).add("error_chain/losses_of_0.1_percent_7_long", [] { return losses(0.1, 7.0); });
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

@@ -2,13 +2,11 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/inertial/stress/subjects.h"
 
 namespace canyon::inertial {
 namespace {
-
-using stress::row;
 
 /// Six standard deviations of a mean of `count` squares of unit normals: false alarm 2e-9.
 double six_sigma(double count) {
@@ -81,34 +79,34 @@ std::vector<StressCase> gauss_markov_cases() {
       "variance of the value, of what a step adds and of an interval's mean are the continuous process's, to six "
       "standard "
       "deviations of 900 to 230400 squares (false alarm 2e-9 each)";
-  const StressCase fast = stress::mechanism(
+  const StressMechanism fast{
       StressGroup::kStiff, "a process far faster than its samples",
       "an explicit step 1 - dt / tau is -10^5 and diverges; a mean taken as the value at an end has too much power",
-      expected, "of the bound");
-  const StressCase slow =
-      stress::mechanism(StressGroup::kStiff, "a process far slower than its samples",
-                        "1 - e^-2x cancels to nothing at x = 2e-13, and the process stands still; the bridge is 0 / 0",
-                        expected, "of the bound");
-  const StressCase order = stress::mechanism(
+      expected, "of the bound"};
+  const StressMechanism slow{
+      StressGroup::kStiff, "a process far slower than its samples",
+      "1 - e^-2x cancels to nothing at x = 2e-13, and the process stands still; the bridge is 0 / 0", expected,
+      "of the bound"};
+  const StressMechanism order{
       StressGroup::kData, "samples of a process out of order",
       "a recursion that goes on from whatever was asked for last",
       "backwards and alone they are the same bits; a negative number, a sigma or time that is none are refused",
-      "values");
-  StressCase day = stress::mechanism(StressGroup::kLong, "variance that a recursion loses or gains",
-                                     "a factor that is off by an epsilon of each of 4.3e8 steps",
-                                     "variance t after a day at 5 kHz, to six standard "
-                                     "deviations of 60 squares",
-                                     "");
+      "values"};
+  StressMechanism day{StressGroup::kLong, "variance that a recursion loses or gains",
+                      "a factor that is off by an epsilon of each of 4.3e8 steps",
+                      "variance t after a day at 5 kHz, to six standard "
+                      "deviations of 60 squares",
+                      ""};
   day.long_running = true;
-  std::vector<StressCase> cases;
+  StressRows rows;
   for (const double tau_s : {1e-6, 1e-3, 1.0, 1e3, 1e9})
     for (const double rate_hz : {10.0, 5000.0})
-      cases.push_back(row(rate_hz * tau_s < 1.0 ? fast : slow,
-                          "gauss_markov/tau_" + stress::text(tau_s) + "_s_at_" + stress::text(rate_hz) + "_hz",
-                          [=] { return law(tau_s, rate_hz); }));
-  cases.push_back(row(order, "gauss_markov/in_any_order", any_order));
-  cases.push_back(row(day, "gauss_markov/random_walk_of_a_day_at_5000_hz", walk_of_a_day));
-  return cases;
+      rows.of(rate_hz * tau_s < 1.0 ? fast : slow)
+          .add("gauss_markov/tau_" + stress::text(tau_s) + "_s_at_" + stress::text(rate_hz) + "_hz",
+               [=] { return law(tau_s, rate_hz); });
+  rows.of(order).add("gauss_markov/in_any_order", any_order);
+  rows.of(day).add("gauss_markov/random_walk_of_a_day_at_5000_hz", walk_of_a_day);
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

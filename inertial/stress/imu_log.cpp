@@ -8,14 +8,12 @@
 #include <vector>
 
 #include "canyon/core/process/staging_litter.h"
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/stress/subjects.h"
 
 namespace canyon::inertial {
 namespace {
-
-using stress::row;
 
 /// A file that is gone with this.
 class LogFile {
@@ -82,16 +80,16 @@ StressFigure damaged_lines() {
 }  // namespace
 
 std::vector<StressCase> imu_log_cases() {
-  const StressCase units =
-      stress::mechanism(StressGroup::kData, "a guess at units from the size of numbers",
-                        "314 rad/s is taken for deg/s, and a true log is refused (2026-11-22)",
-                        "what the header names is taken as named: every number to the bit", "numbers");
-  const StressCase damage =
-      stress::mechanism(StressGroup::kData, "fields that are no numbers, and times that do not increase",
-                        "not a number passes every comparison with a limit, an equal time divides by zero",
-                        "each line is refused", "let through");
-  return {row(units, "imu_log/coning_90_deg_at_50_hz", fast_coning),
-          row(damage, "imu_log/damaged_lines", damaged_lines)};
+  const StressMechanism units{StressGroup::kData, "a guess at units from the size of numbers",
+                              "314 rad/s is taken for deg/s, and a true log is refused (2026-11-22)",
+                              "what the header names is taken as named: every number to the bit", "numbers"};
+  const StressMechanism damage{StressGroup::kData, "fields that are no numbers, and times that do not increase",
+                               "not a number passes every comparison with a limit, an equal time divides by zero",
+                               "each line is refused", "let through"};
+  StressRows rows;
+  rows.of(units).add("imu_log/coning_90_deg_at_50_hz", fast_coning);
+  rows.of(damage).add("imu_log/damaged_lines", damaged_lines);
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

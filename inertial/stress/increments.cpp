@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "canyon/core/earth/earth.h"
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/motion/motion.h"
 #include "canyon/inertial/stress/subjects.h"
@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 using stress::kEpsilon;
-using stress::row;
 using stress::Worst;
 
 struct Reached {
@@ -147,45 +146,42 @@ StressFigure rounds_later(double later_s) {
 }  // namespace
 
 std::vector<StressCase> increment_cases() {
-  const StressCase fast =
-      stress::mechanism(StressGroup::kStiff, "a tolerance below rounding",
-                        "an absolute tolerance of 1e-12 is below an epsilon of 1e5 m/s: every interval is halved "
-                        "without end (2026-11-22: "
-                        "it did not end, nor heed Ctrl-C)",
-                        "the closed form, to what the quadrature says that it has reached", "of the bound");
-  const StressCase cone = stress::mechanism(
+  const StressMechanism fast{StressGroup::kStiff, "a tolerance below rounding",
+                             "an absolute tolerance of 1e-12 is below an epsilon of 1e5 m/s: every interval is halved "
+                             "without end (2026-11-22: "
+                             "it did not end, nor heed Ctrl-C)",
+                             "the closed form, to what the quadrature says that it has reached", "of the bound"};
+  const StressMechanism cone{
       StressGroup::kStiff, "coning of a whole turn within two samples",
       "sums of rotation vectors instead of rates lose the cone's own turn, or find it twice",
-      "-(1 - cos a) of a turn about the body's axis and the Earth's part, to the quadrature's word", "of the bound");
-  StressCase shake = stress::mechanism(
-      StressGroup::kStiff, "500 periods of a vibration within a sample", "too few points see another, slow vibration",
-      "A / w times the difference of cosines, to 1e-11 of the amplitude over the sample", "m/s");
+      "-(1 - cos a) of a turn about the body's axis and the Earth's part, to the quadrature's word", "of the bound"};
+  StressMechanism shake{StressGroup::kStiff, "500 periods of a vibration within a sample",
+                        "too few points see another, slow vibration",
+                        "A / w times the difference of cosines, to 1e-11 of the amplitude over the sample", "m/s"};
   shake.loose = "the bound adds the magnitudes of 256 panels' errors, which alternate and cancel";
-  const StressCase place = stress::mechanism(
-      StressGroup::kGeometry, "an attitude or place where angles are undefined",
-      "heading at a pole, yaw and roll at a pitch of 90 degrees, a height below the ellipsoid",
-      "the Earth's rate, gravity and the angle between them, to the quadrature's word", "of the bound");
-  const StressCase late = stress::mechanism(
+  const StressMechanism place{StressGroup::kGeometry, "an attitude or place where angles are undefined",
+                              "heading at a pole, yaw and roll at a pitch of 90 degrees, a height below the ellipsoid",
+                              "the Earth's rate, gravity and the angle between them, to the quadrature's word",
+                              "of the bound"};
+  const StressMechanism late{
       StressGroup::kLong, "the time since the start in a phase", "a phase of 1e6 rad has lost ten digits",
-      "the increments of a round that is the same, to the quadrature's word for each", "of the bound");
-  std::vector<StressCase> cases;
+      "the increments of a round that is the same, to the quadrature's word for each", "of the bound"};
+  StressRows rows;
   for (const double speed_m_s : {0.1, 10.0, 100.0})
-    cases.push_back(row(fast, "increments/circle_of_1_mm_at_" + stress::text(speed_m_s) + "_m_s",
-                        [=] { return small_circle(speed_m_s); }));
-  cases.push_back(row(cone, "increments/coning_90_deg_50_hz", [] { return coning(90.0, 50.0); }));
-  cases.push_back(row(cone, "increments/coning_179_deg_1000_hz", [] { return coning(179.0, 1000.0); }));
-  cases.push_back(row(shake, "increments/shaker_100_khz_10000_g", shaker));
-  cases.push_back(row(place, "increments/rest_at_the_north_pole", [] { return rest(90, 0, 0, 0, 0); }));
-  cases.push_back(
-      row(place, "increments/rest_at_the_south_pole_400_m_below", [] { return rest(-90, 180, -400, 0, 0); }));
-  cases.push_back(
-      row(place, "increments/rest_at_the_antimeridian_20_km_up", [] { return rest(-17, -180, 20000, 0, 180); }));
-  cases.push_back(row(place, "increments/rest_nose_down", [] { return rest(45, 10, 100, 90, 30); }));
-  cases.push_back(row(place, "increments/rest_nose_up", [] { return rest(45, 10, 100, -90, -150); }));
+    rows.of(fast).add("increments/circle_of_1_mm_at_" + stress::text(speed_m_s) + "_m_s",
+                      [=] { return small_circle(speed_m_s); });
+  rows.of(cone).add("increments/coning_90_deg_50_hz", [] { return coning(90.0, 50.0); });
+  rows.of(cone).add("increments/coning_179_deg_1000_hz", [] { return coning(179.0, 1000.0); });
+  rows.of(shake).add("increments/shaker_100_khz_10000_g", shaker);
+  rows.of(place).add("increments/rest_at_the_north_pole", [] { return rest(90, 0, 0, 0, 0); });
+  rows.of(place).add("increments/rest_at_the_south_pole_400_m_below", [] { return rest(-90, 180, -400, 0, 0); });
+  rows.of(place).add("increments/rest_at_the_antimeridian_20_km_up", [] { return rest(-17, -180, 20000, 0, 180); });
+  rows.of(place).add("increments/rest_nose_down", [] { return rest(45, 10, 100, 90, 30); });
+  rows.of(place).add("increments/rest_nose_up", [] { return rest(45, 10, 100, -90, -150); });
   for (const double rounds : {1000.0, 100000.0})
-    cases.push_back(row(late, "increments/" + stress::text(rounds * 64.0) + "_s_after_the_start",
-                        [=] { return rounds_later(rounds * 64.0); }));
-  return cases;
+    rows.of(late).add("increments/" + stress::text(rounds * 64.0) + "_s_after_the_start",
+                      [=] { return rounds_later(rounds * 64.0); });
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

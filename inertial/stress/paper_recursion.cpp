@@ -1,6 +1,6 @@
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/inertial/error_chain.h"
 #include "canyon/inertial/errors/markov_process.h"
 #include "canyon/inertial/paper_formulas.h"
@@ -8,8 +8,6 @@
 
 namespace canyon::inertial {
 namespace {
-
-using stress::row;
 
 /// Where the printed recursion stays below a thousand times what drives it, by halving. Its limit above 1 s is
 /// tau / (tau - 1), which is a thousand at 1.001 s: the border found lies 0.1 % beside that of stability.
@@ -68,36 +66,37 @@ StressFigure chains() {
 
 std::vector<StressCase> paper_recursion_cases() {
   const auto group = StressGroup::kStiff;
-  const StressCase stability = stress::mechanism(
+  const StressMechanism stability{
       group, "the printed bias recursion's border of stability", "sigma(t-1) / tau stands where e^(-dt/tau) belongs",
-      "as printed it diverges below tau = 1 s at any rate: found by halving, within 1 %", "s");
-  const StressCase growth = stress::mechanism(
+      "as printed it diverges below tau = 1 s at any rate: found by halving, within 1 %", "s"};
+  const StressMechanism growth{
       group, "divergence of the bias recursion as printed",
       "below 1 s each sample multiplies the bias by 1 / tau: 10^38 in a second at tau = 0.5 s and 125 Hz",
-      "the growth a sample is 1 / tau to 4 epsilons", "");
-  const StressCase corrected =
-      stress::mechanism(group, "the bias recursion as corrected, where the printed one diverges", "as printed",
-                        "the variance stays what it is: six standard deviations of 900 squares", "");
-  StressCase memory = stress::mechanism(group, "memory of the bias recursion as printed",
-                                        "its correlation time is dt / ln(tau), so it depends on the rate",
-                                        "falls to 1/e in dt / ln(tau), 3.5 ms at tau = 10 s and 125 Hz: roundings, "
-                                        "times the 10^4 by which ln(1.0001) cancels",
-                                        "");
+      "the growth a sample is 1 / tau to 4 epsilons", ""};
+  const StressMechanism corrected{group, "the bias recursion as corrected, where the printed one diverges",
+                                  "as printed", "the variance stays what it is: six standard deviations of 900 squares",
+                                  ""};
+  StressMechanism memory{group, "memory of the bias recursion as printed",
+                         "its correlation time is dt / ln(tau), so it depends on the rate",
+                         "falls to 1/e in dt / ln(tau), 3.5 ms at tau = 10 s and 125 Hz: roundings, "
+                         "times the 10^4 by which ln(1.0001) cancels",
+                         ""};
   memory.loose = "the bound is that of the slowest, whose logarithm cancels four digits";
-  const StressCase refusal = stress::mechanism(
+  const StressMechanism refusal{
       group, "a chain that would diverge", "the recursion overflows after some thousand samples, and the run with it",
-      "as printed it is refused up to 1 s and made above; as corrected it is always made: exact", "chains");
-  std::vector<StressCase> cases = {row(stability, "paper_recursion/border_of_stability", border),
-                                   row(refusal, "paper_recursion/chains_by_correlation_time", chains)};
+      "as printed it is refused up to 1 s and made above; as corrected it is always made: exact", "chains"};
+  StressRows rows;
+  rows.of(stability).add("paper_recursion/border_of_stability", border);
+  rows.of(refusal).add("paper_recursion/chains_by_correlation_time", chains);
   for (const double tau_s : {0.1, 0.5, 0.9}) {
     const std::string at = "_at_tau_" + stress::text(tau_s) + "_s";
-    cases.push_back(row(growth, "paper_recursion/as_printed" + at, [tau_s] { return printed_growth(tau_s); }));
-    cases.push_back(row(corrected, "paper_recursion/as_corrected" + at, [tau_s] { return corrected_variance(tau_s); }));
+    rows.of(growth).add("paper_recursion/as_printed" + at, [tau_s] { return printed_growth(tau_s); });
+    rows.of(corrected).add("paper_recursion/as_corrected" + at, [tau_s] { return corrected_variance(tau_s); });
   }
   for (const double tau_s : {1.0001, 10.0})
-    cases.push_back(row(memory, "paper_recursion/memory_at_tau_" + stress::text(tau_s) + "_s",
-                        [tau_s] { return printed_memory(tau_s); }));
-  return cases;
+    rows.of(memory).add("paper_recursion/memory_at_tau_" + stress::text(tau_s) + "_s",
+                        [tau_s] { return printed_memory(tau_s); });
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

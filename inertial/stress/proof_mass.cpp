@@ -2,7 +2,7 @@
 #include <complex>
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/mems/element_model.h"
 #include "canyon/inertial/mems/integrator.h"
@@ -13,7 +13,6 @@ namespace canyon::inertial {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 using Complex = std::complex<long double>;
 
 constexpr double kTemperature_k = 300.0;
@@ -163,7 +162,7 @@ StressFigure overload(double resonance_hz, double quality) {
 
 std::vector<StressCase> proof_mass_cases() {
   const auto group = StressGroup::kStiff;
-  const StressCase stiff = stress::mechanism(
+  const StressMechanism stiff{
       group, "a resonance times a step",
       "an explicit step diverges; Van Loan's matrix over the whole step holds e^(+A h) and has no digits left; a "
       "damped "
@@ -171,43 +170,40 @@ std::vector<StressCase> proof_mass_cases() {
       "the closed form to 17 epsilons for each of the short steps that it doubles, and equipartition: the noise "
       "restores "
       "what the step damps",
-      "of the bound");
-  const StressCase border = stress::mechanism(
+      "of the bound"};
+  const StressMechanism border{
       group, "an explicit scheme's border of stability",
       "a stability limit for undamped masses is used for damped ones",
-      "256 steps make ten times of a displacement within 1 % of |R(lambda h)| = 1 at the plant's own rates", "");
-  const StressCase implicit =
-      stress::mechanism(group, "an implicit scheme at any stiffness",
-                        "a sign in I - A h makes it explicit, or its inverse loses its digits",
-                        "no state grows, from 6e-4 to 6e7 radians a step, to 20 roundings of the inverse", "");
-  const StressCase slow = stress::mechanism(group, "a slow amplitude beside its carrier",
-                                            "the carrier is integrated, or the split turns the wrong way",
-                                            "the closed form to ten epsilons of the angle", "of the bound");
-  const StressCase clip = stress::mechanism(
-      StressGroup::kData, "an overload that rings",
-      "beyond the clip the linear step goes on and rings for thousands of samples",
-      "no sample exceeds what the clip leaves, and the reading returns: six sigmas of the noise", "of the bound");
-  std::vector<StressCase> cases;
+      "256 steps make ten times of a displacement within 1 % of |R(lambda h)| = 1 at the plant's own rates", ""};
+  const StressMechanism implicit{group, "an implicit scheme at any stiffness",
+                                 "a sign in I - A h makes it explicit, or its inverse loses its digits",
+                                 "no state grows, from 6e-4 to 6e7 radians a step, to 20 roundings of the inverse", ""};
+  const StressMechanism slow{group, "a slow amplitude beside its carrier",
+                             "the carrier is integrated, or the split turns the wrong way",
+                             "the closed form to ten epsilons of the angle", "of the bound"};
+  const StressMechanism clip{StressGroup::kData, "an overload that rings",
+                             "beyond the clip the linear step goes on and rings for thousands of samples",
+                             "no sample exceeds what the clip leaves, and the reading returns: six sigmas of the noise",
+                             "of the bound"};
+  StressRows rows;
   for (const double hz : {10.0, 5e3, 1e6})
     for (const double quality : {0.1, 0.5, 1e6})
       for (const double step_s : {1e-5, 1e-2, 1.0})
-        cases.push_back(row(stiff,
-                            "proof_mass/" + stress::text(hz) + "_hz_q_" + stress::text(quality) + "_step_" +
-                                stress::text(step_s) + "_s",
-                            [=] { return exact(hz, quality, step_s); }));
+        rows.of(stiff).add("proof_mass/" + stress::text(hz) + "_hz_q_" + stress::text(quality) + "_step_" +
+                               stress::text(step_s) + "_s",
+                           [=] { return exact(hz, quality, step_s); });
   for (const double hz : {10.0, 1e6})
     for (const double quality : {0.1, 0.5, 10.0, 1e6})
-      cases.push_back(row(border, "proof_mass/rk4_border_" + stress::text(hz) + "_hz_q_" + stress::text(quality),
-                          [=] { return rk4_border(hz, quality); }));
-  cases.push_back(row(implicit, "proof_mass/implicit_midpoint_never_grows",
-                      [] { return implicit_growth(implicit_midpoint_step); }));
-  cases.push_back(
-      row(implicit, "proof_mass/backward_euler_never_grows", [] { return implicit_growth(backward_euler_step); }));
-  cases.push_back(row(slow, "proof_mass/gyroscope_matched_modes", [] { return gyroscope(1e4, 0.0, 0.01); }));
-  cases.push_back(row(slow, "proof_mass/gyroscope_split_1000_hz_step_1_s", [] { return gyroscope(1e6, 1000.0, 1.0); }));
-  cases.push_back(row(clip, "proof_mass/50_g_on_10_g_damped", [] { return overload(1000.0, 0.5); }));
-  cases.push_back(row(clip, "proof_mass/50_g_on_10_g_ringing", [] { return overload(1000.0, 100.0); }));
-  return cases;
+      rows.of(border).add("proof_mass/rk4_border_" + stress::text(hz) + "_hz_q_" + stress::text(quality),
+                          [=] { return rk4_border(hz, quality); });
+  rows.of(implicit).add("proof_mass/implicit_midpoint_never_grows",
+                        [] { return implicit_growth(implicit_midpoint_step); });
+  rows.of(implicit).add("proof_mass/backward_euler_never_grows", [] { return implicit_growth(backward_euler_step); });
+  rows.of(slow).add("proof_mass/gyroscope_matched_modes", [] { return gyroscope(1e4, 0.0, 0.01); });
+  rows.of(slow).add("proof_mass/gyroscope_split_1000_hz_step_1_s", [] { return gyroscope(1e6, 1000.0, 1.0); });
+  rows.of(clip).add("proof_mass/50_g_on_10_g_damped", [] { return overload(1000.0, 0.5); });
+  rows.of(clip).add("proof_mass/50_g_on_10_g_ringing", [] { return overload(1000.0, 100.0); });
+  return rows.take();
 }
 
 }  // namespace canyon::inertial

@@ -18,8 +18,8 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kHalfUlp = 0x1p-24;
+using stress::kEpsilon;
+using stress::kHalfUlp;
 
 /// Every built-in material at every incidence and wavelength sends back what is finite and not below nothing; of none
 /// at grazing incidence more than a Lambertian surface square to the beam could. A figure counts what differs.
@@ -47,13 +47,13 @@ StressFigure reflectivities() {
 
 /// A pane passes its own share at normal incidence, nothing at grazing, and ever less in between. 16 eps.
 StressFigure panes(double at_normal) {
-  StressFigure out{0.0, 16.0 * kEps};
+  StressFigure out{0.0, 16.0 * kEpsilon};
   take_worst(out, std::abs(pane_transmittance(at_normal, 1.0) - at_normal));
   take_worst(out, std::abs(pane_transmittance(at_normal, 0.0)));
   double before = 0.0;
   for (int k = 1; k <= 10000; ++k) {
     const double now = pane_transmittance(at_normal, k / 10000.0);
-    if (!(now >= before && now <= at_normal * (1.0 + 8.0 * kEps)) && at_normal <= 0.918) out.figure = 1.0;
+    if (!(now >= before && now <= at_normal * (1.0 + 8.0 * kEpsilon)) && at_normal <= 0.918) out.figure = 1.0;
     if (!std::isfinite(now)) out.figure = 1.0;
     before = now;
   }
@@ -138,7 +138,7 @@ StressFigure air(const WeatherConfig& weather) {
 
 /// Energy from no distance on: constant up to full overlap, then by the square; 10 at range_at_10_percent. 8 eps.
 StressFigure gain() {
-  StressFigure out{0.0, 8.0 * kEps};
+  StressFigure out{0.0, 8.0 * kEpsilon};
   for (const double overlap : {0.0, 5.0, 1e3}) {
     SignalConfig c;
     c.full_overlap_m = overlap;

@@ -14,8 +14,8 @@
 namespace canyon::lidar {
 namespace {
 
+using stress::kEpsilon;
 using velodyne::Packet;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 Packet packet_at(int first_cdeg, int step_cdeg, Packet::Product product) {
   Packet p;
@@ -42,7 +42,7 @@ StressFigure azimuth_wrap(int first_cdeg, Packet::Product product) {
     if (!(r.azimuth_deg >= 0.0 && r.azimuth_deg < 360.0)) out.figure = 1e9;
     if (k >= 32) {
       const double turned = std::remainder(r.azimuth_deg - returns[k - 32].azimuth_deg - 0.01 * kStep, 360.0);
-      take_worst(out, std::abs(turned) / (16.0 * kEps * 360.0));
+      take_worst(out, std::abs(turned) / (16.0 * kEpsilon * 360.0));
     }
     const double level = std::hypot(r.point.x, r.point.y);
     const double azimuth = -std::atan2(r.point.y, r.point.x) / kDegree;

@@ -16,7 +16,7 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr double kHalfUlp = 0x1p-24;
+using stress::kHalfUlp;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 LidarConfig with_keys(const std::string& keys) {

@@ -16,7 +16,7 @@ namespace canyon::lidar {
 namespace {
 
 using Cloud = std::vector<Eigen::Vector3f>;
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using stress::kInfinity;
 
 /// Points on planes with 1 cm of noise. `number` chooses the noise.
 class Surfaces {
@@ -138,7 +138,7 @@ StressFigure found(double off_m, double off_deg, double place_m) {
   const auto s = method->prepare(room(1)), t = method->prepare(room(2));
   const Registration::Placed placed{t, truth};
   const RegistrationResult r = method->align(*s, {&placed, 1}, truth * moved(off_m, -off_m, off_deg));
-  if (r.status != RegistrationStatus::kConverged) return {kInf, 1.0};
+  if (r.status != RegistrationStatus::kConverged) return {kInfinity, 1.0};
   const Vector6d error = (truth.inverse() * r.X_TS).log();
   StressFigure out{0.0, 1.0};
   for (int k = 0; k < 6; ++k)
@@ -231,7 +231,7 @@ std::vector<StressCase> registration_cases() {
              Pose turned = moved(0, 0, 0);
              turned.R.x() = std::numeric_limits<double>::quiet_NaN();
              return odd({{room(1), room(2)}},
-                        {moved(std::numeric_limits<double>::quiet_NaN(), 0, 0), moved(kInf, 0, 0), turned}, false);
+                        {moved(std::numeric_limits<double>::quiet_NaN(), 0, 0), moved(kInfinity, 0, 0), turned}, false);
            })
       .add("registrations/guess_upside_down", [] {
         return odd({{room(1), room(2)}},

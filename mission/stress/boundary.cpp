@@ -2,14 +2,12 @@
 #include <functional>
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/stress/subjects.h"
 
 namespace canyon::mission {
 namespace {
-
-using stress::row;
 
 const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -265,26 +263,28 @@ StressFigure too_large() {
 }  // namespace
 
 std::vector<StressCase> boundary_cases() {
-  const StressCase finite =
-      stress::mechanism(StressGroup::kData, "a number that is none, on its way from part to part",
-                        "one NaN passes vehicle, IMU, filter and LIDAR until a library ends the process (2026-11-22)",
-                        "not a number and both infinities in each number of the message in turn: refused, but for NaN "
-                        "where it means that "
-                        "nothing was measured",
-                        "messages");
-  const StressCase large = stress::mechanism(
-      StressGroup::kData, "a finite number that is too large", "its square is infinite in the next part",
-      "beyond what there is on Earth it is refused where it comes from", "let through");
-  return {row(finite, "boundary/motion_of_the_vehicle", motion),
-          row(finite, "boundary/imu_sample", imu),
-          row(finite, "boundary/gnss_fix", gnss_fix),
-          row(finite, "boundary/gnss_observation", gnss_observation),
-          row(finite, "boundary/gnss_truth", gnss_truth),
-          row(finite, "boundary/lidar_scan", lidar_scan),
-          row(finite, "boundary/estimate", estimate),
-          row(finite, "boundary/keyframe", keyframe),
-          row(finite, "boundary/recorded_rows_and_commands", recorded_rows),
-          row(large, "boundary/too_large", too_large)};
+  const StressMechanism finite{
+      StressGroup::kData, "a number that is none, on its way from part to part",
+      "one NaN passes vehicle, IMU, filter and LIDAR until a library ends the process (2026-11-22)",
+      "not a number and both infinities in each number of the message in turn: refused, but for NaN "
+      "where it means that "
+      "nothing was measured",
+      "messages"};
+  const StressMechanism large{StressGroup::kData, "a finite number that is too large",
+                              "its square is infinite in the next part",
+                              "beyond what there is on Earth it is refused where it comes from", "let through"};
+  StressRows rows;
+  rows.of(finite).add("boundary/motion_of_the_vehicle", motion);
+  rows.of(finite).add("boundary/imu_sample", imu);
+  rows.of(finite).add("boundary/gnss_fix", gnss_fix);
+  rows.of(finite).add("boundary/gnss_observation", gnss_observation);
+  rows.of(finite).add("boundary/gnss_truth", gnss_truth);
+  rows.of(finite).add("boundary/lidar_scan", lidar_scan);
+  rows.of(finite).add("boundary/estimate", estimate);
+  rows.of(finite).add("boundary/keyframe", keyframe);
+  rows.of(finite).add("boundary/recorded_rows_and_commands", recorded_rows);
+  rows.of(large).add("boundary/too_large", too_large);
+  return rows.take();
 }
 
 }  // namespace canyon::mission

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/error_chain.h"
 #include "canyon/mission/stress/subjects.h"
@@ -11,7 +11,6 @@ namespace canyon::mission {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 
 const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
 
@@ -154,28 +153,27 @@ StressFigure early_and_late_work() {
 }  // namespace
 
 std::vector<StressCase> localizer_cases() {
-  const StressCase divided = stress::mechanism(
+  const StressMechanism divided{
       StressGroup::kStiff, "a sample divided at any point",
       "a part of a nanosecond has no rate of its own; rates that are no multiples meet at the end of a sample",
-      "each fix is taken at its own time to the nanosecond, and rest stays rest to rounding", "of the bound");
-  const StressCase clocks = stress::mechanism(
+      "each fix is taken at its own time to the nanosecond, and rest stays rest to rounding", "of the bound"};
+  const StressMechanism clocks{
       StressGroup::kLong, "two clocks that part ways",
       "after 0.1 s of difference the filter takes the fix for one of another time (found by this case, 2026-11-22: the "
       "run ended with an internal error)",
-      "each fix is taken, at 100 ppm to 5 % of skew and with stamps that jitter", "samples and fixes");
-  const StressCase order = stress::mechanism(StressGroup::kData, "work for a time that has passed, or is to come",
-                                             "a division at a share below 0 or above 1",
-                                             "done in the order it came, no earlier than its time", "looks");
-  std::vector<StressCase> cases;
+      "each fix is taken, at 100 ppm to 5 % of skew and with stamps that jitter", "samples and fixes"};
+  const StressMechanism order{StressGroup::kData, "work for a time that has passed, or is to come",
+                              "a division at a share below 0 or above 1",
+                              "done in the order it came, no earlier than its time", "looks"};
+  StressRows rows;
   for (const auto& [imu_hz, fix_hz] : {std::pair{100.0, 7.0}, {5000.0, 333.0}, {10.0, 97.0}, {3.0, 0.01}})
-    cases.push_back(row(divided, "localizer/imu_" + stress::text(imu_hz) + "_hz_fixes_" + stress::text(fix_hz) + "_hz",
-                        [i = imu_hz, f = fix_hz] { return divided_samples(i, f); }));
+    rows.of(divided).add("localizer/imu_" + stress::text(imu_hz) + "_hz_fixes_" + stress::text(fix_hz) + "_hz",
+                         [i = imu_hz, f = fix_hz] { return divided_samples(i, f); });
   for (const auto& [skew_ppm, jitter_us] : {std::pair{100.0, 0.0}, {5e4, 0.0}, {100.0, 1e5}})
-    cases.push_back(row(clocks,
-                        "localizer/clock_" + stress::text(skew_ppm) + "_ppm_jitter_" + stress::text(jitter_us) + "_us",
-                        [s = skew_ppm, j = jitter_us] { return clock_apart(s, j); }));
-  cases.push_back(row(order, "localizer/early_and_late_work", early_and_late_work));
-  return cases;
+    rows.of(clocks).add("localizer/clock_" + stress::text(skew_ppm) + "_ppm_jitter_" + stress::text(jitter_us) + "_us",
+                        [s = skew_ppm, j = jitter_us] { return clock_apart(s, j); });
+  rows.of(order).add("localizer/early_and_late_work", early_and_late_work);
+  return rows.take();
 }
 
 }  // namespace canyon::mission

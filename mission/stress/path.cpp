@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/autonomy/local_grid.h"
 #include "canyon/mission/stress/subjects.h"
@@ -11,7 +11,6 @@ namespace canyon::mission {
 namespace {
 
 using Eigen::Vector2d;
-using stress::row;
 
 /// How many of a path's answers are no numbers, or not on it: everywhere along it and beyond its ends.
 int broken(const Path& path, double spacing_m) {
@@ -89,18 +88,21 @@ StressFigure far_grid(double off_m) {
 
 std::vector<StressCase> path_cases() {
   const auto group = StressGroup::kGeometry;
-  const StressCase degenerate = stress::mechanism(group, "legs without length and corners of half a turn",
-                                                  "a direction of 0 / 0, and the tangent of 90 degrees",
-                                                  "each answer along it is a number, and on the path", "answers");
-  StressCase far = stress::mechanism(group, "a way far from the origin", "arc lengths in single precision",
-                                     "the way at the origin, to roundings of its place", "of the bound");
+  const StressMechanism degenerate{group, "legs without length and corners of half a turn",
+                                   "a direction of 0 / 0, and the tangent of 90 degrees",
+                                   "each answer along it is a number, and on the path", "answers"};
+  StressMechanism far{group, "a way far from the origin", "arc lengths in single precision",
+                      "the way at the origin, to roundings of its place", "of the bound"};
   far.loose = "the bound adds the roundings of all points, which cancel from leg to leg";
-  const StressCase grid = stress::mechanism(group, "a rolling grid far from its origin",
-                                            "cell numbers in single precision, or a remainder that is negative",
-                                            "the same obstacles, the same distances to the bit", "cells");
-  return {row(degenerate, "path/degenerate_ways", degenerate_ways), row(far, "path/100_km_off", far_way),
-          row(grid, "path/local_grid_64_km_off", [] { return far_grid(65536.0); }),
-          row(grid, "path/local_grid_64_km_off_to_the_west", [] { return far_grid(-65536.0); })};
+  const StressMechanism grid{group, "a rolling grid far from its origin",
+                             "cell numbers in single precision, or a remainder that is negative",
+                             "the same obstacles, the same distances to the bit", "cells"};
+  StressRows rows;
+  rows.of(degenerate).add("path/degenerate_ways", degenerate_ways);
+  rows.of(far).add("path/100_km_off", far_way);
+  rows.of(grid).add("path/local_grid_64_km_off", [] { return far_grid(65536.0); });
+  rows.of(grid).add("path/local_grid_64_km_off_to_the_west", [] { return far_grid(-65536.0); });
+  return rows.take();
 }
 
 }  // namespace canyon::mission

@@ -2,13 +2,11 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/mission/stress/subjects.h"
 
 namespace canyon::mission {
 namespace {
-
-using stress::row;
 
 /// Everything that is due within a time: as often as its rate says, in order of time, equal times in the order of the
 /// tasks, each at its own tick; and asked for in steps of 10 ms as a run does.
@@ -40,27 +38,25 @@ StressFigure due(const Schedule::Rates& rates_hz, double duration_s, GpsTime sta
 }  // namespace
 
 std::vector<StressCase> schedule_cases() {
-  const StressCase mixed = stress::mechanism(
+  const StressMechanism mixed{
       StressGroup::kStiff, "rates from 0.01 to 10 000 Hz side by side",
       "periods that are added up part ways, a rate that is no multiple loses a tick, equal times come in any order",
-      "each as often as its rate says, at its own ticks, in order: exact", "occurrences");
-  StressCase day = row(mixed, "schedule/a_day_at_odd_rates", [] {
-    return due({97.0, 9.99, 0.3, 7.0, 0.01}, 86400.0, GpsTime::from_week_sow(2160, 0.0));
+      "each as often as its rate says, at its own ticks, in order: exact", "occurrences"};
+  StressRows rows;
+  rows.of(mixed).add("schedule/0.01_to_10000_hz", [] {
+    return due({10000.0, 0.01, 10.0, 0.3, 1.0}, 100.0, GpsTime::from_week_sow(2160, 0.0));
   });
-  day.long_running = true;
-  return {row(mixed, "schedule/0.01_to_10000_hz",
-              [] {
-                return due({10000.0, 0.01, 10.0, 0.3, 1.0}, 100.0, GpsTime::from_week_sow(2160, 0.0));
-              }),
-          row(mixed, "schedule/odd_rates_near_31_bits_of_seconds",
-              [] {
-                return due({333.0, 7.0, 9.99, 12.5, 97.0}, 200.0, {(std::int64_t{1} << 31) * kNsPerSecond});
-              }),
-          row(mixed, "schedule/all_equal",
-              [] {
-                return due({50.0, 50.0, 50.0, 50.0, 50.0}, 60.0, GpsTime{7});
-              }),
-          day};
+  rows.of(mixed).add("schedule/odd_rates_near_31_bits_of_seconds", [] {
+    return due({333.0, 7.0, 9.99, 12.5, 97.0}, 200.0, {(std::int64_t{1} << 31) * kNsPerSecond});
+  });
+  rows.of(mixed).add("schedule/all_equal", [] { return due({50.0, 50.0, 50.0, 50.0, 50.0}, 60.0, GpsTime{7}); });
+  rows.of(mixed)
+      .add("schedule/a_day_at_odd_rates",
+           [] {
+             return due({97.0, 9.99, 0.3, 7.0, 0.01}, 86400.0, GpsTime::from_week_sow(2160, 0.0));
+           })
+      .long_running();
+  return rows.take();
 }
 
 }  // namespace canyon::mission

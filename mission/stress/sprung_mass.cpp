@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/stress/subjects.h"
 
@@ -11,7 +11,6 @@ namespace canyon::mission {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 using Complex = std::complex<long double>;
 
 struct Response {
@@ -104,37 +103,36 @@ StressFigure beyond_its_range() {
 }  // namespace
 
 std::vector<StressCase> sprung_mass_cases() {
-  const StressCase stiff = stress::mechanism(
+  const StressMechanism stiff{
       StressGroup::kStiff, "a spring's stiffness and damping times its step",
       "the explicit step's spectral radius is 1.42 at 5 Hz, damping 2 and 100 Hz (2026-11-22: the vehicle was "
       "thousands of "
       "kilometres off, or a library aborted)",
       "the closed form of a sprung mass over a step of the road, to eight roundings for each step that the slower pole "
       "remembers, below 1e-9 everywhere",
-      "of the bound");
-  StressCase energy = stress::mechanism(StressGroup::kLong, "energy over a million steps",
-                                        "a scheme that damps or feeds what it ought to keep",
-                                        "that of the beginning to eight epsilons a step", "");
+      "of the bound"};
+  StressMechanism energy{StressGroup::kLong, "energy over a million steps",
+                         "a scheme that damps or feeds what it ought to keep",
+                         "that of the beginning to eight epsilons a step", ""};
   energy.loose = "the bound lets a million roundings go the same way";
-  const StressCase still = stress::mechanism(StressGroup::kLong, "rest over a million steps",
-                                             "the difference of two heights of 60 m creeps", "not a bit moves", "m");
-  const StressCase beyond = stress::mechanism(
+  const StressMechanism still{StressGroup::kLong, "rest over a million steps",
+                              "the difference of two heights of 60 m creeps", "not a bit moves", "m"};
+  const StressMechanism beyond{
       StressGroup::kStiff, "hyperbolic functions of large arguments",
       "cosh overflows where its decay would have made it 1",
       "bounded by what the road's step can make of it, from 1e-9 to 1e9 radians a step; what is no spring is refused",
-      "of the bound");
-  std::vector<StressCase> cases;
+      "of the bound"};
+  StressRows rows;
   for (const double hz : {0.3, 1.6, 5.0})
     for (const double zeta : {0.05, 0.6, 1.0, 2.0})
       for (const double step_s : {0.0002, 0.001, 0.01, 0.1})
-        cases.push_back(row(stiff,
-                            "sprung_mass/" + stress::text(hz) + "_hz_damping_" + stress::text(zeta) + "_step_" +
-                                stress::text(step_s) + "_s",
-                            [=] { return step_of_the_road(hz, zeta, step_s); }));
-  cases.push_back(row(energy, "sprung_mass/undamped_energy_1e6_steps", undamped_energy));
-  cases.push_back(row(still, "sprung_mass/rest_1e6_steps", rest));
-  cases.push_back(row(beyond, "sprung_mass/beyond_its_range", beyond_its_range));
-  return cases;
+        rows.of(stiff).add("sprung_mass/" + stress::text(hz) + "_hz_damping_" + stress::text(zeta) + "_step_" +
+                               stress::text(step_s) + "_s",
+                           [=] { return step_of_the_road(hz, zeta, step_s); });
+  rows.of(energy).add("sprung_mass/undamped_energy_1e6_steps", undamped_energy);
+  rows.of(still).add("sprung_mass/rest_1e6_steps", rest);
+  rows.of(beyond).add("sprung_mass/beyond_its_range", beyond_its_range);
+  return rows.take();
 }
 
 }  // namespace canyon::mission

@@ -2,14 +2,12 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/mission/stress/open_ground.h"
 #include "canyon/mission/stress/subjects.h"
 
 namespace canyon::mission {
 namespace {
-
-using stress::row;
 
 scene::Traffic traffic_of(const std::vector<double>& path_m, double speed_m_s, double start_s) {
   scene::MovingConfig config;
@@ -57,12 +55,15 @@ StressFigure standing() {
 }  // namespace
 
 std::vector<StressCase> traffic_cases() {
-  const StressCase way = stress::mechanism(
+  const StressMechanism way{
       StressGroup::kGeometry, "a moving thing at the ends of its way, and where a leg has no length",
       "it goes on beyond its end, turns to no direction at a repeated point, or is where it was a round ago",
-      "where its speed has brought it, to a rounding of the time; a rotation at all times", "of the bound");
-  return {row(way, "traffic/from_before_its_start_to_1e300_s", [] { return ways(0.0); }),
-          row(way, "traffic/start_after_1e6_s", [] { return ways(1e6); }), row(way, "traffic/that_stands", standing)};
+      "where its speed has brought it, to a rounding of the time; a rotation at all times", "of the bound"};
+  StressRows rows;
+  rows.of(way).add("traffic/from_before_its_start_to_1e300_s", [] { return ways(0.0); });
+  rows.of(way).add("traffic/start_after_1e6_s", [] { return ways(1e6); });
+  rows.of(way).add("traffic/that_stands", standing);
+  return rows.take();
 }
 
 }  // namespace canyon::mission

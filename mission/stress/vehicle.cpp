@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/motion/sprung_mass.h"
@@ -13,7 +13,6 @@ namespace canyon::mission {
 namespace {
 
 using stress::kEpsilon;
-using stress::row;
 
 const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
 
@@ -148,36 +147,36 @@ StressFigure far_roughness() {
 }  // namespace
 
 std::vector<StressCase> vehicle_cases() {
-  const StressCase rough = stress::mechanism(
+  const StressMechanism rough{
       StressGroup::kStiff, "a resonance that the road feeds",
       "an explicit step feeds it beyond all bounds; one that damps lets no resonance be",
-      "within the waves' amplitudes times the largest gain, and every state passes the run's gate", "of the bound");
-  const StressCase commands = stress::mechanism(
-      StressGroup::kData, "commands beyond every limit",
-      "a limit of the square, or a tangent at 90 degrees of steering",
-      "speed, acceleration, steering and its rate stay within the vehicle's own limits", "of the bound");
-  const StressCase broken = stress::mechanism(StressGroup::kData, "a command that is not finite",
-                                              "it is clamped to a limit, and no number to none",
-                                              "is refused before anything has moved", "let through");
-  const StressCase far = stress::mechanism(StressGroup::kGeometry, "a wave's phase far from the origin",
-                                           "a phase in single precision, or waves that grow with it",
-                                           "within the amplitudes, no steeper than all waves at once", "of the bound");
-  std::vector<StressCase> cases;
+      "within the waves' amplitudes times the largest gain, and every state passes the run's gate", "of the bound"};
+  const StressMechanism commands{StressGroup::kData, "commands beyond every limit",
+                                 "a limit of the square, or a tangent at 90 degrees of steering",
+                                 "speed, acceleration, steering and its rate stay within the vehicle's own limits",
+                                 "of the bound"};
+  const StressMechanism broken{StressGroup::kData, "a command that is not finite",
+                               "it is clamped to a limit, and no number to none",
+                               "is refused before anything has moved", "let through"};
+  const StressMechanism far{StressGroup::kGeometry, "a wave's phase far from the origin",
+                            "a phase in single precision, or waves that grow with it",
+                            "within the amplitudes, no steeper than all waves at once", "of the bound"};
+  StressRows rows;
   for (const double hz : {0.3, 5.0})
     for (const double damping : {0.05, 2.0})
-      cases.push_back(row(rough, "vehicle/roughest_road_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
-                          [=] { return roughest_road(hz, damping); }));
-  const StressCase swings = stress::mechanism(
+      rows.of(rough).add("vehicle/roughest_road_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
+                         [=] { return roughest_road(hz, damping); });
+  const StressMechanism swings{
       StressGroup::kStiff, "a body at its own frequency", "a scheme that damps what it should let swing",
-      "the gain sqrt(1 + 4 zeta^2) / (2 zeta), to the road's step times w and what still rings", "");
+      "the gain sqrt(1 + 4 zeta^2) / (2 zeta), to the road's step times w and what still rings", ""};
   for (const double hz : {0.3, 5.0})
     for (const double damping : {0.05, 2.0})
-      cases.push_back(row(swings, "vehicle/resonance_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
-                          [=] { return resonance(hz, damping); }));
-  cases.push_back(row(commands, "vehicle/commands_to_1e308", wild_commands));
-  cases.push_back(row(broken, "vehicle/commands_not_finite", refused_commands));
-  cases.push_back(row(far, "vehicle/roughness_100_km_off", far_roughness));
-  return cases;
+      rows.of(swings).add("vehicle/resonance_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
+                          [=] { return resonance(hz, damping); });
+  rows.of(commands).add("vehicle/commands_to_1e308", wild_commands);
+  rows.of(broken).add("vehicle/commands_not_finite", refused_commands);
+  rows.of(far).add("vehicle/roughness_100_km_off", far_roughness);
+  return rows.take();
 }
 
 }  // namespace canyon::mission

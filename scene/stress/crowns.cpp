@@ -11,7 +11,7 @@
 namespace canyon::scene {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 
 /// A ball of radius 4 m passed at `beside_m` of its middle from `away_m`: 2 sqrt(r^2 - b^2). The distance squared
 /// cancels to eps (away^2 + r^2), of which the chord makes that over itself; at the tangent its root.
@@ -19,14 +19,14 @@ StressFigure ball(double away_m, double beside_m) {
   SceneParts parts = made::nothing();
   parts.foliage.push_back({{3.0, 5.0, 8.0}, {4.0, 4.0, 4.0}, 1.0});
   const auto scene = made::scene_of(std::move(parts));
-  const double cancel = 16.0 * kEps * (away_m * away_m + 16.0);
+  const double cancel = 16.0 * kEpsilon * (away_m * away_m + 16.0);
   StressFigure out{0.0, 1.0};
   for (int k = 0; k < 64; ++k) {
     const Eigen::Vector3d d =
         Eigen::Vector3d(std::sin(1.0 * k), std::cos(1.7 * k), std::sin(2.3 * k + 0.5)).normalized();
     const Eigen::Vector3d o = Eigen::Vector3d(3.0, 5.0, 8.0) - away_m * d + beside_m * d.unitOrthogonal();
     const double exact = beside_m < 4.0 ? 2.0 * std::sqrt(16.0 - beside_m * beside_m) : 0.0;
-    const double bound = exact > 0.0 ? cancel / exact + 16.0 * kEps * away_m : 2.0 * std::sqrt(cancel);
+    const double bound = exact > 0.0 ? cancel / exact + 16.0 * kEpsilon * away_m : 2.0 * std::sqrt(cancel);
     take_worst(out, std::abs(SceneAt(*scene).foliage_m(o, d, 1e9) - exact) / bound);
   }
   return out;
@@ -40,7 +40,7 @@ StressFigure inside() {
   parts.foliage.push_back({{0.0, 0.0, 8.0}, {4.0, 2.0, 1.0}, 0.5});
   const auto scene = made::scene_of(std::move(parts));
   const SceneAt now(*scene);
-  StressFigure out{0.0, 16.0 * kEps * 8.0};
+  StressFigure out{0.0, 16.0 * kEpsilon * 8.0};
   const auto expect = [&](const Eigen::Vector3d& o, const Eigen::Vector3d& d, double reach, double exact) {
     take_worst(out, std::abs(now.foliage_m(o, d, reach) - 1.5 * exact));
   };
@@ -63,7 +63,7 @@ StressFigure row_of(int n, double away_m) {
   const SceneAt now(*scene);
   const double far_m = away_m + 16.0 * n;
   // Each chord: what cancels of far^2 over 8 m, and the ends' own digits.
-  StressFigure out{0.0, n * (16.0 * kEps * far_m * far_m / 8.0 + 16.0 * kEps * far_m)};
+  StressFigure out{0.0, n * (16.0 * kEpsilon * far_m * far_m / 8.0 + 16.0 * kEpsilon * far_m)};
   const double exact = 8.0 * n;
   for (int j = 0; j < n; j += 7) {
     take_worst(out, std::abs(now.foliage_m({-away_m, 16.0 * j, 8.0}, Eigen::Vector3d::UnitX(), 1e9) - exact));

@@ -12,8 +12,8 @@
 namespace canyon::scene {
 namespace {
 
-constexpr double kHalfUlp = 0x1p-24;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
+using stress::kHalfUlp;
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// A box of 64 x 32 x 16 m whose corners are whole metres, about a far place; rays from inside it. Each range is that
@@ -157,7 +157,7 @@ StressFigure moving(double place_m, double yaw_rad) {
   const Eigen::Vector3d at(place_m, place_m, 0.0);
   const Eigen::Quaterniond R(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()));
   now.set_instances({{cube(), "cube", {R, at}}});
-  StressFigure out{0.0, 2.02 * kHalfUlp * 9.0 + 8.0 * kEps * place_m};
+  StressFigure out{0.0, 2.02 * kHalfUlp * 9.0 + 8.0 * kEpsilon * place_m};
   for (int k = 0; k < 4; ++k) {
     const double a = yaw_rad + 0.5 * kPi * k;
     const Eigen::Vector3d way(std::cos(a), std::sin(a), 0.0);

@@ -17,7 +17,7 @@
 namespace canyon::scene {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 
 /// 7 + x / 4 - y / 8 + x y / 64 on whole places: bilinear, and so met everywhere; samples are exact in single
 /// precision.
@@ -37,7 +37,7 @@ Elevation grid(double west, double north, int columns, int rows, double step = 2
 /// coordinates by a slope of 2.
 StressFigure bilinear(double west, double north) {
   const Elevation e = grid(west, north, 65, 33);
-  StressFigure out{0.0, 16.0 * kEps * 200.0 + 4.0 * kEps * (std::abs(west) + std::abs(north))};
+  StressFigure out{0.0, 16.0 * kEpsilon * 200.0 + 4.0 * kEpsilon * (std::abs(west) + std::abs(north))};
   for (double x = 0.0; x <= 128.0; x += 0.5)
     for (double y = 0.0; y >= -64.0; y -= 0.5) {
       const auto h = e.height({west + x, north + y});
@@ -88,7 +88,7 @@ StressFigure city_terrain(double cell_m, double hill_m, double slope_percent) {
     for (double y = -510.0; y < 511.0; y += 17.0) steepest = worse(steepest, terrain.normal(x, y).head<2>().norm());
   const auto scene = made::scene_of(std::move(parts));
   const bool exact = cell_m > 1024.0 || std::fmod(1024.0, cell_m) == 0.0;
-  StressFigure out{0.0, exact ? 16.0 * kEps * 512.0 : 3.1e-5 * 2.0 * std::max(steepest, 0.01) + 8e-6};
+  StressFigure out{0.0, exact ? 16.0 * kEpsilon * 512.0 : 3.1e-5 * 2.0 * std::max(steepest, 0.01) + 8e-6};
   for (double x = -512.0; x <= 512.0; x += 16.0 / 3.0)
     for (double y = -512.0; y <= 512.0; y += 16.0) {
       const auto ground = scene->ground(std::clamp(x, -511.9999, 511.9999), std::clamp(y, -511.9999, 511.9999));
@@ -114,7 +114,7 @@ StressFigure ground_of_slope(double half_m) {
             mesh.material("asphalt"));
   const auto scene = made::scene_of(std::move(parts));
   const Eigen::Vector3d normal = Eigen::Vector3d(-slope, 0.0, 1.0).normalized();
-  StressFigure out{0.0, 8.0 * kEps * (slope * half_m + 1.0)};
+  StressFigure out{0.0, 8.0 * kEpsilon * (slope * half_m + 1.0)};
   for (int k = -99; k <= 99; ++k) {
     const double x = half_m * k / 100.0, y = half_m * std::sin(k);
     const auto ground = scene->ground(x, y);
@@ -146,7 +146,7 @@ StressFigure ground_without_cracks(double cell_m, double extent_m) {
   SceneParts parts = made::nothing();
   add_ground(ground, "asphalt", parts);
   const auto scene = made::scene_of(std::move(parts));
-  StressFigure out{0.0, 16.0 * kEps * extent_m * 3.0 / 64.0};
+  StressFigure out{0.0, 16.0 * kEpsilon * extent_m * 3.0 / 64.0};
   for (int i = 0; i <= 128; ++i)
     for (int j = 0; j <= 128; ++j) {
       const double x = extent_m * (i / 128.0 - 0.5) * 0.999, y = extent_m * (j / 128.0 - 0.5) * 0.999;
@@ -186,7 +186,7 @@ StressFigure moved_fit(double offset_m) {
     here.emplace_back(x, y, z), there.emplace_back(offset_m + x, y, z);
   }
   const GroundFit at_home(here), away(there);
-  StressFigure out{0.0, 0.5 * kEps * offset_m};
+  StressFigure out{0.0, 0.5 * kEpsilon * offset_m};
   for (int k = 0; k < 200; ++k) {
     const double x = std::round(250.0 * std::sin(2.1 * k)), y = 250.0 * std::sin(0.7 * k);
     take_worst(out, std::abs(away({offset_m + x, y}) - at_home({x, y})));

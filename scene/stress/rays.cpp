@@ -14,8 +14,8 @@
 namespace canyon::scene {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kHalfUlp = 0x1p-24;  ///< of single precision, relative
+using stress::kEpsilon;
+using stress::kHalfUlp;
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// A closed ball of n rings and 2 n meridians, radius 32 m, and where its vertices are.
@@ -85,7 +85,7 @@ StressFigure against_brute_force(std::uint64_t seed, int triangles, int rays) {
     const Hit hit = now.trace(ray);
     if (hit.triangle != exact.triangle) return {std::numeric_limits<double>::infinity(), 1.0};
     if (!hit.hit()) continue;
-    const double bound = 1.01 * kHalfUlp * exact.range_m + 64.0 * kEps * 128.0 / exact.approach;
+    const double bound = 1.01 * kHalfUlp * exact.range_m + 64.0 * kEpsilon * 128.0 / exact.approach;
     take_worst(out, std::abs(hit.range_m - exact.range_m) / bound);
   }
   return out;
@@ -199,13 +199,7 @@ StressFigure not_finite() {
   const auto scene = made::scene_of(std::move(parts));
   const SceneAt now(*scene);
   StressFigure out;
-  const auto refused = [&](const auto& query) {
-    try {
-      query();
-      out.figure += 1.0;
-    } catch (const ProgramError&) {
-    }
-  };
+  const auto refused = [&](const auto& query) { out.figure += stress::not_refused(query); };
   // 1e30 is a number, but the ray tracer would end the process at it.
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e30})
     for (int field = 0; field < 6; ++field) {
@@ -256,7 +250,7 @@ StressFigure ten_million() {
   const auto scene = made::scene_of(std::move(parts));
   const SceneAt now(*scene);
   const RandomStream draws(5, "stress.ten_million");
-  StressFigure out{0.0, 1.01 * kHalfUlp + 64.0 * kEps};
+  StressFigure out{0.0, 1.01 * kHalfUlp + 64.0 * kEpsilon};
   for (std::uint64_t k = 0; k < 100000; ++k) {
     const Eigen::Vector3d o(draws.uniform(-1800, 1800, 0, k), draws.uniform(-1800, 1800, 1, k), 60.0);
     const double a = draws.uniform(0.0, 2.0 * kPi, 2, k), fall = draws.uniform(0.3, 3.0, 3, k);

@@ -13,7 +13,7 @@
 namespace canyon::scene {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+using stress::kEpsilon;
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
 /// Points, needles, lines, what is not finite: dropped, and counted, and the one good triangle is left, whose range is
@@ -78,7 +78,7 @@ StressFigure nearest_to_box(double x_m) {
   SceneParts parts = made::nothing();
   made::add_box(parts, middle, half);
   const auto scene = made::scene_of(std::move(parts));
-  StressFigure out{0.0, 16.0 * kEps * (64.0 + std::abs(x_m))};
+  StressFigure out{0.0, 16.0 * kEpsilon * (64.0 + std::abs(x_m))};
   for (int k = 0; k < 4000; ++k) {
     const Eigen::Vector3d o(60.0 * std::sin(1.0 * k), 40.0 * std::sin(1.7 * k), 30.0 * std::sin(2.3 * k));
     const Eigen::Vector3d beyond = o.cwiseAbs() - half;
@@ -104,7 +104,7 @@ StressFigure cut_up(const std::vector<std::vector<Eigen::Vector2d>>& rings, doub
     sum += half;
     least = std::min(least, half);
   }
-  StressFigure out{std::abs(sum - area), 4.0 * static_cast<double>(all.size()) * kEps * (reach * reach + area)};
+  StressFigure out{std::abs(sum - area), 4.0 * static_cast<double>(all.size()) * kEpsilon * (reach * reach + area)};
   take_worst(out, -least);
   return out;
 }

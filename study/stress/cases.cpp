@@ -22,10 +22,6 @@ constexpr ModelRow<StressGroup> kGroups[] = {
     {"long", StressGroup::kLong, "hours, years and large counts"},
 };
 
-std::string subject(const std::string& name) {
-  return name.substr(0, name.find('/'));
-}
-
 /// Of an option that is no model's.
 Error unknown_case(const std::string& name, const std::set<std::string>& subjects,
                    const std::vector<StressCase>& cases) {
@@ -40,7 +36,7 @@ Error unknown_case(const std::string& name, const std::set<std::string>& subject
 
 bool named(const std::vector<std::string>& names, const StressCase& one) {
   return std::any_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return name == one.name || name == subject(one.name); });
+                     [&](const std::string& name) { return name == one.name || name == stress_subject(one.name); });
 }
 
 /// Of cases that are none of that group: those that they have.
@@ -54,6 +50,10 @@ Error none_of_group(const CaseChoice& choice, const std::vector<StressCase>& all
 }
 
 }  // namespace
+
+std::string stress_subject(const std::string& name) {
+  return name.substr(0, name.find('/'));
+}
 
 ModelTable<StressGroup> stress_groups() {
   return kGroups;
@@ -70,7 +70,7 @@ std::vector<StressCase> all_stress_cases() {
 
 Result<std::vector<StressCase>> choose_cases(std::vector<StressCase> all, const CaseChoice& choice) {
   std::set<std::string> subjects;
-  for (const StressCase& one : all) subjects.insert(subject(one.name));
+  for (const StressCase& one : all) subjects.insert(stress_subject(one.name));
   for (const std::string& name : choice.names)
     if (std::none_of(all.begin(), all.end(), [&](const StressCase& one) { return named({name}, one); }))
       return unknown_case(name, subjects, all);

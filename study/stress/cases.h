@@ -11,6 +11,9 @@ namespace canyon::study {
 
 ModelTable<StressGroup> stress_groups();
 
+/// Of a case's name what stands before the "/".
+std::string stress_subject(const std::string& name);
+
 /// The cases of all floors, lowest first.
 std::vector<StressCase> all_stress_cases();
 

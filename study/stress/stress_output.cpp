@@ -25,10 +25,6 @@ std::string cell(std::string text) {
   return text;
 }
 
-std::string subject(const std::string& name) {
-  return name.substr(0, name.find('/'));
-}
-
 std::string rest(const std::string& name) {
   const auto slash = name.find('/');
   return slash == std::string::npos ? name : name.substr(slash + 1);
@@ -70,7 +66,7 @@ std::string stress_table(const std::vector<CaseResult>& results) {
   std::string last;
   for (const CaseResult& result : results) {
     const StressCase& one = result.stress_case;
-    if (subject(one.name) != last) table.heading(last = subject(one.name));
+    if (stress_subject(one.name) != last) table.heading(last = stress_subject(one.name));
     const std::string mark =
         result.verdict == CaseVerdict::kHolds ? "" : std::string(" (") + name(result.verdict) + ")";
     table.line(rest(one.name) + mark,
@@ -107,11 +103,11 @@ std::string stress_list(const std::vector<StressCase>& cases) {
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const StressCase& one = cases[i];
     const auto same = [&one](const StressCase& other) {
-      return other.mechanism == one.mechanism && subject(other.name) == subject(one.name);
+      return other.mechanism == one.mechanism && stress_subject(other.name) == stress_subject(one.name);
     };
     if (std::any_of(cases.begin(), cases.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
-    text += "| `" + subject(one.name) + "` | " + row_of(stress_groups(), one.group).name + " | " + cell(one.mechanism) +
-            " | " + cell(one.why) + " | " + cell(one.expected) + " | " +
+    text += "| `" + stress_subject(one.name) + "` | " + row_of(stress_groups(), one.group).name + " | " +
+            cell(one.mechanism) + " | " + cell(one.why) + " | " + cell(one.expected) + " | " +
             std::to_string(std::count_if(cases.begin(), cases.end(), same)) + " |\n";
   }
   return text;

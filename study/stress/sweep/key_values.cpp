@@ -27,18 +27,13 @@ std::vector<double> values_of(Range range) {
   return values;
 }
 
-/// "2.0": a whole number must not look like an integer where a number is meant; the reader takes both.
-std::string toml_number(double value) {
-  return number_text(value);
-}
-
 class ValueList final : public FieldVisitor {
  public:
   ValueList(std::string prefix, std::vector<SweptKey>& out) : prefix_(std::move(prefix)), out_(out) {}
 
   void number(const char* key, double&, Range range, const char*) override {
     std::vector<std::string> values;
-    for (const double value : values_of(range)) values.push_back(toml_number(value));
+    for (const double value : values_of(range)) values.push_back(number_text(value));
     add(key, true, std::move(values));
   }
   void integer(const char* key, std::int64_t&, Range range, const char*) override {
@@ -62,7 +57,7 @@ class ValueList final : public FieldVisitor {
     std::vector<std::string> values;
     for (const double value : values_of(range)) {
       std::string list;
-      for (std::size_t i = 0; i < size; ++i) list += (i > 0 ? "," : "") + toml_number(value);
+      for (std::size_t i = 0; i < size; ++i) list += (i > 0 ? "," : "") + number_text(value);
       values.push_back("[" + list + "]");
     }
     add(key, true, std::move(values));

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/messages.h"
-#include "canyon/core/stress/grid.h"
+#include "canyon/core/stress_rows.h"
 #include "canyon/study/stress/cases.h"
 #include "canyon/study/stress/stress_output.h"
 
