@@ -28,7 +28,7 @@ constexpr MayBeAbsent kRows[] = {
     {"gnss", kDops, "satellites", "", "a GNSS model that makes fixes without satellites"},
     {"gnss", kCounts, "satellites", "", "the same"},
     {"gnss", "multipath_max_m", "satellites", "", "the same"},
-    {"gnss", "nis", "accepted", "0", "the filter was given no fix, or had to refuse it before it could weigh it"},
+    {"gnss", "nis", "", "", "no fix was given to the filter, or it took the place of a position that was not known"},
     {"gnss", "reason", "", "", "a fix, which needs none"},
     {"satellites", "cn0_dbhz", "tracked", "0", "not measured"},
     {"keyframes", kRegistered, "status", "not_registered", "`[registration] method = \"none\"`"},
@@ -50,6 +50,7 @@ constexpr MayBeAbsent kRows[] = {
     {"summary.json", "registration_error_rms_m", "keyframes_registered", "0", "one keyframe, which defines the map"},
     {"summary.json", "registration_error_prior_rms_m", "keyframes", "0", "no keyframe"},
     {"summary.json", kPriorMap, "map_points", "0", "no point in the map"},
+    {"summary.json", "map_error_up_prior_rms_m,map_error_up_rms_m", "", "", "no point next to level ground or a roof"},
     {"summary.json", kMap, "map_points", "0", "no point in the map"},
 };
 

@@ -25,7 +25,7 @@ TEST(FiniteResults, AFieldIsEmptyOnlyWhereItsRowSaysSo) {
   EXPECT_EQ(gnss("none,0,,,0,blocked"), "");
   EXPECT_EQ(gnss("single,,,1.5,1,"), "") << "a model without satellites";
   EXPECT_EQ(gnss("single,8,,1.5,1,"), "2: gdop is empty");
-  EXPECT_EQ(gnss("single,8,2.5,,1,"), "2: nis is empty");
+  EXPECT_EQ(gnss("single,8,2.5,,1,"), "") << "it took the place of a position that was not known";
   EXPECT_EQ(gnss(",8,2.5,1.5,1,"), "2: status is empty");
   EXPECT_EQ(gnss("single,8,-inf,1.5,1,"), "2: gdop is -inf");
   EXPECT_EQ(gnss("single,8,1e999,1.5,1,"), "2: gdop is 1e999");
