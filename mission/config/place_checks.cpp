@@ -42,7 +42,11 @@ Error outside(const std::string& key, const std::string& who, const Eigen::Vecto
 /// A point where a vehicle can stand. `who` is to stand there.
 Status check_standing_place(const scene::Site& site, const Eigen::Vector2d& p, const std::string& key,
                             const std::string& who) {
-  if (!site.contains(p)) return outside(key, who, p, site.low_W, site.high_W);
+  if (!site.contains(p)) {
+    Error error = outside(key, who, p, site.low_W, site.high_W);
+    error.expected += " (scene.extent_m)";
+    return error;
+  }
   if (const scene::Building* building = scene::building_at(site.buildings, p))
     return Error{
         .key = key, .what = who + place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};

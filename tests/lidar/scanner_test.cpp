@@ -311,7 +311,7 @@ TEST(LidarConfig, MistakesAreNamed) {
     return made.ok() ? std::string("no error") : made.error().str();
   };
   EXPECT_EQ(error_of([](LidarConfig& c) { c.rate_hz = 20; }),
-            "lidar.azimuth_steps: 1800, expected at most 904 at 20 Hz (vlp16 needs 55.296 us per firing)");
+            "lidar.azimuth_steps: 1800, expected at most 904 at rate_hz = 20 (vlp16 needs 55.296 us per firing)");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.rate_hz = 20, c.azimuth_steps = 904; }), "no error");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "grid16", c.rate_hz = 20; }), "no error") << "no cycle, no limit";
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "mid360"; }),

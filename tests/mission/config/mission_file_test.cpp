@@ -199,7 +199,7 @@ TEST(MissionFileMessages, AMisplacedWaypointIsToldBeforeTheTerrainIsMade) {
   const double before_s = process_cpu_s();
   EXPECT_THAT(message(large + "[[autonomy.waypoint]]\nname = \"far\"\np_m = [5000.0, 0.0]\n"),
               HasSubstr("my.toml:5: autonomy.waypoint[1]: waypoint \"far\" at (5000.0, 0.0) lies outside the scene, "
-                        "expected x from -1500 to 1500, y from -1500 to 1500"));
+                        "expected x from -1500 to 1500, y from -1500 to 1500 (scene.extent_m)"));
   EXPECT_THAT(message(large + "[[scene.moving]]\npath_m = [0.0, 5000.0]\n[vehicle]\nstart_m = [0, 5000]\n"),
               HasSubstr("vehicle.start_m: (0.0, 5000.0) lies outside the scene"));
   EXPECT_LT(process_cpu_s() - before_s, 2.0);
