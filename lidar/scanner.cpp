@@ -41,8 +41,8 @@ Status validate(const LidarConfig& c, const BeamTable& table) {
   if (firing_s < needed_s) {
     const auto most = static_cast<std::int64_t>(std::floor(1.0 / (c.rate_hz * needed_s)));
     return config_error("azimuth_steps", std::to_string(c.azimuth_steps),
-                        "at most " + std::to_string(most) + " at rate_hz = " + number_text(c.rate_hz) + " (" + table.name +
-                            " needs " + number_text(std::round(needed_s * 1e9) / 1e3) + " us per firing)");
+                        "at most " + std::to_string(most) + " at rate_hz = " + number_text(c.rate_hz) + " (" +
+                            table.name + " needs " + number_text(std::round(needed_s * 1e9) / 1e3) + " us per firing)");
   }
   return Ok{};
 }

@@ -5,6 +5,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/inertial/errors/error_link.h"
+#include "canyon/inertial/imu_model.h"
 #include "canyon/mission/autonomy/reference_autonomy.h"
 #include "canyon/tests/mission/summary_of.h"
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "canyon/core/units.h"
+#include "canyon/lidar/scanner.h"
 #include "canyon/mission/autonomy/reference_autonomy.h"
 #include "canyon/tests/mission/summary_of.h"
 

@@ -15,6 +15,7 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/propagation.h"
 #include "canyon/gnss/receiver/link_budget.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 #include "canyon/tests/support/test_data.h"
 

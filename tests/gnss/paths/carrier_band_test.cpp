@@ -11,6 +11,7 @@
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/sensor/satellite_source.h"
 #include "canyon/gnss/signal.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
 
 // 2026-11-22: Fresnel coefficients, slabs, facet sizes and diffraction were those of L1 for every band.

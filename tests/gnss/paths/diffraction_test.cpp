@@ -9,6 +9,7 @@
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
 #include "canyon/gnss/paths/propagation.h"
 #include "canyon/gnss/signal.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 
 namespace canyon::gnss {

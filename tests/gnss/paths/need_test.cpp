@@ -9,6 +9,7 @@
 #include "canyon/gnss/paths/propagation.h"
 #include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 
 namespace canyon::gnss::testing {

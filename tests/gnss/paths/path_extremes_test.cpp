@@ -5,6 +5,7 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/paths/propagation.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 
 namespace canyon::gnss {

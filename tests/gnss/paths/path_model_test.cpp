@@ -7,6 +7,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/signal.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
 
 namespace canyon::gnss {

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "canyon/gnss/signal.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
 
 namespace canyon::gnss {

@@ -7,6 +7,7 @@
 
 #include "canyon/core/math/chi_square.h"
 #include "canyon/gnss/receiver/modes/receiver_mode.h"
+#include "canyon/scene/scene_at.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
 
 namespace canyon::gnss {
