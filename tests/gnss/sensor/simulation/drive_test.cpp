@@ -10,6 +10,7 @@
 #include "canyon/gnss/sensor/simulation/drive_files.h"
 #include "canyon/gnss/sensor/simulation/sky.h"
 #include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {
