@@ -154,7 +154,7 @@ run_sanitized() {
     test_preset asan
   else
     build canyon,canyon_core_tests,canyon_mutation_tests asan
-    CANYON_MUTATION_VARIANTS=20 test_preset asan --label-regex '^(core|mutation)$'
+    CANYON_MUTATION_VARIANTS=12 test_preset asan --label-regex '^(core|mutation)$'
   fi
   say "sanitized tests passed after $((SECONDS - started)) s"
 }
