@@ -190,7 +190,11 @@ def attempt(mutant, work, jobs, timeout_s):
 def copy_of_tree(work, jobs):
     """The tree as it is, in an empty folder and with times of today: nothing of a try before it is taken for up to date."""
     shutil.rmtree(work, ignore_errors=True)
-    shutil.copytree(ROOT, work, symlinks=True, copy_function=shutil.copy, ignore=shutil.ignore_patterns("build", ".git", "results"))
+
+    def made_here(folder, names):  # by builds and runs, at the top; study/results is source
+        return [name for name in names if pathlib.Path(folder) == ROOT and name in ("build", ".git", "results")]
+
+    shutil.copytree(ROOT, work, symlinks=True, copy_function=shutil.copy, ignore=made_here)
     subprocess.run(["cmake", "--preset", "release", "-DCANYON_TESTS=OFF"], cwd=work, check=True, stdout=subprocess.DEVNULL)
     built = build(work, jobs)
     if built.returncode != 0:
