@@ -57,13 +57,17 @@ if(CANYON_SANITIZE)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
-# Parsing the standard library and Eigen is half of the time of most files. ccache, where there is one, saves more, but
-# not of files with precompiled headers; so each system has one of the two.
+# Parsing the standard library and Eigen is half of the time of most files. ccache, where there is one that is in use, saves
+# more, but not of files with precompiled headers; so each system has one of the two.
 find_program(CCACHE_PROGRAM ccache)
+set(precompile ON)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
-  set(precompile OFF)
-else()
-  set(precompile ON)
+  execute_process(COMMAND ${CCACHE_PROGRAM} --print-stats OUTPUT_VARIABLE cache ERROR_QUIET)
+  if(cache MATCHES "files_in_cache[ \t]+([0-9]+)" AND CMAKE_MATCH_1 GREATER 1000)
+    set(precompile OFF)
+  endif()
 endif()
 option(CANYON_PRECOMPILED_HEADERS "Precompile the headers that nearly all files include" ${precompile})
+if(CCACHE_PROGRAM AND NOT CANYON_PRECOMPILED_HEADERS)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()

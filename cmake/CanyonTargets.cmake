@@ -1,7 +1,7 @@
 # canyon_precompile(TARGET ROOT): what nearly all files include is precompiled once, for ROOT (further arguments: headers of
 # ROOT's own), and used by every TARGET. Short on purpose: <nlohmann/json.hpp> in it would cost each file 0.4 s.
-# Behind them g++ 12 gives false alarms of strings inside the standard library, so those warnings are off; tests, and builds
-# with ccache, do without precompiled headers and keep them.
+# Behind them g++ 12 gives false alarms of strings inside the standard library, so those warnings are off; builds with ccache do
+# without precompiled headers and keep them.
 function(canyon_precompile target root)
   if(NOT CANYON_PRECOMPILED_HEADERS)
     return()
@@ -125,6 +125,7 @@ function(canyon_test folder)
   set(target canyon_${folder}_tests)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE canyon_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  canyon_precompile(${target} canyon_test_support)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "-*Nightly*" PROPERTIES LABELS ${folder} TIMEOUT 300)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "*Nightly*" TEST_LIST ${target}_nightly
                        PROPERTIES LABELS "nightly" TIMEOUT 3600)
