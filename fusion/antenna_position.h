@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "canyon/fusion/error_propagation.h"
+#include "canyon/fusion/error_state.h"
 #include "canyon/fusion/strapdown.h"
 
 namespace canyon::fusion {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -11,6 +12,7 @@
 #include "canyon/core/units.h"
 #include "canyon/fusion/antenna_position.h"
 #include "canyon/fusion/consistency.h"
+#include "canyon/fusion/states/state_block.h"
 
 namespace canyon::fusion {
 namespace {
@@ -23,6 +25,7 @@ constexpr double kGradientReach_m = 500.0;
 /// fixes the vertical channel comes there within two hours (e-folding 570 s).
 constexpr double kLost_m = 1e6;
 constexpr double kUnknownSpeed_m_s = 1e3;
+constexpr std::string_view kPositionModel = "position";
 
 void check_finite(const ImuSample& imu) {
   const bool good = std::isfinite(imu.dt_s) && imu.dt_s > 0.0 && imu.dtheta_U.allFinite() && imu.dv_U.allFinite();
@@ -36,87 +39,104 @@ void check_finite(const GnssFix& fix) {
                ", covariance diagonal = ", fix.covariance_E.diagonal().transpose());
 }
 
-using Columns3 = Eigen::Matrix<double, Index::kAll, 3>;
+using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, kMostStates, 3>;
+using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, kMostStates>;
 
-/// P += a b'.
-void add_outer(ErrorMatrix& P, const Columns3& a, const Columns3& b) {
-  const Eigen::Matrix<double, 3, Index::kAll, Eigen::RowMajor> rows = b.transpose();
-  for (int i = 0; i < Index::kAll; ++i)
-    P.row(i) += a(i, 0) * rows.row(0) + a(i, 1) * rows.row(1) + a(i, 2) * rows.row(2);
+/// P += a b.
+void add_outer(ErrorMatrix& P, const Columns3& a, const Rows3& b) {
+  add_products(P.data(), static_cast<int>(P.rows()), static_cast<int>(P.cols()), a.data(), b.data());
 }
 
-/// Covariance of the fix with the configured floor; raising diagonal terms keeps it positive definite.
-Eigen::Matrix3d fix_covariance(const GnssFix& fix, double floor_m) {
-  Eigen::Matrix3d R = 0.5 * (fix.covariance_E + fix.covariance_E.transpose());
-  for (int i = 0; i < 3; ++i) R(i, i) = std::max(R(i, i), floor_m * floor_m);
-  CANYON_CHECK(Eigen::LLT<Eigen::Matrix3d>(R).info() == Eigen::Success, "covariance of the GNSS fix at ", fix.t.iso(),
-               " is not positive definite: diagonal ", R.diagonal().transpose());
-  return R;
+/// H P; what H does not know costs nothing. Rows beyond those of H are zero.
+Rows3 rows_of(const Measurement::Rows& H, const ErrorMatrix& P) {
+  Rows3 out = Rows3::Zero(3, P.cols());
+  for (Eigen::Index i = 0; i < H.rows(); ++i) {
+    for (Eigen::Index k = 0; k < H.cols(); ++k)
+      if (H(i, k) != 0.0) out.row(i) += H(i, k) * P.row(k);
+  }
+  return out;
 }
 
-/// What rounding may take off an eigenvalue of H P H': an epsilon of each of the 9 x 9 terms of an element, and of the
-/// three elements of a row.
-double rounding_of_HPHt(const Eigen::Matrix<double, 3, 9>& H, const ErrorMatrix& P) {
-  const Eigen::Matrix<double, 3, 9> magnitude = H.cwiseAbs();
-  const Eigen::Matrix3d terms =
-      magnitude.lazyProduct(P.topLeftCorner<9, 9>().cwiseAbs().eval()).eval().lazyProduct(magnitude.transpose());
-  return 81.0 * std::numeric_limits<double>::epsilon() * terms.rowwise().sum().maxCoeff();
+/// A H' with the rows of A = H P, or with the columns of A = P.
+Measurement::Square times_transposed(const Rows3& HP, const Measurement::Rows& H) {
+  const Eigen::Index m = H.rows();
+  Measurement::Square out = Measurement::Square::Zero(m, m);
+  for (Eigen::Index j = 0; j < m; ++j) {
+    for (Eigen::Index k = 0; k < H.cols(); ++k) {
+      if (H(j, k) == 0.0) continue;
+      for (Eigen::Index i = 0; i < m; ++i) out(i, j) += HP(i, k) * H(j, k);
+    }
+  }
+  return 0.5 * (out + out.transpose());
 }
 
-constexpr ModelRow<ImuGains> kImuGains[] = {
-    {"estimate", ImuGains::kEstimate, "beside the 15 states, if the IMU is said to have any"},
-    {"ignore", ImuGains::kIgnore, "strictly 15 states"},
-};
+void symmetrize(ErrorMatrix& P) {
+  for (Eigen::Index i = 0; i < P.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
+}
 
-bool estimates_gains(const FilterConfig& config, const ImuNoise& noise) {
-  const auto has_gain_errors = [](const TriadNoise& n) {
-    return n.scale_sigma > 0.0 || n.misalignment_sigma_rad > 0.0;
-  };
-  return config.imu_gains == ImuGains::kEstimate && (has_gain_errors(noise.gyro) || has_gain_errors(noise.accel));
+/// What rounding may take off an eigenvalue of H P H': an epsilon of each of the n x n terms of an element, and of the
+/// elements of a row.
+double rounding_of_HPHt(const Measurement::Rows& H, const ErrorMatrix& P) {
+  double terms = 0.0, known = 0.0;
+  for (Eigen::Index k = 0; k < H.cols(); ++k) {
+    const double h = H.col(k).cwiseAbs().maxCoeff();
+    if (h == 0.0) continue;
+    ++known;
+    for (Eigen::Index l = 0; l < H.cols(); ++l) terms += h * std::abs(P(k, l)) * H.col(l).cwiseAbs().maxCoeff();
+  }
+  return known * known * std::numeric_limits<double>::epsilon() * static_cast<double>(H.rows()) * terms;
 }
 
 }  // namespace
 
-void visit(FieldVisitor& f, FilterConfig& c) {
-  f.file("imu", c.imu, ".toml", "sensor whose datasheet the filter is told; empty: the one of [imu] sensor");
-  f.number("initial_attitude_sigma_deg_roll_pitch", c.initial_attitude_sigma_deg_roll_pitch, {1e-6, 180},
-           "1-sigma of roll and pitch at the start");
-  f.number("initial_attitude_sigma_deg_heading", c.initial_attitude_sigma_deg_heading, {1e-6, 180},
-           "1-sigma of heading at the start");
-  f.number("initial_position_sigma_m", c.initial_position_sigma_m, {1e-6, 1e6},
-           "1-sigma of position per axis at the start");
-  f.number("initial_velocity_sigma_m_s", c.initial_velocity_sigma_m_s, {1e-6, 1e3},
-           "1-sigma of velocity per axis at the start");
-  f.number("gate_sigma", c.gate_sigma, {0, 20},
-           "fixes less likely than a deviation of this many sigma are refused; 0 accepts every fix");
-  f.number("fix_sigma_floor_m", c.fix_sigma_floor_m, {0, 1e3}, "lower bound on a fix's 1-sigma per axis");
-  f.choice("integrator", c.integrator, strapdown_names(), "strapdown integrator");
-  f.choice("imu_gains", c.imu_gains, ModelTable<ImuGains>(kImuGains), "scale factors and misalignments of the IMU");
-  f.number("imu_gain_tau_s", c.imu_gain_tau_s, {0, 1e9}, "their correlation time; 0: constant over a run");
-}
-
 ErrorStateFilter::ErrorStateFilter(const FilterConfig& config, const ImuNoise& noise, const LocalFrame& frame,
                                    const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B)
     : config_(config),
-      processes_(noise, estimates_gains(config, noise), config.imu_gain_tau_s),
       frame_(frame),
       lever_U_B_(lever_U_B),
       lever_A_B_(lever_A_B),
-      strapdown_(make_strapdown(config.integrator)) {}
+      strapdown_(make_strapdown(config.integrator)),
+      state_(filter_parts(config).states, config.own, {.noise = noise}),
+      propagation_(state_, noise),
+      P_(ErrorMatrix::Zero(state_.padded_size(), state_.padded_size())) {
+  const FilterParts parts = filter_parts(config);
+  for (const std::string& name : parts.measurements) {
+    const auto& row = model_row(measurement_models(), name);
+    aids_.push_back({row.name, row.make(config.own, {.state = state_, .noise = noise}),
+                     model_row(acceptance_models(), parts.acceptance).make(config.own)});
+  }
+}
+
+FilterView ErrorStateFilter::view() const {
+  return {.state = state_,
+          .frame = frame_,
+          .lever_U_B = lever_U_B_,
+          .lever_A_B = lever_A_B_,
+          .w_EU_U = w_EU_U_,
+          .f_U = f_U_};
+}
 
 void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W) {
   CANYON_CHECK(X_WB.R.coeffs().allFinite() && X_WB.p.allFinite() && v_WB_W.allFinite(), "initial state at ", t.iso());
   const Eigen::Matrix3d& R_EW = frame_.R_EW();
   const Eigen::Matrix3d R_WB = X_WB.R.toRotationMatrix();
-  state_ = {.t = t,
-            .R_EU = (Eigen::Quaterniond(R_EW) * X_WB.R).normalized(),
-            .p_EU_E = frame_.to_E(X_WB * lever_U_B_),
-            .v_EU_E = R_EW * v_WB_W};
-  calibration_ = {};
+  state_.start({.t = t,
+                .R_EU = (Eigen::Quaterniond(R_EW) * X_WB.R).normalized(),
+                .p_EU_E = frame_.to_E(X_WB * lever_U_B_),
+                .v_EU_E = R_EW * v_WB_W});
   w_EU_U_.setZero();
+  f_U_.setZero();
+  for (Aid& aid : aids_) {
+    aid.model->start();
+    aid.acceptance->start();
+  }
+  reports_.clear();
+  state_.feeds({.dt_s = 1.0});  // of biases, until the unit has measured
   strapdown_->reset();
-  gravity_gradient_at_E_ = state_.p_EU_E;
-  gravity_gradient_ = gravity_gradient_E(state_.p_EU_E);
+  gravity_gradient_at_E_ = state_.nav.p_EU_E;
+  gravity_gradient_ = gravity_gradient_E(state_.nav.p_EU_E);
 
   const double tilt = config_.initial_attitude_sigma_deg_roll_pitch * kDegree;
   const double heading = config_.initial_attitude_sigma_deg_heading * kDegree;
@@ -135,50 +155,54 @@ void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vect
         config_.initial_position_sigma_m * config_.initial_position_sigma_m;
     P_(Index::kVelocity + i, Index::kVelocity + i) =
         config_.initial_velocity_sigma_m_s * config_.initial_velocity_sigma_m_s;
-    P_(Index::kGyroBias + i, Index::kGyroBias + i) = processes_.gyro_bias.sigma * processes_.gyro_bias.sigma;
-    P_(Index::kAccelBias + i, Index::kAccelBias + i) = processes_.accel_bias.sigma * processes_.accel_bias.sigma;
   }
-  if (processes_.with_gains) {
-    for (int i = 0; i < 9; ++i) {
-      P_(Index::kGyroGain + i, Index::kGyroGain + i) = gain_variance(processes_.noise.gyro, i);
-      P_(Index::kAccelGain + i, Index::kAccelGain + i) = gain_variance(processes_.noise.accel, i);
-    }
+  for (const ErrorState::Member& member : state_.members()) {
+    for (int i = 0; i < member.block->size(); ++i) P_(member.offset + i, member.offset + i) = member.block->variance(i);
   }
-  P_ = 0.5 * (P_ + P_.transpose()).eval();
+  symmetrize(P_);
 }
 
 void ErrorStateFilter::predict(const ImuSample& imu) {
   check_finite(imu);
-  const double elapsed_s = imu.t - state_.t;
+  const double elapsed_s = imu.t - state_.nav.t;
   CANYON_CHECK(std::abs(elapsed_s - imu.dt_s) <= 0.5 * imu.dt_s, "IMU sample at ", imu.t.iso(), " covers ", imu.dt_s,
                " s, but ", elapsed_s, " s have passed since the last one");
-  if ((state_.p_EU_E - gravity_gradient_at_E_).squaredNorm() > kGradientReach_m * kGradientReach_m) {
-    gravity_gradient_at_E_ = state_.p_EU_E;
-    gravity_gradient_ = gravity_gradient_E(state_.p_EU_E);
+  if ((state_.nav.p_EU_E - gravity_gradient_at_E_).squaredNorm() > kGradientReach_m * kGradientReach_m) {
+    gravity_gradient_at_E_ = state_.nav.p_EU_E;
+    gravity_gradient_ = gravity_gradient_E(state_.nav.p_EU_E);
   }
 
-  const Increments in = calibration_.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
-  const StepJacobian step(state_, in, gravity_gradient_);
-  propagate_covariance(P_, step, in, calibration_, processes_);
-  if (response_ != nullptr) response_->predicted(step, in, calibration_, processes_);
+  propagation_.set_interval(imu.dt_s);
+  const Calibration& known = state_.step_calibration(propagation_.mean_share());
+  const Increments in = known.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
+  propagation_.set_step(state_, in, known, gravity_gradient_);
+  propagation_.propagate(P_);
+  if (response_ != nullptr) response_->predicted(propagation_);
 
-  strapdown_->advance(state_, in);
-  state_.t = imu.t;
-  w_EU_U_ = in.dtheta_U / in.dt_s - state_.R_EU.conjugate() * earth_rate_E();
-  calibration_.gyro_bias *= processes_.gyro_bias.decay(imu.dt_s);
-  calibration_.accel_bias *= processes_.accel_bias.decay(imu.dt_s);
-  if (processes_.with_gains && config_.imu_gain_tau_s > 0.0) {
-    const double decay = std::exp(-imu.dt_s / config_.imu_gain_tau_s);
-    calibration_.set_gains(decay * calibration_.gyro_gain, decay * calibration_.accel_gain);
-  }
+  strapdown_->advance(state_.nav, in);
+  state_.nav.t = imu.t;
+  w_EU_U_ = in.dtheta_U / in.dt_s - state_.nav.R_EU.conjugate() * earth_rate_E();
+  f_U_ = in.dv_U / in.dt_s;
+  state_.fade(propagation_.decay());
+  for (Aid& aid : aids_)
+    if (auto m = aid.model->stepped(view(), in)) reports_.push_back(correct(aid, *m));
+}
+
+std::vector<UpdateReport> ErrorStateFilter::take_reports() {
+  return std::exchange(reports_, {});
+}
+
+void ErrorStateFilter::update(const AidingMessage& message) {
+  for (Aid& aid : aids_)
+    if (auto m = aid.model->received(view(), message)) reports_.push_back(correct(aid, *m));
 }
 
 void ErrorStateFilter::restart(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
                                const Eigen::Matrix3d& H_theta) {
-  state_.p_EU_E += innovation;
-  state_.v_EU_E.setZero();
+  state_.nav.p_EU_E += innovation;
+  state_.nav.v_EU_E.setZero();
   // The antenna is where the fix says; the IMU's place beside it is as well known as the attitude.
-  const Eigen::Matrix<double, 3, Index::kAll> lever = -H_theta * P_.middleRows<3>(Index::kTheta);
+  const Rows3 lever = -H_theta * P_.middleRows<3>(Index::kTheta);
   const Eigen::Matrix3d P_lever = lever.middleCols<3>(Index::kTheta) * -H_theta.transpose();
   P_.middleRows<3>(Index::kPosition) = lever;
   P_.middleCols<3>(Index::kPosition) = lever.transpose();
@@ -193,114 +217,148 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   report.t = fix.t;
   if (fix.status == FixStatus::kNone) return report;
   check_finite(fix);
-  const double age_s = fix.t - state_.t;
+  const double age_s = fix.t - state_.nav.t;
   CANYON_CHECK(std::abs(age_s) <= kMaxFixAge_s, "GNSS fix at ", fix.t.iso(), " is ", age_s,
                " s away from the last IMU sample");
-
-  const AntennaPosition antenna = antenna_position(state_, w_EU_U_, lever_A_B_ - lever_U_B_, age_s);
-  const Eigen::Matrix<double, 3, 9>& H = antenna.H;
-  report.innovation = fix.p_A_E - antenna.p_A_E;
-  Eigen::Matrix3d R = fix_covariance(fix, config_.fix_sigma_floor_m);
-  if (P_.diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
-    restart(report.innovation, R, antenna.H.leftCols<3>());
-    if (response_ != nullptr) response_->restarted(antenna.H.leftCols<3>());
-    report.accepted = true;
-    return report;
+  for (Aid& aid : aids_) {
+    auto m = aid.model->received(view(), fix);
+    if (!m) continue;
+    const bool of_position = aid.name == kPositionModel;
+    CANYON_CHECK(m->R.llt().info() == Eigen::Success, "covariance of the GNSS fix at ", fix.t.iso(),
+                 " is not positive definite: diagonal ", m->R.diagonal().transpose());
+    if (of_position && P_.diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
+      const Eigen::Matrix3d H_theta = m->H.leftCols<3>();
+      restart(m->residual, m->R, H_theta);
+      if (response_ != nullptr) response_->restarted(H_theta);
+      report.innovation = m->residual;
+      report.accepted = true;
+      return report;
+    }
+    UpdateReport made = correct(aid, *m);
+    made.t = fix.t;
+    if (of_position)
+      report = made;
+    else
+      reports_.push_back(made);
   }
-  report.dimension = 3;
-
-  const Columns3 PHt = P_.leftCols<9>().lazyProduct(H.transpose());
-  Eigen::Matrix3d S = H.lazyProduct(PHt.topRows<9>()) + R;
-  S = 0.5 * (S + S.transpose()).eval();
-  Eigen::LLT<Eigen::Matrix3d> S_llt(S);
-  if (S_llt.info() != Eigen::Success) {
-    // Both the antenna and the fix are known better than the terms of H P H' are rounded: the fix then counts as known
-    // to that rounding.
-    const double rounding = rounding_of_HPHt(H, P_);
-    R.diagonal().array() += rounding;
-    S.diagonal().array() += rounding;
-    S_llt.compute(S);
-  }
-  CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
-               S.diagonal().transpose());
-  report.nis = report.innovation.dot(S_llt.solve(report.innovation));
-  // The square of more than 1e154 sigma is more than a double holds.
-  if (!std::isfinite(report.nis)) report.nis = std::numeric_limits<double>::infinity();
-  if (config_.gate_sigma > 0.0 && chi_square_tail(report.nis, 3) < normal_two_sided_tail(config_.gate_sigma))
-    return report;
-  report.accepted = true;
-
-  const Eigen::Matrix3d S_inverse = S_llt.solve(Eigen::Matrix3d::Identity());
-  const Columns3 K = PHt.lazyProduct(S_inverse);
-  if (response_ != nullptr) response_->corrected(K, H);
-
-  // Joseph: (I - K H) P (I - K H)' + K R K', as two rank-3 corrections from the left and from the right.
-  add_outer(P_, -K, PHt);
-  const Columns3 MHt = P_.leftCols<9>().lazyProduct(H.transpose());
-  const Columns3 right = K.lazyProduct(R) - MHt;
-  add_outer(P_, right, K);
-  P_ = 0.5 * (P_ + P_.transpose()).eval();
-
-  inject(K.lazyProduct(report.innovation));
   return report;
 }
 
-void ErrorStateFilter::inject(const Eigen::Matrix<double, Index::kAll, 1>& error) {
-  const Eigen::Vector3d theta = error.segment<3>(Index::kTheta);
-  state_.R_EU = (state_.R_EU * so3_exp(theta)).normalized();
-  state_.p_EU_E += error.segment<3>(Index::kPosition);
-  state_.v_EU_E += error.segment<3>(Index::kVelocity);
-  calibration_.gyro_bias += error.segment<3>(Index::kGyroBias);
-  calibration_.accel_bias += error.segment<3>(Index::kAccelBias);
-  if (processes_.with_gains) {
-    using Gain = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-    const Eigen::Matrix<double, 9, 1> gyro = error.segment<9>(Index::kGyroGain);
-    const Eigen::Matrix<double, 9, 1> accel = error.segment<9>(Index::kAccelGain);
-    calibration_.set_gains(calibration_.gyro_gain + Eigen::Map<const Gain>(gyro.data()),
-                           calibration_.accel_gain + Eigen::Map<const Gain>(accel.data()));
+UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
+  const int n = m.dimension();
+  UpdateReport report{.measurement = aid.name, .t = state_.nav.t, .dimension = n};
+  report.innovation.head(n) = m.residual;
+  Rows3 HP = rows_of(m.H, P_);
+  Measurement::Square predicted = times_transposed(HP, m.H);
+  Eigen::LLT<Measurement::Square> S_llt(predicted + m.R);
+  if (S_llt.info() != Eigen::Success) {
+    // Both what is measured and the measurement are known better than the terms of H P H' are rounded: it then counts
+    // as known to that rounding.
+    m.R.diagonal().array() += rounding_of_HPHt(m.H, P_);
+    S_llt.compute(predicted + m.R);
   }
+  CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
+               (predicted + m.R).diagonal().transpose());
+  report.nis = m.residual.dot(S_llt.solve(m.residual));
+  // The square of more than 1e154 sigma is more than a double holds.
+  if (!std::isfinite(report.nis)) report.nis = std::numeric_limits<double>::infinity();
+
+  const Decision decision = aid.acceptance->decide(
+      {.t = state_.nav.t, .residual = m.residual, .R = m.R, .predicted = predicted, .nis = report.nis});
+  if (!decision.accepted) return report;
+  report.accepted = true;
+  if (decision.noise_scale != 1.0 || decision.covariance_scale != 1.0) {
+    m.R *= decision.noise_scale;
+    P_ *= decision.covariance_scale;
+    HP *= decision.covariance_scale;
+    predicted *= decision.covariance_scale;
+    S_llt.compute(predicted + m.R);
+  }
+
+  Columns3 K = Columns3::Zero(P_.rows(), 3);
+  K.leftCols(n) = HP.topRows(n).transpose().lazyProduct(S_llt.solve(Measurement::Square::Identity(n, n)).eval());
+  if (response_ != nullptr) response_->corrected(K.leftCols(n), m.H, aid.name == kPositionModel);
+
+  // Joseph: (I - K H) P (I - K H)' + K R K', as two corrections of the rank of the measurement, from the left and from
+  // the right.
+  add_outer(P_, -K, HP);
+  Columns3 right = Columns3::Zero(P_.rows(), 3);
+  right.leftCols(n) = K.leftCols(n).lazyProduct(m.R);
+  for (Eigen::Index k = 0; k < P_.cols(); ++k) {
+    for (int i = 0; i < n; ++i)
+      if (m.H(i, k) != 0.0) right.col(i) -= m.H(i, k) * P_.col(k);
+  }
+  add_outer(P_, right, K.transpose());
+  symmetrize(P_);
+
+  inject(K.leftCols(n).lazyProduct(m.residual));
+  return report;
+}
+
+void ErrorStateFilter::inject(const Eigen::VectorXd& error) {
+  state_.inject(error);
   // The attitude error is now counted from the corrected attitude: Exp(theta + e) = Exp(theta) Exp(Jr(theta) e).
-  const Eigen::Matrix3d reset = so3_right_jacobian(theta);
-  Eigen::Matrix<double, 3, Index::kAll> rows = reset.lazyProduct(P_.topRows<3>());
+  const Eigen::Matrix3d reset = so3_right_jacobian(error.segment<3>(Index::kTheta));
+  Rows3 rows = reset.lazyProduct(P_.topRows<3>());
   const Eigen::Matrix3d P_theta = rows.leftCols<3>() * reset.transpose();
   rows.leftCols<3>() = 0.5 * (P_theta + P_theta.transpose());
   P_.topRows<3>() = rows;
   P_.leftCols<3>() = rows.transpose();
 }
 
-Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
-  return antenna_position(state_, w_EU_U_, -lever_U_B_, 0.0).H;
+void ErrorStateFilter::watch(FixResponse* response) {
+  response_ = response;
+  if (response_ != nullptr) response_->begin(P_.rows());
 }
 
-ErrorStateFilter::StateMatrix ErrorStateFilter::covariance() const {
-  return P_.topLeftCorner<kStates, kStates>();
+Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
+  return antenna_position(state_.nav, w_EU_U_, -lever_U_B_, 0.0).H;
+}
+
+Eigen::MatrixXd ErrorStateFilter::covariance() const {
+  return P_.topLeftCorner(state_.size(), state_.size());
 }
 
 NavEstimate ErrorStateFilter::estimate() const {
+  const NavState& nav = state_.nav;
+  const Calibration imu = state_.calibration();
   const Eigen::Matrix3d R_WE = frame_.R_EW().transpose();
-  const Eigen::Matrix3d R_EB = state_.R_EU.toRotationMatrix();  // axes of U are parallel to B
+  const Eigen::Matrix3d R_EB = nav.R_EU.toRotationMatrix();  // axes of U are parallel to B
   NavEstimate out;
-  out.t = state_.t;
-  out.X_WB.R = (Eigen::Quaterniond(R_WE) * state_.R_EU).normalized();
-  out.X_WB.p = frame_.to_W(state_.p_EU_E) - out.X_WB.R * lever_U_B_;
-  out.v_WB_W = R_WE * (state_.v_EU_E - R_EB * w_EU_U_.cross(lever_U_B_));
-  out.gyro_bias_U = calibration_.gyro_bias;
-  out.accel_bias_U = calibration_.accel_bias;
+  out.t = nav.t;
+  out.X_WB.R = (Eigen::Quaterniond(R_WE) * nav.R_EU).normalized();
+  out.X_WB.p = frame_.to_W(nav.p_EU_E) - out.X_WB.R * lever_U_B_;
+  out.v_WB_W = R_WE * (nav.v_EU_E - R_EB * w_EU_U_.cross(lever_U_B_));
+  out.gyro_bias_U = imu.gyro_bias;
+  out.accel_bias_U = imu.accel_bias;
 
   // xi = [theta; R' dp_B], and dp_B = dp_U + R [l]x theta.
-  Eigen::Matrix<double, 6, kStates> J = Eigen::Matrix<double, 6, kStates>::Zero();
-  J.block<3, 3>(0, Index::kTheta).setIdentity();
-  J.block<3, 3>(3, Index::kTheta) = skew(lever_U_B_);
-  J.block<3, 3>(3, Index::kPosition) = R_EB.transpose();
-  const StateMatrix P = covariance();
-  out.pose_covariance = J.lazyProduct(P).eval().lazyProduct(J.transpose());
+  Matrix6d J = Matrix6d::Zero();
+  J.topLeftCorner<3, 3>().setIdentity();
+  J.bottomLeftCorner<3, 3>() = skew(lever_U_B_);
+  J.bottomRightCorner<3, 3>() = R_EB.transpose();
+  out.pose_covariance = J.lazyProduct(P_.topLeftCorner<6, 6>()).eval().lazyProduct(J.transpose());
   out.pose_covariance = 0.5 * (out.pose_covariance + out.pose_covariance.transpose()).eval();
 
-  // dv_B = dv_U + R [w x l]x theta - R [l]x b_g, in W.
-  Eigen::Matrix<double, 3, kStates> V = Eigen::Matrix<double, 3, kStates>::Zero();
-  V.block<3, 3>(0, Index::kTheta) = R_WE * R_EB * skew(w_EU_U_.cross(lever_U_B_));
-  V.block<3, 3>(0, Index::kVelocity) = R_WE;
-  V.block<3, 3>(0, Index::kGyroBias) = -R_WE * R_EB * skew(lever_U_B_);
+  // dv_B = dv_U + R [w x l]x theta - R [l]x e, e being the error of the gyroscopes that the states make; in W.
+  Eigen::Matrix<double, 9, 9> P;
+  P.topLeftCorner<3, 3>() = P_.block<3, 3>(Index::kTheta, Index::kTheta);
+  P.block<3, 3>(0, 3) = P_.block<3, 3>(Index::kTheta, Index::kVelocity);
+  P.block<3, 3>(3, 3) = P_.block<3, 3>(Index::kVelocity, Index::kVelocity);
+  Rows3 e = Rows3::Zero(3, P_.cols());
+  for (const Feed& feed : state_.feeds())
+    if (feed.axis < 3) e.row(feed.axis) += feed.rate * P_.row(feed.state);
+  Eigen::Matrix3d P_e = Eigen::Matrix3d::Zero();
+  for (const Feed& feed : state_.feeds())
+    if (feed.axis < 3) P_e.col(feed.axis) += feed.rate * e.col(feed.state);
+  P.block<3, 3>(0, 6) = e.middleCols<3>(Index::kTheta).transpose();
+  P.block<3, 3>(3, 6) = e.middleCols<3>(Index::kVelocity).transpose();
+  P.block<3, 3>(6, 6) = P_e;
+  P.triangularView<Eigen::StrictlyLower>() = P.transpose();
+  Eigen::Matrix<double, 3, 9> V;
+  V.leftCols<3>() = R_WE * R_EB * skew(w_EU_U_.cross(lever_U_B_));
+  V.middleCols<3>(3) = R_WE;
+  V.rightCols<3>() = -R_WE * R_EB * skew(lever_U_B_);
   out.velocity_covariance_W = V.lazyProduct(P).eval().lazyProduct(V.transpose());
   out.velocity_covariance_W = 0.5 * (out.velocity_covariance_W + out.velocity_covariance_W.transpose()).eval();
   return out;

@@ -7,17 +7,21 @@
 
 namespace canyon::fusion {
 
-void FixResponse::predicted(const StepJacobian& step, const Increments& in, const Calibration& calibration,
-                            const ErrorProcesses& processes) {
-  propagate_errors(since_, step, in, calibration, processes);
+void FixResponse::begin(Eigen::Index states) {
+  since_.setIdentity(states, states);
+  responses_.clear();
 }
 
-void FixResponse::corrected(const Columns3& K, const Eigen::Matrix<double, 3, 9>& H) {
+void FixResponse::predicted(ErrorPropagation& step) {
+  step.move(since_);
+}
+
+void FixResponse::corrected(const Eigen::MatrixXd& K, const Eigen::MatrixXd& H, bool of_position) {
   for (Columns3& response : responses_) {
     const Columns3 before = since_ * response;
-    response = before - K * (H * before.topRows<9>());
+    response = before - K * (H * before);
   }
-  responses_.push_back(moved_m_ * K);
+  if (of_position) responses_.push_back(moved_m_ * K);
   since_.setIdentity();
 }
 
@@ -28,14 +32,14 @@ void FixResponse::restarted(const Eigen::Matrix3d& H_theta) {
     response.middleRows<3>(Index::kPosition) = -H_theta * response.middleRows<3>(Index::kTheta);
     response.middleRows<3>(Index::kVelocity).setZero();
   }
-  Columns3 placed = Columns3::Zero();
+  Columns3 placed = Columns3::Zero(since_.rows(), 3);
   placed.middleRows<3>(Index::kPosition) = moved_m_ * Eigen::Matrix3d::Identity();
   responses_.push_back(placed);
   since_.setIdentity();
 }
 
 FixResponse::Moved FixResponse::moved(const Eigen::Matrix<double, 3, 9>& J, const Eigen::Vector3d& up_E) const {
-  const Eigen::Matrix<double, 3, ErrorIndex::kAll> now = J * since_.topRows<9>();
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> now = J * since_.topRows<9>();
   Moved out;
   for (const Columns3& response : responses_) {
     const Eigen::Matrix3d by_fix = now * response;

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "canyon/fusion/error_propagation.h"
+#include "canyon/fusion/propagation/error_propagation.h"
 
 namespace canyon::fusion {
 
@@ -17,15 +17,17 @@ namespace canyon::fusion {
 /// re-linearizing about a corrected attitude turns, which is of second order in the correction.
 class FixResponse {
  public:
-  using Columns3 = Eigen::Matrix<double, ErrorIndex::kAll, 3>;
+  using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
   /// How far the next fix may be moved, m: its weight in the sums.
   void expect(double moved_m) { moved_m_ = moved_m; }
 
-  /// What the filter tells: one step, and one accepted fix with its gain K and measurement matrix H.
-  void predicted(const StepJacobian& step, const Increments& in, const Calibration& calibration,
-                 const ErrorProcesses& processes);
-  void corrected(const Columns3& K, const Eigen::Matrix<double, 3, 9>& H);
+  /// The filter that it follows has so many states, padding and all.
+  void begin(Eigen::Index states);
+  /// What the filter tells: one step, and one accepted measurement with its gain K and measurement matrix H;
+  /// whether it is of a fix's position.
+  void predicted(ErrorPropagation& step);
+  void corrected(const Eigen::MatrixXd& K, const Eigen::MatrixXd& H, bool of_position);
   /// A filter that was lost and takes its place from a fix: the antenna is where that says, at the lever arm whose
   /// dependence on the attitude is H's first three columns, and the velocity is forgotten. Attitude and sensor errors
   /// stay, and with them what earlier fixes did to them.
@@ -40,8 +42,8 @@ class FixResponse {
 
  private:
   double moved_m_ = 1.0;
-  ErrorMatrix since_ = ErrorMatrix::Identity();  // transition since the last fix
-  std::vector<Columns3> responses_;              // right after the last fix, of each fix, times its moved_m
+  ErrorMatrix since_;                // transition since the last fix
+  std::vector<Columns3> responses_;  // right after the last fix, of each fix, times its moved_m
 };
 
 }  // namespace canyon::fusion

@@ -88,6 +88,9 @@ class FieldVisitor {
   /// A name out of a model table or other fixed list.
   virtual void choice(const char* key, std::string& value, const std::vector<std::string>& allowed,
                       const char* doc) = 0;
+  /// A list of names out of a model table, each at most once; one name may stand for a list of it.
+  virtual void choices(const char* key, std::vector<std::string>& value, const std::vector<std::string>& allowed,
+                       const char* doc) = 0;
   /// A list of numbers; `size` > 0 demands exactly that many.
   virtual void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char* doc) = 0;
   virtual void texts(const char* key, std::vector<std::string>& value, const char* doc) = 0;

@@ -54,6 +54,10 @@ class Documenter final : public FieldVisitor {
   void choice(const char* key, std::string& value, const std::vector<std::string>& allowed, const char* doc) override {
     row(key, "", "\"" + value + "\"", "one of " + quoted_list(allowed), doc);
   }
+  void choices(const char* key, std::vector<std::string>& value, const std::vector<std::string>& allowed,
+               const char* doc) override {
+    row(key, "", "[" + quoted_list(value) + "]", "a list out of " + quoted_list(allowed), doc);
+  }
   void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char* doc) override {
     std::string list;
     bool required = false;

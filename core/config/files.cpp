@@ -19,6 +19,7 @@ class FileCollector final : public FieldVisitor {
     for (const std::string& file : value) out_.push_back({path(key), file});
   }
   void choice(const char*, std::string&, const std::vector<std::string>&, const char*) override {}
+  void choices(const char*, std::vector<std::string>&, const std::vector<std::string>&, const char*) override {}
   void numbers(const char*, std::vector<double>&, std::size_t, Range, const char*) override {}
   void texts(const char*, std::vector<std::string>&, const char*) override {}
 

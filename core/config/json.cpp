@@ -22,6 +22,10 @@ class JsonWriter final : public FieldVisitor {
   void choice(const char* key, std::string& value, const std::vector<std::string>&, const char*) override {
     object_[key] = value;
   }
+  void choices(const char* key, std::vector<std::string>& value, const std::vector<std::string>&,
+               const char*) override {
+    object_[key] = value;
+  }
   void numbers(const char* key, std::vector<double>& value, std::size_t, Range, const char*) override {
     object_[key] = value;
   }

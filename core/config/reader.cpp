@@ -77,6 +77,28 @@ class Reader final : public FieldVisitor {
     fail(*node, error.key, std::move(error.what), std::move(error.expected));
   }
 
+  void choices(const char* key, std::vector<std::string>& value, const std::vector<std::string>& allowed,
+               const char*) override {
+    const ConfigNode* node = take(key);
+    if (!node) return;
+    const std::string expected = "a list out of " + quoted_list(allowed);
+    const ConfigNode::Array one{*node};
+    const bool is_list = node->array() != nullptr;
+    std::vector<std::string> read;
+    for (const ConfigNode& item : is_list ? *node->array() : one) {
+      const auto name = typed<std::string>(item, path(key), expected);
+      if (!name) return;
+      if (std::find(allowed.begin(), allowed.end(), *name) == allowed.end()) {
+        Error error = unknown_name(path(key), *name, allowed);
+        return fail(item, error.key, std::move(error.what), std::move(error.expected));
+      }
+      if (std::find(read.begin(), read.end(), *name) != read.end())
+        return fail(item, path(key), "\"" + *name + "\" stands there twice", expected);
+      read.push_back(*name);
+    }
+    value = std::move(read);
+  }
+
   void numbers(const char* key, std::vector<double>& value, std::size_t size, Range range, const char*) override {
     const ConfigNode* node = take(key);
     const std::string expected = size > 0 ? "a list of " + std::to_string(size) + " numbers" : "a list of numbers";

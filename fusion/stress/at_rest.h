@@ -1,11 +1,22 @@
 #pragma once
 
+#include "canyon/core/check.h"
+#include "canyon/core/config/config.h"
+#include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
 #include "canyon/fusion/dead_reckoning.h"
 #include "canyon/fusion/error_state_filter.h"
 
 /// A unit that rests on the Earth, and what it measures: the stage of most cases of this room.
 namespace canyon::fusion {
+
+/// The configuration with these keys of [fusion].
+inline FilterConfig configured(const std::string& toml) {
+  FilterConfig config;
+  const auto node = ConfigNode::parse(toml, "stress");
+  CANYON_CHECK(node && read_config(&*node, "fusion", config).ok(), toml);
+  return config;
+}
 
 /// At that place, z along `force_U`'s answer to gravity.
 inline NavState resting_at(double lat_deg, double lon_deg, double height_m,

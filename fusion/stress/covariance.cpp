@@ -10,16 +10,17 @@ namespace canyon::fusion {
 namespace {
 
 using stress::kEpsilon;
-using Matrix = ErrorStateFilter::StateMatrix;
+using Matrix = Eigen::MatrixXd;
 
 /// Broken unless symmetric to the bit, with variances above zero, and with no eigenvalue of the correlations below what
-/// rounding of 15 of them makes (they are sums of 15 terms of size 1, each rounded in the update and in the solver).
+/// rounding of n of them makes (they are sums of n terms of size 1, each rounded in the update and in the solver).
 bool is_broken(const Matrix& P) {
   if (!P.allFinite() || P != P.transpose() || !(P.diagonal().array() > 0.0).all()) return true;
-  const Eigen::Matrix<double, 15, 1> scale = P.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd scale = P.diagonal().cwiseSqrt().cwiseInverse();
+  const auto n = static_cast<double>(P.rows());
   const Matrix correlation = scale.asDiagonal() * P * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(correlation, Eigen::EigenvaluesOnly);
-  return !(eigen.eigenvalues().minCoeff<Eigen::PropagateNaN>() > -2.0 * 15.0 * 15.0 * kEpsilon);
+  return !(eigen.eigenvalues().minCoeff<Eigen::PropagateNaN>() > -2.0 * n * n * kEpsilon);
 }
 
 /// Predictions at 100 Hz with a fix every ten, from a position unknown by `ratio` times the fix's own sigma.
@@ -49,8 +50,7 @@ StressFigure time_constants(double fast_s, double slow_s) {
   noise.gyro.in_run_bias_tau_s = fast_s;
   noise.accel.in_run_bias_tau_s = slow_s;
   noise.gyro.scale_sigma = noise.accel.scale_sigma = 1e-3;
-  FilterConfig config;
-  config.imu_gain_tau_s = slow_s;
+  const FilterConfig config = configured("imu_gain_tau_s = " + number_text(slow_s));
   RestingFilter rest(config, noise, 100.0);
   constexpr std::int64_t kSteps = 10'000;
   const double fast = noise.gyro.in_run_bias_sigma * noise.gyro.in_run_bias_sigma,
@@ -63,8 +63,8 @@ StressFigure time_constants(double fast_s, double slow_s) {
     const Matrix P = rest.filter.covariance();
     worst.look(is_broken(P) ? stress::kInfinity : 0.0, 1.0);
     const double step = kEpsilon * static_cast<double>(k);
-    const auto gyro = P.diagonal().segment<3>(ErrorIndex::kGyroBias),
-               accel = P.diagonal().segment<3>(ErrorIndex::kAccelBias);
+    const int biases = rest.filter.offset("biases");
+    const Eigen::Vector3d gyro = P.diagonal().segment<3>(biases), accel = P.diagonal().segment<3>(biases + 3);
     // What a fix told of it 0.9 s ago is gone where that is many times its life.
     if (fast_s < 0.02) worst.look(gyro.minCoeff<Eigen::PropagateNaN>() / fast - 1.0, step);
     worst.look(beyond(gyro.maxCoeff<Eigen::PropagateNaN>() / fast, 1.0), step);
@@ -73,9 +73,9 @@ StressFigure time_constants(double fast_s, double slow_s) {
   return worst.figure();
 }
 
-/// White noise of the accelerometer alone, N^2: after T the horizontal variances are N^2 T and N^2 T^3 / 3. Steps of
-/// T / n with half the noise before and half after make 1 + 1 / (2 n^2) of the latter; gravity's pull back to the place
-/// is (w_s T)^2 of it at most and Coriolis (2 w_e T)^2.
+/// White noise of the accelerometer alone, N^2: after T the horizontal variances are N^2 T and N^2 T^3 / 3, however
+/// many steps T is; gravity's pull back to the place is (w_s T)^2 of it at most, Coriolis (2 w_e T)^2, and each step
+/// rounds.
 StressFigure rate(double rate_hz) {
   ImuNoise noise;
   noise.accel.white_per_sqrt_hz = 1e-3;
@@ -93,8 +93,8 @@ StressFigure rate(double rate_hz) {
   const double start = 1e-12 * (1.0 + T * T) / (drive * T * T * T / 3.0) + 1e-12 / (drive * T);
   stress::Worst worst;
   for (int axis = 0; axis < 2; ++axis) {
-    worst.look(p(axis, axis) / (drive * T * T * T / 3.0) - 1.0, 0.5 / (n * n) * (1.0 + swing) + swing + turn + start);
-    worst.look(v(axis, axis) / (drive * T) - 1.0, swing + turn + start);
+    worst.look(p(axis, axis) / (drive * T * T * T / 3.0) - 1.0, swing + turn + start + 10.0 * n * kEpsilon);
+    worst.look(v(axis, axis) / (drive * T) - 1.0, swing + turn + start + 10.0 * n * kEpsilon);
   }
   return worst.figure();
 }
@@ -105,7 +105,7 @@ std::vector<StressCase> covariance_cases() {
   const StressMechanism ratio{
       StressGroup::kData, "a covariance over many updates at a large ratio of noises",
       "P - K H P cancels to the 16th digit of what was: variances below zero, and an update that goes astray",
-      "symmetric to the bit, variances above zero, correlations definite to the rounding of 15 by 15 terms",
+      "symmetric to the bit, variances above zero, correlations definite to the rounding of n by n terms, n states",
       "covariances"};
   const StressMechanism constants{
       StressGroup::kStiff, "time constants of ten decades in one state",
@@ -114,7 +114,7 @@ std::vector<StressCase> covariance_cases() {
   const StressMechanism rates{
       StressGroup::kStiff, "a covariance at rates from 0.01 to 10 000 Hz",
       "noise per sample in place of per root hertz, or an order of the step less",
-      "N^2 T and N^2 T^3 / 3, to 1 / (2 n^2) of the step and what gravity and Coriolis do within T", "of the bound"};
+      "N^2 T and N^2 T^3 / 3, to the rounding of the steps and what gravity and Coriolis do within T", "of the bound"};
   StressRows rows;
   for (const double r : {1.0, 1e6, 1e9})
     rows.of(ratio).add("covariance/noise_ratio_" + stress::text(r) + "_1e4_steps",

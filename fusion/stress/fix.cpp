@@ -22,7 +22,7 @@ RestingFilter after_a_second(const FilterConfig& config = {}) {
 /// State and covariance as they stand, to be compared to the bit.
 struct Standing {
   NavState state;
-  ErrorStateFilter::StateMatrix P;
+  Eigen::MatrixXd P;
   explicit Standing(const ErrorStateFilter& f) : state(f.nav_state()), P(f.covariance()) {}
   bool same(const ErrorStateFilter& f) const {
     const NavState& s = f.nav_state();
@@ -72,7 +72,7 @@ StressFigure nearly_perfect_fixes(double sigma_m) {
     rest.predict();
     const Matrix3d v = rest.filter.covariance().block<3, 3>(6, 6), p = rest.filter.covariance().block<3, 3>(3, 3);
     const double least = Eigen::SelfAdjointEigenSolver<Matrix3d>(p).eigenvalues().minCoeff<Eigen::PropagateNaN>();
-    const double white = 0.25 * std::pow(5e-4, 2) * 1e-6;  // what the white noise alone makes of it, N^2 dt^3 / 4
+    const double white = std::pow(5e-4, 2) * 1e-6 / 3.0;  // what the white noise alone makes of it, N^2 dt^3 / 3
     worst.look(least > 0.5 * white && v.llt().info() == Eigen::Success ? 0.0 : stress::kInfinity, 1.0);
   }
   return {worst.figure().figure, 0.0};
@@ -99,8 +99,7 @@ StressFigure contradictory_fixes(double apart_m) {
 
 /// With a gate of 5 sigma an outlier of any size is told as not accepted, and changes nothing.
 StressFigure outliers() {
-  FilterConfig config;
-  config.gate_sigma = 5.0;
+  const FilterConfig config = configured("gate_sigma = 5");
   RestingFilter rest = after_a_second(config);
   int wrong = 0;
   for (const double off_m : {100.0, 1e9, -1e9, 1e30, 1e150, -1e200, 1e300}) {

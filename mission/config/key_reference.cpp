@@ -55,6 +55,9 @@ class SectionWriter final : public FieldVisitor {
   void file(const char* key, std::string&, std::string_view, const char*) override { refuse(key); }
   void files(const char* key, std::vector<std::string>&, const char*) override { refuse(key); }
   void choice(const char* key, std::string&, const std::vector<std::string>&, const char*) override { refuse(key); }
+  void choices(const char* key, std::vector<std::string>&, const std::vector<std::string>&, const char*) override {
+    refuse(key);
+  }
   void numbers(const char* key, std::vector<double>&, std::size_t, Range, const char*) override { refuse(key); }
   void texts(const char* key, std::vector<std::string>&, const char*) override { refuse(key); }
 

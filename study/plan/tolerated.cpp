@@ -167,9 +167,9 @@ Status leave_out_tolerated(const std::vector<Need>& needs, const mission::Missio
   std::vector<PlannedEffect> candidates, lines;
   for (const Need& need : needs) {
     PlannedEffect line{.need = need, .segment = "whole run"};
-    if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && config.fusion.gate_sigma > 0.0) {
+    if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && !fusion::takes_all(config.fusion)) {
       line.need.verdict = Verdict::kUndecidable;
-      line.need.reason = "the filter's gate decides which fixes it takes";
+      line.need.reason = "the filter decides what it makes of each fix";
     }
     const bool acts = line.need.verdict == Verdict::kNotNeeded && need.bound > 0.0;
     if (const std::string why = beyond_tolerances(plan, open_loop); acts && !plan.tolerances.empty() && !why.empty()) {

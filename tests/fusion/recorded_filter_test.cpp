@@ -7,6 +7,7 @@
 #include "canyon/core/units.h"
 #include "canyon/fusion/consistency.h"
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/fusion/stress/at_rest.h"
 #include "canyon/tests/fusion/recorded_run.h"
 #include "canyon/tests/support/test_data.h"
 
@@ -138,11 +139,10 @@ void leador(const Unit& unit) {
   CANYON_REAL_DATA(truth, "inertial/sim_leador_a15/truth_10hz.csv");
   CANYON_REAL_DATA(imu, std::string("inertial/sim_leador_a15/") + unit.file);
   const auto run = testing::read_sim_leador(imu, gnss, truth);
-  FilterConfig config;
+  FilterConfig config = configured("imu_gain_tau_s = " + number_text(unit.noise.gyro.in_run_bias_tau_s));
   config.initial_attitude_sigma_deg_roll_pitch = 0.05;
   config.initial_attitude_sigma_deg_heading = 0.1;
   config.initial_position_sigma_m = 0.05;
-  config.imu_gain_tau_s = unit.noise.gyro.in_run_bias_tau_s;
   const Eigen::Vector3d antenna = testing::flu_from_frd({0.136, -0.301, -0.184});
 
   const Score s = run_filter(run, config, unit.noise, antenna, 60.0);
@@ -152,7 +152,7 @@ void leador(const Unit& unit) {
   // error.
   EXPECT_LT(s.position_rms_m, 1.05 * unit.kf_gins_position_rms_m);
 
-  config.imu_gains = ImuGains::kIgnore;
+  config.states = {"biases"};
   print("  strictly 15 states", run_filter(run, config, unit.noise, antenna, 60.0));
 }
 

@@ -163,10 +163,10 @@ TEST(FilterGains, IgnoredScaleFactorsMakeItTooConfident) {
   DriveSetup setup;
   setup.sensor = "phidget_3_3_3";  // 1 % of scale factor, 10 mrad of misalignment
   setup.filter.initial_attitude_sigma_deg_heading = 0.2;
-  setup.filter.imu_gains = fusion::ImuGains::kIgnore;
+  setup.filter.states = {"biases"};
   const int runs = 20;
   const Ensemble ignored = ensemble(setup, runs);
-  setup.filter.imu_gains = fusion::ImuGains::kEstimate;
+  setup.filter.states = {"biases", "gains"};
   const Ensemble estimated = ensemble(setup, runs);
   std::printf("PhidgetSpatial: pose NEES per state %.2f ignoring gains, %.2f estimating them\n", ignored.pose,
               estimated.pose);

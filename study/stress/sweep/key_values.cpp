@@ -52,6 +52,17 @@ class ValueList final : public FieldVisitor {
     for (const std::string& name : allowed) values.push_back("\"" + name + "\"");
     add(key, false, std::move(values));
   }
+  void choices(const char* key, std::vector<std::string>&, const std::vector<std::string>& allowed,
+               const char*) override {
+    std::vector<std::string> values{"[]"};
+    std::string all;
+    for (const std::string& name : allowed) {
+      values.push_back("[\"" + name + "\"]");
+      all += (all.empty() ? "\"" : ",\"") + name + "\"";
+    }
+    values.push_back("[" + all + "]");
+    add(key, false, std::move(values));
+  }
   void numbers(const char* key, std::vector<double>&, std::size_t size, Range range, const char*) override {
     if (size == 0) return;
     std::vector<std::string> values;

@@ -19,6 +19,13 @@ class KeyList final : public FieldVisitor {
     add(key, value);
     out_.back().choices = allowed;
   }
+  void choices(const char* key, std::vector<std::string>& value, const std::vector<std::string>& allowed,
+               const char*) override {
+    std::string together;
+    for (const std::string& name : value) together += (together.empty() ? "" : "+") + name;
+    add(key, together);
+    out_.back().choices = allowed;
+  }
   void numbers(const char* key, std::vector<double>&, std::size_t, Range, const char*) override { add(key, ""); }
   void texts(const char* key, std::vector<std::string>&, const char*) override { add(key, ""); }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 
 #include "canyon/core/config/text.h"
 #include "canyon/inertial/errors/error_link.h"
@@ -125,7 +126,14 @@ struct Maker {
 ConfigNode setting_node(const std::string& value) {
   if (value == "true" || value == "false") return ConfigNode::of(value == "true");
   const auto number = number_of(value);
-  if (!number) return ConfigNode::of(value);
+  if (!number && value.find('+') == std::string::npos) return ConfigNode::of(value);
+  if (!number) {
+    ConfigNode list;
+    auto& names = list.value_.emplace<ConfigNode::Array>();
+    std::istringstream rest(value);
+    for (std::string name; std::getline(rest, name, '+');) names.push_back(ConfigNode::of(name));
+    return list;
+  }
   if (*number == std::floor(*number) && std::abs(*number) < 9e15)
     return ConfigNode::of(static_cast<std::int64_t>(*number));
   return ConfigNode::of(*number);

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+
+#include "canyon/core/model_choice.h"
+#include "canyon/core/time.h"
+#include "canyon/fusion/measurements/measurement.h"
+
+namespace canyon::fusion {
+
+/// What a measurement would do: its residual, the covariance of its noise, and H P H', that of what was predicted.
+struct Innovation {
+  GpsTime t;
+  const Measurement::Vector& residual;
+  const Measurement::Square& R;
+  const Measurement::Square& predicted;
+  double nis = 0.0;  ///< normalized by R + predicted; chi-square with as many degrees of freedom as residual has
+};
+
+/// What is made of it.
+struct Decision {
+  bool accepted = true;
+  double noise_scale = 1.0;       ///< R is taken times this
+  double covariance_scale = 1.0;  ///< P is taken times this first: the filter has lost its way
+};
+
+/// Decides on the measurements of one model, in turn. One-level interface; the models are in the table below, each in
+/// its own file with its own parameters.
+class Acceptance {
+ public:
+  virtual ~Acceptance() = default;
+  /// The filter begins anew.
+  virtual void start() {}
+  virtual Decision decide(const Innovation& innovation) = 0;
+  /// Whether it takes every measurement as it is, so that estimates are linear in what is measured.
+  virtual bool takes_all() const { return false; }
+};
+
+using MakeAcceptance = std::unique_ptr<Acceptance>(const ModelParameters& own);
+ModelTable<MakeAcceptance> acceptance_models();
+
+/// Makers of the rows of the table in acceptance/acceptance_models.cpp, and their parameters, each in the file of its
+/// model.
+std::unique_ptr<Acceptance> make_gate(const ModelParameters& own);
+void gate_parameters(ModelParameters& section);
+std::unique_ptr<Acceptance> make_huber(const ModelParameters& own);
+void huber_parameters(ModelParameters& section);
+std::unique_ptr<Acceptance> make_student_t(const ModelParameters& own);
+void student_t_parameters(ModelParameters& section);
+std::unique_ptr<Acceptance> make_innovation_adaptive(const ModelParameters& own);
+void innovation_adaptive_parameters(ModelParameters& section);
+std::unique_ptr<Acceptance> make_fuzzy_adaptive(const ModelParameters& own);
+void fuzzy_adaptive_parameters(ModelParameters& section);
+
+}  // namespace canyon::fusion

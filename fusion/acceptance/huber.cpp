@@ -1,0 +1,40 @@
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/fusion/acceptance/acceptance.h"
+
+namespace canyon::fusion {
+namespace {
+
+struct HuberParameters {
+  double huber_sigma = 1.345;
+};
+void visit(FieldVisitor& f, HuberParameters& p) {
+  f.number("huber_sigma", p.huber_sigma, {0.1, 20},
+           "from so many sigma on a deviation counts in proportion, not squared");
+}
+
+/// Huber's weight of a residual of d sigma, min(1, k / d), as a larger noise; d per degree of freedom.
+class Huber final : public Acceptance {
+ public:
+  explicit Huber(const HuberParameters& p) : p_(p) {}
+  Decision decide(const Innovation& i) override {
+    const double d = std::sqrt(i.nis / static_cast<double>(i.residual.size()));
+    return {.noise_scale = std::max(1.0, d / p_.huber_sigma)};
+  }
+
+ private:
+  HuberParameters p_;
+};
+
+}  // namespace
+
+std::unique_ptr<Acceptance> make_huber(const ModelParameters& own) {
+  return std::make_unique<Huber>(own.get<HuberParameters>());
+}
+
+void huber_parameters(ModelParameters& section) {
+  section.add<HuberParameters>();
+}
+
+}  // namespace canyon::fusion

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include <Eigen/Core>
+
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/messages.h"
+#include "canyon/core/model_choice.h"
+#include "canyon/fusion/error_state.h"
+#include "canyon/fusion/propagation/row_kernels.h"
+
+namespace canyon::fusion {
+
+/// A linearized measurement: measured minus predicted = H error + noise, the errors as in ErrorState. H has the padding
+/// of the filter's matrices.
+struct Measurement {
+  static constexpr int kMost = 3;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMost>;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMostStates>;
+
+  Vector residual;
+  Square R;  ///< covariance of the noise
+  Rows H;
+
+  Measurement(int dimension, const ErrorState& state);
+  int dimension() const { return static_cast<int>(residual.size()); }
+};
+
+/// What a measurement model sees of the filter.
+struct FilterView {
+  const ErrorState& state;
+  const LocalFrame& frame;
+  const Eigen::Vector3d& lever_U_B;  ///< IMU in B, m
+  const Eigen::Vector3d& lever_A_B;  ///< antenna in B, m
+  const Eigen::Vector3d& w_EU_U;     ///< angular rate of the last sample, rad/s
+  const Eigen::Vector3d& f_U;        ///< specific force of the last sample, m/s^2
+};
+
+/// What reaches the filter beside the IMU.
+using AidingMessage = std::variant<GnssFix, OdometerSample, BarometerSample, HeadingSample>;
+
+/// Makes a measurement of a message, or of the motion itself. One-level interface; the models are in the table below,
+/// each in its own file with its own parameters.
+class MeasurementModel {
+ public:
+  virtual ~MeasurementModel() = default;
+  /// The filter begins anew.
+  virtual void start() {}
+  /// An IMU sample has been taken in; `in` without its known errors.
+  virtual std::optional<Measurement> stepped(const FilterView& /*filter*/, const Increments& /*in*/) { return {}; }
+  /// A message has come; nothing if it is not for this model, or says nothing.
+  virtual std::optional<Measurement> received(const FilterView& /*filter*/, const AidingMessage& /*message*/) {
+    return {};
+  }
+};
+
+/// What a model is made for.
+struct MeasurementSetup {
+  const ErrorState& state;
+  const ImuNoise& noise;
+};
+
+/// `own`: the parameters of all rows of the table.
+using MakeMeasurementModel = std::unique_ptr<MeasurementModel>(const ModelParameters& own, const MeasurementSetup& at);
+ModelTable<MakeMeasurementModel> measurement_models();
+
+/// Makers of the rows of the table in measurements/measurement_models.cpp, and their parameters, each in the file of
+/// its model.
+std::unique_ptr<MeasurementModel> make_position(const ModelParameters& own, const MeasurementSetup& at);
+void position_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_velocity(const ModelParameters& own, const MeasurementSetup& at);
+void velocity_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_non_holonomic(const ModelParameters& own, const MeasurementSetup& at);
+void non_holonomic_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_standstill(const ModelParameters& own, const MeasurementSetup& at);
+void standstill_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_odometer(const ModelParameters& own, const MeasurementSetup& at);
+void odometer_parameters(ModelParameters& section);
+
+}  // namespace canyon::fusion

@@ -1,0 +1,67 @@
+#include "canyon/fusion/measurements/body_velocity.h"
+
+namespace canyon::fusion {
+namespace {
+
+struct NonHolonomicParameters {
+  double non_holonomic_rate_hz = 10.0;
+  double non_holonomic_sigma_m_s = 0.1;
+  double non_holonomic_sideslip = 0.02;
+};
+void visit(FieldVisitor& f, NonHolonomicParameters& p) {
+  f.number("non_holonomic_rate_hz", p.non_holonomic_rate_hz, {0.1, 1000}, "how often the constraint is used");
+  f.number("non_holonomic_sigma_m_s", p.non_holonomic_sigma_m_s, {1e-4, 100},
+           "1-sigma of the rear axle's velocity sideways and up");
+  f.number("non_holonomic_sideslip", p.non_holonomic_sideslip, {0, 10},
+           "1-sigma of the sideways velocity per m/s^2 of sideways acceleration, as a tyre slips, s");
+}
+
+/// The rear axle of a wheeled vehicle moves along B's x axis (Dissanayake et al. 2001, IEEE Trans. Robotics and
+/// Automation 17(5)), but for what its tyres slip in a bend and its springs move.
+class NonHolonomic final : public MeasurementModel {
+ public:
+  NonHolonomic(const NonHolonomicParameters& p, const ErrorState& state) : p_(p), mounting_(state.offset("mounting")) {}
+
+  void start() override { waited_s_ = 0.0; }
+
+  std::optional<Measurement> stepped(const FilterView& filter, const Increments& in) override {
+    waited_s_ += in.dt_s;
+    if (waited_s_ < (1.0 - 1e-9) / p_.non_holonomic_rate_hz) return {};
+    waited_s_ = 0.0;
+    const BodyVelocity axle = body_velocity(filter, Eigen::Vector3d::Zero());
+    Measurement m(2, filter.state);
+    m.residual = -axle.v_B.tail<2>();
+    m.H = axle.H.bottomRows<2>();
+    if (mounting_ >= 0) {
+      // B is turned against the vehicle by angles about y and z: the velocity has a part -z v_x sideways and y v_x up.
+      const Eigen::VectorXd angles = filter.state.values(mounting_, 2);
+      m.residual[0] += -angles[1] * axle.v_B.x();
+      m.residual[1] += angles[0] * axle.v_B.x();
+      m.H(0, mounting_ + 1) = axle.v_B.x();
+      m.H(1, mounting_) = -axle.v_B.x();
+    }
+    const double sideways = filter.w_EU_U.z() * axle.v_B.x();
+    const double slip = p_.non_holonomic_sideslip * sideways;
+    const double variance = p_.non_holonomic_sigma_m_s * p_.non_holonomic_sigma_m_s;
+    m.R(0, 0) = variance + slip * slip;
+    m.R(1, 1) = variance;
+    return m;
+  }
+
+ private:
+  NonHolonomicParameters p_;
+  int mounting_;
+  double waited_s_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<MeasurementModel> make_non_holonomic(const ModelParameters& own, const MeasurementSetup& at) {
+  return std::make_unique<NonHolonomic>(own.get<NonHolonomicParameters>(), at.state);
+}
+
+void non_holonomic_parameters(ModelParameters& section) {
+  section.add<NonHolonomicParameters>();
+}
+
+}  // namespace canyon::fusion

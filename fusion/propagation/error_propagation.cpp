@@ -1,0 +1,184 @@
+#include "canyon/fusion/propagation/error_propagation.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "canyon/core/check.h"
+
+namespace canyon::fusion {
+namespace {
+
+using Index = ErrorIndex;
+constexpr int kMoving = Index::kMoving;
+constexpr int kMovingPadded = 12;
+
+using Matrix3 = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+void copy(const StepJacobian::Matrix& from, double* to) {
+  std::copy(from.data(), from.data() + 9, to);
+}
+
+}  // namespace
+
+ErrorPropagation::ErrorPropagation(const ErrorState& state, const ImuNoise& noise)
+    : size_(state.size()), padded_(state.padded_size()), noise_(noise) {
+  CANYON_CHECK(padded_ <= kMostStates, "a filter of ", size_, " states; at most ", kMostStates);
+  decay_.setOnes(padded_);
+  mean_share_.setOnes(padded_);
+  density_.setZero(padded_);
+  group_of_.assign(static_cast<std::size_t>(size_), -1);
+  for (const ErrorState::Member& member : state.members()) {
+    for (int i = 0; i < member.block->size(); ++i) {
+      const StateProcess process = member.block->process(i);
+      const auto same = std::find_if(groups_.begin(), groups_.end(),
+                                     [&](const Group& group) { return group.tau_s == process.tau_s; });
+      const auto at = same - groups_.begin();
+      if (same == groups_.end()) groups_.emplace_back().tau_s = process.tau_s;
+      groups_[static_cast<std::size_t>(at)].states.push_back(member.offset + i);
+      group_of_[static_cast<std::size_t>(member.offset + i)] = static_cast<int>(at);
+      density_[member.offset + i] = process.density;
+    }
+  }
+  integrals_.setZero(kIntegralRows, padded_);
+  half_.setZero(kMoving, padded_);
+  half_transposed_.setZero(padded_, kMovingPadded);
+  twice_.setZero(kMoving, kMovingPadded);
+}
+
+void ErrorPropagation::set_interval(double dt_s) {
+  if (dt_s == dt_s_) return;
+  dt_s_ = dt_s;
+  fades_ = false;
+  white_.setZero();
+  white_.topLeftCorner<3, 3>() = white_moments(dt_s);
+  for (Group& group : groups_) {
+    group.moments = MarkovMoments(dt_s, group.tau_s);
+    for (const int state : group.states) {
+      decay_[state] = group.moments.decay;
+      mean_share_[state] = group.moments.carried[0] / dt_s;
+    }
+    fades_ = fades_ || group.moments.decay != 1.0;
+  }
+}
+
+void ErrorPropagation::AxisNoise::add(const Eigen::Matrix4d& moments, double density) {
+  m11 += density * moments(0, 0);
+  m12 += density * moments(0, 1);
+  m13 += density * moments(0, 2);
+  m22 += density * moments(1, 1);
+  m23 += density * moments(1, 2);
+  m33 += density * moments(2, 2);
+}
+
+void ErrorPropagation::set_step(ErrorState& state, const Increments& in, const Calibration& imu,
+                                const Eigen::Matrix3d& gravity_gradient) {
+  const StepJacobian jacobian(state.nav, in, imu, gravity_gradient);
+  step_.dt_s = dt_s_;
+  copy(jacobian.theta_theta, step_.theta_theta);
+  copy(jacobian.theta_gyro, step_.theta_gyro);
+  copy(jacobian.v_theta, step_.v_theta);
+  copy(jacobian.v_p, step_.v_p);
+  copy(jacobian.v_v, step_.v_v);
+  copy(jacobian.v_accel, step_.v_accel);
+  copy(jacobian.v_gyro, step_.v_gyro);
+
+  for (int axis = 0; axis < 6; ++axis) {
+    const double white = (axis < 3 ? noise_.gyro : noise_.accel).white_per_sqrt_hz;
+    axes_[axis] = {};
+    axes_[axis].add(white_, white * white);
+  }
+  for (Group& group : groups_) group.terms.clear();
+  for (const Feed& feed : state.feeds(in)) {
+    Group& group = groups_[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(feed.state)])];
+    group.terms.push_back({feed.axis, feed.state, feed.rate});
+    const double density = density_[feed.state];
+    if (density > 0.0) axes_[feed.axis].add(group.moments.driven, feed.rate * feed.rate * density);
+  }
+}
+
+void ErrorPropagation::integrate(const double* errors, int stride, int width) {
+  std::fill(integrals_.data(), integrals_.data() + kIntegralRows * width, 0.0);
+  for (const Group& group : groups_)
+    add_integrals(group.terms.data(), static_cast<int>(group.terms.size()), group.moments.carried.data(), dt_s_, errors,
+                  stride, integrals_.data(), width);
+}
+
+void ErrorPropagation::move(ErrorMatrix& errors) {
+  integrate(errors.data(), padded_, padded_);
+  move_rows(step_, errors.data(), padded_, integrals_.data(), half_.data(), padded_);
+  errors.topRows<kMoving>() = half_;
+  if (!fades_) return;
+  for (int i = kMoving; i < size_; ++i) errors.row(i) *= decay_[i];
+}
+
+void ErrorPropagation::propagate(ErrorMatrix& P) {
+  const int others = size_ - kMoving;
+  // cov(x+, [x, y]) from cov([x, e], [x, y]), e being the part of the IMU's error that the states y make.
+  integrate(P.data(), padded_, padded_);
+  move_rows(step_, P.data(), padded_, integrals_.data(), half_.data(), padded_);
+  // Then cov(x+, x+) from cov([x, e], x+).
+  half_transposed_.leftCols<kMoving>() = half_.transpose();
+  integrate(half_transposed_.data(), kMovingPadded, kMovingPadded);
+  move_rows(step_, half_transposed_.data(), kMovingPadded, integrals_.data(), twice_.data(), kMovingPadded);
+
+  P.topLeftCorner<kMoving, kMoving>() = twice_.leftCols<kMoving>();
+  if (fades_) {
+    half_.rightCols(padded_ - kMoving).array().rowwise() *=
+        decay_.segment(kMoving, padded_ - kMoving).transpose().array();
+    scale_both(P.data() + kMoving * padded_ + kMoving, padded_, others, decay_.data() + kMoving);
+  }
+  P.block(0, kMoving, kMoving, others) = half_.middleCols(kMoving, others);
+  add_noise(P);
+  for (int i = 0; i < kMoving; ++i) {
+    for (int j = 0; j < i; ++j) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
+  P.block(kMoving, 0, others, kMoving) = P.block(0, kMoving, kMoving, others).transpose();
+}
+
+void ErrorPropagation::add_noise(ErrorMatrix& P) {
+  const Matrix3 gyro(step_.theta_gyro), push(step_.v_gyro), force(step_.v_accel);
+  // Of theta, v and p each axis of the gyroscopes moves gyro I_1, push I_2 and push I_3; the accelerometers' force I_1
+  // of v and force I_2 of p.
+  for (int axis = 0; axis < 3; ++axis) {
+    const AxisNoise &g = axes_[axis], &a = axes_[3 + axis];
+    const Eigen::Vector3d t = gyro.col(axis), u = push.col(axis), f = force.col(axis);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        const double uu = u[i] * u[j], ff = f[i] * f[j], tu = t[i] * u[j];
+        P(Index::kTheta + i, Index::kTheta + j) += g.m11 * (t[i] * t[j]);
+        P(Index::kTheta + i, Index::kVelocity + j) += g.m12 * tu;
+        P(Index::kVelocity + j, Index::kTheta + i) += g.m12 * tu;
+        P(Index::kTheta + i, Index::kPosition + j) += g.m13 * tu;
+        P(Index::kPosition + j, Index::kTheta + i) += g.m13 * tu;
+        P(Index::kVelocity + i, Index::kVelocity + j) += g.m22 * uu + a.m11 * ff;
+        P(Index::kPosition + i, Index::kVelocity + j) += g.m23 * uu + a.m12 * ff;
+        P(Index::kVelocity + j, Index::kPosition + i) += g.m23 * uu + a.m12 * ff;
+        P(Index::kPosition + i, Index::kPosition + j) += g.m33 * uu + a.m22 * ff;
+      }
+    }
+  }
+  for (const Group& group : groups_) add_driven(P, group);
+}
+
+/// What drives the states of a group moves them, and x with them through what they feed.
+void ErrorPropagation::add_driven(ErrorMatrix& P, const Group& group) {
+  const Eigen::Matrix4d& m = group.moments.driven;
+  for (const int state : group.states) P(state, state) += density_[state] * m(3, 3);
+  const Matrix3 gyro(step_.theta_gyro), push(step_.v_gyro), force(step_.v_accel);
+  for (const FeedTerm& term : group.terms) {
+    const double driven = term.rate * density_[term.state];
+    if (driven == 0.0) continue;
+    for (int i = 0; i < 3; ++i) {
+      if (term.axis < 3) {
+        P(Index::kTheta + i, term.state) += driven * m(0, 3) * gyro(i, term.axis);
+        P(Index::kVelocity + i, term.state) += driven * m(1, 3) * push(i, term.axis);
+        P(Index::kPosition + i, term.state) += driven * m(2, 3) * push(i, term.axis);
+      } else {
+        P(Index::kVelocity + i, term.state) += driven * m(0, 3) * force(i, term.axis - 3);
+        P(Index::kPosition + i, term.state) += driven * m(1, 3) * force(i, term.axis - 3);
+      }
+    }
+  }
+}
+
+}  // namespace canyon::fusion

@@ -1,0 +1,24 @@
+#include "canyon/fusion/states/state_block.h"
+
+namespace canyon::fusion {
+namespace {
+
+constexpr ModelRow<MakeStateBlock> kBlocks[] = {
+    {"biases", without_keys<make_biases>, "of gyroscopes and accelerometers, turn-on and in-run in one state per axis"},
+    {"turn_on_biases", without_keys<make_turn_on_biases>, "the constant part of the biases in states of its own"},
+    {"in_run_biases", without_keys<make_in_run_biases>, "the wandering part of the biases in states of its own"},
+    {"gains", make_gains, "scale factors and misalignments of both triads, if the IMU is said to have any",
+     gains_parameters},
+    {"mounting", make_mounting, "angles between the axes of the IMU and of the vehicle", mounting_parameters},
+    {"wheel_scale", make_wheel_scale, "scale of the wheel", wheel_scale_parameters},
+    {"fix_error", make_fix_error, "the part of the fixes' errors that lasts from one to the next",
+     fix_error_parameters},
+};
+
+}  // namespace
+
+ModelTable<MakeStateBlock> state_blocks() {
+  return kBlocks;
+}
+
+}  // namespace canyon::fusion
