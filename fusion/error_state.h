@@ -62,6 +62,8 @@ class ErrorState {
   }
   /// What the values say of the IMU.
   Calibration calibration() const;
+  /// What step_calibration() gave last.
+  const Calibration& over_step() const { return over_step_; }
   /// The same over a step, in the mean of which a value is `share` of what it is at the start.
   const Calibration& step_calibration(const Eigen::Ref<const Eigen::VectorXd>& share);
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -114,6 +113,7 @@ FilterView ErrorStateFilter::view() const {
           .frame = frame_,
           .lever_U_B = lever_U_B_,
           .lever_A_B = lever_A_B_,
+          .imu = state_.over_step(),
           .w_EU_U = w_EU_U_,
           .f_U = f_U_};
 }
@@ -172,6 +172,7 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
     gravity_gradient_ = gravity_gradient_E(state_.nav.p_EU_E);
   }
 
+  reports_.clear();
   propagation_.set_interval(imu.dt_s);
   const Calibration& known = state_.step_calibration(propagation_.mean_share());
   const Increments in = known.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
@@ -183,13 +184,11 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
   state_.nav.t = imu.t;
   w_EU_U_ = in.dtheta_U / in.dt_s - state_.nav.R_EU.conjugate() * earth_rate_E();
   f_U_ = in.dv_U / in.dt_s;
+  predicted_R_EU_ = state_.nav.R_EU;
+  predicted_p_EU_E_ = state_.nav.p_EU_E;
   state_.fade(propagation_.decay());
   for (Aid& aid : aids_)
     if (auto m = aid.model->stepped(view(), in)) reports_.push_back(correct(aid, *m));
-}
-
-std::vector<UpdateReport> ErrorStateFilter::take_reports() {
-  return std::exchange(reports_, {});
 }
 
 void ErrorStateFilter::update(const AidingMessage& message) {
@@ -319,6 +318,11 @@ Eigen::MatrixXd ErrorStateFilter::covariance() const {
   return P_.topLeftCorner(state_.size(), state_.size());
 }
 
+Pose ErrorStateFilter::body_pose(const Eigen::Quaterniond& R_EU, const Eigen::Vector3d& p_EU_E) const {
+  const Eigen::Quaterniond R_WB = (Eigen::Quaterniond(frame_.R_EW().transpose().eval()) * R_EU).normalized();
+  return {R_WB, frame_.to_W(p_EU_E) - R_WB * lever_U_B_};
+}
+
 NavEstimate ErrorStateFilter::estimate() const {
   const NavState& nav = state_.nav;
   const Calibration imu = state_.calibration();
@@ -326,8 +330,7 @@ NavEstimate ErrorStateFilter::estimate() const {
   const Eigen::Matrix3d R_EB = nav.R_EU.toRotationMatrix();  // axes of U are parallel to B
   NavEstimate out;
   out.t = nav.t;
-  out.X_WB.R = (Eigen::Quaterniond(R_WE) * nav.R_EU).normalized();
-  out.X_WB.p = frame_.to_W(nav.p_EU_E) - out.X_WB.R * lever_U_B_;
+  out.X_WB = body_pose(nav.R_EU, nav.p_EU_E);
   out.v_WB_W = R_WE * (nav.v_EU_E - R_EB * w_EU_U_.cross(lever_U_B_));
   out.gyro_bias_U = imu.gyro_bias;
   out.accel_bias_U = imu.accel_bias;

@@ -59,8 +59,8 @@ class ErrorStateFilter {
   UpdateReport update(const GnssFix& fix);
   /// Corrects with any other message, as far as a measurement takes it.
   void update(const AidingMessage& message);
-  /// What the measurements that wait for no message have done since it was last asked.
-  std::vector<UpdateReport> take_reports();
+  /// What all measurements but the position of a fix have done in and since the last predict().
+  const std::vector<UpdateReport>& reports() const { return reports_; }
 
   /// From now on tells how the estimate depends on the fixes; null: nobody. It must outlive this.
   void watch(FixResponse* response);
@@ -68,6 +68,8 @@ class ErrorStateFilter {
   Eigen::Matrix<double, 3, 9> body_jacobian() const;
 
   NavEstimate estimate() const;
+  /// Pose of B in W as the last predict() left it, before the measurements in it corrected anything.
+  Pose predicted_pose() const { return body_pose(predicted_R_EU_, predicted_p_EU_E_); }
   /// Of all states, in the order of the class comment; SI.
   Eigen::MatrixXd covariance() const;
   /// State of the IMU frame in E and the present calibration, for consistency checks.
@@ -84,6 +86,7 @@ class ErrorStateFilter {
   };
 
   FilterView view() const;
+  Pose body_pose(const Eigen::Quaterniond& R_EU, const Eigen::Vector3d& p_EU_E) const;
   void restart(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R, const Eigen::Matrix3d& H_theta);
   UpdateReport correct(Aid& aid, Measurement& m);
   void inject(const Eigen::VectorXd& error);
@@ -98,7 +101,9 @@ class ErrorStateFilter {
   std::vector<Aid> aids_;
   std::vector<UpdateReport> reports_;
   Eigen::Vector3d w_EU_U_ = Eigen::Vector3d::Zero();  ///< last angular rate, for lever arms
-  Eigen::Vector3d f_U_ = Eigen::Vector3d::Zero();     ///< last specific force
+  Eigen::Quaterniond predicted_R_EU_ = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d predicted_p_EU_E_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d f_U_ = Eigen::Vector3d::Zero();  ///< last specific force
   Eigen::Matrix3d gravity_gradient_ = Eigen::Matrix3d::Zero();
   Eigen::Vector3d gravity_gradient_at_E_ = Eigen::Vector3d::Zero();
   ErrorMatrix P_;

@@ -88,6 +88,13 @@ Status Boundaries::check(const ImuSample& sample) const {
       .status();
 }
 
+Status Boundaries::check(const OdometerSample& sample) const {
+  return Gate("the odometer", sample.t - start_)
+      .pass("an interval", sample.dt_s, kLongestSample_s)
+      .pass("a speed", sample.speed_m_s, kBelieved_m_s)
+      .status();
+}
+
 namespace {
 
 void check_fix(Gate& gate, const GnssFix& fix) {

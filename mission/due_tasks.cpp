@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -31,6 +32,8 @@ Status MissionRun::perform(const Due& due) {
   switch (due.task) {
     case Task::kImu:
       return take_imu(due);
+    case Task::kOdometer:
+      return take_odometer(due);
     case Task::kGnss:
       return take_gnss(due);
     case Task::kLidar:
@@ -52,9 +55,28 @@ Status MissionRun::take_imu(const Due& due) {
   ++record_.counters["imu_samples"];
   CANYON_TRY_STATUS(recorder_.imu(sample));
   CANYON_TRY_STATUS(localizer_.take(sample, due.t));
-  motion_.forget_before(due.t);
+  motion_.forget_before(odometer_ ? std::min(due.t, counted_until_) : due.t);
+  // A correction is not motion: what is buffered moves with it.
+  if (const auto correction = localizer_.take_correction()) estimated_motion_.move(*correction);
   estimated_motion_.append({due.t, estimate(due.t).X_WB});
   return Ok{};
+}
+
+Status MissionRun::take_odometer(const Due& due) {
+  constexpr int kNodes = 5;  // of Simpson's rule
+  std::array<KinematicState, kNodes> nodes;
+  const std::int64_t span_ns = due.t.ns - counted_until_.ns;
+  for (int i = 0; i < kNodes; ++i) {
+    GpsTime t = counted_until_;
+    t.ns += span_ns * i / (kNodes - 1);
+    nodes[static_cast<std::size_t>(i)] = truth_at(t);
+  }
+  counted_until_ = due.t;
+  const OdometerSample sample = clock_.charge(Part::kImu, [&] { return odometer_->sample(due.k - 1, nodes).message; });
+  CANYON_TRY_STATUS(boundaries_.check(sample));
+  ++record_.counters["odometer_samples"];
+  CANYON_TRY_STATUS(recorder_.odometer(sample));
+  return localizer_.once_at(due.t, [this, sample] { return localizer_.update(sample); });
 }
 
 Status MissionRun::take_gnss(const Due& due) {
@@ -89,10 +111,8 @@ Status MissionRun::take_gnss(const Due& due) {
 Status MissionRun::use_fix() {
   GnssRow& row = fixes_.front();
   if (!row.withheld) {
-    const Pose before = localizer_.estimate().X_WB;
     CANYON_TRY(row.update, localizer_.update(row.fix));
-    // A correction is not motion: what is buffered moves with it.
-    if (row.update.accepted) estimated_motion_.move(localizer_.estimate().X_WB * before.inverse());
+    if (const auto correction = localizer_.take_correction()) estimated_motion_.move(*correction);
     CANYON_TRY_STATUS(boundaries_.check(localizer_.estimate()));
   }
   return record_fix();

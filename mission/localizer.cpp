@@ -44,7 +44,21 @@ Status Localizer::once_at(GpsTime t, std::function<Status()> work) {
 Status Localizer::predict(const ImuSample& sample, GpsTime t) {
   clock_.charge(Part::kFilter, [&] { filter_.predict(sample); });
   ++predictions_;
+  if (!filter_.reports().empty()) corrected(filter_.predicted_pose());
   at_ = t;
+  return boundaries_.check(filter_.estimate());
+}
+
+void Localizer::corrected(const Pose& before) {
+  const Pose by = filter_.estimate().X_WB * before.inverse();
+  correction_ = correction_ ? by * *correction_ : by;
+}
+
+Status Localizer::update(const OdometerSample& sample) {
+  const Pose before = filter_.estimate().X_WB;
+  const std::size_t reports = filter_.reports().size();
+  clock_.charge(Part::kFilter, [&] { filter_.update(fusion::AidingMessage(sample)); });
+  if (filter_.reports().size() > reports) corrected(before);
   return boundaries_.check(filter_.estimate());
 }
 
@@ -52,9 +66,11 @@ Result<fusion::UpdateReport> Localizer::update(const GnssFix& fix) {
   // Whoever divides samples at the times of fixes knows what the unit's clock, which is never set, shows at at_.
   GnssFix by_its_clock = fix;
   by_its_clock.t.ns += filter_.nav_state().t.ns - at_.ns;
+  const Pose before = filter_.estimate().X_WB;
   fusion::UpdateReport report = clock_.charge(Part::kFilter, [&] { return filter_.update(by_its_clock); });
   report.t = fix.t;
   updates_ += report.dimension > 0 ? 1 : 0;
+  if (report.accepted || !filter_.reports().empty()) corrected(before);
   return report;
 }
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
+#include <utility>
 
 #include "canyon/fusion/error_state_filter.h"
 #include "canyon/mission/boundaries.h"
@@ -27,6 +29,11 @@ class Localizer {
   Status take(ImuSample sample, GpsTime t);
   /// Does `work` once the filter has come to t: at once, or within the sample that covers t, which is then divided.
   Status once_at(GpsTime t, std::function<Status()> work);
+  /// An odometer's count, as far as the filter takes one.
+  Status update(const OdometerSample& sample);
+  /// By what the estimate has been corrected since this was last asked, if it was: it is now this times what was
+  /// predicted.
+  std::optional<Pose> take_correction() { return std::exchange(correction_, std::nullopt); }
   /// The fix is stamped in the time of at(); the unit's own clock may be any time off.
   Result<fusion::UpdateReport> update(const GnssFix& fix);
 
@@ -35,6 +42,7 @@ class Localizer {
 
  private:
   Status predict(const ImuSample& sample, GpsTime t);
+  void corrected(const Pose& before);
 
   fusion::ErrorStateFilter filter_;
   const Boundaries& boundaries_;
@@ -45,6 +53,7 @@ class Localizer {
     std::function<Status()> work;
   };
   std::deque<Waiting> waiting_;
+  std::optional<Pose> correction_;
   std::int64_t predictions_ = 0, updates_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "canyon/core/motion/true_motion.h"
 #include "canyon/fusion/error_state_filter.h"
@@ -35,6 +36,7 @@ class MissionRun {
     std::unique_ptr<gnss::GnssSensor> gnss;
     std::unique_ptr<inertial::ImuModel> imu;
     ImuNoise imu_noise;  ///< that the filter is told
+    std::optional<inertial::Odometer> odometer;
     std::unique_ptr<lidar::Scanner> scanner;
     std::unique_ptr<lidar::Registration> registration;
     std::unique_ptr<Autonomy> autonomy;
@@ -46,6 +48,7 @@ class MissionRun {
 
   Status perform(const Due& due);
   Status take_imu(const Due& due);
+  Status take_odometer(const Due& due);
   Status take_gnss(const Due& due);
   Status take_scan(const Due& due);
   Status ask_autonomy(const Due& due);
@@ -77,6 +80,8 @@ class MissionRun {
   std::unique_ptr<MotionSource> source_;
   std::unique_ptr<gnss::GnssSensor> gnss_;
   std::unique_ptr<inertial::ImuModel> imu_;
+  std::optional<inertial::Odometer> odometer_;  // where the filter measures with one
+  GpsTime counted_until_;                       // by it
   std::unique_ptr<lidar::Scanner> scanner_;
   Localizer localizer_;
   Mapper mapper_;

@@ -20,6 +20,8 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       source_(std::move(parts.source)),
       gnss_(std::move(parts.gnss)),
       imu_(std::move(parts.imu)),
+      odometer_(std::move(parts.odometer)),
+      counted_until_(mission.start),
       scanner_(std::move(parts.scanner)),
       localizer_(
           {config.fusion, parts.imu_noise, mission.scene->frame(), config.imu.lever_arm_m, config.gnss.lever_arm_m},
@@ -29,8 +31,8 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       corridor_(omissions_.corridor, omissions_.corridor_until_s),
       autonomy_(std::move(parts.autonomy)),
       scorer_(config, mission, scene_),
-      schedule_(mission.start, {config.imu.rate_hz, config.gnss.rate_hz, config.lidar.rate_hz, config.autonomy.rate_hz,
-                                config.run.epoch_rate_hz}),
+      schedule_(mission.start, {config.imu.rate_hz, odometer_ ? config.odometer.rate_hz : 0.0, config.gnss.rate_hz,
+                                config.lidar.rate_hz, config.autonomy.rate_hz, config.run.epoch_rate_hz}),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
       maps_(config.run, !omissions_.maps, lidar::registers(config.registration), clock) {
@@ -69,6 +71,7 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   CANYON_TRY(parts.gnss, gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, *mission.scene));
   CANYON_TRY(parts.imu, inertial::make_imu(config.imu, seed, mission.scene->frame()));
   CANYON_TRY(parts.imu_noise, noise_told_to_filter(config));
+  if (measures_with_odometer(config)) parts.odometer.emplace(config.odometer, seed);
   CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
   CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
   parts.autonomy =

@@ -4,13 +4,22 @@
 
 namespace canyon::fusion {
 
-/// Velocity over ground of a point fixed to B, in B's axes, and how it depends on the errors.
+using BodyRows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, kMostStates>;
+
+/// Velocity over ground of a point fixed to B, in B's axes (m/s), and how it depends on the errors.
 struct BodyVelocity {
   Eigen::Vector3d v_B;
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, kMostStates> H;
+  BodyRows H;
 };
-
 /// Of the point at `p_B` from B's origin, m.
 BodyVelocity body_velocity(const FilterView& filter, const Eigen::Vector3d& p_B);
+
+/// Rate at which the velocity of any point changes in B's axes, m/s^2, while the unit turns evenly:
+///   f + g - 2 w_IE x v - w_EU x v, all in U.
+struct BodyAcceleration {
+  Eigen::Vector3d a_B;
+  BodyRows H;
+};
+BodyAcceleration body_acceleration(const FilterView& filter);
 
 }  // namespace canyon::fusion

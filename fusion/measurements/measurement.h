@@ -36,6 +36,7 @@ struct FilterView {
   const LocalFrame& frame;
   const Eigen::Vector3d& lever_U_B;  ///< IMU in B, m
   const Eigen::Vector3d& lever_A_B;  ///< antenna in B, m
+  const Calibration& imu;            ///< as it stood in the last sample
   const Eigen::Vector3d& w_EU_U;     ///< angular rate of the last sample, rad/s
   const Eigen::Vector3d& f_U;        ///< specific force of the last sample, m/s^2
 };

@@ -36,13 +36,11 @@ class OdometerSpeed final : public MeasurementModel {
     const double measured = distance_m_ / counted_s_, over_s = counted_s_;
     begin();
 
-    const NavState& nav = filter.state.nav;
     const BodyVelocity wheel = body_velocity(filter, p_.odometer_wheel_m);
-    const Eigen::Vector3d gravity_U = nav.R_EU.conjugate() * gravity_E(nav.p_EU_E);
-    const double acceleration = (filter.f_U + gravity_U - filter.w_EU_U.cross(wheel.v_B)).x();
+    const BodyAcceleration since = body_acceleration(filter);
     Measurement m(1, filter.state);
-    double seen = wheel.v_B.x() - 0.5 * over_s * acceleration;
-    m.H = wheel.H.topRows<1>();
+    double seen = wheel.v_B.x() - 0.5 * over_s * since.a_B.x();
+    m.H = wheel.H.topRows<1>() - 0.5 * over_s * since.H.topRows<1>();
     if (scale_ >= 0) {
       // The wheel shows (1 + scale) of the true speed.
       m.H *= 1.0 + filter.state.values(scale_, 1)[0];

@@ -1,4 +1,7 @@
 #include "canyon/mission/config/mission_config.h"
+
+#include <algorithm>
+
 #include "canyon/inertial/imu_model.h"
 
 namespace canyon::mission {
@@ -44,12 +47,18 @@ void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("vehicle", c.vehicle, "the ground vehicle");
   f.group("gnss", c.gnss, "the GNSS receiver and its errors");
   f.group("imu", c.imu, "the inertial sensor and its errors");
+  f.group("odometer", c.odometer, "the wheel's encoder, where the filter measures with one");
   f.group("lidar", c.lidar, "the LIDAR");
   f.group("fusion", c.fusion, "the localization filter");
   f.group("registration", c.registration, "registration of keyframes");
   f.group("autonomy", c.autonomy, "who drives, and where to");
   f.group("success", c.success, "what the mission is scored by");
   f.group("run", c.run, "seed, map and deliberate cuts");
+}
+
+bool measures_with_odometer(const MissionConfig& config) {
+  const std::vector<std::string> measurements = fusion::filter_parts(config.fusion).measurements;
+  return std::find(measurements.begin(), measurements.end(), "odometer") != measurements.end();
 }
 
 Result<ImuNoise> noise_told_to_filter(const MissionConfig& config) {

@@ -9,6 +9,7 @@
 #include "canyon/core/result.h"
 #include "canyon/fusion/filter_config.h"
 #include "canyon/gnss/sensor/gnss_config.h"
+#include "canyon/inertial/aiding/odometer.h"
 #include "canyon/inertial/imu_config.h"
 #include "canyon/lidar/lidar_config.h"
 #include "canyon/lidar/registration/registration.h"
@@ -63,6 +64,7 @@ struct MissionConfig {
   VehicleConfig vehicle;
   gnss::GnssConfig gnss;
   inertial::ImuConfig imu;
+  inertial::OdometerConfig odometer;
   lidar::LidarConfig lidar;
   fusion::FilterConfig fusion;
   lidar::RegistrationConfig registration;
@@ -72,6 +74,8 @@ struct MissionConfig {
 };
 void visit(FieldVisitor& f, MissionConfig& c);
 
+/// Whether the filter measures with the wheel's encoder, so that there is one.
+bool measures_with_odometer(const MissionConfig& config);
 /// What the filter is told of the IMU: a datasheet ([fusion] imu), never what the simulated unit really does.
 Result<ImuNoise> noise_told_to_filter(const MissionConfig& config);
 

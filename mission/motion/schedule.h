@@ -9,7 +9,7 @@
 namespace canyon::mission {
 
 /// What happens in a run at times of its own. The order is that of equal times.
-enum class Task { kImu, kGnss, kLidar, kAutonomy, kEpoch, kCount };
+enum class Task { kImu, kOdometer, kGnss, kLidar, kAutonomy, kEpoch, kCount };
 
 /// One thing that is due: occurrence `k` (from 1 on) of a task.
 struct Due {
@@ -24,7 +24,7 @@ class Schedule {
  public:
   using Rates = std::array<double, static_cast<std::size_t>(Task::kCount)>;
 
-  /// Rates in Hz, > 0, in the order of Task.
+  /// Rates in Hz in the order of Task; 0: never.
   Schedule(GpsTime start, const Rates& rates_hz);
 
   /// Takes the next occurrence at or before `until`, in order of time, equal times in the order of Task.

@@ -136,6 +136,12 @@ void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run) {
   csv.integer(sample.lost ? 1 : 0).end_row();
 }
 
+const char* const kOdometerColumns = "t_ns,dt_s,ticks,speed_m_s";
+
+void write(CsvWriter& csv, const OdometerSample& sample, const RowPlace& run) {
+  csv.integer(sample.t.ns - run.start.ns).exact(sample.dt_s).integer(sample.ticks).exact(sample.speed_m_s).end_row();
+}
+
 const char* const kFixColumns =
     "t_ns,offered,status,x_m,y_m,z_m,xx_m2,xy_m2,xz_m2,yy_m2,yz_m2,zz_m2,vx_m_s,vy_m_s,vz_m_s,vxx_m2_s2,vxy_m2_s2,"
     "vxz_m2_s2,vyy_m2_s2,vyz_m2_s2,vzz_m2_s2";

@@ -21,9 +21,11 @@ void write(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run);
 
-/// What a filter is given, to the last bit: IMU messages, and fixes in E with their covariances.
-extern const char *const kImuColumns, *const kFixColumns;
+/// What a filter is given, to the last bit: IMU messages, counts of the odometer, and fixes in E with their
+/// covariances.
+extern const char *const kImuColumns, *const kOdometerColumns, *const kFixColumns;
 void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run);
+void write(CsvWriter& csv, const OdometerSample& sample, const RowPlace& run);
 void write_fix(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 
 }  // namespace canyon::mission

@@ -20,6 +20,7 @@ class Recorder {
   virtual ~Recorder() = default;
   virtual Status node(const TapeNode&) { return Ok{}; }  ///< true motion, the start first; t as in GPS time
   virtual Status imu(const ImuSample&) { return Ok{}; }
+  virtual Status odometer(const OdometerSample&) { return Ok{}; }
   virtual Status epoch(const NavRow&) { return Ok{}; }
   virtual Status gnss(const GnssRow&) { return Ok{}; }  ///< once the filter has used it, or will not any more
   virtual Status keyframe(const KeyframeRow&) { return Ok{}; }
@@ -33,6 +34,7 @@ class Recorders final : public Recorder {
   explicit Recorders(std::vector<Recorder*> to) : to_(std::move(to)) {}
   Status node(const TapeNode& node) override { return all(&Recorder::node, node); }
   Status imu(const ImuSample& sample) override { return all(&Recorder::imu, sample); }
+  Status odometer(const OdometerSample& sample) override { return all(&Recorder::odometer, sample); }
   Status epoch(const NavRow& row) override { return all(&Recorder::epoch, row); }
   Status gnss(const GnssRow& row) override { return all(&Recorder::gnss, row); }
   Status keyframe(const KeyframeRow& row) override { return all(&Recorder::keyframe, row); }

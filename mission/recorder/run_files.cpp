@@ -42,6 +42,8 @@ Result<std::unique_ptr<RunFiles>> RunFiles::create(const std::string& directory,
   CANYON_TRY_STATUS(files->open(kKeyframes, stem + "_keyframes.csv", kKeyframeColumns));
   if (config.run.record_filter_input) {
     CANYON_TRY_STATUS(files->open(kImu, stem + "_imu.csv", kImuColumns));
+    if (measures_with_odometer(config))
+      CANYON_TRY_STATUS(files->open(kOdometer, stem + "_odometer.csv", kOdometerColumns));
     CANYON_TRY_STATUS(files->open(kFixes, stem + "_fixes.csv", kFixColumns));
   }
   if (config.run.record_tape) {
@@ -70,6 +72,12 @@ Status RunFiles::imu(const ImuSample& sample) {
   if (!tables_[kImu]) return Ok{};
   write(tables_[kImu]->rows, sample, place_);
   return tables_[kImu]->flush(kPiece);
+}
+
+Status RunFiles::odometer(const OdometerSample& sample) {
+  if (!tables_[kOdometer]) return Ok{};
+  write(tables_[kOdometer]->rows, sample, place_);
+  return tables_[kOdometer]->flush(kPiece);
 }
 
 Status RunFiles::epoch(const NavRow& row) {

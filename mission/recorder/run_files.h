@@ -23,6 +23,7 @@ class RunFiles final : public Recorder {
 
   Status node(const TapeNode& node) override;
   Status imu(const ImuSample& sample) override;
+  Status odometer(const OdometerSample& sample) override;
   Status epoch(const NavRow& row) override;
   Status gnss(const GnssRow& row) override;
   Status keyframe(const KeyframeRow& row) override;
@@ -37,7 +38,7 @@ class RunFiles final : public Recorder {
     /// Once there is enough of it.
     Status flush(std::size_t at_least);
   };
-  enum { kNav, kGnss, kSatellites, kKeyframes, kImu, kFixes, kTables };
+  enum { kNav, kGnss, kSatellites, kKeyframes, kImu, kOdometer, kFixes, kTables };
 
   RunFiles(std::string cloud_stem, const MissionConfig& config, const PreparedMission& mission);
   Status open(std::size_t table, const std::string& path, const char* columns);

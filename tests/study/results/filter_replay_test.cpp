@@ -1,4 +1,5 @@
 // What a run records of its filter's input is enough to run the filter again, or another one.
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -79,10 +80,22 @@ GnssFix fix_of(const std::map<std::string, double>& row, GpsTime start) {
   fix.t = time_of(row, start);
   fix.p_A_E = vector_of(row, "x_m", "y_m", "z_m");
   fix.status = fix.p_A_E.allFinite() ? FixStatus::kSingle : FixStatus::kNone;
-  const char* names[3][3] = {{"xx_m2", "xy_m2", "xz_m2"}, {"xy_m2", "yy_m2", "yz_m2"}, {"xz_m2", "yz_m2", "zz_m2"}};
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) fix.covariance_E(i, j) = row.at(names[i][j]);
+  fix.v_A_E = vector_of(row, "vx_m_s", "vy_m_s", "vz_m_s");
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const std::string axes{"xyz"[std::min(i, j)], "xyz"[std::max(i, j)]};
+      fix.covariance_E(i, j) = row.at(axes + "_m2");
+      fix.velocity_covariance_E(i, j) = row.at("v" + axes + "_m2_s2");
+    }
+  }
   return fix;
+}
+
+OdometerSample count_of(const std::map<std::string, double>& row, GpsTime start) {
+  return {.t = time_of(row, start),
+          .dt_s = row.at("dt_s"),
+          .ticks = static_cast<std::int64_t>(row.at("ticks")),
+          .speed_m_s = row.at("speed_m_s")};
 }
 
 fusion::ErrorStateFilter filter_of(const mission::MissionConfig& config, const mission::PreparedMission& mission,
@@ -98,8 +111,10 @@ fusion::ErrorStateFilter filter_of(const mission::MissionConfig& config, const m
 
 // Bit for bit: the numbers are written with as many digits as they need, and the built-in rates are multiples of one
 // another, so that no fix divides an IMU sample.
-TEST(FilterReplay, TheRecordedInputGivesTheRunsEstimates) {
-  const auto file = mission::MissionFile::parse(kMission, "my.toml");
+void replay(const std::string& filter_set) {
+  const auto file =
+      mission::MissionFile::parse(std::string(kMission) + "[fusion]\nfilter = \"" + filter_set + "\"\n", "my.toml");
+  const bool counts = filter_set == "vehicle";
   for (const char* fidelity : {"low", "high"}) {
     const auto comparison = prepare_comparison(*file, plan_runs({fidelity}, false));
     ASSERT_TRUE(comparison.ok()) << comparison.error().str();
@@ -115,16 +130,20 @@ TEST(FilterReplay, TheRecordedInputGivesTheRunsEstimates) {
 
     const std::string stem = std::string("epochs/") + fidelity;
     const auto samples = read_csv(folder.file(stem + "_imu.csv")), fixes = read_csv(folder.file(stem + "_fixes.csv"));
+    const auto ticks = counts ? read_csv(folder.file(stem + "_odometer.csv")) : decltype(samples){};
+    EXPECT_EQ(std::filesystem::exists(folder.file(stem + "_odometer.csv")), counts);
     ASSERT_EQ(samples.size(), run.imu_samples.size());
     ASSERT_EQ(fixes.size(), run.gnss_rows.size());
     ASSERT_EQ(run.nav.size(), 60U);
     const auto manifest = nlohmann::json::parse(*read_text_file(folder.file("manifest.json")));
     fusion::ErrorStateFilter filter =
         filter_of(comparison->configs[0], mission, manifest["initial_estimates"][fidelity]);
-    std::size_t fix = 0, epoch = 0, withheld = 0;
+    std::size_t fix = 0, epoch = 0, count = 0, withheld = 0;
     for (const auto& row : samples) {
       const ImuSample sample = sample_of(row, mission.start);
       filter.predict(sample);
+      for (; count < ticks.size() && time_of(ticks[count], mission.start) <= sample.t; ++count)
+        filter.update(fusion::AidingMessage(count_of(ticks[count], mission.start)));
       for (; fix < fixes.size() && time_of(fixes[fix], mission.start) <= sample.t; ++fix) {
         ASSERT_EQ(time_of(fixes[fix], mission.start), sample.t);
         if (fixes[fix].at("offered") != 0.0)
@@ -142,8 +161,18 @@ TEST(FilterReplay, TheRecordedInputGivesTheRunsEstimates) {
     }
     EXPECT_EQ(epoch, run.nav.size());
     EXPECT_EQ(fix, fixes.size());
+    EXPECT_EQ(count, ticks.size());
+    EXPECT_EQ(ticks.size(), counts ? 300U : 0U);  // 50 Hz
     EXPECT_GT(withheld, 0U);
   }
+}
+
+TEST(FilterReplay, TheRecordedInputGivesTheRunsEstimates) {
+  replay("naive");
+}
+
+TEST(FilterReplay, TheOdometerIsPartOfIt) {
+  replay("vehicle");
 }
 
 }  // namespace

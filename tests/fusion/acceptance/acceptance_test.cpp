@@ -1,0 +1,109 @@
+#include "canyon/fusion/acceptance/acceptance.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "canyon/core/random/random.h"
+#include "canyon/fusion/filter_config.h"
+
+namespace canyon::fusion {
+namespace {
+
+const GpsTime kStart = GpsTime::from_week_sow(1590, 0.0);
+
+std::unique_ptr<Acceptance> made(const char* name, const char* keys = "") {
+  FilterConfig config;
+  const auto node = ConfigNode::parse(keys, "test");
+  EXPECT_TRUE(read_config(&*node, "fusion", config).ok());
+  return model_row(acceptance_models(), name).make(config.own);
+}
+
+/// Decision on a residual (x, 0, 0) at second t, the noise being 1 and the prediction as good as known.
+Decision decide(Acceptance& acceptance, double t_s, double x, double predicted = 1e-12) {
+  Measurement::Vector residual = Measurement::Vector::Zero(3);
+  residual[0] = x;
+  const Measurement::Square R = Measurement::Square::Identity(3, 3),
+                            P = predicted * Measurement::Square::Identity(3, 3);
+  return acceptance.decide(
+      {.t = kStart + t_s, .residual = residual, .R = R, .predicted = P, .nis = x * x / (1.0 + predicted)});
+}
+
+TEST(Acceptance, AllIsTakenAsItIs) {
+  const auto all = made("accept_all");
+  const Decision d = decide(*all, 0.0, 1e9);
+  EXPECT_TRUE(d.accepted);
+  EXPECT_EQ(d.noise_scale, 1.0);
+  EXPECT_TRUE(all->takes_all());
+  EXPECT_TRUE(made("gate")->takes_all());  // which is off
+  EXPECT_FALSE(made("gate", "gate_sigma = 4")->takes_all());
+  for (const char* name : {"huber", "student_t", "innovation_adaptive", "fuzzy_adaptive"})
+    EXPECT_FALSE(made(name)->takes_all()) << name;
+}
+
+// 2026-11-23: a filter surer than right refused every fix for the rest of the run.
+TEST(Acceptance, TheGateHasAWayBack) {
+  const auto gate = made("gate", "gate_sigma = 4\ngate_recovery_s = 10");
+  for (int t = 0; t < 10; ++t) EXPECT_FALSE(decide(*gate, t, 30.0).accepted) << t;
+  const Decision back = decide(*gate, 10.0, 30.0);
+  EXPECT_TRUE(back.accepted);
+  EXPECT_NEAR(back.covariance_scale, 300.0, 1e-9);   // 30 sigma, of three degrees of freedom
+  EXPECT_FALSE(decide(*gate, 11.0, 30.0).accepted);  // and is a gate again
+  // One that is taken ends the count.
+  for (int t = 12; t < 20; ++t) EXPECT_FALSE(decide(*gate, t, 30.0).accepted);
+  EXPECT_TRUE(decide(*gate, 20.0, 1.0).accepted);
+  for (int t = 21; t < 31; ++t) EXPECT_FALSE(decide(*gate, t, 30.0).accepted) << t;
+  // Two refusals far apart are not ten seconds of nothing else.
+  const auto rare = made("gate", "gate_sigma = 4");
+  EXPECT_FALSE(decide(*rare, 0.0, 30.0).accepted);
+  EXPECT_FALSE(decide(*rare, 100.0, 30.0).accepted);
+  // Never, where it is told so.
+  const auto never = made("gate", "gate_sigma = 4\ngate_recovery_s = 0");
+  for (int t = 0; t < 1000; ++t) EXPECT_FALSE(decide(*never, t, 30.0).accepted);
+}
+
+TEST(Acceptance, RobustWeightsAreThoseOfTheirLaws) {
+  const auto huber = made("huber", "huber_sigma = 1.345");
+  EXPECT_EQ(decide(*huber, 0.0, 1.0).noise_scale, 1.0);
+  // d = x / sqrt(3) sigma per degree of freedom: weight k / d.
+  EXPECT_NEAR(decide(*huber, 1.0, 10.0).noise_scale, 10.0 / std::sqrt(3.0) / 1.345, 1e-9);
+  const auto t = made("student_t", "student_t_dof = 4");
+  EXPECT_EQ(decide(*t, 0.0, 1.0).noise_scale, 1.0);
+  EXPECT_NEAR(decide(*t, 1.0, 10.0).noise_scale, 104.0 / 7.0, 1e-9);
+  // With many degrees of freedom it is the normal law.
+  EXPECT_NEAR(decide(*made("student_t", "student_t_dof = 1e6"), 0.0, 10.0).noise_scale, 1.0, 1e-4);
+}
+
+// Residuals four times as large as stated: the factor on R tends to 16; 400 of them, of three components, tell it to
+// 1 / sqrt(600) of itself, and so does a window of tau = 100 s, of which about 200 s count.
+TEST(Acceptance, AdaptiveNoiseIsWhatTheInnovationsSay) {
+  const auto adaptive = made("innovation_adaptive", "adaptive_tau_s = 100");
+  const RandomStream stream(5, "test.innovations");
+  double last = 0.0;
+  for (int k = 0; k < 400; ++k) {
+    const Measurement::Vector residual = 4.0 * stream.normal3(static_cast<std::uint64_t>(k));
+    const Measurement::Square R = Measurement::Square::Identity(3, 3), P = 1e-9 * R;
+    last =
+        adaptive->decide({.t = kStart + k, .residual = residual, .R = R, .predicted = P, .nis = residual.squaredNorm()})
+            .noise_scale;
+  }
+  EXPECT_NEAR(last, 16.0, 5.0 * 16.0 * std::sqrt(2.0 / (3.0 * 200.0)));
+  // What the prediction explains is not the measurement's.
+  const auto unsure = made("innovation_adaptive");
+  EXPECT_EQ(decide(*unsure, 0.0, 10.0, 100.0).noise_scale, 1.0);
+}
+
+TEST(Acceptance, FuzzyRulesRaiseTheNoiseWithTheInnovations) {
+  const auto quiet = made("fuzzy_adaptive"), loud = made("fuzzy_adaptive", "fuzzy_large = 5");
+  double before = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    EXPECT_LT(decide(*quiet, k, k % 2 == 0 ? 0.5 : -0.5).noise_scale, 1.0 + 1e-9);
+    const double scale = decide(*loud, k, 20.0).noise_scale;
+    EXPECT_GE(scale, before - 1e-9);
+    before = scale;
+  }
+  EXPECT_NEAR(before, 25.0, 1e-9);  // both are large: the factor of the largest rule
+}
+
+}  // namespace
+}  // namespace canyon::fusion

@@ -1,0 +1,133 @@
+// What every measurement says of the errors is the derivative of its residual.
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "canyon/core/motion/rotation.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/filter_config.h"
+#include "canyon/fusion/measurements/measurement.h"
+
+namespace canyon::fusion {
+namespace {
+
+const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
+const Eigen::Vector3d kImu(0.3, -0.1, 0.9), kAntenna(-0.4, 0.2, 1.7);
+const GpsTime kNow = GpsTime::from_week_sow(1590, 396000.0);
+/// What the unit puts out: a bend, braked, over a bump.
+const Eigen::Vector3d kRate(0.05, -0.08, 0.4), kForce(-1.2, 2.1, 10.4);
+
+ImuNoise noise() {
+  ImuNoise n;
+  n.gyro = {.turn_on_bias_sigma = 1e-3, .in_run_bias_sigma = 1e-4, .scale_sigma = 1e-3, .misalignment_sigma_rad = 1e-3};
+  n.accel = {
+      .turn_on_bias_sigma = 1e-2, .in_run_bias_sigma = 1e-3, .scale_sigma = 1e-3, .misalignment_sigma_rad = 1e-3};
+  return n;
+}
+
+/// A filter with every state block in some state, and what a measurement sees of it, all of it a function of the state.
+class Stage {
+ public:
+  Stage() : state_(model_names(state_blocks()), FilterConfig().own, {.noise = noise()}) {
+    NavState nav;
+    nav.t = kNow;
+    nav.R_EU = Eigen::Quaterniond(kFrame.R_EW()) * rotation_from({.yaw_rad = 0.7, .pitch_rad = 0.05, .roll_rad = -0.1});
+    nav.p_EU_E = kFrame.to_E({30.0, -20.0, 2.0});
+    nav.v_EU_E = nav.R_EU * Eigen::Vector3d(9.0, 0.3, -0.2);
+    state_.start(nav);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(size());
+    for (int i = ErrorIndex::kMoving; i < state_.size(); ++i) values[i] = 1e-3 * std::sin(2.0 * i);
+    state_.inject(values);
+  }
+  int size() const { return state_.padded_size(); }
+  const ErrorState& state() const { return state_; }
+  void move(const Eigen::VectorXd& error) { state_.inject(error); }
+
+  std::optional<Measurement> measure(MeasurementModel& model, const std::function<AidingMessage()>& message) {
+    const Calibration& imu = state_.step_calibration(Eigen::VectorXd::Ones(size()));
+    const Increments in = imu.apply(0.01, 0.01 * kRate, 0.01 * kForce);
+    state_.feeds(in);
+    const Eigen::Vector3d w = in.dtheta_U / in.dt_s - state_.nav.R_EU.conjugate() * earth_rate_E(),
+                          f = in.dv_U / in.dt_s;
+    const FilterView view{
+        .state = state_, .frame = kFrame, .lever_U_B = kImu, .lever_A_B = kAntenna, .imu = imu, .w_EU_U = w, .f_U = f};
+    model.start();
+    if (message) return model.received(view, message());
+    std::optional<Measurement> made;
+    for (int k = 0; k < 1000 && !made; ++k) made = model.stepped(view, in);
+    return made;
+  }
+
+ private:
+  ErrorState state_;
+};
+
+AidingMessage fix() {
+  GnssFix fix;
+  fix.t = kNow + 0.03;
+  fix.status = FixStatus::kSingle;
+  fix.p_A_E = kFrame.to_E({31.0, -19.0, 4.0});
+  fix.v_A_E = kFrame.R_EW() * Eigen::Vector3d(5.0, 7.0, 0.1);
+  fix.covariance_E = 4.0 * Eigen::Matrix3d::Identity();
+  fix.velocity_covariance_E = 0.01 * Eigen::Matrix3d::Identity();
+  return fix;
+}
+
+AidingMessage ticks() {
+  return OdometerSample{.t = kNow, .dt_s = 0.2, .ticks = 88, .speed_m_s = 8.8};
+}
+
+struct Case {
+  const char* model;
+  std::function<AidingMessage()> message;
+  const char* keys;
+};
+
+class Jacobian : public ::testing::TestWithParam<Case> {};
+
+TEST_P(Jacobian, IsTheDerivativeOfTheResidual) {
+  const Case& c = GetParam();
+  FilterConfig config;
+  const auto node = ConfigNode::parse(c.keys, "test");
+  ASSERT_TRUE(read_config(&*node, "fusion", config).ok());
+  const ImuNoise unit = noise();
+  Stage stage;
+  const auto model = model_row(measurement_models(), c.model).make(config.own, {.state = stage.state(), .noise = unit});
+  const auto at = stage.measure(*model, c.message);
+  ASSERT_TRUE(at.has_value());
+  EXPECT_EQ(at->R.llt().info(), Eigen::Success);
+  for (int j = 0; j < stage.state().size(); ++j) {
+    // Central differences: steps large against rounding (positions are 6e6 m: 1e-9 m), small against curvature.
+    const double step = j < 3 ? 1e-4 : j < 6 ? 10.0 : j < 9 ? 1.0 : 1e-3;
+    const auto residual = [&](double by) {
+      Stage moved;
+      Eigen::VectorXd e = Eigen::VectorXd::Zero(moved.size());
+      e[j] = by;
+      moved.move(e);
+      const auto there =
+          model_row(measurement_models(), c.model).make(config.own, {.state = moved.state(), .noise = unit});
+      return moved.measure(*there, c.message)->residual;
+    };
+    // The estimate moves towards the truth by e, and the residual loses H e.
+    const Measurement::Vector numeric = (residual(-step) - residual(step)) / (2.0 * step);
+    const double rounding = 4e-9 / step;
+    EXPECT_LT((numeric - at->H.col(j)).cwiseAbs().maxCoeff(),
+              1e-7 * std::max(1.0, at->H.col(j).cwiseAbs().maxCoeff()) + rounding)
+        << "state " << j << ": " << numeric.transpose() << " against " << at->H.col(j).transpose();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Rows, Jacobian,
+    ::testing::Values(Case{"position", fix, ""}, Case{"velocity", fix, ""}, Case{"non_holonomic", nullptr, ""},
+                      Case{"standstill", nullptr, "standstill_speed_m_s = 100\nstandstill_rate_deg_s = 100"},
+                      Case{"odometer", ticks, ""}),
+    [](const auto& row) { return std::string(row.param.model); });
+
+TEST(Jacobian, ThereIsACaseForEveryRow) {
+  EXPECT_EQ(measurement_models().size(), 5u);
+}
+
+}  // namespace
+}  // namespace canyon::fusion
