@@ -8,8 +8,8 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/process/embedded.h"
 #include "canyon/core/units.h"
+#include "canyon/inertial/catalogue/sheet_rows.h"
 #include "canyon/inertial/imu_model.h"
-#include "canyon/inertial/sheet_rows.h"
 
 namespace canyon::inertial {
 namespace {
