@@ -26,6 +26,8 @@ class SyntheticRun {
   bool has_satellites() const { return gnss_ != "low"; }
 
  private:
+  static constexpr double kStop_s = 6;
+
   struct Epoch {
     double t_s, along_m, speed_m_s;
     Eigen::Vector2d p;

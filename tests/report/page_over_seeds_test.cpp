@@ -1,0 +1,70 @@
+// The page of several seeds.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "canyon/study/results/over_seeds.h"
+#include "canyon/tests/report/results_page.h"
+
+namespace canyon::report {
+namespace {
+
+using canyon::testing::edit_json;
+using canyon::testing::section;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class PageOverSeeds : public canyon::testing::ResultsPage {};
+
+/// Ten seeds: run low succeeds with all, run high with the third of them only.
+std::vector<std::vector<study::RunSummary>> ten_seeds(bool open_loop) {
+  std::vector<std::vector<study::RunSummary>> seeds;
+  for (int k = 0; k < 10; ++k) {
+    auto& runs = seeds.emplace_back();
+    for (const char* name : {"low", "high"}) {
+      study::RunSummary run;
+      run.name = run.gnss = run.imu = name;
+      run.seed = 42 + k;
+      run.open_loop = open_loop;
+      run.outcome = run.name == "low" || k == 2 ? mission::Outcome::kSuccess : mission::Outcome::kCollision;
+      run.position_m.rms = run.name == "low" ? 0.1 : 4.0 + k;
+      runs.push_back(run);
+    }
+  }
+  return seeds;
+}
+
+TEST_F(PageOverSeeds, SharesDifferencesAndMediansAreShown) {
+  edit_json(file("summary.json"), [](auto& json) {
+    study::write_over_seeds(study::over_seeds(ten_seeds(false)), json);
+    // A run of a further seed is not drawn.
+    auto further = json["runs"][0];
+    further["seed"] = 43;
+    json["runs"].push_back(further);
+  });
+  const std::string html = page(), seeds = section(html, "seeds");
+  EXPECT_THAT(html, HasSubstr("<a href=\"#seeds\">Over seeds</a>"));
+  EXPECT_THAT(seeds, HasSubstr("Over 10 seeds"));
+  EXPECT_THAT(seeds, HasSubstr("seeds 42 to 51"));
+  EXPECT_THAT(seeds, HasSubstr("<td>1 of 10</td>"));
+  EXPECT_THAT(seeds, HasSubstr("collision 9 and success 1"));
+  EXPECT_THAT(seeds, HasSubstr("share of success</td><td>\xE2\x88\x92"
+                               "90.0\xC2\xA0%</td>"));
+  // Nine discordant pairs of ten, all one way: p = 2 / 2^9.
+  EXPECT_THAT(seeds, HasSubstr("<td>0.0039</td><td>10</td>"));
+  EXPECT_THAT(seeds, HasSubstr("<td>8.50<span class=\"def\">5.00 to 12.0</span></td>"));
+  EXPECT_EQ(html.find("show run low", html.find("show run low") + 1), std::string::npos);
+}
+
+TEST_F(PageOverSeeds, AnOpenLoopHasNoShares) {
+  edit_json(file("summary.json"), [](auto& json) {
+    study::write_over_seeds(study::over_seeds(ten_seeds(true)), json);
+    json["loop"] = {{"kind", "open"}, {"tape", "a drive"}, {"paired_epochs", nlohmann::json::array()}};
+    for (auto& run : json["runs"]) run["outcome"] = nullptr;
+  });
+  const std::string seeds = section(page(), "seeds");
+  EXPECT_THAT(seeds, Not(HasSubstr("Share of success")));
+  EXPECT_THAT(seeds, HasSubstr("<td class=\"text\">position error, RMS</td><td>8.40\xC2\xA0m</td>"));
+}
+
+}  // namespace
+}  // namespace canyon::report
