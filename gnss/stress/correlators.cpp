@@ -1,8 +1,8 @@
 // Code correlation and the loops that stand on it, from delay 0 to far beyond the chip.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/receiver/code_correlation.h"
@@ -171,9 +171,8 @@ std::vector<StressCase> correlator_cases() {
   for (const double spacing : {0.01, 0.1, 1.0})
     for (const double amplitude : {0.002, 0.5, 0.999})
       for (const double share : {0.5, 0.999}) {
-        char name[96];
-        std::snprintf(name, sizeof name, "correlators/echo_of_%g_spacing_%g_rising_%g", amplitude, spacing, share);
-        rows.add(name, [=] { return echo(spacing, amplitude, share * (1.0 + amplitude) * 0.5 * spacing); })
+        rows.add(printed("correlators/echo_of_%g_spacing_%g_rising_%g", amplitude, spacing, share),
+                 [=] { return echo(spacing, amplitude, share * (1.0 + amplitude) * 0.5 * spacing); })
             .loose("the zero of straight pieces between corners at short binary fractions hardly rounds");
       }
   rows.add("correlators/echo_of_0.5_spacing_0.1_plateau", [] { return echo(0.1, 0.5, 0.5); })

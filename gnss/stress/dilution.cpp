@@ -1,10 +1,10 @@
 // Dilution of precision from the best geometry to none.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include <Eigen/Geometry>
 
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/solver/position_solver.h"
@@ -90,8 +90,7 @@ std::vector<StressCase> dilution_cases() {
            "the normal equations have the square of the condition: no digit is left at a GDOP of 1e8",
            "closed form of a cone; relative error 4 sqrt(n + 1) eps GDOP + 32 eps (Wedin 1973)", ""});
   for (const double gdop : {1e1, 1e2, 1e4, 1e6, 1e8, 1e10}) {
-    char name[32];
-    std::snprintf(name, sizeof name, "%.0e", gdop);
+    const std::string name = printed("%.0e", gdop);
     rows.add(std::string("dilution/four_in_a_cone_gdop_") + name, [gdop] { return cone_dops(3, gdop); });
   }
   rows.add("dilution/thirteen_in_a_cone_gdop_1e+06", [] { return cone_dops(12, 1e6); })

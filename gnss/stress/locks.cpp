@@ -1,8 +1,8 @@
 // Signal locks at their threshold, cycle slips from the weakest to the strongest signal.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/receiver/carrier_noise.h"
@@ -119,9 +119,8 @@ std::vector<StressCase> lock_cases() {
   };
   for (const Rate& r : {Rate{0.01, 1.0, 1}, Rate{1.0, 1.0, 1}, Rate{3.0, 1.0, 3}, Rate{10.0, 1.0, 10},
                         Rate{10.0, 0.3, 3}, Rate{10.0, 0.0, 0}, Rate{1000.0, 0.7, 700}, Rate{1.0, 600.0, 600}}) {
-    char name[64];
-    std::snprintf(name, sizeof name, "locks/threshold_at_%g_hz_after_%g_s", r.hz, r.s);
-    rows.add(name, [r] { return at_threshold(r.hz, r.s, r.epochs); });
+    rows.add(printed("locks/threshold_at_%g_hz_after_%g_s", r.hz, r.s),
+             [r] { return at_threshold(r.hz, r.s, r.epochs); });
   }
   rows.of({StressGroup::kStiff, "time to a cycle slip over seventeen decades of signal",
            "I0 of 1e10 overflows, the exponential of its logarithm too; weak signals give a rho of zero",

@@ -1,10 +1,10 @@
 // Satellite orbits: Kepler's equation, eccentric ellipses, decades from the epoch, GLONASS's integration.
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "canyon/core/check.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/satellites/constellation.h"
@@ -19,12 +19,6 @@ namespace canyon::gnss {
 namespace {
 
 using stress::kEpsilon;
-
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 /// Worst error of E where M is that of a known E, in units of what rounding of M and of Newton's residual may make of
 /// it: (eps / 2 M + 3 eps E) / (1 - e cos E) + 2 eps E.
@@ -166,13 +160,13 @@ std::vector<StressCase> orbit_cases() {
        "E to the rounding of M, enlarged by 1 / (1 - e cos E); 86 anomalies from 1e-8 to 3.1 rad of either sign",
        "of the rounding bound"});
   for (const double e : {0.0, 0.1, 0.9, 0.99, 0.9999, 0.999999})
-    rows.add("orbits/anomaly_at_e_" + text("%g", e), [e] { return anomaly_error(e); });
+    rows.add("orbits/anomaly_at_e_" + printed("%g", e), [e] { return anomaly_error(e); });
 
   rows.of({StressGroup::kLong, "an anomaly after many whole turns",
            "reduction modulo 2 pi by a product, or a turn lost at the border of pi",
            "M = E - e sin E to 2 eps |M|, whole turns kept", "of 2 eps |M|"});
   for (const double turns : {1.0, 1e4, 1e8})
-    rows.add("orbits/anomaly_after_turns_" + text("%g", turns), [turns] { return residual_after_turns(turns); });
+    rows.add("orbits/anomaly_after_turns_" + printed("%g", turns), [turns] { return residual_after_turns(turns); });
 
   rows.of({StressGroup::kData, "an orbit that is none", "e = 1 or NaN goes into an iteration that never meets its end",
            "each is refused by a check", "taken"});
@@ -182,7 +176,7 @@ std::vector<StressCase> orbit_cases() {
            "a velocity that neglects terms of e is right on near circles only, 1 / (1 - e) enlarges rounding",
            "derivative of the position: rounding 1.5 * 16 eps a / (1 - e) / h of the difference", "m/s"});
   for (const double e : {0.0, 0.02, 0.5, 0.9, 0.99})
-    rows.add("orbits/velocity_at_e_" + text("%g", e), [e] { return perigee_velocity(e); });
+    rows.add("orbits/velocity_at_e_" + printed("%g", e), [e] { return perigee_velocity(e); });
 
   rows.of({StressGroup::kLong, "an angle that grows for decades",
            "rate times seconds since the epoch loses digits: 0.4 mm after 17 years, and not smoothly",
@@ -202,8 +196,9 @@ std::vector<StressCase> orbit_cases() {
            "a last partial step with the wrong sign or length, a rest of rounding that makes one step too many",
            "the way back ends where it began but for (n h)^5 n T r", "m"});
   for (const double s : {59.999999999, 1200.0, -1200.0, 43201.5, 86400.0})
-    rows.add("orbits/glonass_there_and_back_" + std::string(s < 0 ? "minus_" : "") + text("%.6g", std::abs(s)) + "_s",
-             [s] { return there_and_back(s); });
+    rows.add(
+        "orbits/glonass_there_and_back_" + std::string(s < 0 ? "minus_" : "") + printed("%.6g", std::abs(s)) + "_s",
+        [s] { return there_and_back(s); });
 
   rows.of({StressGroup::kData, "an ephemeris far beyond its time", "steps of 60 s for years: a hang",
            "refused beyond a day", "taken"});

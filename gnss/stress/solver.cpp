@@ -1,11 +1,10 @@
 // From ranges to a position: geometry, weights, faults and guesses at their extremes.
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
-#include "canyon/core/check.h"
 #include "canyon/core/earth/earth.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/satellites/transmission.h"
@@ -162,25 +161,27 @@ StressFigure two_halves(const char* exclusion) {
   return {found.ok ? 1.0 : 0.0, 0.0};
 }
 
-/// Field by field, what is not finite: refused by a check, or without a fix. A figure counts fixes.
+/// Field by field, what is not finite: of a range refused by its check, of the guess no fix, with a reason. A figure
+/// counts what is otherwise.
 StressFigure not_finite() {
   StressFigure out;
   for (const double bad : {kNaN, kInfinity, -kInfinity})
-    for (int field = 0; field < 5; ++field) {
+    for (int field = 0; field < 4; ++field) {
       auto ranges = open_sky(kHere, 6);
-      Eigen::Vector3d guess = ecef_from_geodetic(kHere);
       RangeMeasurement& r = ranges[2];
       if (field == 0) r.range_m = bad;
       if (field == 1) r.p_E.y() = bad;
       if (field == 2) r.sigma_m = bad;
       if (field == 3) r.shared_m = bad;
-      if (field == 4) guess.z() = bad;
-      try {
-        const auto found = make_least_squares({})->solve(ranges, guess);
-        out.figure += found.ok ? 1.0 : 0.0;
-      } catch (const ProgramError&) {
-      }
+      const auto solve = [&] { make_least_squares({})->solve(ranges, ecef_from_geodetic(kHere)); };
+      out.figure += stress::not_refused(solve, "range_m = ");
     }
+  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
+    Eigen::Vector3d guess = ecef_from_geodetic(kHere);
+    guess.z() = bad;
+    const auto found = make_least_squares({})->solve(open_sky(kHere, 6), guess);
+    out.figure += found.ok || found.reason.empty() ? 1.0 : 0.0;
+  }
   return out;
 }
 
@@ -223,8 +224,7 @@ std::vector<StressCase> solver_cases() {
            "steps that rounding keeps above a fixed threshold never converge; normal equations lose half the digits",
            "the true place to GDOP * 8 eps range = GDOP * 4.6e-8 m", "m"});
   for (const double gdop : {1e1, 1e2, 1e3, 1e4, 1e6}) {
-    char name[32];
-    std::snprintf(name, sizeof name, "%.0e", gdop);
+    const std::string name = printed("%.0e", gdop);
     rows.add(std::string("solver/four_of_gdop_") + name, [gdop] { return narrow(gdop); });
   }
 
@@ -250,8 +250,7 @@ std::vector<StressCase> solver_cases() {
            "rows of a least-squares problem scaled apart: elimination without regard to rows loses the ratio in digits",
            "the place of the precise four: GDOP * 8 eps range, and the others' pull of (1 / ratio)^2", "m"});
   for (const double ratio : {1e3, 1e6, 1e9, 1e12}) {
-    char name[32];
-    std::snprintf(name, sizeof name, "%.0e", ratio);
+    const std::string name = printed("%.0e", ratio);
     rows.add(std::string("solver/sigma_ratio_") + name + "_precise_first", [ratio] { return weights(ratio, false); });
     rows.add(std::string("solver/sigma_ratio_") + name + "_precise_last", [ratio] { return weights(ratio, true); });
   }
@@ -262,8 +261,7 @@ std::vector<StressCase> solver_cases() {
        "that range alone is excluded, the place that of the others to GDOP * 8 eps range; beyond 1e8 m no fix will do",
        "m"});
   for (const double by : {1e2, 1e4, 1e6, 1e9, -1e6}) {
-    char name[32];
-    std::snprintf(name, sizeof name, "%s%.0e", by < 0 ? "minus_" : "", std::abs(by));
+    const std::string name = printed("%s%.0e", by < 0 ? "minus_" : "", std::abs(by));
     rows.add(std::string("solver/outlier_greedy_") + name + "_m", [by] { return outlier("greedy", by); });
     rows.add(std::string("solver/outlier_leave_one_out_") + name + "_m", [by] { return outlier("leave_one_out", by); });
   }
@@ -278,7 +276,7 @@ std::vector<StressCase> solver_cases() {
   rows.of({StressGroup::kData, "a range, satellite, sigma or guess that is not finite",
            "NaN compares false everywhere and ends as a position; an infinite sigma is a weight of zero that leaves no "
            "rank",
-           "refused field by field, or no fix", "fixes"});
+           "a range refused field by field, of a guess no fix", "otherwise"});
   rows.add("solver/not_finite_field_by_field", not_finite);
 
   rows.of({StressGroup::kGeometry, "velocity at orbital speed and of great dilution",

@@ -1,10 +1,10 @@
 // Weeks, years and leap seconds in every reader and writer.
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "canyon/core/earth/earth.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/nmea/nmea_reader.h"
@@ -177,8 +177,7 @@ StressFigure nearest() {
 StressFigure two_digits() {
   StressFigure out;
   for (int year = 1981; year < 2080; ++year) {
-    char line[64];
-    std::snprintf(line, sizeof line, " 1 %02d 12 31 23 59 59.0", year % 100);
+    const std::string line = printed(" 1 %02d 12 31 23 59 59.0", year % 100);
     const auto t = epoch_of_line(line, true);
     out.figure += t && *t == GpsTime::from_calendar(year, 12, 31, 23, 59, 59.0) ? 0.0 : 1.0;
   }
@@ -216,16 +215,15 @@ StressFigure almanac_weeks() {
   StressFigure out;
   for (const int week : {10, 1023, 1024, 1025, 2047, 2048, 3071, 4000}) {
     for (const int off_days : {-3000, 0, 3000}) {
-      char text[900];
-      std::snprintf(text, sizeof text,
-                    "******** Week %d almanac for PRN-01 ********\nID:                         01\n"
-                    "Health:                     000\nEccentricity:               0.5E-002\n"
-                    "Time of Applicability(s):  589824.0000\nOrbital Inclination(rad):   0.9637857480\n"
-                    "Rate of Right Ascen(r/s):  -0.7897471819E-008\nSQRT(A)  (m 1/2):           5153.602051\n"
-                    "Right Ascen at Week(rad):  -0.1159458779E+001\nArgument of Perigee(rad):   0.451712027\n"
-                    "Mean Anom(rad):            -0.2105941778E+001\nAf0(s):                     0.1621246338E-004\n"
-                    "Af1(s/s):                   0.0000000000E+000\nweek:                        %d\n",
-                    week % 1024, week % 1024);
+      const std::string text = printed(
+          "******** Week %d almanac for PRN-01 ********\nID:                         01\n"
+          "Health:                     000\nEccentricity:               0.5E-002\n"
+          "Time of Applicability(s):  589824.0000\nOrbital Inclination(rad):   0.9637857480\n"
+          "Rate of Right Ascen(r/s):  -0.7897471819E-008\nSQRT(A)  (m 1/2):           5153.602051\n"
+          "Right Ascen at Week(rad):  -0.1159458779E+001\nArgument of Perigee(rad):   0.451712027\n"
+          "Mean Anom(rad):            -0.2105941778E+001\nAf0(s):                     0.1621246338E-004\n"
+          "Af1(s/s):                   0.0000000000E+000\nweek:                        %d\n",
+          week % 1024, week % 1024);
       const GpsTime meant = GpsTime::from_week_sow(week, 589824.0);
       if (week < 500 && off_days < 0) continue;  // before 1980
       const auto read = parse_almanac_file(text, "made.alm", meant + 86400.0 * off_days);
@@ -242,9 +240,7 @@ std::string padded(std::string text, const char* label) {
 
 std::string date(GpsTime t, const char* format) {
   const CalendarTime c = calendar(t);
-  char text[96];
-  std::snprintf(text, sizeof text, format, c.year, c.month, c.day, c.hour, c.minute, c.second);
-  return text;
+  return printed(format, c.year, c.month, c.day, c.hour, c.minute, c.second);
 }
 
 /// SP3 in GPS time and in UTC, RINEX clocks in GPS time: epochs come back to the nanosecond.
@@ -255,10 +251,7 @@ StressFigure tables(const std::string& scale) {
     if (utc_scale && GpsTime{t.ns + kNsPerSecond}.leap_seconds() > t.leap_seconds()) continue;  // second 60: no label
     const GpsTime label{t.ns - (utc_scale ? t.leap_seconds() * kNsPerSecond : 0)};
     std::string sp3 = date(label, "#dP%4d %2d %2d %2d %2d %11.8f") + "       1 ORBIT IGS14 HLM  IGS\n";
-    char line[128];
-    std::snprintf(line, sizeof line, "## %4d %15.8f %14.8f %5d %15.13f\n", label.week(), label.sow_s(), 900.0, 55378,
-                  0.0);
-    sp3 += line;
+    sp3 += printed("## %4d %15.8f %14.8f %5d %15.13f\n", label.week(), label.sow_s(), 900.0, 55378, 0.0);
     sp3 += "+    1   G01\n%c M  cc " + scale + " ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc\n";
     sp3 += date(label, "*  %4d %2d %2d %2d %2d %11.8f") +
            "\nPG01  15000.000000  20000.000000  10000.000000    123.456789\nEOF\n";

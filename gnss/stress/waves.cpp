@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <cstdio>
 #include <limits>
 
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
@@ -235,8 +235,7 @@ std::vector<StressCase> wave_cases() {
            "1/2 (1 + j) less an integral that is nearly it; a sign of nu",
            "1 / (sqrt 2 pi nu) of the field, or ripples of it", ""});
   for (const double nu : {3.0, 30.0, 1e3, 1e5}) {
-    char name[64];
-    std::snprintf(name, sizeof name, "%g", nu);
+    const std::string name = printed("%g", nu);
     rows.add(std::string("waves/knife_edge_shadow_at_nu_") + name, [nu] { return deep_shadow(nu); });
     rows.add(std::string("waves/knife_edge_lit_at_nu_minus_") + name, [nu] { return far_lit(nu); });
   }

@@ -1,8 +1,8 @@
 #include "canyon/inertial/imu_log.h"
+#include "canyon/core/output/printed.h"
 
 #include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -47,10 +47,8 @@ StressFigure fast_coning() {
     const double a = w * 0.0017 * k;
     rows.push_back(
         {-w * std::sin(a), w * std::cos(a), -w + 1e-6 * k, 9.8 * std::cos(a), 9.8 * std::sin(a), 1e-3 * std::sin(a)});
-    char line[256];
-    std::snprintf(line, sizeof line, "%.4f,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", 0.0017 * k, rows.back()[0],
-                  rows.back()[1], rows.back()[2], rows.back()[3], rows.back()[4], rows.back()[5]);
-    text += line;
+    text += printed("%.4f,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", 0.0017 * k, rows.back()[0], rows.back()[1],
+                    rows.back()[2], rows.back()[3], rows.back()[4], rows.back()[5]);
   }
   const LogFile file(text);
   const auto log = read_imu_log(file.path(), {});

@@ -1,9 +1,9 @@
 // Voxels, search trees, maps and files of clouds: identical points, points far away, none.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "canyon/core/check.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/lidar/files/scan_files.h"
@@ -181,9 +181,7 @@ std::vector<StressCase> cloud_cases() {
            "21 bits that overflow into the next axis; 0 and -0.3 in one voxel",
            "none beyond 2^20, each other by its floor", "wrong"});
   for (const double leaf : {0.01, 0.5, 100.0}) {
-    char name[48];
-    std::snprintf(name, sizeof name, "clouds/voxels_of_%g_m", leaf);
-    rows.add(name, [leaf] { return voxels(leaf); });
+    rows.add(printed("clouds/voxels_of_%g_m", leaf), [leaf] { return voxels(leaf); });
   }
   rows.add("clouds/voxels_by_the_hundred_thousand", many_voxels);
   rows.of({StressGroup::kGeometry, "nearest neighbours among equals, on a line, far apart",

@@ -1,8 +1,8 @@
 // Surfaces, panes, footprints and air at the ends of their numbers.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/beam/footprint/footprint_rays.h"
@@ -163,9 +163,7 @@ std::vector<StressCase> light_cases() {
            "a power of nothing, an absorption of more than all",
            "its own share at normal incidence, none at grazing: 16 eps", ""});
   for (const double share : {0.0, 1e-12, 0.5, 0.918, 1.0}) {
-    char name[48];
-    std::snprintf(name, sizeof name, "light/pane_of_%g", share);
-    rows.add(name, [share] { return panes(share); });
+    rows.add(printed("light/pane_of_%g", share), [share] { return panes(share); });
   }
   rows.of({StressGroup::kGeometry, "a beam's sub-rays about the spin axis",
            "up x direction vanishes: no direction across the beam",
@@ -193,9 +191,7 @@ std::vector<StressCase> light_cases() {
   };
   for (const char* key : {"rain", "fog", "snow", "dust"})
     for (const double amount : {0.0, 1e-300, 1e-3, 1.0, 100.0}) {
-      char name[64];
-      std::snprintf(name, sizeof name, "light/%s_of_%g", key, amount);
-      rows.add(name, [w = weather(key, amount)] { return air(w); });
+      rows.add(printed("light/%s_of_%g", key, amount), [w = weather(key, amount)] { return air(w); });
     }
   rows.of({StressGroup::kGeometry, "energy from no distance to an endless one", "a division by the square of nothing",
            "closed form, 8 eps", ""});

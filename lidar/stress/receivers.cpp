@@ -1,10 +1,10 @@
 // Detectors and the choice of returns: no signal, the threshold, saturation, equals, more echoes than fit.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "canyon/core/check.h"
 #include "canyon/core/config/config.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/beam/echoes.h"
@@ -82,10 +82,8 @@ StressFigure threshold(double noises_above) {
 /// A clipped signal: found each time, of intensity 1, its range short by walk * log10(signal / saturation). The mean of
 /// 3200 of 0.02 m noise: five deviations, and half a unit of 10 m.
 StressFigure saturated(double reflectivity, double walk_m) {
-  char keys[160];
-  std::snprintf(keys, sizeof keys,
-                "detector = \"radiometric\"\nsaturation = 1000.0\nsaturation_walk_m = %.17g\nrange_noise_m = 0.02",
-                walk_m);
+  const std::string keys = printed(
+      "detector = \"radiometric\"\nsaturation = 1000.0\nsaturation_walk_m = %.17g\nrange_noise_m = 0.02", walk_m);
   const LidarConfig c = with_keys(keys);
   const Detected got = detect(c, 10.0f, static_cast<float>(reflectivity));
   const double signal = reflectivity * 10.0 * 25.0;
@@ -169,9 +167,8 @@ std::vector<StressCase> receiver_cases() {
   rows.of({StressGroup::kStiff, "a detector about its threshold", "a threshold in other units than the noise",
            "Phi(x), five deviations of 3200", ""});
   for (const double x : {-2.0, 0.0, 1.0}) {
-    char name[64];
-    std::snprintf(name, sizeof name, "receivers/threshold_%s%g_noises", x < 0 ? "minus_" : "", std::abs(x));
-    rows.add(name, [x] { return threshold(x); });
+    rows.add(printed("receivers/threshold_%s%g_noises", x < 0 ? "minus_" : "", std::abs(x)),
+             [x] { return threshold(x); });
   }
   rows.of({StressGroup::kStiff, "a detector far beyond its saturation",
            "a walk that goes below the sensor, an intensity above 1",

@@ -1,8 +1,8 @@
 // Terrain at its borders, with holes and without steps.
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/scene/city/city.h"
@@ -234,9 +234,7 @@ std::vector<StressCase> ground_cases() {
            "a height by a ray in single precision; ground of places that are none",
            "the slope's height to 8 eps, none beyond its border", "m"});
   for (const double half : {1.0, 1024.0, 1e5, 1e7}) {
-    char name[48];
-    std::snprintf(name, sizeof name, "grounds/slope_of_%.0e_m", half);
-    rows.add(name, [half] { return ground_of_slope(half); });
+    rows.add(printed("grounds/slope_of_%.0e_m", half), [half] { return ground_of_slope(half); });
   }
   rows.of({StressGroup::kGeometry, "ground of cells of many sizes", "cracks where small cells touch large ones",
            "ground everywhere; a plane's height to 16 eps", "m"});

@@ -1,11 +1,11 @@
 #include "canyon/study/stress/stress_output.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/output/json.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/study/stress/cases.h"
 #include "canyon/study/tables/text_table.h"
 
@@ -14,9 +14,7 @@ namespace {
 
 std::string scientific(double value) {
   if (value == 0.0) return "0";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return printed("%.3g", value);
 }
 
 /// What is no column's border in Markdown.
@@ -52,10 +50,9 @@ std::string summary_line(const std::vector<CaseResult>& results) {
     cases.push_back(result.stress_case);
     cpu_s += result.cpu_s;
   }
-  char text[200];
-  std::snprintf(text, sizeof text, "%zu cases of %zu mechanisms: %zu hold, %zu do not, %zu open; %.1f s of CPU time\n",
-                results.size(), mechanisms(cases), count(results, CaseVerdict::kHolds),
-                count(results, CaseVerdict::kFails), count(results, CaseVerdict::kOpen), cpu_s);
+  const std::string text = printed("%zu cases of %zu mechanisms: %zu hold, %zu do not, %zu open; %.1f s of CPU time\n",
+                                   results.size(), mechanisms(cases), count(results, CaseVerdict::kHolds),
+                                   count(results, CaseVerdict::kFails), count(results, CaseVerdict::kOpen), cpu_s);
   return text;
 }
 
