@@ -36,11 +36,11 @@ Status append_in_order(const LineReader& in, Trajectory& trajectory, GpsTime t, 
   return Ok{};
 }
 
-/// Shortest text that reads back to the same bits.
+/// After a blank the shortest text that reads back to the same bits.
 void append_number(std::string& out, double value) {
   char buffer[32];
   const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  out.append(buffer, end);
+  out.append(1, ' ').append(buffer, end);
 }
 
 /// Seconds with nine decimals from whole nanoseconds.
@@ -50,15 +50,6 @@ void append_seconds(std::string& out, std::int64_t ns) {
   std::snprintf(buffer, sizeof buffer, "%s%lld.%09lld", ns < 0 ? "-" : "",
                 static_cast<long long>(magnitude / kNsPerSecond), static_cast<long long>(magnitude % kNsPerSecond));
   out += buffer;
-}
-
-void append_row(std::string& out, std::span<const double> values, char separator, bool first_of_line) {
-  for (const double value : values) {
-    if (!first_of_line) out += separator;
-    first_of_line = false;
-    append_number(out, value);
-  }
-  out += '\n';
 }
 
 }  // namespace
@@ -89,7 +80,8 @@ Status write_tum(const std::string& path, const Trajectory& trajectory) {
     const Eigen::Vector3d& p = pose.X_WB.p;
     const Eigen::Quaterniond& q = pose.X_WB.R;
     append_seconds(out, pose.t.ns);
-    append_row(out, std::array{p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}, ' ', false);
+    for (const double value : {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}) append_number(out, value);
+    out += '\n';
   }
   return write_text_file(path, out);
 }
@@ -119,15 +111,6 @@ Result<Trajectory> read_kitti(const std::string& path, GpsTime start, double rat
   }
   if (trajectory.empty()) return in.empty_file("poses");
   return trajectory;
-}
-
-Status write_kitti(const std::string& path, const Trajectory& trajectory) {
-  std::string out;
-  for (const StampedPose& pose : trajectory.poses()) {
-    const Eigen::Matrix<double, 3, 4, Eigen::RowMajor> rows = pose.X_WB.matrix().topRows<3>();
-    append_row(out, std::span(rows.data(), 12), ' ', true);
-  }
-  return write_text_file(path, out);
 }
 
 namespace {
@@ -189,18 +172,6 @@ Result<Trajectory> read_csv_trajectory(const std::string& path) {
   }
   if (trajectory.empty()) return in.empty_file("poses");
   return trajectory;
-}
-
-Status write_csv_trajectory(const std::string& path, const Trajectory& trajectory) {
-  std::string out = csv_header() + "\n";
-  for (const StampedPose& pose : trajectory.poses()) {
-    const Eigen::Vector3d& p = pose.X_WB.p;
-    const Eigen::Quaterniond& q = pose.X_WB.R;
-    out += std::to_string(pose.t.week()) + ",";
-    append_seconds(out, pose.t.sow_ns());
-    append_row(out, std::array{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}, ',', false);
-  }
-  return write_text_file(path, out);
 }
 
 }  // namespace canyon

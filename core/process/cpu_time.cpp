@@ -39,8 +39,4 @@ CpuAccount* charged_cpu_account() {
   return meter.account;
 }
 
-double process_cpu_s() {
-  return 1e-9 * static_cast<double>(clock_ns(CLOCK_PROCESS_CPUTIME_ID));
-}
-
 }  // namespace canyon

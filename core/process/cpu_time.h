@@ -39,7 +39,4 @@ class ChargeCpu {
 /// Where the calling thread's CPU time goes now; null = nobody's.
 CpuAccount* charged_cpu_account();
 
-/// CPU time of the whole process so far, all threads, s.
-double process_cpu_s();
-
 }  // namespace canyon

@@ -20,10 +20,6 @@ std::vector<CodeCorrelation::Kink> kinks_of(Modulation modulation) {
 
 }  // namespace
 
-std::vector<std::string> modulation_names() {
-  return {kNames.begin(), kNames.end()};
-}
-
 Modulation modulation_of(std::string_view name) {
   const auto it = std::find(kNames.begin(), kNames.end(), name);
   CANYON_CHECK(it != kNames.end(), "modulation \"", name, "\"");

@@ -17,9 +17,7 @@ namespace canyon::gnss {
 enum class Modulation { kBpsk05, kBpsk1, kBpsk2, kBpsk10, kBoc11 };
 inline constexpr std::size_t kModulations = 5;
 
-/// "bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11", in the order of the enumeration.
-std::vector<std::string> modulation_names();
-/// Throws for a name that modulation_names() does not hold.
+/// Of "bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11"; throws for any other name.
 Modulation modulation_of(std::string_view name);
 double chip_rate_hz(Modulation modulation);
 /// Of the open signal of a RINEX band digit; what is not listed above is taken as BPSK(10) at band 5 and above, BPSK(1)

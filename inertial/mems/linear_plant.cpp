@@ -89,18 +89,4 @@ double spectral_radius(const Eigen::MatrixXd& phi) {
   return phi.size() > 0 ? phi.eigenvalues().cwiseAbs().maxCoeff() : 0.0;
 }
 
-Eigen::MatrixXd stationary_covariance(const DiscretePlant& step) {
-  Eigen::MatrixXd phi = step.phi, sum = step.covariance;
-  // Doubling: 2^k steps at the k-th turn.
-  for (int k = 0; k < 64; ++k) {
-    const Eigen::MatrixXd more = phi * sum * phi.transpose();
-    sum += more;
-    phi *= phi.eval();
-    if (phi.cwiseAbs().maxCoeff() < 1e-20) return sum;
-    CANYON_CHECK(phi.allFinite(), "the step is not stable");
-  }
-  CANYON_CHECK(false, "the step is not stable: ", phi.cwiseAbs().maxCoeff());
-  return sum;
-}
-
 }  // namespace canyon::inertial

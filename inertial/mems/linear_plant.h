@@ -43,7 +43,4 @@ Eigen::MatrixXd noise_root(const Eigen::MatrixXd& covariance);
 /// Largest magnitude of the eigenvalues: what a step multiplies its slowest state by. 1 or more: the step diverges.
 double spectral_radius(const Eigen::MatrixXd& phi);
 
-/// Covariance that the noise of repeated steps leads to: P = phi P phi^T + covariance. phi must be stable.
-Eigen::MatrixXd stationary_covariance(const DiscretePlant& step);
-
 }  // namespace canyon::inertial

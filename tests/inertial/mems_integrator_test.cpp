@@ -7,9 +7,12 @@
 
 #include "canyon/core/units.h"
 #include "canyon/inertial/mems/element_model.h"
+#include "canyon/tests/inertial/stationary_covariance.h"
 
 namespace canyon::inertial {
 namespace {
+
+using testing::stationary_covariance;
 
 /// A 5 kHz proof mass of 1 ug whose pick-off does not pull.
 ElementModel proof_mass(double quality_factor) {

@@ -8,9 +8,12 @@
 
 #include "canyon/core/units.h"
 #include "canyon/inertial/paper_formulas.h"
+#include "canyon/tests/inertial/stationary_covariance.h"
 
 namespace canyon::inertial {
 namespace {
+
+using testing::stationary_covariance;
 
 constexpr double kTemperature_k = 300.0;
 

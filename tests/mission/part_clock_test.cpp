@@ -2,6 +2,7 @@
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/support/process_cpu.h"
 
 namespace canyon::mission::testing {
 namespace {
@@ -15,9 +16,9 @@ TEST(PartClock, PartsAddUpToWhatTheProcessSpends) {
   for (const int count : {1, 2}) {
     set_threads(count);
     ASSERT_TRUE(run_mission(config, *mission).ok());  // what is built on first use is there, and threads have started
-    const double before_s = process_cpu_s();
+    const double before_s = canyon::testing::process_cpu_s();
     const auto record = run_mission(config, *mission);
-    const double process_s = process_cpu_s() - before_s;
+    const double process_s = canyon::testing::process_cpu_s() - before_s;
     ASSERT_TRUE(record.ok()) << record.error().str();
     // Within 5 %, as docs/results.md promises: what is left is threads that look for work and find none.
     EXPECT_NEAR(record->clock.total_s() / process_s, 1.0, 0.05) << count << " threads, " << process_s << " s";

@@ -7,6 +7,7 @@
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/recorder/estimate_error.h"
 #include "canyon/mission/run.h"
+#include "canyon/tests/mission/memory_recorder.h"
 
 namespace canyon::mission::testing {
 

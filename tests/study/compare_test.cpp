@@ -7,6 +7,7 @@
 
 #include "canyon/core/process/progress.h"
 #include "canyon/mission/run.h"
+#include "canyon/tests/mission/memory_recorder.h"
 
 namespace canyon::study {
 namespace {
@@ -82,7 +83,7 @@ TEST_F(CompareTest, PairedRunsShareTheirNoise) {
   const auto error = [&](std::size_t run) {
     mission::PreparedMission mission = comparison_->missions[run];
     mission.time_limit_s = 1.0;
-    mission::MemoryRecorder rows;
+    mission::testing::MemoryRecorder rows;
     const auto record = mission::run_mission(comparison_->configs[run], mission, nullptr,
                                              {.tape = nullptr, .recorder = &rows, .autonomy = nullptr});
     const auto& row = rows.gnss_rows.front();

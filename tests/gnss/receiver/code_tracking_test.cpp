@@ -1,6 +1,7 @@
 #include "canyon/gnss/receiver/code_tracking.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <functional>
@@ -327,9 +328,8 @@ TEST(CodeCorrelation, SineIntegral) {
 }
 
 TEST(CodeCorrelation, NamesAndChips) {
-  EXPECT_EQ(modulation_names(), (std::vector<std::string>{"bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11"}));
-  for (std::size_t i = 0; i < kModulations; ++i)
-    EXPECT_EQ(modulation_of(modulation_names()[i]), static_cast<Modulation>(i));
+  const std::array<const char*, kModulations> names{"bpsk0.5", "bpsk1", "bpsk2", "bpsk10", "boc11"};
+  for (std::size_t i = 0; i < kModulations; ++i) EXPECT_EQ(modulation_of(names[i]), static_cast<Modulation>(i));
   EXPECT_EQ(modulation_of(GnssSystem::kGps, 1), Modulation::kBpsk1);
   EXPECT_EQ(modulation_of(GnssSystem::kGps, 5), Modulation::kBpsk10);
   EXPECT_EQ(modulation_of(GnssSystem::kGalileo, 1), Modulation::kBoc11);

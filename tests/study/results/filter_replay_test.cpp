@@ -10,6 +10,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/mission/run.h"
 #include "canyon/study/compare.h"
+#include "canyon/tests/mission/memory_recorder.h"
 #include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::study {
@@ -122,7 +123,7 @@ void replay(const std::string& filter_set) {
     const auto results = compare(*comparison, folder.path().string(), false);
     ASSERT_TRUE(results.ok()) << results.error().str();
     ASSERT_TRUE(write_results(folder.path().string(), *results).ok());
-    mission::MemoryRecorder run;
+    mission::testing::MemoryRecorder run;
     const mission::PreparedMission& mission = comparison->missions[0];
     ASSERT_TRUE(mission::run_mission(comparison->configs[0], mission, nullptr,
                                      {.tape = nullptr, .recorder = &run, .autonomy = nullptr})

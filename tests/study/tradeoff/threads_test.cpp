@@ -3,12 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include "canyon/core/process/cpu_time.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/study/tradeoff/probes/probe.h"
 #include "canyon/study/tradeoff/probes/taped_run.h"
 #include "canyon/study/tradeoff/tradeoff.h"
 #include "canyon/tests/study/tradeoff/short_drive.h"
+#include "canyon/tests/support/process_cpu.h"
 
 namespace canyon::study {
 namespace {
@@ -54,9 +54,9 @@ TEST(TradeoffThreads, ValuesAndWorkAreTheSameBits) {
 TEST(TradeoffThreads, TheProcessAndTheSumOfItsPartsAgree) {
   set_threads(2);
   const Comparison& comparison = short_drive();
-  const double before_s = process_cpu_s();
+  const double before_s = canyon::testing::process_cpu_s();
   const auto run = taped_run(comparison.configs.front(), comparison.missions.front(), *comparison.tape, 10.0);
-  const double process_s = process_cpu_s() - before_s;
+  const double process_s = canyon::testing::process_cpu_s() - before_s;
   ASSERT_TRUE(run) << run.error().str();
   set_threads(0);
   std::printf("process %.3f s, parts %.3f s\n", process_s, run->cpu_s);
