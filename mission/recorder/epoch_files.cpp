@@ -1,6 +1,7 @@
 #include "canyon/mission/recorder/epoch_files.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/fix_status.h"
@@ -33,6 +34,13 @@ void time_columns(CsvWriter& csv, GpsTime t, GpsTime start) {
   csv.number(t - start, 3);
   csv.integer(t.week());
   csv.number(t.sow_s(), 3);
+}
+
+/// Why there is no fix, or the filter did not use it as it uses others.
+std::string_view reason(const GnssRow& row) {
+  if (row.withheld) return "withheld";
+  const bool restarted = row.update.accepted && row.update.dimension == 0;
+  return restarted ? "filter restarted" : std::string_view(row.fix.reason);
 }
 
 }  // namespace
@@ -93,7 +101,7 @@ void write(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
               std::sqrt(covariance(2, 2)), truth.x(), truth.y(), truth.z(), p.x() - truth.x(), p.y() - truth.y(),
               p.z() - truth.z(), multipath);
   csv.integer(row.update.accepted ? 1 : 0).number(row.update.dimension > 0 ? row.update.nis : kNaN, 4);
-  csv.word(row.withheld ? "withheld" : row.fix.reason).end_row();
+  csv.word(reason(row)).end_row();
 }
 
 const char* const kSatelliteColumns =

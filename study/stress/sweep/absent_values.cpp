@@ -1,7 +1,5 @@
 #include "canyon/study/stress/sweep/absent_values.h"
 
-#include <string_view>
-
 namespace canyon::study {
 namespace {
 
@@ -11,16 +9,14 @@ constexpr const char *kFix = "fix_x_m,fix_y_m,fix_z_m,sigma_e_m,sigma_n_m,sigma_
                      *kVelocity = "vx_m_s,vy_m_s,vz_m_s,vxx_m2_s2,vxy_m2_s2,vxz_m2_s2,vyy_m2_s2,vyz_m2_s2,vzz_m2_s2",
                      *kFixFigures = "gdop_median,gdop_max,pdop_median,satellites_mean,nlos_share,multipath_share",
                      *kRegistered = "registered_error_m,registered_error_up_m",
-                     *kPriorMap =
-                         "map_error_prior_rms_m,map_error_p95_prior_m,map_error_up_prior_rms_m,"
-                         "map_capped_prior_share",
+                     *kPriorMap = "map_error_prior_rms_m,map_error_p95_prior_m,map_capped_prior_share",
                      *kErrors =
                          "position_error_rms_m,position_error_p95_m,position_error_max_m,"
                          "position_error_e_rms_m,position_error_e_p95_m,position_error_e_max_m,"
                          "position_error_n_rms_m,position_error_n_p95_m,position_error_n_max_m,"
                          "position_error_up_rms_m,position_error_up_p95_m,position_error_up_max_m,"
                          "attitude_error_roll_rms_deg,attitude_error_pitch_rms_deg,attitude_error_yaw_rms_deg",
-                     *kMap = "map_error_rms_m,map_error_p95_m,map_error_up_rms_m,map_capped_share";
+                     *kMap = "map_error_rms_m,map_error_p95_m,map_capped_share";
 
 constexpr MayBeAbsent kRows[] = {
     {"gnss", kFix, "status", "none", "no fix"},
@@ -28,7 +24,8 @@ constexpr MayBeAbsent kRows[] = {
     {"gnss", kDops, "satellites", "", "a GNSS model that makes fixes without satellites"},
     {"gnss", kCounts, "satellites", "", "the same"},
     {"gnss", "multipath_max_m", "satellites", "", "the same"},
-    {"gnss", "nis", "", "", "no fix was given to the filter, or it took the place of a position that was not known"},
+    {"gnss", "nis", "accepted", "0", "the filter was given no fix, or had to refuse it before it could weigh it"},
+    {"gnss", "nis", "reason", "filter restarted", "the fix took the place of a position that was not known"},
     {"gnss", "reason", "", "", "a fix, which needs none"},
     {"satellites", "cn0_dbhz", "tracked", "0", "not measured"},
     {"keyframes", kRegistered, "status", "not_registered", "`[registration] method = \"none\"`"},
@@ -44,39 +41,24 @@ constexpr MayBeAbsent kRows[] = {
     {"summary.json", kFixFigures, "dop_jumps", "", "the same"},
     {"summary.json", kFixFigures, "fixes_lost", "=fixes_due", "no fix"},
     {"summary.json", "fix_error_rms_m", "fixes_lost", "=fixes_due", "no fix"},
-    {"summary.json", "keyframes_registered,keyframes_converged,registration_error_rms_m,map_points_capped",
+    {"summary.json",
+     "keyframes_registered,keyframes_converged,registration_error_rms_m,map_points_capped,"
+     "map_points_level,map_error_up_rms_m",
      "keyframes_registered", "", "`[registration] method = \"none\"`"},
     {"summary.json", kMap, "keyframes_registered", "", "the same"},
     {"summary.json", "registration_error_rms_m", "keyframes_registered", "0", "one keyframe, which defines the map"},
     {"summary.json", "registration_error_prior_rms_m", "keyframes", "0", "no keyframe"},
     {"summary.json", kPriorMap, "map_points", "0", "no point in the map"},
-    {"summary.json", "map_error_up_prior_rms_m,map_error_up_rms_m", "", "", "no point next to level ground or a roof"},
     {"summary.json", kMap, "map_points", "0", "no point in the map"},
+    {"summary.json", "map_error_up_prior_rms_m", "map_points_level_prior", "0",
+     "no point next to level ground or a roof"},
+    {"summary.json", "map_error_up_rms_m", "map_points_level", "0", "the same"},
 };
 
 }  // namespace
 
 std::span<const MayBeAbsent> may_be_absent() {
   return kRows;
-}
-
-std::string absent_list() {
-  std::string text = "| file | values | where | because |\n|---|---|---|---|\n";
-  for (const MayBeAbsent& row : kRows) {
-    const std::string_view file = row.file;
-    text +=
-        "| `" + (file.ends_with(".json") ? std::string(file) : "epochs/RUN_" + std::string(file) + ".csv") + "` | `";
-    for (const char c : std::string_view(row.values)) text += c == ',' ? "`, `" : std::string(1, c);
-    text += "` | ";
-    const std::string_view is = row.is;
-    if (*row.when != '\0')
-      text += "`" + std::string(row.when) + "` " +
-              (is.empty()            ? "is absent"
-               : is.starts_with('=') ? "= `" + std::string(is.substr(1)) + "`"
-                                     : "= " + std::string(is));
-    text += std::string(" | ") + row.why + " |\n";
-  }
-  return text;
 }
 
 }  // namespace canyon::study

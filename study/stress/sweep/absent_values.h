@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 namespace canyon::study {
 
@@ -16,8 +15,5 @@ struct MayBeAbsent {
 };
 
 std::span<const MayBeAbsent> may_be_absent();
-
-/// The rows in Markdown, as docs/results.md has them.
-std::string absent_list();
 
 }  // namespace canyon::study

@@ -126,7 +126,7 @@ TEST(Figures, UndefinedIsNullAndAnOpenLoopHasNoWaypoints) {
   run.position_rms_interval_m = {};
   const auto json = run_json(run);
   for (const char* key : {"outcome", "waypoints_reached", "waypoints_planned", "gdop_median", "keyframes_converged",
-                          "map_points_capped", "map_capped_share"})
+                          "map_points_capped", "map_points_level", "map_capped_share"})
     EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_EQ(json["map_points"], 1000);
   EXPECT_TRUE(json["intervals"].empty());

@@ -25,7 +25,9 @@ TEST(FiniteResults, AFieldIsEmptyOnlyWhereItsRowSaysSo) {
   EXPECT_EQ(gnss("none,0,,,0,blocked"), "");
   EXPECT_EQ(gnss("single,,,1.5,1,"), "") << "a model without satellites";
   EXPECT_EQ(gnss("single,8,,1.5,1,"), "2: gdop is empty");
-  EXPECT_EQ(gnss("single,8,2.5,,1,"), "") << "it took the place of a position that was not known";
+  EXPECT_EQ(gnss("single,8,2.5,,1,"), "2: nis is empty");
+  EXPECT_EQ(gnss("single,8,2.5,,1,filter restarted"), "");
+  EXPECT_EQ(gnss("single,8,2.5,,0,withheld"), "");
   EXPECT_EQ(gnss(",8,2.5,1.5,1,"), "2: status is empty");
   EXPECT_EQ(gnss("single,8,-inf,1.5,1,"), "2: gdop is -inf");
   EXPECT_EQ(gnss("single,8,1e999,1.5,1,"), "2: gdop is 1e999");
@@ -41,6 +43,9 @@ TEST(FiniteResults, ANullStandsOnlyWhereItsObjectSaysSo) {
   EXPECT_EQ(run(R"("outcome": "stopped", "failure": null)"), "runs[0].failure is null");
   EXPECT_EQ(run(R"("fixes_due": 3, "fixes_lost": 3, "fix_error_rms_m": null)"), "");
   EXPECT_EQ(run(R"("fixes_due": 3, "fixes_lost": 2, "fix_error_rms_m": null)"), "runs[0].fix_error_rms_m is null");
+  EXPECT_EQ(run(R"("map_points_level_prior": 0, "map_error_up_prior_rms_m": null)"), "");
+  EXPECT_EQ(run(R"("map_points_level_prior": 1, "map_error_up_prior_rms_m": null)"),
+            "runs[0].map_error_up_prior_rms_m is null");
   EXPECT_EQ(run(R"("closest_m": [1, null])"), "runs[0].closest_m[1] is null");
   EXPECT_THAT(run(R"("distance_m": NaN)"), HasSubstr("summary.json:1: "));
 }
@@ -63,6 +68,26 @@ TEST(FiniteResults, CloudsAndPagesToo) {
   write("a.pcd", pcd_header({{.name = "x"}, {.name = "y"}}, 1) +
                      std::string(reinterpret_cast<const char*>(point), sizeof point));
   EXPECT_EQ(not_finite_in_results(folder.path().string()), "a.pcd: a point that is not finite");
+}
+
+/// The rows in Markdown.
+std::string absent_list() {
+  std::string text = "| file | values | where | because |\n|---|---|---|---|\n";
+  for (const MayBeAbsent& row : may_be_absent()) {
+    const std::string_view file = row.file;
+    text +=
+        "| `" + (file.ends_with(".json") ? std::string(file) : "epochs/RUN_" + std::string(file) + ".csv") + "` | `";
+    for (const char c : std::string_view(row.values)) text += c == ',' ? "`, `" : std::string(1, c);
+    text += "` | ";
+    const std::string_view is = row.is;
+    if (*row.when != '\0')
+      text += "`" + std::string(row.when) + "` " +
+              (is.empty()            ? "is absent"
+               : is.starts_with('=') ? "= `" + std::string(is.substr(1)) + "`"
+                                     : "= " + std::string(is));
+    text += std::string(" | ") + row.why + " |\n";
+  }
+  return text;
 }
 
 TEST(AbsentValues, StandInTheDocumentation) {
