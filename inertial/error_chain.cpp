@@ -46,7 +46,7 @@ Result<std::unique_ptr<ErrorChain>> make_error_chain(const std::string& name, co
       return Error{.file = "",
                    .key = "imu.leave_out",
                    .what = "the error chain \"" + name + "\" has no links to leave out",
-                   .expected = "an empty list, or errors = \"datasheet\", \"full\", \"physics\" or \"white_only\""};
+                   .expected = "an empty list, or imu.errors = \"datasheet\", \"full\", \"physics\" or \"white_only\""};
     }
   }
   return row->make.make(setup);

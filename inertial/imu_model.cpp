@@ -80,7 +80,7 @@ Result<Environment> environment_of(const ImuConfig& config) {
     return Error{.file = "",
                  .key = "imu.temperatures_c",
                  .what = join_values(temperatures.size(), " temperatures for ", times.size(), " times"),
-                 .expected = "as many as temperature_times_s"};
+                 .expected = "as many as imu.temperature_times_s"};
   }
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) continue;

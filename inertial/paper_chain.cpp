@@ -201,7 +201,7 @@ Result<std::unique_ptr<ErrorChain>> make_paper_as_printed_chain(const ChainSetup
     return Error{.file = "",
                  .key = "paper.correlation_time_s",
                  .what = join_values(entry.paper.correlation_time_s, " s makes the printed recursion diverge"),
-                 .expected = "more than 1 s, or errors = \"paper\""};
+                 .expected = "more than 1 s, or imu.errors = \"paper\""};
   }
   PrintedTriad gyro(gyro_triad(entry), setup.seed);
   PrintedTriad accel(accel_triad(entry), setup.seed);

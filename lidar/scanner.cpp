@@ -10,39 +10,45 @@
 namespace canyon::lidar {
 namespace {
 
-Error config_error(const char* key, std::string what, std::string expected) {
-  return Error{"", 0, std::string("lidar.") + key, std::move(what), std::move(expected)};
+Error config_error(const char* keys, std::string what, std::string expected) {
+  return Error{"", 0, keys, std::move(what), std::move(expected)};
 }
 
 Status validate(const LidarConfig& c, const BeamTable& table) {
   if (!(c.report.min_range_m < c.report.max_range_m)) {
-    return config_error("min_range_m", number_text(c.report.min_range_m),
-                        "less than max_range_m, " + number_text(c.report.max_range_m));
+    return config_error(
+        "lidar.min_range_m, lidar.max_range_m",
+        "ranges from " + number_text(c.report.min_range_m) + " to " + number_text(c.report.max_range_m) + " m",
+        "lidar.min_range_m below lidar.max_range_m");
   }
   if (((c.ego.max_m - c.ego.min_m).array() < 0).any()) {
-    return config_error("ego_max_m", "a corner lower than ego_min_m", "ego_min_m or more along each axis");
+    return config_error("lidar.ego_min_m, lidar.ego_max_m", "the highest corner lies lower than the lowest",
+                        "lidar.ego_max_m of lidar.ego_min_m or more along each axis");
   }
   const bool inside = ((c.mount_m - c.ego.min_m).array() > 0).all() && ((c.ego.max_m - c.mount_m).array() > 0).all();
   if (inside) {
-    return config_error("ego_min_m", "the sensor itself is in the box that hides its own vehicle",
-                        "a box that leaves out mount_m");
+    return config_error("lidar.ego_min_m, lidar.ego_max_m, lidar.mount_m",
+                        "the sensor itself is in the box that hides its own vehicle",
+                        "a box from lidar.ego_min_m to lidar.ego_max_m that leaves out lidar.mount_m");
   }
   if (table.rosette && c.azimuth_steps != 0) {
-    return config_error("azimuth_steps", std::to_string(c.azimuth_steps),
+    return config_error("lidar.azimuth_steps", std::to_string(c.azimuth_steps),
                         "0 (" + table.name + " has a path of its own, at its own rate)");
   }
   if (c.azimuth_steps == 0) {
     if (table.cycle_s > 0) return Ok{};
-    return config_error("azimuth_steps", "0",
+    return config_error("lidar.azimuth_steps", "0",
                         "the number of firings per revolution (" + table.name + " has no shortest firing cycle)");
   }
   const double firing_s = 1.0 / (c.rate_hz * static_cast<double>(c.azimuth_steps));
   const double needed_s = std::max(table.cycle_s, table.last_firing_s());
   if (firing_s < needed_s) {
     const auto most = static_cast<std::int64_t>(std::floor(1.0 / (c.rate_hz * needed_s)));
-    return config_error("azimuth_steps", std::to_string(c.azimuth_steps),
-                        "at most " + std::to_string(most) + " at rate_hz = " + number_text(c.rate_hz) + " (" +
-                            table.name + " needs " + number_text(std::round(needed_s * 1e9) / 1e3) + " us per firing)");
+    return config_error("lidar.azimuth_steps, lidar.rate_hz",
+                        std::to_string(c.azimuth_steps) + " firings a revolution at " + number_text(c.rate_hz) + " Hz",
+                        "lidar.azimuth_steps of at most " + std::to_string(most) +
+                            " at lidar.rate_hz = " + number_text(c.rate_hz) + " (" + table.name + " needs " +
+                            number_text(std::round(needed_s * 1e9) / 1e3) + " us per firing)");
   }
   return Ok{};
 }

@@ -20,8 +20,9 @@ Result<ImportedScene> make_scene(const SceneConfig& config) {
                         config.max_triangles);
   ImportedScene out;
   out.report.predicted = predicted_cost(city);
-  CANYON_TRY_STATUS(check_cost(out.report.predicted, config.max_triangles, "scene.extent_m, scene.terrain_cell_m",
-                               "a smaller city, larger cells"));
+  CANYON_TRY_STATUS(check_cost(out.report.predicted, config.max_triangles,
+                               "scene.extent_m, scene.terrain_cell_m, scene.max_triangles",
+                               "a smaller city (scene.extent_m), larger cells (scene.terrain_cell_m)"));
   const Progress progress("city of about " + cost_text(out.report.predicted), 1.0);
   out.parts = make_city(city);
   CANYON_TRY(out.parts.materials, load_materials(config.from.materials));

@@ -51,7 +51,7 @@ Result<std::unique_ptr<IonosphereModel>> make_ionex(const ModelParameters& own, 
     return Error{file, 0, "gnss.ionex_file",
                  "covers " + maps.maps.front().t.iso(0) + " to " + maps.maps.back().t.iso(0) + " GPS time, not " +
                      at.start.iso(0) + " to " + at.end.iso(0),
-                 "maps of that time"};
+                 "maps of that time, or a mission within theirs (time.start, time.limit_s)"};
   if (at.warnings != nullptr) at.warnings->insert(at.warnings->end(), maps.warnings.begin(), maps.warnings.end());
   return make_mapped_ionosphere(std::make_shared<const IonexMaps>(std::move(maps)),
                                 own.get<ElectronContent>().vtec_tecu);

@@ -81,7 +81,7 @@ Status check_coverage(const NavigationData& data, const std::string& systems, Gp
   if (start < *first || end > *last)
     return Error{data.names(), 0, key,
                  "covers " + span + " GPS time, not the mission's " + start.iso(0) + " to " + end.iso(0),
-                 "a navigation file of the mission's day, or --start within it"};
+                 "a navigation file of the mission's day, or a mission within it (time.start, time.limit_s)"};
 
   const auto constellation = make_broadcast(data, {.systems = systems});
   constexpr double kStepS = 300.0;

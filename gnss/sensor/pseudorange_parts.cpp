@@ -60,14 +60,15 @@ Result<PseudorangeParts> make_pseudorange_parts(const SensorSetup& at) {
   CANYON_TRY(parts.link, c.link.budget());
   parts.locks = lock_parameters(c, at.seed);
   if (!parts.solver->solves_clock() && !parts.clock->perfect())
-    return Error{
-        "", 0, "gnss.receiver_clock",
-        "is \"" + c.receiver_clock.name + "\", but solver \"" + c.position.solver.name + "\" has no unknown for it",
-        "\"none\""};
+    return Error{"", 0, "gnss.receiver_clock, gnss.solver",
+                 "solver \"" + c.position.solver.name + "\" has no unknown for the receiver clock \"" +
+                     c.receiver_clock.name + "\"",
+                 "gnss.receiver_clock = \"none\", or another gnss.solver"};
   if (!parts.solver->solves_clock() && c.position.estimator == Estimator::kKalman)
-    return Error{"", 0, "gnss.estimator",
-                 "is \"kalman\", but the solver " + c.position.solver.name + " has no receiver clock",
-                 "solver \"least_squares\""};
+    return Error{
+        "", 0, "gnss.estimator, gnss.solver",
+        "estimator \"kalman\" needs a receiver clock, which solver \"" + c.position.solver.name + "\" does not have",
+        "gnss.solver = \"least_squares\", or another gnss.estimator"};
   return parts;
 }
 

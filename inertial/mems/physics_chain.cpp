@@ -95,10 +95,10 @@ Result<double> electronics_n(const ElementModel& model, double sheet_n, const ch
 Status check_stable(const Triad& triad, const std::string& integrator, double rate_hz) {
   const double factor = triad.memory_per_step();
   if (factor < 1.0) return Ok{};
-  return Error{.key = "mems.integrator",
-               .what = join_values("\"", integrator, "\" multiplies the motion of the masses by ", factor,
-                                   " with every sample at ", rate_hz, " Hz: it diverges"),
-               .expected = "\"exact\""};
+  return Error{.key = "imu.sensor, imu.rate_hz",
+               .what = join_values("its mems.integrator \"", integrator, "\" multiplies the motion of the masses by ",
+                                   factor, " with every sample at ", rate_hz, " Hz: it diverges"),
+               .expected = "mems.integrator = \"exact\", or an imu.rate_hz that is high enough"};
 }
 
 }  // namespace

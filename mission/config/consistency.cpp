@@ -65,7 +65,7 @@ Status check_driving(const AutonomyConfig& autonomy, const VehicleConfig& vehicl
                   tightest_m, autonomy.corner_radius_m);
     return Error{.key = "autonomy.corner_radius_m, vehicle.max_steering_deg, vehicle.wheelbase_m",
                  .what = text,
-                 .expected = "autonomy.corner_radius_m of wheelbase_m / tan(max_steering_deg) or more"};
+                 .expected = "autonomy.corner_radius_m of vehicle.wheelbase_m / tan(vehicle.max_steering_deg) or more"};
   }
   const ReferenceParameters& reference = autonomy.model.own.get<ReferenceParameters>();
   if (reference.clearance_m < 0.5 * vehicle.width_m)

@@ -100,6 +100,10 @@ const ConfigNode* node_at(const ConfigNode& tree, const std::string& key) {
   return &(*node->array())[item - 1];
 }
 
+bool is_of_a_place(const std::string& key) {
+  return key.starts_with("autonomy.waypoint") || key.starts_with("vehicle.start_m") || key.starts_with("scene.moving");
+}
+
 }  // namespace
 
 Result<MissionFile> MissionFile::load(const std::string& path) {
@@ -291,7 +295,9 @@ Error MissionFile::locate(Error error, const std::string& gnss, const std::strin
     if (const ConfigNode* node = node_at(base_, key)) {
       point_at(*node);
       // What is right in the city that the base mission was made for is not in another one.
-      if (const ConfigNode* scene = user_.find("scene")) {
+      if (const auto set = table_keys(options_.find("scene")); !set.empty() && is_of_a_place(key)) {
+        error.what += " (inherited from " + error.file + "; scene." + set.front() + " makes it another city)";
+      } else if (const ConfigNode* scene = user_.find("scene")) {
         error.what += " (inherited from " + error.file + "; this [scene] is another city)";
         point_at(*scene);
       }

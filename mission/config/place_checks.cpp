@@ -31,22 +31,24 @@ std::string quoted(const Waypoint& waypoint) {
   return "waypoint \"" + waypoint.name + "\"";
 }
 
-Error outside(const std::string& key, const std::string& who, const Eigen::Vector2d& p, const Eigen::Vector2d& low,
-              const Eigen::Vector2d& high) {
+/// The ground's corners, and the keys that they follow from.
+struct Corners {
+  Eigen::Vector2d low, high;
+  const char* keys;
+};
+
+Error outside(const std::string& key, const std::string& who, const Eigen::Vector2d& p, const Corners& ground) {
   return Error{.key = key,
                .what = who + place(p) + " lies outside the scene",
-               .expected = "x from " + number_text(low.x()) + " to " + number_text(high.x()) + ", y from " +
-                           number_text(low.y()) + " to " + number_text(high.y())};
+               .expected = "x from " + number_text(ground.low.x()) + " to " + number_text(ground.high.x()) +
+                           ", y from " + number_text(ground.low.y()) + " to " + number_text(ground.high.y()) + " (" +
+                           ground.keys + ")"};
 }
 
 /// A point where a vehicle can stand. `who` is to stand there.
 Status check_standing_place(const scene::Site& site, const Eigen::Vector2d& p, const std::string& key,
                             const std::string& who) {
-  if (!site.contains(p)) {
-    Error error = outside(key, who, p, site.low_W, site.high_W);
-    error.expected += " (scene.extent_m)";
-    return error;
-  }
+  if (!site.contains(p)) return outside(key, who, p, {site.low_W, site.high_W, site.extent_keys});
   if (const scene::Building* building = scene::building_at(site.buildings, p))
     return Error{
         .key = key, .what = who + place(p) + " lies inside " + building->name, .expected = "a place outside buildings"};
@@ -77,7 +79,7 @@ Status check_places(const MissionConfig& config, const scene::Site& site) {
                            " m from the nearest street's centre line",
                    .expected = "a place within success.waypoint_radius_m = " + number_text(radius_m) + " m of one"};
   }
-  return scene::check_ways(config.scene.moving, site.low_W, site.high_W);
+  return scene::check_ways(config.scene.moving, site);
 }
 
 Status check_route(const MissionConfig& config, const PriorKnowledge& prior) {
@@ -96,13 +98,13 @@ Status check_route(const MissionConfig& config, const PriorKnowledge& prior) {
 }
 
 Status check_ground(const MissionConfig& config, const scene::Scene& scene) {
-  const Eigen::Vector2d low = scene.extent().min.head<2>(), high = scene.extent().max.head<2>();
+  const Corners ground{scene.extent().min.head<2>(), scene.extent().max.head<2>(), scene::extent_keys(config.scene)};
   const Eigen::Vector2d& start = config.vehicle.start_m;
-  if (!scene.ground(start.x(), start.y())) return outside("vehicle.start_m", "", start, low, high);
+  if (!scene.ground(start.x(), start.y())) return outside("vehicle.start_m", "", start, ground);
   for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
     const Waypoint& waypoint = config.autonomy.waypoints[i];
     if (!scene.ground(waypoint.p_m.x(), waypoint.p_m.y()))
-      return outside(waypoint_key(i), quoted(waypoint) + " at ", waypoint.p_m, low, high);
+      return outside(waypoint_key(i), quoted(waypoint) + " at ", waypoint.p_m, ground);
   }
   return Ok{};
 }

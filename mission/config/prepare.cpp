@@ -125,7 +125,7 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
   mission.warnings = scenes.warnings(config.scene);
   const scene::Scene& scene = *mission.scene;
   if (!site) {
-    CANYON_TRY_STATUS(plan(config, scene::site_of(scene), mission));
+    CANYON_TRY_STATUS(plan(config, scene::site_of(scene, config.scene), mission));
     CANYON_TRY_STATUS(check_sensors(config, mission, scene));
   }
   CANYON_TRY_STATUS(check_ground(config, scene));

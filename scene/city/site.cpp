@@ -14,14 +14,24 @@ std::optional<Site> planned_site(const SceneConfig& config) {
   site.frame = LocalFrame({city.lat_deg * kDegree, city.lon_deg * kDegree, city.base_height_m});
   site.high_W.setConstant(0.5 * city.extent_m);
   site.low_W = -site.high_W;
+  site.extent_keys = extent_keys(config);
   site.streets = plan.streets;
   if (!city.empty) site.buildings = city::planned_buildings(city, plan);
   return site;
 }
 
-Site site_of(const Scene& scene) {
-  return {scene.frame(), scene.extent().min.head<2>(), scene.extent().max.head<2>(), scene.streets(),
+Site site_of(const Scene& scene, const SceneConfig& config) {
+  return {scene.frame(),
+          scene.extent().min.head<2>(),
+          scene.extent().max.head<2>(),
+          extent_keys(config),
+          scene.streets(),
           scene.buildings()};
+}
+
+const char* extent_keys(const SceneConfig& config) {
+  if (config.from.file.empty()) return "scene.extent_m";
+  return config.from.radius_m > 0.0 ? "scene.radius_m, scene.margin_m" : "scene.margin_m";
 }
 
 }  // namespace canyon::scene

@@ -15,6 +15,7 @@ const Building* building_at(const std::vector<Building>& buildings, const Eigen:
 struct Site {
   LocalFrame frame;
   Eigen::Vector2d low_W = Eigen::Vector2d::Zero(), high_W = Eigen::Vector2d::Zero();  ///< corners of the ground
+  const char* extent_keys = "";                                                       ///< keys that they follow from
   StreetGraph streets;
   std::vector<Building> buildings;  ///< base_m and height_m are 0 where no terrain has been made
 
@@ -25,6 +26,9 @@ struct Site {
 
 /// Of a configuration; none for a scene from files, which has to be read.
 std::optional<Site> planned_site(const SceneConfig& config);
-Site site_of(const Scene& scene);
+/// Of a scene that was made of that configuration.
+Site site_of(const Scene& scene, const SceneConfig& config);
+/// The keys that the corners of the ground follow from.
+const char* extent_keys(const SceneConfig& config);
 
 }  // namespace canyon::scene

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "canyon/core/config/text.h"
+#include "canyon/scene/city/site.h"
 #include "canyon/scene/mesh_builder.h"
 
 namespace canyon::scene {
@@ -52,9 +53,9 @@ Status check_size(const MovingConfig& config, std::size_t i) {
   return Ok{};
 }
 
-Error lies_outside(std::size_t i, const Eigen::Vector2d& p) {
+Error lies_outside(std::size_t i, const Eigen::Vector2d& p, const std::string& expected) {
   return Error{"", 0, way_key(i), "(" + number_text(p.x()) + ", " + number_text(p.y()) + ") lies outside the scene",
-               "a point on the terrain"};
+               expected};
 }
 
 }  // namespace
@@ -73,13 +74,13 @@ std::vector<std::string> moving_shapes() {
   return names;
 }
 
-Status check_ways(const std::vector<MovingConfig>& moving, const Eigen::Vector2d& low_W,
-                  const Eigen::Vector2d& high_W) {
+Status check_ways(const std::vector<MovingConfig>& moving, const Site& site) {
   for (std::size_t i = 0; i < moving.size(); ++i) {
     CANYON_TRY_STATUS(check_size(moving[i], i));
     for (std::size_t k = 0; k + 1 < moving[i].path_m.size(); k += 2) {
       const Eigen::Vector2d p(moving[i].path_m[k], moving[i].path_m[k + 1]);
-      if ((p.array() < low_W.array()).any() || (p.array() > high_W.array()).any()) return lies_outside(i, p);
+      if (!site.contains(p))
+        return lies_outside(i, p, std::string("a point on the terrain (") + site.extent_keys + ")");
     }
   }
   return Ok{};
@@ -98,7 +99,8 @@ Result<Traffic> Traffic::make(const std::vector<MovingConfig>& moving, const Sce
              config.start_s};
     for (std::size_t k = 0; k + 1 < config.path_m.size(); k += 2) {
       m.path_W.emplace_back(config.path_m[k], config.path_m[k + 1]);
-      if (!scene.ground(m.path_W.back().x(), m.path_W.back().y())) return lies_outside(i, m.path_W.back());
+      if (!scene.ground(m.path_W.back().x(), m.path_W.back().y()))
+        return lies_outside(i, m.path_W.back(), "a point on the terrain");
     }
     for (const Moving& other : out.moving_)
       if (other.shape->name() == config.shape) m.shape = other.shape;

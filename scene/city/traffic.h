@@ -11,6 +11,8 @@
 
 namespace canyon::scene {
 
+struct Site;
+
 /// One [[scene.moving]] of a mission: a thing that goes along a way at constant speed and stands at its ends.
 struct MovingConfig {
   std::string name;
@@ -24,8 +26,8 @@ void visit(FieldVisitor& f, MovingConfig& c);
 /// The shapes there are: "car" (4.5 x 1.8 x 1.5 m), "bus" (12 x 2.55 x 3 m), "person" (0.3 x 0.5 x 1.75 m).
 std::vector<std::string> moving_shapes();
 
-/// That each way has points, all of them within the rectangle; what can be told before there is terrain.
-Status check_ways(const std::vector<MovingConfig>& moving, const Eigen::Vector2d& low_W, const Eigen::Vector2d& high_W);
+/// That each way has points, all of them within the site; what can be told before there is terrain.
+Status check_ways(const std::vector<MovingConfig>& moving, const Site& site);
 
 /// Where a moving thing may ever be along one leg of its way: within a distance of the leg, and below a height in W.
 struct SweptRoom {

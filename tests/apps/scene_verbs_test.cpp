@@ -192,9 +192,11 @@ TEST_F(SceneVerbsTest, DamagedMeshesEndInOneLineOrInAScene) {
 // 2026-11-22: `extent_m = 3000, terrain_cell_m = 0.5` was made for 84 s before anything else was looked at.
 TEST_F(SceneVerbsTest, ALargeSceneIsRefusedBeforeItIsMade) {
   write("large.toml", "base = \"vicksburg\"\n[scene]\nextent_m = 3000.0\nterrain_cell_m = 0.5\n");
-  expect_error("scene info large.toml",
-               "scene.extent_m, scene.terrain_cell_m: a scene of about 73.3 million triangles, 22.0 GB, expected a "
-               "smaller city, larger cells, or scene.max_triangles above 20000000");
+  expect_error(
+      "scene info large.toml",
+      "scene.extent_m, scene.terrain_cell_m, scene.max_triangles: a scene of about 73.3 million triangles, 22.0 GB, "
+      "expected a "
+      "smaller city (scene.extent_m), larger cells (scene.terrain_cell_m), or scene.max_triangles above 20000000");
   write("less.toml", "base = \"vicksburg\"\n[scene]\nextent_m = 300.0\nmax_triangles = 20000\n");
   expect_mistake("scene info less.toml", "a scene of about 58050 triangles, 17 MB");
   write("more.toml", "base = \"vicksburg\"\n[scene]\nextent_m = 300.0\nmax_triangles = 100000\n");

@@ -233,8 +233,8 @@ TEST(PaperChain, NeedsItsParameters) {
   const auto diverging = make_paper_as_printed_chain(setup(e, 1, 125.0));
   ASSERT_FALSE(diverging.ok());
   EXPECT_EQ(diverging.error().str(),
-            "paper.correlation_time_s: 0.5 s makes the printed recursion diverge, expected more than 1 s, or errors = "
-            "\"paper\"");
+            "paper.correlation_time_s: 0.5 s makes the printed recursion diverge, expected more than 1 s, or "
+            "imu.errors = \"paper\"");
   EXPECT_TRUE(make_paper_chain(setup(e, 1, 125.0)).ok());
 }
 

@@ -396,14 +396,15 @@ TEST(ImuConfig, MistakesAreNamed) {
   EXPECT_EQ(refusal([](ImuConfig& c) { c.leave_out = {"fliker"}; }),
             "imu.leave_out: " + unknown_name("", "fliker", model_names(error_links())).str());
   EXPECT_THAT(refusal([](ImuConfig& c) { c.leave_out = {"fliker"}; }), ::testing::EndsWith("; nearest is \"flicker\""));
-  EXPECT_EQ(refusal([](ImuConfig& c) {
-              c.errors = "paper";
-              c.leave_out = {"flicker"};
-            }),
-            "imu.leave_out: the error chain \"paper\" has no links to leave out, expected an empty list, or errors = "
-            "\"datasheet\", \"full\", \"physics\" or \"white_only\"");
+  EXPECT_EQ(
+      refusal([](ImuConfig& c) {
+        c.errors = "paper";
+        c.leave_out = {"flicker"};
+      }),
+      "imu.leave_out: the error chain \"paper\" has no links to leave out, expected an empty list, or imu.errors = "
+      "\"datasheet\", \"full\", \"physics\" or \"white_only\"");
   EXPECT_EQ(refusal([](ImuConfig& c) { c.temperatures_c = {20.0}; }),
-            "imu.temperatures_c: 1 temperatures for 0 times, expected as many as temperature_times_s");
+            "imu.temperatures_c: 1 temperatures for 0 times, expected as many as imu.temperature_times_s");
   EXPECT_EQ(refusal([](ImuConfig& c) {
               c.temperatures_c = {20.0, 30.0};
               c.temperature_times_s = {5.0, 5.0};

@@ -159,8 +159,8 @@ TEST(PhysicsChain, RefusesAnIntegratorThatDiverges) {
   e.mems.integrator = "rk4";
   const auto refused = make_physics_chain({.entry = e, .rate_hz = 125.0});
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().key, "mems.integrator");
-  EXPECT_EQ(refused.error().expected, "\"exact\"");
+  EXPECT_EQ(refused.error().key, "imu.sensor, imu.rate_hz");
+  EXPECT_EQ(refused.error().expected, "mems.integrator = \"exact\", or an imu.rate_hz that is high enough");
   EXPECT_NE(refused.error().what.find("with every sample at 125 Hz: it diverges"), std::string::npos)
       << refused.error().str();
   for (const char* stable : {"exact", "implicit_midpoint", "backward_euler"}) {

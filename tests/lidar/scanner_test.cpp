@@ -310,8 +310,10 @@ TEST(LidarConfig, MistakesAreNamed) {
     const auto made = make_scanner(config, 1);
     return made.ok() ? std::string("no error") : made.error().str();
   };
-  EXPECT_EQ(error_of([](LidarConfig& c) { c.rate_hz = 20; }),
-            "lidar.azimuth_steps: 1800, expected at most 904 at rate_hz = 20 (vlp16 needs 55.296 us per firing)");
+  EXPECT_EQ(
+      error_of([](LidarConfig& c) { c.rate_hz = 20; }),
+      "lidar.azimuth_steps, lidar.rate_hz: 1800 firings a revolution at 20 Hz, expected lidar.azimuth_steps of at "
+      "most 904 at lidar.rate_hz = 20 (vlp16 needs 55.296 us per firing)");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.rate_hz = 20, c.azimuth_steps = 904; }), "no error");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "grid16", c.rate_hz = 20; }), "no error") << "no cycle, no limit";
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "mid360"; }),
@@ -319,10 +321,16 @@ TEST(LidarConfig, MistakesAreNamed) {
   EXPECT_EQ(error_of([](LidarConfig& c) {
               c.ego.min_m = {-1, -1, 0}, c.ego.max_m = {3, 1, 2};
             }),
-            "lidar.ego_min_m: the sensor itself is in the box that hides its own vehicle, expected a box that leaves "
-            "out mount_m");
+            "lidar.ego_min_m, lidar.ego_max_m, lidar.mount_m: the sensor itself is in the box that hides its own "
+            "vehicle, expected a box from lidar.ego_min_m to lidar.ego_max_m that leaves out lidar.mount_m");
+  EXPECT_EQ(error_of([](LidarConfig& c) {
+              c.ego.min_m = {-1, -1, 0}, c.ego.max_m = {3, -2, 2};
+            }),
+            "lidar.ego_min_m, lidar.ego_max_m: the highest corner lies lower than the lowest, expected "
+            "lidar.ego_max_m of lidar.ego_min_m or more along each axis");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.report.min_range_m = 100; }),
-            "lidar.min_range_m: 100, expected less than max_range_m, 100");
+            "lidar.min_range_m, lidar.max_range_m: ranges from 100 to 100 m, expected lidar.min_range_m below "
+            "lidar.max_range_m");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.model.name = "two_ray"; }),
             "lidar.model: unknown name \"two_ray\", expected one of \"single_ray\", \"footprint\"");
   EXPECT_EQ(error_of([](LidarConfig& c) { c.beams = "os1"; }),

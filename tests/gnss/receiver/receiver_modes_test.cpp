@@ -170,8 +170,8 @@ TEST_F(PseudorangeSensorTest, AFilterNeedsAReceiverClock) {
   c.position.solver.name = "trilateration";
   c.receiver_clock.name = "none";
   EXPECT_EQ(error_of(c),
-            "gnss.estimator: is \"kalman\", but the solver trilateration has no receiver clock, expected "
-            "solver \"least_squares\"");
+            "gnss.estimator, gnss.solver: estimator \"kalman\" needs a receiver clock, which solver \"trilateration\" "
+            "does not have, expected gnss.solver = \"least_squares\", or another gnss.estimator");
 }
 
 }  // namespace

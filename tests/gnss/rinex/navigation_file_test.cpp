@@ -260,7 +260,8 @@ TEST(Coverage, NamesTheSpan) {
   EXPECT_EQ(wrong_day.error().str(),
             "brdc.10n: gnss.nav_file: covers 2010-06-30T22:00:00 to 2010-07-01T04:00:00 GPS time, not the mission's "
             "2010-11-17T13:00:00 to "
-            "2010-11-17T13:08:00, expected a navigation file of the mission's day, or --start within it");
+            "2010-11-17T13:08:00, expected a navigation file of the mission's day, or a mission within it (time.start, "
+            "time.limit_s)");
   const auto runs_over = check_coverage(*file, "G", kStart, kStart + 4 * 3600.0 + 1.0, "gnss.nav_file");
   EXPECT_FALSE(runs_over.ok());
 }

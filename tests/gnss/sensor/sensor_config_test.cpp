@@ -24,7 +24,8 @@ TEST_F(PseudorangeSensorTest, ConfigurationErrorsWordForWord) {
   c = GnssConfig{};
   c.position.solver.name = "trilateration";
   EXPECT_EQ(error_of(c),
-            "gnss.receiver_clock: is \"tcxo\", but solver \"trilateration\" has no unknown for it, expected \"none\"");
+            "gnss.receiver_clock, gnss.solver: solver \"trilateration\" has no unknown for the receiver clock "
+            "\"tcxo\", expected gnss.receiver_clock = \"none\", or another gnss.solver");
 }
 
 TEST(GnssConfig, ReadsAndRefuses) {

@@ -7,8 +7,8 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
-#include "canyon/core/process/cpu_time.h"
 #include "canyon/scene/city/site.h"
+#include "canyon/tests/support/process_cpu.h"
 #include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::mission {
@@ -196,13 +196,13 @@ TEST(MissionFileMessages, AFacadeOutOfSightFromItsStop) {
 // 0.03 s of CPU time; 2 s leave room for sanitizers.
 TEST(MissionFileMessages, AMisplacedWaypointIsToldBeforeTheTerrainIsMade) {
   const std::string large = "base = \"vicksburg\"\n[scene]\nextent_m = 3000.0\nterrain_cell_m = 0.5\n";
-  const double before_s = process_cpu_s();
+  const double before_s = canyon::testing::process_cpu_s();
   EXPECT_THAT(message(large + "[[autonomy.waypoint]]\nname = \"far\"\np_m = [5000.0, 0.0]\n"),
               HasSubstr("my.toml:5: autonomy.waypoint[1]: waypoint \"far\" at (5000.0, 0.0) lies outside the scene, "
                         "expected x from -1500 to 1500, y from -1500 to 1500 (scene.extent_m)"));
   EXPECT_THAT(message(large + "[[scene.moving]]\npath_m = [0.0, 5000.0]\n[vehicle]\nstart_m = [0, 5000]\n"),
               HasSubstr("vehicle.start_m: (0.0, 5000.0) lies outside the scene"));
-  EXPECT_LT(process_cpu_s() - before_s, 2.0);
+  EXPECT_LT(canyon::testing::process_cpu_s() - before_s, 2.0);
 }
 
 // 2026-11-22: each of these ran.
@@ -223,7 +223,8 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
             "most 1 m/s^2, expected autonomy.braking_m_s2 not above vehicle.max_deceleration_m_s2");
   EXPECT_EQ(told("[autonomy]\ncorner_radius_m = 2.0\n"),
             "my.toml:5: autonomy.corner_radius_m: the vehicle's tightest turn has a radius of 2.88 m, turns of 2.00 m "
-            "are planned, expected autonomy.corner_radius_m of wheelbase_m / tan(max_steering_deg) or more");
+            "are planned, expected autonomy.corner_radius_m of vehicle.wheelbase_m / tan(vehicle.max_steering_deg) or "
+            "more");
   EXPECT_EQ(told("[autonomy]\nclearance_m = 0.5\n"),
             "my.toml:5: autonomy.clearance_m: a vehicle 1.5 m wide does not pass an obstacle 0.5 m beside its axis, "
             "expected autonomy.clearance_m of half vehicle.width_m or more");
@@ -342,6 +343,20 @@ TEST(MissionFileMessages, AnInheritedWaypointInAnotherCity) {
   EXPECT_THAT(message("base = \"vicksburg\"\n\n[scene]\nseed = 5\n"),
               ::testing::MatchesRegex("my.toml:3: autonomy.waypoint.[0-9]+.: waypoint \"[0-9]+\".* .inherited from "
                                       "missions/vicksburg.toml; this .scene. is another city., expected .*"));
+}
+
+// 2026-11-23: no word of the option.
+TEST(MissionFileMessages, AnInheritedWaypointInACityThatAnOptionChanges) {
+  MissionFile file = parse("base = \"vicksburg\"\n");
+  file.set_option("scene.seed", ConfigNode::of(std::int64_t{5}), "--set");
+  SceneCache scenes;
+  const auto mission = prepare(*file.resolve("high"), scenes);
+  ASSERT_FALSE(mission.ok());
+  EXPECT_THAT(
+      file.locate(mission.error(), "high").str(),
+      ::testing::MatchesRegex("missions/vicksburg.toml:[0-9]+: autonomy.waypoint.[0-9]+.: waypoint \"[0-9]+\".* "
+                              ".inherited from missions/vicksburg.toml; scene.seed makes it another city., "
+                              "expected .*"));
 }
 
 TEST(MissionFileMessages, FilesThatCannotBeReadAreToldWhereTheyAreNamed) {

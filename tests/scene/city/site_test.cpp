@@ -12,7 +12,7 @@ TEST(Site, WhatIsPlannedIsWhatIsBuilt) {
   const auto planned = planned_site(config);
   ASSERT_TRUE(planned.has_value());
   const Scene scene(make_city(config.city));
-  const Site made = site_of(scene);
+  const Site made = site_of(scene, config);
   EXPECT_EQ(planned->low_W, made.low_W);
   EXPECT_EQ(planned->high_W, made.high_W);
   EXPECT_EQ(planned->frame.origin_E(), made.frame.origin_E());

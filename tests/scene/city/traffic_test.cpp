@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canyon/scene/city/site.h"
 #include "canyon/scene/scene_at.h"
 #include "canyon/tests/scene/small_scenes.h"
 
@@ -42,6 +43,10 @@ TEST(Traffic, MistakesAreTold) {
   EXPECT_EQ(Traffic::make({{"", "car", {500, 0}, 5.0, 0.0}}, scene).error().str(),
             "scene.moving[1].path_m: (500, 0) lies outside the scene, expected a point on the terrain");
   EXPECT_TRUE(Traffic::make({}, scene)->empty());
+  SceneConfig city;
+  EXPECT_EQ(
+      check_ways({{"", "car", {501, 0}, 5.0, 0.0}}, *planned_site(city)).error().str(),
+      "scene.moving[1].path_m: (501, 0) lies outside the scene, expected a point on the terrain (scene.extent_m)");
 }
 
 }  // namespace
