@@ -67,6 +67,12 @@ class Page:
         self.read()
 
 
+def thousandths(model):
+    """cpu_ms and error_milli of a rung that has cpu_s and error."""
+    of = {"cpu_ms": model.get("cpu_s"), "error_milli": model.get("error")}
+    return {key: None if value is None else 1e3 * value for key, value in of.items()}
+
+
 class Made:
     """What a command gave: the lines that it printed, and its summary.json with short names for what is in its lists."""
 
@@ -87,14 +93,16 @@ class Made:
         self.values["ladder"] = {}
         for ladder in summary.get("ladders") or []:
             of_key = self.values["ladder"].setdefault(ladder["key"].replace(".", "_"), {})
-            of_key[ladder["probe"]] = {model["name"]: model for model in ladder["models"]}
+            of_key[ladder["probe"]] = {re.sub(r"\W", "_", model["name"]): {**model, **thousandths(model)} for model in ladder["models"]}
         self.values["median"] = {run["fidelity"]: {key: row["median"] for key, row in run["figures"].items()}
                                  for run in summary.get("over_seeds") or []}
 
     def look_up(self, path, entry):
         value = self.values
         for part in path.split("."):
-            if not isinstance(value, dict) or part not in value:
+            if isinstance(value, list) and part.isdecimal() and int(part) < len(value):
+                part = int(part)
+            elif not isinstance(value, dict) or part not in value:
                 raise Mistake(f"published.toml: text.{entry}: {{{path}}}: the results have no \"{part}\"")
             value = value[part]
         return value

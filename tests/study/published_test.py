@@ -18,14 +18,14 @@ if sys.argv[1] == "keys":
 if "broken" in sys.argv:
     sys.exit(1)
 if sys.argv[1] == "plan":
-    print(json.dumps({{"mission": "small", "planned_cpu_s": 14.4}}))
+    print(json.dumps({{"mission": "small", "planned_cpu_s": 14.4, "tolerances": [{{"bound": 0.25}}]}}))
     sys.exit(0)
 if sys.argv[1] == "tradeoff":
     out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
     out.mkdir()
     (out / "summary.json").write_text(json.dumps({{
         "mission": "small", "fidelities": [{{"fidelity": "high_planned", "closed_loop": {{"success": 2}}}}],
-        "ladders": [{{"key": "gnss.paths", "probe": "pseudorange", "models": [{{"name": "none", "error": 1.25}}]}},
+        "ladders": [{{"key": "gnss.paths", "probe": "pseudorange", "models": [{{"name": "0.5", "error": 1.25, "cpu_s": 0.003}}]}},
                     {{"key": "gnss.paths", "probe": "fix", "models": [{{"name": "none", "error": 7.5}}]}}]}}))
     print("whole")
     sys.exit(0)
@@ -74,10 +74,10 @@ arguments = ["tradeoff", "--part", "gnss"]
 arguments = ["plan", "--json"]
 [text.errors]
 command = "errors"
-text = "{whole.high_planned.closed_loop.success} {ladder.gnss_paths.pseudorange.none.error:.2f} {ladder.gnss_paths.fix.none.error:.1f}"
+text = "{whole.high_planned.closed_loop.success} {ladder.gnss_paths.pseudorange.0_5.error_milli:.0f} {ladder.gnss_paths.pseudorange.0_5.cpu_ms:.1f} {ladder.gnss_paths.fix.none.error:.1f}"
 [text.left]
 command = "left"
-text = "{planned_cpu_s:.1f} s"
+text = "{planned_cpu_s:.1f} s, {tolerances.0.bound:.2f} m"
 '''
 OTHER_PAGE = "<!-- canyon:errors --><!-- /canyon:errors --> <!-- canyon:left --><!-- /canyon:left -->\n"
 PAGE = "<!-- canyon:list -->\n<!-- /canyon:list -->\n"
@@ -140,8 +140,8 @@ closed loop
         self.write("README.md", "")
         self.write("docs/page.md", OTHER_PAGE)
         self.assertEqual(self.call().returncode, 0)
-        self.assertEqual(self.read("docs/page.md"), "<!-- canyon:errors -->2 1.25 7.5<!-- /canyon:errors --> "
-                                                    "<!-- canyon:left -->14.4 s<!-- /canyon:left -->\n")
+        self.assertEqual(self.read("docs/page.md"), "<!-- canyon:errors -->2 1250 3.0 7.5<!-- /canyon:errors --> "
+                                                    "<!-- canyon:left -->14.4 s, 0.25 m<!-- /canyon:left -->\n")
         self.assertEqual(sorted(self.read("calls").splitlines()), ["plan --json", "tradeoff --part gnss --out results"])
 
     def test_what_was_written_is_found_again(self):
