@@ -198,7 +198,7 @@ VanLoan continuous(const ErrorState& state, const ImuNoise& noise, double dt_s, 
 }
 
 // 2026-11-23: noise and biases entered as if constant within a step, which of a process faster than the step says
-// nothing: with a correlation time of a tenth of the step, 1.8 times too much velocity.
+// nothing: with a correlation time of a tenth of the step, 2.4 times too much velocity.
 TEST(ErrorPropagation, IsVanLoansForEveryCorrelationTime) {
   const Eigen::Vector3d f(0.3, -0.5, 9.8);
   for (const double dt_s : {0.001, 0.01, 1.0}) {
