@@ -34,10 +34,12 @@ std::string quoted(const Waypoint& waypoint) {
 /// The ground's corners, and the keys that they follow from.
 struct Corners {
   Eigen::Vector2d low, high;
-  const char* keys;
+  std::string keys;
 };
 
 Error outside(const std::string& key, const std::string& who, const Eigen::Vector2d& p, const Corners& ground) {
+  if ((ground.low.array() > ground.high.array()).any())
+    return Error{.key = key, .what = "the scene is empty", .expected = "something to stand on (" + ground.keys + ")"};
   return Error{.key = key,
                .what = who + place(p) + " lies outside the scene",
                .expected = "x from " + number_text(ground.low.x()) + " to " + number_text(ground.high.x()) +

@@ -29,9 +29,12 @@ Site site_of(const Scene& scene, const SceneConfig& config) {
           scene.buildings()};
 }
 
-const char* extent_keys(const SceneConfig& config) {
+std::string extent_keys(const SceneConfig& config) {
   if (config.from.file.empty()) return "scene.extent_m";
-  return config.from.radius_m > 0.0 ? "scene.radius_m, scene.margin_m" : "scene.margin_m";
+  std::string keys = "scene.margin_m";
+  if (!config.from.center_deg.empty()) keys += ", scene.center_deg";
+  if (config.from.radius_m > 0.0) keys += ", scene.radius_m";
+  return keys;
 }
 
 }  // namespace canyon::scene

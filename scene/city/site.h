@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "canyon/scene/scene_source.h"
@@ -15,7 +16,7 @@ const Building* building_at(const std::vector<Building>& buildings, const Eigen:
 struct Site {
   LocalFrame frame;
   Eigen::Vector2d low_W = Eigen::Vector2d::Zero(), high_W = Eigen::Vector2d::Zero();  ///< corners of the ground
-  const char* extent_keys = "";                                                       ///< keys that they follow from
+  std::string extent_keys;                                                            ///< keys that they follow from
   StreetGraph streets;
   std::vector<Building> buildings;  ///< base_m and height_m are 0 where no terrain has been made
 
@@ -29,6 +30,6 @@ std::optional<Site> planned_site(const SceneConfig& config);
 /// Of a scene that was made of that configuration.
 Site site_of(const Scene& scene, const SceneConfig& config);
 /// The keys that the corners of the ground follow from.
-const char* extent_keys(const SceneConfig& config);
+std::string extent_keys(const SceneConfig& config);
 
 }  // namespace canyon::scene

@@ -79,8 +79,7 @@ Status check_ways(const std::vector<MovingConfig>& moving, const Site& site) {
     CANYON_TRY_STATUS(check_size(moving[i], i));
     for (std::size_t k = 0; k + 1 < moving[i].path_m.size(); k += 2) {
       const Eigen::Vector2d p(moving[i].path_m[k], moving[i].path_m[k + 1]);
-      if (!site.contains(p))
-        return lies_outside(i, p, std::string("a point on the terrain (") + site.extent_keys + ")");
+      if (!site.contains(p)) return lies_outside(i, p, "a point on the terrain (" + site.extent_keys + ")");
     }
   }
   return Ok{};

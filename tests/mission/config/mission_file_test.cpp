@@ -345,6 +345,20 @@ TEST(MissionFileMessages, AnInheritedWaypointInAnotherCity) {
                                       "missions/vicksburg.toml; this .scene. is another city., expected .*"));
 }
 
+// 2026-11-23: expected x from inf to -inf.
+TEST(MissionFileMessages, ASceneOfWhichNothingIsLeft) {
+  const canyon::testing::TemporaryFolder folder;
+  const std::string path = folder.file("wall.obj");
+  ASSERT_TRUE(write_text_file(path, "v 50 0 0\nv 60 0 0\nv 60 0 9\nf 1 2 3\n").ok());
+  const std::string scene = "[scene]\nfile = \"" + path + "\"\n",
+                    rest = "[[autonomy.waypoint]]\nname = \"a\"\np_m = [900, 0]\n";
+  EXPECT_THAT(message(scene + "radius_m = 1.0\n" + rest),
+              HasSubstr(": vehicle.start_m: the scene is empty, expected something to stand on (scene.margin_m, "
+                        "scene.radius_m)"));
+  EXPECT_THAT(message(scene + "radius_m = 100.0\n" + rest), HasSubstr(" (scene.margin_m, scene.radius_m)"));
+  EXPECT_THAT(message(scene + rest), HasSubstr("lies outside the scene, expected x from "));
+}
+
 // 2026-11-23: no word of the option.
 TEST(MissionFileMessages, AnInheritedWaypointInACityThatAnOptionChanges) {
   MissionFile file = parse("base = \"vicksburg\"\n");

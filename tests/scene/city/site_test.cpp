@@ -5,6 +5,16 @@
 namespace canyon::scene {
 namespace {
 
+TEST(Site, TheKeysOfItsExtentAreThoseThatWereSet) {
+  SceneConfig config;
+  EXPECT_EQ(extent_keys(config), "scene.extent_m");
+  config.from.file = "houses.geojson";
+  EXPECT_EQ(extent_keys(config), "scene.margin_m");
+  config.from.center_deg = {45.7, 4.8};
+  config.from.radius_m = 100.0;
+  EXPECT_EQ(extent_keys(config), "scene.margin_m, scene.center_deg, scene.radius_m");
+}
+
 TEST(Site, WhatIsPlannedIsWhatIsBuilt) {
   SceneConfig config;
   config.city.extent_m = 500.0;
