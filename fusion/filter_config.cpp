@@ -57,8 +57,9 @@ void visit(FieldVisitor& f, FilterConfig& c) {
   f.choice("integrator", c.integrator, strapdown_names(), "strapdown integrator");
   f.choice("filter", c.filter, model_names(filter_sets()), "the set that stands where the next three name nothing");
   f.choices("states", c.states, model_names(state_blocks()),
-            "what is estimated beside attitude, position and velocity");
-  f.choices("measurements", c.measurements, model_names(measurement_models()), "what corrects it");
+            "what is estimated beside attitude, position and velocity; none: as the filter has it");
+  f.choices("measurements", c.measurements, model_names(measurement_models()),
+            "what corrects it; none: as the filter has it");
   std::vector<std::string> acceptance = model_names(acceptance_models());
   acceptance.insert(acceptance.begin(), kAsFilter);
   f.choice("acceptance", c.acceptance, acceptance, "how fixes are judged");

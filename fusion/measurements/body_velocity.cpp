@@ -30,6 +30,14 @@ BodyVelocity body_velocity(const FilterView& filter, const Eigen::Vector3d& p_B)
   return out;
 }
 
+PointVelocity point_velocity(const FilterView& filter, const Eigen::Vector3d& p_B) {
+  const Eigen::Matrix3d R_EU = filter.state.nav.R_EU.toRotationMatrix();
+  const BodyVelocity point = body_velocity(filter, p_B);
+  PointVelocity out{.v_E = R_EU * point.v_B, .H = R_EU * point.H};
+  out.H.middleCols<3>(ErrorIndex::kTheta) -= R_EU * skew(point.v_B);
+  return out;
+}
+
 BodyAcceleration body_acceleration(const FilterView& filter) {
   const NavState& nav = filter.state.nav;
   const Eigen::Matrix3d R_UE = nav.R_EU.toRotationMatrix().transpose();
@@ -43,6 +51,7 @@ BodyAcceleration body_acceleration(const FilterView& filter) {
   out.H.middleCols<3>(ErrorIndex::kTheta) +=
       skew(gravity_U) - 2.0 * (skew(earth_U) * skew(v_U) - skew(v_U) * skew(earth_U)) - skew(w) * skew(v_U);
   out.H.middleCols<3>(ErrorIndex::kVelocity) += -2.0 * skew(earth_U) * R_UE - skew(w) * R_UE;
+  out.H.middleCols<3>(ErrorIndex::kPosition) += R_UE * gravity_gradient_E(nav.p_EU_E);
   for (const Feed& feed : filter.state.feeds())
     if (feed.axis >= 3) out.H.col(feed.state) -= feed.rate * filter.imu.accel_inverse.col(feed.axis - 3);
   return out;

@@ -14,6 +14,13 @@ struct BodyVelocity {
 /// Of the point at `p_B` from B's origin, m.
 BodyVelocity body_velocity(const FilterView& filter, const Eigen::Vector3d& p_B);
 
+/// Velocity of the same point in E.
+struct PointVelocity {
+  Eigen::Vector3d v_E;
+  BodyRows H;
+};
+PointVelocity point_velocity(const FilterView& filter, const Eigen::Vector3d& p_B);
+
 /// Rate at which the velocity of any point changes in B's axes, m/s^2, while the unit turns evenly:
 ///   f + g - 2 w_IE x v - w_EU x v, all in U.
 struct BodyAcceleration {

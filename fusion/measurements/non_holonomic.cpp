@@ -37,6 +37,8 @@ class NonHolonomic final : public MeasurementModel {
       const Eigen::VectorXd angles = filter.state.values(mounting_, 2);
       m.residual[0] += -angles[1] * axle.v_B.x();
       m.residual[1] += angles[0] * axle.v_B.x();
+      m.H.row(0) += angles[1] * axle.H.row(0);
+      m.H.row(1) -= angles[0] * axle.H.row(0);
       m.H(0, mounting_ + 1) = axle.v_B.x();
       m.H(1, mounting_) = -axle.v_B.x();
     }

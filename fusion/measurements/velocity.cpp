@@ -22,14 +22,10 @@ class Velocity final : public MeasurementModel {
   std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message) override {
     const GnssFix* fix = std::get_if<GnssFix>(&message);
     if (fix == nullptr || fix->status == FixStatus::kNone || !fix->v_A_E.allFinite()) return {};
-    const Eigen::Matrix3d R_EB = filter.state.nav.R_EU.toRotationMatrix();
-    const BodyVelocity antenna = body_velocity(filter, filter.lever_A_B);
+    const PointVelocity antenna = point_velocity(filter, filter.lever_A_B);
     Measurement m(3, filter.state);
-    m.residual = fix->v_A_E - R_EB * antenna.v_B;
-    // In E the antenna's velocity turns with the attitude through the lever arm alone, R (w x arm).
-    m.H = R_EB * antenna.H;
-    m.H.middleCols<3>(ErrorIndex::kTheta) = -R_EB * skew(filter.w_EU_U.cross(filter.lever_A_B - filter.lever_U_B));
-    m.H.middleCols<3>(ErrorIndex::kVelocity).setIdentity();
+    m.residual = fix->v_A_E - antenna.v_E;
+    m.H = antenna.H;
     const double scale = p_.fix_velocity_scale * p_.fix_velocity_scale,
                  floor = p_.fix_velocity_floor_m_s * p_.fix_velocity_floor_m_s;
     if (fix->velocity_covariance_E.allFinite())

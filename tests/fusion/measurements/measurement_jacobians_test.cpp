@@ -1,6 +1,7 @@
 // What every measurement says of the errors is the derivative of its residual.
 #include <cmath>
 #include <functional>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -83,6 +84,10 @@ struct Case {
   std::function<AidingMessage()> message;
   const char* keys;
 };
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.model;
+}
 
 class Jacobian : public ::testing::TestWithParam<Case> {};
 
