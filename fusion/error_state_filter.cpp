@@ -9,7 +9,6 @@
 #include "canyon/core/earth/earth.h"
 #include "canyon/core/motion/rotation.h"
 #include "canyon/core/units.h"
-#include "canyon/fusion/antenna_position.h"
 #include "canyon/fusion/consistency.h"
 #include "canyon/fusion/states/state_block.h"
 
@@ -311,7 +310,10 @@ void ErrorStateFilter::watch(FixResponse* response) {
 }
 
 Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
-  return antenna_position(state_.nav, w_EU_U_, -lever_U_B_, 0.0).H;
+  Eigen::Matrix<double, 3, 9> J = Eigen::Matrix<double, 3, 9>::Zero();
+  J.leftCols<3>() = state_.nav.R_EU.toRotationMatrix() * skew(lever_U_B_);
+  J.middleCols<3>(Index::kPosition).setIdentity();
+  return J;
 }
 
 Eigen::MatrixXd ErrorStateFilter::covariance() const {

@@ -64,7 +64,7 @@ class ErrorStateFilter {
 
   /// From now on tells how the estimate depends on the fixes; null: nobody. It must outlive this.
   void watch(FixResponse* response);
-  /// d (B's origin, in E) / d [theta, p, v], as AntennaPosition::H.
+  /// d (B's origin, in E) / d [theta, p, v], m per rad, 1, s.
   Eigen::Matrix<double, 3, 9> body_jacobian() const;
 
   NavEstimate estimate() const;

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "canyon/fusion/antenna_position.h"
+#include "canyon/core/motion/rotation.h"
 #include "canyon/fusion/measurements/body_velocity.h"
 
 namespace canyon::fusion {
@@ -23,22 +23,18 @@ class Position final : public MeasurementModel {
   std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message) override {
     const GnssFix* fix = std::get_if<GnssFix>(&message);
     if (fix == nullptr || fix->status == FixStatus::kNone) return {};
-    const double age_s = fix->t - filter.state.nav.t;
-    const AntennaPosition antenna =
-        antenna_position(filter.state.nav, filter.w_EU_U, filter.lever_A_B - filter.lever_U_B, age_s);
+    const NavState& nav = filter.state.nav;
+    const Eigen::Matrix3d R_EU = nav.R_EU.toRotationMatrix();
+    const Eigen::Vector3d arm_U = filter.lever_A_B - filter.lever_U_B;
+    const PointVelocity antenna = point_velocity(filter, filter.lever_A_B);
+    const double age_s = fix->t - nav.t;
     Measurement m(3, filter.state);
-    m.residual = fix->p_A_E - antenna.p_A_E;
+    m.residual = fix->p_A_E - (nav.p_EU_E + R_EU * arm_U + age_s * antenna.v_E);
+    m.H = age_s * antenna.H;
+    m.H.leftCols<3>() -= R_EU * skew(arm_U);
+    m.H.middleCols<3>(ErrorIndex::kPosition) += Eigen::Matrix3d::Identity();
     m.R = 0.5 * (fix->covariance_E + fix->covariance_E.transpose());
     m.R.diagonal() = m.R.diagonal().cwiseMax(floor_m2_);  // which keeps it positive definite
-    m.H.leftCols<9>() = antenna.H;
-    // What carries it there depends on the rate of turn as well.
-    if (age_s != 0.0) {
-      const BodyRows carried = age_s * point_velocity(filter, filter.lever_A_B).H;
-      m.H.leftCols<3>() =
-          antenna_position(filter.state.nav, filter.w_EU_U, filter.lever_A_B - filter.lever_U_B, 0.0).H.leftCols<3>() +
-          carried.leftCols<3>();
-      m.H.rightCols(m.H.cols() - 9) = carried.rightCols(m.H.cols() - 9);
-    }
     if (fix_error_ >= 0) {
       m.residual -= filter.state.values(fix_error_, 3);
       m.H.middleCols<3>(fix_error_).setIdentity();

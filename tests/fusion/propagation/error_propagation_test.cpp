@@ -9,7 +9,6 @@
 #include "canyon/core/motion/rotation.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
-#include "canyon/fusion/antenna_position.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/tests/fusion/propagation/van_loan.h"
 
@@ -31,15 +30,6 @@ NavState some_state() {
   s.p_EU_E = frame.to_E({120.0, -45.0, 3.0});
   s.v_EU_E = frame.R_EW() * Eigen::Vector3d(8.0, -5.0, 0.3);
   return s;
-}
-
-/// Truth whose error (truth minus estimate) against `s` is `e`.
-NavState perturbed(const NavState& s, const Vector9d& e) {
-  NavState out = s;
-  out.R_EU = (s.R_EU * so3_exp(e.head<3>())).normalized();
-  out.p_EU_E += e.segment<3>(3);
-  out.v_EU_E += e.tail<3>();
-  return out;
 }
 
 Vector9d error_of(const NavState& truth, const NavState& estimate) {
@@ -248,25 +238,6 @@ TEST(ErrorPropagation, FifteenStatesAreTheSameWithoutGains) {
     return P.topLeftCorner<15, 15>().eval();
   };
   EXPECT_LT((after(noise) - after(with_gains)).cwiseAbs().maxCoeff(), 64.0 * std::numeric_limits<double>::epsilon());
-}
-
-TEST(AntennaPosition, JacobianIsTheDerivative) {
-  const NavState s = some_state();
-  const Eigen::Vector3d rate(0.1, -0.2, 0.4), arm(-0.5, 0.1, 0.8);
-  const double age_s = 0.03;
-  const AntennaPosition nominal = antenna_position(s, rate, arm, age_s);
-  for (int j = 0; j < 9; ++j) {
-    const double step = j < 3 ? 1e-3 : 10.0;
-    Vector9d e = Vector9d::Zero();
-    e[j] = step;
-    const Eigen::Vector3d numeric = (antenna_position(perturbed(s, e), rate, arm, age_s).p_A_E -
-                                     antenna_position(perturbed(s, -e), rate, arm, age_s).p_A_E) /
-                                    (2.0 * step);
-    // Curvature step^2 / 6 of a metre, and rounding of 6e6 m.
-    EXPECT_LT((numeric - nominal.H.col(j)).norm(), step < 1.0 ? 1e-6 + 2e-9 / step : 1e-9) << j;
-  }
-  const AntennaPosition here = antenna_position(s, rate, arm, 0.0);
-  EXPECT_LT((here.p_A_E - (s.p_EU_E + s.R_EU * arm)).norm(), 2e-9);
 }
 
 TEST(Reset, JacobianIsTheDerivative) {
