@@ -65,7 +65,8 @@ struct GnssObservation {
   Eigen::Vector3d v_E = Eigen::Vector3d::Constant(kNaN);
   double clock_m = 0.0;       ///< satellite clock incl. relativity and group delay, times c; added to the pseudorange
   double correction_m = 0.0;  ///< modelled atmosphere or differential correction, subtracted from the pseudorange
-  bool used = false;          ///< used in the receiver's own fix
+  double rate_m_s = kNaN;  ///< rate of the corrected pseudorange by the Doppler shift: range rate + receiver clock rate
+  bool used = false;       ///< used in the receiver's own fix
 
   /// What a solver fits: range + receiver clock + unmodelled errors.
   double corrected_m() const { return pseudorange_m + clock_m - correction_m; }
@@ -116,6 +117,13 @@ struct LidarScan {
 struct RelativePose {
   GpsTime source, target;
   Pose X_TS;
+  Matrix6d covariance = Matrix6d::Constant(kNaN);
+};
+
+/// Pose of B in a map, whose frame is W, with its covariance (of xi, body frame).
+struct PoseInMap {
+  GpsTime t;
+  Pose X_WB;
   Matrix6d covariance = Matrix6d::Constant(kNaN);
 };
 

@@ -21,21 +21,31 @@ struct ImuLog {
   /// What makes the units that the file names look mistaken, a line each; they were taken as named.
   std::vector<std::string> doubts;
 
+  /// Rows that were passed over, where the format lets them.
+  struct Mended {
+    std::size_t not_finite = 0, duplicates = 0, reversed = 0;
+    std::size_t all() const { return not_finite + duplicates + reversed; }
+  } mended;
+
   std::size_t size() const { return t_s.size(); }
 };
 inline constexpr const char* kChannelNames[6] = {"gx", "gy", "gz", "ax", "ay", "az"};
 
 struct ImuLogFormat {
   /// Column names for a file without header, or instead of its own, separated by commas; or the name of a row of
-  /// imu_log_layouts(). A name is a channel and a unit (`gx_rad_s`, `gy_deg_s` or `gy_dps`, `gz_deg_h`, `az_m_s2`,
-  /// `ax_g`, `ax_mg`; `t_s`, `t_ms`, `t_us`, `t_ns`), with a factor if the file has counts or the axis points the other
-  /// way: `gx_deg_s*0.05`, `gy_rad_s*-1`. Increments over a sample interval (`gx_rad`, `gx_deg`, `ax_m_s`) become
-  /// rates; a triad's channels are all rates or all increments. Other names are passed over.
+  /// imu_log_layouts(). A name is a channel and a unit as core/tables/column_names.h spells them (`gx_rad_s` or
+  /// `gx_rps`, `gy_deg_s` or `gy_dps`, `gz_deg_h`, `az_m_s2` or `az_mps2`, `ax_g`, `ax_mg`; `t_s`, `t_ms`, `t_us`,
+  /// `t_ns`, `sow`; `wx`, `gyro_x`, `acc_x` are channels too), with a factor if the file has counts or the axis points
+  /// the other way: `gx_deg_s*0.05`, `gy_rad_s*-1`. Increments over a sample interval (`gx_rad`, `gx_deg`, `ax_m_s`)
+  /// become rates; a triad's channels are all rates or all increments. Other names are passed over.
   std::string columns{};
   /// Sample rate of a file without a time column, or to be taken instead of its times; 0 = the file's times.
   double rate_hz = 0.0;
   /// Refuses channels that never change or stay at their extreme value, as those of a working sensor never do.
   bool live = true;
+  /// Passes over rows with a field that is empty or says NaN, and rows that are not later than the one before, where
+  /// they are else an Error; ImuLog::mended counts them.
+  bool mend = false;
 };
 
 /// A layout that is in use elsewhere, by name.

@@ -3,6 +3,7 @@
 #include "canyon/core/check.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/catalogue.h"
+#include "canyon/inertial/mounting.h"
 #include "canyon/inertial/true_increments.h"
 
 namespace canyon::inertial {
@@ -10,26 +11,31 @@ namespace {
 
 class StrapdownImu final : public ImuModel {
  public:
-  StrapdownImu(const LocalFrame& frame, const Eigen::Vector3d& lever_arm_m, std::unique_ptr<ErrorChain> errors)
-      : frame_(frame), lever_arm_m_(lever_arm_m), errors_(std::move(errors)) {}
+  StrapdownImu(const LocalFrame& frame, const Eigen::Vector3d& lever_arm_m,
+               const std::optional<Eigen::Quaterniond>& R_BU, std::unique_ptr<ErrorChain> errors)
+      : frame_(frame), lever_arm_m_(lever_arm_m), R_BU_(R_BU), errors_(std::move(errors)) {}
 
   ImuSample sample(std::int64_t k, std::span<const KinematicState> nodes) override {
-    CANYON_CHECK(k >= 0, "sample number = ", k);
-    ImuSample sample = true_increments(nodes, frame_, lever_arm_m_);
-    errors_->corrupt(k, sample);
-    return sample;
+    return measured(k, true_increments(nodes, frame_, lever_arm_m_));
   }
   ImuSample sample(std::int64_t k, const TrueMotion& motion, GpsTime from, GpsTime to) override {
-    CANYON_CHECK(k >= 0, "sample number = ", k);
-    ImuSample sample = true_increments(motion, from, to, frame_, lever_arm_m_);
-    errors_->corrupt(k, sample);
-    return sample;
+    return measured(k, true_increments(motion, from, to, frame_, lever_arm_m_));
   }
+  Eigen::Quaterniond R_BU() const override { return R_BU_.value_or(Eigen::Quaterniond::Identity()); }
   const ImuNoise& noise() const override { return errors_->noise(); }
 
  private:
+  /// `sample`: along the axes of B.
+  ImuSample measured(std::int64_t k, ImuSample sample) {
+    CANYON_CHECK(k >= 0, "sample number = ", k);
+    if (R_BU_) sample = seen_askew(sample, *R_BU_);
+    errors_->corrupt(k, sample);
+    return sample;
+  }
+
   LocalFrame frame_;
   Eigen::Vector3d lever_arm_m_;
+  std::optional<Eigen::Quaterniond> R_BU_;
   std::unique_ptr<ErrorChain> errors_;
 };
 
@@ -41,7 +47,10 @@ void visit(FieldVisitor& f, ImuConfig& c) {
   f.choice("errors", c.errors, model_names(error_chains()), "error chain");
   f.texts("leave_out", c.leave_out, "links of the error chain that are switched off, by name (docs/inertial.md)");
   f.number("rate_hz", c.rate_hz, {10, 5000}, "samples per second");
-  f.vector3("lever_arm_m", c.lever_arm_m, {-100, 100}, "IMU in the body frame; axes parallel to the body's");
+  f.vector3("lever_arm_m", c.lever_arm_m, {-100, 100}, "IMU in the body frame");
+  f.number("mounting_error_deg", c.mounting_error_deg, {0, 30},
+           "how askew it sits, and nobody knows: angles between its axes and the body's, each, 1-sigma; constant over "
+           "a run");
   f.numbers("temperature_times_s", c.temperature_times_s, 0, {0, 1e9},
             "corners of the unit's temperature over the run; empty: the temperature its figures hold for");
   f.numbers("temperatures_c", c.temperatures_c, 0, {-100, 200}, "temperatures at these times, constant outside");
@@ -110,7 +119,8 @@ Result<ImuNoise> datasheet_noise(const ImuConfig& config) {
 
 Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame) {
   CANYON_TRY(std::unique_ptr<ErrorChain> errors, make_error_chain(config, seed));
-  return std::unique_ptr<ImuModel>(std::make_unique<StrapdownImu>(frame, config.lever_arm_m, std::move(errors)));
+  return std::unique_ptr<ImuModel>(
+      std::make_unique<StrapdownImu>(frame, config.lever_arm_m, mounting(config, seed), std::move(errors)));
 }
 
 }  // namespace canyon::inertial

@@ -16,7 +16,7 @@
 
 namespace canyon::inertial {
 
-/// An IMU: exact increments of the true motion, then its error chain.
+/// An IMU: exact increments of the true motion along its own axes, then its error chain.
 class ImuModel {
  public:
   virtual ~ImuModel() = default;
@@ -25,6 +25,8 @@ class ImuModel {
   virtual ImuSample sample(std::int64_t k, std::span<const KinematicState> nodes) = 0;
   /// Sample k over (from, to], which need not be the motion's own steps.
   virtual ImuSample sample(std::int64_t k, const TrueMotion& motion, GpsTime from, GpsTime to) = 0;
+  /// The attitude of its axes in B: truth, for recorder, scorer and sensors that sit in the same box.
+  virtual Eigen::Quaterniond R_BU() const = 0;
   /// What makes up this unit's errors, as far as a filter can be told.
   virtual const ImuNoise& noise() const = 0;
 };

@@ -7,12 +7,23 @@ namespace canyon {
 
 std::vector<std::string_view> split(std::string_view line, std::string_view separators, bool join_separators) {
   std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t end = line.find_first_of(separators);
-    const std::string_view field = line.substr(0, end);
-    if (!join_separators || !field.empty()) fields.push_back(field);
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
+  split(line, separators, join_separators, fields);
+  return fields;
+}
+
+void split(std::string_view line, std::string_view separators, bool join_separators,
+           std::vector<std::string_view>& fields) {
+  fields.clear();
+  const auto separates = [separators](char c) {
+    for (const char s : separators)
+      if (c == s) return true;
+    return false;
+  };
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && !separates(line[i])) continue;
+    if (!join_separators || i > begin) fields.push_back(line.substr(begin, i - begin));
+    begin = i + 1;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "canyon/core/earth/local_frame.h"
+#include "canyon/core/earth/standard_atmosphere.h"
 #include "canyon/core/stress/subjects.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
@@ -96,6 +97,22 @@ StressFigure everywhere() {
   return {1.0 * broken, 0.0};
 }
 
+/// Height to pressure and back over the whole table, and clamped beside it. A rounding of the power is one of the
+/// pressure, and of T0 / L = 44 km in height; there are eight.
+StressFigure atmosphere() {
+  Worst worst;
+  constexpr double kRounding_m = 8.0 * kEpsilon * 288.15 / 0.0065;
+  for (double h_m = -2000.0; h_m <= 11000.0; h_m += 17.3)
+    worst.look(standard_height_m(standard_pressure_pa(h_m)) - h_m, kRounding_m);
+  for (const double beyond_m : {-1e9, -2000.1, -stress::kInfinity})
+    worst.look(standard_pressure_pa(beyond_m) - standard_pressure_pa(-2000.0), kRounding_m);
+  for (const double beyond_m : {11000.1, 44330.0, 1e9, stress::kInfinity})
+    worst.look(standard_pressure_pa(beyond_m) - standard_pressure_pa(11000.0), kRounding_m);
+  for (const double pressure_pa : {0.0, 1e-300, 1e9})
+    worst.look(std::isfinite(standard_height_m(pressure_pa)) ? 0.0 : stress::kInfinity, 1.0);
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> earth_cases() {
@@ -121,6 +138,9 @@ std::vector<StressCase> earth_cases() {
   const StressMechanism centre{group, "places where the formula means nothing",
                                "1 / r at Earth's centre, or a negative root within the focal disc",
                                "finite from the centre to a hundred radii", "places"};
+  const StressMechanism table{group, "the ends of the standard atmosphere",
+                              "beyond 44 km the base of the power is negative, and the pressure no number",
+                              "height and back to eight roundings, clamped to its ends beside them", "of the bound"};
   StressRows rows;
   rows.of(pole).add("earth/place_and_back_at_the_poles", [] { return there_and_back(kPolar_deg); });
   rows.of(pole).add("earth/place_and_back_at_the_antimeridian", [] { return there_and_back(kOrdinary_deg); });
@@ -130,6 +150,7 @@ std::vector<StressCase> earth_cases() {
   rows.of(printed).add("earth/gravity_at_poles_and_equator", printed_gravity);
   rows.of(difference).add("earth/gravity_gradient", gravity_gradient);
   rows.of(centre).add("earth/from_the_centre_to_a_hundred_radii", everywhere);
+  rows.of(table).add("earth/standard_atmosphere_to_its_ends", atmosphere);
   return rows.take();
 }
 

@@ -306,6 +306,7 @@ class SinglePoint {
       const bool carrier_known = std::isfinite(c.code.hz);
       o.carrier_phase_cycles = carrier_known ? c.signal.phase_cycles : kNaN;
       o.doppler_hz = carrier_known ? c.signal.doppler_hz : kNaN;
+      o.rate_m_s = pseudorange_rate_m_s(o.doppler_hz, c.code.hz) + kSpeedOfLight * c.state.clock_rate;
       o.cn0_dbhz = c.signal.cn0_dbhz;
       o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
       o.correction_m = delay_m + troposphere_m_(view);
@@ -342,9 +343,7 @@ class SinglePoint {
         if (c.sv != o.sv) continue;
         // Tracking of a carrier worsens as that of the code does.
         const double sigma_m_s = config_.doppler_sigma_m_s * o.sigma_m / config_.sigma_m;
-        rates.push_back({c.state.p_E, c.state.v_E,
-                         pseudorange_rate_m_s(o.doppler_hz, c.code.hz) + kSpeedOfLight * c.state.clock_rate,
-                         sigma_m_s});
+        rates.push_back({c.state.p_E, c.state.v_E, o.rate_m_s, sigma_m_s});
       }
     }
     return rates;

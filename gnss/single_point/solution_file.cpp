@@ -16,6 +16,14 @@ std::string field(double value, int decimals) {
   return text;
 }
 
+/// Six digits, wherever the point is.
+std::string significant(double value) {
+  if (!std::isfinite(value)) return "";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
 std::string quoted(const std::string& text) {
   return text.find(',') == std::string::npos ? text : "\"" + text + "\"";
 }
@@ -25,7 +33,8 @@ std::string quoted(const std::string& text) {
 std::string solution_csv(const SinglePointResult& result) {
   std::string out =
       "gps_week,sow,x_m,y_m,z_m,status,satellites,gdop,pdop,hdop,vdop,tdop,excluded,sigma_e_m,sigma_n_m,sigma_u_m,"
-      "clock_m,vx_m_s,vy_m_s,vz_m_s,reason\n";
+      "clock_m,vx_m_s,vy_m_s,vz_m_s,xx_m2,xy_m2,xz_m2,yy_m2,yz_m2,zz_m2,vxx_m2_s2,vxy_m2_s2,vxz_m2_s2,vyy_m2_s2,"
+      "vyz_m2_s2,vzz_m2_s2,reason\n";
   for (const auto& e : result.epochs) {
     throw_if_cancelled();
     const GnssFix& fix = e.fix;
@@ -44,6 +53,9 @@ std::string solution_csv(const SinglePointResult& result) {
     for (int i = 0; i < 3; ++i) out += "," + field(sigma_enu[i], 3);
     out += "," + field(fix.clock_m, 4);
     for (int i = 0; i < 3; ++i) out += "," + field(fix.v_A_E[i], 4);
+    for (const Eigen::Matrix3d* covariance : {&fix.covariance_E, &fix.velocity_covariance_E})
+      for (int i = 0; i < 3; ++i)
+        for (int j = i; j < 3; ++j) out += "," + (solved ? significant((*covariance)(i, j)) : "");
     out += "," + quoted(fix.reason) + "\n";
   }
   return out;

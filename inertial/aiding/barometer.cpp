@@ -1,15 +1,17 @@
 #include "canyon/inertial/aiding/barometer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/core/check.h"
-#include "canyon/inertial/aiding/standard_atmosphere.h"
+#include "canyon/core/earth/standard_atmosphere.h"
 
 namespace canyon::inertial {
 
 void visit(FieldVisitor& f, BarometerConfig& c) {
   f.number("rate_hz", c.rate_hz, {0.1, 1000}, "samples per second");
-  f.number("undulation_m", c.undulation_m, {-200, 200}, "of the geoid, taken off the ellipsoidal height");
+  f.optional_number("undulation_m", c.undulation_m, -1000.0, {-200, 200},
+                    "geoid above the ellipsoid; -1000: as of the scene's heights, else of the geoid at the scene");
   f.number("turn_on_bias_pa", c.turn_on_bias_pa, {0, 1e5}, "constant over a run, 1-sigma");
   f.number("drift_pa", c.drift_pa, {0, 1e5}, "weather and sensor, stationary 1-sigma");
   f.number("drift_tau_s", c.drift_tau_s, {1e-3, 1e9}, "correlation time of the drift");
@@ -29,7 +31,7 @@ Barometer::Barometer(const BarometerConfig& config, std::uint64_t seed)
 Barometer::Reading Barometer::sample(std::int64_t k, GpsTime t, double h_m) {
   CANYON_CHECK(k >= 0 && std::isfinite(h_m), "sample number = ", k, ", h_m = ", h_m);
   const double dt_s = 1.0 / config_.rate_hz;
-  const double pressure_pa = standard_pressure_pa(h_m - config_.undulation_m);
+  const double pressure_pa = standard_pressure_pa(h_m - config_.undulation_m.value_or(0.0));
   if (k != last_ + 1 || config_.lag_s == 0.0) {
     lagging_pa_ = pressure_pa;
   } else {
@@ -49,6 +51,7 @@ Barometer::Reading Barometer::sample(std::int64_t k, GpsTime t, double h_m) {
   if (config_.resolution_pa > 0.0) {
     r.message.pressure_pa = config_.resolution_pa * std::round(r.message.pressure_pa / config_.resolution_pa);
   }
+  r.message.pressure_pa = std::max(r.message.pressure_pa, 0.0);
   return r;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "canyon/core/config/config.h"
 #include "canyon/core/messages.h"
@@ -13,7 +14,9 @@ namespace canyon::inertial {
 /// A barometer: the static pressure at its height, late, drifting and noisy.
 struct BarometerConfig {
   double rate_hz = 10.0;
-  double undulation_m = 0.0;          ///< of the geoid: height above sea level = ellipsoidal height - undulation
+  /// Of the geoid: height above sea level = ellipsoidal height - undulation. None: of the place where it is used, and 0
+  /// where nobody says.
+  std::optional<double> undulation_m;
   double turn_on_bias_pa = 50.0;      ///< constant over a run, 1-sigma
   double drift_pa = 100.0;            ///< weather and sensor, stationary 1-sigma of a Gauss-Markov process
   double drift_tau_s = 7200.0;        ///< its correlation time
@@ -32,7 +35,8 @@ class Barometer {
     BarometerTruth truth;
   };
   /// Sample k >= 0 at ellipsoidal height `h_m`. Drift and noise depend on (seed, k) alone; the lag takes the pressure
-  /// as linear in time since sample k - 1, and starts settled where that was not the sample asked for last.
+  /// as linear in time since sample k - 1, and starts settled where that was not the sample asked for last. No reading
+  /// is below 0.
   Reading sample(std::int64_t k, GpsTime t, double h_m);
 
  private:

@@ -45,7 +45,8 @@ struct Input {
 
 Input input_at(const PlacedMotion& placed, double t_s) {
   const KinematicState k = placed.motion->at(t_s);
-  const InertialInput input = inertial_input(k, placed.frame, placed.lever_arm_m);
+  InertialInput input = inertial_input(k, placed.frame, placed.lever_arm_m);
+  if (placed.R_BU) input = {placed.R_BU->conjugate() * input.w_IU_U, placed.R_BU->conjugate() * input.f_U};
   const double w = k.w_WB_B.norm(), arm_m = placed.lever_arm_m.norm();
   Input out;
   out.value << input.w_IU_U, input.f_U;

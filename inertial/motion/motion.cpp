@@ -83,6 +83,7 @@ Result<PlacedMotion> make_motion(const MotionConfig& config, std::uint64_t seed)
 KinematicState PlacedMotion::imu_at(double t_s) const {
   KinematicState mount;
   mount.X_WB.p = lever_arm_m;
+  if (R_BU) mount.X_WB.R = *R_BU;
   return compose(motion->at(t_s), mount);
 }
 

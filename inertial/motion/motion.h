@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,9 +66,10 @@ struct PlacedMotion {
   LocalFrame frame;
   GpsTime start{};
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Quaterniond> R_BU{};  ///< axes of the IMU on the body; none: parallel
   std::shared_ptr<const Motion> motion;
 
-  /// Kinematics of the IMU: axes parallel to the body's, origin at the lever arm.
+  /// Kinematics of the IMU: of its own axes, origin at the lever arm.
   KinematicState imu_at(double t_s) const;
 };
 

@@ -1,32 +1,16 @@
 #include <array>
 #include <vector>
 
+#include "canyon/core/earth/standard_atmosphere.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/inertial/aiding/barometer.h"
 #include "canyon/inertial/aiding/odometer.h"
-#include "canyon/inertial/aiding/standard_atmosphere.h"
 #include "canyon/inertial/stress/subjects.h"
 
 namespace canyon::inertial {
 namespace {
 
 using stress::kEpsilon;
-
-/// Height to pressure and back over the whole table, and clamped beside it. A rounding of the power is one of the
-/// pressure, and of T0 / L = 44 km in height; there are eight.
-StressFigure atmosphere() {
-  stress::Worst worst;
-  constexpr double kRounding_m = 8.0 * kEpsilon * 288.15 / 0.0065;
-  for (double h_m = -2000.0; h_m <= 11000.0; h_m += 17.3)
-    worst.look(standard_height_m(standard_pressure_pa(h_m)) - h_m, kRounding_m);
-  for (const double beyond_m : {-1e9, -2000.1, -stress::kInfinity})
-    worst.look(standard_pressure_pa(beyond_m) - standard_pressure_pa(-2000.0), kRounding_m);
-  for (const double beyond_m : {11000.1, 44330.0, 1e9, stress::kInfinity})
-    worst.look(standard_pressure_pa(beyond_m) - standard_pressure_pa(11000.0), kRounding_m);
-  for (const double pressure_pa : {0.0, 1e-300, 1e9})
-    worst.look(std::isfinite(standard_height_m(pressure_pa)) ? 0.0 : stress::kInfinity, 1.0);
-  return worst.figure();
-}
 
 /// The pressure goes evenly from one height to another within a sample and stays: behind by lag / dt (1 - e^(-dt /
 /// lag)) of the change after it, then e^(-dt / lag) of that a sample. Terms are as large as lag / dt of the change.
@@ -73,9 +57,6 @@ StressFigure ticks(double speed_m_s, double metres_per_tick) {
 }  // namespace
 
 std::vector<StressCase> aiding_cases() {
-  const StressMechanism table{StressGroup::kGeometry, "the ends of the standard atmosphere",
-                              "beyond 44 km the base of the power is negative, and the pressure no number",
-                              "height and back to eight roundings, clamped to its ends beside them", "of the bound"};
   const StressMechanism lag{
       StressGroup::kStiff, "a lag far shorter or longer than the samples",
       "an explicit step overshoots where dt > lag; where dt << lag the difference of two large terms has no digits",
@@ -84,7 +65,6 @@ std::vector<StressCase> aiding_cases() {
       StressGroup::kLong, "fractions that a count leaves over", "each sample rounds its own ticks, and the sum drifts",
       "the distance over a tick's length, less than one tick off after 20 000 samples", "ticks"};
   StressRows rows;
-  rows.of(table).add("aiding/standard_atmosphere_to_its_ends", atmosphere);
   for (const auto& [lag_s, rate_hz] : {std::pair{1e-6, 0.1}, {1e-3, 10.0}, {1e3, 1000.0}})
     rows.of(lag).add("aiding/barometer_lag_" + stress::text(lag_s) + "_s_at_" + stress::text(rate_hz) + "_hz",
                      [lag_s = lag_s, rate_hz = rate_hz] { return lagging(lag_s, rate_hz); });

@@ -31,8 +31,8 @@ std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, con
                                   o.pseudorange_m - o.clock_m;
     ranges.push_back({view->state.p_E, o.pseudorange_m + o.clock_m, 1.0, o.sv.system});
     const double carrier = carrier_hz(o.sv.system, o.band, view->state.frequency_channel);
-    rates.push_back({view->state.p_E, view->state.v_E,
-                     pseudorange_rate_m_s(o.doppler_hz, carrier) + kSpeedOfLight * view->state.clock_rate, 1.0});
+    o.rate_m_s = pseudorange_rate_m_s(o.doppler_hz, carrier) + kSpeedOfLight * view->state.clock_rate;
+    rates.push_back({view->state.p_E, view->state.v_E, o.rate_m_s, 1.0});
   }
   return ranges;
 }

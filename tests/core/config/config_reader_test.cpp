@@ -118,6 +118,37 @@ TEST(ConfigReader, OfManyKeysNoneIsListed) {
   EXPECT_EQ(status.error().str(), "my.toml:1: x: unknown key, expected one of the 9 documented keys");
 }
 
+/// A list of names out of a table.
+struct Menu {
+  std::vector<std::string> dishes{"soup"};
+};
+void visit(FieldVisitor& f, Menu& m) {
+  f.choices("dishes", m.dishes, {"soup", "fish", "cake"}, "what is eaten");
+}
+
+TEST(ConfigReader, AListOfNamesIsOutOfItsTable) {
+  const auto read = [](const std::string& toml, Menu& menu) {
+    const auto node = ConfigNode::parse(toml, "m.toml");
+    const Status status = read_config(&*node, "menu", menu);
+    return status.ok() ? std::string() : status.error().str();
+  };
+  Menu menu;
+  EXPECT_EQ(read("dishes = [\"cake\", \"fish\"]\n", menu), "");
+  EXPECT_EQ(menu.dishes, (std::vector<std::string>{"cake", "fish"}));
+  EXPECT_EQ(read("dishes = \"soup\"\n", menu), "");
+  EXPECT_EQ(menu.dishes, std::vector<std::string>{"soup"});
+  EXPECT_EQ(read("dishes = []\n", menu), "");
+  EXPECT_TRUE(menu.dishes.empty());
+  EXPECT_EQ(read("dishes = [\"fisch\"]\n", menu),
+            "m.toml:1: menu.dishes: unknown name \"fisch\", expected one of \"soup\", \"fish\", \"cake\"; nearest is "
+            "\"fish\"");
+  EXPECT_EQ(read("dishes = [\"fish\", \"fish\"]\n", menu),
+            "m.toml:1: menu.dishes: \"fish\" stands there twice, expected a list out of \"soup\", \"fish\", \"cake\"");
+  EXPECT_EQ(read("dishes = 3\n", menu),
+            "m.toml:1: menu.dishes: found integer 3, expected a list out of \"soup\", \"fish\", \"cake\"");
+  EXPECT_TRUE(menu.dishes.empty());  // nothing of a wrong list is taken
+}
+
 TEST(ConfigReader, RangesAreClosed) {
   Mission m;
   EXPECT_TRUE(read("gnss.rate_hz = 20", m).ok());

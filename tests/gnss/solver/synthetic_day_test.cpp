@@ -280,7 +280,7 @@ TEST_F(SyntheticDay, ReasonsAndWarningsWordForWord) {
   EXPECT_EQ(r->solved(), 1);
   EXPECT_THAT(r->reasons, ElementsAre(std::pair("3 satellites, a fix needs 4", 39)));
   EXPECT_EQ(r->epochs[5].fix.reason, "3 satellites, a fix needs 4");
-  EXPECT_THAT(solution_csv(*r), HasSubstr(",none,0,,,,,,0,,,,,,,,\"3 satellites, a fix needs 4\"\n"));
+  EXPECT_THAT(solution_csv(*r), HasSubstr(",none,0,,,,,,0,,,,,,,,,,,,,,,,,,,,\"3 satellites, a fix needs 4\"\n"));
 }
 
 TEST_F(SyntheticDay, NavigationOfAnotherDayIsAnError) {

@@ -1,11 +1,11 @@
-#include "canyon/inertial/aiding/standard_atmosphere.h"
+#include "canyon/core/earth/standard_atmosphere.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "canyon/core/units.h"
 
-namespace canyon::inertial {
+namespace canyon {
 namespace {
 
 // ISO 2533:1975: sea level, lapse rate of the troposphere, specific gas constant of air.
@@ -28,4 +28,4 @@ double standard_height_m(double pressure_pa) {
   return std::clamp(h, kLowest_m, kHighest_m);
 }
 
-}  // namespace canyon::inertial
+}  // namespace canyon

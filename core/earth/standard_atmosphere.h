@@ -1,6 +1,6 @@
 #pragma once
 
-namespace canyon::inertial {
+namespace canyon {
 
 /// Static pressure of the standard atmosphere (ISO 2533) at a geopotential height above mean sea level, pascal. Valid
 /// in the troposphere, -2000 to 11000 m; clamped to it outside.
@@ -9,4 +9,4 @@ double standard_pressure_pa(double height_m);
 /// The height at which the standard atmosphere has that pressure, m; its inverse.
 double standard_height_m(double pressure_pa);
 
-}  // namespace canyon::inertial
+}  // namespace canyon
