@@ -12,8 +12,12 @@ ErrorState::ErrorState(const std::vector<std::string>& blocks, const ModelParame
     if (block == nullptr) continue;
     const int offset = size_;
     size_ += block->size();
+    for (int i = 0; i < block->size(); ++i)
+      if (const int of = block->integral_of(i); of >= 0) integrals_.push_back({offset + i, offset + of});
     members_.push_back({name, offset, std::move(block)});
   }
+  mounting_ = offset("mounting");
+  clone_at_ = offset("clone");
   values_.setZero(padded_size());
   shared_ = values_;
 }
@@ -37,6 +41,15 @@ std::span<const Feed> ErrorState::feeds(const Increments& in) {
 void ErrorState::start(const NavState& at) {
   nav = at;
   values_.setZero();
+  clone_.reset();
+  mount();
+}
+
+void ErrorState::mount() {
+  if (mounting_ < 0) return;
+  const Eigen::Vector3d m = values_.segment<3>(mounting_);
+  R_UB_ = so3_exp(m).toRotationMatrix();
+  mounting_jacobian_ = so3_right_jacobian(m);
 }
 
 void ErrorState::inject(const Eigen::Ref<const Eigen::VectorXd>& error) {
@@ -46,9 +59,16 @@ void ErrorState::inject(const Eigen::Ref<const Eigen::VectorXd>& error) {
   nav.v_EU_E += error.segment<3>(Index::kVelocity);
   const int parameters = size_ - Index::kMoving;
   values_.segment(Index::kMoving, parameters) += error.segment(Index::kMoving, parameters);
+  mount();
+  if (!clone_) return;
+  const Eigen::Vector3d then = error.segment<3>(clone_at_);
+  clone_->R_EU = (clone_->R_EU * so3_exp(then)).normalized();
+  clone_->p_EU_E += error.segment<3>(clone_at_ + 3);
+  values_.segment<6>(clone_at_).setZero();
 }
 
-void ErrorState::fade(const Eigen::Ref<const Eigen::VectorXd>& decay) {
+void ErrorState::fade(const Eigen::Ref<const Eigen::VectorXd>& decay, double dt_s) {
+  for (const Integral& i : integrals_) values_[i.integral] += dt_s * values_[i.of];
   values_.array() *= decay.array();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,7 +42,7 @@ class ErrorState {
   struct Member {
     std::string name;
     int offset = 0;
-    std::unique_ptr<StateBlock> block;
+    std::shared_ptr<const StateBlock> block;
   };
   const std::vector<Member>& members() const { return members_; }
 
@@ -54,8 +55,8 @@ class ErrorState {
   void start(const NavState& at);
   /// Adds an estimated error, of size() or more elements, to nav and values.
   void inject(const Eigen::Ref<const Eigen::VectorXd>& error);
-  /// Multiplies each value by what is left of it after a step.
-  void fade(const Eigen::Ref<const Eigen::VectorXd>& decay);
+  /// Values over a step: each keeps so much of itself, and an integral grows.
+  void fade(const Eigen::Ref<const Eigen::VectorXd>& decay, double dt_s);
   /// `count` values from state `offset` on.
   Eigen::VectorBlock<const Eigen::VectorXd> values(int offset, int count) const {
     return values_.segment(offset, count);
@@ -67,10 +68,32 @@ class ErrorState {
   /// The same over a step, in the mean of which a value is `share` of what it is at the start.
   const Calibration& step_calibration(const Eigen::Ref<const Eigen::VectorXd>& share);
 
+  /// State `integral` is the integral of state `of`, counted from the first of all.
+  struct Integral {
+    int integral = 0, of = 0;
+  };
+  const std::vector<Integral>& integrals() const { return integrals_; }
+
+  /// Axes of the vehicle in those of the IMU, as the block mounting has them; identity without it.
+  const Eigen::Matrix3d& R_UB() const { return R_UB_; }
+  /// An error dm of that block is R_UB Exp(J dm).
+  const Eigen::Matrix3d& mounting_jacobian() const { return mounting_jacobian_; }
+  int mounting() const { return mounting_; }  ///< where the block begins; -1 without it
+
+  /// The pose that the block clone holds; nothing before it is taken, or without it.
+  struct ClonedPose {
+    GpsTime t;
+    Eigen::Quaterniond R_EU;
+    Eigen::Vector3d p_EU_E;
+  };
+  const std::optional<ClonedPose>& clone() const { return clone_; }
+  void take_clone() { clone_ = ClonedPose{nav.t, nav.R_EU, nav.p_EU_E}; }
+
   NavState nav;
 
  private:
   void calibrate(const Eigen::VectorXd& values, Calibration& imu) const;
+  void mount();
 
   std::vector<Member> members_;
   int size_ = ErrorIndex::kMoving;
@@ -78,6 +101,10 @@ class ErrorState {
   std::vector<Feed> feeds_;
   Eigen::VectorXd shared_;
   Calibration over_step_;
+  std::vector<Integral> integrals_;
+  int mounting_ = -1, clone_at_ = -1;
+  Eigen::Matrix3d R_UB_ = Eigen::Matrix3d::Identity(), mounting_jacobian_ = Eigen::Matrix3d::Identity();
+  std::optional<ClonedPose> clone_;
 };
 
 }  // namespace canyon::fusion

@@ -1,5 +1,6 @@
 #include "canyon/fusion/error_state_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,7 @@
 #include "canyon/core/motion/rotation.h"
 #include "canyon/core/units.h"
 #include "canyon/fusion/consistency.h"
+#include "canyon/fusion/measurements/body_motion.h"
 #include "canyon/fusion/states/state_block.h"
 
 namespace canyon::fusion {
@@ -37,17 +39,9 @@ void check_finite(const GnssFix& fix) {
                ", covariance diagonal = ", fix.covariance_E.diagonal().transpose());
 }
 
-using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, kMostStates, 3>;
-using Rows3 = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, kMostStates>;
-
-/// P += a b.
-void add_outer(ErrorMatrix& P, const Columns3& a, const Rows3& b) {
-  add_products(P.data(), static_cast<int>(P.rows()), static_cast<int>(P.cols()), a.data(), b.data());
-}
-
-/// H P; what H does not know costs nothing. Rows beyond those of H are zero.
-Rows3 rows_of(const Measurement::Rows& H, const ErrorMatrix& P) {
-  Rows3 out = Rows3::Zero(3, P.cols());
+/// H P; what H does not know costs nothing.
+Measurement::Rows rows_of(const Measurement::Rows& H, const ErrorMatrix& P) {
+  Measurement::Rows out = Measurement::Rows::Zero(H.rows(), P.cols());
   for (Eigen::Index i = 0; i < H.rows(); ++i) {
     for (Eigen::Index k = 0; k < H.cols(); ++k)
       if (H(i, k) != 0.0) out.row(i) += H(i, k) * P.row(k);
@@ -55,8 +49,8 @@ Rows3 rows_of(const Measurement::Rows& H, const ErrorMatrix& P) {
   return out;
 }
 
-/// A H' with the rows of A = H P, or with the columns of A = P.
-Measurement::Square times_transposed(const Rows3& HP, const Measurement::Rows& H) {
+/// (H P) H'.
+Measurement::Square times_transposed(const Measurement::Rows& HP, const Measurement::Rows& H) {
   const Eigen::Index m = H.rows();
   Measurement::Square out = Measurement::Square::Zero(m, m);
   for (Eigen::Index j = 0; j < m; ++j) {
@@ -66,12 +60,6 @@ Measurement::Square times_transposed(const Rows3& HP, const Measurement::Rows& H
     }
   }
   return 0.5 * (out + out.transpose());
-}
-
-void symmetrize(ErrorMatrix& P) {
-  for (Eigen::Index i = 0; i < P.rows(); ++i) {
-    for (Eigen::Index j = 0; j < i; ++j) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
-  }
 }
 
 /// What rounding may take off an eigenvalue of H P H': an epsilon of each of the n x n terms of an element, and of the
@@ -98,7 +86,7 @@ ErrorStateFilter::ErrorStateFilter(const FilterConfig& config, const ImuNoise& n
       strapdown_(make_strapdown(config.integrator)),
       state_(filter_parts(config).states, config.own, {.noise = noise}),
       propagation_(state_, noise),
-      P_(ErrorMatrix::Zero(state_.padded_size(), state_.padded_size())) {
+      estimator_(model_row(estimators(), config.estimator).make()) {
   const FilterParts parts = filter_parts(config);
   for (const std::string& name : parts.measurements) {
     const auto& row = model_row(measurement_models(), name);
@@ -144,21 +132,27 @@ void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vect
   // The configured position is B's; the state's is U's, so the lever arm couples it to attitude.
   const Eigen::Matrix3d p_theta = -(R_EW * R_WB) * skew(lever_U_B_);
 
-  P_.setZero();
-  P_.block<3, 3>(Index::kTheta, Index::kTheta) = P_theta;
-  P_.block<3, 3>(Index::kPosition, Index::kTheta) = p_theta * P_theta;
-  P_.block<3, 3>(Index::kTheta, Index::kPosition) = P_theta * p_theta.transpose();
-  P_.block<3, 3>(Index::kPosition, Index::kPosition) = p_theta * P_theta * p_theta.transpose();
+  ErrorMatrix P = ErrorMatrix::Zero(state_.padded_size(), state_.padded_size());
+  P.block<3, 3>(Index::kTheta, Index::kTheta) = P_theta;
+  P.block<3, 3>(Index::kPosition, Index::kTheta) = p_theta * P_theta;
+  P.block<3, 3>(Index::kTheta, Index::kPosition) = P_theta * p_theta.transpose();
+  P.block<3, 3>(Index::kPosition, Index::kPosition) = p_theta * P_theta * p_theta.transpose();
   for (int i = 0; i < 3; ++i) {
-    P_(Index::kPosition + i, Index::kPosition + i) +=
+    P(Index::kPosition + i, Index::kPosition + i) +=
         config_.initial_position_sigma_m * config_.initial_position_sigma_m;
-    P_(Index::kVelocity + i, Index::kVelocity + i) =
+    P(Index::kVelocity + i, Index::kVelocity + i) =
         config_.initial_velocity_sigma_m_s * config_.initial_velocity_sigma_m_s;
   }
   for (const ErrorState::Member& member : state_.members()) {
-    for (int i = 0; i < member.block->size(); ++i) P_(member.offset + i, member.offset + i) = member.block->variance(i);
+    for (int i = 0; i < member.block->size(); ++i) P(member.offset + i, member.offset + i) = member.block->variance(i);
   }
-  symmetrize(P_);
+  if (const int mounting = state_.mounting(); mounting >= 0) {
+    // It is B that is known so well: of the IMU's axes also what they are off those of B is unknown.
+    const Eigen::Matrix3d P_mounting = P.block<3, 3>(mounting, mounting);
+    P.block<3, 3>(Index::kTheta, Index::kTheta) += P_mounting;
+    P.block<3, 3>(Index::kTheta, mounting) = P.block<3, 3>(mounting, Index::kTheta) = -P_mounting;
+  }
+  estimator_->set(0.5 * (P + P.transpose()));
 }
 
 void ErrorStateFilter::predict(const ImuSample& imu) {
@@ -176,8 +170,8 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
   const Calibration& known = state_.step_calibration(propagation_.mean_share());
   const Increments in = known.apply(imu.dt_s, imu.dtheta_U, imu.dv_U);
   propagation_.set_step(state_, in, known, gravity_gradient_);
-  propagation_.propagate(P_);
-  if (response_ != nullptr) response_->predicted(propagation_);
+  estimator_->propagate(propagation_);
+  if (watcher_.observer != nullptr) watcher_.observer->predicted(propagation_);
 
   strapdown_->advance(state_.nav, in);
   state_.nav.t = imu.t;
@@ -185,29 +179,53 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
   f_U_ = in.dv_U / in.dt_s;
   predicted_R_EU_ = state_.nav.R_EU;
   predicted_p_EU_E_ = state_.nav.p_EU_E;
-  state_.fade(propagation_.decay());
+  state_.fade(propagation_.decay(), imu.dt_s);
   for (Aid& aid : aids_)
     if (auto m = aid.model->stepped(view(), in)) reports_.push_back(correct(aid, *m));
 }
 
 void ErrorStateFilter::update(const AidingMessage& message) {
-  for (Aid& aid : aids_)
-    if (auto m = aid.model->received(view(), message)) reports_.push_back(correct(aid, *m));
+  for (Aid& aid : aids_) {
+    const int parts = aid.model->parts(view(), message);
+    for (int part = 0; part < parts; ++part)
+      if (auto m = aid.model->received(view(), message, part)) reports_.push_back(correct(aid, *m));
+  }
 }
 
-void ErrorStateFilter::restart(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& R,
-                               const Eigen::Matrix3d& H_theta) {
-  state_.nav.p_EU_E += innovation;
+void ErrorStateFilter::take_clone() {
+  const int clone = state_.offset("clone");
+  if (clone < 0) return;
+  state_.take_clone();
+  ErrorMatrix P = estimator_->covariance();
+  P.middleRows<6>(clone) = P.topRows<6>().eval();
+  P.middleCols<6>(clone) = P.leftCols<6>().eval();
+  estimator_->set(P);
+}
+
+void ErrorStateFilter::loosen(double theta_rad, double p_m, double v_m_s) {
+  ErrorMatrix P = estimator_->covariance();
+  P.diagonal().segment<3>(Index::kTheta).array() += theta_rad * theta_rad;
+  P.diagonal().segment<3>(Index::kPosition).array() += p_m * p_m;
+  P.diagonal().segment<3>(Index::kVelocity).array() += v_m_s * v_m_s;
+  estimator_->set(P);
+}
+
+void ErrorStateFilter::restart(const Measurement& fix) {
+  state_.nav.p_EU_E += fix.residual;
   state_.nav.v_EU_E.setZero();
-  // The antenna is where the fix says; the IMU's place beside it is as well known as the attitude.
-  const Rows3 lever = -H_theta * P_.middleRows<3>(Index::kTheta);
-  const Eigen::Matrix3d P_lever = lever.middleCols<3>(Index::kTheta) * -H_theta.transpose();
-  P_.middleRows<3>(Index::kPosition) = lever;
-  P_.middleCols<3>(Index::kPosition) = lever.transpose();
-  P_.block<3, 3>(Index::kPosition, Index::kPosition) = R + 0.5 * (P_lever + P_lever.transpose());
-  P_.middleRows<3>(Index::kVelocity).setZero();
-  P_.middleCols<3>(Index::kVelocity).setZero();
-  P_.diagonal().segment<3>(Index::kVelocity).setConstant(kUnknownSpeed_m_s * kUnknownSpeed_m_s);
+  // The antenna is where the fix says; the IMU's place beside it is as well known as the attitude and what lasts of the
+  // fix's error.
+  Measurement::Rows others = -fix.H;
+  others.middleCols<6>(Index::kPosition).setZero();
+  ErrorMatrix P = estimator_->covariance();
+  const Measurement::Rows position = rows_of(others, P);
+  P.middleRows<3>(Index::kPosition) = position;
+  P.middleCols<3>(Index::kPosition) = position.transpose();
+  P.block<3, 3>(Index::kPosition, Index::kPosition) = fix.R + times_transposed(position, others);
+  P.middleRows<3>(Index::kVelocity).setZero();
+  P.middleCols<3>(Index::kVelocity).setZero();
+  P.diagonal().segment<3>(Index::kVelocity).setConstant(kUnknownSpeed_m_s * kUnknownSpeed_m_s);
+  estimator_->set(P);
 }
 
 UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
@@ -215,20 +233,21 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   report.t = fix.t;
   if (fix.status == FixStatus::kNone) return report;
   check_finite(fix);
-  const double age_s = fix.t - state_.nav.t;
-  CANYON_CHECK(std::abs(age_s) <= kMaxFixAge_s, "GNSS fix at ", fix.t.iso(), " is ", age_s,
-               " s away from the last IMU sample");
+  // By its stamp, or by what the state time_offset makes of it: that may be estimated as any.
+  const int offset = state_.offset("time_offset");
+  const double by_stamp_s = fix.t - state_.nav.t, age_s = by_stamp_s + (offset < 0 ? 0.0 : value(offset));
+  CANYON_CHECK(std::min(std::abs(by_stamp_s), std::abs(age_s)) <= kMaxFixAge_s, "GNSS fix at ", fix.t.iso(), " is ",
+               age_s, " s away from the last IMU sample");
   for (Aid& aid : aids_) {
-    auto m = aid.model->received(view(), fix);
+    auto m = aid.model->received(view(), fix, 0);
     if (!m) continue;
     const bool of_position = aid.name == kPositionModel;
     CANYON_CHECK(m->R.llt().info() == Eigen::Success, "covariance of the GNSS fix at ", fix.t.iso(),
                  " is not positive definite: diagonal ", m->R.diagonal().transpose());
-    if (of_position && P_.diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
-      const Eigen::Matrix3d H_theta = m->H.leftCols<3>();
-      restart(m->residual, m->R, H_theta);
-      if (response_ != nullptr) response_->restarted(H_theta);
-      report.innovation = m->residual;
+    if (of_position && P().diagonal().segment<3>(Index::kPosition).maxCoeff() > kLost_m * kLost_m) {
+      restart(*m);
+      if (watcher_.observer != nullptr) watcher_.observer->restarted(*m);
+      report.innovation.head<3>() = m->residual;
       report.accepted = true;
       return report;
     }
@@ -246,18 +265,19 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
   const int n = m.dimension();
   UpdateReport report{.measurement = aid.name, .t = state_.nav.t, .dimension = n};
   report.innovation.head(n) = m.residual;
-  Rows3 HP = rows_of(m.H, P_);
+  Measurement::Rows HP = rows_of(m.H, P());
   Measurement::Square predicted = times_transposed(HP, m.H);
   Eigen::LLT<Measurement::Square> S_llt(predicted + m.R);
   if (S_llt.info() != Eigen::Success) {
     // Both what is measured and the measurement are known better than the terms of H P H' are rounded: it then counts
     // as known to that rounding.
-    m.R.diagonal().array() += rounding_of_HPHt(m.H, P_);
+    m.R.diagonal().array() += rounding_of_HPHt(m.H, P());
     S_llt.compute(predicted + m.R);
   }
   CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",
                (predicted + m.R).diagonal().transpose());
   report.nis = m.residual.dot(S_llt.solve(m.residual));
+  report.normalized.head(n) = S_llt.matrixL().solve(m.residual);
   // The square of more than 1e154 sigma is more than a double holds.
   if (!std::isfinite(report.nis)) report.nis = std::numeric_limits<double>::infinity();
 
@@ -265,48 +285,32 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
       {.t = state_.nav.t, .residual = m.residual, .R = m.R, .predicted = predicted, .nis = report.nis});
   if (!decision.accepted) return report;
   report.accepted = true;
-  if (decision.noise_scale != 1.0 || decision.covariance_scale != 1.0) {
+  if (decision.noise_scale != 1.0 || decision.loosening != 1.0) {
     m.R *= decision.noise_scale;
-    P_ *= decision.covariance_scale;
-    HP *= decision.covariance_scale;
-    predicted *= decision.covariance_scale;
+    if (decision.loosening != 1.0) {
+      // What is off is what is measured, and not by what else is off with it as a rule.
+      ErrorMatrix P = estimator_->covariance();
+      const double per_state = m.H.middleCols<3>(m.about).squaredNorm() / n;
+      P.diagonal().segment<3>(m.about).array() +=
+          (decision.loosening - 1.0) * (predicted + m.R).diagonal().maxCoeff() / per_state;
+      estimator_->set(P);
+      HP = rows_of(m.H, P);
+      predicted = times_transposed(HP, m.H);
+    }
     S_llt.compute(predicted + m.R);
   }
 
-  Columns3 K = Columns3::Zero(P_.rows(), 3);
-  K.leftCols(n) = HP.topRows(n).transpose().lazyProduct(S_llt.solve(Measurement::Square::Identity(n, n)).eval());
-  if (response_ != nullptr) response_->corrected(K.leftCols(n), m.H, aid.name == kPositionModel);
-
-  // Joseph: (I - K H) P (I - K H)' + K R K', as two corrections of the rank of the measurement, from the left and from
-  // the right.
-  add_outer(P_, -K, HP);
-  Columns3 right = Columns3::Zero(P_.rows(), 3);
-  right.leftCols(n) = K.leftCols(n).lazyProduct(m.R);
-  for (Eigen::Index k = 0; k < P_.cols(); ++k) {
-    for (int i = 0; i < n; ++i)
-      if (m.H(i, k) != 0.0) right.col(i) -= m.H(i, k) * P_.col(k);
-  }
-  add_outer(P_, right, K.transpose());
-  symmetrize(P_);
-
-  inject(K.leftCols(n).lazyProduct(m.residual));
+  const Measurement::Square S_inverse = S_llt.solve(Measurement::Square::Identity(n, n));
+  const Gain K = HP.transpose().lazyProduct(S_inverse);
+  if (watcher_.observer != nullptr) watcher_.observer->corrected({m, K, S_inverse, aid.name == kPositionModel});
+  estimator_->correct(m, K, HP);
+  estimator_->inject(state_, K.lazyProduct(m.residual));
   return report;
 }
 
-void ErrorStateFilter::inject(const Eigen::VectorXd& error) {
-  state_.inject(error);
-  // The attitude error is now counted from the corrected attitude: Exp(theta + e) = Exp(theta) Exp(Jr(theta) e).
-  const Eigen::Matrix3d reset = so3_right_jacobian(error.segment<3>(Index::kTheta));
-  Rows3 rows = reset.lazyProduct(P_.topRows<3>());
-  const Eigen::Matrix3d P_theta = rows.leftCols<3>() * reset.transpose();
-  rows.leftCols<3>() = 0.5 * (P_theta + P_theta.transpose());
-  P_.topRows<3>() = rows;
-  P_.leftCols<3>() = rows.transpose();
-}
-
-void ErrorStateFilter::watch(FixResponse* response) {
-  response_ = response;
-  if (response_ != nullptr) response_->begin(P_.rows());
+void ErrorStateFilter::watch(FilterObserver* observer) {
+  watcher_.observer = observer;
+  if (observer != nullptr) observer->begin(state_);
 }
 
 Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
@@ -317,55 +321,43 @@ Eigen::Matrix<double, 3, 9> ErrorStateFilter::body_jacobian() const {
 }
 
 Eigen::MatrixXd ErrorStateFilter::covariance() const {
-  return P_.topLeftCorner(state_.size(), state_.size());
+  return P().topLeftCorner(state_.size(), state_.size());
 }
 
-Pose ErrorStateFilter::body_pose(const Eigen::Quaterniond& R_EU, const Eigen::Vector3d& p_EU_E) const {
-  const Eigen::Quaterniond R_WB = (Eigen::Quaterniond(frame_.R_EW().transpose().eval()) * R_EU).normalized();
+Pose ErrorStateFilter::pose_of(const Eigen::Quaterniond& R_EU, const Eigen::Vector3d& p_EU_E) const {
+  const Eigen::Quaterniond R_WE(frame_.R_EW().transpose().eval());
+  const Eigen::Quaterniond R_WB = state_.mounting() < 0
+                                      ? (R_WE * R_EU).normalized()
+                                      : (R_WE * R_EU * Eigen::Quaterniond(state_.R_UB())).normalized();
   return {R_WB, frame_.to_W(p_EU_E) - R_WB * lever_U_B_};
+}
+
+Eigen::Matrix<double, 9, 9> ErrorStateFilter::body_covariance() const {
+  const Measurement::Rows pose = canyon::fusion::body_pose(view()).H,
+                          velocity = frame_.R_EW().transpose() * point_velocity(view(), Eigen::Vector3d::Zero()).H;
+  const Measurement::Rows pose_P = rows_of(pose, P());
+  Eigen::Matrix<double, 9, 9> out;
+  out.topLeftCorner<6, 6>() = times_transposed(pose_P, pose);
+  out.topRightCorner<6, 3>() = pose_P * velocity.transpose();
+  out.bottomLeftCorner<3, 6>() = out.topRightCorner<6, 3>().transpose();
+  out.bottomRightCorner<3, 3>() = times_transposed(rows_of(velocity, P()), velocity);
+  return out;
 }
 
 NavEstimate ErrorStateFilter::estimate() const {
   const NavState& nav = state_.nav;
   const Calibration imu = state_.calibration();
   const Eigen::Matrix3d R_WE = frame_.R_EW().transpose();
-  const Eigen::Matrix3d R_EB = nav.R_EU.toRotationMatrix();  // axes of U are parallel to B
   NavEstimate out;
   out.t = nav.t;
-  out.X_WB = body_pose(nav.R_EU, nav.p_EU_E);
-  out.v_WB_W = R_WE * (nav.v_EU_E - R_EB * w_EU_U_.cross(lever_U_B_));
+  out.X_WB = pose_of(nav.R_EU, nav.p_EU_E);
+  out.v_WB_W = R_WE * (nav.v_EU_E - nav.R_EU.toRotationMatrix() * w_EU_U_.cross(state_.R_UB() * lever_U_B_));
   out.gyro_bias_U = imu.gyro_bias;
   out.accel_bias_U = imu.accel_bias;
 
-  // xi = [theta; R' dp_B], and dp_B = dp_U + R [l]x theta.
-  Matrix6d J = Matrix6d::Zero();
-  J.topLeftCorner<3, 3>().setIdentity();
-  J.bottomLeftCorner<3, 3>() = skew(lever_U_B_);
-  J.bottomRightCorner<3, 3>() = R_EB.transpose();
-  out.pose_covariance = J.lazyProduct(P_.topLeftCorner<6, 6>()).eval().lazyProduct(J.transpose());
-  out.pose_covariance = 0.5 * (out.pose_covariance + out.pose_covariance.transpose()).eval();
-
-  // dv_B = dv_U + R [w x l]x theta - R [l]x e, e being the error of the gyroscopes that the states make; in W.
-  Eigen::Matrix<double, 9, 9> P;
-  P.topLeftCorner<3, 3>() = P_.block<3, 3>(Index::kTheta, Index::kTheta);
-  P.block<3, 3>(0, 3) = P_.block<3, 3>(Index::kTheta, Index::kVelocity);
-  P.block<3, 3>(3, 3) = P_.block<3, 3>(Index::kVelocity, Index::kVelocity);
-  Rows3 e = Rows3::Zero(3, P_.cols());
-  for (const Feed& feed : state_.feeds())
-    if (feed.axis < 3) e.row(feed.axis) += feed.rate * P_.row(feed.state);
-  Eigen::Matrix3d P_e = Eigen::Matrix3d::Zero();
-  for (const Feed& feed : state_.feeds())
-    if (feed.axis < 3) P_e.col(feed.axis) += feed.rate * e.col(feed.state);
-  P.block<3, 3>(0, 6) = e.middleCols<3>(Index::kTheta).transpose();
-  P.block<3, 3>(3, 6) = e.middleCols<3>(Index::kVelocity).transpose();
-  P.block<3, 3>(6, 6) = P_e;
-  P.triangularView<Eigen::StrictlyLower>() = P.transpose();
-  Eigen::Matrix<double, 3, 9> V;
-  V.leftCols<3>() = R_WE * R_EB * skew(w_EU_U_.cross(lever_U_B_));
-  V.middleCols<3>(3) = R_WE;
-  V.rightCols<3>() = -R_WE * R_EB * skew(lever_U_B_);
-  out.velocity_covariance_W = V.lazyProduct(P).eval().lazyProduct(V.transpose());
-  out.velocity_covariance_W = 0.5 * (out.velocity_covariance_W + out.velocity_covariance_W.transpose()).eval();
+  const Measurement::Rows pose = body_pose().H, velocity = R_WE * point_velocity(view(), Eigen::Vector3d::Zero()).H;
+  out.pose_covariance = times_transposed(rows_of(pose, P()), pose);
+  out.velocity_covariance_W = times_transposed(rows_of(velocity, P()), velocity);
   return out;
 }
 

@@ -1,14 +1,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "canyon/core/model_choice.h"
+#include "canyon/core/result.h"
 
 namespace canyon::fusion {
 
 /// [fusion] of a mission file. What is chosen by name stands in tables: filter_sets(), strapdown_models(),
-/// state_blocks(), measurement_models(), acceptance_models().
+/// state_blocks(), measurement_models(), acceptance_models(), estimators().
 struct FilterConfig {
   FilterConfig();
 
@@ -18,10 +20,12 @@ struct FilterConfig {
   double initial_position_sigma_m = 0.5;
   double initial_velocity_sigma_m_s = 0.05;
   std::string integrator = "two_sample";
+  std::string estimator = "joseph";
   std::string filter = "naive";           ///< the set of rows that stands where one of the next three names none
   std::vector<std::string> states;        ///< empty: those of the set
   std::vector<std::string> measurements;  ///< empty: those of the set
-  std::string acceptance = "as_filter";   ///< of the fixes' positions and velocities
+  std::string acceptance = "as_filter";   ///< of each measurement by itself
+  bool map_aiding = false;                ///< "clone" and "relative_pose" beside the rest
   ModelParameters own;                    ///< of all rows of the tables
 };
 void visit(FieldVisitor& f, FilterConfig& c);
@@ -34,6 +38,9 @@ struct FilterParts {
 ModelTable<FilterParts (*)()> filter_sets();
 /// The set that is chosen, with what is named beside it.
 FilterParts filter_parts(const FilterConfig& config);
+bool measures_with(const FilterConfig& config, std::string_view measurement);
+/// A row that another one needs beside it must be there, and nothing may be estimated twice.
+Status check_parts(const FilterParts& parts);
 /// Whether every measurement is taken as it is, so that estimates are linear in what is measured.
 bool takes_all(const FilterConfig& config);
 

@@ -12,6 +12,7 @@
 #include "canyon/core/earth/earth.h"
 #include "canyon/core/earth/gravity.h"
 #include "canyon/core/time.h"
+#include "canyon/fusion/copied.h"
 
 namespace canyon::fusion {
 
@@ -46,6 +47,7 @@ struct InertialStep {
 class Strapdown {
  public:
   virtual ~Strapdown() = default;
+  virtual std::unique_ptr<Strapdown> clone() const = 0;
   /// Forgets past increments, as at a start or after a gap.
   virtual void reset() = 0;
   /// Moves `state` (its time too) over one interval and returns what was integrated, for linearization.

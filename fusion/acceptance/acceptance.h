@@ -20,8 +20,8 @@ struct Innovation {
 /// What is made of it.
 struct Decision {
   bool accepted = true;
-  double noise_scale = 1.0;       ///< R is taken times this
-  double covariance_scale = 1.0;  ///< P is taken times this first: the filter has lost its way
+  double noise_scale = 1.0;  ///< R is taken times this
+  double loosening = 1.0;    ///< the filter has lost its way: what it measures is so many times less sure than expected
 };
 
 /// Decides on the measurements of one model, in turn. One-level interface; the models are in the table below, each in
@@ -29,6 +29,7 @@ struct Decision {
 class Acceptance {
  public:
   virtual ~Acceptance() = default;
+  virtual std::unique_ptr<Acceptance> clone() const = 0;
   /// The filter begins anew.
   virtual void start() {}
   virtual Decision decide(const Innovation& innovation) = 0;

@@ -3,7 +3,7 @@
 namespace canyon::fusion {
 namespace {
 
-class AcceptAll final : public Acceptance {
+class AcceptAll final : public Copied<Acceptance, AcceptAll> {
  public:
   Decision decide(const Innovation&) override { return {}; }
   bool takes_all() const override { return true; }

@@ -15,11 +15,12 @@ void visit(FieldVisitor& f, FuzzyAdaptiveParameters& p) {
   f.number("fuzzy_large", p.fuzzy_large, {1, 1000}, "factor on the noise's 1-sigma where the rules say large");
 }
 
-/// The fuzzy-adaptive filter that the paper cites (Sasiadek & Wang 1999, IEEE Int. Conf. Robotics and Automation,
-/// 2970-2975): the mean and the size of the last innovations, in units of what the filter expects, are each to some
-/// degree zero, small or large; nine rules raise the noise by nothing, by the root of fuzzy_large or by fuzzy_large;
-/// what is done is the mean of the rules, weighted by how far each applies.
-class FuzzyAdaptive final : public Acceptance {
+/// After the idea of the fuzzy-adaptive filter that the paper cites (Sasiadek & Wang 1999, IEEE Int. Conf. Robotics and
+/// Automation, 2970-2975); memberships and factors are chosen here: the mean and the size of the last innovations, in
+/// units of what the filter expects, are each to some degree zero, small or large; nine rules raise the noise by
+/// nothing, by the root of fuzzy_large or by fuzzy_large; what is done is the mean of the rules, weighted by how far
+/// each applies.
+class FuzzyAdaptive final : public Copied<Acceptance, FuzzyAdaptive> {
  public:
   explicit FuzzyAdaptive(const FuzzyAdaptiveParameters& p) : p_(p) {}
   void start() override {

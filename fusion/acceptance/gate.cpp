@@ -19,7 +19,7 @@ void visit(FieldVisitor& f, GateParameters& p) {
 }
 
 /// Without a way back a filter that is surer than right refuses the truth for ever.
-class Gate final : public Acceptance {
+class Gate final : public Copied<Acceptance, Gate> {
  public:
   explicit Gate(const GateParameters& p) : p_(p) {}
   void start() override { refused_ = 0; }
@@ -37,7 +37,7 @@ class Gate final : public Acceptance {
     if (!lost) return {.accepted = false};
     refused_ = 0;
     // As unsure as the innovation says: its normalized square becomes what is expected of it.
-    return {.covariance_scale = std::max(i.nis / dof, 1.0)};
+    return {.loosening = std::max(i.nis / dof, 1.0)};
   }
 
  private:

@@ -15,7 +15,7 @@ void visit(FieldVisitor& f, HuberParameters& p) {
 }
 
 /// Huber's weight of a residual of d sigma, min(1, k / d), as a larger noise; d per degree of freedom.
-class Huber final : public Acceptance {
+class Huber final : public Copied<Acceptance, Huber> {
  public:
   explicit Huber(const HuberParameters& p) : p_(p) {}
   Decision decide(const Innovation& i) override {

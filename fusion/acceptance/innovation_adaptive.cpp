@@ -16,7 +16,7 @@ void visit(FieldVisitor& f, InnovationAdaptiveParameters& p) {
 /// Innovation-based adaptive estimation (Mohamed & Schwarz 1999, J. of Geodesy 73), with one factor on R: that with
 /// which the mean of r r' - H P H' over the last innovations, weighted by R, is what R says. Never below 1: the stated
 /// noise is a lower bound.
-class InnovationAdaptive final : public Acceptance {
+class InnovationAdaptive final : public Copied<Acceptance, InnovationAdaptive> {
  public:
   explicit InnovationAdaptive(const InnovationAdaptiveParameters& p) : p_(p) {}
   void start() override { weight_ = sum_ = 0.0; }

@@ -13,8 +13,9 @@ void visit(FieldVisitor& f, StudentTParameters& p) {
 }
 
 /// Noise of Student's t distribution: given the innovation, its covariance is expected to be (nu + nis) / (nu + dof)
-/// times that stated (Piche, Sarkka & Hartikainen 2012). What is nearer than expected is not taken for better.
-class StudentT final : public Acceptance {
+/// times that stated (Piche, Sarkka & Hartikainen 2012,
+/// who iterate it; this is its first step). What is nearer than expected is not taken for better.
+class StudentT final : public Copied<Acceptance, StudentT> {
  public:
   explicit StudentT(const StudentTParameters& p) : p_(p) {}
   Decision decide(const Innovation& i) override {

@@ -17,7 +17,7 @@ namespace canyon::fusion {
 /// A linearized measurement: measured minus predicted = H error + noise, the errors as in ErrorState. H has the padding
 /// of the filter's matrices.
 struct Measurement {
-  static constexpr int kMost = 3;
+  static constexpr int kMost = 6;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMost>;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMost, kMostStates>;
@@ -25,8 +25,10 @@ struct Measurement {
   Vector residual;
   Square R;  ///< covariance of the noise
   Rows H;
+  /// Three states of ErrorIndex that it is about: a filter that has lost its way by it is unsure of these.
+  int about;
 
-  Measurement(int dimension, const ErrorState& state);
+  Measurement(int dimension, const ErrorState& state, int about_states);
   int dimension() const { return static_cast<int>(residual.size()); }
 };
 
@@ -35,26 +37,33 @@ struct FilterView {
   const ErrorState& state;
   const LocalFrame& frame;
   const Eigen::Vector3d& lever_U_B;  ///< IMU in B, m
-  const Eigen::Vector3d& lever_A_B;  ///< antenna in B, m
+  const Eigen::Vector3d& lever_A_B;  ///< antenna in B as the filter was told, m
   const Calibration& imu;            ///< as it stood in the last sample
   const Eigen::Vector3d& w_EU_U;     ///< angular rate of the last sample, rad/s
   const Eigen::Vector3d& f_U;        ///< specific force of the last sample, m/s^2
 };
 
 /// What reaches the filter beside the IMU.
-using AidingMessage = std::variant<GnssFix, OdometerSample, BarometerSample, HeadingSample>;
+using AidingMessage = std::variant<GnssFix, GnssEpoch, OdometerSample, BarometerSample, MagnetometerSample,
+                                   HeadingSample, RelativePose, PoseInMap>;
+/// When the message says that it holds.
+GpsTime time_of(const AidingMessage& message);
 
 /// Makes a measurement of a message, or of the motion itself. One-level interface; the models are in the table below,
 /// each in its own file with its own parameters.
 class MeasurementModel {
  public:
   virtual ~MeasurementModel() = default;
+  virtual std::unique_ptr<MeasurementModel> clone() const = 0;
   /// The filter begins anew.
   virtual void start() {}
   /// An IMU sample has been taken in; `in` without its known errors.
   virtual std::optional<Measurement> stepped(const FilterView& /*filter*/, const Increments& /*in*/) { return {}; }
-  /// A message has come; nothing if it is not for this model, or says nothing.
-  virtual std::optional<Measurement> received(const FilterView& /*filter*/, const AidingMessage& /*message*/) {
+  /// A message is coming, which is taken in so many parts, each after the filter has been corrected by the last.
+  virtual int parts(const FilterView& /*filter*/, const AidingMessage& /*message*/) { return 1; }
+  /// One part of it; nothing if it is not for this model, or says nothing.
+  virtual std::optional<Measurement> received(const FilterView& /*filter*/, const AidingMessage& /*message*/,
+                                              int /*part*/) {
     return {};
   }
 };
@@ -75,6 +84,18 @@ std::unique_ptr<MeasurementModel> make_position(const ModelParameters& own, cons
 void position_parameters(ModelParameters& section);
 std::unique_ptr<MeasurementModel> make_velocity(const ModelParameters& own, const MeasurementSetup& at);
 void velocity_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_ranges(const ModelParameters& own, const MeasurementSetup& at);
+void ranges_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_heading(const ModelParameters& own, const MeasurementSetup& at);
+void heading_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_barometer(const ModelParameters& own, const MeasurementSetup& at);
+void barometer_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_magnetometer(const ModelParameters& own, const MeasurementSetup& at);
+void magnetometer_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_relative_pose(const ModelParameters& own, const MeasurementSetup& at);
+void relative_pose_parameters(ModelParameters& section);
+std::unique_ptr<MeasurementModel> make_map_pose(const ModelParameters& own, const MeasurementSetup& at);
+void map_pose_parameters(ModelParameters& section);
 std::unique_ptr<MeasurementModel> make_non_holonomic(const ModelParameters& own, const MeasurementSetup& at);
 void non_holonomic_parameters(ModelParameters& section);
 std::unique_ptr<MeasurementModel> make_standstill(const ModelParameters& own, const MeasurementSetup& at);

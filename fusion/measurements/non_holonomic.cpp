@@ -1,4 +1,4 @@
-#include "canyon/fusion/measurements/body_velocity.h"
+#include "canyon/fusion/measurements/body_motion.h"
 
 namespace canyon::fusion {
 namespace {
@@ -18,9 +18,9 @@ void visit(FieldVisitor& f, NonHolonomicParameters& p) {
 
 /// The rear axle of a wheeled vehicle moves along B's x axis (Dissanayake et al. 2001, IEEE Trans. Robotics and
 /// Automation 17(5)), but for what its tyres slip in a bend and its springs move.
-class NonHolonomic final : public MeasurementModel {
+class NonHolonomic final : public Copied<MeasurementModel, NonHolonomic> {
  public:
-  NonHolonomic(const NonHolonomicParameters& p, const ErrorState& state) : p_(p), mounting_(state.offset("mounting")) {}
+  explicit NonHolonomic(const NonHolonomicParameters& p) : p_(p) {}
 
   void start() override { waited_s_ = 0.0; }
 
@@ -29,19 +29,9 @@ class NonHolonomic final : public MeasurementModel {
     if (waited_s_ < (1.0 - 1e-9) / p_.non_holonomic_rate_hz) return {};
     waited_s_ = 0.0;
     const BodyVelocity axle = body_velocity(filter, Eigen::Vector3d::Zero());
-    Measurement m(2, filter.state);
+    Measurement m(2, filter.state, ErrorIndex::kVelocity);
     m.residual = -axle.v_B.tail<2>();
     m.H = axle.H.bottomRows<2>();
-    if (mounting_ >= 0) {
-      // B is turned against the vehicle by angles about y and z: the velocity has a part -z v_x sideways and y v_x up.
-      const Eigen::VectorXd angles = filter.state.values(mounting_, 2);
-      m.residual[0] += -angles[1] * axle.v_B.x();
-      m.residual[1] += angles[0] * axle.v_B.x();
-      m.H.row(0) += angles[1] * axle.H.row(0);
-      m.H.row(1) -= angles[0] * axle.H.row(0);
-      m.H(0, mounting_ + 1) = axle.v_B.x();
-      m.H(1, mounting_) = -axle.v_B.x();
-    }
     const double sideways = filter.w_EU_U.z() * axle.v_B.x();
     const double slip = p_.non_holonomic_sideslip * sideways;
     const double variance = p_.non_holonomic_sigma_m_s * p_.non_holonomic_sigma_m_s;
@@ -52,14 +42,13 @@ class NonHolonomic final : public MeasurementModel {
 
  private:
   NonHolonomicParameters p_;
-  int mounting_;
   double waited_s_ = 0.0;
 };
 
 }  // namespace
 
-std::unique_ptr<MeasurementModel> make_non_holonomic(const ModelParameters& own, const MeasurementSetup& at) {
-  return std::make_unique<NonHolonomic>(own.get<NonHolonomicParameters>(), at.state);
+std::unique_ptr<MeasurementModel> make_non_holonomic(const ModelParameters& own, const MeasurementSetup&) {
+  return std::make_unique<NonHolonomic>(own.get<NonHolonomicParameters>());
 }
 
 void non_holonomic_parameters(ModelParameters& section) {

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "canyon/fusion/measurements/body_velocity.h"
+#include "canyon/fusion/measurements/body_motion.h"
 
 namespace canyon::fusion {
 namespace {
@@ -21,13 +21,13 @@ void visit(FieldVisitor& f, OdometerParameters& p) {
 
 /// Forward speed of the wheel's contact point, as the mean over some samples of the encoder: a tick in twenty
 /// milliseconds is a metre per second. The speed is taken as linear in time over it.
-class OdometerSpeed final : public MeasurementModel {
+class OdometerSpeed final : public Copied<MeasurementModel, OdometerSpeed> {
  public:
   OdometerSpeed(const OdometerParameters& p, const ErrorState& state) : p_(p), scale_(state.offset("wheel_scale")) {}
 
   void start() override { begin(); }
 
-  std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message) override {
+  std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message, int) override {
     const OdometerSample* sample = std::get_if<OdometerSample>(&message);
     if (sample == nullptr) return {};
     counted_s_ += sample->dt_s;
@@ -38,7 +38,7 @@ class OdometerSpeed final : public MeasurementModel {
 
     const BodyVelocity wheel = body_velocity(filter, p_.odometer_wheel_m);
     const BodyAcceleration since = body_acceleration(filter);
-    Measurement m(1, filter.state);
+    Measurement m(1, filter.state, ErrorIndex::kVelocity);
     double seen = wheel.v_B.x() - 0.5 * over_s * since.a_B.x();
     m.H = wheel.H.topRows<1>() - 0.5 * over_s * since.H.topRows<1>();
     if (scale_ >= 0) {

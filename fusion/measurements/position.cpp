@@ -1,40 +1,55 @@
 #include <algorithm>
 
-#include "canyon/core/motion/rotation.h"
-#include "canyon/fusion/measurements/body_velocity.h"
+#include "canyon/fusion/measurements/body_motion.h"
+#include "canyon/fusion/measurements/fix_age.h"
 
 namespace canyon::fusion {
 namespace {
 
 struct PositionParameters {
+  std::string fix_covariance = "as_reported";
+  double fix_sigma_scale = 2.0;
+  double fix_sigma_m = 3.0;
   double fix_sigma_floor_m = 0.0;
 };
 void visit(FieldVisitor& f, PositionParameters& p) {
+  f.choice("fix_covariance", p.fix_covariance, {"as_reported", "inflated", "from_dop", "constant"},
+           "what a fix's position counts for: what it says; fix_sigma_scale times its 1-sigma; fix_sigma_m times its "
+           "dilution of precision; fix_sigma_m on each axis");
+  f.number("fix_sigma_scale", p.fix_sigma_scale, {0.01, 1000}, "of \"inflated\"");
+  f.number("fix_sigma_m", p.fix_sigma_m, {1e-4, 1e4}, "of \"from_dop\", per pseudorange, and of \"constant\"");
   f.number("fix_sigma_floor_m", p.fix_sigma_floor_m, {0, 1e3}, "lower bound on a fix's 1-sigma per axis");
+}
+
+enum class FixCovariance { kAsReported, kInflated, kFromDop, kConstant };
+
+FixCovariance kind_of(const std::string& name) {
+  if (name == "inflated") return FixCovariance::kInflated;
+  if (name == "from_dop") return FixCovariance::kFromDop;
+  if (name == "constant") return FixCovariance::kConstant;
+  return FixCovariance::kAsReported;
 }
 
 /// The antenna's place, carried to the time of the fix with the estimated velocity, and an error of the fixes that
 /// lasts where the states have one.
-class Position final : public MeasurementModel {
+class Position final : public Copied<MeasurementModel, Position> {
  public:
   Position(const PositionParameters& p, const ErrorState& state)
-      : floor_m2_(p.fix_sigma_floor_m * p.fix_sigma_floor_m), fix_error_(state.offset("fix_error")) {}
+      : p_(p), kind_(kind_of(p.fix_covariance)), age_(state), fix_error_(state.offset("fix_error")) {}
 
-  std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message) override {
+  std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message, int) override {
     const GnssFix* fix = std::get_if<GnssFix>(&message);
     if (fix == nullptr || fix->status == FixStatus::kNone) return {};
-    const NavState& nav = filter.state.nav;
-    const Eigen::Matrix3d R_EU = nav.R_EU.toRotationMatrix();
-    const Eigen::Vector3d arm_U = filter.lever_A_B - filter.lever_U_B;
-    const PointVelocity antenna = point_velocity(filter, filter.lever_A_B);
-    const double age_s = fix->t - nav.t;
-    Measurement m(3, filter.state);
-    m.residual = fix->p_A_E - (nav.p_EU_E + R_EU * arm_U + age_s * antenna.v_E);
-    m.H = age_s * antenna.H;
-    m.H.leftCols<3>() -= R_EU * skew(arm_U);
-    m.H.middleCols<3>(ErrorIndex::kPosition) += Eigen::Matrix3d::Identity();
-    m.R = 0.5 * (fix->covariance_E + fix->covariance_E.transpose());
-    m.R.diagonal() = m.R.diagonal().cwiseMax(floor_m2_);  // which keeps it positive definite
+    const PointPlace antenna = antenna_place(filter);
+    const PointVelocity moving = antenna_velocity(filter);
+    const double age_s = age_.of(filter, fix->t);
+    Measurement m(3, filter.state, ErrorIndex::kPosition);
+    m.residual = fix->p_A_E - (antenna.p_E + age_s * moving.v_E);
+    m.H = age_s * moving.H;
+    m.H += antenna.H;
+    age_.set_column(m.H, moving.v_E);
+    m.R = covariance(*fix);
+    m.R.diagonal() = m.R.diagonal().cwiseMax(p_.fix_sigma_floor_m * p_.fix_sigma_floor_m);  // still positive definite
     if (fix_error_ >= 0) {
       m.residual -= filter.state.values(fix_error_, 3);
       m.H.middleCols<3>(fix_error_).setIdentity();
@@ -43,7 +58,30 @@ class Position final : public MeasurementModel {
   }
 
  private:
-  double floor_m2_;
+  Eigen::Matrix3d covariance(const GnssFix& fix) const {
+    const double variance = p_.fix_sigma_m * p_.fix_sigma_m;
+    switch (kind_) {
+      case FixCovariance::kConstant:
+        return variance * Eigen::Matrix3d::Identity();
+      case FixCovariance::kFromDop:
+        if (std::isfinite(fix.dop.hdop) && std::isfinite(fix.dop.vdop)) {
+          const Eigen::Matrix3d R_EN = rotation_E_from_enu(geodetic_from_ecef(fix.p_A_E));
+          const double across = 0.5 * fix.dop.hdop * fix.dop.hdop;
+          return variance * R_EN * Eigen::Vector3d(across, across, fix.dop.vdop * fix.dop.vdop).asDiagonal() *
+                 R_EN.transpose();
+        }
+        break;
+      case FixCovariance::kInflated:
+        return 0.5 * p_.fix_sigma_scale * p_.fix_sigma_scale * (fix.covariance_E + fix.covariance_E.transpose());
+      case FixCovariance::kAsReported:
+        break;
+    }
+    return 0.5 * (fix.covariance_E + fix.covariance_E.transpose());
+  }
+
+  PositionParameters p_;
+  FixCovariance kind_;
+  FixAge age_;
   int fix_error_;
 };
 

@@ -1,4 +1,5 @@
-#include "canyon/fusion/measurements/body_velocity.h"
+#include "canyon/fusion/measurements/body_motion.h"
+#include "canyon/fusion/measurements/fix_age.h"
 
 namespace canyon::fusion {
 namespace {
@@ -14,34 +15,47 @@ void visit(FieldVisitor& f, VelocityParameters& p) {
            "lower bound on a fix's 1-sigma of velocity per axis");
 }
 
-/// The antenna's velocity as the Doppler shifts give it.
-class Velocity final : public MeasurementModel {
+/// The antenna's velocity as the Doppler shifts give it, where the receiver says how good it is.
+class Velocity final : public Copied<MeasurementModel, Velocity> {
  public:
-  explicit Velocity(const VelocityParameters& p) : p_(p) {}
+  Velocity(const VelocityParameters& p, const ErrorState& state) : p_(p), age_(state) {}
 
-  std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message) override {
+  std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message, int) override {
     const GnssFix* fix = std::get_if<GnssFix>(&message);
-    if (fix == nullptr || fix->status == FixStatus::kNone || !fix->v_A_E.allFinite()) return {};
-    const PointVelocity antenna = point_velocity(filter, filter.lever_A_B);
-    Measurement m(3, filter.state);
+    if (fix == nullptr || fix->status == FixStatus::kNone || !fix->v_A_E.allFinite() ||
+        !fix->velocity_covariance_E.allFinite())
+      return {};
+    const PointVelocity antenna = antenna_velocity(filter);
+    Measurement m(3, filter.state, ErrorIndex::kVelocity);
     m.residual = fix->v_A_E - antenna.v_E;
     m.H = antenna.H;
+    if (age_.estimated()) carry(filter, *fix, m);
     const double scale = p_.fix_velocity_scale * p_.fix_velocity_scale,
                  floor = p_.fix_velocity_floor_m_s * p_.fix_velocity_floor_m_s;
-    if (fix->velocity_covariance_E.allFinite())
-      m.R = scale * 0.5 * (fix->velocity_covariance_E + fix->velocity_covariance_E.transpose());
+    m.R = scale * 0.5 * (fix->velocity_covariance_E + fix->velocity_covariance_E.transpose());
     m.R.diagonal() = m.R.diagonal().cwiseMax(floor);
     return m;
   }
 
  private:
+  /// To the time of the fix, with the acceleration of the IMU: what the antenna's lever arm adds while a turn begins is
+  /// left out.
+  void carry(const FilterView& filter, const GnssFix& fix, Measurement& m) const {
+    const PointAcceleration moving = acceleration(filter);
+    const double age_s = age_.of(filter, fix.t);
+    m.residual -= age_s * moving.a_E;
+    m.H += age_s * moving.H;
+    age_.set_column(m.H, moving.a_E);
+  }
+
   VelocityParameters p_;
+  FixAge age_;
 };
 
 }  // namespace
 
-std::unique_ptr<MeasurementModel> make_velocity(const ModelParameters& own, const MeasurementSetup&) {
-  return std::make_unique<Velocity>(own.get<VelocityParameters>());
+std::unique_ptr<MeasurementModel> make_velocity(const ModelParameters& own, const MeasurementSetup& at) {
+  return std::make_unique<Velocity>(own.get<VelocityParameters>(), at.state);
 }
 
 void velocity_parameters(ModelParameters& section) {

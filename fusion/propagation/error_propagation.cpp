@@ -21,7 +21,7 @@ void copy(const StepJacobian::Matrix& from, double* to) {
 }  // namespace
 
 ErrorPropagation::ErrorPropagation(const ErrorState& state, const ImuNoise& noise)
-    : size_(state.size()), padded_(state.padded_size()), noise_(noise) {
+    : size_(state.size()), padded_(state.padded_size()), noise_(noise), integrals_of_(state.integrals()) {
   CANYON_CHECK(padded_ <= kMostStates, "a filter of ", size_, " states; at most ", kMostStates);
   decay_.setOnes(padded_);
   mean_share_.setOnes(padded_);
@@ -72,7 +72,10 @@ void ErrorPropagation::AxisNoise::add(const Eigen::Matrix4d& moments, double den
 
 void ErrorPropagation::set_step(ErrorState& state, const Increments& in, const Calibration& imu,
                                 const Eigen::Matrix3d& gravity_gradient) {
-  const StepJacobian jacobian(state.nav, in, imu, gravity_gradient);
+  set_step(state, in, StepJacobian(state.nav, in, imu, gravity_gradient));
+}
+
+void ErrorPropagation::set_step(ErrorState& state, const Increments& in, const StepJacobian& jacobian) {
   step_.dt_s = dt_s_;
   copy(jacobian.theta_theta, step_.theta_theta);
   copy(jacobian.theta_gyro, step_.theta_gyro);
@@ -104,6 +107,7 @@ void ErrorPropagation::integrate(const double* errors, int stride, int width) {
 }
 
 void ErrorPropagation::move(ErrorMatrix& errors) {
+  for (const ErrorState::Integral& i : integrals_of_) errors.row(i.integral) += dt_s_ * errors.row(i.of);
   integrate(errors.data(), padded_, padded_);
   move_rows(step_, errors.data(), padded_, integrals_.data(), half_.data(), padded_);
   errors.topRows<kMoving>() = half_;
@@ -113,6 +117,11 @@ void ErrorPropagation::move(ErrorMatrix& errors) {
 
 void ErrorPropagation::propagate(ErrorMatrix& P) {
   const int others = size_ - kMoving;
+  // What is integrated is neither fed into the IMU nor fades, so that the rest of the step may follow.
+  for (const ErrorState::Integral& i : integrals_of_) {
+    P.row(i.integral) += dt_s_ * P.row(i.of);
+    P.col(i.integral) += dt_s_ * P.col(i.of);
+  }
   // cov(x+, [x, y]) from cov([x, e], [x, y]), e being the part of the IMU's error that the states y make.
   integrate(P.data(), padded_, padded_);
   move_rows(step_, P.data(), padded_, integrals_.data(), half_.data(), padded_);
@@ -158,6 +167,17 @@ void ErrorPropagation::add_noise(ErrorMatrix& P) {
     }
   }
   for (const Group& group : groups_) add_driven(P, group);
+  add_drift(P);
+}
+
+/// What drives a random walk within the step, in its integral.
+void ErrorPropagation::add_drift(ErrorMatrix& P) {
+  for (const ErrorState::Integral& i : integrals_of_) {
+    const double density = density_[i.of], once = density * dt_s_ * dt_s_ / 2.0;
+    P(i.integral, i.integral) += density * dt_s_ * dt_s_ * dt_s_ / 3.0;
+    P(i.integral, i.of) += once;
+    P(i.of, i.integral) += once;
+  }
 }
 
 /// What drives the states of a group moves them, and x with them through what they feed.

@@ -31,6 +31,8 @@ class ErrorPropagation {
   /// gravity gradient in E.
   void set_step(ErrorState& state, const Increments& in, const Calibration& imu,
                 const Eigen::Matrix3d& gravity_gradient);
+  /// The same, of a step that somebody else has linearized.
+  void set_step(ErrorState& state, const Increments& in, const StepJacobian& jacobian);
   /// Covariance over the step. Symmetric to the bit before and after.
   void propagate(ErrorMatrix& P);
   /// Errors over the step, column by column, without noise.
@@ -53,6 +55,7 @@ class ErrorPropagation {
   void integrate(const double* errors, int stride, int width);
   void add_noise(ErrorMatrix& P);
   void add_driven(ErrorMatrix& P, const Group& group);
+  void add_drift(ErrorMatrix& P);
 
   int size_, padded_;
   ImuNoise noise_;
@@ -62,6 +65,7 @@ class ErrorPropagation {
   Eigen::VectorXd decay_, mean_share_, density_;
   std::vector<Group> groups_;
   std::vector<int> group_of_;  // of each state
+  std::vector<ErrorState::Integral> integrals_of_;
   StepCoefficients step_{};
   AxisNoise axes_[6];
   // Scratch: integrals of the IMU's error; [theta, p, v] after the step; their transpose; and its [theta, p, v].

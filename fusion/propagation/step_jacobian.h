@@ -24,6 +24,11 @@ struct StepJacobian {
   /// `before`: state at the start of the interval; `in`: increments fed in; `gravity_gradient`: in E, at `before`.
   StepJacobian(const NavState& before, const Increments& in, const Calibration& imu,
                const Eigen::Matrix3d& gravity_gradient);
+  /// The same in axes that do not turn and in which nothing falls, to which U is turned by `R_start` at the start.
+  StepJacobian(const Eigen::Quaterniond& R_start, const Increments& in, const Calibration& imu);
+
+ private:
+  void set_imu(const Eigen::Matrix3d& R, const Increments& in, const Calibration& imu);
 };
 
 }  // namespace canyon::fusion

@@ -14,13 +14,13 @@ void visit(FieldVisitor& f, MountingParameters& p) {
            "how they wander, as load shifts");
 }
 
-/// Angles about y and z by which the axes in which the vehicle rolls are turned against B, rad: the velocity of the
-/// rear axle has a part of them sideways and up.
+/// Rotation vector m of the axes of the vehicle in those of the IMU, rad: R_UB = Exp(m). Wheels see it about the axes
+/// y and z; about x it stays as unsure as the start is.
 class Mounting final : public StateBlock {
  public:
   explicit Mounting(const MountingParameters& p)
       : sigma_(p.mounting_sigma_deg * kDegree), walk_(p.mounting_walk_deg_per_sqrt_hr * kDegree / 60.0) {}
-  int size() const override { return 2; }
+  int size() const override { return 3; }
   double variance(int) const override { return sigma_ * sigma_; }
   StateProcess process(int) const override { return {.density = walk_ * walk_}; }
 

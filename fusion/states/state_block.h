@@ -39,6 +39,8 @@ class StateBlock {
   /// At the start: the estimate is zero, and its error has this variance, unit^2.
   virtual double variance(int state) const = 0;
   virtual StateProcess process(int /*state*/) const { return {}; }
+  /// The state, a random walk or a constant, whose integral over time this one is, beside its own process; -1: none.
+  virtual int integral_of(int /*state*/) const { return -1; }
   /// Appends what the states do to the IMU's output while it measures `in`; which axis each state feeds never changes.
   virtual void feed(const Increments& /*in*/, std::vector<Feed>& /*feeds*/) const {}
   /// Adds what the estimates `values` say of the IMU to what is taken out of its increments.
@@ -63,6 +65,17 @@ std::unique_ptr<StateBlock> make_gains(const ModelParameters& own, const StateSe
 void gains_parameters(ModelParameters& section);
 std::unique_ptr<StateBlock> make_mounting(const ModelParameters& own, const StateSetup& setup);
 void mounting_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_antenna_lever(const ModelParameters& own, const StateSetup& setup);
+void antenna_lever_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_time_offset(const ModelParameters& own, const StateSetup& setup);
+void time_offset_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_receiver_clock(const ModelParameters& own, const StateSetup& setup);
+void receiver_clock_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_barometer_bias(const ModelParameters& own, const StateSetup& setup);
+void barometer_bias_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_hard_iron(const ModelParameters& own, const StateSetup& setup);
+void hard_iron_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_clone(const StateSetup& setup);
 std::unique_ptr<StateBlock> make_wheel_scale(const ModelParameters& own, const StateSetup& setup);
 void wheel_scale_parameters(ModelParameters& section);
 std::unique_ptr<StateBlock> make_fix_error(const ModelParameters& own, const StateSetup& setup);

@@ -11,7 +11,7 @@ namespace {
 ///   rotation     = dtheta
 ///   dv_start     = [I + (1 - cos a) / a T + (a - sin a) / a T^2] dv
 ///   displacement = [I / 2 + (a - sin a) / a^2 T + (a^2 / 2 - 1 + cos a) / a^2 T^2] dv dt
-class ConstantRate final : public Strapdown {
+class ConstantRate final : public Copied<Strapdown, ConstantRate> {
  public:
   explicit ConstantRate(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override {}

@@ -5,7 +5,7 @@ namespace {
 
 /// Rotation and force taken as constant directions over the interval: no coning, no sculling, not even the rotation of
 /// the force.
-class Euler final : public Strapdown {
+class Euler final : public Copied<Strapdown, Euler> {
  public:
   explicit Euler(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override {}

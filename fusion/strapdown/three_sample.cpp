@@ -49,7 +49,7 @@ Vector3d rotation_to(const Cubic& turn, double x) {
 /// by Gauss-Legendre collocation at three points (order 6; Hairer, Norsett & Wanner, Solving Ordinary Differential
 /// Equations I, II.7), so that what is left is the error of the quadratics, of fourth order. After a reset the first
 /// two intervals have fewer predecessors and lower order.
-class ThreeSample final : public Strapdown {
+class ThreeSample final : public Copied<Strapdown, ThreeSample> {
  public:
   explicit ThreeSample(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override { known_ = 0; }

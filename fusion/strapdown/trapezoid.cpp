@@ -6,7 +6,7 @@ namespace {
 
 /// The force is turned with the attitudes at both ends of the interval, half of it with each:
 ///   dv_start = (dv + Exp(dtheta) dv) / 2.
-class Trapezoid final : public Strapdown {
+class Trapezoid final : public Copied<Strapdown, Trapezoid> {
  public:
   explicit Trapezoid(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override {}

@@ -9,7 +9,7 @@ namespace {
 ///                 + (dtheta' x dv + dv' x dtheta) / 12                      (Savage 1998, part 2, eqs. 24, 59)
 /// First interval after a reset: the previous increments are taken equal to the present ones, where the coning term
 /// vanishes.
-class TwoSample final : public Strapdown {
+class TwoSample final : public Copied<Strapdown, TwoSample> {
  public:
   explicit TwoSample(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override { have_previous_ = false; }

@@ -12,15 +12,15 @@ namespace {
 using stress::kEpsilon;
 using Matrix = Eigen::MatrixXd;
 
-/// Broken unless symmetric to the bit, with variances not below zero, and with no eigenvalue of the correlations below
+/// Broken unless symmetric to the bit, with variances above zero, and with no eigenvalue of the correlations below
 /// what rounding of n of them makes (they are sums of n terms of size 1, each rounded in the update and in the solver).
 bool is_broken(const Matrix& P) {
-  if (!P.allFinite() || P != P.transpose() || !(P.diagonal().array() >= 0.0).all()) return true;
+  if (!P.allFinite() || P != P.transpose() || !(P.diagonal().head<15>().array() > 0.0).all()) return true;
   // What is known for certain, as a gain error that the unit does not have, is correlated with nothing.
   Eigen::VectorXd scale = Eigen::VectorXd::Zero(P.rows());
   for (Eigen::Index i = 0; i < P.rows(); ++i) {
     if (P(i, i) > 0.0) scale[i] = 1.0 / std::sqrt(P(i, i));
-    if (P(i, i) == 0.0 && !P.row(i).isZero(0.0)) return true;
+    if (P(i, i) < 0.0 || (P(i, i) == 0.0 && !P.row(i).isZero(0.0))) return true;
   }
   const auto n = static_cast<double>(P.rows());
   const Matrix correlation = scale.asDiagonal() * P * scale.asDiagonal();
@@ -110,7 +110,7 @@ std::vector<StressCase> covariance_cases() {
   const StressMechanism ratio{
       StressGroup::kData, "a covariance over many updates at a large ratio of noises",
       "P - K H P cancels to the 16th digit of what was: variances below zero, and an update that goes astray",
-      "symmetric to the bit, variances not below zero, correlations definite to the rounding of n by n terms, n states",
+      "symmetric to the bit, variances above zero, correlations definite to the rounding of n by n terms, n states",
       "covariances"};
   const StressMechanism constants{
       StressGroup::kStiff, "time constants of ten decades in one state",

@@ -12,6 +12,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/fusion/stress/at_rest.h"
+#include "canyon/tests/fusion/tactical_noise.h"
 
 namespace canyon::fusion {
 namespace {
@@ -21,23 +22,6 @@ using ::testing::HasSubstr;
 const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
 const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
 const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
-
-ImuNoise tactical_noise() {
-  ImuNoise n;
-  n.gyro = {.white_per_sqrt_hz = 4.4e-5,
-            .turn_on_bias_sigma = 1.5e-5,
-            .in_run_bias_sigma = 2.4e-6,
-            .in_run_bias_tau_s = 1000.0,
-            .scale_sigma = 5e-4,
-            .misalignment_sigma_rad = 1e-3};
-  n.accel = {.white_per_sqrt_hz = 1e-3,
-             .turn_on_bias_sigma = 7e-3,
-             .in_run_bias_sigma = 5e-4,
-             .in_run_bias_tau_s = 1000.0,
-             .scale_sigma = 3e-4,
-             .misalignment_sigma_rad = 1e-3};
-  return n;
-}
 
 const std::vector<std::vector<std::string>> kStateChoices = {
     {"biases"}, {"biases", "gains"}, {"turn_on_biases", "in_run_biases", "gains"}};
@@ -234,6 +218,24 @@ TEST(ErrorStateFilter, CovarianceSurvivesExtremeNoiseRatios) {
     }
     std::printf("%td states: smallest Cholesky pivot of the scaled covariance %.1e\n", filter.covariance().rows(),
                 smallest);
+  }
+}
+
+// 2026-11-23: where the filter knew that a fix's error lasts, it took its place from one as if it did not.
+TEST(ErrorStateFilter, WhatLastsOfAFixIsInThePlaceTakenFromIt) {
+  ErrorStateFilter filter = started(
+      configured("states = [\"biases\", \"fix_error\"]\ninitial_position_sigma_m = 1e6\nfix_error_sigma_m = 30"));
+  for (int k = 0; k < 100; ++k) filter.predict(at_rest(k));
+  const UpdateReport first = filter.update(fix_at(filter.nav_state().t, Eigen::Vector3d::Zero(), 1.0));
+  EXPECT_TRUE(first.accepted);
+  EXPECT_EQ(first.dimension, 0);
+  const Eigen::MatrixXd P = filter.covariance();
+  EXPECT_EQ(P, P.transpose().eval());
+  const int lasting = filter.offset("fix_error");
+  for (int i = 0; i < 3; ++i) {
+    // The fix's own 1 m, what lasts, and the lever arm's few millimetres.
+    EXPECT_NEAR(P(3 + i, 3 + i), 1.0 + 900.0, 0.1);
+    EXPECT_NEAR(P(3 + i, lasting + i), -900.0, 0.1);
   }
 }
 

@@ -47,7 +47,7 @@ TEST(Acceptance, TheGateHasAWayBack) {
   for (int t = 0; t < 10; ++t) EXPECT_FALSE(decide(*gate, t, 30.0).accepted) << t;
   const Decision back = decide(*gate, 10.0, 30.0);
   EXPECT_TRUE(back.accepted);
-  EXPECT_NEAR(back.covariance_scale, 300.0, 1e-9);   // 30 sigma, of three degrees of freedom
+  EXPECT_NEAR(back.loosening, 300.0, 1e-9);          // 30 sigma, of three degrees of freedom
   EXPECT_FALSE(decide(*gate, 11.0, 30.0).accepted);  // and is a gate again
   // One that is taken ends the count.
   for (int t = 12; t < 20; ++t) EXPECT_FALSE(decide(*gate, t, 30.0).accepted);

@@ -6,6 +6,8 @@
 
 #include "canyon/fusion/error_state.h"
 #include "canyon/fusion/filter_config.h"
+#include "canyon/fusion/propagation/error_propagation.h"
+#include "canyon/fusion/stress/at_rest.h"
 
 namespace canyon::fusion {
 namespace {
@@ -62,6 +64,56 @@ TEST(StateBlocks, WhatTheImuDoesNotHaveIsNotCarried) {
   EXPECT_EQ(ErrorState({"biases", "gains"}, kDefaults.own, {.noise = noise}).size(), 33);
   EXPECT_EQ(ErrorState({"biases"}, kDefaults.own, {.noise = noise}).size(), 15);
   EXPECT_EQ(ErrorState({}, kDefaults.own, {.noise = noise}).size(), 9);
+}
+
+// The clock is the integral of its rate: after T, of the two random walks, q1 T + q2 T^3 / 3 and q2 T^2 / 2.
+TEST(StateBlocks, TheClockIsTheIntegralOfItsRate) {
+  const FilterConfig c = configured(
+      "clock_sigma_m = 3\nclock_rate_sigma_m_s = 2\nclock_walk_m_per_sqrt_s = 0.5\n"
+      "clock_rate_walk_m_s_per_sqrt_s = 0.2");
+  ErrorState state({"receiver_clock"}, c.own, {});
+  ErrorPropagation propagation(state, {});
+  NavState at;
+  at.p_EU_E = {6378137.0, 0.0, 0.0};
+  state.start(at);
+  const int n = state.padded_size(), clock = state.offset("receiver_clock");
+  ErrorMatrix P = ErrorMatrix::Zero(n, n);
+  P(clock, clock) = 9.0;
+  P(clock + 1, clock + 1) = 4.0;
+  ErrorMatrix moved = ErrorMatrix::Identity(n, n);
+  propagation.set_interval(0.01);
+  for (int k = 0; k < 500; ++k) {
+    propagation.set_step(state, {.dt_s = 0.01}, {}, Eigen::Matrix3d::Zero());
+    propagation.propagate(P);
+    propagation.move(moved);
+  }
+  constexpr double T = 5.0, q1 = 0.25, q2 = 0.04;
+  // Sums of 500 terms.
+  EXPECT_NEAR(P(clock, clock), 9.0 + 4.0 * T * T + q1 * T + q2 * T * T * T / 3.0, 1e-11);
+  EXPECT_NEAR(P(clock, clock + 1), 4.0 * T + q2 * T * T / 2.0, 1e-11);
+  EXPECT_NEAR(P(clock + 1, clock + 1), 4.0 + q2 * T, 1e-12);
+  EXPECT_NEAR(moved(clock, clock + 1), T, 1e-12);
+  EXPECT_EQ(P, P.transpose().eval());
+  // And so are the values.
+  Eigen::VectorXd error = Eigen::VectorXd::Zero(n);
+  error[clock + 1] = 2.0;
+  state.inject(error);
+  state.fade(propagation.decay(), 0.5);
+  EXPECT_EQ(state.values(clock, 2), Eigen::Vector2d(1.0, 2.0));
+}
+
+TEST(StateBlocks, RowsThatNeedOneAnotherAreTold) {
+  const auto told = [](const std::string& keys) {
+    const Status status = check_parts(filter_parts(configured(keys)));
+    return status.ok() ? std::string() : status.error().str();
+  };
+  EXPECT_EQ(told(""), "");
+  EXPECT_EQ(told("filter = \"vehicle\""), "");
+  EXPECT_EQ(told("measurements = [\"ranges\"]"),
+            "fusion.states: measurement \"ranges\" without state \"receiver_clock\", expected \"receiver_clock\" among "
+            "them");
+  EXPECT_EQ(told("measurements = [\"relative_pose\"]"),
+            "fusion.states: measurement \"relative_pose\" without state \"clone\", expected \"clone\" among them");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "canyon/fusion/fix_response.h"
+#include "canyon/fusion/observers/fix_response.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 
 namespace canyon::fusion {
 
-void FixResponse::begin(Eigen::Index states) {
-  since_.setIdentity(states, states);
+void FixResponse::begin(const ErrorState& state) {
+  since_.setIdentity(state.padded_size(), state.padded_size());
   responses_.clear();
 }
 
@@ -16,17 +16,20 @@ void FixResponse::predicted(ErrorPropagation& step) {
   step.move(since_);
 }
 
-void FixResponse::corrected(const Eigen::MatrixXd& K, const Eigen::MatrixXd& H, bool of_position) {
+void FixResponse::corrected(const Correction& correction) {
+  const Eigen::MatrixXd& K = correction.gain;
+  const Eigen::MatrixXd H = correction.measurement.H;
   for (Columns3& response : responses_) {
     const Columns3 before = since_ * response;
     response = before - K * (H * before);
   }
-  if (of_position) responses_.push_back(moved_m_ * K);
+  if (correction.of_position) responses_.push_back(moved_m_ * K);
   since_.setIdentity();
 }
 
-void FixResponse::restarted(const Eigen::Matrix3d& H_theta) {
+void FixResponse::restarted(const Measurement& fix) {
   using Index = ErrorIndex;
+  const Eigen::Matrix3d H_theta = fix.H.leftCols<3>();
   for (Columns3& response : responses_) {
     response = since_ * response;
     response.middleRows<3>(Index::kPosition) = -H_theta * response.middleRows<3>(Index::kTheta);

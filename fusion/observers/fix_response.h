@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "canyon/fusion/propagation/error_propagation.h"
+#include "canyon/fusion/filter_observer.h"
 
 namespace canyon::fusion {
 
@@ -15,23 +15,19 @@ namespace canyon::fusion {
 ///
 /// First order: gains, and the attitude and force about which the filter linearizes, count as unmoved; so does what
 /// re-linearizing about a corrected attitude turns, which is of second order in the correction.
-class FixResponse {
+class FixResponse final : public FilterObserver {
  public:
   using Columns3 = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
   /// How far the next fix may be moved, m: its weight in the sums.
   void expect(double moved_m) { moved_m_ = moved_m; }
 
-  /// The filter that it follows has so many states, padding and all.
-  void begin(Eigen::Index states);
-  /// What the filter tells: one step, and one accepted measurement with its gain K and measurement matrix H;
-  /// whether it is of a fix's position.
-  void predicted(ErrorPropagation& step);
-  void corrected(const Eigen::MatrixXd& K, const Eigen::MatrixXd& H, bool of_position);
-  /// A filter that was lost and takes its place from a fix: the antenna is where that says, at the lever arm whose
-  /// dependence on the attitude is H's first three columns, and the velocity is forgotten. Attitude and sensor errors
-  /// stay, and with them what earlier fixes did to them.
-  void restarted(const Eigen::Matrix3d& H_theta);
+  void begin(const ErrorState& state) override;
+  void predicted(ErrorPropagation& step) override;
+  void corrected(const Correction& correction) override;
+  /// The antenna is where the fix says, at the lever arm whose dependence on the attitude is H's first three columns.
+  /// Attitude and sensor errors stay, and with them what earlier fixes did to them.
+  void restarted(const Measurement& fix) override;
 
   /// How far a place in E is moved at most, m, that depends on the present errors of theta, p and v as J says.
   struct Moved {

@@ -1,5 +1,5 @@
 // What the filter says of its own response is what comes of it where fixes are really moved.
-#include "canyon/fusion/fix_response.h"
+#include "canyon/fusion/observers/fix_response.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/SVD>
@@ -7,6 +7,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/tests/fusion/tactical_noise.h"
 
 namespace canyon::fusion {
 namespace {
@@ -15,23 +16,6 @@ constexpr int kFixes = 20, kSamplesPerFix = 50;
 const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
 const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
 const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
-
-ImuNoise noise() {
-  ImuNoise n;
-  n.gyro = {.white_per_sqrt_hz = 4.4e-5,
-            .turn_on_bias_sigma = 1.5e-5,
-            .in_run_bias_sigma = 2.4e-6,
-            .in_run_bias_tau_s = 1000.0,
-            .scale_sigma = 5e-4,
-            .misalignment_sigma_rad = 1e-3};
-  n.accel = {.white_per_sqrt_hz = 1e-3,
-             .turn_on_bias_sigma = 7e-3,
-             .in_run_bias_sigma = 5e-4,
-             .in_run_bias_tau_s = 1000.0,
-             .scale_sigma = 3e-4,
-             .misalignment_sigma_rad = 1e-3};
-  return n;
-}
 
 const Eigen::Vector3d kAcceleration_W(1.0, 2.0, 0.0);
 
@@ -50,7 +34,7 @@ ImuSample sample(std::int64_t k) {
 Eigen::Vector3d place_after(const std::vector<Eigen::Vector3d>& moves, FixResponse* response,
                             const std::vector<double>& expected = {}, FixResponse::Moved* moved = nullptr,
                             const FilterConfig& config = {}) {
-  ErrorStateFilter filter(config, noise(), kFrame, kImu, kAntenna);
+  ErrorStateFilter filter(config, tactical_noise(), kFrame, kImu, kAntenna);
   filter.initialize(kStart, Pose{}, Eigen::Vector3d::Zero());
   if (response != nullptr) filter.watch(response);
   std::int64_t k = 0;

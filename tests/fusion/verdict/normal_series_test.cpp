@@ -1,0 +1,111 @@
+#include "canyon/fusion/verdict/normal_series.h"
+
+#include <cmath>
+#include <deque>
+
+#include <gtest/gtest.h>
+
+#include "canyon/core/math/chi_square.h"
+#include "canyon/core/random/random.h"
+
+namespace canyon::fusion {
+namespace {
+
+constexpr double kInterval_s = 0.5;
+
+GpsTime at(int k) {
+  return GpsTime::from_week_sow(1590, 396000.0) + kInterval_s * k;
+}
+
+/// x' = kept x + noise, stationary, of unit variance.
+class Markov {
+ public:
+  Markov(std::uint64_t seed, double kept) : stream_(seed, "test.markov"), kept_(kept), x_(stream_.normal(0, 0)) {}
+  double next() { return x_ = kept_ * x_ + std::sqrt(1.0 - kept_ * kept_) * stream_.normal(0, ++n_); }
+
+ private:
+  RandomStream stream_;
+  double kept_, x_;
+  std::uint64_t n_ = 0;
+};
+
+NormalSeries markov_series(std::uint64_t seed, double kept, int count) {
+  Markov process(seed, kept);
+  NormalSeries out(1);
+  for (int k = 0; k < count; ++k) out.add(at(k), Eigen::VectorXd::Constant(1, process.next()));
+  return out;
+}
+
+TEST(NormalSeries, MeansAndShortLagsAreThoseOfTheSamples) {
+  constexpr int kCount = 1000;
+  RandomStream stream(1, "test");
+  std::vector<Eigen::Vector2d> z;
+  NormalSeries series(2);
+  double squares = 0.0;
+  for (int k = 0; k < kCount; ++k) {
+    z.emplace_back(stream.normal(0, static_cast<std::uint64_t>(k)), stream.normal(1, static_cast<std::uint64_t>(k)));
+    series.add(at(k), z.back());
+    squares += z.back().squaredNorm();
+  }
+  const double eps = 1e-15 * kCount;
+  EXPECT_NEAR(series.mean_square(), squares / (2 * kCount), eps);
+  EXPECT_NEAR(series.interval_s(), kInterval_s, eps);
+  const auto lags = series.lags();
+  for (int lag = 1; lag <= NormalSeries::kLags; ++lag) {
+    double sum = 0.0;
+    for (int k = lag; k < kCount; ++k) sum += z[static_cast<std::size_t>(k)].dot(z[static_cast<std::size_t>(k - lag)]);
+    EXPECT_EQ(lags[static_cast<std::size_t>(lag - 1)].samples, lag);
+    EXPECT_NEAR(lags[static_cast<std::size_t>(lag - 1)].r, sum / (kCount - lag) / (squares / kCount), eps);
+  }
+}
+
+TEST(NormalSeries, AConstantIsOneSample) {
+  NormalSeries series(1);
+  for (int k = 0; k < 700; ++k) series.add(at(k), Eigen::VectorXd::Constant(1, 2.0));
+  EXPECT_EQ(series.mean_square(), 4.0);
+  // Of the lags those beyond the last that has pairs are missing, 1 - k / N being what each counts for.
+  const double missing = 1.0 - series.lags().back().samples / 700.0;
+  EXPECT_GT(series.effective_samples(), 1.0 - 1e-12);
+  EXPECT_NEAR(series.effective_samples(), 1.0, missing * missing);
+}
+
+TEST(NormalSeries, AMarkovProcessIsWorthWhatItsCorrelationSays) {
+  // Of N samples of r_k = kept^k, N (1 - kept^2) / (1 + kept^2) are independent as far as squares go; 1 / e after
+  // -dt / ln(kept).
+  constexpr int kCount = 100000;
+  for (const double kept : {0.5, 0.9, 0.99}) {
+    const NormalSeries series = markov_series(7, kept, kCount);
+    const double worth = kCount * (1.0 - kept * kept) / (1.0 + kept * kept);
+    // r at a lag is off by 1 / sqrt(independent samples) (1-sigma), which at 4 sigma moves sum and time by so much.
+    const double off = 4.0 / std::sqrt(worth);
+    EXPECT_NEAR(series.effective_samples() / worth, 1.0, 4.0 * off) << kept;
+    const double tau_s = -kInterval_s / std::log(kept);
+    EXPECT_NEAR(series.correlation_s() / tau_s, 1.0, 4.0 * off + 1.0 / NormalSeries::kLags) << kept;
+  }
+}
+
+TEST(NormalSeries, PassesAWhiteSeriesAsOftenAsItSays) {
+  // 2000 series, false alarms at 5 %: binomial, 4 sigma = 0.0195.
+  constexpr int kSeries = 2000, kCount = 200;
+  int alarms = 0;
+  for (int s = 0; s < kSeries; ++s) {
+    const auto [statistic, degrees] = markov_series(static_cast<std::uint64_t>(s), 0.0, kCount).portmanteau();
+    EXPECT_EQ(degrees, NormalSeries::kLags);
+    alarms += statistic > chi_square_threshold(0.05, degrees) ? 1 : 0;
+  }
+  const double share = static_cast<double>(alarms) / kSeries;
+  EXPECT_NEAR(share, 0.05, 4.0 * std::sqrt(0.05 * 0.95 / kSeries) + 1.0 / kCount);
+}
+
+TEST(NormalSeries, LeavesOutWhatIsNotFinite) {
+  NormalSeries series(1);
+  series.add(at(0), Eigen::VectorXd::Constant(1, 1.0));
+  series.add(at(1), Eigen::VectorXd::Constant(1, std::nan("")));
+  EXPECT_EQ(series.samples(), 1);
+  EXPECT_TRUE(std::isnan(NormalSeries(3).mean_square()));
+  EXPECT_EQ(NormalSeries(3).portmanteau().degrees, 0);
+  EXPECT_EQ(NormalSeries(3).effective_samples(), 1.0);
+}
+
+}  // namespace
+}  // namespace canyon::fusion
