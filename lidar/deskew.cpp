@@ -3,9 +3,28 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/core/check.h"
 #include "canyon/lidar/sweep_motion.h"
 
 namespace canyon::lidar {
+namespace {
+
+bool is_finite(const LidarPoint& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+}  // namespace
+
+std::vector<std::string> deskewing_names() {
+  return {"prediction", "estimate", "none", "truth"};
+}
+
+Deskewing deskewing(std::string_view name) {
+  const auto names = deskewing_names();
+  const auto at = std::find(names.begin(), names.end(), name);
+  CANYON_CHECK(at != names.end(), "no deskewing \"", name, "\"");
+  return static_cast<Deskewing>(at - names.begin());
+}
 
 LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_BL) {
   LidarScan out{.t = scan.t, .period_s = scan.period_s, .points = {}};
@@ -19,11 +38,22 @@ LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_
   std::size_t hint = 0;
   for (LidarPoint point : scan.points) {
     if (!sweep.covers(point.time_s)) continue;
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.z)) continue;
+    if (!is_finite(point)) continue;
     const Eigen::Vector3d p = sweep.at(point.time_s, hint) * Eigen::Vector3d(point.x, point.y, point.z);
     point.x = static_cast<float>(p.x());
     point.y = static_cast<float>(p.y());
     point.z = static_cast<float>(p.z());
+    point.time_s = 0;
+    out.points.push_back(point);
+  }
+  return out;
+}
+
+LidarScan not_deskewed(const LidarScan& scan) {
+  LidarScan out{.t = scan.t, .period_s = scan.period_s, .points = {}};
+  out.points.reserve(scan.points.size());
+  for (LidarPoint point : scan.points) {
+    if (!is_finite(point)) continue;
     point.time_s = 0;
     out.points.push_back(point);
   }

@@ -1,5 +1,7 @@
 #include "canyon/lidar/lidar_config.h"
 
+#include "canyon/lidar/deskew.h"
+
 namespace canyon::lidar {
 
 void visit(FieldVisitor& f, LidarConfig& c) {
@@ -26,6 +28,9 @@ void visit(FieldVisitor& f, LidarConfig& c) {
   f.number("wavelength_nm", c.wavelength_nm, {300, 2500}, "wavelength of the lasers");
   visit(f, c.signal);
   f.group("weather", c.weather, "what is in the air");
+  f.choice("deskew", c.deskew, deskewing_names(),
+           "by whose motion within a revolution scans are deskewed: the filter's prediction alone, its estimates with "
+           "their corrections, nobody's, the true one");
   f.flag("blinded", c.blinded, "the sensor returns nothing (coupling studies)");
 }
 

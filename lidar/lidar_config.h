@@ -24,8 +24,9 @@ struct LidarConfig {
   Eigen::Vector3d mount_m{0.3, 0.0, 1.8};             ///< L in B
   Eigen::Vector3d mount_yaw_pitch_roll_deg{0, 0, 0};  ///< R_BL
   double range_noise_m = 0.02;                        ///< 1-sigma; VLP-16 manual: +-3 cm typical accuracy
-  double angle_noise_deg = 0.0;  ///< 1-sigma of the beam's true direction about the reported, each of two axes
-  double latency_s = 0.0;        ///< the stamp is that much later than what was measured
+  double angle_noise_deg = 0.0;       ///< 1-sigma of the beam's true direction about the reported, each of two axes
+  std::string deskew = "prediction";  ///< by whose motion within a revolution; deskewing_names()
+  double latency_s = 0.0;             ///< the stamp is that much later than what was measured
   double wavelength_nm = 905.0;
   ModelChoice<echo_models> model{"single_ray"};
   Transparent see_through;  ///< default: nothing

@@ -95,6 +95,14 @@ Status Boundaries::check(const OdometerSample& sample) const {
       .status();
 }
 
+Status Boundaries::check(const BarometerSample& sample) const {
+  return Gate("the barometer", sample.t - start_).pass("a pressure", sample.pressure_pa).status();
+}
+
+Status Boundaries::check(const MagnetometerSample& sample) const {
+  return Gate("the magnetometer", sample.t - start_).pass("a field", sample.field_U_t).status();
+}
+
 namespace {
 
 void check_fix(Gate& gate, const GnssFix& fix) {

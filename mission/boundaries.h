@@ -23,6 +23,8 @@ class Boundaries {
   Status check(const KinematicState& motion) const;
   Status check(const ImuSample& sample) const;
   Status check(const OdometerSample& sample) const;
+  Status check(const BarometerSample& sample) const;
+  Status check(const MagnetometerSample& sample) const;
   Status check(const gnss::GnssOutput& output) const;
   Status check(const lidar::LidarOutput& output) const;
   Status check(const NavEstimate& estimate) const;

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "canyon/core/units.h"
 #include "canyon/lidar/deskew.h"
@@ -34,6 +34,10 @@ Status MissionRun::perform(const Due& due) {
       return take_imu(due);
     case Task::kOdometer:
       return take_odometer(due);
+    case Task::kBarometer:
+      return take_barometer(due);
+    case Task::kMagnetometer:
+      return take_magnetometer(due);
     case Task::kGnss:
       return take_gnss(due);
     case Task::kLidar:
@@ -55,28 +59,16 @@ Status MissionRun::take_imu(const Due& due) {
   ++record_.counters["imu_samples"];
   CANYON_TRY_STATUS(recorder_.imu(sample));
   CANYON_TRY_STATUS(localizer_.take(sample, due.t));
-  motion_.forget_before(odometer_ ? std::min(due.t, counted_until_) : due.t);
-  // A correction is not motion: what is buffered moves with it.
-  if (const auto correction = localizer_.take_correction()) estimated_motion_.move(*correction);
+  motion_.forget_before(aiding_.needs_from(due.t));
+  follow_correction();
   estimated_motion_.append({due.t, estimate(due.t).X_WB});
   return Ok{};
 }
 
-Status MissionRun::take_odometer(const Due& due) {
-  constexpr int kNodes = 5;  // of Simpson's rule
-  std::array<KinematicState, kNodes> nodes;
-  const std::int64_t span_ns = due.t.ns - counted_until_.ns;
-  for (int i = 0; i < kNodes; ++i) {
-    GpsTime t = counted_until_;
-    t.ns += span_ns * i / (kNodes - 1);
-    nodes[static_cast<std::size_t>(i)] = truth_at(t);
-  }
-  counted_until_ = due.t;
-  const OdometerSample sample = clock_.charge(Part::kImu, [&] { return odometer_->sample(due.k - 1, nodes).message; });
-  CANYON_TRY_STATUS(boundaries_.check(sample));
-  ++record_.counters["odometer_samples"];
-  CANYON_TRY_STATUS(recorder_.odometer(sample));
-  return localizer_.once_at(due.t, [this, sample] { return localizer_.update(sample); });
+/// A correction is not motion: what is buffered moves with it.
+void MissionRun::follow_correction() {
+  const auto correction = localizer_.take_correction();
+  if (correction && deskewing_ != lidar::Deskewing::kEstimate) estimated_motion_.move(*correction);
 }
 
 Status MissionRun::take_gnss(const Due& due) {
@@ -94,6 +86,7 @@ Status MissionRun::take_gnss(const Due& due) {
   row.fix = output.fix;
   row.p_A_W_true = p_A_W;
   row.range_gain = output.range_gain;
+  if (fusion::measures_with(config_.fusion, "ranges")) row.epoch = output.epoch;
   const auto withhold_s = config_.run.withhold_fixes_after_s;
   row.withheld = withhold_s && truth.t - mission_.start >= *withhold_s;
   for (const GnssObservationTruth& satellite : output.truth.satellites) {
@@ -112,7 +105,8 @@ Status MissionRun::use_fix() {
   GnssRow& row = fixes_.front();
   if (!row.withheld) {
     CANYON_TRY(row.update, localizer_.update(row.fix));
-    if (const auto correction = localizer_.take_correction()) estimated_motion_.move(*correction);
+    if (!row.epoch.observations.empty()) CANYON_TRY_STATUS(localizer_.update(row.epoch));
+    follow_correction();
     CANYON_TRY_STATUS(boundaries_.check(localizer_.estimate()));
   }
   return record_fix();
@@ -175,7 +169,8 @@ std::pair<double, double> unsteadiness(const Trajectory& motion, const Pose& X_W
 /// returns of its own at the run's beginning.
 std::optional<lidar::KeptRoom> MissionRun::kept_room(const KeptReturns& kept, GpsTime t) {
   if (localizer_.at() != t) return std::nullopt;
-  const Trajectory& motion = config_.run.truth_as_pose ? true_motion_ : estimated_motion_;
+  if (deskewing_ == lidar::Deskewing::kNone) return std::nullopt;
+  const Trajectory& motion = deskewing_ == lidar::Deskewing::kTruth ? true_motion_ : estimated_motion_;
   const double period_s = 1.0 / config_.lidar.rate_hz;
   if (motion.poses().front().t - t > -period_s) return std::nullopt;
   const Pose believed = estimate(t).X_WB;
@@ -215,23 +210,24 @@ bool MissionRun::scan_is_wanted(GpsTime t) const {
          (!omissions_.keyframes && (localizer_.at() != t || mapper_.wants(estimate(t))));
 }
 
+LidarScan MissionRun::deskew(const LidarScan& scan, const NavEstimate& now) const {
+  if (deskewing_ == lidar::Deskewing::kNone) return lidar::not_deskewed(scan);
+  const Trajectory& motion = deskewing_ == lidar::Deskewing::kTruth ? true_motion_ : estimated_motion_;
+  if (motion.poses().back().t >= scan.t) return lidar::deskew(scan, motion, X_BL_);
+  Trajectory to_now = motion;  // where the filter was divided the buffer ends before the scan
+  to_now.append({scan.t, now.X_WB});
+  return lidar::deskew(scan, to_now, X_BL_);
+}
+
 Status MissionRun::use_scan(const LidarScan& scan) {
   const NavEstimate now = estimate(scan.t);
-  const Trajectory& motion = config_.run.truth_as_pose ? true_motion_ : estimated_motion_;
-  Trajectory to_now;  // where the filter was divided the buffer ends before the scan
-  const bool short_of = motion.poses().back().t < scan.t;
-  if (short_of) {
-    to_now = motion;
-    to_now.append({scan.t, now.X_WB});
-  }
-  const LidarScan deskewed =
-      clock_.charge(Part::kLidar, [&] { return lidar::deskew(scan, short_of ? to_now : motion, X_BL_); });
+  const LidarScan deskewed = clock_.charge(Part::kLidar, [&] { return deskew(scan, now); });
   record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());
 
   if (!omissions_.keyframes && !deskewed.points.empty()) CANYON_TRY_STATUS(map_scan(deskewed, now));
 
   if (omissions_.autonomy) return Ok{};
-  const NavEstimate seen = with_correction(now);
+  const NavEstimate seen = with_correction(estimate(scan.t));
   clock_.charge(Part::kAutonomy, [&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); });
   return Ok{};
 }
@@ -266,10 +262,25 @@ Status MissionRun::record_epoch(const Due& due) {
 }
 
 Status MissionRun::map_scan(const LidarScan& deskewed, const NavEstimate& now) {
-  const Keyframe* keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now); });
+  const Pose motion = config_.run.truth_as_pose ? last_keyframe_X_WB_.inverse() * now.X_WB : localizer_.motion();
+  const Keyframe* keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now, motion); });
   if (keyframe == nullptr) return Ok{};
+  localizer_.begin_motion();
+  last_keyframe_X_WB_ = now.X_WB;
+  if (fusion::measures_with(config_.fusion, "relative_pose")) CANYON_TRY_STATUS(aid_by_map(*keyframe));
   CANYON_TRY_STATUS(boundaries_.check(*keyframe));
   return add_keyframe(deskewed, *keyframe, true_motion_.at(deskewed.t).value());
+}
+
+/// The motion between two keyframes tells the filter nothing that it has told the map: what a keyframe's pose in the
+/// map is would come back to it as new.
+Status MissionRun::aid_by_map(const Keyframe& keyframe) {
+  if (keyframe.aligned) {
+    CANYON_TRY_STATUS(localizer_.update(*keyframe.aligned));
+    follow_correction();
+  }
+  localizer_.take_clone();
+  return Ok{};
 }
 
 Status MissionRun::add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true) {

@@ -19,7 +19,10 @@ class Localizer {
   Localizer(fusion::ErrorStateFilter filter, GpsTime start, const Boundaries& boundaries, PartClock& clock)
       : filter_(std::move(filter)), boundaries_(boundaries), clock_(clock), at_(start) {}
 
-  void initialize(const Pose& X_WB, const Eigen::Vector3d& v_WB_W) { filter_.initialize(at_, X_WB, v_WB_W); }
+  void initialize(const Pose& X_WB, const Eigen::Vector3d& v_WB_W) {
+    filter_.initialize(at_, X_WB, v_WB_W);
+    X_WB_ = X_WB;
+  }
 
   /// Time of the last IMU sample, or of the part of one, that the filter has taken in.
   GpsTime at() const { return at_; }
@@ -29,11 +32,21 @@ class Localizer {
   Status take(ImuSample sample, GpsTime t);
   /// Does `work` once the filter has come to t: at once, or within the sample that covers t, which is then divided.
   Status once_at(GpsTime t, std::function<Status()> work);
-  /// An odometer's count, as far as the filter takes one.
-  Status update(const OdometerSample& sample);
+  /// A message of a sensor beside IMU and receiver, as far as the filter takes such; at the time of at().
+  Status aid(const fusion::AidingMessage& message);
+  /// The ranges of an epoch, one by one; stamped as a fix is.
+  Status update(const GnssEpoch& epoch);
+  /// Where the vehicle was when take_clone() was last called, by registration; at the time of at().
+  Status update(const RelativePose& since_clone);
+  /// From now on the filter's clone, if it carries one, holds the present pose.
+  void take_clone();
   /// By what the estimate has been corrected since this was last asked, if it was: it is now this times what was
   /// predicted.
   std::optional<Pose> take_correction() { return std::exchange(correction_, std::nullopt); }
+  /// How B has moved since begin_motion(), by prediction alone: no correction is motion, though each makes what is
+  /// predicted after it better.
+  const Pose& motion() const { return motion_; }
+  void begin_motion() { motion_ = Pose(); }
   /// The fix is stamped in the time of at(); the unit's own clock may be any time off.
   Result<fusion::UpdateReport> update(const GnssFix& fix);
 
@@ -42,7 +55,7 @@ class Localizer {
 
  private:
   Status predict(const ImuSample& sample, GpsTime t);
-  void corrected(const Pose& before);
+  void corrected();
 
   fusion::ErrorStateFilter filter_;
   const Boundaries& boundaries_;
@@ -53,6 +66,9 @@ class Localizer {
     std::function<Status()> work;
   };
   std::deque<Waiting> waiting_;
+  GpsTime clone_by_its_clock_;
+  Pose X_WB_;    ///< as last estimated
+  Pose motion_;  ///< since begin_motion()
   std::optional<Pose> correction_;
   std::int64_t predictions_ = 0, updates_ = 0;
 };

@@ -35,7 +35,7 @@ bool Mapper::wants(const NavEstimate& estimate) const {
            so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree);
 }
 
-const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate) {
+const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate, const Pose& motion) {
   if (!wants(estimate)) return nullptr;
   Keyframe keyframe;
   keyframe.t = scan.t;
@@ -48,7 +48,7 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
     for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);
     const auto cloud = registration_->prepare(points);
     // The first one defines the map.
-    if (has_last_) covariance = align(*cloud, covariance, keyframe);
+    if (has_last_) covariance = align(*cloud, X_BL_.inverse() * motion * X_BL_, covariance, keyframe);
     submap_.push_back({cloud, keyframe.X_WL_registered});
     while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
   }
@@ -59,12 +59,12 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
   return &last_;
 }
 
-Matrix6d Mapper::align(const lidar::PreparedCloud& cloud, const Matrix6d& prior_covariance, Keyframe& keyframe) {
+Matrix6d Mapper::align(const lidar::PreparedCloud& cloud, const Pose& guess, const Matrix6d& prior_covariance,
+                       Keyframe& keyframe) {
   // In the frame of the last keyframe, where numbers stay small.
   const Pose X_LW = last_.X_WL_registered.inverse();
   std::vector<lidar::Registration::Placed> targets;
   for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LW * placed.X_WL});
-  const Pose guess = last_.X_WL_prior.inverse() * keyframe.X_WL_prior;
   const lidar::RegistrationResult result = registration_->align(cloud, targets, guess);
   keyframe.status = result.status;
   keyframe.iterations = result.iterations;
@@ -78,6 +78,11 @@ Matrix6d Mapper::align(const lidar::PreparedCloud& cloud, const Matrix6d& prior_
   const double floor_rad = config_.alignment_floor_deg * kDegree, floor_m = config_.alignment_floor_m;
   Matrix6d floor = Matrix6d::Zero();
   floor.diagonal() << Eigen::Vector3d::Constant(floor_rad * floor_rad), Eigen::Vector3d::Constant(floor_m * floor_m);
+  const Pose X_LB = X_BL_.inverse();
+  keyframe.aligned = RelativePose{.source = keyframe.t,
+                                  .target = last_.t,
+                                  .X_TS = X_BL_ * result.X_TS * X_LB,
+                                  .covariance = moved(result.covariance + floor, X_LB)};
   const Matrix6d P_Z = moved(last_covariance_, result.X_TS) + result.covariance + floor;
   const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
   const Matrix6d P_Y = prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s);

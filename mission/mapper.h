@@ -22,6 +22,7 @@ struct Keyframe {
   int iterations = 0;
   double rms_m = kNaN;
   std::size_t points = 0;
+  std::optional<RelativePose> aligned;  ///< B in B at the keyframe before, by the alignment alone, where it converged
 };
 
 /// Chooses keyframes, registers each onto the ones before it, and fuses the result with the filter's pose.
@@ -45,9 +46,10 @@ class Mapper {
  public:
   Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration, const Pose& X_BL);
 
-  /// Offers a deskewed scan (in L at its stamp) with the filter's estimate at that time. Returns the new keyframe if it
-  /// became one, else nullptr. The pointer is valid until the next call.
-  const Keyframe* offer(const LidarScan& scan, const NavEstimate& estimate);
+  /// Offers a deskewed scan (in L at its stamp) with the filter's estimate at that time, and the motion of B since the
+  /// last keyframe by prediction alone, which the alignment begins from: what fixes have corrected since is not motion.
+  /// Returns the new keyframe if it became one, else nullptr. The pointer is valid until the next call.
+  const Keyframe* offer(const LidarScan& scan, const NavEstimate& estimate, const Pose& motion);
 
   /// Whether a scan there would become a keyframe, if it has returns.
   bool wants(const NavEstimate& estimate) const;
@@ -67,7 +69,8 @@ class Mapper {
     Pose X_WL;
   };
   /// Places `keyframe` onto those before it, together with its prior; the covariance of what came out.
-  Matrix6d align(const lidar::PreparedCloud& cloud, const Matrix6d& prior_covariance, Keyframe& keyframe);
+  Matrix6d align(const lidar::PreparedCloud& cloud, const Pose& guess, const Matrix6d& prior_covariance,
+                 Keyframe& keyframe);
 
   lidar::RegistrationConfig config_;
   std::unique_ptr<lidar::Registration> registration_;

@@ -7,7 +7,9 @@
 #include "canyon/core/motion/true_motion.h"
 #include "canyon/fusion/error_state_filter.h"
 #include "canyon/inertial/imu_model.h"
+#include "canyon/lidar/deskew.h"
 #include "canyon/lidar/scanner.h"
+#include "canyon/mission/aiding.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/corridor_guard.h"
 #include "canyon/mission/localizer.h"
@@ -36,7 +38,6 @@ class MissionRun {
     std::unique_ptr<gnss::GnssSensor> gnss;
     std::unique_ptr<inertial::ImuModel> imu;
     ImuNoise imu_noise;  ///< that the filter is told
-    std::optional<inertial::Odometer> odometer;
     std::unique_ptr<lidar::Scanner> scanner;
     std::unique_ptr<lidar::Registration> registration;
     std::unique_ptr<Autonomy> autonomy;
@@ -49,20 +50,28 @@ class MissionRun {
   Status perform(const Due& due);
   Status take_imu(const Due& due);
   Status take_odometer(const Due& due);
+  Status take_barometer(const Due& due);
+  Status take_magnetometer(const Due& due);
   Status take_gnss(const Due& due);
   Status take_scan(const Due& due);
   Status ask_autonomy(const Due& due);
   Status record_epoch(const Due& due);
   bool score();
 
+  void follow_correction();
+  /// To recorder and filter; the counter's name, and the recorder's method for such readings.
+  template <class Reading>
+  Status hand_on(const Reading& reading, const char* counter, Status (Recorder::*keep)(const Reading&));
   Status use_fix();
   Status record_fix();
   bool scan_is_wanted(GpsTime t) const;
   void fire(const Due& due, lidar::LidarOutput& output);
   std::optional<lidar::KeptRoom> kept_room(const KeptReturns& kept, GpsTime t);
   void forget_motion_before(GpsTime t);
+  LidarScan deskew(const LidarScan& scan, const NavEstimate& now) const;
   Status use_scan(const LidarScan& scan);
   Status map_scan(const LidarScan& deskewed, const NavEstimate& now);
+  Status aid_by_map(const Keyframe& keyframe);
   Status add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true);
   void count_work();
   void place_traffic(GpsTime t);
@@ -75,13 +84,13 @@ class MissionRun {
   const PreparedMission& mission_;
   PartClock& clock_;
   const bool open_loop_;
+  const lidar::Deskewing deskewing_;
   Boundaries boundaries_;
   scene::SceneAt scene_;
   std::unique_ptr<MotionSource> source_;
   std::unique_ptr<gnss::GnssSensor> gnss_;
   std::unique_ptr<inertial::ImuModel> imu_;
-  std::optional<inertial::Odometer> odometer_;  // where the filter measures with one
-  GpsTime counted_until_;                       // by it
+  Aiding aiding_;
   std::unique_ptr<lidar::Scanner> scanner_;
   Localizer localizer_;
   Mapper mapper_;
@@ -98,6 +107,7 @@ class MissionRun {
   TrueMotion motion_;                          // from the last IMU sample or sweep on
   Trajectory true_motion_, estimated_motion_;  // buffers of one revolution, at master steps and at IMU samples
   std::deque<GnssRow> fixes_;                  // measured, and not used yet
+  Pose last_keyframe_X_WB_;                    // as estimated then
   ScoredMaps maps_;
   RunRecord record_;
 };

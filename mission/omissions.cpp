@@ -5,7 +5,7 @@
 namespace canyon::mission {
 
 bool can_leave_out(const MissionConfig& config, const Omissions& omissions) {
-  if (omissions.registration && config.autonomy.map == MapPose::kRegistered) return false;
+  if (omissions.registration && takes_registered_poses(config)) return false;
   const bool registers = lidar::registers(config.registration) && !omissions.registration;
   if (omissions.unkept_rays && !omissions.keyframes) return false;
   return !omissions.keyframes || (omissions.maps && !registers);

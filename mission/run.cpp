@@ -10,18 +10,34 @@
 
 namespace canyon::mission {
 
+namespace {
+
+Schedule::Rates rates_of(const MissionConfig& config) {
+  const AidingSensors sensors = aiding_sensors(config);
+  return {config.imu.rate_hz,
+          sensors.odometer ? config.odometer.rate_hz : 0.0,
+          sensors.barometer ? config.barometer.rate_hz : 0.0,
+          sensors.magnetometer ? config.magnetometer.rate_hz : 0.0,
+          config.gnss.rate_hz,
+          config.lidar.rate_hz,
+          config.autonomy.rate_hz,
+          config.run.epoch_rate_hz};
+}
+
+}  // namespace
+
 MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock)
     : config_(config),
       mission_(mission),
       clock_(clock),
       open_loop_(parts.open_loop),
+      deskewing_(config.run.truth_as_pose ? lidar::Deskewing::kTruth : lidar::deskewing(config.lidar.deskew)),
       boundaries_(mission.start),
       scene_(*mission.scene),
       source_(std::move(parts.source)),
       gnss_(std::move(parts.gnss)),
       imu_(std::move(parts.imu)),
-      odometer_(std::move(parts.odometer)),
-      counted_until_(mission.start),
+      aiding_(aiding_sensors(config), config, *mission.scene, imu_->R_BU(), mission.start),
       scanner_(std::move(parts.scanner)),
       localizer_(
           {config.fusion, parts.imu_noise, mission.scene->frame(), config.imu.lever_arm_m, config.gnss.lever_arm_m},
@@ -31,8 +47,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       corridor_(omissions_.corridor, omissions_.corridor_until_s),
       autonomy_(std::move(parts.autonomy)),
       scorer_(config, mission, scene_),
-      schedule_(mission.start, {config.imu.rate_hz, odometer_ ? config.odometer.rate_hz : 0.0, config.gnss.rate_hz,
-                                config.lidar.rate_hz, config.autonomy.rate_hz, config.run.epoch_rate_hz}),
+      schedule_(mission.start, rates_of(config)),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
       maps_(config.run, !omissions_.maps, lidar::registers(config.registration), clock) {
@@ -43,6 +58,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
   record_.frame = mission.scene->frame();
   record_.start = mission.start;
   record_.open_loop = open_loop_;
+  record_.imu_R_BU = imu_->R_BU();
   record_.maps_made = !omissions_.maps;
   record_.keyframes_made = !omissions_.keyframes;
 
@@ -71,7 +87,6 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   CANYON_TRY(parts.gnss, gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, *mission.scene));
   CANYON_TRY(parts.imu, inertial::make_imu(config.imu, seed, mission.scene->frame()));
   CANYON_TRY(parts.imu_noise, noise_told_to_filter(config));
-  if (measures_with_odometer(config)) parts.odometer.emplace(config.odometer, seed);
   CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
   CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
   parts.autonomy =

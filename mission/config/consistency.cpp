@@ -6,6 +6,7 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
+#include "canyon/lidar/registration/registration.h"
 #include "canyon/mission/autonomy/reference_autonomy.h"
 
 namespace canyon::mission {
@@ -46,6 +47,22 @@ Status check_body(const VehicleConfig& vehicle) {
   return check_limit(
       {"vehicle.track_m", vehicle.track_m, "vehicle.width_m", vehicle.width_m,
        "a track of " + number_text(vehicle.track_m) + " m under a body " + number_text(vehicle.width_m) + " m wide"});
+}
+
+/// What the filter measures with must be there.
+Status check_measurements(const MissionConfig& config) {
+  CANYON_TRY_STATUS(fusion::check_parts(fusion::filter_parts(config.fusion)));
+  if (fusion::measures_with(config.fusion, "relative_pose") && !lidar::registers(config.registration))
+    return Error{.key = config.fusion.map_aiding ? "fusion.map_aiding" : "fusion.measurements",
+                 .what = "the filter measures with registered scans, and none is registered",
+                 .expected = "a registration.method"};
+  for (const char* name : {"heading", "map_pose"}) {
+    if (!fusion::measures_with(config.fusion, name)) continue;
+    return Error{.key = "fusion.measurements",
+                 .what = std::string("\"") + name + "\" is of recordings, a mission has no such sensor",
+                 .expected = "measurements without it"};
+  }
+  return Ok{};
 }
 
 /// What the autonomy plans with, against what the vehicle can do.
@@ -96,6 +113,7 @@ Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
   CANYON_TRY_STATUS(check_body(config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
+  CANYON_TRY_STATUS(check_measurements(config));
   return check_seeing(config.autonomy.model.own.get<ReferenceParameters>(), config.lidar.rate_hz);
 }
 

@@ -30,9 +30,9 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.number("map_range_m", c.map_range_m, {1, 1000}, "returns beyond are not mapped");
   f.number("epoch_rate_hz", c.epoch_rate_hz, {0.01, 100}, "rows of epochs/RUN_nav.csv per second");
   f.flag("record_tape", c.record_tape, "keeps the true motion as tapes/RUN.tape, for open loops");
-  f.flag(
-      "record_filter_input", c.record_filter_input,
-      "keeps IMU messages and fixes with full covariances as epochs/RUN_imu.csv and RUN_fixes.csv, for other filters");
+  f.flag("record_filter_input", c.record_filter_input,
+         "keeps what sensors tell the filter, fixes with full covariances, as epochs/RUN_imu.csv, RUN_fixes.csv and "
+         "others, for other filters");
   f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
   f.optional_number("withhold_fixes_after_s", c.withhold_fixes_after_s, -1, {0, 1e5},
@@ -48,6 +48,8 @@ void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("gnss", c.gnss, "the GNSS receiver and its errors");
   f.group("imu", c.imu, "the inertial sensor and its errors");
   f.group("odometer", c.odometer, "the wheel's encoder, where the filter measures with one");
+  f.group("barometer", c.barometer, "static pressure at the IMU, where the filter measures with it");
+  f.group("magnetometer", c.magnetometer, "the Earth's field along the IMU's axes, where the filter measures with it");
   f.group("lidar", c.lidar, "the LIDAR");
   f.group("fusion", c.fusion, "the localization filter");
   f.group("registration", c.registration, "registration of keyframes");
@@ -56,9 +58,19 @@ void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("run", c.run, "seed, map and deliberate cuts");
 }
 
-bool measures_with_odometer(const MissionConfig& config) {
-  const std::vector<std::string> measurements = fusion::filter_parts(config.fusion).measurements;
-  return std::find(measurements.begin(), measurements.end(), "odometer") != measurements.end();
+AidingSensors sensors_for(const std::vector<std::string>& measurements) {
+  const auto has = [&measurements](const char* row) {
+    return std::find(measurements.begin(), measurements.end(), row) != measurements.end();
+  };
+  return {.odometer = has("odometer"), .barometer = has("barometer"), .magnetometer = has("magnetometer")};
+}
+
+AidingSensors aiding_sensors(const MissionConfig& config) {
+  return sensors_for(fusion::filter_parts(config.fusion).measurements);
+}
+
+bool takes_registered_poses(const MissionConfig& config) {
+  return config.autonomy.map == MapPose::kRegistered || fusion::measures_with(config.fusion, "relative_pose");
 }
 
 Result<ImuNoise> noise_told_to_filter(const MissionConfig& config) {

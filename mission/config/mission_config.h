@@ -9,6 +9,8 @@
 #include "canyon/core/result.h"
 #include "canyon/fusion/filter_config.h"
 #include "canyon/gnss/sensor/gnss_config.h"
+#include "canyon/inertial/aiding/barometer.h"
+#include "canyon/inertial/aiding/magnetometer.h"
 #include "canyon/inertial/aiding/odometer.h"
 #include "canyon/inertial/imu_config.h"
 #include "canyon/lidar/lidar_config.h"
@@ -65,6 +67,8 @@ struct MissionConfig {
   gnss::GnssConfig gnss;
   inertial::ImuConfig imu;
   inertial::OdometerConfig odometer;
+  inertial::BarometerConfig barometer;
+  inertial::MagnetometerConfig magnetometer;
   lidar::LidarConfig lidar;
   fusion::FilterConfig fusion;
   lidar::RegistrationConfig registration;
@@ -74,8 +78,15 @@ struct MissionConfig {
 };
 void visit(FieldVisitor& f, MissionConfig& c);
 
-/// Whether the filter measures with the wheel's encoder, so that there is one.
-bool measures_with_odometer(const MissionConfig& config);
+/// The sensors beside IMU and receiver: a run has those that its filter measures with.
+struct AidingSensors {
+  bool odometer = false, barometer = false, magnetometer = false;
+};
+/// What these rows of fusion/measurements take: each sensor has the name of its row.
+AidingSensors sensors_for(const std::vector<std::string>& measurements);
+AidingSensors aiding_sensors(const MissionConfig& config);
+/// Whether autonomy or filter work with the poses that registration gives.
+bool takes_registered_poses(const MissionConfig& config);
 /// What the filter is told of the IMU: a datasheet ([fusion] imu), never what the simulated unit really does.
 Result<ImuNoise> noise_told_to_filter(const MissionConfig& config);
 

@@ -9,7 +9,7 @@
 namespace canyon::mission {
 
 /// What happens in a run at times of its own. The order is that of equal times.
-enum class Task { kImu, kOdometer, kGnss, kLidar, kAutonomy, kEpoch, kCount };
+enum class Task { kImu, kOdometer, kBarometer, kMagnetometer, kGnss, kLidar, kAutonomy, kEpoch, kCount };
 
 /// One thing that is due: occurrence `k` (from 1 on) of a task.
 struct Due {

@@ -21,6 +21,9 @@ void visit(FieldVisitor& f, VehicleConfig& c) {
   f.number("max_deceleration_m_s2", c.max_deceleration_m_s2, {0.1, 10}, "limit");
   f.number("max_steering_deg", c.max_steering_deg, {5, 60}, "limit of the steering angle");
   f.number("max_steering_rate_deg_s", c.max_steering_rate_deg_s, {5, 360}, "limit of its rate");
+  f.number("sideslip_deg_per_m_s2", c.sideslip_deg_per_m_s2, {0, 2},
+           "slip angle of the rear axle per lateral acceleration, about 0.5 for a car's tyres; 0 = it rolls where it "
+           "points");
   f.number("suspension_hz", c.suspension_hz, {0.3, 5}, "natural frequency of heave, pitch and roll");
   f.number("suspension_damping", c.suspension_damping, {0.05, 2}, "damping ratio");
   f.choice("roughness", c.roughness, RoadRoughness::classes(), "ISO 8608 road class");
@@ -41,15 +44,23 @@ Eigen::Vector2d Vehicle::PlanMotion::displacement(double tau) const {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (int i = 0; i < 5; ++i) {
     const double at = 0.5 * tau * (1.0 + kAbscissa[i]), direction = yaw(at);
-    sum += kWeight[i] * speed(at) * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+    const Eigen::Vector2d forward(std::cos(direction), std::sin(direction)), left(-forward.y(), forward.x());
+    sum += kWeight[i] * speed(at) * forward;
+    sum += kWeight[i] * sideways.velocity(at) * left;
   }
   return 0.5 * tau * sum;
+}
+
+SideSlip::Drive Vehicle::PlanMotion::drive(double tau) const {
+  const double forward = std::max(speed(tau), 0.0);
+  return {forward, forward * forward * curvature(tau)};
 }
 
 Vehicle::Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start)
     : config_(config),
       scene_(scene),
       roughness_(config.roughness, seed),
+      slip_(config.sideslip_deg_per_m_s2 * kDegree),
       p_(config.start_m),
       plan_{.yaw_0 = yaw_from_heading(config.start_heading_deg * kDegree)},
       last_inputs_(terrain_inputs(p_, plan_.yaw_0)),
@@ -91,6 +102,11 @@ KinematicState Vehicle::state_at(GpsTime t, const PlanMotion& plan, double tau) 
   state.X_WB = {rotation_from({yaw, pitch.x, roll.x}), {p_.x(), p_.y(), heave.x}};
   state.v_WB_W = {v * c, v * s, heave.v};
   state.a_WB_W = {acceleration * c - v * yaw_rate * s, acceleration * s + v * yaw_rate * c, heave.a};
+  if (slip_.yields()) {
+    const double across = plan.sideways.velocity(tau), changing = plan.sideways.acceleration(tau);
+    state.v_WB_W += Eigen::Vector3d(-across * s, across * c, 0.0);
+    state.a_WB_W += Eigen::Vector3d(-changing * s - across * yaw_rate * c, changing * c - across * yaw_rate * s, 0.0);
+  }
   // Body rates of R = Rz(yaw) Ry(pitch) Rx(roll), and their derivatives.
   const double sp = std::sin(pitch.x), cp = std::cos(pitch.x), sr = std::sin(roll.x), cr = std::cos(roll.x);
   state.w_WB_B = {roll.v - yaw_rate * sp, pitch.v * cr + yaw_rate * sr * cp, -pitch.v * sr + yaw_rate * cr * cp};
@@ -127,7 +143,8 @@ const KinematicState& Vehicle::advance(const DriveCommand& command) {
   CANYON_CHECK(std::isfinite(command.speed_m_s) && std::isfinite(command.curvature_1_m),
                "drive command from autonomy: speed ", command.speed_m_s, ", curvature ", command.curvature_1_m);
   constexpr double dt_s = 1e-9 * static_cast<double>(kStep_ns);
-  const PlanMotion plan = planned(command, dt_s);
+  PlanMotion plan = planned(command, dt_s);
+  if (slip_.yields()) plan.sideways = slip_.advance(plan.drive(dt_s / 3.0), plan.drive(dt_s), dt_s);
   const bool stops = plan.speed(dt_s) <= 0.0;
 
   p_ += plan.displacement(dt_s);
@@ -137,12 +154,14 @@ const KinematicState& Vehicle::advance(const DriveCommand& command) {
   pitch_.advance(last_inputs_.pitch_rad, dt_s);
   roll_.advance(last_inputs_.roll_rad, dt_s);
 
+  if (stops) slip_.stop();
   plan_ = {.yaw_0 = wrap_pi(plan.yaw(dt_s)),
            .speed_0 = stops ? 0.0 : plan.speed(dt_s),
            .curvature_0 = plan.curvature(dt_s),
            .acceleration_0 = stops ? 0.0 : plan.acceleration(dt_s),
            .jerk = 0.0,
-           .curvature_rate = plan.curvature_rate};
+           .curvature_rate = plan.curvature_rate,
+           .sideways = slip_.now()};
   state_ = state_at({state_.t.ns + kStep_ns}, plan_, 0.0);
   return state_;
 }

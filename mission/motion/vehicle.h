@@ -5,6 +5,7 @@
 #include "canyon/core/messages.h"
 #include "canyon/core/truth.h"
 #include "canyon/mission/motion/road_roughness.h"
+#include "canyon/mission/motion/side_slip.h"
 #include "canyon/mission/motion/sprung_mass.h"
 #include "canyon/mission/motion/vehicle_config.h"
 #include "canyon/scene/scene.h"
@@ -13,7 +14,8 @@ namespace canyon::mission {
 
 /// The true vehicle. Its steps are its own: they depend on no sensor. Over one of them acceleration and curvature are
 /// linear in time, and heave, pitch and roll follow the ground under the wheels as sprung masses do, exactly; what lies
-/// between the ends of steps is TrueMotion's. No slip: the vertical motion does not act on the plan motion.
+/// between the ends of steps is TrueMotion's. In the plan the rear axle rolls where it points, but for the slip of
+/// linear tyres where the configuration has it (SideSlip); the vertical motion does not act on it.
 class Vehicle {
  public:
   /// The fixed step of all true motion: the master step of a run. A road wave of 0.7 m, the shortest of ISO 8608, at
@@ -40,6 +42,7 @@ class Vehicle {
   /// Over one step, tau from its beginning: the acceleration changes evenly, and so does the curvature.
   struct PlanMotion {
     double yaw_0 = 0, speed_0 = 0, curvature_0 = 0, acceleration_0 = 0, jerk = 0, curvature_rate = 0;
+    SideSlip::Motion sideways{};
 
     double acceleration(double tau) const { return acceleration_0 + jerk * tau; }
     double speed(double tau) const { return speed_0 + (acceleration_0 + 0.5 * jerk * tau) * tau; }
@@ -47,6 +50,7 @@ class Vehicle {
     double yaw(double tau) const;
     double distance(double tau) const { return (speed_0 + (0.5 * acceleration_0 + jerk * tau / 6.0) * tau) * tau; }
     Eigen::Vector2d displacement(double tau) const;
+    SideSlip::Drive drive(double tau) const;
   };
   PlanMotion planned(const DriveCommand& command, double dt_s) const;
   Inputs terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw);
@@ -55,6 +59,7 @@ class Vehicle {
   VehicleConfig config_;
   const scene::Scene& scene_;
   RoadRoughness roughness_;
+  SideSlip slip_;
   KinematicState state_;
   Eigen::Vector2d p_;
   PlanMotion plan_;  ///< as the last step left it

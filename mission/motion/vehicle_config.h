@@ -8,7 +8,8 @@
 
 namespace canyon::mission {
 
-/// [vehicle] of a mission file: a kinematic bicycle with a sprung body on the scene's terrain.
+/// [vehicle] of a mission file: a bicycle with a sprung body on the scene's terrain, kinematic but for the slip
+/// of its tyres.
 /// B sits at the centre of the rear axle at ground level, x forward, y left, z up.
 struct VehicleConfig {
   Eigen::Vector2d start_m{0, 0};   ///< rear axle in W
@@ -23,6 +24,9 @@ struct VehicleConfig {
   double max_deceleration_m_s2 = 3.0;
   double max_steering_deg = 32.0;
   double max_steering_rate_deg_s = 45.0;
+  /// Slip angle of the rear axle per lateral acceleration: 1 / (g x cornering coefficient). A tyre of 0.2 per degree
+  /// (Gillespie 1992, chapter 6) has 0.51.
+  double sideslip_deg_per_m_s2 = 0.0;
   double suspension_hz = 1.6;       ///< undamped natural frequency of heave, pitch and roll
   double suspension_damping = 0.6;  ///< damping ratio
   std::string roughness = "B";      ///< ISO 8608 road class, or "none"

@@ -144,10 +144,28 @@ void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run) {
   csv.integer(sample.lost ? 1 : 0).end_row();
 }
 
-const char* const kOdometerColumns = "t_ns,dt_s,ticks,speed_m_s";
+const char* const kOdometerColumns = "t_ns,dt_s,ticks,speed_m_s,true_distance_m,true_slip,true_scale_error";
 
-void write(CsvWriter& csv, const OdometerSample& sample, const RowPlace& run) {
-  csv.integer(sample.t.ns - run.start.ns).exact(sample.dt_s).integer(sample.ticks).exact(sample.speed_m_s).end_row();
+void write(CsvWriter& csv, const inertial::Odometer::Reading& reading, const RowPlace& run) {
+  const OdometerSample& sample = reading.message;
+  csv.integer(sample.t.ns - run.start.ns).exact(sample.dt_s).integer(sample.ticks).exact(sample.speed_m_s);
+  csv.exact(reading.truth.distance_m).exact(reading.truth.slip).exact(reading.truth.scale_error).end_row();
+}
+
+const char* const kBarometerColumns = "t_ns,pressure_pa,true_pressure_pa,true_drift_pa";
+
+void write(CsvWriter& csv, const inertial::Barometer::Reading& reading, const RowPlace& run) {
+  csv.integer(reading.message.t.ns - run.start.ns).exact(reading.message.pressure_pa);
+  csv.exact(reading.truth.pressure_pa).exact(reading.truth.drift_pa).end_row();
+}
+
+const char* const kMagnetometerColumns = "t_ns,x_t,y_t,z_t,true_x_t,true_y_t,true_z_t";
+
+void write(CsvWriter& csv, const inertial::Magnetometer::Reading& reading, const RowPlace& run) {
+  csv.integer(reading.message.t.ns - run.start.ns);
+  for (const Eigen::Vector3d* field : {&reading.message.field_U_t, &reading.truth.field_U_t})
+    for (const double value : *field) csv.exact(value);
+  csv.end_row();
 }
 
 const char* const kFixColumns =

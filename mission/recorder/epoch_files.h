@@ -2,6 +2,9 @@
 
 #include "canyon/core/earth/local_frame.h"
 #include "canyon/core/messages.h"
+#include "canyon/inertial/aiding/barometer.h"
+#include "canyon/inertial/aiding/magnetometer.h"
+#include "canyon/inertial/aiding/odometer.h"
 #include "canyon/mission/recorder/csv_writer.h"
 #include "canyon/mission/recorder/rows.h"
 
@@ -21,11 +24,14 @@ void write(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run);
 
-/// What a filter is given, to the last bit: IMU messages, counts of the odometer, and fixes in E with their
-/// covariances.
-extern const char *const kImuColumns, *const kOdometerColumns, *const kFixColumns;
+/// What a filter is given, to the last bit: messages of IMU, odometer, barometer and magnetometer, of the last three
+/// with their truth records behind them, and fixes in E with their covariances.
+extern const char *const kImuColumns, *const kOdometerColumns, *const kBarometerColumns, *const kMagnetometerColumns,
+                                                                                             *const kFixColumns;
 void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run);
-void write(CsvWriter& csv, const OdometerSample& sample, const RowPlace& run);
+void write(CsvWriter& csv, const inertial::Odometer::Reading& reading, const RowPlace& run);
+void write(CsvWriter& csv, const inertial::Barometer::Reading& reading, const RowPlace& run);
+void write(CsvWriter& csv, const inertial::Magnetometer::Reading& reading, const RowPlace& run);
 void write_fix(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 
 }  // namespace canyon::mission

@@ -6,6 +6,9 @@
 
 #include "canyon/core/files/tape.h"
 #include "canyon/core/result.h"
+#include "canyon/inertial/aiding/barometer.h"
+#include "canyon/inertial/aiding/magnetometer.h"
+#include "canyon/inertial/aiding/odometer.h"
 #include "canyon/lidar/files/cloud_files.h"
 #include "canyon/mission/recorder/rows.h"
 
@@ -20,7 +23,9 @@ class Recorder {
   virtual ~Recorder() = default;
   virtual Status node(const TapeNode&) { return Ok{}; }  ///< true motion, the start first; t as in GPS time
   virtual Status imu(const ImuSample&) { return Ok{}; }
-  virtual Status odometer(const OdometerSample&) { return Ok{}; }
+  virtual Status odometer(const inertial::Odometer::Reading&) { return Ok{}; }
+  virtual Status barometer(const inertial::Barometer::Reading&) { return Ok{}; }
+  virtual Status magnetometer(const inertial::Magnetometer::Reading&) { return Ok{}; }
   virtual Status epoch(const NavRow&) { return Ok{}; }
   virtual Status gnss(const GnssRow&) { return Ok{}; }  ///< once the filter has used it, or will not any more
   virtual Status keyframe(const KeyframeRow&) { return Ok{}; }
@@ -34,7 +39,11 @@ class Recorders final : public Recorder {
   explicit Recorders(std::vector<Recorder*> to) : to_(std::move(to)) {}
   Status node(const TapeNode& node) override { return all(&Recorder::node, node); }
   Status imu(const ImuSample& sample) override { return all(&Recorder::imu, sample); }
-  Status odometer(const OdometerSample& sample) override { return all(&Recorder::odometer, sample); }
+  Status odometer(const inertial::Odometer::Reading& reading) override { return all(&Recorder::odometer, reading); }
+  Status barometer(const inertial::Barometer::Reading& reading) override { return all(&Recorder::barometer, reading); }
+  Status magnetometer(const inertial::Magnetometer::Reading& reading) override {
+    return all(&Recorder::magnetometer, reading);
+  }
   Status epoch(const NavRow& row) override { return all(&Recorder::epoch, row); }
   Status gnss(const GnssRow& row) override { return all(&Recorder::gnss, row); }
   Status keyframe(const KeyframeRow& row) override { return all(&Recorder::keyframe, row); }

@@ -30,6 +30,7 @@ struct GnssRow {
   std::vector<double> cn0_dbhz;  ///< by satellite of the truth record; NaN where not tracked
   Eigen::Vector3d p_A_W_true = Eigen::Vector3d::Zero();
   bool has_satellites = false;  ///< does the sensor know any; their counts and DOP jumps are else undefined
+  GnssEpoch epoch;              ///< where the filter measures with ranges
   bool withheld = false;
   double range_gain = kNaN;  ///< as of gnss::GnssOutput
   fusion::UpdateReport update;

@@ -42,8 +42,11 @@ Result<std::unique_ptr<RunFiles>> RunFiles::create(const std::string& directory,
   CANYON_TRY_STATUS(files->open(kKeyframes, stem + "_keyframes.csv", kKeyframeColumns));
   if (config.run.record_filter_input) {
     CANYON_TRY_STATUS(files->open(kImu, stem + "_imu.csv", kImuColumns));
-    if (measures_with_odometer(config))
-      CANYON_TRY_STATUS(files->open(kOdometer, stem + "_odometer.csv", kOdometerColumns));
+    const AidingSensors sensors = aiding_sensors(config);
+    if (sensors.odometer) CANYON_TRY_STATUS(files->open(kOdometer, stem + "_odometer.csv", kOdometerColumns));
+    if (sensors.barometer) CANYON_TRY_STATUS(files->open(kBarometer, stem + "_barometer.csv", kBarometerColumns));
+    if (sensors.magnetometer)
+      CANYON_TRY_STATUS(files->open(kMagnetometer, stem + "_magnetometer.csv", kMagnetometerColumns));
     CANYON_TRY_STATUS(files->open(kFixes, stem + "_fixes.csv", kFixColumns));
   }
   if (config.run.record_tape) {
@@ -68,16 +71,24 @@ Status RunFiles::node(const TapeNode& node) {
   return Ok{};
 }
 
-Status RunFiles::imu(const ImuSample& sample) {
-  if (!tables_[kImu]) return Ok{};
-  write(tables_[kImu]->rows, sample, place_);
-  return tables_[kImu]->flush(kPiece);
+template <class Row>
+Status RunFiles::append(std::size_t table, const Row& row) {
+  if (!tables_[table]) return Ok{};
+  write(tables_[table]->rows, row, place_);
+  return tables_[table]->flush(kPiece);
 }
 
-Status RunFiles::odometer(const OdometerSample& sample) {
-  if (!tables_[kOdometer]) return Ok{};
-  write(tables_[kOdometer]->rows, sample, place_);
-  return tables_[kOdometer]->flush(kPiece);
+Status RunFiles::imu(const ImuSample& sample) {
+  return append(kImu, sample);
+}
+Status RunFiles::odometer(const inertial::Odometer::Reading& reading) {
+  return append(kOdometer, reading);
+}
+Status RunFiles::barometer(const inertial::Barometer::Reading& reading) {
+  return append(kBarometer, reading);
+}
+Status RunFiles::magnetometer(const inertial::Magnetometer::Reading& reading) {
+  return append(kMagnetometer, reading);
 }
 
 Status RunFiles::epoch(const NavRow& row) {

@@ -23,7 +23,9 @@ class RunFiles final : public Recorder {
 
   Status node(const TapeNode& node) override;
   Status imu(const ImuSample& sample) override;
-  Status odometer(const OdometerSample& sample) override;
+  Status odometer(const inertial::Odometer::Reading& reading) override;
+  Status barometer(const inertial::Barometer::Reading& reading) override;
+  Status magnetometer(const inertial::Magnetometer::Reading& reading) override;
   Status epoch(const NavRow& row) override;
   Status gnss(const GnssRow& row) override;
   Status keyframe(const KeyframeRow& row) override;
@@ -38,9 +40,12 @@ class RunFiles final : public Recorder {
     /// Once there is enough of it.
     Status flush(std::size_t at_least);
   };
-  enum { kNav, kGnss, kSatellites, kKeyframes, kImu, kOdometer, kFixes, kTables };
+  enum { kNav, kGnss, kSatellites, kKeyframes, kImu, kOdometer, kBarometer, kMagnetometer, kFixes, kTables };
 
   RunFiles(std::string cloud_stem, const MissionConfig& config, const PreparedMission& mission);
+  /// A row, where the table is wanted.
+  template <class Row>
+  Status append(std::size_t table, const Row& row);
   Status open(std::size_t table, const std::string& path, const char* columns);
 
   std::string cloud_stem_;

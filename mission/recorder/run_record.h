@@ -19,6 +19,7 @@ namespace canyon::mission {
 struct RunRecord {
   std::string name;       ///< file name of the run: "low", "high_gnss_low_imu"
   std::string gnss, imu;  ///< whose fidelity each comes from
+  std::string filter;     ///< named for this run beside it; empty: the fidelity's own
   MissionConfig config;
   std::vector<InputFile> files;  ///< that it read
 
@@ -35,6 +36,7 @@ struct RunRecord {
 
   Pose initial_X_WB;  ///< what the filter started from
   Eigen::Vector3d initial_v_WB_W = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond imu_R_BU = Eigen::Quaterniond::Identity();  ///< true axes of the IMU, which the filter is not told
   lidar::MapQuality prior_quality, registered_quality;
 
   std::vector<std::string> warnings;  ///< about inputs, for example damaged records that were skipped

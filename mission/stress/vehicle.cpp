@@ -1,10 +1,13 @@
 #include "canyon/mission/motion/vehicle.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/boundaries.h"
+#include "canyon/mission/motion/side_slip.h"
 #include "canyon/mission/motion/sprung_mass.h"
 #include "canyon/mission/stress/open_ground.h"
 #include "canyon/mission/stress/subjects.h"
@@ -126,6 +129,60 @@ StressFigure refused_commands() {
   return {1.0 * passed, 0.0};
 }
 
+/// The law of the tyres, v = -k s (v' + s w), with the v' that comes out, at speeds that go evenly from rest to 30 m/s
+/// and back while the wheel is turned to and fro. Ten roundings of the largest term, k s s w at its limit or v itself;
+/// those of v' are of v / h, and count k s times.
+StressFigure slip_law(double compliance_rad_s2_m) {
+  SideSlip slip(compliance_rad_s2_m);
+  constexpr double h = 0.01;
+  const auto drive = [](double t_s) {
+    const double speed = std::abs(std::remainder(t_s, 60.0));
+    return SideSlip::Drive{speed, speed * speed * 0.01 * std::sin(0.7 * t_s)};
+  };
+  const double most_turning = SideSlip::kLargestSlip / compliance_rad_s2_m;
+  stress::Worst worst;
+  double most_m_s = 0.0;
+  for (int k = 0; k < 12000; ++k) {
+    const SideSlip::Drive end = drive((k + 1) * h);
+    const SideSlip::Motion step = slip.advance(drive((k + 1.0 / 3.0) * h), end, h), now = slip.now();
+    const double T = compliance_rad_s2_m * end.speed_m_s;
+    const double turning = std::clamp(end.turning_m_s2, -most_turning, most_turning);
+    const double size = std::abs(step.v_0) + std::abs(now.v_0) + T * std::abs(turning);
+    worst.look(now.v_0 + T * (now.a_0 + turning), 10.0 * kEpsilon * size * (1.0 + T / h) + 1e-300);
+    most_m_s = worse(most_m_s, std::abs(now.v_0));
+  }
+  // It does slip: by half of what the steepest turn at 20 m/s would make of it in the end, if T is short.
+  worst.look(0.5 * std::min(compliance_rad_s2_m * 20.0 * 4.0, SideSlip::kLargestSlip * 10.0), most_m_s);
+  return worst.figure();
+}
+
+/// Commands from one end to the other on the softest tyres: the run's own gate lets every state pass, and nothing slips
+/// by more than kLargestSlip of the greatest speed.
+StressFigure wildest_slip() {
+  VehicleConfig config;
+  config.roughness = "none";
+  config.sideslip_deg_per_m_s2 = 2.0;
+  config.max_speed_m_s = 30.0;
+  config.max_acceleration_m_s2 = config.max_deceleration_m_s2 = 10.0;
+  config.max_steering_deg = 60.0;
+  config.max_steering_rate_deg_s = 360.0;
+  Vehicle vehicle(config, open_ground(), 3, kStart);
+  const Boundaries boundaries(kStart);
+  stress::Worst worst;
+  double most_m_s = 0.0;
+  for (int k = 0; k < 4000; ++k) {
+    const KinematicState& s = vehicle.advance({k % 500 < 300 ? 1e300 : 0.0, k / 20 % 2 == 0 ? 1e300 : -1e300});
+    const double square = s.v_WB_W.head<2>().squaredNorm() - std::pow(vehicle.speed_m_s(), 2);
+    const double across = std::sqrt(square < 0.0 ? 0.0 : square);  // no number stays none
+    most_m_s = worse(most_m_s, across);
+    // The root of a difference of squares of 30 m/s: 2e-7 m/s.
+    worst.look(across, SideSlip::kLargestSlip * config.max_speed_m_s + 1e-6);
+    worst.look(boundaries.check(s).ok() ? 0.0 : stress::kInfinity, 1.0);
+  }
+  worst.look(0.5, most_m_s);  // it does slip
+  return worst.figure();
+}
+
 /// Class E at 1e5 m from W's origin: within the waves' amplitudes, and between two places 1 mm apart no steeper than
 /// all of them at once; their phases of up to 9e5 rad know themselves to an epsilon.
 StressFigure far_roughness() {
@@ -174,6 +231,19 @@ std::vector<StressCase> vehicle_cases() {
       rows.of(swings).add("vehicle/resonance_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
                           [=] { return resonance(hz, damping); });
   rows.of(commands).add("vehicle/commands_to_1e308", wild_commands);
+  const StressMechanism slips{StressGroup::kStiff, "a slip that fades in far less or more than a step",
+                              "an explicit step rings where k s << h, and at rest k s is 0 and divides; beside them "
+                              "the velocity's derivative is "
+                              "another one's than the force's",
+                              "the tyres' law with the velocity's own derivative: ten roundings of its terms",
+                              "of the bound"};
+  for (const double k : {1e-12, 1e-6, 2.0 * kDegree})
+    rows.of(slips).add("vehicle/slip_of_" + stress::text(k) + "_rad_s2_m", [=] { return slip_law(k); });
+  const StressMechanism skids{
+      StressGroup::kData, "steering from lock to lock at any speed, on soft tyres",
+      "a slip that grows with the square of speed: kilometres a second sideways",
+      "no more than the largest slip times the greatest speed, and every state passes the run's gate", "of the bound"};
+  rows.of(skids).add("vehicle/slip_from_lock_to_lock", wildest_slip);
   rows.of(broken).add("vehicle/commands_not_finite", refused_commands);
   rows.of(far).add("vehicle/roughness_100_km_off", far_roughness);
   return rows.take();

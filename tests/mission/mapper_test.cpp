@@ -62,7 +62,12 @@ class MapperTest : public ::testing::Test {
 
   Mapper mapper(const Pose& X_BL = {}) { return {config_, std::make_unique<ScriptedRegistration>(script_), X_BL}; }
   /// A scan of one point at `t_s`, with the vehicle believed at X_WB.
-  const Keyframe* offer(Mapper& mapper, double t_s, const Pose& X_WB) const {
+  const Keyframe* offer(Mapper& mapper, double t_s, const Pose& X_WB) {
+    const Keyframe* kept = offer(mapper, t_s, X_WB, last_X_WB_.inverse() * X_WB);
+    if (kept != nullptr) last_X_WB_ = X_WB;
+    return kept;
+  }
+  const Keyframe* offer(Mapper& mapper, double t_s, const Pose& X_WB, const Pose& motion) const {
     LidarScan scan;
     scan.t = kStart + t_s;
     scan.points.push_back({1, 0, 0, 0.5f, 0, 0, 0});
@@ -70,12 +75,13 @@ class MapperTest : public ::testing::Test {
     estimate.t = scan.t;
     estimate.X_WB = X_WB;
     estimate.pose_covariance = prior_covariance_;
-    return mapper.offer(scan, estimate);
+    return mapper.offer(scan, estimate, motion);
   }
 
   Script script_;
   lidar::RegistrationConfig config_;
   Matrix6d prior_covariance_ = diagonal(0.01, 0.2);
+  Pose last_X_WB_;  ///< of the last keyframe
 };
 
 Pose at(double x, double y = 0, double yaw_deg = 0) {
@@ -122,6 +128,14 @@ TEST_F(MapperTest, WhereRegistrationDoesNotConvergeThePriorStands) {
   EXPECT_EQ(keyframe->status, lidar::RegistrationStatus::kNotConverged);
   EXPECT_EQ(keyframe->X_WL_registered.p, at(3).p);
   EXPECT_EQ(mapper.correction().p, Eigen::Vector3d::Zero());
+}
+
+// 2026-11-23: the guess between keyframes held what a fix had corrected meanwhile, as if the vehicle had moved by it.
+TEST_F(MapperTest, AlignmentBeginsFromWhatIsPredictedNotFromWhatAFixHasCorrected) {
+  Mapper mapper = this->mapper({Eigen::Quaterniond::Identity(), {0.3, 0, 1.8}});
+  offer(mapper, 0.0, at(0));
+  offer(mapper, 1.0, at(7), at(3));  // a fix has moved the estimate by 4 m
+  EXPECT_LT((script_.guess.p - at(3).p).norm(), 1e-12);
 }
 
 // Everything is told to the registration in the frame of the keyframe before: the guess is the filter's motion since

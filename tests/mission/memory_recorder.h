@@ -11,6 +11,9 @@ class MemoryRecorder : public Recorder {
  public:
   std::vector<TapeNode> tape;
   std::vector<ImuSample> imu_samples;
+  std::vector<inertial::Odometer::Reading> odometer_readings;
+  std::vector<inertial::Barometer::Reading> barometer_readings;
+  std::vector<inertial::Magnetometer::Reading> magnetometer_readings;
   std::vector<NavRow> nav;
   std::vector<GnssRow> gnss_rows;
   std::vector<KeyframeRow> keyframes;
@@ -18,6 +21,11 @@ class MemoryRecorder : public Recorder {
 
   Status node(const TapeNode& node) override { return keep(tape, node); }
   Status imu(const ImuSample& sample) override { return keep(imu_samples, sample); }
+  Status odometer(const inertial::Odometer::Reading& reading) override { return keep(odometer_readings, reading); }
+  Status barometer(const inertial::Barometer::Reading& reading) override { return keep(barometer_readings, reading); }
+  Status magnetometer(const inertial::Magnetometer::Reading& reading) override {
+    return keep(magnetometer_readings, reading);
+  }
   Status epoch(const NavRow& row) override { return keep(nav, row); }
   Status gnss(const GnssRow& row) override { return keep(gnss_rows, row); }
   Status keyframe(const KeyframeRow& row) override { return keep(keyframes, row); }

@@ -218,6 +218,9 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
   EXPECT_EQ(told("[autonomy]\ncruise_m_s = 8.0\n"),
             "my.toml:5: autonomy.cruise_m_s: the autonomy plans with 8 m/s, the vehicle drives at most 6 m/s, expected "
             "autonomy.cruise_m_s not above vehicle.max_speed_m_s");
+  EXPECT_EQ(told("[fusion]\nstates = [\"biases\", \"in_run_biases\"]\n"),
+            "my.toml:5: fusion.states: \"biases\" already holds what \"turn_on_biases\" and \"in_run_biases\" hold, "
+            "expected \"biases\", or the other two");
   EXPECT_EQ(told("[vehicle]\nmax_deceleration_m_s2 = 1.0\n"),
             "my.toml:5: vehicle.max_deceleration_m_s2: the autonomy plans with 1.2 m/s^2, the vehicle brakes with at "
             "most 1 m/s^2, expected autonomy.braking_m_s2 not above vehicle.max_deceleration_m_s2");

@@ -113,6 +113,100 @@ TEST_F(VehicleTest, TurningRadiusIsThatOfTheBicycle) {
   }
 }
 
+/// A minute of turns either way, halts and starts.
+DriveCommand winding(int k) {
+  return {k % 1500 < 1200 ? 6.0 : 0.0, 0.15 * std::sin(0.007 * k) + (k % 700 < 300 ? 0.1 : 0.0)};
+}
+
+// The law of its tyres at every node: slip is -k times the lateral acceleration, both of the state that sensors are
+// given. Sums of terms below 40 m/s^2 and m/s, some ten roundings each: 1e-13.
+TEST_F(VehicleTest, SlipsByItsLateralAcceleration) {
+  VehicleConfig config;
+  config.sideslip_deg_per_m_s2 = 0.5;
+  Vehicle vehicle = make(config);
+  double most = 0.0;
+  for (int k = 1; k <= 6000; ++k) {
+    const KinematicState& state = vehicle.advance(winding(k));
+    const double yaw = yaw_pitch_roll(state.X_WB.R).yaw_rad;
+    const Eigen::Vector2d forward(std::cos(yaw), std::sin(yaw)), left(-forward.y(), forward.x());
+    const double along = state.v_WB_W.head<2>().dot(forward), across = state.v_WB_W.head<2>().dot(left);
+    ASSERT_NEAR(along, vehicle.speed_m_s(), 1e-13);
+    ASSERT_NEAR(across, -0.5 * kDegree * along * state.a_WB_W.head<2>().dot(left), 1e-13) << "step " << k;
+    most = std::max(most, std::abs(across));
+  }
+  EXPECT_GT(most, 0.1);
+}
+
+// Places against velocities and accelerations of both ends, p_1 - p_0 = h/2 (v_0 + v_1) + h^2/12 (a_0 - a_1), off by
+// h^5/720 times the fourth derivative of the velocity. The sideways velocity is of third degree, so that is at most
+// four times its third derivative, below 12 times a step's change of acceleration over h^2 (3e3 m/s^4 here), times the
+// yaw rate of 1.5 rad/s, and as little from the rest: 3e-9 m. A lateral acceleration that lacked the slip's own would
+// be off by h^2/12 of its changes, 1e-6 m.
+TEST_F(VehicleTest, PlacesAreIntegralsOfVelocitiesWithSlip) {
+  VehicleConfig config;
+  config.sideslip_deg_per_m_s2 = 0.5;
+  Vehicle vehicle = make(config);
+  KinematicState a = vehicle.state();
+  constexpr double h = 0.01;
+  for (int k = 1; k <= 6000; ++k) {
+    const KinematicState b = vehicle.advance(winding(k));
+    const bool stands = vehicle.speed_m_s() < 0.01;  // the last step of a halt is cut off
+    const Eigen::Vector3d expected = 0.5 * h * (a.v_WB_W + b.v_WB_W) + h * h / 12.0 * (a.a_WB_W - b.a_WB_W);
+    if (!stands) {
+      ASSERT_LT((b.X_WB.p - a.X_WB.p - expected).head<2>().norm(), 3e-9) << "step " << k;
+    }
+    a = b;
+  }
+}
+
+// Round a steady circle the rear axle's path leaves the vehicle's axis by atan(k s^2 kappa) and has the radius
+// sqrt(1 + slip^2) / kappa: what is below tyres that do not slip, and the heading is that of the bicycle all the same.
+TEST_F(VehicleTest, SteadyCircleHasTheSideslipOfLinearTyres) {
+  VehicleConfig config, stiff;
+  config.roughness = stiff.roughness = "none";
+  config.sideslip_deg_per_m_s2 = 0.5;
+  Vehicle vehicle = make(config), kinematic = make(stiff);
+  constexpr double kSpeed_m_s = 5.0, kCurvature_1_m = 0.1;
+  for (int k = 1; k <= 2000; ++k) {
+    vehicle.advance({kSpeed_m_s, kCurvature_1_m});
+    kinematic.advance({kSpeed_m_s, kCurvature_1_m});
+  }
+  const double slip = 0.5 * kDegree * kSpeed_m_s * kSpeed_m_s * kCurvature_1_m;
+  EXPECT_NEAR(yaw_pitch_roll(vehicle.state().X_WB.R).yaw_rad, yaw_pitch_roll(kinematic.state().X_WB.R).yaw_rad, 1e-14);
+  const auto course = [](const KinematicState& s) { return std::atan2(s.v_WB_W.y(), s.v_WB_W.x()); };
+  // The speed is made up with a time constant of 0.1 s: after 16 s all of it but rounding.
+  EXPECT_NEAR(std::remainder(course(kinematic.state()) - course(vehicle.state()), 2.0 * kPi), std::atan(slip), 1e-12);
+  const auto circle_radius = [](Vehicle& of) {
+    const Eigen::Vector3d v = of.state().v_WB_W, acceleration = of.state().a_WB_W;
+    return std::pow(v.head<2>().norm(), 3) / std::abs(v.x() * acceleration.y() - v.y() * acceleration.x());
+  };
+  EXPECT_NEAR(circle_radius(vehicle), std::sqrt(1.0 + slip * slip) / kCurvature_1_m, 1e-10);
+  EXPECT_NEAR(circle_radius(kinematic), 1.0 / kCurvature_1_m, 1e-10);
+  // And so the places run.
+  const Eigen::Vector2d v = vehicle.state().v_WB_W.head<2>().normalized();
+  const Eigen::Vector2d centre =
+      vehicle.state().X_WB.p.head<2>() + circle_radius(vehicle) * Eigen::Vector2d(-v.y(), v.x());
+  for (int k = 0; k < 1000; ++k) {
+    vehicle.advance({kSpeed_m_s, kCurvature_1_m});
+    ASSERT_NEAR((vehicle.state().X_WB.p.head<2>() - centre).norm(), std::sqrt(1.0 + slip * slip) / kCurvature_1_m,
+                1e-9);
+  }
+}
+
+// Its speed, and what it has driven, are along its axis: what a wheel turns.
+TEST_F(VehicleTest, SlipDoesNotTurnItsWheels) {
+  VehicleConfig config, stiff;
+  config.sideslip_deg_per_m_s2 = 2.0;
+  Vehicle vehicle = make(config), kinematic = make(stiff);
+  for (int k = 1; k <= 3000; ++k) {
+    vehicle.advance(winding(k));
+    kinematic.advance(winding(k));
+    ASSERT_EQ(vehicle.speed_m_s(), kinematic.speed_m_s());
+    ASSERT_EQ(vehicle.distance_m(), kinematic.distance_m());
+  }
+  EXPECT_GT((vehicle.state().X_WB.p - kinematic.state().X_WB.p).norm(), 0.1);
+}
+
 TEST_F(VehicleTest, BodySettlesOnTheTerrain) {
   VehicleConfig config;
   config.roughness = "none";
