@@ -12,16 +12,35 @@
 
 namespace canyon::study {
 
-std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two) {
+std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two,
+                               const std::vector<std::string>& filters) {
   std::vector<RunPlan> plan;
-  for (const auto& fidelity : fidelities) plan.push_back({fidelity, fidelity, fidelity});
+  for (const auto& fidelity : fidelities) plan.push_back({fidelity, fidelity, fidelity, {}});
   if (two_by_two) {
     const std::string &first = fidelities.at(0), &second = fidelities.at(1);
-    plan.push_back({second + "_gnss_" + first + "_imu", second, first});
-    plan.push_back({first + "_gnss_" + second + "_imu", first, second});
+    plan.push_back({second + "_gnss_" + first + "_imu", second, first, {}});
+    plan.push_back({first + "_gnss_" + second + "_imu", first, second, {}});
   }
-  return plan;
+  if (filters.empty()) return plan;
+  std::vector<RunPlan> each;
+  for (const RunPlan& run : plan)
+    for (const std::string& filter : filters) each.push_back({run.name + "_" + filter, run.gnss, run.imu, filter});
+  return each;
 }
+
+namespace {
+
+/// The named set, whatever rows the mission names in place of some.
+void take_filter(const std::string& name, fusion::FilterConfig& config) {
+  if (name.empty()) return;
+  const fusion::FilterConfig plain;
+  config.filter = name;
+  config.states = plain.states;
+  config.measurements = plain.measurements;
+  config.acceptance = plain.acceptance;
+}
+
+}  // namespace
 
 Result<Comparison> prepare_comparison(const mission::MissionFile& file, const std::vector<RunPlan>& plan) {
   Comparison comparison;
@@ -34,6 +53,7 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
                      .expected = "another name for the fidelity"};
   for (const RunPlan& run : plan) {
     CANYON_TRY(auto config, run.gnss == run.imu ? file.resolve(run.gnss) : file.resolve_mixed(run.gnss, run.imu));
+    take_filter(run.filter, config.fusion);
     auto prepared = mission::prepare(config, scenes);
     if (!prepared) return file.locate(prepared.error(), run.gnss, run.imu);
     comparison.configs.push_back(std::move(config));
@@ -75,6 +95,7 @@ Result<DrivenRun> drive(const Comparison& comparison, std::size_t i, const std::
   run.record.name = plan.name;
   run.record.gnss = plan.gnss;
   run.record.imu = plan.imu;
+  run.record.filter = plan.filter;
   CANYON_TRY(run.summary, summarize(run.record, *run.statistics));
   return run;
 }

@@ -12,14 +12,17 @@
 
 namespace canyon::study {
 
-/// One run of a comparison: whose GNSS and whose IMU.
+/// One run of a comparison: whose GNSS and whose IMU, and with which filter.
 struct RunPlan {
-  std::string name;  ///< "low", "high_gnss_low_imu"
+  std::string name;  ///< "low", "high_gnss_low_imu", "high_vehicle"
   std::string gnss, imu;
+  std::string filter;  ///< row of fusion::filter_sets() with nothing beside it; empty: as the fidelity has it
 };
 
-/// One run per fidelity; with `two_by_two` also the mixed runs of the first two, of which there must then be two.
-std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two);
+/// One run per fidelity; with `two_by_two` also the mixed runs of the first two, of which there must then be two. With
+/// `filters` each of them with each filter, which is then the last part of its name.
+std::vector<RunPlan> plan_runs(const std::vector<std::string>& fidelities, bool two_by_two,
+                               const std::vector<std::string>& filters = {});
 
 /// A comparison that has been read and checked; nothing has been driven yet.
 struct Comparison {

@@ -106,6 +106,7 @@ Run read_run(const JsonFields& fields, const std::vector<Figure>& figures) {
   check_run_name(fields, run.fidelity);
   run.gnss = fields.has("gnss") ? fields.text("gnss") : run.fidelity;
   run.imu = fields.has("imu") ? fields.text("imu") : run.fidelity;
+  if (fields.has("filter")) run.filter = fields.text("filter");
   // null in an open loop
   if (const JsonNode* node = fields.find("outcome"); node == nullptr || !node->is_null())
     run.outcome = fields.required_text("outcome");
@@ -242,7 +243,15 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   }
   if (!error && results.runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
   if (fields.has("seeds")) results.over_seeds = read_over_seeds(fields);
-  if (fields.has("two_by_two")) results.two_by_two = read_two_by_two(fields.object("two_by_two"));
+  if (fields.has("two_by_two_by_filter")) {
+    const JsonFields by_filter = fields.object("two_by_two_by_filter");
+    for (const auto& [filter, node] : by_filter.node()->items()) {
+      results.two_by_two.push_back(read_two_by_two(by_filter.object(filter)));
+      results.two_by_two.back().filter = filter;
+    }
+  } else if (fields.has("two_by_two")) {
+    results.two_by_two.push_back(read_two_by_two(fields.object("two_by_two")));
+  }
   if (fields.has("loop") && fields.object("loop").text("kind") == "open")
     results.open_loop = read_open_loop(fields.object("loop"));
   results.hash = fields.text("hash");

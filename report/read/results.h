@@ -72,6 +72,7 @@ struct Interval {
 /// One run's summary and whatever of its epochs and clouds the directory holds.
 struct Run {
   std::string fidelity, gnss, imu, outcome;
+  std::string filter;  ///< where it is a factor of the comparison; else empty
   std::optional<Failure> failure;
   std::map<std::string, double, std::less<>> figures;  ///< by their keys, those under `timing` among them
   std::map<std::string, Interval, std::less<>> intervals;
@@ -93,6 +94,7 @@ struct Run {
 
 /// Low and high GNSS (rows) with low and high IMU (columns).
 struct TwoByTwo {
+  std::string filter;  ///< of all four, where it is a factor
   std::vector<std::string> gnss, imu;
   std::vector<std::vector<std::string>> outcome;
   std::map<std::string, std::vector<std::vector<double>>, std::less<>> figures;
@@ -176,7 +178,7 @@ struct Results {
   SceneDrawing drawing;
   MapGrid grid;  ///< over the scene; the clouds' cells
   std::vector<Run> runs;
-  std::optional<TwoByTwo> two_by_two;
+  std::vector<TwoByTwo> two_by_two;  ///< one for each filter; empty where the mixed runs were not made
   std::string hash;
   double wall_s = 0.0, cpu_s = 0.0, peak_memory_mb = 0.0, threads = 0.0;
   std::string version, commit, command_line, instruction_set, scene_hash;  ///< of manifest.json

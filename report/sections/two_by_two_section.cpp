@@ -17,16 +17,18 @@ const double* cell_of(const TwoByTwo& table, std::string_view key, std::size_t r
 }
 
 /// The run behind a cell, for its name and colour.
-std::optional<std::size_t> run_of(const Results& results, const std::string& gnss, const std::string& imu) {
+std::optional<std::size_t> run_of(const Results& results, const TwoByTwo& table, const std::string& gnss,
+                                  const std::string& imu) {
   for (std::size_t i = 0; i < results.runs.size(); ++i) {
-    if (results.runs[i].gnss == gnss && results.runs[i].imu == imu) return i;
+    const Run& run = results.runs[i];
+    if (run.filter == table.filter && run.gnss == gnss && run.imu == imu) return i;
   }
   return std::nullopt;
 }
 
 std::string cell(const Results& results, const TwoByTwo& table, std::size_t row, std::size_t column) {
   std::string out = "<td>";
-  if (const auto i = run_of(results, table.gnss[row], table.imu[column]))
+  if (const auto i = run_of(results, table, table.gnss[row], table.imu[column]))
     out += "<p>" + run_tag(results.runs, *i) + "</p>";
   if (!results.open_loop && row < table.outcome.size()) {
     const std::string& outcome = table.outcome[row][column];
@@ -60,14 +62,15 @@ std::string attribution(const TwoByTwo& table) {
 
 /// Position error of the runs of the table against time.
 std::string error_chart(const Results& results, const TwoByTwo& table) {
-  Chart chart = time_chart(results, "two-by-two-chart", "Position error of the runs of the table");
+  Chart chart = time_chart(results, "two-by-two-chart" + (table.filter.empty() ? "" : "-" + table.filter),
+                           "Position error of the runs of the table");
   chart.marks.clear();
   Panel panel{.title = "Position error, 3-D (logarithmic)", .unit = "m"};
   panel.height_px = 190;
   std::vector<std::size_t> drawn;
   for (const std::string& gnss : table.gnss) {
     for (const std::string& imu : table.imu) {
-      const auto i = run_of(results, gnss, imu);
+      const auto i = run_of(results, table, gnss, imu);
       if (!i || !results.runs[*i].nav || results.runs[*i].nav->rows == 0) continue;
       const EpochTable& nav = *results.runs[*i].nav;
       Line line{.run = *i, .name = results.runs[*i].fidelity, .x = nav["t_s"]};
@@ -84,19 +87,11 @@ std::string error_chart(const Results& results, const TwoByTwo& table) {
   return run_legend(results.runs, drawn) + figure(draw(chart), {});
 }
 
-}  // namespace
-
-std::string two_by_two_section(const Results& results) {
-  if (results.runs.size() < 2) return {};
-  const std::string title = "GNSS or IMU?";
-  if (!results.two_by_two) {
-    return section("two-by-two", title, {},
-                   note("The mixed runs (GNSS of one fidelity, IMU of another) were not made."));
-  }
-  const TwoByTwo& table = *results.two_by_two;
-  std::string body =
-      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"GNSS by IMU\"><table "
-      "class=\"two-by-two\">\n<thead><tr><td></td>";
+/// One table of GNSS by IMU, with the run errors below it.
+std::string square(const Results& results, const TwoByTwo& table) {
+  const std::string with = table.filter.empty() ? "" : " with filter " + table.filter;
+  std::string body = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"GNSS by IMU" +
+                     escape_html(with) + "\"><table class=\"two-by-two\">\n<thead><tr><td></td>";
   for (const std::string& imu : table.imu) body += "<th scope=\"col\">IMU " + escape_html(imu) + "</th>";
   body += "</tr></thead>\n<tbody>";
   for (std::size_t r = 0; r < table.gnss.size(); ++r) {
@@ -105,11 +100,34 @@ std::string two_by_two_section(const Results& results) {
     body += "</tr>\n";
   }
   body += "</tbody></table></div>\n";
-  const std::string loop = results.open_loop
-                               ? " All four runs are on one true motion."
-                               : " Each run drove by itself: these are four drives, and part of the difference may be "
-                                 "where each of them went (compare --open-loop takes that away).";
-  return section("two-by-two", title, escape_html(attribution(table) + loop), body + error_chart(results, table));
+  return body + error_chart(results, table);
+}
+
+}  // namespace
+
+std::string two_by_two_section(const Results& results) {
+  if (results.runs.size() < 2) return {};
+  const bool filters = results.two_by_two.size() > 1;
+  const std::string title = filters ? "GNSS, IMU or filter?" : "GNSS or IMU?";
+  if (results.two_by_two.empty()) {
+    return section("two-by-two", title, {},
+                   note("The mixed runs (GNSS of one fidelity, IMU of another) were not made."));
+  }
+  std::string says, body;
+  for (const TwoByTwo& table : results.two_by_two) {
+    const std::string told = attribution(table);
+    if (filters && !told.empty()) says += "With filter " + table.filter + ": ";
+    says += told + " ";
+    if (filters) body += "<h3>Filter " + escape_html(table.filter) + "</h3>\n";
+    body += square(results, table);
+  }
+  says +=
+      results.open_loop
+          ? (filters ? "All runs are on one true motion." : "All four runs are on one true motion.")
+          : std::string("Each run drove by itself: these are ") + (filters ? "separate" : "four") +
+                " drives, and part of the difference may be where each of them went (compare --open-loop takes that "
+                "away).";
+  return section("two-by-two", title, escape_html(says), body);
 }
 
 }  // namespace canyon::report

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 
 #include "canyon/core/earth/gravity.h"
 #include "canyon/core/files/files.h"
@@ -16,7 +17,12 @@ constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to s
 
 /// Whether the file begins with a number: then it has no header, and is taken for the KF-GINS text format.
 Result<bool> is_bare(const std::string& path) {
-  CANYON_TRY(const std::string text, read_text_or_gzip_file(path));
+  std::string text(256, '\0');
+  std::ifstream in(path, std::ios::binary);
+  text.resize(static_cast<std::size_t>(in.read(text.data(), 256).gcount()));
+  if (!in.is_open() || text.starts_with("\x1f\x8b")) {
+    CANYON_TRY(text, read_text_or_gzip_file(path));
+  }
   const std::size_t at = text.find_first_not_of(" \t\r\n");
   return at != std::string::npos && std::string_view("0123456789.-+").find(text[at]) != std::string_view::npos;
 }
@@ -52,16 +58,23 @@ Result<ImuRecording> read_imu_recording(const std::string& path, const ImuRecord
   ImuRecording out;
   out.path = path;
   out.kf_gins = format.columns == "kf_gins" || (format.columns.empty() && bare);
-  CANYON_TRY(const inertial::ImuLog log, read_log(path, {.columns = out.kf_gins ? "kf_gins" : format.columns}, warn));
+  CANYON_TRY(const inertial::ImuLog log,
+             read_log(path, {.columns = out.kf_gins ? "kf_gins" : format.columns, .mend = format.mend}, warn));
+  out.not_finite = log.mended.not_finite;
+  out.duplicates = log.mended.duplicates;
+  out.reversed = log.mended.reversed;
   CANYON_TRY_STATUS(check_stamps(path, log, format.gps_week));
   for (int c = 0; c < 6; ++c)
     if (log.channels[static_cast<std::size_t>(c)].empty())
       return Error{path, 0, "", std::string("no column for ") + inertial::kChannelNames[c], "all six channels"};
   const Eigen::Vector3d sign =
       format.forward_right_down && !out.kf_gins ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
-  const inertial::Sampling sampling = inertial::sampling_of(log.t_s);
+  const inertial::Sampling sampling = inertial::sampling_of(log.t_s, format.gap_factor);
+  out.interval_s = sampling.interval_s;
   out.gaps = sampling.segments.size() - 1;
-  for (const inertial::Segment& segment : sampling.segments)
+  out.samples.reserve(log.size());
+  for (const inertial::Segment& segment : sampling.segments) {
+    if (segment.begin > 0) out.after_gap.push_back(segment.begin);
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
       if (k % kSamplesPerLook == 0) throw_if_cancelled();
       const auto& c = log.channels;
@@ -70,10 +83,16 @@ Result<ImuRecording> read_imu_recording(const std::string& path, const ImuRecord
       s.dt_s = k > segment.begin ? log.t_s[k] - log.t_s[k - 1] : sampling.interval_s;
       const double rate_s = log.increments[0] ? sampling.interval_s : s.dt_s;
       const double force_s = log.increments[1] ? sampling.interval_s : s.dt_s;
-      s.dtheta_U = rate_s * sign.cwiseProduct(Eigen::Vector3d(c[0][k], c[1][k], c[2][k]));
-      s.dv_U = force_s * sign.cwiseProduct(Eigen::Vector3d(c[3][k], c[4][k], c[5][k]));
+      // Of rates at the stamps the mean is that of both ends.
+      const std::size_t before = k > segment.begin ? k - 1 : k;
+      const auto mean = [&](std::size_t i) {
+        return format.instantaneous && !log.increments[i / 3] ? 0.5 * (c[i][before] + c[i][k]) : c[i][k];
+      };
+      s.dtheta_U = rate_s * sign.cwiseProduct(Eigen::Vector3d(mean(0), mean(1), mean(2)));
+      s.dv_U = force_s * sign.cwiseProduct(Eigen::Vector3d(mean(3), mean(4), mean(5)));
       out.samples.push_back(s);
     }
+  }
   return out;
 }
 

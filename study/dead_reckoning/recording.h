@@ -15,13 +15,20 @@ struct ImuRecording {
   std::string path;
   std::vector<ImuSample> samples;
   bool kf_gins = false;  ///< the file is the KF-GINS text format
+  double interval_s = 0.0;
   std::size_t gaps = 0;
+  std::vector<std::size_t> after_gap;  ///< the first sample after each of them
+  /// Rows of the file that were passed over, where the format lets them.
+  std::size_t not_finite = 0, duplicates = 0, reversed = 0;
 };
 
 struct ImuRecordingFormat {
   std::string columns = {};         ///< as ImuLogFormat; empty: the file's header, or KF-GINS text if it has none
   bool forward_right_down = false;  ///< axes of the file; KF-GINS text has its own
   int gps_week = 0;                 ///< of which the stamps are seconds
+  double gap_factor = 5.0;          ///< from so many usual intervals on it is a gap, unless what follows makes it up
+  bool mend = false;                ///< as of inertial::ImuLogFormat
+  bool instantaneous = false;       ///< rates are those at the stamp, and not means over the interval that ends there
 };
 
 /// The first interval and those after gaps are as long as usual. A channel that is dead or saturated can still be

@@ -50,13 +50,16 @@ std::vector<Need> reader_needs(const mission::MissionConfig& config, const missi
                                const std::vector<Output>& outputs, bool open_loop) {
   std::vector<Need> needs;
   const std::string maps = readers_of_maps(outputs);
-  const bool registered_poses = config.autonomy.map == mission::MapPose::kRegistered;
+  const bool by_autonomy = config.autonomy.map == mission::MapPose::kRegistered;
+  const bool registered_poses = mission::takes_registered_poses(config);
   const bool registers = lidar::registers(config.registration);
   const bool aligned = registers && (!maps.empty() || registered_poses);
   if (registers)
-    needs.push_back(!maps.empty()      ? read_by(kRegistration, maps)
-                    : registered_poses ? read_by(kRegistration, "the autonomy ([autonomy] map = \"registered\")")
-                                       : unread(kRegistration, "neither an output nor the autonomy takes the poses"));
+    needs.push_back(!maps.empty() ? read_by(kRegistration, maps)
+                    : by_autonomy ? read_by(kRegistration, "the autonomy ([autonomy] map = \"registered\")")
+                    : registered_poses
+                        ? read_by(kRegistration, "the filter ([fusion] map_aiding)")
+                        : unread(kRegistration, "no output, and neither autonomy nor filter, takes the poses"));
   needs.push_back(maps.empty() ? unread(kMaps, "no output has a map") : read_by(kMaps, maps));
   if (maps.empty() && !aligned)
     needs.push_back(unread(kKeyframes, "nothing is made of them"));

@@ -162,14 +162,27 @@ void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEff
   for (const double per_metre : chain.any) plan.epoch_bound_m.push_back(ranges.bound_m * per_metre);
 }
 
+namespace {
+
+/// What fusion::FixResponse follows: estimates linear in the positions of the fixes, corrected beside them by nothing
+/// but what the replay of the filter has, which is the IMU.
+bool answers_to_positions_alone(const fusion::FilterConfig& filter) {
+  const std::vector<std::string> measurements = fusion::filter_parts(filter).measurements;
+  return fusion::takes_all(filter) && std::all_of(measurements.begin(), measurements.end(), [](const std::string& row) {
+           return row == "position" || row == "non_holonomic";
+         });
+}
+
+}  // namespace
+
 Status leave_out_tolerated(const std::vector<Need>& needs, const mission::MissionConfig& config,
                            const mission::PreparedMission& mission, bool open_loop, Plan& plan) {
   std::vector<PlannedEffect> candidates, lines;
   for (const Need& need : needs) {
     PlannedEffect line{.need = need, .segment = "whole run"};
-    if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && !fusion::takes_all(config.fusion)) {
+    if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && !answers_to_positions_alone(config.fusion)) {
       line.need.verdict = Verdict::kUndecidable;
-      line.need.reason = "the filter decides what it makes of each fix";
+      line.need.reason = "the filter measures with more than the fixes' positions, or decides what it makes of each";
     }
     const bool acts = line.need.verdict == Verdict::kNotNeeded && need.bound > 0.0;
     if (const std::string why = beyond_tolerances(plan, open_loop); acts && !plan.tolerances.empty() && !why.empty()) {

@@ -48,15 +48,21 @@ Json waypoints_json(const mission::MissionConfig& config) {
   return out;
 }
 
-Json two_by_two_json(const std::vector<RunSummary>& summaries) {
-  const auto square = two_by_two(summaries);
-  if (!square) return nullptr;
-  Json out{{"gnss", square->levels}, {"imu", square->levels}};
+Json square_json(const TwoByTwo& square) {
+  Json out{{"gnss", square.levels}, {"imu", square.levels}};
   for (const char* key : {"outcome", "position_error_rms_m", "registration_error_rms_m", "map_error_prior_rms_m"}) {
     out[key] = Json::array();
-    for (const auto& row : square->runs) out[key].push_back({run_json(*row[0])[key], run_json(*row[1])[key]});
+    for (const auto& row : square.runs) out[key].push_back({run_json(*row[0])[key], run_json(*row[1])[key]});
   }
   return out;
+}
+
+/// The 2 x 2 of GNSS and IMU, and where the filter is a third factor one of each.
+void add_squares(const std::vector<RunSummary>& summaries, Json& out) {
+  const std::vector<TwoByTwo> squares = two_by_two(summaries);
+  out["two_by_two"] = squares.empty() ? Json(nullptr) : square_json(squares.front());
+  for (const TwoByTwo& square : squares)
+    if (!square.filter.empty()) out["two_by_two_by_filter"][square.filter] = square_json(square);
 }
 
 /// Which loop the figures are of; in an open one what they say of two runs epoch by epoch.
@@ -105,7 +111,7 @@ Json made_json(const scene::Scene& scene) {
 }
 
 Json manifest_json(const Results& results) {
-  Json runs = Json::object(), files = Json::object(), initial = Json::object();
+  Json runs = Json::object(), files = Json::object(), initial = Json::object(), mountings = Json::object();
   for (const mission::RunRecord& record : results.records) {
     for (const mission::InputFile& file : record.files) files[file.path] = file.sha256;
     mission::MissionConfig config = record.config;
@@ -114,6 +120,8 @@ Json manifest_json(const Results& results) {
     initial[record.name] = {{"position_m", {p.x(), p.y(), p.z()}},
                             {"attitude_wxyz", {q.w(), q.x(), q.y(), q.z()}},
                             {"velocity_m_s", {v.x(), v.y(), v.z()}}};
+    const Eigen::Vector3d askew_deg = so3_log(record.imu_R_BU) / kDegree;
+    mountings[record.name] = {{"imu_deg", {askew_deg.x(), askew_deg.y(), askew_deg.z()}}};
     runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
   }
   Json left_out = Json::object();
@@ -130,6 +138,7 @@ Json manifest_json(const Results& results) {
           {"scene_hash", results.mission->scene->hash()},
           {"files", files},
           {"initial_estimates", initial},
+          {"true_mountings", mountings},
           {"configuration", runs}};
 }
 
@@ -146,6 +155,7 @@ Json run_json(const RunSummary& s) {
   out["fidelity"] = s.name;
   out["gnss"] = s.gnss;
   out["imu"] = s.imu;
+  if (!s.filter.empty()) out["filter"] = s.filter;
   out["seed"] = s.seed;
   out["outcome"] = s.outcome ? Json(mission::name(*s.outcome)) : Json(nullptr);
   out["failure"] = nullptr;
@@ -215,7 +225,7 @@ Json summary_json(const Results& results) {
     }
   out["figures"] = figure_descriptions();
   if (!results.further_seeds.empty()) write_over_seeds(over_seeds(runs_by_seed(results)), out);
-  out["two_by_two"] = two_by_two_json(results.summaries);
+  add_squares(results.summaries, out);
   out["loop"] = loop_json(results);
   out["timing"] = {{"wall_s", results.wall_s},
                    {"cpu_s", cpu_s},

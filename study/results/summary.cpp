@@ -4,21 +4,36 @@
 
 namespace canyon::study {
 
-std::optional<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs) {
-  const auto pure = [](const RunSummary& run) { return run.gnss == run.imu; };
+namespace {
+
+std::optional<TwoByTwo> with_filter(const std::string& filter, const std::vector<RunSummary>& runs) {
+  const auto pure = [&](const RunSummary& run) { return run.filter == filter && run.gnss == run.imu; };
   const auto first = std::find_if(runs.begin(), runs.end(), pure);
   const auto second =
       std::find_if(first, runs.end(), [&](const RunSummary& run) { return pure(run) && run.gnss != first->gnss; });
   if (second == runs.end()) return std::nullopt;
-  TwoByTwo out{{first->gnss, second->gnss}, {}};
+  TwoByTwo out{filter, {first->gnss, second->gnss}, {}};
   for (std::size_t g = 0; g < 2; ++g)
     for (std::size_t i = 0; i < 2; ++i) {
       const auto found = std::find_if(runs.begin(), runs.end(), [&](const RunSummary& run) {
-        return run.gnss == out.levels[g] && run.imu == out.levels[i];
+        return run.filter == filter && run.gnss == out.levels[g] && run.imu == out.levels[i];
       });
       if (found == runs.end()) return std::nullopt;
       out.runs[g][i] = &*found;
     }
+  return out;
+}
+
+}  // namespace
+
+std::vector<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs) {
+  std::vector<TwoByTwo> out;
+  std::vector<std::string> seen;
+  for (const RunSummary& run : runs) {
+    if (std::find(seen.begin(), seen.end(), run.filter) != seen.end()) continue;
+    seen.push_back(run.filter);
+    if (auto square = with_filter(run.filter, runs)) out.push_back(*std::move(square));
+  }
   return out;
 }
 
@@ -28,6 +43,7 @@ Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatisti
   out.seed = record.config.run.seed;
   out.gnss = record.gnss;
   out.imu = record.imu;
+  out.filter = record.filter;
   out.outcome = record.outcome;
   out.open_loop = record.open_loop;
   out.failure = record.failure;

@@ -15,6 +15,7 @@ namespace canyon::study {
 /// The figures of one run, as the table, summary.json and --json give them (docs/results.md). NaN = undefined.
 struct RunSummary {
   std::string name, gnss, imu;
+  std::string filter;                       ///< the factor's level; empty: the fidelity's own
   std::optional<mission::Outcome> outcome;  ///< none in an open loop
   std::int64_t seed = 0;
   bool open_loop = false;  ///< neither outcome nor waypoints
@@ -49,10 +50,11 @@ Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatisti
 
 /// The four runs of a 2 x 2: GNSS and IMU of the first and the second fidelity compared, each with each.
 struct TwoByTwo {
+  std::string filter;                                    ///< of all four; empty: each fidelity's own
   std::array<std::string, 2> levels;                     ///< the first two fidelities, in the order asked for
   std::array<std::array<const RunSummary*, 2>, 2> runs;  ///< [level of the GNSS][level of the IMU]
 };
-/// None unless all four are among `runs`, which must outlive it.
-std::optional<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs);
+/// One for each filter, in the order of the runs; none unless all four are among `runs`, which must outlive it.
+std::vector<TwoByTwo> two_by_two(const std::vector<RunSummary>& runs);
 
 }  // namespace canyon::study

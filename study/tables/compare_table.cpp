@@ -18,19 +18,18 @@ std::string cell(const std::string& word, double value, int decimals, const char
   return word + "  " + fixed(value, decimals) + unit;
 }
 
-/// The 2 x 2 of GNSS and IMU fidelity as lines of text; empty unless all four runs are there.
-std::string square_text(const std::vector<RunSummary>& runs) {
-  const auto square = two_by_two(runs);
-  if (!square) return "";
-  const bool open_loop = runs.front().open_loop;
+/// The 2 x 2 of GNSS and IMU fidelity as lines of text.
+std::string square_text(const TwoByTwo& square) {
+  const bool open_loop = square.runs[0][0]->open_loop;
   std::size_t width = 14;
-  for (const std::string& level : square->levels) width = std::max(width, level.size() + 9);
-  std::string out = open_loop ? "2 x 2, open loop: position error RMS on one true motion\n"
-                              : "2 x 2, closed loop: outcome and position error RMS\n";
-  out += left("", width) + "  " + left(square->levels[0] + " IMU", 26) + "  " + square->levels[1] + " IMU\n";
+  for (const std::string& level : square.levels) width = std::max(width, level.size() + 9);
+  std::string out = "2 x 2, " + (square.filter.empty() ? std::string() : "filter " + square.filter + ", ") +
+                    (open_loop ? "open loop: position error RMS on one true motion\n"
+                               : "closed loop: outcome and position error RMS\n");
+  out += left("", width) + "  " + left(square.levels[0] + " IMU", 26) + "  " + square.levels[1] + " IMU\n";
   for (std::size_t g = 0; g < 2; ++g) {
-    out += left("  " + square->levels[g] + " GNSS", width);
-    for (const RunSummary* run : square->runs[g])
+    out += left("  " + square.levels[g] + " GNSS", width);
+    for (const RunSummary* run : square.runs[g])
       out += "  " + left(cell(run->outcome ? mission::name(*run->outcome) : "", run->position_m.rms, 2, " m"), 26);
     out += "\n";
   }
@@ -91,7 +90,7 @@ std::string comparison_table(const Results& results, const std::vector<std::stri
            "): 3-D error larger by " + fixed(pair.mean_m, 3) + " m on average, " + interval + "; larger at " +
            fixed(100.0 * pair.worse_share, 0) + " % of epochs\n";
   }
-  if (const std::string square = square_text(results.summaries); !square.empty()) out += "\n" + square;
+  for (const TwoByTwo& square : two_by_two(results.summaries)) out += "\n" + square_text(square);
   return out;
 }
 

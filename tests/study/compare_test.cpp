@@ -59,13 +59,41 @@ TEST(TwoByTwoTest, IsOfTheFirstTwoFidelitiesCompared) {
   std::vector<RunSummary> runs(5);
   const char* sensors[][2] = {{"mine", "mine"}, {"low", "low"}, {"high", "high"}, {"low", "mine"}, {"mine", "low"}};
   for (std::size_t i = 0; i < 5; ++i) runs[i].gnss = sensors[i][0], runs[i].imu = sensors[i][1];
-  const auto square = two_by_two(runs);
-  ASSERT_TRUE(square);
+  const auto squares = two_by_two(runs);
+  ASSERT_EQ(squares.size(), 1U);
+  const TwoByTwo* square = &squares.front();
   EXPECT_EQ(square->levels, (std::array<std::string, 2>{"mine", "low"}));
   EXPECT_EQ(square->runs[0][1], &runs[4]);
   EXPECT_EQ(square->runs[1][0], &runs[3]);
   runs.pop_back();
-  EXPECT_FALSE(two_by_two(runs));
+  EXPECT_TRUE(two_by_two(runs).empty());
+}
+
+TEST(TwoByTwoTest, TheFilterIsAThirdFactor) {
+  const auto plan = plan_runs({"low", "high"}, true, {"naive", "vehicle"});
+  ASSERT_EQ(plan.size(), 8U);
+  EXPECT_EQ(plan[3].name, "high_vehicle");
+  EXPECT_EQ(plan[4].name, "high_gnss_low_imu_naive");
+  std::vector<RunSummary> runs(plan.size());
+  for (std::size_t i = 0; i < plan.size(); ++i)
+    runs[i].gnss = plan[i].gnss, runs[i].imu = plan[i].imu, runs[i].filter = plan[i].filter;
+  const auto squares = two_by_two(runs);
+  ASSERT_EQ(squares.size(), 2U);
+  EXPECT_EQ(squares[0].filter, "naive");
+  EXPECT_EQ(squares[1].runs[1][0], &runs[5]);
+  runs.pop_back();  // of the vehicle's one cell is missing
+  EXPECT_EQ(two_by_two(runs).size(), 1U);
+}
+
+TEST(TwoByTwoTest, ANamedFilterTakesThePlaceOfAllRows) {
+  auto file = mission::MissionFile::parse(
+      std::string(kMission) + "[fusion]\nstates = [\"biases\"]\nacceptance = \"huber\"\ngate_sigma = 4.0\n", "my.toml");
+  const auto comparison = prepare_comparison(*file, plan_runs({"high"}, false, {"naive", "vehicle"}));
+  ASSERT_TRUE(comparison.ok()) << comparison.error().str();
+  const fusion::FilterParts vehicle = fusion::filter_parts(comparison->configs[1].fusion);
+  EXPECT_EQ(vehicle.acceptance, "innovation_adaptive");
+  EXPECT_EQ(vehicle.states.size(), 5U);
+  EXPECT_EQ(fusion::filter_parts(comparison->configs[0].fusion).acceptance, "gate");
 }
 
 TEST_F(CompareTest, AllRunsShareOneScene) {

@@ -5,6 +5,7 @@
 
 #include "canyon/core/process/progress.h"
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/fusion/observers/fix_response.h"
 #include "canyon/mission/run.h"
 
 namespace canyon::study {

@@ -14,8 +14,8 @@ namespace canyon::study {
 /// Of a fix: the sum of |d position / d range| of that epoch's own weighted solution, with the satellites that are
 /// tracked there (weights and tracking do not depend on the seed's noise). Epochs whose sum is above `most_gain` move
 /// by nothing, since a run measures them in full. From fixes to estimates: the filter's summed absolute impulse
-/// response (fusion/fix_response.h) with the gains of its own covariance along the tape, each fix moved in the worst
-/// direction. It is asked at every row, from the start to the tape's end: also where no fix comes any more.
+/// response (fusion/observers/fix_response.h) with the gains of its own covariance along the tape, each fix moved in
+/// the worst direction. It is asked at every row, from the start to the tape's end: also where no fix comes any more.
 ///
 /// Rigorous are the norms and the worst signs; first order is the linearization of solver and filter, whose remainder
 /// falls with the square of b. Which fixes there are is decided by the seed's noise too (tests of residuals,

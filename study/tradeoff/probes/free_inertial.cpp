@@ -2,6 +2,7 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/core/process/cpu_time.h"
+#include "canyon/inertial/mounting.h"
 #include "canyon/study/tradeoff/probes/heap_meter.h"
 #include "canyon/study/tradeoff/probes/imu_samples.h"
 #include "canyon/study/tradeoff/probes/models.h"
@@ -69,7 +70,8 @@ class FreeInertialProbe final : public Probe {
   /// Error at the window's end, in E.
   std::vector<double> navigate(const std::vector<ImuSample>& samples, CpuAccount& account) const {
     const LocalFrame& frame = setup_.mission.scene->frame();
-    const auto state_at = [&](GpsTime t) { return imu_state(motion_.at(t), frame, config_.imu.lever_arm_m); };
+    const auto R_BU = inertial::mounting(config_.imu, static_cast<std::uint64_t>(config_.run.seed));
+    const auto state_at = [&](GpsTime t) { return imu_state(motion_.at(t), frame, config_.imu.lever_arm_m, R_BU); };
     const GpsTime start = samples[kLookBack].t - samples[kLookBack].dt_s;
     fusion::NavState state = state_at(start);
     const auto strapdown = fusion::make_strapdown(config_.fusion.integrator);

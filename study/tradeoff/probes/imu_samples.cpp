@@ -26,10 +26,12 @@ std::vector<ImuSample> summed(std::span<const ImuSample> fine, std::size_t count
   return out;
 }
 
-fusion::NavState imu_state(const KinematicState& truth, const LocalFrame& frame, const Eigen::Vector3d& lever_arm_m) {
+fusion::NavState imu_state(const KinematicState& truth, const LocalFrame& frame, const Eigen::Vector3d& lever_arm_m,
+                           const std::optional<Eigen::Quaterniond>& R_BU) {
   fusion::NavState state;
   state.t = truth.t;
   state.R_EU = (Eigen::Quaterniond(frame.R_EW()) * truth.X_WB.R).normalized();
+  if (R_BU) state.R_EU = (state.R_EU * *R_BU).normalized();
   state.p_EU_E = frame.to_E(truth.X_WB * lever_arm_m);
   state.v_EU_E = frame.R_EW() * (truth.v_WB_W + truth.X_WB.R * truth.w_WB_B.cross(lever_arm_m));
   return state;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,8 @@ std::vector<ImuSample> imu_samples(inertial::ImuModel& imu, const TrueMotion& mo
 /// What does not fill one at the end is left out.
 std::vector<ImuSample> summed(std::span<const ImuSample> fine, std::size_t count);
 
-/// The IMU of a body that moves as `truth` says, `lever_arm_m` from B's origin in B.
-fusion::NavState imu_state(const KinematicState& truth, const LocalFrame& frame, const Eigen::Vector3d& lever_arm_m);
+/// The IMU of a body that moves as `truth` says, `lever_arm_m` from B's origin in B, with axes R_BU (none: B's).
+fusion::NavState imu_state(const KinematicState& truth, const LocalFrame& frame, const Eigen::Vector3d& lever_arm_m,
+                           const std::optional<Eigen::Quaterniond>& R_BU);
 
 }  // namespace canyon::study

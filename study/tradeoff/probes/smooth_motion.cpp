@@ -33,7 +33,7 @@ SmoothDrive make_drive(SmoothMotion kind, int rate_hz) {
   const auto state_at = [&](double t_s) {
     KinematicState truth = motion.imu_at(t_s);
     truth.t = motion.start + t_s;
-    return imu_state(truth, motion.frame, Eigen::Vector3d::Zero());
+    return imu_state(truth, motion.frame, Eigen::Vector3d::Zero(), std::nullopt);
   };
   const auto time_of = [&](int k) { return kFrom_s + static_cast<double>(k) / rate_hz; };
   drive.truth.push_back(state_at(kFrom_s));

@@ -108,6 +108,18 @@ TEST(Tolerated, InAClosedLoopAndBesideOtherOutputsWhatActsIsKept) {
   }
 }
 
+// 2026-11-23: the replay of the filter has no wheels, and its gains were taken for those of a filter that has.
+TEST(Tolerated, AFilterThatMeasuresWithMoreThanThePlansReplayIsUndecidable) {
+  for (const char* more : {"odometer", "velocity", "barometer", "standstill"}) {
+    const Planned planned("high",
+                          std::string(kShort) + "[fusion]\nmeasurements = [\"position\", \"" + more +
+                              "\"]\nacceptance = \"accept_all\"\n",
+                          {Output::kPosition}, true, {{kRms, 0.05}});
+    EXPECT_EQ(planned.verdict(gnss::kTroposphere), Verdict::kUndecidable) << more;
+    EXPECT_FALSE(planned.plan.omissions.ranges.any()) << more;
+  }
+}
+
 TEST(Tolerated, BoundsHoldAlongOneTapeAndInNoClosedLoop) {
   const Planned planned("high", kShort, {Output::kPosition}, true, {{kRms, 0.05}});
   ASSERT_GT(planned.plan.omissions.ranges.bound_m, 0.0);

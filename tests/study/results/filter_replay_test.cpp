@@ -99,6 +99,27 @@ OdometerSample count_of(const std::map<std::string, double>& row, GpsTime start)
           .speed_m_s = row.at("speed_m_s")};
 }
 
+BarometerSample pressure_of(const std::map<std::string, double>& row, GpsTime start) {
+  return {.t = time_of(row, start), .pressure_pa = row.at("pressure_pa")};
+}
+
+MagnetometerSample field_of(const std::map<std::string, double>& row, GpsTime start) {
+  return {.t = time_of(row, start), .field_U_t = vector_of(row, "x_t", "y_t", "z_t")};
+}
+
+/// A sensor's file, handed to the filter row by row up to a time.
+template <class Message>
+struct AidingLog {
+  std::vector<std::map<std::string, double>> rows;
+  Message (*message_of)(const std::map<std::string, double>& row, GpsTime start);
+  std::size_t next = 0;
+
+  void give(fusion::ErrorStateFilter& filter, GpsTime until, GpsTime start) {
+    for (; next < rows.size() && time_of(rows[next], start) <= until; ++next)
+      filter.update(fusion::AidingMessage(message_of(rows[next], start)));
+  }
+};
+
 fusion::ErrorStateFilter filter_of(const mission::MissionConfig& config, const mission::PreparedMission& mission,
                                    const nlohmann::json& initial) {
   fusion::ErrorStateFilter filter(config.fusion, *noise_told_to_filter(config), mission.scene->frame(),
@@ -112,10 +133,9 @@ fusion::ErrorStateFilter filter_of(const mission::MissionConfig& config, const m
 
 // Bit for bit: the numbers are written with as many digits as they need, and the built-in rates are multiples of one
 // another, so that no fix divides an IMU sample.
-void replay(const std::string& filter_set) {
-  const auto file =
-      mission::MissionFile::parse(std::string(kMission) + "[fusion]\nfilter = \"" + filter_set + "\"\n", "my.toml");
-  const bool counts = filter_set == "vehicle";
+void replay(const std::string& fusion, const mission::AidingSensors& has) {
+  const auto file = mission::MissionFile::parse(std::string(kMission) + "[fusion]\n" + fusion + "\n", "my.toml");
+  ASSERT_TRUE(file.ok()) << file.error().str();
   for (const char* fidelity : {"low", "high"}) {
     const auto comparison = prepare_comparison(*file, plan_runs({fidelity}, false));
     ASSERT_TRUE(comparison.ok()) << comparison.error().str();
@@ -131,20 +151,27 @@ void replay(const std::string& filter_set) {
 
     const std::string stem = std::string("epochs/") + fidelity;
     const auto samples = read_csv(folder.file(stem + "_imu.csv")), fixes = read_csv(folder.file(stem + "_fixes.csv"));
-    const auto ticks = counts ? read_csv(folder.file(stem + "_odometer.csv")) : decltype(samples){};
-    EXPECT_EQ(std::filesystem::exists(folder.file(stem + "_odometer.csv")), counts);
+    const auto rows_of = [&](const char* sensor, bool there) {
+      const std::string path = folder.file(stem + sensor);
+      EXPECT_EQ(std::filesystem::exists(path), there) << path;
+      return there ? read_csv(path) : decltype(samples){};
+    };
+    AidingLog<OdometerSample> ticks{rows_of("_odometer.csv", has.odometer), count_of};
+    AidingLog<BarometerSample> pressures{rows_of("_barometer.csv", has.barometer), pressure_of};
+    AidingLog<MagnetometerSample> fields{rows_of("_magnetometer.csv", has.magnetometer), field_of};
     ASSERT_EQ(samples.size(), run.imu_samples.size());
     ASSERT_EQ(fixes.size(), run.gnss_rows.size());
     ASSERT_EQ(run.nav.size(), 60U);
     const auto manifest = nlohmann::json::parse(*read_text_file(folder.file("manifest.json")));
     fusion::ErrorStateFilter filter =
         filter_of(comparison->configs[0], mission, manifest["initial_estimates"][fidelity]);
-    std::size_t fix = 0, epoch = 0, count = 0, withheld = 0;
+    std::size_t fix = 0, epoch = 0, withheld = 0;
     for (const auto& row : samples) {
       const ImuSample sample = sample_of(row, mission.start);
       filter.predict(sample);
-      for (; count < ticks.size() && time_of(ticks[count], mission.start) <= sample.t; ++count)
-        filter.update(fusion::AidingMessage(count_of(ticks[count], mission.start)));
+      ticks.give(filter, sample.t, mission.start);
+      pressures.give(filter, sample.t, mission.start);
+      fields.give(filter, sample.t, mission.start);
       for (; fix < fixes.size() && time_of(fixes[fix], mission.start) <= sample.t; ++fix) {
         ASSERT_EQ(time_of(fixes[fix], mission.start), sample.t);
         if (fixes[fix].at("offered") != 0.0)
@@ -162,18 +189,26 @@ void replay(const std::string& filter_set) {
     }
     EXPECT_EQ(epoch, run.nav.size());
     EXPECT_EQ(fix, fixes.size());
-    EXPECT_EQ(count, ticks.size());
-    EXPECT_EQ(ticks.size(), counts ? 300U : 0U);  // 50 Hz
+    EXPECT_EQ(ticks.next, has.odometer ? 300U : 0U);       // 50 Hz
+    EXPECT_EQ(pressures.next, has.barometer ? 60U : 0U);   // 10 Hz
+    EXPECT_EQ(fields.next, has.magnetometer ? 120U : 0U);  // 20 Hz
     EXPECT_GT(withheld, 0U);
   }
 }
 
 TEST(FilterReplay, TheRecordedInputGivesTheRunsEstimates) {
-  replay("naive");
+  replay("filter = \"naive\"", {});
 }
 
 TEST(FilterReplay, TheOdometerIsPartOfIt) {
-  replay("vehicle");
+  replay("filter = \"vehicle\"", {.odometer = true});
+}
+
+TEST(FilterReplay, SoAreBarometerAndMagnetometer) {
+  replay(R"(filter = "vehicle"
+states = ["biases", "gains", "wheel_scale", "fix_error", "barometer_bias", "hard_iron"]
+measurements = ["position", "velocity", "non_holonomic", "standstill", "odometer", "barometer", "magnetometer"])",
+         {.odometer = true, .barometer = true, .magnetometer = true});
 }
 
 }  // namespace

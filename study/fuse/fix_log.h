@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "canyon/core/messages.h"
+#include "canyon/core/tables/state_table.h"
+#include "canyon/study/fuse/config.h"
+
+namespace canyon::study {
+
+/// Fixes of a log; those that say that there was none are left out and counted.
+struct FixLog {
+  std::vector<GnssFix> fixes;
+  bool has_week = false;
+  std::size_t without_solution = 0, withheld = 0;
+  PassedOver passed_over;
+  std::vector<std::string> warnings;
+};
+
+/// A solution file (core/tables/state_table.h); with `navigation` RINEX observations, solved epoch by epoch. Sigmas
+/// that the file does not state are those of `config`; an Error where neither does.
+Result<FixLog> read_fix_log(const std::string& path, const std::vector<std::string>& navigation,
+                            const FuseGnssConfig& config);
+
+/// Speeds or counts of a wheel: columns `t_s` (or gps_week, sow), `speed_m_s` (any unit of speed) or `ticks`, and
+/// `dt_s` if they are not of the time since the line before.
+struct OdometerLog {
+  std::vector<OdometerSample> samples;
+  bool has_week = false;
+  PassedOver passed_over;
+};
+Result<OdometerLog> read_odometer_log(const std::string& path, const FuseOdometerConfig& config);
+
+}  // namespace canyon::study

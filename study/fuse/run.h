@@ -1,0 +1,86 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/fusion/error_state_filter.h"
+#include "canyon/study/fuse/inputs.h"
+#include "canyon/study/fuse/outages.h"
+#include "canyon/study/fuse/score.h"
+
+namespace canyon::study {
+
+/// What a filter is run with, beside its inputs.
+struct FusePlan {
+  fusion::FilterConfig filter;  ///< its initial uncertainty is that of the start
+  ImuNoise noise;
+  LocalFrame frame;
+  Eigen::Vector3d lever_U_B = Eigen::Vector3d::Zero(), lever_A_B = Eigen::Vector3d::Zero();
+  std::string start_from;  ///< how the start was found
+  GpsTime start;
+  Pose X_WB;
+  Eigen::Vector3d v_WB_W = Eigen::Vector3d::Zero();
+
+  double interval_s = 0.0;  ///< the usual one of the samples
+  double bridge_s = 1.0;
+  double skip_s = 0.0;
+  double rate_hz = 10.0;  ///< states kept per second, at samples; 0: at `epochs` alone
+  std::optional<OutagePlan> outages;
+  /// Aligns anew on what is left of the inputs, after a long gap; null: every gap is bridged.
+  const FuseConfig* realign = nullptr;
+  /// Instants at which the estimate is kept; a sample that holds one is divided there, as a mission does.
+  std::vector<GpsTime> epochs;
+  /// When the samples were due by the master clock, if their stamps are by a clock of the unit's own; as many as
+  /// samples.
+  std::vector<GpsTime> due;
+  double same_instant_s = 1e-6;  ///< a message nearer to a sample's end than this does not divide it
+};
+
+/// The plan of a configuration: finds the start. Errors: as of fusion::alignments(), no truth to start from.
+Result<FusePlan> plan_fuse(const FuseInputs& inputs, const FuseConfig& config,
+                           const std::optional<OutagePlan>& outages);
+
+/// Where the plan's heading is not known (1-sigma from 60 degrees on), starts along the one of eight headings around
+/// which the fixes fit best, once they have moved; part of plan_fuse().
+Status settle_heading(const FuseInputs& inputs, FusePlan& plan);
+
+/// A state that is kept.
+struct FuseEpoch {
+  fusion::NavState nav;  ///< of the IMU
+  NavEstimate estimate;  ///< of B
+  /// Of [rotation, right perturbation in B; position; velocity, both in W], of the IMU.
+  Eigen::Matrix<double, 9, 9> covariance;
+};
+
+/// What the innovations of one measurement were.
+struct MeasurementScore {
+  std::size_t count = 0, accepted = 0;
+  double nis_sum = 0.0, dimensions = 0.0;
+  double nis_mean() const { return dimensions > 0.0 ? nis_sum / dimensions : kNaN; }
+};
+
+struct Fused {
+  std::string start_from;
+  GpsTime start, end;
+  LocalFrame frame;
+  std::vector<std::string> states, measurements;  ///< rows of the filter
+  std::vector<FuseEpoch> epochs;
+  std::vector<fusion::UpdateReport> updates;
+  std::map<std::string, MeasurementScore> by_measurement;
+  std::vector<FuseError> errors;
+  std::vector<OutageWindow> windows;
+  std::size_t samples = 0, fixes_given = 0, fixes_accepted = 0, fixes_withheld = 0, messages_outside = 0;
+  std::size_t gaps_bridged = 0, restarts = 0;
+  double bridged_s = 0.0;  ///< time for which the last sample was repeated
+};
+
+/// Runs the filter over the samples; messages come in the order of time, of one time odometer, fix, epoch, and after
+/// the sample that ends there. One within a sample divides it there, rate and force being constant over it. Gaps are
+/// bridged with the last sample repeated (marked lost); after one longer than bridge_s the filter starts anew, in
+/// motion. An Error (exit status 1) where the estimate is no number any more.
+Result<Fused> fuse(const FuseInputs& inputs, const FusePlan& plan);
+
+}  // namespace canyon::study
