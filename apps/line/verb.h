@@ -41,6 +41,7 @@ Verb imu_fit_verb();
 Verb imu_simulate_verb();
 Verb imu_dead_reckon_verb();
 Verb imu_paper_verb();
+Verb fuse_verb();
 Verb lidar_scan_verb();
 
 /// The largest --seed: what a TOML integer and a JSON number both carry without loss.

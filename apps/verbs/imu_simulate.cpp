@@ -9,10 +9,12 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
+#include "canyon/inertial/mounting.h"
 #include "canyon/inertial/simulation/simulated_log.h"
 
 namespace canyon::apps {
@@ -45,6 +47,7 @@ Result<inertial::SimulatedLog> simulate(const Options& options, const LogConfig&
   const auto seed = static_cast<std::uint64_t>(options.seed);
   CANYON_TRY(auto motion, inertial::make_motion(config.motion, seed));
   motion.lever_arm_m = config.imu.lever_arm_m;
+  motion.R_BU = inertial::mounting(config.imu, seed);
   if (!options.what.start.empty()) {
     CANYON_TRY(motion.start, GpsTime::parse(options.what.start, "--start"));
   }
@@ -62,6 +65,7 @@ Result<inertial::SimulatedLog> simulate(const Options& options, const LogConfig&
 Json summary_json(const Options& options, const LogConfig& config, const inertial::SimulatedLog& s) {
   const inertial::LogExtremes most = inertial::extremes(s);
   const Geodetic& origin = s.motion.frame.origin();
+  const Eigen::Vector3d askew_deg = so3_log(s.motion.R_BU.value_or(Eigen::Quaterniond::Identity())) / kDegree;
   return Json{
       {"samples", s.truth.size()},
       {"rate_hz", s.rate_hz},
@@ -71,6 +75,7 @@ Json summary_json(const Options& options, const LogConfig& config, const inertia
       {"sensor", config.imu.sensor},
       {"errors", config.imu.errors},
       {"seed", options.seed},
+      {"mounting_deg", {askew_deg.x(), askew_deg.y(), askew_deg.z()}},
       {"lost", most.lost},
       {"speed_max_m_s", most.speed_m_s},
       {"rate_max_deg_s", most.rate_rad_s / kDegree},

@@ -9,6 +9,7 @@
 #include "canyon/core/output/json.h"
 #include "canyon/mission/config/key_reference.h"
 #include "canyon/mission/config/mission_config.h"
+#include "canyon/study/fuse/config.h"
 #include "canyon/study/results/figures.h"
 
 namespace canyon::apps {
@@ -30,12 +31,17 @@ Json keys_json() {
 VerbAction declare(Arguments& arguments) {
   struct Options {
     CommonOptions common;
-    bool figures = false;
+    bool figures = false, fuse = false;
   };
   const auto options = std::make_shared<Options>();
   declare_common(arguments, options->common);
   arguments.flag("--figures", options->figures, "the figures of a run in place of the keys of a mission");
+  arguments.flag("--fuse", options->fuse, "the keys of canyon fuse --config, but those of [fusion]");
   return [options]() -> Result<int> {
+    if (options->fuse) {
+      std::fputs(study::fuse_key_reference().c_str(), stdout);
+      return 0;
+    }
     if (options->common.json) {
       const Json json = options->figures ? Json{{"figures", study::figure_descriptions()}} : keys_json();
       std::printf("%s\n", json_text(json).c_str());

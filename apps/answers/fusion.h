@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "canyon/study/fuse/run.h"
+
+/// What `fuse` says: as text, as a drawing.
+namespace canyon::apps {
+
+void print_fused(const study::FuseInputs& inputs, const study::Fused& run);
+/// Errors with three sigma; there must be errors.
+std::string fused_svg(const study::Fused& run);
+
+}  // namespace canyon::apps
