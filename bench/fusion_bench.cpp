@@ -3,6 +3,8 @@
 
 #include "canyon/core/units.h"
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/tests/fusion/smoothing/simulated_drive.h"
+#include "canyon/tests/fusion/tactical_noise.h"
 
 namespace canyon::fusion {
 namespace {
@@ -10,28 +12,11 @@ namespace {
 const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
 const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
 
-ImuNoise noise() {
-  ImuNoise n;
-  n.gyro = {.white_per_sqrt_hz = 4.4e-5,
-            .turn_on_bias_sigma = 1.5e-5,
-            .in_run_bias_sigma = 2.4e-6,
-            .in_run_bias_tau_s = 1000.0,
-            .scale_sigma = 5e-4,
-            .misalignment_sigma_rad = 1e-3};
-  n.accel = {.white_per_sqrt_hz = 1e-3,
-             .turn_on_bias_sigma = 7e-3,
-             .in_run_bias_sigma = 5e-4,
-             .in_run_bias_tau_s = 1000.0,
-             .scale_sigma = 3e-4,
-             .misalignment_sigma_rad = 1e-3};
-  return n;
-}
-
 /// A unit that turns and pushes a little, at 100 Hz; arguments: gains or not, jittering intervals or not.
 class Stage {
  public:
   explicit Stage(const benchmark::State& state)
-      : filter_(config(state.range(0) != 0), noise(), kFrame, kImu, kAntenna) {
+      : filter_(config(state.range(0) != 0), tactical_noise(), kFrame, kImu, kAntenna) {
     filter_.initialize(t_, Pose{}, Eigen::Vector3d::Zero());
   }
 
@@ -93,6 +78,26 @@ void Estimate(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(stage.estimate());
 }
 BENCHMARK(Estimate)->ArgName("gains")->Arg(1);
+
+/// A minute of a drive at 100 Hz with a fix a second, as a row of smoothers() makes a trajectory of it; the counter
+/// says how many seconds of the drive one second is enough for. Row `none` is the filter.
+void Smooth(benchmark::State& state, const char* row, const char* states) {
+  const testing::Drive drive =
+      testing::simulated_drive(1, {.rate_hz = 100.0, .outage_from_s = 1e9, .outage_to_s = 1e9, .keys = states});
+  for (auto _ : state) benchmark::DoNotOptimize(testing::smoothed_by(row, drive));
+  state.counters["x_real_time"] =
+      benchmark::Counter(60.0 * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+constexpr const char *kBiases = "states = [\"biases\"]",
+                     *kGains = "states = [\"biases\", \"gains\"]\nimu_gain_tau_s = 1000";
+BENCHMARK_CAPTURE(Smooth, filter_biases, "none", kBiases)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, rts_biases, "rts", kBiases)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, batch_graph_biases, "batch_graph", kBiases)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, fixed_lag_graph_biases, "fixed_lag_graph", kBiases)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, filter_gains, "none", kGains)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, rts_gains, "rts", kGains)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, batch_graph_gains, "batch_graph", kGains)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Smooth, fixed_lag_graph_gains, "fixed_lag_graph", kGains)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace canyon::fusion

@@ -16,7 +16,7 @@ option(CANYON_WERROR "Treat warnings as errors" ON)
 option(CANYON_WITH_PCL "Registration methods that need PCL (gicp)" ON)
 option(CANYON_WITH_ASSIMP "Scenes in glTF and what else assimp reads" ON)
 option(CANYON_WITH_PROJ "Scenes in the coordinates of a map (PROJ)" ON)
-option(CANYON_WITH_CERES "Fit of noise processes to inertial logs (Ceres)" ON)
+option(CANYON_WITH_CERES "Fit of noise processes to inertial logs, smoothing by factor graphs (Ceres)" ON)
 set(CANYON_SANITIZE "" CACHE STRING "Sanitizers, for example address,undefined")
 # The address sanitizer takes what is both in the program and in a part that it opens for a violation of one definition.
 if(CANYON_SANITIZE)
@@ -58,7 +58,8 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
 # Parsing the standard library and Eigen is half of the time of most files. ccache, where there is one that is in use, saves
-# more, but not of files with precompiled headers; so each system has one of the two.
+# more, but not of files with precompiled headers; so each system has one of the two
+# (-DCANYON_PRECOMPILED_HEADERS=OFF begins to fill an empty cache).
 find_program(CCACHE_PROGRAM ccache)
 set(precompile ON)
 if(CCACHE_PROGRAM)

@@ -133,6 +133,43 @@ range_g = 10.0
 range_source = "made up"
 )";
 
+/// Of the first two seconds of simulated(): it drives north-east from there.
+constexpr const char* kFixes =
+    "gps_week,sow,lat_deg,lon_deg,h_m,sd_n_m,sd_e_m,sd_u_m,vn,ve,vu,sd_vn,sd_ve,sd_vu,status\n"
+    "1612,520200.5,45.00001,7.00001,200,3,3,5,1,1,0,0.1,0.1,0.2,single\n1612,520201,45.00002,7.00002,200,3,3,5,1,1,0,0."
+    "1,0.1,"
+    "0.2,single\n1612,520201.5,45.00003,7.00003,200,3,3,5,,,,,,,single\n1612,520201.75,,,,,,,,,,,,,none\n"
+    "1612,520202,45.00004,7.00004,200,3,3,5,1,1,0,0.1,0.1,0.2,single\n";
+constexpr const char* kKfGinsFixes =
+    "520200.5 45.00001 7.00001 200 3 3 5\n520201 45.00002 7.00002 200 3 3 5\n520201.5 45.00003 7.00003 200 3 3 5\n";
+constexpr const char* kRtklibFixes =
+    "% program   : RTKLIB\n%  GPST            latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) "
+    "sdeu(m) sdun(m) age(s) ratio\n2010/12/04 00:30:00.500 45.00001 7.00001 200.0 1 9 3.0 3.0 5.0 0 0 0 0 0\n"
+    "2010/12/04 00:30:01.000 45.00002 7.00002 200.0 5 9 3.0 3.0 5.0 0 0 0 0 0\n";
+constexpr const char* kWheel =
+    "t_s,speed_kmh,ticks\n520200.2,5,1\n520200.4,5,14\n520200.6,5.5,28\n520200.8,5.5,42\n520201,6,56\n";
+constexpr const char* kFuseToml = R"([fusion]
+filter = "vehicle"
+[imu]
+sensor = "adis16465"
+arw_deg_per_sqrt_hr = 0.2
+turn_deg = [0.0, 0.5, 1.0]
+clock_offset_s = 0.01
+[gnss]
+lever_m = [0.1, 0.0, 1.2]
+[start]
+from = "given"
+place_deg_deg_m = [45.0, 7.0, 200.0]
+[score]
+skip_s = 0.5
+[output]
+rate_hz = 5.0
+)";
+
+std::vector<Companion> of_a_drive() {
+  return with({simulated()[0], simulated()[2]}, {{"fixes.csv", kFixes}});
+}
+
 Format recorded(const std::string& name, const std::function<std::vector<Seed>()>& seeds) {
   return {.name = name,
           .command = {"imu", "simulate", "--trajectory", "@", "--duration", "1", "--rate", "20"},
@@ -158,6 +195,52 @@ std::vector<Format> inertial_formats() {
        .read = {},
        .seeds = [] { return std::vector<Seed>{simulated()[0]}; },
        .beside = [] { return std::vector<Companion>{simulated()[2]}; }},
+      {.name = "FuseFixes",
+       .command = {"fuse", "--imu", "imu.csv", "--gnss", "@", "--truth", "truth.nav"},
+       .read = {},
+       .seeds =
+           [] {
+             return std::vector<Seed>{{"fixes.csv", kFixes}, {"fixes.txt", kKfGinsFixes}, {"fixes.pos", kRtklibFixes}};
+           },
+       .beside = of_a_drive},
+      {.name = "FuseImu",
+       .command = {"fuse", "--imu", "@", "--gnss", "fixes.csv", "--truth", "truth.nav"},
+       .read = {},
+       .seeds =
+           [] {
+             return std::vector<Seed>{simulated()[0], simulated()[1]};
+           },
+       .beside =
+           [] {
+             return std::vector<Companion>{simulated()[2], {"fixes.csv", kFixes}};
+           }},
+      {.name = "FuseTruth",
+       .command = {"fuse", "--imu", "imu.csv", "--gnss", "fixes.csv", "--truth", "@", "--outage", "0.5,1,0.2"},
+       .read = {},
+       .seeds =
+           [] {
+             return std::vector<Seed>{simulated()[2], {"truth.csv", kTruthCsv}};
+           },
+       .beside =
+           [] {
+             return std::vector<Companion>{simulated()[0], {"fixes.csv", kFixes}};
+           }},
+      {.name = "FuseOdometer",
+       .command = {"fuse", "--imu", "imu.csv", "--gnss", "fixes.csv", "--truth", "truth.nav", "--odometer", "@"},
+       .read = {},
+       .seeds =
+           [] {
+             return std::vector<Seed>{{"wheel.csv", kWheel}};
+           },
+       .beside = of_a_drive},
+      {.name = "FuseToml",
+       .command = {"fuse", "--imu", "imu.csv", "--gnss", "fixes.csv", "--config", "@"},
+       .read = {},
+       .seeds =
+           [] {
+             return std::vector<Seed>{{"fuse.toml", kFuseToml}};
+           },
+       .beside = of_a_drive},
       {.name = "KfGinsLog",
        .command = {"imu", "dead-reckon", "--imu", "@", "--truth", "truth.nav"},
        .read = {},
