@@ -103,9 +103,9 @@ Status check_parts(const FilterParts& parts) {
   };
   for (const Need& need : {Need{"ranges", "receiver_clock"}, Need{"relative_pose", "clone"}}) {
     if (!has(parts.measurements, need.measurement) || has(parts.states, need.state)) continue;
-    return Error{.key = "fusion.states",
-                 .what = std::string("measurement \"") + need.measurement + "\" without state \"" + need.state + "\"",
-                 .expected = std::string("\"") + need.state + "\" among them"};
+    return Error{.key = "fusion.measurements",
+                 .what = std::string("\"") + need.measurement + "\" without state \"" + need.state + "\"",
+                 .expected = std::string("\"") + need.state + "\" in fusion.states"};
   }
   return Ok{};
 }

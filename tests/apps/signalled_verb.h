@@ -44,10 +44,10 @@ inline double cpu_s(pid_t pid) {
 /// Runs the binary in `folder` and sends it `signal` once it has used `cpu_before_s` of processor time.
 inline SignalledEnd signal_verb(const std::string& folder, std::vector<std::string> words, double cpu_before_s,
                                 int signal) {
-  words.insert(words.begin(), CANYON_BINARY);
+  std::string binary = CANYON_BINARY;
   const pid_t pid = fork();
   if (pid == 0) {
-    std::vector<char*> arguments;
+    std::vector<char*> arguments{binary.data()};
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     const int sink = open("/dev/null", O_WRONLY);

@@ -109,11 +109,11 @@ TEST(StateBlocks, RowsThatNeedOneAnotherAreTold) {
   };
   EXPECT_EQ(told(""), "");
   EXPECT_EQ(told("filter = \"vehicle\""), "");
-  EXPECT_EQ(told("measurements = [\"ranges\"]"),
-            "fusion.states: measurement \"ranges\" without state \"receiver_clock\", expected \"receiver_clock\" among "
-            "them");
+  EXPECT_EQ(
+      told("measurements = [\"ranges\"]"),
+      "fusion.measurements: \"ranges\" without state \"receiver_clock\", expected \"receiver_clock\" in fusion.states");
   EXPECT_EQ(told("measurements = [\"relative_pose\"]"),
-            "fusion.states: measurement \"relative_pose\" without state \"clone\", expected \"clone\" among them");
+            "fusion.measurements: \"relative_pose\" without state \"clone\", expected \"clone\" in fusion.states");
 }
 
 }  // namespace
