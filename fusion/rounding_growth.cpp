@@ -14,7 +14,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kSameWay_s = 1.0;
 constexpr double kSigmas = 3.0;
-constexpr std::size_t kStatesPerLook = 4096;  // at whether the user wants to stop
+constexpr std::size_t kStepsPerLook = 4096;  // at whether the user wants to stop
 
 }  // namespace
 
@@ -57,9 +57,9 @@ HeldErrors held_errors(std::span<const NavState> states, std::span<const NavErro
   double largest_m = kReferenceTells_m;
   std::size_t next = 1;
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (i % kStatesPerLook == 0) throw_if_cancelled();
+    if (i % kStepsPerLook == 0) throw_if_cancelled();
     for (; next < states.size() && states[next].t <= errors[i].t; ++next) {
-      if (next % kStatesPerLook == 0) throw_if_cancelled();
+      if (next % kStepsPerLook == 0) throw_if_cancelled();
       growth.advance(states[next]);
     }
     out.rounding_m = growth.position_m();
@@ -70,7 +70,7 @@ HeldErrors held_errors(std::span<const NavState> states, std::span<const NavErro
   }
   if (!errors.empty()) return out;
   for (; next < states.size(); ++next) {
-    if (next % kStatesPerLook == 0) throw_if_cancelled();
+    if (next % kStepsPerLook == 0) throw_if_cancelled();
     growth.advance(states[next]);
   }
   out.rounding_m = growth.position_m();

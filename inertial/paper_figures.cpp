@@ -11,7 +11,7 @@ namespace canyon::inertial {
 namespace {
 
 constexpr double kRate_hz = 125.0;
-constexpr std::int64_t kSamplesPerLook = 4096;  // at whether the user wants to stop
+constexpr std::int64_t kStepsPerLook = 4096;  // at whether the user wants to stop
 
 CatalogueEntry built_in(const char* name) {
   auto entry = load_catalogue_entry(name);
@@ -55,7 +55,7 @@ Result<PaperDrift> paper_drift(const PaperFigure& figure, const std::string& cha
   PaperDrift out;
   Eigen::Vector3d angle = Eigen::Vector3d::Zero(), speed = angle, position = angle;
   for (std::int64_t k = 0; k < std::llround(figure.seconds * kRate_hz); ++k) {
-    if (k % kSamplesPerLook == 0) throw_if_cancelled();
+    if (k % kStepsPerLook == 0) throw_if_cancelled();
     ImuSample s;
     s.dt_s = 1.0 / kRate_hz;
     chain->corrupt(k, s);

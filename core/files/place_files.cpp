@@ -12,7 +12,7 @@
 namespace canyon {
 namespace {
 
-constexpr const char* kExpected = "gps_week,sow,lat_deg,lon_deg,h_m or gps_week,sow,x_m,y_m,z_m";
+constexpr const char* kExpectedRow = "gps_week,sow,lat_deg,lon_deg,h_m or gps_week,sow,x_m,y_m,z_m";
 constexpr double kEcefAtLeast_m = 1e6;
 
 /// Which columns hold what.
@@ -21,7 +21,7 @@ struct Columns {
   std::optional<bool> geodetic;  ///< not said: by magnitude
 };
 
-bool is_header(std::string_view line) {
+bool is_header_of_places(std::string_view line) {
   return line.find_first_of("abcdfghijklmnopqrstuvwxyzABCDFGHIJKLMNOPQRSTUVWXYZ_") != std::string_view::npos;
 }
 
@@ -37,7 +37,7 @@ Result<Columns> columns_of_header(const LineReader& in, std::string_view line) {
   const auto lat = find("lat_deg"), lon = find("lon_deg"), h = find("h_m");
   const auto x = find("x_m"), y = find("y_m"), z = find("z_m");
   if (!week || !sow || !((lat && lon && h) || (x && y && z)))
-    return in.error("header without the columns needed", kExpected);
+    return in.error("header without the columns needed", kExpectedRow);
   out.week = *week;
   out.sow = *sow;
   out.geodetic = lat && lon && h;
@@ -53,7 +53,7 @@ Result<StampedPlace> parse_place_line(const LineReader& in, std::string_view lin
   const std::size_t most = std::max({columns.week, columns.sow, columns.place[0], columns.place[1], columns.place[2]});
   if (fields.size() <= most)
     return in.error(std::to_string(fields.size()) + " fields",
-                    "at least " + std::to_string(most + 1) + ": " + kExpected);
+                    "at least " + std::to_string(most + 1) + ": " + kExpectedRow);
   CANYON_TRY(const double week, parse_number(in, fields[columns.week]));
   CANYON_TRY(const std::int64_t sow_ns, parse_seconds(in, fields[columns.sow]));
   if (week < 0.0 || week > 15000.0 || week != std::floor(week) || sow_ns < 0 || sow_ns > 604'800 * kNsPerSecond)
@@ -87,7 +87,7 @@ Result<std::vector<StampedPlace>> read_places(const std::string& path) {
   Columns columns;
   std::string_view line;
   for (bool first = true; in.next(line); first = false) {
-    if (first && is_header(line)) {
+    if (first && is_header_of_places(line)) {
       CANYON_TRY(columns, columns_of_header(in, line));
       continue;
     }

@@ -23,7 +23,7 @@ Error file_error(const std::string& path, std::string what, std::string expected
   return Error{path, 0, "", std::move(what), std::move(expected), exit_code};
 }
 
-std::string last_error() {
+std::string last_error_text() {
   return std::generic_category().message(errno);
 }
 
@@ -70,7 +70,7 @@ StagedFile::~StagedFile() {
 }
 
 Result<StagedFile> StagedFile::straight_to(const std::string& path, int descriptor) {
-  if (descriptor < 0) return file_error(path, "cannot be written (" + last_error() + ")", "a writable place");
+  if (descriptor < 0) return file_error(path, "cannot be written (" + last_error_text() + ")", "a writable place");
   return StagedFile(path, "", false, descriptor);
 }
 
@@ -86,12 +86,12 @@ Result<StagedFile> StagedFile::create(const std::string& path, bool force) {
   if (exists && !force) return file_error(path, "output file exists", "a new name or --force");
   // Another's file that may not be written is not replaced either, though its folder would allow it.
   if (exists && access(path.c_str(), W_OK) != 0)
-    return file_error(path, "cannot be written (" + last_error() + ")", "a writable place");
+    return file_error(path, "cannot be written (" + last_error_text() + ")", "a writable place");
 
   remove_stale_stagings(target.parent_path());
   const std::string staging = staging_name(target, "partial").string();
   const int descriptor = open(staging.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) return file_error(path, "cannot be written (" + last_error() + ")", "a writable place");
+  if (descriptor < 0) return file_error(path, "cannot be written (" + last_error_text() + ")", "a writable place");
   if (exists) (void)fchmod(descriptor, old.st_mode & 07777);
   return StagedFile(target.string(), staging, force, descriptor);
 }
@@ -107,7 +107,8 @@ Status StagedFile::flush() {
     const ssize_t n = ::write(descriptor_, buffer_.data() + done, buffer_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0)
-      return file_error(final_path(), "cannot be written to the end (" + last_error() + ")", "space on the disk", 1);
+      return file_error(final_path(), "cannot be written to the end (" + last_error_text() + ")", "space on the disk",
+                        1);
     done += static_cast<std::size_t>(n);
   }
   buffer_.clear();

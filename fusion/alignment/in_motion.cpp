@@ -72,7 +72,7 @@ ForceSum force_between(std::span<const ImuSample> imu, GpsTime from, GpsTime to)
   return out;
 }
 
-double bias_sigma(const TriadNoise& noise) {
+double told_bias_sigma(const TriadNoise& noise) {
   return std::hypot(noise.turn_on_bias_sigma, noise.in_run_bias_sigma);
 }
 
@@ -89,8 +89,8 @@ Aligned aligned_at(const FixVelocity& first, const FixVelocity& last, const Forc
   out.nav.p_EU_E = fix.p_A_E + out.nav.R_EU * (inputs.lever_U_B - inputs.lever_A_B);
   out.nav.v_EU_E = last.v_E + acceleration * (fix.t - last.t);
   const double a_sigma = std::hypot(first.sigma_m_s, last.sigma_m_s) / between_s;
-  const double turned = bias_sigma(inputs.noise.gyro) * between_s;
-  out.tilt_rad = std::hypot(a_sigma / gravity.norm(), bias_sigma(inputs.noise.accel) / gravity.norm(), turned);
+  const double turned = told_bias_sigma(inputs.noise.gyro) * between_s;
+  out.tilt_rad = std::hypot(a_sigma / gravity.norm(), told_bias_sigma(inputs.noise.accel) / gravity.norm(), turned);
   out.heading_rad = std::hypot(last.sigma_m_s / v_enu.head<2>().norm(), p.in_motion_slip_deg * kDegree);
   out.position_m = sigma(fix.covariance_E) + out.tilt_rad * (inputs.lever_U_B - inputs.lever_A_B).norm();
   out.velocity_m_s = std::hypot(last.sigma_m_s, a_sigma * (fix.t - last.t));

@@ -10,7 +10,7 @@
 namespace canyon::fusion {
 namespace {
 
-constexpr double kMost = 1e6;  // sigma
+constexpr double kMostErrors = 1e6;  // sigma
 
 }  // namespace
 
@@ -44,8 +44,8 @@ void ErrorRecord::add(std::size_t index, GpsTime t, const Eigen::VectorXd& error
   BlockErrors& block = blocks_[index];
   const auto n = error.size();
   const auto whole = covariance.llt();
-  Eigen::VectorXd z = Eigen::VectorXd::Constant(n, kMost);
-  if (whole.info() == Eigen::Success) z = whole.matrixL().solve(error).cwiseMin(kMost).cwiseMax(-kMost);
+  Eigen::VectorXd z = Eigen::VectorXd::Constant(n, kMostErrors);
+  if (whole.info() == Eigen::Success) z = whole.matrixL().solve(error).cwiseMin(kMostErrors).cwiseMax(-kMostErrors);
   block.series.add(t, z);
   for (std::size_t i = 0; i < block.within.size(); ++i)
     block.within[i] +=
@@ -55,8 +55,8 @@ void ErrorRecord::add(std::size_t index, GpsTime t, const Eigen::VectorXd& error
     axis.error_squares += error[i] * error[i];
     axis.variances += covariance(i, i);
     const double sigma = std::sqrt(std::max(covariance(i, i), 0.0));
-    const double ratio = std::min(std::abs(error[i]), kMost * sigma) > 0.0 ? error[i] / sigma : 0.0;
-    axis.series.add(t, Eigen::VectorXd::Constant(1, std::isfinite(ratio) ? ratio : kMost));
+    const double ratio = std::min(std::abs(error[i]), kMostErrors * sigma) > 0.0 ? error[i] / sigma : 0.0;
+    axis.series.add(t, Eigen::VectorXd::Constant(1, std::isfinite(ratio) ? ratio : kMostErrors));
   }
 }
 

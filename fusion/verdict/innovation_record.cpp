@@ -10,7 +10,7 @@ namespace canyon::fusion {
 namespace {
 
 /// Beyond this many sigma an innovation says no more than that it is wrong.
-constexpr double kMost = 1e6;
+constexpr double kMostInnovations = 1e6;
 constexpr double kBinsPerOctave = 32.0;
 
 }  // namespace
@@ -41,7 +41,7 @@ void InnovationRecord::add(const UpdateReport& report) {
   InnovationRow& row = found->second;
   ++row.count;
   row.refused += report.accepted ? 0 : 1;
-  const double nis = std::min(report.nis, n * kMost * kMost);
+  const double nis = std::min(report.nis, n * kMostInnovations * kMostInnovations);
   row.nis_sum += nis;
   row.dimensions += n;
   constexpr double kLeast = 1e-12;
@@ -50,7 +50,7 @@ void InnovationRecord::add(const UpdateReport& report) {
   if (row.parts > 0 && report.t != row.pending_t) complete(row);
   if (row.parts == 0) row.pending = Eigen::VectorXd::Zero(n);
   row.pending_t = report.t;
-  row.pending += report.normalized.head(n).cwiseMin(kMost).cwiseMax(-kMost);
+  row.pending += report.normalized.head(n).cwiseMin(kMostInnovations).cwiseMax(-kMostInnovations);
   ++row.parts;
 }
 

@@ -9,7 +9,7 @@ namespace canyon::fusion {
 namespace {
 
 constexpr const char* kXyz[3] = {"x", "y", "z"};
-constexpr double kMost = 1e6;  // sigma
+constexpr double kMostRecorded = 1e6;  // sigma
 
 std::string name_in(const ErrorState::Member& member, int i) {
   const int n = member.block->size();
@@ -90,7 +90,7 @@ void StateRecord::add(const ErrorStateFilter& filter, const PredictionAlone& alo
     if (!state.halved_after_s) state.halved_after_s = t - first_;
     if (!with_prior_[static_cast<std::size_t>(i)]) continue;
     const double z = filter.value(static_cast<int>(i)) / std::sqrt(before[i] - now[i]);
-    state.estimate.add(t, Eigen::VectorXd::Constant(1, std::clamp(z, -kMost, kMost)));
+    state.estimate.add(t, Eigen::VectorXd::Constant(1, std::clamp(z, -kMostRecorded, kMostRecorded)));
   }
 }
 

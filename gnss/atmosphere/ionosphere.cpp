@@ -18,7 +18,7 @@ Result<std::unique_ptr<IonosphereModel>> make_layer(const ModelParameters& own, 
   return make_single_layer(own.get<ElectronContent>().vtec_tecu);
 }
 
-constexpr ModelRow<MakeIonosphere> kModels[] = {
+constexpr ModelRow<MakeIonosphere> kIonospheres[] = {
     {"none", {make_none, largest_at_lowest}, "no delay"},
     {"single_layer",
      {make_layer, largest_at_lowest},
@@ -42,7 +42,7 @@ void visit(FieldVisitor& f, ElectronContent& c) {
 }
 
 ModelTable<MakeIonosphere> ionosphere_models() {
-  return kModels;
+  return kIonospheres;
 }
 
 double largest_at_lowest(const IonosphereModel& model, const SkyView& lowest) {

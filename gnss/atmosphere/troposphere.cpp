@@ -34,7 +34,7 @@ std::unique_ptr<TroposphereModel> of_weather(const ModelParameters& own) {
   return Make(own.get<SiteWeather>().measured);
 }
 
-constexpr ModelRow<MakeTroposphere> kModels[] = {
+constexpr ModelRow<MakeTroposphere> kTropospheres[] = {
     {"none", {make_none, falling_delay_m}, "no delay"},
     {"standard",
      {make_standard, falling_delay_m},
@@ -61,7 +61,7 @@ void visit(FieldVisitor& f, SiteWeather& c) {
 }
 
 ModelTable<MakeTroposphere> troposphere_models() {
-  return kModels;
+  return kTropospheres;
 }
 
 }  // namespace canyon::gnss

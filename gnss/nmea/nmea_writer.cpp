@@ -12,7 +12,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kKnot = 1852.0 / 3600.0;  // m/s
+constexpr double kWrittenKnot = 1852.0 / 3600.0;  // m/s
 
 struct System {
   GnssSystem system;
@@ -91,7 +91,7 @@ std::string rmc(const NmeaEpoch& e, const std::string& talker, const Clock& cloc
   if (e.fix.v_A_E.allFinite()) {
     const Eigen::Vector3d v_enu = rotation_E_from_enu(g).transpose() * e.fix.v_A_E;
     const double speed_m_s = v_enu.head<2>().norm();
-    speed = text("%.3f", speed_m_s / kKnot);
+    speed = text("%.3f", speed_m_s / kWrittenKnot);
     double course_deg = std::atan2(v_enu.x(), v_enu.y()) / kDegree;
     if (course_deg < 0.0) course_deg += 360.0;
     // Below walking pace the course is noise; receivers leave it empty.

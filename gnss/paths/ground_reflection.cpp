@@ -10,7 +10,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kClearance_m = 0.05;  // between plane and terrain where legs start
+constexpr double kGroundClearance_m = 0.05;  // between plane and terrain where legs start
 constexpr int kSteps = 30;
 constexpr double kFound_m = 1e-4;
 
@@ -82,7 +82,8 @@ void add_ground_reflections(const PathParameters& p, const Eigen::Vector3d& p_A_
     const double weakest_db = out[i].line_of_sight ? p.weakest_db : p.weakest_nlos_db;
     if (std::norm(field.copolar) + std::norm(field.crosspolar) < std::pow(10.0, weakest_db / 10.0)) continue;
 
-    const Eigen::Vector3d start_W = found->point_W + (std::max(plane.above_m, 0.0) + kClearance_m) * plane.normal_W;
+    const Eigen::Vector3d start_W =
+        found->point_W + (std::max(plane.above_m, 0.0) + kGroundClearance_m) * plane.normal_W;
     const Eigen::Vector3d leg_W = start_W - p_A_W;
     const double leg_m = leg_W.norm();
     if (leg_m < 1e-6) continue;

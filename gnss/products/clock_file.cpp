@@ -12,15 +12,15 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr const char* kExpected = "a RINEX clock file of version 2 or 3";
+constexpr const char* kExpectedClock = "a RINEX clock file of version 2 or 3";
 
 /// Header up to END OF HEADER; whether its times are UTC.
 Result<bool> read_header(TextLines& lines, const std::string& file) {
-  if (!lines.next()) return Error{file, 1, "", "the file is empty", kExpected};
+  if (!lines.next()) return Error{file, 1, "", "the file is empty", kExpectedClock};
   const auto label = [&] { return columns(lines.line(), 60, 20); };
   const auto version = fortran_number(columns(lines.line(), 0, 9));
   if (label() != "RINEX VERSION / TYPE" || !version || columns(lines.line(), 20, 1) != "C")
-    return Error{file, 1, "", "not a RINEX clock file: the first line has no version and type \"C\"", kExpected};
+    return Error{file, 1, "", "not a RINEX clock file: the first line has no version and type \"C\"", kExpectedClock};
   if (!(*version >= 2.0 && *version < 3.045))  // later versions move the columns
     return Error{file, 1, "", "RINEX clock version " + join_values(*version) + " is not supported", "2.00 to 3.04"};
   bool utc = false;

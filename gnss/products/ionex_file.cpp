@@ -15,10 +15,10 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr const char* kExpected = "an IONEX 1.0 or 1.1 file";
+constexpr const char* kExpectedMap = "an IONEX 1.0 or 1.1 file";
 constexpr int kNoValue = 9999;
 
-std::string_view label(std::string_view line) {
+std::string_view label_of(std::string_view line) {
   return columns(line, 60, 20);
 }
 
@@ -42,7 +42,7 @@ class IonexReader {
     out_.name = file_;
     CANYON_TRY_STATUS(header());
     while (lines_.next()) {
-      const std::string_view name = label(lines_.line());
+      const std::string_view name = label_of(lines_.line());
       if (name == "START OF TEC MAP") map();
       if (name == "END OF FILE") break;
     }
@@ -59,16 +59,16 @@ class IonexReader {
 
  private:
   Status header() {
-    if (!lines_.next()) return Error{file_, 1, "", "the file is empty", kExpected};
+    if (!lines_.next()) return Error{file_, 1, "", "the file is empty", kExpectedMap};
     const auto version = fortran_number(columns(lines_.line(), 0, 8));
-    if (label(lines_.line()) != "IONEX VERSION / TYPE" || !version)
+    if (label_of(lines_.line()) != "IONEX VERSION / TYPE" || !version)
       return Error{file_, 1, "", "not an IONEX file: the first line has no version and \"IONEX VERSION / TYPE\"",
-                   kExpected};
+                   kExpectedMap};
     if (!(*version >= 1.0 && *version < 1.2))
       return Error{file_, 1, "", "IONEX version " + join_values(*version) + " is not supported", "1.0 or 1.1"};
     bool lat = false, lon = false;
     while (lines_.next()) {
-      const std::string_view line = lines_.line(), name = label(line);
+      const std::string_view line = lines_.line(), name = label_of(line);
       if (name == "END OF HEADER") {
         if (!lat || !lon)
           return Error{file_, lines_.number(), "", "the header has no grid",
@@ -111,7 +111,7 @@ class IonexReader {
     const double steps = range ? span / (*range)[2] : 0.0;
     if (!range || !(steps >= 1.0 && steps <= 3600.0) || std::abs(steps - std::round(steps)) > 1e-6 ||
         std::abs((*range)[0]) > limit_deg || std::abs((*range)[1]) > limit_deg)
-      return Error{file_, lines_.number(), std::string(label(line)), "is no grid",
+      return Error{file_, lines_.number(), std::string(label_of(line)), "is no grid",
                    "first, last and step in degrees, at least two points"};
     first_deg = (*range)[0];
     step_deg = (*range)[2];
@@ -128,7 +128,7 @@ class IonexReader {
     std::size_t rows = 0;
     bool ended = false;
     while (!ended && lines_.next()) {
-      const std::string_view line = lines_.line(), name = label(line);
+      const std::string_view line = lines_.line(), name = label_of(line);
       if (name == "END OF TEC MAP") {
         ended = true;
       } else if (name == "EPOCH OF CURRENT MAP") {
@@ -168,9 +168,9 @@ class IonexReader {
     const double scale = std::pow(10.0, exponent_);
     for (std::size_t i = 0; i < out_.longitudes; ++i) {
       if (i % 16 == 0) {
-        if (!label(lines_.peek()).empty() &&
+        if (!label_of(lines_.peek()).empty() &&
             columns(lines_.peek(), 60, 20).find_first_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") != std::string_view::npos)
-          return false;  // the next label comes too early
+          return false;  // the next label_of comes too early
         if (!lines_.next()) return false;
       }
       const auto value = whole_number(columns(lines_.line(), 5 * (i % 16), 5));

@@ -11,7 +11,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr const char* kExpected = "an SP3 file of version a, b, c or d";
+constexpr const char* kExpectedOrbit = "an SP3 file of version a, b, c or d";
 
 /// How the file's time scale becomes GPS time.
 enum class TimeScale { kGps, kBeidou, kUtc, kTai };
@@ -61,7 +61,7 @@ class Sp3Reader {
     }
     if (!ended) warnings_.note(std::max(lines_.number(), 1), "the file ends without \"EOF\": it may be truncated");
     if (out_.satellites.empty())
-      return Error{file_, std::max(lines_.number(), 1), "", "no satellite position", kExpected};
+      return Error{file_, std::max(lines_.number(), 1), "", "no satellite position", kExpectedOrbit};
     for (auto& [sv, samples] : out_.satellites)
       std::stable_sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
     out_.files.push_back(file_);
@@ -71,13 +71,14 @@ class Sp3Reader {
 
  private:
   Status header() {
-    if (!lines_.next()) return Error{file_, 1, "", "the file is empty", kExpected};
+    if (!lines_.next()) return Error{file_, 1, "", "the file is empty", kExpectedOrbit};
     const std::string_view first = lines_.line();
     if (first.size() < 3 || first[0] != '#' || std::string_view("abcd").find(first[1]) == std::string_view::npos ||
         std::string_view("PV").find(first[2]) == std::string_view::npos)
-      return Error{file_, 1, "", "not an SP3 file: the first line does not start with \"#cP\" or its like", kExpected};
+      return Error{file_, 1, "", "not an SP3 file: the first line does not start with \"#cP\" or its like",
+                   kExpectedOrbit};
     if (!lines_.next() || !lines_.line().starts_with("##"))
-      return Error{file_, 2, "", "the second line does not start with \"##\"", kExpected};
+      return Error{file_, 2, "", "the second line does not start with \"##\"", kExpectedOrbit};
     const auto interval = fortran_number(columns(lines_.line(), 24, 14));
     if (!interval || !(*interval > 0.0 && *interval < 1e5))
       return Error{file_, 2, "", "the epoch interval cannot be read", "seconds, in columns 25 to 38"};

@@ -102,7 +102,7 @@ std::shared_ptr<const ReceiverAntenna> make_choke_ring(const ModelParameters&) {
   return std::make_shared<TabulatedAntenna>(kChokeRing);
 }
 
-constexpr ModelRow<MakeAntenna> kModels[] = {
+constexpr ModelRow<MakeAntenna> kAntennas[] = {
     {"sine", [](const ModelParameters& own) { return make_sine_antenna(own.get<SineAntennaParameters>()); },
      "antenna_horizon_loss_db (1 - sin e), left hand lhcp_rejection_db lower", parameters_of<SineAntennaParameters>},
     {"isotropic", make_isotropic, "0 dB everywhere, right-hand only"},
@@ -121,7 +121,7 @@ void visit(FieldVisitor& f, SineAntennaParameters& c) {
 }
 
 ModelTable<MakeAntenna> antenna_models() {
-  return kModels;
+  return kAntennas;
 }
 
 std::shared_ptr<const ReceiverAntenna> make_sine_antenna(const SineAntennaParameters& p) {

@@ -10,19 +10,19 @@ class PerfectClock final : public ReceiverClock {
   bool perfect() const override { return true; }
 };
 
-std::unique_ptr<ReceiverClock> make_none(const ReceiverClockParameters&) {
+std::unique_ptr<ReceiverClock> make_perfect_clock(const ReceiverClockParameters&) {
   return std::make_unique<PerfectClock>();
 }
 
-constexpr ModelRow<MakeReceiverClock> kModels[] = {
-    {"none", without_keys<make_none>, "the receiver knows GPS time exactly"},
+constexpr ModelRow<MakeReceiverClock> kClocks[] = {
+    {"none", without_keys<make_perfect_clock>, "the receiver knows GPS time exactly"},
     {"tcxo", without_keys<make_tcxo>, "two-state clock of a temperature-compensated crystal"},
 };
 
 }  // namespace
 
 ModelTable<MakeReceiverClock> receiver_clock_models() {
-  return kModels;
+  return kClocks;
 }
 
 }  // namespace canyon::gnss

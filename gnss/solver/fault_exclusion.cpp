@@ -66,7 +66,7 @@ RangeSubset exclude_best_of_all(const RangeSubset& failed, const SubsetFitter& f
   return best;
 }
 
-constexpr ModelRow<FaultExclusion> kModels[] = {
+constexpr ModelRow<FaultExclusion> kExclusions[] = {
     {"none", {exclude_none, false}, "no test of the residuals"},
     {"detect", {exclude_none, true}, "chi-square test; an epoch that fails has no fix"},
     {"greedy",
@@ -80,7 +80,7 @@ constexpr ModelRow<FaultExclusion> kModels[] = {
 }  // namespace
 
 ModelTable<FaultExclusion> fault_exclusions() {
-  return kModels;
+  return kExclusions;
 }
 
 IntegrityTest exclude_faults(RangeSubset& tested, const SubsetFitter& fitter, const PositionSolverParameters& p) {

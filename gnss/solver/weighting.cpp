@@ -112,7 +112,7 @@ std::unique_ptr<RangeWeighting> make(const ModelParameters&, const RangeWeightin
   return std::make_unique<Model>(p);
 }
 
-constexpr ModelRow<MakeRangeWeighting> kModels[] = {
+constexpr ModelRow<MakeRangeWeighting> kWeightings[] = {
     {"uniform", make<Uniform>, "all ranges alike"},
     {"elevation", make<Elevation>, "sigma / sin(elevation)"},
     {"cn0", make<Cn0>, "variance ~ 10^(-C/N0 / 10), SIGMA-epsilon"},
@@ -124,7 +124,7 @@ constexpr ModelRow<MakeRangeWeighting> kModels[] = {
 }  // namespace
 
 ModelTable<MakeRangeWeighting> range_weightings() {
-  return kModels;
+  return kWeightings;
 }
 
 }  // namespace canyon::gnss

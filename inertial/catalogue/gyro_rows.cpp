@@ -6,15 +6,15 @@ namespace canyon::inertial {
 namespace {
 
 constexpr double kDegPerHour = kDegree / kHour;
-constexpr double kSqrtHour = 60.0;  // sqrt(s)
-constexpr double kG = kStandardGravity;
+constexpr double kRootHour = 60.0;  // sqrt(s)
+constexpr double kPerG = kStandardGravity;
 
 constexpr GyroRow kGyroRows[] = {
     {"arw_deg_per_sqrt_hr",
      "arw_source",
      &GyroSheet::arw_deg_per_sqrt_hr,
      {0, 1e3},
-     kDegree / kSqrtHour,
+     kDegree / kRootHour,
      &TriadFigures::white_per_sqrt_hz,
      GyroRow::kRequired,
      "angular random walk"},
@@ -94,7 +94,7 @@ constexpr GyroRow kGyroRows[] = {
      "rate_random_walk_source",
      &GyroSheet::rate_random_walk_deg_per_hr_per_sqrt_hr,
      {0, 1e6},
-     kDegPerHour / kSqrtHour,
+     kDegPerHour / kRootHour,
      &TriadFigures::rate_random_walk,
      GyroRow::kOptional,
      "rate random walk K"},
@@ -150,7 +150,7 @@ constexpr GyroRow kGyroRows[] = {
      "g_sensitivity_source",
      &GyroSheet::g_sensitivity_deg_per_hr_per_g,
      {0, 1e6},
-     kDegPerHour / kG,
+     kDegPerHour / kPerG,
      &TriadFigures::g_sensitivity,
      GyroRow::kOptional,
      "bias by specific force, each term, 1-sigma"},
@@ -174,7 +174,7 @@ constexpr GyroRow kGyroRows[] = {
      "vibration_rectification_source",
      &GyroSheet::vibration_rectification_deg_per_hr_per_g2,
      {0, 1e6},
-     kDegPerHour / (kG * kG),
+     kDegPerHour / (kPerG * kPerG),
      &TriadFigures::vibration_rectification,
      GyroRow::kOptional,
      "bias by the mean square of vibration; sign drawn"},

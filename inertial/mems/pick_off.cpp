@@ -3,7 +3,7 @@
 namespace canyon::inertial {
 namespace {
 
-constexpr ModelRow<MakePickOff> kRows[] = {
+constexpr ModelRow<MakePickOff> kPickOffs[] = {
     {"capacitive", make_capacitive, "differential electrodes, charge amplifier: reads at rest, softens the spring"},
     {"piezoresistive", make_piezoresistive, "strained resistors in a bridge: reads at rest, noise of the resistors"},
     {"piezoelectric", make_piezoelectric, "charge of a strained crystal: does not read at rest, as charge leaks away"},
@@ -28,7 +28,7 @@ void visit(FieldVisitor& f, PickOffFigures& c) {
 }
 
 ModelTable<MakePickOff> pick_offs() {
-  return kRows;
+  return kPickOffs;
 }
 
 }  // namespace canyon::inertial

@@ -10,7 +10,7 @@ namespace canyon::report {
 namespace {
 
 constexpr double kLeft = 96, kRight = 24, kFoot = 48, kColumnGap = 96, kRowGap = 52;
-constexpr std::size_t kBuckets = 780;  // one a pixel
+constexpr std::size_t kPictureBuckets = 780;  // one a pixel
 // Okabe & Ito (2008).
 constexpr std::array<const char*, 4> kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7"};
 constexpr const char* kQuiet = "fill=\"#59636d\"";
@@ -70,12 +70,12 @@ class PictureWriter {
     for (const Tick& tick : area.y.ticks())
       text(area.left - 8, area.y_px(tick.value) + 4, tick.label, std::string("text-anchor=\"end\" ") + kQuiet);
     for (const Band& band : panel.bands)
-      path(band_path(area, band, kBuckets), "fill=\"" + colour(band.run) + "\" opacity=\"0.2\"");
+      path(band_path(area, band, kPictureBuckets), "fill=\"" + colour(band.run) + "\" opacity=\"0.2\"");
     // The first line lies uppermost.
     double legend = area.left + area.width;
     for (auto line = panel.lines.rbegin(); line != panel.lines.rend(); ++line) {
       const bool points = line->style == Line::Style::kPoints;
-      path(line_path(area, *line, kBuckets),
+      path(line_path(area, *line, kPictureBuckets),
            "class=\"line\" fill=\"none\" stroke=\"" + colour(line->run) +
                (points ? "\" stroke-linecap=\"round\" stroke-width=\"5.2\""
                        : "\" stroke-linejoin=\"round\" stroke-width=\"1.4\""),

@@ -9,21 +9,21 @@
 namespace canyon::scene {
 namespace {
 
-struct Row {
+struct TypeRow {
   const char* element;
   ObjectKind kind;
   const char* material;
 };
-constexpr Row kMembers[] = {{"Building", ObjectKind::kBuilding, ""},
-                            {"Bridge", ObjectKind::kOther, "concrete"},
-                            {"Road", ObjectKind::kTerrain, "asphalt"},
-                            {"Railway", ObjectKind::kTerrain, "ground"},
-                            {"ReliefFeature", ObjectKind::kTerrain, "ground"},
-                            {"LandUse", ObjectKind::kTerrain, "ground"},
-                            {"PlantCover", ObjectKind::kTerrain, "grass"},
-                            {"WaterBody", ObjectKind::kTerrain, "water"},
-                            {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
-                            {"CityFurniture", ObjectKind::kOther, ""}};
+constexpr TypeRow kMembers[] = {{"Building", ObjectKind::kBuilding, ""},
+                                {"Bridge", ObjectKind::kOther, "concrete"},
+                                {"Road", ObjectKind::kTerrain, "asphalt"},
+                                {"Railway", ObjectKind::kTerrain, "ground"},
+                                {"ReliefFeature", ObjectKind::kTerrain, "ground"},
+                                {"LandUse", ObjectKind::kTerrain, "ground"},
+                                {"PlantCover", ObjectKind::kTerrain, "grass"},
+                                {"WaterBody", ObjectKind::kTerrain, "water"},
+                                {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
+                                {"CityFurniture", ObjectKind::kOther, ""}};
 
 /// "lod2MultiSurface" is of level 2; -1 for other elements.
 int level_of_detail(std::string_view name) {
@@ -67,8 +67,8 @@ class CityGmlReader {
 
   Status add(const XmlElement& element) {
     throw_if_cancelled();
-    const Row* row = nullptr;
-    for (const Row& known : kMembers)
+    const TypeRow* row = nullptr;
+    for (const TypeRow& known : kMembers)
       if (element.name() == known.element) row = &known;
     if (row == nullptr) return Ok{};
     note_frame(element);

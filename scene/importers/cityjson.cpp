@@ -21,21 +21,21 @@ struct Row {
   const char* material;
 };
 /// City objects and what they are to a vehicle; a type that is not here is kOther.
-constexpr Row kTypes[] = {{"Building", ObjectKind::kBuilding, ""},
-                          {"BuildingPart", ObjectKind::kBuilding, ""},
-                          {"BuildingInstallation", ObjectKind::kBuilding, ""},
-                          {"Road", ObjectKind::kTerrain, "asphalt"},
-                          {"Railway", ObjectKind::kTerrain, "ground"},
-                          {"TransportSquare", ObjectKind::kTerrain, "asphalt"},
-                          {"LandUse", ObjectKind::kTerrain, "ground"},
-                          {"PlantCover", ObjectKind::kTerrain, "grass"},
-                          {"WaterBody", ObjectKind::kTerrain, "water"},
-                          {"TINRelief", ObjectKind::kTerrain, "ground"},
-                          {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
-                          {"Bridge", ObjectKind::kOther, "concrete"}};
+constexpr Row kObjectTypes[] = {{"Building", ObjectKind::kBuilding, ""},
+                                {"BuildingPart", ObjectKind::kBuilding, ""},
+                                {"BuildingInstallation", ObjectKind::kBuilding, ""},
+                                {"Road", ObjectKind::kTerrain, "asphalt"},
+                                {"Railway", ObjectKind::kTerrain, "ground"},
+                                {"TransportSquare", ObjectKind::kTerrain, "asphalt"},
+                                {"LandUse", ObjectKind::kTerrain, "ground"},
+                                {"PlantCover", ObjectKind::kTerrain, "grass"},
+                                {"WaterBody", ObjectKind::kTerrain, "water"},
+                                {"TINRelief", ObjectKind::kTerrain, "ground"},
+                                {"SolitaryVegetationObject", ObjectKind::kTree, "foliage"},
+                                {"Bridge", ObjectKind::kOther, "concrete"}};
 
 Row row_of(const std::string& type) {
-  for (const Row& row : kTypes)
+  for (const Row& row : kObjectTypes)
     if (type == row.type) return row;
   return {"", ObjectKind::kOther, ""};
 }

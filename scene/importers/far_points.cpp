@@ -37,7 +37,7 @@ Status refuse_far_points(const std::vector<RawScene>& scenes) {
       if (first || !point.p.head<2>().allFinite()) return;
       Eigen::Vector3d way = point.p - middle;
       if (!std::isfinite(way.z())) way.z() = 0.0;  // of what has no height
-      if (way.cwiseAbs().maxCoeff() <= kFarthest_m) return;
+      if (way.cwiseAbs().maxCoeff() <= kSceneReach_m) return;
       first = Error{scene.files[point.from.file], static_cast<int>(point.from.line), name_of(point, scene),
                     "lies " + number_text(std::round(way.stableNorm() / 1e3)) + " km from the middle of the scene",
                     "coordinates within 100 km of it, or scene.center_deg and scene.radius_m to leave out what is "

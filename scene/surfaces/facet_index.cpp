@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kCell_m = 25.0;
 constexpr int kMaxCells = 400;  // per side; larger scenes get larger cells
-constexpr double kBlock_m = 50.0;
-constexpr double kTile_m = 2000.0;
+constexpr double kFacetBlock_m = 50.0;
+constexpr double kFacetTile_m = 2000.0;
 
 // Classes of lean: upright; leaning over (its upper edge hangs forward); so far over that it faces nearly straight
 // down; and leaning back, by the degree.
@@ -90,7 +90,7 @@ void FacetIndex::Square::add(const Facet& f, bool leans_back) {
 }
 
 void FacetIndex::build_tiles() {
-  const double block_m = std::max(kBlock_m, cell_m_);
+  const double block_m = std::max(kFacetBlock_m, cell_m_);
   using Place = std::pair<int, int>;  // row, column
   const auto place_in = [&](const Facet& f, double edge_m) {
     return Place(static_cast<int>((f.center_W.y() - origin_.y()) / edge_m),
@@ -105,7 +105,7 @@ void FacetIndex::build_tiles() {
     throw_if_cancelled();
     const Facet& f = facets_[i];
     const Place place = place_in(f, block_m);
-    auto& of_tile = blocks[place_in(f, kTile_m)];
+    auto& of_tile = blocks[place_in(f, kFacetTile_m)];
     Block& block = of_tile.try_emplace(place, Block{square(place, block_m), {}}).first->second;
     const std::size_t lean = lean_class(f.normal_W.z());
     block.add(f, lean >= kLeansBack);
@@ -119,7 +119,7 @@ void FacetIndex::build_tiles() {
                          static_cast<float>(f.area_m2), i});
   }
   for (auto& [place, of_tile] : blocks) {
-    Tile tile{square(place, kTile_m), {}};
+    Tile tile{square(place, kFacetTile_m), {}};
     for (auto& [_, block] : of_tile) {
       for (const auto& c : block.classes)
         for (const Brief& f : c.facets) tile.add(facets_[f.facet], c.lean >= kLeansBack);

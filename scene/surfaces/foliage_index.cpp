@@ -10,8 +10,8 @@
 namespace canyon::scene {
 namespace {
 
-constexpr double kCell_m = 10.0;
-constexpr int kMaxCells = 1000;  // per side; larger scenes get larger cells
+constexpr double kCrownCell_m = 10.0;
+constexpr int kMostCrownCells = 1000;  // per side; larger scenes get larger cells
 
 /// Where the ray enters and leaves the crown; leaves no later than it enters if it does not meet it.
 std::pair<double, double> chord(const Foliage& crown, const Eigen::Vector3d& p_W, const Eigen::Vector3d& direction_W,
@@ -62,7 +62,7 @@ FoliageIndex::FoliageIndex(const std::vector<Foliage>& crowns) : crowns_(crowns)
     ceiling_m_ = std::max(ceiling_m_, middle_m + half_m);
   }
   const Eigen::Vector3d size = high_ - low_;
-  cell_m_ = std::max(kCell_m, std::max(size.x(), size.y()) / kMaxCells);
+  cell_m_ = std::max(kCrownCell_m, std::max(size.x(), size.y()) / kMostCrownCells);
   per_m_ = 1.0 / cell_m_;
   columns_ = static_cast<int>(size.x() / cell_m_) + 1;
   rows_ = static_cast<int>(size.y() / cell_m_) + 1;

@@ -13,7 +13,7 @@
 namespace canyon::scene {
 namespace {
 
-constexpr std::size_t kPacket = RayPacket::kRays;
+constexpr std::size_t kTiledPacket = RayPacket::kRays;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 /// A tile is entered a little before the last was left, so that rounding opens no gap.
 constexpr double kOverlap_m = 1e-3;
@@ -38,7 +38,7 @@ double way_out(double p, double direction, double low, double high) {
 void miss_all(std::span<const RayPacket> rays, std::span<HitPacket> hits) {
   for (std::size_t p = 0; p < rays.size(); ++p) {
     const RayPacket& r = rays[p];
-    for (std::size_t i = 0; i < kPacket; ++i) {
+    for (std::size_t i = 0; i < kTiledPacket; ++i) {
       const Eigen::Vector3f o(r.origin_x[i], r.origin_y[i], r.origin_z[i]),
           d(r.direction_x[i], r.direction_y[i], r.direction_z[i]);
       CANYON_CHECK(o.allFinite() && d.allFinite(), "origin ", o.transpose(), " direction ", d.transpose());
@@ -198,12 +198,12 @@ void TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hi
   const Eigen::Vector3d about = center(origin_W);
   // As far as rays stay in the tile that the packets are about, all are traced at once.
   thread_local std::vector<RayPacket> here;
-  thread_local std::vector<std::array<double, kPacket>> out_m;
+  thread_local std::vector<std::array<double, kTiledPacket>> out_m;
   here.assign(rays.begin(), rays.end());
   out_m.resize(rays.size());
   for (std::size_t p = 0; p < rays.size(); ++p) {
     RayPacket& r = here[p];
-    for (std::size_t i = 0; i < kPacket; ++i) {
+    for (std::size_t i = 0; i < kTiledPacket; ++i) {
       const bool ours = origin_W == about && std::max(std::abs(r.origin_x[i]), std::abs(r.origin_y[i])) <= half_m;
       out_m[p][i] = ours ? std::min(way_out(r.origin_x[i], r.direction_x[i], -half_m, half_m),
                                     way_out(r.origin_y[i], r.direction_y[i], -half_m, half_m))
@@ -217,7 +217,7 @@ void TiledTracer::trace(std::span<const RayPacket> rays, std::span<HitPacket> hi
     miss_all(here, hits);
   for (std::size_t p = 0; p < rays.size(); ++p) {
     const RayPacket& r = rays[p];
-    for (std::size_t i = 0; i < kPacket; ++i) {
+    for (std::size_t i = 0; i < kTiledPacket; ++i) {
       if (hits[p].triangle[i] != Hit::kMiss || !(r.max_m[i] > out_m[p][i])) continue;
       const Ray ray{origin_W + Eigen::Vector3f(r.origin_x[i], r.origin_y[i], r.origin_z[i]).cast<double>(),
                     {r.direction_x[i], r.direction_y[i], r.direction_z[i]},

@@ -13,7 +13,7 @@
 namespace canyon::study {
 namespace {
 
-constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to stop
+constexpr std::size_t kRowsPerLook = 4096;  // at whether the user wants to stop
 
 Json position_json(const fusion::NavErrorStatistics& s) {
   return Json{{"rms_3d_m", or_null(s.position_rms_m)},
@@ -47,7 +47,7 @@ std::string drift_csv(const DeadReckoning& o) {
       "t_s,error_e_m,error_n_m,error_u_m,error_ve_m_s,error_vn_m_s,error_vu_m_s,error_roll_deg,error_pitch_deg,"
       "error_yaw_deg\n";
   for (std::size_t k = 0; k < o.errors.size(); ++k) {
-    if (k % kSamplesPerLook == 0) throw_if_cancelled();
+    if (k % kRowsPerLook == 0) throw_if_cancelled();
     const fusion::NavError& e = o.errors[k];
     const Eigen::Vector3d p = e.position_enu_m, v = e.velocity_enu_m_s, a = e.attitude_rad / kDegree;
     const bool held = k < o.held.count;
@@ -67,7 +67,7 @@ std::string drift_csv(const DeadReckoning& o) {
 std::string heading_csv(const DeadReckoning& o, const PlainIntegrals& plain) {
   std::string out = "t_s,roll_deg,pitch_deg,heading_deg,angle_x_deg,angle_y_deg,angle_z_deg\n";
   for (std::size_t k = 0; k < plain.t_s.size(); ++k) {
-    if (k % kSamplesPerLook == 0) throw_if_cancelled();
+    if (k % kRowsPerLook == 0) throw_if_cancelled();
     const fusion::NavState& s = o.states[k + 1];
     const NedAttitude a = ned_attitude(geodetic_from_ecef(s.p_EU_E), s.R_EU);
     append_row(out, "%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", plain.t_s[k], a.roll_rad / kDegree, a.pitch_rad / kDegree,

@@ -11,7 +11,7 @@ namespace canyon::study {
 namespace {
 
 template <class... Values>
-std::string text(const char* format, Values... values) {
+std::string table_text(const char* format, Values... values) {
   char out[400];
   std::snprintf(out, sizeof out, format, values...);
   return out;
@@ -51,7 +51,7 @@ std::vector<Row> rows(const Plan& plan, Verdict verdict, bool with_effect) {
   for (Row& row : out)
     row.where = row.whole_run                  ? "whole run"
                 : row.length_m > route_m - 0.5 ? "whole route"
-                                               : text("%.0f of %.0f m", row.length_m, route_m);
+                                               : table_text("%.0f of %.0f m", row.length_m, route_m);
   return out;
 }
 
@@ -59,11 +59,11 @@ void add_rows(const Plan& plan, Verdict verdict, const char* title, std::string&
   const std::vector<Row> found = rows(plan, verdict, with_effect);
   if (found.empty()) return;
   const bool left_out = verdict == Verdict::kNotNeeded;
-  out += text("%-30s %-14s %9s  %s\n", title, "where", left_out ? "saves" : "", "why");
+  out += table_text("%-30s %-14s %9s  %s\n", title, "where", left_out ? "saves" : "", "why");
   for (const Row& row : found) {
-    const std::string saved = !left_out ? "" : !row.measured ? "-" : text("%.2f s", row.saved_s);
-    out += text("  %-28s %-14s %9s  ", row.effect.c_str(), row.where.c_str(), saved.c_str());
-    if (with_effect) out += text("a range by %.2g %s at most: ", row.bound, row.unit.c_str());
+    const std::string saved = !left_out ? "" : !row.measured ? "-" : table_text("%.2f s", row.saved_s);
+    out += table_text("  %-28s %-14s %9s  ", row.effect.c_str(), row.where.c_str(), saved.c_str());
+    if (with_effect) out += table_text("a range by %.2g %s at most: ", row.bound, row.unit.c_str());
     out += row.reason + "\n";
   }
   out += "\n";
@@ -74,12 +74,13 @@ std::string tolerances_text(const Plan& plan) {
   std::string out;
   for (const auto& [figure, tolerance] : plan.tolerances) {
     const auto bound = plan.figure_bounds.find(figure);
-    out += text("%s moves by %.3g at most, the tolerance is %.3g.\n", figure.c_str(),
-                bound == plan.figure_bounds.end() ? 0.0 : bound->second, tolerance);
+    out += table_text("%s moves by %.3g at most, the tolerance is %.3g.\n", figure.c_str(),
+                      bound == plan.figure_bounds.end() ? 0.0 : bound->second, tolerance);
   }
   if (!plan.epoch_bound_m.empty())
-    out += text("The estimate of position moves by %.3g m at most in the median epoch, by %.3g m in the worst.\n",
-                median(plan.epoch_bound_m), *std::max_element(plan.epoch_bound_m.begin(), plan.epoch_bound_m.end()));
+    out +=
+        table_text("The estimate of position moves by %.3g m at most in the median epoch, by %.3g m in the worst.\n",
+                   median(plan.epoch_bound_m), *std::max_element(plan.epoch_bound_m.begin(), plan.epoch_bound_m.end()));
   return out + (out.empty() ? "" : "\n");
 }
 
@@ -100,11 +101,11 @@ std::string plan_table(const Plan& plan, const PredictedCost& cost, double nomin
   add_rows(plan, Verdict::kUndecidable, "Kept, as it may act", out);
   out += tolerances_text(plan);
   if (std::isfinite(cost.full_s))
-    out +=
-        text("CPU time of the nominal mission (%.0f s), predicted: %.1f s in full, %.1f s as planned (%.2f x less).\n",
-             nominal_s, cost.full_s, cost.planned_s, cost.full_s / cost.planned_s);
+    out += table_text(
+        "CPU time of the nominal mission (%.0f s), predicted: %.1f s in full, %.1f s as planned (%.2f x less).\n",
+        nominal_s, cost.full_s, cost.planned_s, cost.full_s / cost.planned_s);
   if (!plan.omissions.corridor.empty())
-    out += text(
+    out += table_text(
         "What is left out along the route holds within %g m of it. A vehicle that goes farther gets everything\n"
         "back from that step on, and the run says when.\n",
         plan.half_width_m);
@@ -112,21 +113,23 @@ std::string plan_table(const Plan& plan, const PredictedCost& cost, double nomin
 }
 
 std::string verification_table(const Verification& verification) {
-  std::string out =
-      text("%-44s %16s %11s  %s\n", "Verified: left out", "epochs", "violations", "largest difference, and the bound");
+  std::string out = table_text("%-44s %16s %11s  %s\n", "Verified: left out", "epochs", "violations",
+                               "largest difference, and the bound");
   for (const VerifiedEffect& effect : verification.effects)
-    out += text(
+    out += table_text(
         "  %-42s %16s %11lld  %s\n", effect.effect.c_str(),
-        text("%lld of %lld", static_cast<long long>(effect.epochs), static_cast<long long>(effect.replayed)).c_str(),
+        table_text("%lld of %lld", static_cast<long long>(effect.epochs), static_cast<long long>(effect.replayed))
+            .c_str(),
         static_cast<long long>(effect.violations),
-        (effect.bound > 0.0 ? text("%.3g %s of %.3g", effect.largest_difference, effect.unit.c_str(), effect.bound)
+        (effect.bound > 0.0
+             ? table_text("%.3g %s of %.3g", effect.largest_difference, effect.unit.c_str(), effect.bound)
          : effect.violations == 0 ? std::string("none, to the bit")
-                                  : text("%g", effect.largest_difference))
+                                  : table_text("%g", effect.largest_difference))
             .c_str());
   if (verification.effects.empty()) out += "  nothing is left out\n";
   if (std::isfinite(verification.tightness()))
-    out += text("Tightness, the median of bound / largest difference: %.1f of ranges, %.1f of positions\n",
-                verification.tightness(), verification.position_tightness());
+    out += table_text("Tightness, the median of bound / largest difference: %.1f of ranges, %.1f of positions\n",
+                      verification.tightness(), verification.position_tightness());
   return out;
 }
 

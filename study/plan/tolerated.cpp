@@ -16,8 +16,8 @@ namespace canyon::study {
 
 namespace {
 
-constexpr std::int64_t kEpochs = 200;  // that a saving is measured at
-constexpr int kRepeats = 3;            // of which the fastest counts
+constexpr std::int64_t kToleratedEpochs = 200;  // that a saving is measured at
+constexpr int kRepeats = 3;                     // of which the fastest counts
 
 double most(const PositionChain& chain) {
   return chain.any.empty() ? 0.0 : *std::max_element(chain.any.begin(), chain.any.end());
@@ -78,8 +78,8 @@ Result<Cost> cost_of(GnssReplay& replay, const gnss::DelayOmissions& leave_out) 
 /// What leaving out each saves: work at the replayed epochs, which decides, and CPU time over the nominal mission.
 Status measure(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
                std::vector<PlannedEffect>& candidates) {
-  GnssReplay replay(config, mission, tape, {}, kEpochs);
-  const double times = mission.nominal_s * config.gnss.rate_hz / static_cast<double>(kEpochs);
+  GnssReplay replay(config, mission, tape, {}, kToleratedEpochs);
+  const double times = mission.nominal_s * config.gnss.rate_hz / static_cast<double>(kToleratedEpochs);
   CANYON_TRY(const Cost full, cost_of(replay, {}));
   for (PlannedEffect& candidate : candidates) {
     CANYON_TRY(const Cost less, cost_of(replay, gnss::delays_of({candidate.need})));

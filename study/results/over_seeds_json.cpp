@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-Json number(double value) {
+Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
@@ -21,8 +21,8 @@ Json shares_json(const OverSeeds& found) {
     out.push_back({{"fidelity", share.fidelity},
                    {"success", share.success},
                    {"n", share.n},
-                   {"low", number(share.interval.low)},
-                   {"high", number(share.interval.high)},
+                   {"low", number_or_null(share.interval.low)},
+                   {"high", number_or_null(share.interval.high)},
                    {"outcomes", share.outcomes}});
   return out;
 }
@@ -33,11 +33,11 @@ Json figures_json(const std::vector<FigureOverSeeds>& of_run, bool timing) {
   for (const FigureOverSeeds& row : of_run)
     if (row.figure->timing == timing)
       out[row.figure->key] = {{"n", row.n},
-                              {"median", number(row.median.value)},
-                              {"low", number(row.median.interval.low)},
-                              {"high", number(row.median.interval.high)},
-                              {"min", number(row.lowest)},
-                              {"max", number(row.highest)}};
+                              {"median", number_or_null(row.median.value)},
+                              {"low", number_or_null(row.median.interval.low)},
+                              {"high", number_or_null(row.median.interval.high)},
+                              {"min", number_or_null(row.lowest)},
+                              {"max", number_or_null(row.highest)}};
   return out;
 }
 
@@ -52,10 +52,10 @@ void write_over_seeds(const OverSeeds& found, Json& out) {
                              {"b", pair.b},
                              {"figure", pair.figure},
                              {"n", pair.n},
-                             {"difference", number(pair.difference)},
-                             {"low", number(pair.interval.low)},
-                             {"high", number(pair.interval.high)},
-                             {"p", number(pair.p)}});
+                             {"difference", number_or_null(pair.difference)},
+                             {"low", number_or_null(pair.interval.low)},
+                             {"high", number_or_null(pair.interval.high)},
+                             {"p", number_or_null(pair.p)}});
   out["over_seeds"] = Json::array();
   for (std::size_t run = 0; run < found.fidelities.size(); ++run)
     out["over_seeds"].push_back({{"fidelity", found.fidelities[run]},

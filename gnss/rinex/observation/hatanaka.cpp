@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kHighestOrder = 9;
 constexpr std::int64_t kLargest = 9'999'999'999'999;  // F14.3 holds 13 digits and a point
-constexpr std::size_t kMostSatellites = 999;
+constexpr std::size_t kMostInEpoch = 999;
 /// A value takes at least a byte, where the text has 16; more than this many times its size no file that was compressed
 /// becomes.
 constexpr std::size_t kMostGrowth = 64, kRoom = std::size_t{1} << 20;
@@ -205,7 +205,7 @@ class Decoder {
 
   void read_observations(std::size_t number) {
     const std::size_t list_at = modern_ ? 41 : 32;
-    if (number > kMostSatellites || epoch_line_.size() < list_at + 3 * number)
+    if (number > kMostInEpoch || epoch_line_.size() < list_at + 3 * number)
       return lose("the list of satellites is shorter than " + std::to_string(number));
     const std::string names = epoch_line_.substr(list_at, 3 * number);
     const int source = lines_.number();

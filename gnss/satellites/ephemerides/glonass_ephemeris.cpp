@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kJ2 = 1082625.75e-9;          // ICD table 3.2, second zonal harmonic
 constexpr double kEquatorRadiusM = 6378136.0;  // the same, PZ-90
-constexpr double kStepS = 60.0;
+constexpr double kRungeKuttaStepS = 60.0;
 
 struct Motion {
   Eigen::Vector3d p_E, v_E;
@@ -52,7 +52,7 @@ SatelliteState GlonassEphemeris::at(GpsTime t) const {
   Motion m{p_E, v_E};
   double rest_s = std::abs(tk_s);
   const double sign = tk_s < 0.0 ? -1.0 : 1.0;
-  for (; rest_s > kStepS; rest_s -= kStepS) m = runge_kutta(m, a_E, sign * kStepS);
+  for (; rest_s > kRungeKuttaStepS; rest_s -= kRungeKuttaStepS) m = runge_kutta(m, a_E, sign * kRungeKuttaStepS);
   m = runge_kutta(m, a_E, sign * rest_s);
 
   SatelliteState s;

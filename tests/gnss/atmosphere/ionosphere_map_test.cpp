@@ -27,7 +27,7 @@ IonexMaps maps(double at_equator, double per_degree) {
   return out;
 }
 
-SkyView view(double lat_deg, double azimuth_deg, double elevation_deg) {
+SkyView view_of(double lat_deg, double azimuth_deg, double elevation_deg) {
   return {GpsTime::from_calendar(2020, 6, 25, 12, 0, 0),
           {lat_deg * kDegree, 0.3, 0.0},
           elevation_deg * kDegree,
@@ -37,7 +37,7 @@ SkyView view(double lat_deg, double azimuth_deg, double elevation_deg) {
 TEST(IonosphereMap, ConstantMapIsTheThinShell) {
   for (const double e_deg : {5.0, 30.0, 90.0}) {
     const double s = 6371.0 / 6821.0 * std::cos(e_deg * kDegree);
-    EXPECT_NEAR(ionosphere_map_delay_m(maps(12.0, 0.0), view(50, 77, e_deg)),
+    EXPECT_NEAR(ionosphere_map_delay_m(maps(12.0, 0.0), view_of(50, 77, e_deg)),
                 vertical_ionosphere_m(12.0) / std::sqrt(1.0 - s * s), 1e-12);
   }
 }
@@ -47,7 +47,7 @@ TEST(IonosphereMap, PiercesTheShellInTheDirectionOfTheSatellite) {
   const double e = 20.0 * kDegree, s = 6371.0 / 6821.0 * std::cos(e);
   const double psi_deg = (0.5 * kPi - e - std::asin(s)) / kDegree;
   for (const double sign : {1.0, -1.0})
-    EXPECT_NEAR(ionosphere_map_delay_m(maps(50.0, 0.3), view(40, sign > 0 ? 0 : 180, 20)),
+    EXPECT_NEAR(ionosphere_map_delay_m(maps(50.0, 0.3), view_of(40, sign > 0 ? 0 : 180, 20)),
                 vertical_ionosphere_m(50.0 + 0.3 * (40.0 + sign * psi_deg)) / std::sqrt(1.0 - s * s), 1e-9);
 }
 
