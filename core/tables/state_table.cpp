@@ -1,5 +1,6 @@
 #include "canyon/core/tables/state_table.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -301,7 +302,7 @@ ModelTable<const char*> state_layouts() {
   return kLayouts;
 }
 
-Result<StateTable> read_state_table(const std::string& path, const std::string& columns) {
+Result<StateTable> read_state_table(const std::string& path, const std::string& columns, double late_s) {
   CANYON_TRY(std::string content, read_text_or_gzip_file(path));
   LineReader in(path, std::move(content));
   StateTable table;
@@ -355,15 +356,20 @@ Result<StateTable> read_state_table(const std::string& path, const std::string& 
       ++table.passed_over.not_finite;
       continue;
     }
-    if (!table.rows.empty() && !(table.rows.back().t < row->t)) {
-      const bool same = row->t == table.rows.back().t;
+    const bool behind = !table.rows.empty() && !(table.rows.back().came < row->t);
+    if (behind && !(late_s > 0.0 && table.rows.back().came - row->t <= late_s)) {
+      const bool same = row->t == table.rows.back().came;
       ++(same ? table.passed_over.duplicates : table.passed_over.reversed);
       // Of two in the wrong order the one ahead goes: one stamp of the far future must not end the file.
-      if (same || table.rows.size() < 2 || !(table.rows[table.rows.size() - 2].t < row->t)) continue;
+      if (same || table.rows.size() < 2 || !(table.rows[table.rows.size() - 2].came < row->t)) continue;
       table.rows.pop_back();
     }
     table.rows.push_back(*row);
+    const std::size_t rows = table.rows.size();
+    table.rows.back().came = rows > 1 ? std::max(row->t, table.rows[rows - 2].came) : row->t;
   }
+  std::stable_sort(table.rows.begin(), table.rows.end(),
+                   [](const StateRow& a, const StateRow& b) { return a.t < b.t; });
   if (table.rows.empty()) return in.empty_file("solutions");
   table.has_week = places[kWeek].there() || places[kDate].there();
   for (const StateRow& row : table.rows)

@@ -25,6 +25,7 @@ struct StateRow {
   bool offered = true;                  ///< false: a column `offered` says that it was withheld
   int quality = 0;  ///< as RTKLIB counts: 1 and 2 carrier phase, 4 differential, 5 single; 0: not said
   int line = 0;     ///< of the file
+  GpsTime came;     ///< the latest time in the file up to it: its own, but of a row that is late
 };
 
 /// Rows that were passed over.
@@ -58,7 +59,9 @@ ModelTable<const char*> state_layouts();
 /// gzip.
 ///
 /// Rows of a time that has been, and rows with numbers that are none, are passed over and counted; a row without a
-/// place counts as not solved. Errors name the line: columns that are missing, text that is no number.
-Result<StateTable> read_state_table(const std::string& path, const std::string& columns = {});
+/// place counts as not solved. With `late_s` above zero rows that are at most so much behind the latest before them are
+/// kept, also of the same time; the one that comes first in the file stands first. Errors name the line: columns that
+/// are missing, text that is no number.
+Result<StateTable> read_state_table(const std::string& path, const std::string& columns = {}, double late_s = 0.0);
 
 }  // namespace canyon

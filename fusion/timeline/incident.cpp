@@ -26,9 +26,22 @@ const char* trouble_text(Trouble trouble) {
   return "";
 }
 
+const char* trouble_key(Trouble trouble) {
+  constexpr const char* kKeys[kTroubles] = {"none", "not_finite", "reversed", "duplicate", "gap",
+                                            "lost", "too_late",   "frozen",   "ahead"};
+  return kKeys[static_cast<std::size_t>(trouble)];
+}
+
 void Incidents::add(Trouble trouble, GpsTime t) {
   const auto i = static_cast<std::size_t>(trouble);
   if (counts_[i]++ == 0) first_[i] = t;
+}
+
+void Incidents::add(const Incidents& later) {
+  for (std::size_t i = 0; i < counts_.size(); ++i) {
+    if (counts_[i] == 0) first_[i] = later.first_[i];
+    counts_[i] += later.counts_[i];
+  }
 }
 
 std::string Incidents::text() const {

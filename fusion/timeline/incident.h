@@ -23,11 +23,14 @@ enum class Trouble : std::uint8_t {
 inline constexpr int kTroubles = 9;
 /// "gap in the IMU's samples" and so on, for a table or a warning.
 const char* trouble_text(Trouble trouble);
+/// "gap" and so on, for a file.
+const char* trouble_key(Trouble trouble);
 
 /// How often each came.
 class Incidents {
  public:
   void add(Trouble trouble, GpsTime t);
+  void add(const Incidents& later);
   std::int64_t count(Trouble trouble) const { return counts_[static_cast<std::size_t>(trouble)]; }
   /// When it came first; undefined where count() is 0.
   GpsTime first(Trouble trouble) const { return first_[static_cast<std::size_t>(trouble)]; }

@@ -7,6 +7,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/fusion/stress/at_rest.h"
+#include "canyon/fusion/verdict/state_record.h"
 #include "canyon/tests/fusion/driven_truth.h"
 #include "canyon/tests/fusion/tactical_noise.h"
 
@@ -89,6 +90,79 @@ TEST(FilterTimeline, IsTheFilterItselfWhereAllComesInTime) {
   }
   EXPECT_EQ(direct.nav_state().p_EU_E, timeline.filter().nav_state().p_EU_E);
   EXPECT_EQ(direct.covariance(), timeline.filter().covariance());
+}
+
+// A unit that nobody has set stamps its samples 3.7 s late; who collects them knows when they came.
+TEST(FilterTimeline, AClockOfTheUnitsOwnChangesNothing) {
+  constexpr std::int64_t kOff_ns = 3'700'000'000;
+  DrivenTruth truth(1, 0.5), same(1, 0.5);
+  FilterTimeline one(started(truth), {});
+  ErrorStateFilter by_its_clock = started(same);
+  by_its_clock.initialize({.ns = same.state().t.ns + kOff_ns}, same.X_WB(), same.v_W());
+  const std::vector<Arrival> arrivals = drive(truth, 20.0, 0.333);
+  for (const Arrival& a : arrivals) std::visit([&](const auto& what) { one.add(what); }, a.what);
+  FilterTimeline other(by_its_clock, {}, same.state().t);
+  for (const Arrival& a : arrivals) {
+    if (const auto* sample = std::get_if<ImuSample>(&a.what)) {
+      ImuSample stamped = *sample;
+      stamped.t.ns += kOff_ns;
+      other.add(stamped, sample->t);
+    } else {
+      other.add(std::get<AidingMessage>(a.what));
+    }
+  }
+  EXPECT_EQ(other.at(), one.at());
+  EXPECT_EQ(other.filter().nav_state().t.ns, one.filter().nav_state().t.ns + kOff_ns);
+  EXPECT_EQ(other.filter().nav_state().p_EU_E, one.filter().nav_state().p_EU_E);
+  EXPECT_EQ(other.filter().covariance(), one.filter().covariance());
+  EXPECT_EQ(other.replays(), one.replays());
+}
+
+// What is told to those who follow is each thing once, in turn, however often the filter goes back.
+TEST(FilterTimeline, TellsOfEachThingOnce) {
+  DrivenTruth truth(1, 0.5);
+  const ErrorStateFilter start = started(truth);
+  const GpsTime begin = start.nav_state().t;
+  FilterTimeline timeline(start, {});
+  PredictionAlone alone;
+  ErrorStateFilter watched = start;
+  alone.follow(watched);
+  timeline.watch(&alone);
+  double stepped_s = 0.0;
+  std::vector<double> looked_s;
+  int left = 0, updates = 0;
+  timeline.on_leave = [&](const ErrorStateFilter&) { ++left; };
+  timeline.on_step = [&](const ImuSample& step, const NavState& before, const ErrorStateFilter& now) {
+    EXPECT_EQ(now.nav_state().t, step.t);
+    EXPECT_NEAR(now.nav_state().t - before.t, step.dt_s, 1e-9);  // stamps are whole nanoseconds
+    stepped_s += step.dt_s;
+    --left;
+  };
+  timeline.on_look = [&](const ErrorStateFilter& now) { looked_s.push_back(now.nav_state().t - begin); };
+  timeline.on_update = [&](const UpdateReport&, const ErrorStateFilter&) { ++updates; };
+  int looks = 0;
+  for (const Arrival& a : drive(truth, 20.0, 0.333)) {
+    // Between two samples, once in 1.003 s.
+    for (; looks < 19 && a.at_s > 1.003 * (looks + 1); ++looks) timeline.look(begin + 1.003 * (looks + 1));
+    std::visit([&](const auto& what) { timeline.add(what); }, a.what);
+  }
+  EXPECT_EQ(timeline.replays(), 40);
+  EXPECT_EQ(updates, 40);
+  EXPECT_EQ(left, 0);
+  EXPECT_NEAR(stepped_s, 20.0, 1e-9);
+  ASSERT_EQ(looked_s.size(), static_cast<std::size_t>(looks));
+  for (std::size_t i = 0; i < looked_s.size(); ++i)
+    EXPECT_NEAR(looked_s[i], 1.003 * (static_cast<double>(i) + 1), 1e-9);
+  // It watched 20 s of steps once: the same as beside a filter that never goes back.
+  DrivenTruth again(1, 0.5);
+  ErrorStateFilter straight = started(again);
+  PredictionAlone expected;
+  expected.follow(straight);
+  for (const Arrival& a : drive(again, 20.0, 1e3))
+    if (const auto* sample = std::get_if<ImuSample>(&a.what)) straight.predict(*sample);
+  const Eigen::VectorXd got = alone.covariance().diagonal(), wanted = expected.covariance().diagonal();
+  // To the first order of what 40 fixes of a metre have changed of the trajectory it is linearized about.
+  for (Eigen::Index i = 0; i < 9; ++i) EXPECT_NEAR(got[i] / wanted[i], 1.0, 0.02) << i;
 }
 
 TEST(FilterTimeline, EveryTroubleHasItsName) {
