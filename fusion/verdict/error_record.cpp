@@ -28,6 +28,8 @@ ErrorRecord::ErrorRecord(const std::vector<BlockKind>& kinds) {
       block.axes.back().name = axis;
       block.axes.back().unit = kind.unit;
     }
+    for (std::size_t i = 0; i < block.edges.size(); ++i)
+      block.edges[i] = chi_square_threshold(1.0 - BlockErrors::kShares[i], static_cast<double>(kind.axes.size()));
     blocks_.push_back(std::move(block));
   }
 }
@@ -47,9 +49,7 @@ void ErrorRecord::add(std::size_t index, GpsTime t, const Eigen::VectorXd& error
   Eigen::VectorXd z = Eigen::VectorXd::Constant(n, kMostErrors);
   if (whole.info() == Eigen::Success) z = whole.matrixL().solve(error).cwiseMin(kMostErrors).cwiseMax(-kMostErrors);
   block.series.add(t, z);
-  for (std::size_t i = 0; i < block.within.size(); ++i)
-    block.within[i] +=
-        z.squaredNorm() <= chi_square_threshold(1.0 - BlockErrors::kShares[i], static_cast<double>(n)) ? 1 : 0;
+  for (std::size_t i = 0; i < block.within.size(); ++i) block.within[i] += z.squaredNorm() <= block.edges[i] ? 1 : 0;
   for (Eigen::Index i = 0; i < n; ++i) {
     AxisErrors& axis = block.axes[static_cast<std::size_t>(i)];
     axis.error_squares += error[i] * error[i];

@@ -26,6 +26,7 @@ struct BlockErrors {
   NormalSeries series;
   /// How many errors lie within the ellipsoid that should hold so many of them.
   std::array<std::int64_t, 3> within{};
+  std::array<double, 3> edges{};  ///< of those ellipsoids: squares of Mahalanobis distances
 
   double coverage(std::size_t share) const;
 };
