@@ -45,14 +45,24 @@ void run_filter(const SmootherInput& run, std::span<const ImuSample> samples, Er
                 const std::function<void(const ImuSample&)>& after) {
   Queue fixes(run.fixes);
   Queue odometer(run.odometer);
+  Queue barometer(run.barometer);
+  Queue magnetometer(run.magnetometer);
   fixes.begin(samples.front());
   odometer.begin(samples.front());
-  for (const ImuSample& imu : samples) {
+  barometer.begin(samples.front());
+  magnetometer.begin(samples.front());
+  auto loosened = run.loosened.begin();
+  while (loosened != run.loosened.end() && loosened->t <= run.start) ++loosened;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
     throw_if_cancelled();
-    filter.predict(imu);
-    for (const OdometerSample& sample : odometer.with(imu)) filter.update(AidingMessage(sample));
-    for (const GnssFix& fix : fixes.with(imu)) filter.update(fix);
-    after(imu);
+    filter.predict(samples[k]);
+    for (; loosened != run.loosened.end() && loosened->t <= samples[k].t; ++loosened)
+      filter.loosen(loosened->theta_rad, loosened->p_m, loosened->v_m_s);
+    for (const OdometerSample& sample : odometer.with(samples, k)) filter.update(AidingMessage(sample));
+    for (const BarometerSample& sample : barometer.with(samples, k)) filter.update(AidingMessage(sample));
+    for (const MagnetometerSample& sample : magnetometer.with(samples, k)) filter.update(AidingMessage(sample));
+    for (const GnssFix& fix : fixes.with(samples, k)) filter.update(fix);
+    after(samples[k]);
   }
 }
 

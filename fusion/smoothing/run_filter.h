@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <span>
 
 #include "canyon/core/result.h"
 #include "canyon/fusion/error_state_filter.h"
@@ -19,10 +21,11 @@ template <class Message>
 class Queue {
  public:
   explicit Queue(std::span<const Message> all) : rest_(all) {}
-  /// Those that come with this sample, after those that came before it.
-  std::span<const Message> with(const ImuSample& imu) {
+  /// Those that come with sample k, after those that came before it: nearer to its end than to that of the next.
+  std::span<const Message> with(std::span<const ImuSample> samples, std::size_t k) {
+    const double reach_s = 0.5 * samples[std::min(k + 1, samples.size() - 1)].dt_s;
     std::size_t count = 0;
-    while (count < rest_.size() && rest_[count].t - imu.t <= 0.5 * imu.dt_s) ++count;
+    while (count < rest_.size() && rest_[count].t - samples[k].t <= reach_s) ++count;
     const auto out = rest_.first(count);
     rest_ = rest_.subspan(count);
     return out;

@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "canyon/core/earth/local_frame.h"
@@ -14,6 +15,12 @@
 #include "canyon/fusion/smoothing/smoothed_state.h"
 
 namespace canyon::fusion {
+
+/// The filter was made less sure of its motion at an instant, as after a gap (ErrorStateFilter::loosen).
+struct Loosening {
+  GpsTime t;
+  double theta_rad = 0.0, p_m = 0.0, v_m_s = 0.0;
+};
 
 /// A run to be smoothed: what a filter is told of it, and its messages, each kind in the order of time. What is
 /// referred to outlives the call.
@@ -29,6 +36,9 @@ struct SmootherInput {
   std::span<const ImuSample> imu;
   std::span<const GnssFix> fixes;
   std::span<const OdometerSample> odometer;
+  std::span<const BarometerSample> barometer = {};        ///< not of factor graphs, as the next two
+  std::span<const MagnetometerSample> magnetometer = {};  ///< axes of U
+  std::span<const Loosening> loosened = {};               ///< at the ends of samples
 };
 
 /// How far a fix was believed.
@@ -50,6 +60,10 @@ class Smoother {
   /// An Error if samples do not follow one another, nothing follows the start, or the build has not what it needs.
   virtual Result<Smoothed> smooth(const SmootherInput& run) = 0;
 };
+
+/// Rows of the filter's measurements that the smoother has no place for: of a factor graph "barometer" and
+/// "magnetometer". ("standstill" looks at a stretch of time, and graphs do without it.)
+std::vector<std::string> not_smoothed_by(std::string_view smoother, const FilterConfig& config);
 
 using MakeSmoother = std::unique_ptr<Smoother>(const ModelParameters& own);
 ModelTable<MakeSmoother> smoothers();

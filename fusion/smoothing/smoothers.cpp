@@ -12,7 +12,18 @@ constexpr ModelRow<MakeSmoother> kSmoothers[] = {
      fixed_lag_graph_parameters},
 };
 
+/// Rows of which a graph gets no messages.
+constexpr std::string_view kNotOfGraphs[] = {"barometer", "magnetometer"};
+
 }  // namespace
+
+std::vector<std::string> not_smoothed_by(std::string_view smoother, const FilterConfig& config) {
+  std::vector<std::string> out;
+  if (smoother.ends_with("graph"))
+    for (const std::string_view name : kNotOfGraphs)
+      if (measures_with(config, name)) out.emplace_back(name);
+  return out;
+}
 
 ModelTable<MakeSmoother> smoothers() {
   return kSmoothers;

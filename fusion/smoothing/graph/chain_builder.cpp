@@ -35,8 +35,8 @@ ChainBuilder::ChainBuilder(const SmootherInput& run, std::span<const ImuSample> 
   double since_s = 0.0;
   std::vector<OdometerSample> counted;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const auto here = fixes.with(samples[i]);
-    for (const OdometerSample& sample : odometer.with(samples[i])) counted.push_back(sample);
+    const auto here = fixes.with(samples, i);
+    for (const OdometerSample& sample : odometer.with(samples, i)) counted.push_back(sample);
     since_s += samples[i].dt_s;
     if (!has_fix(here) && since_s < (1.0 - 1e-9) * node_interval_s_ && i + 1 < samples.size()) continue;
     since_s = 0.0;
