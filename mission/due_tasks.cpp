@@ -6,6 +6,7 @@
 #include "canyon/core/units.h"
 #include "canyon/lidar/deskew.h"
 #include "canyon/mission/mission_run.h"
+#include "canyon/mission/recorder/estimate_error.h"
 
 // What is due within a master step.
 namespace canyon::mission {
@@ -105,6 +106,8 @@ Status MissionRun::use_fix() {
   GnssRow& row = fixes_.front();
   if (!row.withheld) {
     CANYON_TRY(row.update, localizer_.update(row.fix));
+    if (row.fix.status != FixStatus::kNone)
+      evidence_.fix(row.fix.t, row.fix.p_A_E - record_.frame.to_E(row.p_A_W_true), row.fix.covariance_E);
     if (!row.epoch.observations.empty()) CANYON_TRY_STATUS(localizer_.update(row.epoch));
     follow_correction();
     CANYON_TRY_STATUS(boundaries_.check(localizer_.estimate()));
@@ -244,6 +247,19 @@ Status MissionRun::ask_autonomy(const Due& due) {
   return Ok{};
 }
 
+void MissionRun::compare(const NavRow& row, const Eigen::Vector3d& v_WB_W_true) {
+  const EstimateError error = estimate_error(row);
+  const Eigen::Matrix3d R_WB = row.estimate.X_WB.R.toRotationMatrix();
+  const Matrix6d& P = row.estimate.pose_covariance;
+  evidence_.error(row.t, {.attitude_rad = error.attitude_deg * kDegree,
+                          .attitude_covariance = P.topLeftCorner<3, 3>(),
+                          .position_enu_m = error.position_W_m,
+                          .position_covariance = R_WB * P.bottomRightCorner<3, 3>() * R_WB.transpose(),
+                          .velocity_enu_m_s = row.estimate.v_WB_W - v_WB_W_true,
+                          .velocity_covariance = row.estimate.velocity_covariance_W});
+  localizer_.look();
+}
+
 Status MissionRun::record_epoch(const Due& due) {
   const KinematicState truth = truth_at(due.t);
   NavRow row{due.t,
@@ -253,10 +269,11 @@ Status MissionRun::record_epoch(const Due& due) {
              command_,
              autonomy_->next_waypoint() + 1,
              autonomy_->state()};
-  return localizer_.once_at(due.t, [this, row]() mutable -> Status {
+  return localizer_.once_at(due.t, [this, row, v_WB_W_true = truth.v_WB_W]() mutable -> Status {
     row.estimate = localizer_.estimate();
     row.estimate.X_WB.p.z() += config_.run.estimate_up_offset_m;
     CANYON_TRY_STATUS(boundaries_.check(row));
+    clock_.charge(Part::kScoring, [&] { compare(row, v_WB_W_true); });
     return recorder_.epoch(row);
   });
 }

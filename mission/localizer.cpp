@@ -4,6 +4,20 @@
 
 namespace canyon::mission {
 
+void Localizer::gather(fusion::RunEvidence& evidence) {
+  evidence_ = &evidence;
+  evidence.follow(filter_);
+}
+
+void Localizer::look() {
+  if (evidence_ != nullptr) evidence_->look(filter_);
+}
+
+void Localizer::tell(std::size_t from) {
+  if (evidence_ == nullptr) return;
+  for (std::size_t i = from; i < filter_.reports().size(); ++i) evidence_->innovation(filter_.reports()[i]);
+}
+
 Status Localizer::take(ImuSample sample, GpsTime t) {
   while (!waiting_.empty() && waiting_.front().t < t) {
     const Waiting next = std::move(waiting_.front());
@@ -33,6 +47,7 @@ Status Localizer::predict(const ImuSample& sample, GpsTime t) {
   motion_ = motion_ * (X_WB_.inverse() * predicted);
   X_WB_ = predicted;
   if (!filter_.reports().empty()) corrected();
+  tell(0);
   at_ = t;
   return boundaries_.check(filter_.estimate());
 }
@@ -47,6 +62,7 @@ Status Localizer::aid(const fusion::AidingMessage& message) {
   const std::size_t reports = filter_.reports().size();
   clock_.charge(Part::kFilter, [&] { filter_.update(message); });
   if (filter_.reports().size() > reports) corrected();
+  tell(reports);
   return boundaries_.check(filter_.estimate());
 }
 
@@ -72,7 +88,10 @@ Result<fusion::UpdateReport> Localizer::update(const GnssFix& fix) {
   // Whoever divides samples at the times of fixes knows what the unit's clock, which is never set, shows at at_.
   GnssFix by_its_clock = fix;
   by_its_clock.t.ns += filter_.nav_state().t.ns - at_.ns;
+  const std::size_t reports = filter_.reports().size();
   fusion::UpdateReport report = clock_.charge(Part::kFilter, [&] { return filter_.update(by_its_clock); });
+  if (evidence_ != nullptr) evidence_->innovation(report);
+  tell(reports);
   report.t = fix.t;
   updates_ += report.dimension > 0 ? 1 : 0;
   if (report.accepted || !filter_.reports().empty()) corrected();

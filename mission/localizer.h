@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/fusion/verdict/run_evidence.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/part_clock.h"
 
@@ -23,6 +24,11 @@ class Localizer {
     filter_.initialize(at_, X_WB, v_WB_W);
     X_WB_ = X_WB;
   }
+
+  /// From now on the evidence gets all that the filter does; call after initialize(). It must outlive this.
+  void gather(fusion::RunEvidence& evidence);
+  /// The evidence gets what the filter says of its states.
+  void look();
 
   /// Time of the last IMU sample, or of the part of one, that the filter has taken in.
   GpsTime at() const { return at_; }
@@ -56,6 +62,8 @@ class Localizer {
  private:
   Status predict(const ImuSample& sample, GpsTime t);
   void corrected();
+  /// What the measurements from this report on have done, to the evidence.
+  void tell(std::size_t from);
 
   fusion::ErrorStateFilter filter_;
   const Boundaries& boundaries_;
@@ -70,6 +78,7 @@ class Localizer {
   Pose X_WB_;    ///< as last estimated
   Pose motion_;  ///< since begin_motion()
   std::optional<Pose> correction_;
+  fusion::RunEvidence* evidence_ = nullptr;
   std::int64_t predictions_ = 0, updates_ = 0;
 };
 

@@ -63,6 +63,8 @@ class MissionRun {
   template <class Reading>
   Status hand_on(const Reading& reading, const char* counter, Status (Recorder::*keep)(const Reading&));
   Status use_fix();
+  /// What is known of the filter's error at an epoch, to the evidence.
+  void compare(const NavRow& row, const Eigen::Vector3d& v_WB_W_true);
   Status record_fix();
   bool scan_is_wanted(GpsTime t) const;
   void fire(const Due& due, lidar::LidarOutput& output);
@@ -92,6 +94,7 @@ class MissionRun {
   std::unique_ptr<inertial::ImuModel> imu_;
   Aiding aiding_;
   std::unique_ptr<lidar::Scanner> scanner_;
+  fusion::RunEvidence evidence_;
   Localizer localizer_;
   Mapper mapper_;
   const Omissions omissions_;

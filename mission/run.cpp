@@ -69,6 +69,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
   Pose start = truth.X_WB;
   start.R = (start.R * so3_exp(error)).normalized();
   localizer_.initialize(start, truth.v_WB_W);
+  localizer_.gather(evidence_);
   record_.initial_X_WB = start;
   record_.initial_v_WB_W = truth.v_WB_W;
   motion_.append(truth);
@@ -143,6 +144,7 @@ Result<RunRecord> MissionRun::finish() {
   record_.simulated_s = elapsed_s();
   record_.distance_m = source_->now().distance_m;
   CANYON_TRY_STATUS(boundaries_.check_end(record_.simulated_s, record_.distance_m));
+  record_.verdict = evidence_.numbers();
   record_.warnings = mission_.warnings;
   for (std::string& warning : gnss_->warnings()) record_.warnings.push_back(std::move(warning));
   if (corridor_.left()) record_.warnings.push_back(*corridor_.left());

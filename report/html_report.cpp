@@ -10,6 +10,7 @@
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
+#include "canyon/report/fuse/fuse_page.h"
 #include "canyon/report/read/read_results.h"
 #include "canyon/report/sections/sections.h"
 #include "canyon/report/tradeoff/tradeoff_page.h"
@@ -40,7 +41,8 @@ std::string contents(bool seeds, bool two_by_two) {
          std::string(seeds ? "<a href=\"#seeds\">Over seeds</a> " : "") +
          "<a href=\"#figures\">Figures</a> <a "
          "href=\"#scene-section\">From above</a> <a "
-         "href=\"#errors\">Error</a> <a href=\"#satellites\">Satellites</a> <a href=\"#multipath\">Multipath</a> <a "
+         "href=\"#errors\">Error</a> <a href=\"#filter\">Filter</a> <a href=\"#satellites\">Satellites</a> <a "
+         "href=\"#multipath\">Multipath</a> <a "
          "href=\"#maps\">Maps</a> <a "
          "href=\"#registration\">Registration</a> " +
          std::string(two_by_two ? "<a href=\"#two-by-two\">GNSS or IMU?</a> " : "") +
@@ -74,6 +76,7 @@ std::string page(const Results& results) {
 Result<std::string> html_report(const std::string& results_dir) {
   std::error_code code;
   if (std::filesystem::exists(results_dir + "/tradeoff.csv", code)) return tradeoff_page(results_dir + "/summary.json");
+  if (std::filesystem::exists(results_dir + "/innovations.csv", code)) return fuse_page(results_dir);
   CANYON_TRY(Results results, read_results(results_dir));
   // As they were asked for, which also gives the colours; the mixed runs last.
   std::stable_partition(results.runs.begin(), results.runs.end(), [](const Run& run) { return run.is_pure(); });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "canyon/core/earth/local_frame.h"
+#include "canyon/fusion/verdict/verdict.h"
 #include "canyon/lidar/map_quality.h"
 #include "canyon/mission/config/mission_config.h"
 #include "canyon/mission/config/mission_file.h"
@@ -38,6 +39,8 @@ struct RunRecord {
   Eigen::Vector3d initial_v_WB_W = Eigen::Vector3d::Zero();
   Eigen::Quaterniond imu_R_BU = Eigen::Quaterniond::Identity();  ///< true axes of the IMU, which the filter is not told
   lidar::MapQuality prior_quality, registered_quality;
+
+  fusion::VerdictNumbers verdict;  ///< on its filter
 
   std::vector<std::string> warnings;  ///< about inputs, for example damaged records that were skipped
   std::map<std::string, std::int64_t> counters;

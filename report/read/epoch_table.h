@@ -24,9 +24,10 @@ struct EpochTable {
 struct EpochColumns {
   std::vector<std::string> numbers;  ///< `true` and `false` are read as 1 and 0
   std::vector<std::string> texts;
+  bool in_order = true;  ///< else t_s need not be there, and times may run backwards
 };
 
-/// `file` is named in errors. The first line holds the column names; t_s must be among the numbers.
+/// `file` is named in errors. The first line holds the column names; t_s must be among the numbers of a table in order.
 Result<EpochTable> parse_epoch_table(std::string_view csv, const std::string& file, const EpochColumns& columns);
 
 }  // namespace canyon::report

@@ -120,6 +120,7 @@ Run read_run(const JsonFields& fields, const std::vector<Figure>& figures) {
     run.mission_waypoints.push_back({f.text("name"), f.flag("reached"), f.number("closest_m"), f.number("stopped_s"),
                                      f.share("facade_seen_share")});
   }
+  run.filter_verdict = read_filter_verdict(fields);
   run.counters = read_counters(fields.object("counters"));
   const JsonFields timing = fields.object("timing");
   for (const auto& [node, path] : timing.list("parts")) {

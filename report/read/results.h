@@ -11,6 +11,7 @@
 
 #include "canyon/report/read/cloud_summary.h"
 #include "canyon/report/read/epoch_table.h"
+#include "canyon/report/read/filter_verdict.h"
 
 /// A results directory (docs/results.md) in memory. Undefined numbers are NaN, undefined texts empty. Positions are in
 /// W, metres.
@@ -78,6 +79,7 @@ struct Run {
   std::map<std::string, Interval, std::less<>> intervals;
   std::vector<MissionWaypoint> mission_waypoints;
   SuccessRules rules;
+  FilterVerdict filter_verdict;
   std::vector<std::pair<std::string, double>> counters;
   std::vector<std::pair<std::string, double>> cpu_parts_s;
 

@@ -13,6 +13,7 @@ std::string verdict_section(const Results& results);     ///< a sentence per run
 std::string figures_section(const Results& results);     ///< the table
 std::string scene_section(const Results& results);       ///< from above, and where it went wrong
 std::string error_section(const Results& results);       ///< position error against time
+std::string filter_section(const Results& results);      ///< does the filter know how wrong it is
 std::string satellites_section(const Results& results);  ///< GDOP, satellites, NLOS share
 std::string multipath_section(const Results& results);
 std::string maps_section(const Results& results);  ///< the maps' point errors

@@ -17,6 +17,7 @@
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/results/figures.h"
 #include "canyon/study/results/over_seeds.h"
+#include "canyon/study/results/verdict_json.h"
 
 namespace canyon::study {
 
@@ -175,6 +176,8 @@ Json run_json(const RunSummary& s) {
                                         {"stopped_s", waypoint.stopped_s},
                                         {"facade_seen_share", waypoint.facade_seen_share}});
   }
+  out["verdict"] = s.verdict;
+  if (s.evidence) out["evidence"] = evidence_json(*s.evidence);
   out["counters"] = s.counters;
   out["timing"] = Json::object();
   write_figures(s, true, out["timing"]);

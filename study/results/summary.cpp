@@ -59,6 +59,8 @@ Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatisti
   if (!record.keyframes_made) out.keyframes.reset();
   out.prior_map = record.prior_quality;
   if (record.registers()) out.registered_map = record.registered_quality;
+  out.verdict = fusion::verdict_lines(record.verdict);
+  out.evidence = record.verdict;
   out.counters = record.counters;
   out.wall_s = record.wall_s;
   out.cpu_s = record.clock.total_s();

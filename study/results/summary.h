@@ -39,6 +39,10 @@ struct RunSummary {
   std::optional<int> keyframes_registered, keyframes_converged;  ///< none where nothing is registered
   lidar::MapQuality prior_map, registered_map;
 
+  /// On the run's filter, in words, the worst first; and the numbers behind it, if they are kept.
+  std::vector<std::string> verdict;
+  std::optional<fusion::VerdictNumbers> evidence;
+
   std::map<std::string, std::int64_t> counters;
   double wall_s = 0, cpu_s = 0;
   std::vector<std::pair<std::string, double>> cpu_parts_s;

@@ -29,7 +29,9 @@ Result<RunSummary> drive(const Comparison& comparison, std::size_t run, std::int
   record.name = comparison.plan[run].name;
   record.gnss = comparison.plan[run].gnss;
   record.imu = comparison.plan[run].imu;
-  return summarize(record, statistics);
+  CANYON_TRY(RunSummary summary, summarize(record, statistics));
+  summary.evidence.reset();  // hundreds of runs are kept
+  return summary;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "canyon/study/compare.h"
 #include "canyon/study/results/paired_errors.h"
+#include "canyon/study/results/verdict_json.h"
 #include "canyon/study/tables/text_table.h"
 
 namespace canyon::study {
@@ -82,6 +83,9 @@ std::string comparison_table(const Results& results, const std::vector<std::stri
            ")";
   }
   if (out.back() != '\n') out += "\n";
+  for (const RunSummary& run : results.summaries)
+    if (keys.empty() && !run.verdict.empty())
+      out += "\nfilter of " + run.name + ": " + verdict_in_short(run.verdict) + "\n";
   for (const PairedErrors& pair : results.paired) {
     const std::string interval = std::isfinite(pair.low_m)
                                      ? "95 % interval " + fixed(pair.low_m, 3) + " to " + fixed(pair.high_m, 3) + " m"

@@ -58,13 +58,25 @@ TEST_F(HtmlReport, IsWrittenToTheFile) {
 
 TEST_F(HtmlReport, HasAllSectionsInOrder) {
   std::size_t last = 0;
-  for (const char* id : {"verdict", "figures", "scene-section", "errors", "satellites", "multipath", "maps",
+  for (const char* id : {"verdict", "figures", "scene-section", "errors", "filter", "satellites", "multipath", "maps",
                          "registration", "two-by-two", "cost", "made"}) {
     const std::size_t at = page().find("<section id=\"" + std::string(id) + "\"");
     ASSERT_NE(at, std::string::npos) << id;
     EXPECT_GT(at, last) << id;
     last = at;
   }
+}
+
+TEST_F(HtmlReport, SaysWhatOfTheFilterDoesNotFit) {
+  const std::string filter = section(page(), "filter");
+  EXPECT_THAT(filter,
+              HasSubstr("<li class=\"bad\">height overconfident by 2.3 (error 4.6 m where 2 m are claimed)</li>"));
+  EXPECT_THAT(filter, HasSubstr("<li class=\"soft\">mounting x not observed</li>"));
+  // What is beyond the band is bold: 2.3 times, of up to 1.2.
+  EXPECT_THAT(filter,
+              HasSubstr("<th scope=\"row\">height</th><td class=\"ratio strong\">2.30</td><td>up to 1.20</td>"));
+  EXPECT_THAT(filter, HasSubstr("<th scope=\"row\">position</th><td class=\"ratio\">1.00</td>"));
+  EXPECT_THAT(filter, HasSubstr("209, 7 refused"));
 }
 
 TEST_F(HtmlReport, RefersToNothingOutsideItself) {
