@@ -7,7 +7,6 @@
 #include "canyon/core/units.h"
 #include "canyon/report/draw/picture.h"
 #include "canyon/study/dead_reckoning/reference.h"
-#include "canyon/study/fuse/verdict.h"
 
 namespace canyon::apps {
 namespace {
@@ -33,9 +32,16 @@ void print_score(const study::FuseScore& s) {
   std::printf("  3-D RMS %.6g m, at the end %.6g m; NEES %.2f per state\n", s.rms_3d_m, s.final_error_m, s.nees_mean);
 }
 
+void print_outages(const std::vector<study::OutageWindow>& windows) {
+  if (windows.empty()) return;
+  const study::OutageScore o = study::outage_score(windows);
+  std::printf("  %zu outages, RMS of the largest errors: horizontal %.4g m, vertical %.4g m\n", o.count,
+              o.horizontal_rms_of_max_m, o.vertical_rms_of_max_m);
+}
+
 }  // namespace
 
-void print_fused(const study::FuseInputs& in, const study::Fused& run) {
+void print_fused(const study::FuseInputs& in, const study::Fused& run, const study::FuseSmoothed* smoothed) {
   std::printf("%s: %zu samples, %zu of %zu fixes accepted, %.3f s from %.3f s of the week; start: %s\n",
               in.imu.path.c_str(), run.samples, run.fixes_accepted, run.fixes_given, run.end - run.start,
               run.start.sow_s(), run.start_from.c_str());
@@ -45,14 +51,17 @@ void print_fused(const study::FuseInputs& in, const study::Fused& run) {
                 score.accepted, score.nis_mean());
   if (run.gaps_bridged > 0 || run.restarts > 0)
     std::printf("  %zu gaps bridged for %.3f s, %zu new starts\n", run.gaps_bridged, run.bridged_s, run.restarts);
+  if (const std::string wrong = run.incidents.text(); !wrong.empty()) std::printf("  mended: %s\n", wrong.c_str());
   const study::FuseScore s = study::fuse_score(run.errors);
   if (s.instants > 0) print_score(s);
-  if (!run.windows.empty()) {
-    const study::OutageScore o = study::outage_score(run.windows);
-    std::printf("  %zu outages, RMS of the largest errors: horizontal %.4g m, vertical %.4g m\n", o.count,
-                o.horizontal_rms_of_max_m, o.vertical_rms_of_max_m);
+  print_outages(run.windows);
+  if (smoothed != nullptr) {
+    std::printf("  smoothed by %s: %zu states\n", smoothed->smoother.c_str(), smoothed->epochs.size());
+    const study::FuseScore of_it = study::fuse_score(smoothed->errors);
+    if (of_it.instants > 0) print_score(of_it);
+    print_outages(smoothed->windows);
   }
-  for (const std::string& line : study::fuse_verdict(run, s)) std::printf("  verdict: %s\n", line.c_str());
+  for (const std::string& line : fusion::verdict_lines(run.verdict)) std::printf("  verdict: %s\n", line.c_str());
 }
 
 std::string fused_svg(const study::Fused& run) {

@@ -9,6 +9,7 @@
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
+#include "canyon/report/html_report.h"
 #include "canyon/study/fuse/files.h"
 #include "canyon/study/fuse/replay.h"
 
@@ -19,29 +20,31 @@ namespace {
 struct Options {
   CommonOptions common;
   study::FuseFiles files;
-  std::string config, outage, results, run, out;
+  std::string config, outage, smoother, results, run, out;
   bool force = false;
 };
 
-Status write_output(const Options& options, const study::FuseInputs& inputs, const study::Fused& run) {
+Status write_output(const Options& options, const study::FuseInputs& inputs, const study::Fused& run,
+                    const study::FuseSmoothed* smoothed) {
   if (options.out.empty()) return Ok{};
   CANYON_TRY(auto staged, StagedDirectory::create(options.out, options.force));
-  CANYON_TRY_STATUS(study::write_fused(inputs, run, staged.staging_path()));
-  if (!run.errors.empty()) CANYON_TRY_STATUS(write_text_file(staged.staging_path() + "/errors.svg", fused_svg(run)));
+  const std::string& folder = staged.staging_path();
+  CANYON_TRY_STATUS(study::write_fused(inputs, run, smoothed, folder));
+  if (!run.errors.empty()) CANYON_TRY_STATUS(write_text_file(folder + "/errors.svg", fused_svg(run)));
+  CANYON_TRY_STATUS(report::write_html_report(folder, folder + "/report.html"));
   return staged.commit();
 }
 
 /// The inputs and what is to be done with them: of the logs that are named, or of a run that recorded its own.
-Result<study::RecordedRun> read(const Options& options) {
+Result<study::RecordedRun> read(const Options& options, const study::FuseConfig& config) {
   std::optional<study::OutagePlan> outages;
   if (!options.outage.empty()) {
     CANYON_TRY(outages, study::parse_outage_plan(options.outage, "--outage"));
   }
-  CANYON_TRY(const study::FuseConfig config, study::read_fuse_config(options.config));
   study::RecordedRun out;
   if (!options.results.empty()) {
     CANYON_TRY(out, study::read_recorded_run(options.results, options.run));
-    if (config.file.find("fusion") != nullptr) out.plan.filter = config.fusion;
+    CANYON_TRY_STATUS(study::take_config(config, out));
     out.plan.outages = outages;
     return out;
   }
@@ -57,14 +60,22 @@ Result<study::RecordedRun> read(const Options& options) {
 
 Result<int> run(const Options& options) {
   set_threads(options.common.threads);
-  CANYON_TRY(const auto recorded, read(options));
+  CANYON_TRY(const study::FuseConfig config, study::read_fuse_config(options.config));
+  CANYON_TRY(auto recorded, read(options, config));
   const study::FuseInputs& inputs = recorded.inputs;
+  recorded.plan.keep_segments = !options.smoother.empty();
+  if (recorded.plan.keep_segments) CANYON_TRY_STATUS(study::check_smoother(options.smoother, recorded.plan.filter));
   CANYON_TRY(const auto fused, study::fuse(inputs, recorded.plan));
-  CANYON_TRY_STATUS(write_output(options, inputs, fused));
+  std::optional<study::FuseSmoothed> smoothed;
+  if (recorded.plan.keep_segments) {
+    CANYON_TRY(smoothed, study::smooth(options.smoother, config.smoother.own, inputs, recorded.plan, fused));
+  }
+  const study::FuseSmoothed* beside = smoothed ? &*smoothed : nullptr;
+  CANYON_TRY_STATUS(write_output(options, inputs, fused, beside));
   if (options.common.json)
-    std::printf("%s\n", json_text(study::fuse_json(inputs, fused)).c_str());
+    std::printf("%s\n", json_text(study::fuse_json(inputs, fused, beside)).c_str());
   else
-    print_fused(inputs, fused);
+    print_fused(inputs, fused, beside);
   return 0;
 }
 
@@ -81,23 +92,30 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--truth", files.truth,
                    "reference to compare with, and to start from: KF-GINS text, TUM, CSV with named columns");
   arguments.option("--config", options->config,
-                   "TOML with [fusion], [imu], [gnss], [odometer], [truth], [start], [score], [output]; keys in "
+                   "TOML with [fusion], [imu], [gnss], [odometer], [truth], [start], [timeline], [smoother], [score], "
+                   "[output]; keys in "
                    "docs/fuse.md");
   arguments.option("--outage", options->outage,
                    "LENGTH,EVERY,FIRST in seconds: fixes are withheld for LENGTH after FIRST from the log's beginning "
                    "(or FIRST seconds of week) and then again EVERY");
+  arguments.option("--smoother", options->smoother,
+                   "beside the filter's estimate one of the whole run, of what came later too: none, rts, batch_graph "
+                   "or fixed_lag_graph; keys under [smoother]");
   arguments.option("--results", options->results,
                    "instead of logs, a results directory of runs with [run] record_filter_input = true: the run's own "
                    "filter, or that of --config, on what it was given");
   arguments.option("--run", options->run, "name of the run in --results, such as high");
   arguments.option("--out", options->out,
-                   "directory for nav.csv, estimate.nav, .tum and .kml, innovations.csv, errors.csv, errors.svg and "
-                   "summary.json");
+                   "directory for report.html, nav.csv, estimate.nav, .tum and .kml, innovations.csv, errors.csv, "
+                   "errors.svg, smoothed.* and summary.json");
   arguments.flag("--force", options->force,
                  "replace the directory if it exists; only one that canyon wrote, or an empty one");
   return [options]() -> Result<int> {
-    const bool logs = !options->files.imu.empty() && !options->files.gnss.empty();
-    if (options->results.empty() ? !logs : options->run.empty() || !options->files.imu.empty())
+    const study::FuseFiles& given = options->files;
+    const bool of_run = !options->results.empty() || !options->run.empty();
+    if (of_run && !(given.imu + given.gnss + given.odometer + given.truth).empty())
+      return Error{"", 0, "command line", "logs beside --results", "one or the other"};
+    if (of_run ? options->results.empty() || options->run.empty() : given.imu.empty() || given.gnss.empty())
       return Error{"", 0, "command line", "no logs given",
                    "--imu FILE and --gnss FILE, or --results DIR and --run NAME"};
     return run(*options);

@@ -2,6 +2,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/fusion/alignment/alignment.h"
+#include "canyon/fusion/smoothing/smoother.h"
 #include "canyon/inertial/imu_model.h"
 
 namespace canyon::study {
@@ -55,6 +56,14 @@ FuseStartConfig::FuseStartConfig() {
     if (row.parameters != nullptr) row.parameters(own);
 }
 
+FuseSmootherConfig::FuseSmootherConfig() {
+  for (const auto& row : fusion::smoothers())
+    if (row.parameters != nullptr) row.parameters(own);
+}
+void visit(FieldVisitor& f, FuseSmootherConfig& c) {
+  c.own.visit_all(f);
+}
+
 void visit(FieldVisitor& f, FuseImuConfig& c) {
   f.file("sensor", c.sensor, ".toml", "unit of the catalogue, or a file like one, whose noise the filter is told");
   for (std::size_t i = 0; i < kFigures.size(); ++i)
@@ -67,7 +76,7 @@ void visit(FieldVisitor& f, FuseImuConfig& c) {
   f.number("clock_offset_s", c.clock_offset_s, {-1e6, 1e6}, "added to the log's stamps to make GPS time of them");
   f.vector3("lever_m", c.lever_m, {-100, 100}, "the IMU in B");
   f.number("bridge_s", c.bridge_s, {0, 1e5},
-           "gaps up to this are bridged with the last sample; after longer ones navigation starts anew in motion");
+           "gaps up to this are bridged, as [timeline] says; after longer ones navigation starts anew in motion");
 }
 
 void visit(FieldVisitor& f, FuseGnssConfig& c) {
@@ -113,6 +122,8 @@ void visit(FieldVisitor& f, FuseConfig& c) {
   f.group("odometer", c.odometer, "the log of the wheel");
   f.group("truth", c.truth, "the reference");
   f.group("start", c.start, "the first state");
+  f.group("timeline", c.timeline, "what is late, missing or wrong");
+  f.group("smoother", c.smoother, "what --smoother makes of the whole run");
   f.group("score", c.score, "what is scored");
   f.group("output", c.output, "what is written");
 }

@@ -9,6 +9,7 @@
 #include "canyon/core/imu_noise.h"
 #include "canyon/core/model_choice.h"
 #include "canyon/fusion/filter_config.h"
+#include "canyon/fusion/timeline/filter_timeline.h"
 
 namespace canyon::study {
 
@@ -78,6 +79,13 @@ struct FuseStartConfig {
 };
 void visit(FieldVisitor& f, FuseStartConfig& c);
 
+/// [smoother]: of all rows of fusion::smoothers(); which one it is `--smoother` says.
+struct FuseSmootherConfig {
+  FuseSmootherConfig();
+  ModelParameters own;
+};
+void visit(FieldVisitor& f, FuseSmootherConfig& c);
+
 /// [score] and [output]
 struct FuseScoreConfig {
   double skip_s = 0.0;
@@ -96,6 +104,8 @@ struct FuseConfig {
   FuseOdometerConfig odometer;
   FuseTruthConfig truth;
   FuseStartConfig start;
+  fusion::TimelineConfig timeline{.held_s = 1.0};  ///< for as long as bridge_s: no curve ends at once
+  FuseSmootherConfig smoother;
   FuseScoreConfig score;
   FuseOutputConfig output;
   ConfigNode file;  ///< not a key: where they were written, for messages

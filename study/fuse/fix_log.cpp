@@ -64,15 +64,16 @@ Result<FixLog> solve(const std::string& path, const std::vector<std::string>& na
     else
       out.fixes.push_back(epoch.fix);
   }
+  for (const GnssFix& fix : out.fixes) out.came.push_back(fix.t);
   return out;
 }
 
 }  // namespace
 
 Result<FixLog> read_fix_log(const std::string& path, const std::vector<std::string>& navigation,
-                            const FuseGnssConfig& config) {
+                            const FuseGnssConfig& config, double late_s) {
   if (!navigation.empty()) return solve(path, navigation, config);
-  CANYON_TRY(const StateTable table, read_state_table(path, config.columns));
+  CANYON_TRY(const StateTable table, read_state_table(path, config.columns, late_s));
   if (table.local)
     return Error{path, table.rows.front().line, "", "places nearer to the Earth's centre than 1000 km",
                  "lat_deg,lon_deg,h_m, or x_m,y_m,z_m in the Earth-fixed frame"};
@@ -87,6 +88,7 @@ Result<FixLog> read_fix_log(const std::string& path, const std::vector<std::stri
     } else {
       CANYON_TRY(GnssFix fix, fix_of(row, path, config));
       out.fixes.push_back(std::move(fix));
+      out.came.push_back(row.came);
     }
   }
   if (out.fixes.empty()) return Error{path, 0, "", "holds no fix", "at least one"};

@@ -12,6 +12,7 @@ namespace canyon::study {
 /// Fixes of a log; those that say that there was none are left out and counted.
 struct FixLog {
   std::vector<GnssFix> fixes;
+  std::vector<GpsTime> came;  ///< the same index: as StateRow::came
   bool has_week = false;
   std::size_t without_solution = 0, withheld = 0;
   PassedOver passed_over;
@@ -19,9 +20,9 @@ struct FixLog {
 };
 
 /// A solution file (core/tables/state_table.h); with `navigation` RINEX observations, solved epoch by epoch. Sigmas
-/// that the file does not state are those of `config`; an Error where neither does.
+/// that the file does not state are those of `config`; an Error where neither does. Fixes may stand so late in it.
 Result<FixLog> read_fix_log(const std::string& path, const std::vector<std::string>& navigation,
-                            const FuseGnssConfig& config);
+                            const FuseGnssConfig& config, double late_s);
 
 /// Speeds or counts of a wheel: columns `t_s` (or gps_week, sow), `speed_m_s` (any unit of speed) or `ticks`, and
 /// `dt_s` if they are not of the time since the line before.

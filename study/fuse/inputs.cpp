@@ -104,19 +104,6 @@ Status check_overlap(const FuseInputs& in, const std::string& path, GpsTime firs
                "times from " + in_words(in.begin(), in.end()) + ", as in " + in.imu.path};
 }
 
-Status check_measurements(const FuseInputs& in, const FuseConfig& config) {
-  for (const std::string& name : config.fusion.measurements) {
-    if (name == "odometer" && in.odometer.empty())
-      return at_key(config, "fusion.measurements", "\"odometer\" without a log of one", "--odometer FILE");
-    const auto states_velocity = [](const GnssFix& fix) { return fix.velocity_covariance_E.allFinite(); };
-    if (name == "velocity" && std::none_of(in.fixes.begin(), in.fixes.end(), states_velocity))
-      return at_key(config, "fusion.measurements",
-                    "\"velocity\", but " + in.gnss_path + " has no velocity with a sigma",
-                    "columns vn,ve,vu,sd_vn,sd_ve,sd_vu, or gnss.velocity_sigma_enu_m_s");
-  }
-  return Ok{};
-}
-
 /// The reference at the times of the fixes: 1 km, and 30 sigma, is no error of a receiver in the middle of a drive.
 Status check_same_frame(const FuseInputs& in) {
   constexpr double kMost_m = 1000.0, kMostSigma = 30.0;
@@ -174,7 +161,7 @@ Status check_fuse_inputs(const FuseInputs& in, const FuseConfig& config) {
     CANYON_TRY_STATUS(check_overlap(in, in.odometer_path, in.odometer.front().t, in.odometer.back().t));
   if (!in.truth.states.empty())
     CANYON_TRY_STATUS(check_overlap(in, in.truth.path, in.truth.states.front().t, in.truth.states.back().t));
-  CANYON_TRY_STATUS(check_measurements(in, config));
+  CANYON_TRY_STATUS(check_fuse_filter(in, config));
   CANYON_TRY_STATUS(check_same_frame(in));
   return check_attitude(in, config);
 }
@@ -182,7 +169,7 @@ Status check_fuse_inputs(const FuseInputs& in, const FuseConfig& config) {
 Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& config, const Warn& warn) {
   FuseInputs out;
   Diagnosing tell(out, warn);
-  CANYON_TRY(FixLog fixes, read_fix_log(files.gnss, files.navigation, config.gnss));
+  CANYON_TRY(FixLog fixes, read_fix_log(files.gnss, files.navigation, config.gnss, config.timeline.wait_s));
   for (const std::string& line : fixes.warnings) warn(line);
   out.gnss_path = files.gnss;
   StateTable truth;
@@ -200,9 +187,11 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
   const int week = week_of_fixes ? first_fix.week() : week_of_truth ? first_truth.week() : 0;
   const auto missing = [&](bool has_week) { return has_week ? 0 : week; };
   for (GnssFix& fix : fixes.fixes) shift(fix.t, missing(week_of_fixes), config.gnss.clock_offset_s);
+  for (GpsTime& came : fixes.came) shift(came, missing(week_of_fixes), config.gnss.clock_offset_s);
   for (StateRow& row : truth.rows) shift(row.t, missing(week_of_truth), 0.0);
   for (OdometerSample& sample : odometer.samples) shift(sample.t, missing(odometer.has_week), 0.0);
   out.fixes = std::move(fixes.fixes);
+  out.fixes_came = std::move(fixes.came);
   out.odometer = std::move(odometer.samples);
   if (!files.truth.empty()) {
     CANYON_TRY(out.truth, truth_from(files.truth, truth, config));

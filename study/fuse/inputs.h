@@ -30,10 +30,15 @@ struct FuseTruth {
 /// Everything that a filter is run on, and what was wrong with it.
 struct FuseInputs {
   ImuRecording imu;            ///< axes of B
-  std::vector<GnssFix> fixes;  ///< in order of time
+  std::vector<GnssFix> fixes;  ///< in order of time; of one time in that of the file
+  /// The same index: when each came, which is the latest time that stands before it in its file.
+  std::vector<GpsTime> fixes_came;
   std::vector<OdometerSample> odometer;
+  std::vector<BarometerSample> barometer;        ///< of recorded runs alone, as the next
+  std::vector<MagnetometerSample> magnetometer;  ///< axes of U
   FuseTruth truth;
   std::string gnss_path, odometer_path;  ///< of the log, for messages; empty: none
+  std::string of_run;                    ///< of a results directory; empty: logs
   /// What was passed over or mended, by its key in summary.json; those of nothing are left out.
   std::map<std::string, std::size_t> diagnoses;
 
@@ -50,5 +55,9 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
 
 /// What must hold of inputs, wherever they are from; part of read_fuse_inputs().
 Status check_fuse_inputs(const FuseInputs& inputs, const FuseConfig& config);
+
+/// The rows of the filter go together, and what it is told to measure with by name is among the inputs. Of a `filter`
+/// set it is left out.
+Status check_fuse_filter(const FuseInputs& inputs, const FuseConfig& config);
 
 }  // namespace canyon::study

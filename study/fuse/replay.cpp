@@ -189,6 +189,39 @@ Result<std::vector<OdometerSample>> read_counts(const std::string& path, GpsTime
   }
 }
 
+/// What a sensor measured, in `columns` beside the time; nothing where it has no log.
+template <class Sample, class Take>
+Result<std::vector<Sample>> read_measured(const std::string& path, GpsTime start, std::vector<std::string> columns,
+                                          const Take& take) {
+  std::vector<Sample> out;
+  if (!std::filesystem::exists(path)) return out;
+  columns.insert(columns.begin(), "t_ns");
+  CANYON_TRY(auto rows, LogRows::open(path, columns));
+  while (true) {
+    CANYON_TRY(const bool more, rows.next());
+    if (!more) return out;
+    Sample sample;
+    CANYON_TRY(sample.t, rows.time(0, start));
+    CANYON_TRY_STATUS(take(rows, sample));
+    out.push_back(sample);
+  }
+}
+
+Result<std::vector<BarometerSample>> read_pressures(const std::string& path, GpsTime start) {
+  return read_measured<BarometerSample>(path, start, {"pressure_pa"}, [](const LogRows& rows, auto& s) -> Status {
+    CANYON_TRY(s.pressure_pa, rows.number(1));
+    return std::isfinite(s.pressure_pa) ? Status(Ok{}) : rows.error("no pressure");
+  });
+}
+
+Result<std::vector<MagnetometerSample>> read_fields(const std::string& path, GpsTime start) {
+  return read_measured<MagnetometerSample>(path, start, {"x_t", "y_t", "z_t"},
+                                           [](const LogRows& rows, auto& s) -> Status {
+                                             CANYON_TRY(s.field_U_t, rows.three(1));
+                                             return s.field_U_t.allFinite() ? Status(Ok{}) : rows.error("no field");
+                                           });
+}
+
 /// The true poses of the vehicle, and the instants of the run's epochs.
 Status read_epochs(const std::string& path, const LocalFrame& frame, GpsTime start, double rate_hz, RecordedRun& out) {
   CANYON_TRY(const Trajectory trajectory, read_csv_trajectory(path));
@@ -253,6 +286,8 @@ Result<RecordedRun> read_recorded_run(const std::string& directory, const std::s
     return Error{directory, 0, "run.record_filter_input", "the run \"" + run + "\" did not record its filter's input",
                  "true in the mission"};
   RecordedRun out;
+  out.manifest = manifest_path;
+  out.inputs.of_run = run;
   CANYON_TRY(const GpsTime start, mission::start_time(config));
   CANYON_TRY(out.plan.frame, frame_of(directory));
   CANYON_TRY(out.plan.noise, mission::noise_told_to_filter(config));
@@ -268,7 +303,7 @@ Result<RecordedRun> read_recorded_run(const std::string& directory, const std::s
   plan.X_WB = {Eigen::Quaterniond(q[0], q[1], q[2], q[3]), Eigen::Vector3d(p[0], p[1], p[2])};
   plan.v_WB_W = Eigen::Vector3d(v[0], v[1], v[2]);
   plan.rate_hz = 0.0;
-  plan.same_instant_s = 0.0;
+  plan.timeline = fusion::TimelineConfig::as_recorded();
   plan.interval_s = 1.0 / config.imu.rate_hz;
 
   out.inputs.imu.path = stem + "_imu.csv";
@@ -280,10 +315,43 @@ Result<RecordedRun> read_recorded_run(const std::string& directory, const std::s
   CANYON_TRY(out.inputs.fixes, read_fixes(out.inputs.gnss_path, start, withheld));
   if (withheld > 0) out.inputs.diagnoses["fixes_marked_withheld"] = withheld;
   CANYON_TRY(out.inputs.odometer, read_counts(out.inputs.odometer_path, start));
+  CANYON_TRY(out.inputs.barometer, read_pressures(stem + "_barometer.csv", start));
+  CANYON_TRY(out.inputs.magnetometer, read_fields(stem + "_magnetometer.csv", start));
   CANYON_TRY_STATUS(read_epochs(stem + "_nav.csv", plan.frame, start, config.run.epoch_rate_hz, out));
   for (std::size_t k = 0; k < out.inputs.imu.samples.size(); ++k)
     plan.due.push_back(tick(start, static_cast<std::int64_t>(k) + 1, config.imu.rate_hz));
   return out;
+}
+
+namespace {
+
+/// Keys that say how logs are read.
+Status refuse_keys_of_logs(const FuseConfig& config) {
+  for (const char* key : {"imu.columns", "imu.axes", "imu.turn_deg", "imu.instantaneous", "imu.clock_offset_s",
+                          "imu.lever_m", "imu.bridge_s", "gnss", "odometer", "truth", "start", "timeline", "output"})
+    if (config.file.find(key) != nullptr)
+      return at_key(config, key, "is of logs, and a recorded run has its own",
+                    "[fusion], the figures of [imu], [score]");
+  return Ok{};
+}
+
+}  // namespace
+
+Status take_config(const FuseConfig& config, RecordedRun& run) {
+  CANYON_TRY_STATUS(refuse_keys_of_logs(config));
+  const bool own_filter = config.file.find("fusion") == nullptr;
+  if (!own_filter) run.plan.filter = config.fusion;
+  if (config.imu.sensor_given) {
+    CANYON_TRY(run.plan.noise, fuse_noise(config));
+  }
+  run.plan.skip_s = config.score.skip_s;
+  FuseConfig checked = config;
+  checked.fusion = run.plan.filter;
+  const Status fits = check_fuse_filter(run.inputs, checked);
+  if (fits.ok() || !own_filter) return fits;
+  Error error = fits.error();
+  error.file = run.manifest;
+  return error;
 }
 
 }  // namespace canyon::study

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
+#include <optional>
 
 #include "canyon/core/check.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/fusion/alignment/alignment.h"
 #include "canyon/fusion/divided_sample.h"
+#include "canyon/fusion/reference_track.h"
 
 namespace canyon::study {
 namespace {
@@ -16,20 +17,41 @@ constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to s
 
 /// What waits for its time. Of one time the order of `kind` holds.
 struct Message {
-  enum Kind { kOdometer, kFix, kEpoch };
-  GpsTime t;
+  enum Kind { kOdometer, kBarometer, kMagnetometer, kFix, kEpoch };
+  GpsTime came;
   Kind kind;
   std::size_t index;
 };
 
 std::vector<Message> messages_of(const FuseInputs& in, const FusePlan& plan) {
   std::vector<Message> out;
-  for (std::size_t i = 0; i < in.odometer.size(); ++i) out.push_back({in.odometer[i].t, Message::kOdometer, i});
-  for (std::size_t i = 0; i < in.fixes.size(); ++i) out.push_back({in.fixes[i].t, Message::kFix, i});
+  const auto add = [&out](const auto& all, Message::Kind kind) {
+    for (std::size_t i = 0; i < all.size(); ++i) out.push_back({all[i].t, kind, i});
+  };
+  add(in.odometer, Message::kOdometer);
+  add(in.barometer, Message::kBarometer);
+  add(in.magnetometer, Message::kMagnetometer);
+  for (std::size_t i = 0; i < in.fixes.size(); ++i)
+    out.push_back({in.fixes_came.empty() ? in.fixes[i].t : in.fixes_came[i], Message::kFix, i});
   for (std::size_t i = 0; i < plan.epochs.size(); ++i) out.push_back({plan.epochs[i], Message::kEpoch, i});
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Message& a, const Message& b) { return a.t != b.t ? a.t < b.t : a.kind < b.kind; });
+  std::stable_sort(out.begin(), out.end(), [](const Message& a, const Message& b) {
+    return a.came != b.came ? a.came < b.came : a.kind < b.kind;
+  });
   return out;
+}
+
+/// How far the fixes that the filter is given are off, where the reference says where the antenna was.
+void tell_fix_errors(const FuseInputs& in, const FusePlan& plan, fusion::RunEvidence& evidence) {
+  const Eigen::Vector3d point = in.truth.of == TruthPoint::kAntenna ? plan.lever_A_B
+                                : in.truth.of == TruthPoint::kImu   ? plan.lever_U_B
+                                                                    : Eigen::Vector3d::Zero().eval();
+  const Eigen::Vector3d arm = plan.lever_A_B - point;
+  if (!in.truth.has_attitude && !arm.isZero()) return;
+  for (const GnssFix& fix : in.fixes) {
+    if (fix.t - plan.start < plan.skip_s) continue;
+    const auto truth = fusion::reference_at(in.truth.states, fix.t);
+    if (truth) evidence.fix(fix.t, fix.p_A_E - truth->p_EU_E - truth->R_EU * arm, fix.covariance_E);
+  }
 }
 
 class Run {
@@ -38,154 +60,155 @@ class Run {
       : in_(in),
         plan_(plan),
         messages_(messages_of(in, plan)),
-        filter_(plan.filter, plan.noise, plan.frame, plan.lever_U_B, plan.lever_A_B),
         outages_(plan.outages ? Outages(*plan.outages, in.begin(), in.end()) : Outages()),
-        scorer_(in.truth, plan.lever_U_B, plan.lever_A_B, plan.start + plan.skip_s) {}
+        scorer_(in.truth, plan.lever_U_B, plan.lever_A_B, plan.start + plan.skip_s, evidence_) {}
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
 
   Result<Fused> all();
 
  private:
   void begin(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W);
+  void end();
   bool restart(std::size_t k);
-  void bridge(GpsTime until);
   void take(ImuSample sample, GpsTime due);
-  void predict(const ImuSample& sample, GpsTime due);
   void give(const Message& message);
-  void give(GnssFix fix);
-  void keep();
+  void give(const GnssFix& fix);
+  void keep(const fusion::ErrorStateFilter& filter);
   void note(const fusion::UpdateReport& report);
-  void note_new_reports();
-  void settle();
+  void settle(const fusion::ErrorStateFilter& filter);
+  void stepped(const ImuSample& sample, const fusion::NavState& before, const fusion::ErrorStateFilter& filter);
+  /// By the clock of the messages.
+  fusion::NavState stamped(fusion::NavState state, GpsTime t) const {
+    state.t = t;
+    return state;
+  }
 
   const FuseInputs& in_;
   const FusePlan& plan_;
   std::vector<Message> messages_;
-  fusion::ErrorStateFilter filter_;
+  fusion::RunEvidence evidence_;
+  std::optional<fusion::FilterTimeline> timeline_;
   Outages outages_;
   Scorer scorer_;
   Fused out_;
-  std::size_t next_ = 0;          ///< message
-  std::size_t reports_seen_ = 0;  ///< of the filter's, since its last predict()
-  GpsTime at_, next_epoch_;
-  ImuSample last_;
+  std::size_t next_ = 0;  ///< message
+  GpsTime left_, next_epoch_;
   bool has_last_ = false;
   Eigen::Vector3d rate_U_ = Eigen::Vector3d::Zero();
 };
 
 void Run::begin(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W) {
-  filter_.initialize(t, X_WB, v_WB_W);
-  at_ = next_epoch_ = t;
-  reports_seen_ = 0;
+  fusion::ErrorStateFilter filter(plan_.filter, plan_.noise, plan_.frame, plan_.lever_U_B, plan_.lever_A_B);
+  filter.initialize(t, X_WB, v_WB_W);
+  fusion::PredictionAlone& alone = evidence_.follow(filter);
+  timeline_.emplace(std::move(filter), plan_.timeline);
+  timeline_->watch(&alone);
+  timeline_->on_update = [this](const fusion::UpdateReport& report, const auto&) { note(report); };
+  timeline_->on_leave = [this](const auto& now) { settle(now); };
+  timeline_->on_step = [this](const auto& sample, const auto& before, const auto& now) {
+    stepped(sample, before, now);
+  };
+  if (plan_.keep_segments) {
+    out_.segments.push_back({.start = t, .X_WB = X_WB, .v_WB_W = v_WB_W, .steps = {}, .fixes = {}, .loosened = {}});
+    timeline_->on_loosened = [this](double theta_rad, double p_m, double v_m_s) {
+      out_.segments.back().loosened.push_back({timeline_->at(), theta_rad, p_m, v_m_s});
+    };
+  }
+  timeline_->on_look = [this](const auto& now) { keep(now); };
+  next_epoch_ = t;
   has_last_ = false;
-  for (; next_ < messages_.size() && messages_[next_].t <= t; ++next_) ++out_.messages_outside;
+  for (; next_ < messages_.size() && messages_[next_].came <= t; ++next_) ++out_.messages_outside;
+}
+
+/// Of what the filter has been through since begin().
+void Run::end() {
+  settle(timeline_->filter());
+  out_.incidents.add(timeline_->incidents());
+  out_.bridged_s += timeline_->bridged_s();
+  out_.replays += timeline_->replays();
+  out_.messages_outside += timeline_->waiting();
 }
 
 void Run::note(const fusion::UpdateReport& report) {
+  const bool of_fix = report.dimension == 0 || std::string_view(report.measurement) == "position";
+  out_.fixes_accepted += of_fix && report.accepted ? 1 : 0;
+  const bool counts = report.t - plan_.start >= plan_.skip_s;
   if (report.dimension > 0) {
     MeasurementScore& score = out_.by_measurement[report.measurement];
     ++score.count;
     score.accepted += report.accepted ? 1 : 0;
-    if (report.t - plan_.start >= plan_.skip_s) {
+    if (counts) {
       score.nis_sum += report.nis;
       score.dimensions += report.dimension;
     }
   }
+  if (counts) evidence_.innovation(report);
   out_.updates.push_back(report);
 }
 
-void Run::note_new_reports() {
-  const auto& reports = filter_.reports();
-  for (; reports_seen_ < reports.size(); ++reports_seen_) note(reports[reports_seen_]);
-}
-
-void Run::give(GnssFix fix) {
+void Run::give(const GnssFix& fix) {
   if (outages_.withholds(fix.t)) {
     ++out_.fixes_withheld;
     return;
   }
-  // The unit's own clock, which nobody sets, may be any time off.
-  fix.t.ns += filter_.nav_state().t.ns - at_.ns;
+  const fusion::Trouble trouble = timeline_->add(fusion::AidingMessage(fix));
+  if (trouble != fusion::Trouble::kNone && trouble != fusion::Trouble::kAhead) return;
   ++out_.fixes_given;
-  const fusion::UpdateReport report = filter_.update(fix);
-  out_.fixes_accepted += report.accepted ? 1 : 0;
-  note(report);
+  if (plan_.keep_segments) out_.segments.back().fixes.push_back(fix);
 }
 
 void Run::give(const Message& message) {
+  const auto add = [this](const auto& sample) { timeline_->add(fusion::AidingMessage(sample)); };
   switch (message.kind) {
     case Message::kOdometer:
-      filter_.update(fusion::AidingMessage(in_.odometer[message.index]));
-      break;
+      return add(in_.odometer[message.index]);
+    case Message::kBarometer:
+      return add(in_.barometer[message.index]);
+    case Message::kMagnetometer:
+      return add(in_.magnetometer[message.index]);
     case Message::kFix:
-      give(in_.fixes[message.index]);
-      break;
+      return give(in_.fixes[message.index]);
     case Message::kEpoch:
-      keep();
-      break;
+      return timeline_->look(plan_.epochs[message.index]);
   }
-  note_new_reports();
 }
 
-void Run::keep() {
+void Run::keep(const fusion::ErrorStateFilter& filter) {
   FuseEpoch epoch;
-  epoch.nav = filter_.nav_state();
-  epoch.nav.t = at_;
-  epoch.estimate = filter_.estimate();
-  epoch.estimate.t = at_;
+  epoch.nav = stamped(filter.nav_state(), timeline_->at());
+  epoch.estimate = filter.estimate();
+  epoch.estimate.t = epoch.nav.t;
   const Eigen::Matrix3d R_WE = plan_.frame.R_EW().transpose();
   Eigen::Matrix<double, 9, 9> J = Eigen::Matrix<double, 9, 9>::Identity();
   J.block<3, 3>(3, 3) = J.block<3, 3>(6, 6) = R_WE;
-  epoch.covariance = J * filter_.covariance().topLeftCorner<9, 9>() * J.transpose();
+  epoch.covariance = J * filter.covariance().topLeftCorner<9, 9>() * J.transpose();
   out_.epochs.push_back(epoch);
 }
 
-void Run::settle() {
-  scorer_.settled(filter_, rate_U_, outages_);
+void Run::settle(const fusion::ErrorStateFilter& filter) {
+  left_ = timeline_->at();
+  scorer_.settled(stamped(filter.nav_state(), left_), filter, rate_U_, outages_);
+  if (left_ - plan_.start >= plan_.skip_s) evidence_.look(filter);
 }
 
-void Run::predict(const ImuSample& sample, GpsTime due) {
-  settle();
-  const fusion::NavState before = filter_.nav_state();
-  filter_.predict(sample);
-  reports_seen_ = 0;
-  note_new_reports();
-  at_ = due;
-  const fusion::Increments in = filter_.calibration().apply(sample.dt_s, sample.dtheta_U, sample.dv_U);
-  const fusion::NavState& after = filter_.nav_state();
+void Run::stepped(const ImuSample& sample, const fusion::NavState& before, const fusion::ErrorStateFilter& filter) {
+  const fusion::Increments in = filter.calibration().apply(sample.dt_s, sample.dtheta_U, sample.dv_U);
+  const fusion::NavState after = stamped(filter.nav_state(), timeline_->at());
   rate_U_ = in.dtheta_U / in.dt_s - after.R_EU.conjugate() * earth_rate_E();
-  scorer_.passed(before, after, filter_, rate_U_, outages_);
+  scorer_.passed(stamped(before, left_), after, filter, rate_U_, outages_);
+  if (!plan_.keep_segments) return;
+  out_.segments.back().steps.push_back(sample);
+  out_.segments.back().steps.back().t = after.t;
 }
 
 void Run::take(ImuSample sample, GpsTime due) {
-  const double same = plan_.same_instant_s;
-  for (; next_ < messages_.size() && messages_[next_].t - due < -same; ++next_) {
-    const GpsTime t = messages_[next_].t;
-    if (t - at_ > same) predict(fusion::take_share(sample, (t - at_) / (due - at_)), t);
-    give(messages_[next_]);
-  }
-  predict(sample, due);
-  for (; next_ < messages_.size() && messages_[next_].t - due <= same; ++next_) give(messages_[next_]);
-  if (plan_.rate_hz > 0.0 && due - next_epoch_ >= -plan_.same_instant_s) {
-    keep();
-    while (next_epoch_ - due <= plan_.same_instant_s) next_epoch_ = next_epoch_ + 1.0 / plan_.rate_hz;
-  }
-}
-
-/// The last sample again and again, the last of them as long as is left.
-void Run::bridge(GpsTime until) {
-  ++out_.gaps_bridged;
-  out_.bridged_s += until - at_;
-  while (until - at_ > plan_.same_instant_s) {
-    const double left_s = until - at_;
-    ImuSample sample = last_;
-    const double dt_s = left_s < 1.5 * last_.dt_s ? left_s : last_.dt_s;
-    const double share = dt_s / last_.dt_s;
-    sample.dt_s = dt_s;
-    sample.dtheta_U *= share;
-    sample.dv_U *= share;
-    sample.lost = true;
-    sample.t = filter_.nav_state().t + dt_s;
-    take(sample, left_s < 1.5 * last_.dt_s ? until : at_ + dt_s);
+  const double same = plan_.timeline.same_instant_s;
+  for (; next_ < messages_.size() && messages_[next_].came - due <= same; ++next_) give(messages_[next_]);
+  timeline_->add(sample, due);
+  if (plan_.rate_hz > 0.0 && due - next_epoch_ >= -same) {
+    keep(timeline_->filter());
+    while (next_epoch_ - due <= same) next_epoch_ = next_epoch_ + 1.0 / plan_.rate_hz;
   }
 }
 
@@ -200,7 +223,7 @@ bool Run::restart(std::size_t k) {
                                                                           .lever_U_B = plan_.lever_U_B,
                                                                           .lever_A_B = plan_.lever_A_B});
   if (!aligned) return false;
-  settle();
+  end();
   const Eigen::Matrix3d R_WE = plan_.frame.R_EW().transpose();
   const Eigen::Quaterniond R_WB = (Eigen::Quaterniond(R_WE) * aligned->nav.R_EU).normalized();
   begin(aligned->nav.t, {R_WB, plan_.frame.to_W(aligned->nav.p_EU_E) - R_WB * plan_.lever_U_B},
@@ -218,35 +241,35 @@ Result<Fused> Run::all() {
   const fusion::FilterParts parts = fusion::filter_parts(plan_.filter);
   out_.states = parts.states;
   out_.measurements = parts.measurements;
+  tell_fix_errors(in_, plan_, evidence_);
   begin(plan_.start, plan_.X_WB, plan_.v_WB_W);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k % kSamplesPerLook == 0) throw_if_cancelled();
     ImuSample sample = samples[k];
     const GpsTime due = plan_.due.empty() ? sample.t : plan_.due[k];
-    if (due - at_ <= plan_.same_instant_s) continue;
-    const double apart_s = due - at_ - sample.dt_s, most_s = 0.5 * std::min(sample.dt_s, plan_.interval_s);
-    if (!has_last_) last_ = sample;
-    if (apart_s < -most_s || (!has_last_ && apart_s < 0.0)) {
-      fusion::take_share(sample, -apart_s / sample.dt_s);  // what is before the start is not of it
-    } else if (apart_s > most_s) {
-      if (apart_s > plan_.bridge_s && plan_.realign != nullptr && restart(k)) {
-        --k;
-        continue;
-      }
-      bridge(due - sample.dt_s);
+    if (!has_last_ && due - timeline_->at() <= plan_.timeline.same_instant_s) continue;  // before the start
+    const double apart_s = due - timeline_->at() - sample.dt_s;
+    if (!has_last_ && apart_s < 0.0) fusion::take_share(sample, -apart_s / sample.dt_s);
+    if (apart_s > std::max(plan_.bridge_s, 0.5 * sample.dt_s) && plan_.realign != nullptr && restart(k)) {
+      --k;
+      continue;
     }
     take(sample, due);
-    last_ = samples[k];
     has_last_ = true;
     ++out_.samples;
-    if (!filter_.nav_state().p_EU_E.allFinite())
+    if (!timeline_->filter().nav_state().p_EU_E.allFinite())
       return Error{in_.imu.path, 0, "", "the estimate is no number any more at " + due.iso(), "", 1};
   }
-  settle();
+  end();
   out_.messages_outside += messages_.size() - next_;
-  out_.end = at_;
+  out_.gaps_bridged = static_cast<std::size_t>(out_.incidents.count(fusion::Trouble::kGap));
+  out_.end = timeline_->at();
   out_.errors = scorer_.errors();
   out_.windows = outages_.windows();
+  out_.verdict = evidence_.numbers();
+  for (FuseSegment& segment : out_.segments)
+    std::stable_sort(segment.fixes.begin(), segment.fixes.end(),
+                     [](const GnssFix& a, const GnssFix& b) { return a.t < b.t; });
   return std::move(out_);
 }
 

@@ -7,6 +7,9 @@
 
 #include "canyon/core/earth/local_frame.h"
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/fusion/smoothing/smoother.h"
+#include "canyon/fusion/timeline/filter_timeline.h"
+#include "canyon/fusion/verdict/run_evidence.h"
 #include "canyon/study/fuse/inputs.h"
 #include "canyon/study/fuse/outages.h"
 #include "canyon/study/fuse/score.h"
@@ -36,7 +39,8 @@ struct FusePlan {
   /// When the samples were due by the master clock, if their stamps are by a clock of the unit's own; as many as
   /// samples.
   std::vector<GpsTime> due;
-  double same_instant_s = 1e-6;  ///< a message nearer to a sample's end than this does not divide it
+  bool keep_segments = false;       ///< for a smoother: 80 bytes a sample
+  fusion::TimelineConfig timeline;  ///< what is made of what is late, missing or wrong
 };
 
 /// The plan of a configuration: finds the start. Errors: as of fusion::alignments(), no truth to start from.
@@ -62,6 +66,16 @@ struct MeasurementScore {
   double nis_mean() const { return dimensions > 0.0 ? nis_sum / dimensions : kNaN; }
 };
 
+/// What a filter was given between one start and the next, for a smoother.
+struct FuseSegment {
+  GpsTime start;
+  Pose X_WB;
+  Eigen::Vector3d v_WB_W;
+  std::vector<ImuSample> steps;  ///< as it took them: divided, and bridged; by the clock of the messages
+  std::vector<GnssFix> fixes;
+  std::vector<fusion::Loosening> loosened;
+};
+
 struct Fused {
   std::string start_from;
   GpsTime start, end;
@@ -72,15 +86,20 @@ struct Fused {
   std::map<std::string, MeasurementScore> by_measurement;
   std::vector<FuseError> errors;
   std::vector<OutageWindow> windows;
+  std::vector<FuseSegment> segments;  ///< none unless they are wanted
+  fusion::VerdictNumbers verdict;
+  fusion::Incidents incidents;  ///< what was wrong with what came, and was mended
   std::size_t samples = 0, fixes_given = 0, fixes_accepted = 0, fixes_withheld = 0, messages_outside = 0;
   std::size_t gaps_bridged = 0, restarts = 0;
-  double bridged_s = 0.0;  ///< time for which the last sample was repeated
+  double bridged_s = 0.0;    ///< for which samples were missing
+  std::int64_t replays = 0;  ///< how often the filter went back, for messages that came late
 };
 
-/// Runs the filter over the samples; messages come in the order of time, of one time odometer, fix, epoch, and after
-/// the sample that ends there. One within a sample divides it there, rate and force being constant over it. Gaps are
-/// bridged with the last sample repeated (marked lost); after one longer than bridge_s the filter starts anew, in
-/// motion. An Error (exit status 1) where the estimate is no number any more.
+/// Runs the filter over the samples on a fusion::FilterTimeline. Messages come in the order of their files, of one time
+/// odometer, barometer, magnetometer, fix, epoch, and after the sample that ends there; one within a sample divides it
+/// there, rate and force being constant over it. A fix that stands behind a later one in its file comes when that does,
+/// and is taken in its place. After a gap longer than bridge_s the filter starts anew, in motion. An Error (exit status
+/// 1) where the estimate is no number any more.
 Result<Fused> fuse(const FuseInputs& inputs, const FusePlan& plan);
 
 }  // namespace canyon::study

@@ -5,6 +5,7 @@
 
 #include "canyon/core/messages.h"
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/fusion/verdict/run_evidence.h"
 #include "canyon/study/fuse/inputs.h"
 #include "canyon/study/fuse/outages.h"
 
@@ -21,18 +22,32 @@ struct FuseError {
   bool counts = false;  ///< after the time that is skipped
 };
 
+/// From the IMU to the point that the reference is of, in B.
+Eigen::Vector3d truth_arm(const FuseTruth& truth, const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B);
+
+/// An estimate of the IMU, its angular rate against E and its covariance as of fusion::SmoothedState.
+struct EstimatedMotion {
+  fusion::NavState nav;
+  Eigen::Vector3d rate_U;
+  Eigen::Matrix<double, 9, 9> covariance;
+};
+/// Against the reference at the same instant; `counts` is left to the caller, who gets the covariances too.
+FuseError fuse_error(const FuseTruth& truth, const Eigen::Vector3d& arm_U, const EstimatedMotion& estimate,
+                     const fusion::NavState& at, fusion::NavigationError* detail = nullptr);
+
 /// Compares a filter with a reference while it runs.
 class Scorer {
  public:
-  /// `truth` must outlive it.
-  Scorer(const FuseTruth& truth, const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B,
-         GpsTime count_from);
+  /// `truth` must outlive it, as `evidence`, which gets the errors that count.
+  Scorer(const FuseTruth& truth, const Eigen::Vector3d& lever_U_B, const Eigen::Vector3d& lever_A_B, GpsTime count_from,
+         fusion::RunEvidence& evidence);
 
   /// Between two states of one prediction: reference instants after `before` and before `after`.
   void passed(const fusion::NavState& before, const fusion::NavState& after, const fusion::ErrorStateFilter& filter,
               const Eigen::Vector3d& rate_U, Outages& outages);
-  /// At a state that everything of its time has corrected.
-  void settled(const fusion::ErrorStateFilter& filter, const Eigen::Vector3d& rate_U, Outages& outages);
+  /// At a state that everything of its time has corrected. States are stamped by the clock of the reference.
+  void settled(const fusion::NavState& now, const fusion::ErrorStateFilter& filter, const Eigen::Vector3d& rate_U,
+               Outages& outages);
 
   const std::vector<FuseError>& errors() const { return errors_; }
 
@@ -45,6 +60,7 @@ class Scorer {
   GpsTime count_from_;
   std::size_t next_ = 0;
   std::vector<FuseError> errors_;
+  fusion::RunEvidence& evidence_;
 };
 
 /// Root mean squares and consistency over the errors that count; NaN where there are none.

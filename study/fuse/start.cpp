@@ -144,6 +144,7 @@ Result<FusePlan> plan_fuse(const FuseInputs& in, const FuseConfig& config, const
   plan.v_WB_W = R_WE * start.nav.v_EU_E;
   plan.interval_s = in.imu.interval_s;
   plan.bridge_s = config.imu.bridge_s;
+  plan.timeline = config.timeline;
   plan.skip_s = config.score.skip_s;
   plan.rate_hz = config.output.rate_hz;
   plan.outages = outages;

@@ -180,11 +180,64 @@ TEST_F(FuseTest, WhatIsMendedIsToldInOneLineEach) {
             "warning: fixes.txt: 1 rows without finite numbers passed over\n");
 }
 
+// Rows of fixes in another order than that of their times, one of them twice, and some that stand still.
+TEST_F(FuseTest, FixesThatComeLateAreTakenInTheirPlace) {
+  simulate();
+  const std::string in_order = bare_fixes();
+  write("fixes.txt", in_order);
+  const auto expected = json_of(kCall);
+  std::istringstream lines(in_order);
+  std::vector<std::string> rows;
+  for (std::string line; std::getline(lines, line);) rows.push_back(line + "\n");
+  std::swap(rows[40], rows[41]);
+  rows.insert(rows.begin() + 60, rows[60]);
+  std::string shuffled;
+  for (const std::string& row : rows) shuffled += row;
+  write("fixes.txt", shuffled);
+  const auto out = json_of(kCall);
+  EXPECT_EQ(out["taken_late"], 1);
+  EXPECT_EQ(out["incidents"]["duplicate"]["count"], 1);
+  EXPECT_EQ(out["incidents"]["duplicate"]["what"], "the same instant twice");
+  EXPECT_EQ(out["fixes_accepted"], expected["fixes_accepted"]);
+  EXPECT_EQ(out["final_error_m"], expected["final_error_m"]);  // to the last bit
+}
+
+TEST_F(FuseTest, TheVerdictAndThePage) {
+  simulate();
+  write("fixes.txt", bare_fixes());
+  // Fixes that are exact, and claim to be a metre off.
+  const auto out = json_of(std::string(kCall) + " --outage 5,20,20 --smoother rts --out fused");
+  EXPECT_THAT(out["verdict"].dump(), HasSubstr("position: innovations "));
+  EXPECT_THAT(out["verdict"].dump(), HasSubstr(" times too small"));
+  EXPECT_EQ(out["evidence"]["measurements"][0]["name"], "position");
+  EXPECT_EQ(out["evidence"]["errors"].size(), 9U);
+  EXPECT_EQ(out["smoother"]["name"], "rts");
+  EXPECT_TRUE(out["smoother"]["outage"]["horizontal_rms_of_max_m"].is_number());
+  EXPECT_LT(out["smoother"]["rms_3d_m"].get<double>(), out["rms_3d_m"].get<double>());
+  EXPECT_THAT(read("fused/smoothed.csv"), StartsWith("gps_week,sow,lat_deg,lon_deg,h_m,vn_m_s,"));
+  EXPECT_THAT(read("fused/smoothed_errors.csv"), StartsWith("gps_week,sow,scored,error_e_m,"));
+  const std::string page = read("fused/report.html");
+  for (const char* text : {"Errors over time", "Outages of the fixes", "Innovations", "position: innovations ",
+                           "Does the filter know how wrong it is?", "smoothed by rts", "log/imu_kf_gins.txt"})
+    EXPECT_THAT(page, HasSubstr(text));
+  ASSERT_EQ(canyon("report fused"), 0) << read("stderr");
+  EXPECT_EQ(read("fused/report.html"), page);
+  // Without a reference only innovations speak, and the page says so.
+  const auto alone = json_of("fuse --imu log/imu.csv --gnss fixes.txt --config fuse.toml --out alone");
+  EXPECT_EQ(alone["evidence"]["errors"].size(), 0U);
+  EXPECT_TRUE(alone["evidence"]["fixes"].is_null());
+  EXPECT_THAT(alone["verdict"].dump(), HasSubstr("position: innovations "));
+  EXPECT_THAT(read("alone/report.html"), HasSubstr("There was no reference (--truth)"));
+}
+
 TEST_F(FuseTest, MistakesAreToldInOneLine) {
   simulate();
   write("fixes.txt", bare_fixes());
   const std::string logs = "fuse --imu log/imu.csv --gnss fixes.txt --truth log/truth.nav";
   refused("fuse --imu log/imu.csv",
+          "command line: no logs given, expected --imu FILE and --gnss FILE, or --results DIR and --run NAME");
+  refused(logs + " --results there --run high", "command line: logs beside --results, expected one or the other");
+  refused("fuse --results there",
           "command line: no logs given, expected --imu FILE and --gnss FILE, or --results DIR and --run NAME");
   refused(logs + " --outage 30,10,0",
           "--outage: \"30,10,0\", expected LENGTH,EVERY,FIRST in seconds, EVERY at least LENGTH");
@@ -194,6 +247,30 @@ TEST_F(FuseTest, MistakesAreToldInOneLine) {
   write("bad.toml", "[fusion]\nmeasurements = [\"odometer\"]\n");
   refused(logs + " --config bad.toml",
           "bad.toml:2: fusion.measurements: \"odometer\" without a log of one, expected --odometer FILE");
+  write("bad.toml", "[fusion]\nmeasurements = [\"position\", \"magnetometer\"]\n");
+  refused(logs + " --config bad.toml",
+          "bad.toml:2: fusion.measurements: \"magnetometer\" without a log of one, expected --results of a run whose "
+          "filter measures with it");
+  refused(logs + " --config fuse.toml --smoother rts2",
+          "--smoother: unknown name \"rts2\", expected one of \"none\", \"rts\", \"batch_graph\", "
+          "\"fixed_lag_graph\"; nearest is \"rts\"");
+  // Another place of the same drive: 1 degree of latitude.
+  {
+    std::istringstream truth(read("log/truth.nav"));
+    std::string moved;
+    for (std::string line; std::getline(truth, line);) {
+      double v[11];
+      std::istringstream numbers(line);
+      if (line.front() == '#') continue;
+      for (double& x : v) numbers >> x;
+      moved += text("%.0f %.3f %.9f %.9f %.4f %.5f %.5f %.5f %.6f %.6f %.6f\n", v[0], v[1], v[2] + 1.0, v[3], v[4],
+                    v[5], v[6], v[7], v[8], v[9], v[10]);
+    }
+    write("elsewhere.nav", moved);
+  }
+  refused("fuse --imu log/imu.csv --gnss fixes.txt --truth elsewhere.nav --config fuse.toml",
+          "elsewhere.nav: lies 111 km from the fixes of the same time, expected the frame of fixes.txt (degrees or "
+          "metres, their order, truth.origin_deg_deg_m)");
   write("late.txt", "9000 45 7 200 1 1 2\n9001 45 7 200 1 1 2\n");
   refused("fuse --imu log/imu.csv --gnss late.txt --config fuse.toml",
           "late.txt: covers 9000.000 to 9001.000 s of the week, expected times from 1000.000 to 1060.000 s of the "

@@ -7,15 +7,19 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/inertial/motion/motion.h"
+#include "canyon/study/fuse/smooth.h"
 #include "canyon/tests/study/fuse/recorded_inputs.h"
 #include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::study {
 namespace {
 
+using ::testing::AllOf;
 using testing::config_of;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -132,6 +136,129 @@ TEST_F(FuseRunTest, AGapIsBridgedWithTheLastSample) {
   EXPECT_LT(fuse_score(run.errors).rms_3d_m, 0.05);
 }
 
+// What is wrong with the fixes is mended and counted by name, and what comes late is taken in its place to the last
+// bit.
+TEST_F(FuseRunTest, LateRepeatedFrozenAndDamagedFixes) {
+  const FuseConfig config = config_of(kConfig);
+  const Fused in_time = run_of(drive(), config);
+  EXPECT_EQ(in_time.incidents.text(), "");
+  FuseInputs late = drive();
+  for (const GnssFix& fix : late.fixes) late.fixes_came.push_back(fix.t);
+  for (const std::size_t i : {30U, 50U, 70U}) late.fixes_came[i] = late.fixes[i].t + 0.8;
+  const Fused run = run_of(late, config);
+  EXPECT_EQ(run.replays, 3);
+  EXPECT_EQ(run.incidents.text(), "");
+  EXPECT_EQ(run.fixes_accepted, in_time.fixes_accepted);
+  EXPECT_EQ(last_position(run), last_position(in_time));
+
+  FuseInputs wrong = drive();
+  wrong.fixes[40].p_A_E = wrong.fixes[39].p_A_E;                  // frozen
+  wrong.fixes[60].covariance_E(1, 1) = -1.0;                      // no covariance
+  wrong.fixes.insert(wrong.fixes.begin() + 20, wrong.fixes[20]);  // twice
+  const Fused mended = run_of(wrong, config);
+  EXPECT_EQ(mended.incidents.count(fusion::Trouble::kFrozen), 1);
+  EXPECT_EQ(mended.incidents.count(fusion::Trouble::kNotFinite), 1);
+  EXPECT_EQ(mended.incidents.count(fusion::Trouble::kDuplicate), 1);
+  EXPECT_EQ(mended.fixes_given, 88U);
+  EXPECT_LT(fuse_score(mended.errors).rms_3d_m, 1e-3);
+}
+
+// A gap leaves the filter less sure, by 20 degrees a second and 2 m/s^2.
+TEST_F(FuseRunTest, AGapLeavesTheFilterLessSure) {
+  FuseInputs in = drive();
+  in.imu.samples.erase(in.imu.samples.begin() + 2000, in.imu.samples.begin() + 2020);  // 0.4 s
+  const Fused run = run_of(in, config_of(kConfig));
+  const auto sigma_after = [&](const Fused& of) {
+    const auto first =
+        std::find_if(of.errors.begin(), of.errors.end(), [&](const FuseError& e) { return e.t - of.start >= 40.41; });
+    return first->velocity_sigma_m_s.x();
+  };
+  EXPECT_EQ(run.incidents.count(fusion::Trouble::kGap), 1);
+  // 0.8 m/s before the first fix after it.
+  EXPECT_GT(sigma_after(run), 0.7);
+  EXPECT_LT(sigma_after(run_of(drive(), config_of(kConfig))), 0.1);
+}
+
+// Without a reference innovations and states speak alone; with one the errors do too.
+TEST_F(FuseRunTest, TheVerdictSaysWhatDoesNotFit) {
+  const auto words = [](const Fused& run) { return fusion::verdict_lines(run.verdict); };
+  FuseInputs noisy = drive();
+  const RandomStream stream(3, "test.fixes");
+  for (std::size_t i = 0; i < noisy.fixes.size(); ++i) noisy.fixes[i].p_A_E += 0.02 * stream.normal3(i);
+  const Fused right = run_of(noisy, config_of(kConfig));
+  EXPECT_EQ(words(right).front(), "consistent");
+  EXPECT_FALSE(right.verdict.axes.empty());
+  FuseInputs alone = noisy;
+  alone.truth.states.clear();
+  alone.truth.has_attitude = alone.truth.has_velocity = false;
+  for (GnssFix& fix : alone.fixes) fix.covariance_E /= 25.0;  // five times better than they are
+  const Fused wrong = run_of(alone, config_of(kConfig));
+  EXPECT_TRUE(wrong.verdict.axes.empty());
+  EXPECT_FALSE(wrong.verdict.fixes.has_value());
+  EXPECT_THAT(words(wrong), Contains(HasSubstr("position: innovations ")));
+  EXPECT_THAT(words(wrong), Contains(HasSubstr(" times too large")));
+}
+
+TEST_F(FuseRunTest, SmoothedItIsNearerToTheTruthAndSaysSo) {
+  FuseInputs noisy = drive();
+  const RandomStream stream(3, "test.fixes");
+  for (std::size_t i = 0; i < noisy.fixes.size(); ++i) noisy.fixes[i].p_A_E += 0.02 * stream.normal3(i);
+  const FuseConfig config = config_of(std::string(kConfig) + "[score]\nskip_s = 10\n");
+  auto plan = plan_fuse(noisy, config, OutagePlan{20.0, 40.0, 20.0});
+  ASSERT_TRUE(plan.ok()) << plan.error().str();
+  plan->keep_segments = true;
+  const auto run = fuse(noisy, *plan);
+  ASSERT_TRUE(run.ok());
+  const auto smoothed = smooth("rts", config.smoother.own, noisy, *plan, *run);
+  ASSERT_TRUE(smoothed.ok()) << smoothed.error().str();
+  const FuseScore of_filter = fuse_score(run->errors), of_smoother = fuse_score(smoothed->errors);
+  std::printf("filter %.4f m, NEES %.2f; smoothed %.4f m, NEES %.2f; outages %.3f and %.3f m\n", of_filter.rms_3d_m,
+              of_filter.nees_mean, of_smoother.rms_3d_m, of_smoother.nees_mean,
+              outage_score(run->windows).horizontal_rms_of_max_m,
+              outage_score(smoothed->windows).horizontal_rms_of_max_m);
+  EXPECT_LT(of_smoother.rms_3d_m, of_filter.rms_3d_m);
+  for (int i = 0; i < 3; ++i) EXPECT_LE(of_smoother.position_sigma_m[i], of_filter.position_sigma_m[i]) << i;
+  // What smooths nothing is the filter itself: the same samples, divided where it divided them.
+  const auto alone = smooth("none", config.smoother.own, noisy, *plan, *run);
+  ASSERT_TRUE(alone.ok()) << alone.error().str();
+  const auto same = std::find_if(alone->epochs.begin(), alone->epochs.end(),
+                                 [&](const FuseEpoch& e) { return e.nav.t == run->epochs.back().nav.t; });
+  ASSERT_NE(same, alone->epochs.end());
+  EXPECT_EQ(same->nav.p_EU_E, last_position(*run));
+}
+
+// Of a bridged gap the smoother knows what the filter knew; a factor graph has no place for it.
+TEST_F(FuseRunTest, AGapIsSmoothedByRtsAlone) {
+  FuseInputs in = drive();
+  in.imu.samples.erase(in.imu.samples.begin() + 2000, in.imu.samples.begin() + 2020);
+  const FuseConfig config = config_of(kConfig);
+  auto plan = plan_fuse(in, config, {});
+  plan->keep_segments = true;
+  const auto run = fuse(in, *plan);
+  ASSERT_TRUE(run.ok());
+  const auto smoothed = smooth("rts", config.smoother.own, in, *plan, *run);
+  ASSERT_TRUE(smoothed.ok()) << smoothed.error().str();
+  EXPECT_LE(fuse_score(smoothed->errors).rms_3d_m, fuse_score(run->errors).rms_3d_m);
+  EXPECT_THAT(
+      smooth("batch_graph", config.smoother.own, in, *plan, *run).error().str(),
+      AllOf(HasSubstr("imu.csv: samples are missing before "),
+            HasSubstr(", which \"batch_graph\" cannot bridge, expected --smoother rts, or an imu.bridge_s below "
+                      "the gap")));
+}
+
+TEST(FuseSmoother, MistakesWordForWord) {
+  const auto error = [](const char* smoother, const char* toml) {
+    return check_smoother(smoother, config_of(toml).fusion).error().str();
+  };
+  EXPECT_EQ(error("rst", ""),
+            "--smoother: unknown name \"rst\", expected one of \"none\", \"rts\", \"batch_graph\", "
+            "\"fixed_lag_graph\"; nearest is \"rts\"");
+  EXPECT_EQ(error("batch_graph", "[fusion]\nmeasurements = [\"position\", \"barometer\"]\n"),
+            "--smoother: \"batch_graph\" cannot take the filter's \"barometer\", expected \"rts\", or "
+            "fusion.measurements without it");
+  EXPECT_TRUE(check_smoother("rts", config_of("[fusion]\nmeasurements = [\"position\", \"barometer\"]\n").fusion).ok());
+}
+
 TEST_F(FuseRunTest, AfterALongGapItStartsAnewInMotion) {
   FuseInputs in = drive();
   in.imu.samples.erase(in.imu.samples.begin() + 2000, in.imu.samples.begin() + 2500);  // 10 s
@@ -245,6 +372,20 @@ TEST_F(FuseRunTest, InputsThatDoNotFitAreErrors) {
       error(drive(), "[fusion]\nmeasurements = [\"position\", \"velocity\"]\n"),
       "test.toml:2: fusion.measurements: \"velocity\", but fixes.csv has no velocity with a sigma, expected columns "
       "vn,ve,vu,sd_vn,sd_ve,sd_vu, or gnss.velocity_sigma_enu_m_s");
+  EXPECT_EQ(error(drive(), "[fusion]\nmeasurements = [\"position\", \"barometer\"]\n"),
+            "test.toml:2: fusion.measurements: \"barometer\" without a log of one, expected --results of a run whose "
+            "filter measures with it");
+  for (const std::string row : {"heading", "map_pose"})
+    EXPECT_EQ(error(drive(), ("[fusion]\nmeasurements = [\"" + row + "\"]\n").c_str()),
+              "test.toml:2: fusion.measurements: \"" + row +
+                  "\", for which canyon fuse has no messages, expected one of \"position\", \"velocity\", "
+                  "\"non_holonomic\", \"standstill\", \"odometer\", \"barometer\", \"magnetometer\"");
+  EXPECT_EQ(error(drive(), "[fusion]\nmeasurements = [\"relative_pose\"]\nstates = [\"biases\"]\n"),
+            "test.toml:2: fusion.measurements: \"relative_pose\" without state \"clone\", expected \"clone\" in "
+            "fusion.states");
+  EXPECT_EQ(error(drive(), "[fusion]\nstates = [\"biases\", \"turn_on_biases\"]\n"),
+            "test.toml:2: fusion.states: \"biases\" already holds what \"turn_on_biases\" and \"in_run_biases\" hold, "
+            "expected \"biases\", or the other two");
   FuseInputs elsewhere = drive();
   for (fusion::NavState& state : elsewhere.truth.states) state.p_EU_E += Eigen::Vector3d(0.0, 5e4, 0.0);
   EXPECT_THAT(error(elsewhere, ""),

@@ -1,0 +1,70 @@
+#include <algorithm>
+
+#include "canyon/core/config/text.h"
+#include "canyon/fusion/measurements/measurement.h"
+#include "canyon/study/fuse/inputs.h"
+
+namespace canyon::study {
+namespace {
+
+constexpr const char* kMeasurements = "fusion.measurements";
+
+/// Rows that no message of another sensor is needed for, and those whose messages may be among the inputs.
+constexpr std::string_view kFed[] = {"position", "velocity",  "non_holonomic", "standstill",
+                                     "odometer", "barometer", "magnetometer"};
+
+std::string quoted(const std::string& name) {
+  return "\"" + name + "\"";
+}
+
+bool can_be_fed(std::string_view name) {
+  return std::find(std::begin(kFed), std::end(kFed), name) != std::end(kFed);
+}
+
+std::string fed_rows() {
+  return "one of " + quoted_list(std::vector<std::string>(std::begin(kFed), std::end(kFed)));
+}
+
+bool states_velocity(const GnssFix& fix) {
+  return fix.velocity_covariance_E.allFinite();
+}
+
+/// Whether the inputs hold what the row is made of.
+bool has_sensor(const FuseInputs& in, const std::string& name) {
+  if (name == "velocity") return std::any_of(in.fixes.begin(), in.fixes.end(), states_velocity);
+  if (name == "odometer") return !in.odometer.empty();
+  if (name == "barometer") return !in.barometer.empty();
+  if (name == "magnetometer") return !in.magnetometer.empty();
+  return true;
+}
+
+Error without_sensor(const FuseInputs& in, const FuseConfig& config, const std::string& name) {
+  const bool of_run = !in.of_run.empty();
+  if (name == "velocity")
+    return at_key(config, kMeasurements, "\"velocity\", but " + in.gnss_path + " has no velocity with a sigma",
+                  of_run ? "a run whose receiver gives one"
+                         : "columns vn,ve,vu,sd_vn,sd_ve,sd_vu, or gnss.velocity_sigma_enu_m_s");
+  if (of_run)
+    return at_key(config, kMeasurements, quoted(name) + ", of which the run " + quoted(in.of_run) + " has no record",
+                  "a run whose own filter measures with it");
+  return at_key(config, kMeasurements, quoted(name) + " without a log of one",
+                name == "odometer" ? "--odometer FILE" : "--results of a run whose filter measures with it");
+}
+
+}  // namespace
+
+Status check_fuse_filter(const FuseInputs& in, const FuseConfig& config) {
+  if (const Status parts = fusion::check_parts(fusion::filter_parts(config.fusion)); !parts.ok()) {
+    const Error& error = parts.error();
+    return at_key(config, error.key, error.what, error.expected);
+  }
+  if (config.fusion.map_aiding) return at_key(config, "fusion.map_aiding", "nothing is registered here", "false");
+  for (const std::string& name : config.fusion.measurements) {
+    if (!can_be_fed(name))
+      return at_key(config, kMeasurements, quoted(name) + ", for which canyon fuse has no messages", fed_rows());
+    if (!has_sensor(in, name)) return without_sensor(in, config, name);
+  }
+  return Ok{};
+}
+
+}  // namespace canyon::study
