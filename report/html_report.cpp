@@ -62,7 +62,7 @@ std::string page(const Results& results) {
          (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) + "</p>\n<h1>" +
          escape_html(headline(results)) + "</h1>\n" + contents(results.over_seeds.has_value(), !two_by_two.empty()) +
          "</header>\n";
-  for (const auto part : {verdict_section, seeds_section, figures_section, scene_section, error_section,
+  for (const auto part : {verdict_section, seeds_section, figures_section, scene_section, error_section, filter_section,
                           satellites_section, multipath_section, maps_section, registration_section}) {
     throw_if_cancelled();
     out += part(results);
