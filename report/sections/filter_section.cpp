@@ -24,7 +24,8 @@ std::string filter_section(const Results& results) {
       "A filter claims with every estimate how far off it may be. Here its errors, and its surprise at every "
       "measurement, stand against what it claimed; what differs by more than chance and by more than a tenth "
       "is said, the worst first. All that is said of a run together is said of a right filter in one run of a "
-      "hundred. What is not observed is no fault: the measurements do not tell it.",
+      "hundred. What is not observed is no fault: the measurements do not tell it. In the tables \xC3\x97 is how many "
+      "times larger than claimed, a root of mean squares.",
       body);
 }
 

@@ -74,7 +74,7 @@ std::string consistency_table(const FilterVerdict& verdict) {
   }
   if (rows.empty()) return {};
   return open_table("How large errors and innovations are, over what the filter claims",
-                    {"times what is claimed", "of a right filter", "RMS", "claimed RMS", "number", "alike for"}) +
+                    {"\xC3\x97 claimed", "right filter", "RMS", "claimed", "number", "alike for"}) +
          rows + "</tbody></table></div>\n";
 }
 

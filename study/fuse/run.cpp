@@ -189,7 +189,7 @@ void Run::keep(const fusion::ErrorStateFilter& filter) {
 void Run::settle(const fusion::ErrorStateFilter& filter) {
   left_ = timeline_->at();
   scorer_.settled(stamped(filter.nav_state(), left_), filter, rate_U_, outages_);
-  if (left_ - plan_.start >= plan_.skip_s) evidence_.look(filter);
+  evidence_.look(filter);  // from the start on: what is observed is often observed at once
 }
 
 void Run::stepped(const ImuSample& sample, const fusion::NavState& before, const fusion::ErrorStateFilter& filter) {
