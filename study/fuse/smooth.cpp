@@ -1,6 +1,6 @@
 #include "canyon/study/fuse/smooth.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "canyon/core/config/text.h"
 #include "canyon/fusion/reference_track.h"
