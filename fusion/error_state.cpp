@@ -67,6 +67,13 @@ void ErrorState::inject(const Eigen::Ref<const Eigen::VectorXd>& error) {
   values_.segment<6>(clone_at_).setZero();
 }
 
+double ErrorState::first_variance(int state) const {
+  for (const Member& member : members_)
+    if (state >= member.offset && state < member.offset + member.block->size())
+      return member.block->variance(state - member.offset);
+  return 0.0;
+}
+
 void ErrorState::fade(const Eigen::Ref<const Eigen::VectorXd>& decay, double dt_s) {
   for (const Integral& i : integrals_) values_[i.integral] += dt_s * values_[i.of];
   values_.array() *= decay.array();

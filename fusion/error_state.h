@@ -55,6 +55,10 @@ class ErrorState {
   void start(const NavState& at);
   /// Adds an estimated error, of size() or more elements, to nav and values.
   void inject(const Eigen::Ref<const Eigen::VectorXd>& error);
+  /// The estimate of a state keeps so much of itself.
+  void renew(int state, double kept) { values_[state] *= kept; }
+  /// Of the error of a block's state at the start.
+  double first_variance(int state) const;
   /// Values over a step: each keeps so much of itself, and an integral grows.
   void fade(const Eigen::Ref<const Eigen::VectorXd>& decay, double dt_s);
   /// `count` values from state `offset` on.

@@ -187,9 +187,23 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
 void ErrorStateFilter::update(const AidingMessage& message) {
   for (Aid& aid : aids_) {
     const int parts = aid.model->parts(view(), message);
+    renew(aid.model->renewed());
     for (int part = 0; part < parts; ++part)
       if (auto m = aid.model->received(view(), message, part)) reports_.push_back(correct(aid, *m));
   }
+}
+
+void ErrorStateFilter::renew(std::span<const Renewal> states) {
+  if (states.empty()) return;
+  ErrorMatrix P = estimator_->covariance();
+  for (const auto [state, kept] : states) {
+    P.row(state) *= kept;
+    P.col(state) *= kept;
+    P(state, state) += (1.0 - kept * kept) * state_.first_variance(state);
+    state_.renew(state, kept);
+  }
+  estimator_->set(P);
+  if (watcher_.observer != nullptr) watcher_.observer->renewed(states);
 }
 
 void ErrorStateFilter::take_clone() {

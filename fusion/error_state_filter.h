@@ -115,6 +115,7 @@ class ErrorStateFilter {
   const ErrorMatrix& P() const { return estimator_->covariance(); }
   Pose pose_of(const Eigen::Quaterniond& R_EU, const Eigen::Vector3d& p_EU_E) const;
   void restart(const Measurement& fix);
+  void renew(std::span<const Renewal> states);
   UpdateReport correct(Aid& aid, Measurement& m);
 
   FilterConfig config_;

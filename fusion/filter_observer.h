@@ -28,6 +28,8 @@ class FilterObserver {
   virtual void predicted(ErrorPropagation& step) = 0;
   /// The state has not been corrected yet.
   virtual void corrected(const Correction& correction) = 0;
+  /// States of blocks have been renewed, in part or as a whole.
+  virtual void renewed(std::span<const Renewal> states) = 0;
   /// A filter that was lost has taken its place from a fix: position and velocity of before are forgotten, attitude and
   /// sensor errors stay.
   virtual void restarted(const Measurement& fix) = 0;

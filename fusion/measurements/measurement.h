@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include <Eigen/Core>
@@ -49,6 +50,13 @@ using AidingMessage = std::variant<GnssFix, GnssEpoch, OdometerSample, Barometer
 /// When the message says that it holds.
 GpsTime time_of(const AidingMessage& message);
 
+/// A state of a block that is no longer quite what it was: of its error it keeps so much, and is for the rest as
+/// unknown as at the start; with `kept` 0 it begins anew.
+struct Renewal {
+  int state = 0;
+  double kept = 0.0;
+};
+
 /// Makes a measurement of a message, or of the motion itself. One-level interface; the models are in the table below,
 /// each in its own file with its own parameters.
 class MeasurementModel {
@@ -61,6 +69,8 @@ class MeasurementModel {
   virtual std::optional<Measurement> stepped(const FilterView& /*filter*/, const Increments& /*in*/) { return {}; }
   /// A message is coming, which is taken in so many parts, each after the filter has been corrected by the last.
   virtual int parts(const FilterView& /*filter*/, const AidingMessage& /*message*/) { return 1; }
+  /// What that message finds changed, known after parts(), and true before its first part is taken.
+  virtual std::span<const Renewal> renewed() const { return {}; }
   /// One part of it; nothing if it is not for this model, or says nothing.
   virtual std::optional<Measurement> received(const FilterView& /*filter*/, const AidingMessage& /*message*/,
                                               int /*part*/) {

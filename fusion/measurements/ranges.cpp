@@ -4,6 +4,8 @@
 
 #include "canyon/fusion/measurements/body_motion.h"
 #include "canyon/fusion/measurements/fix_age.h"
+#include "canyon/fusion/measurements/satellite_slots.h"
+#include "canyon/fusion/states/range_errors.h"
 #include "canyon/fusion/states/receiver_clock.h"
 
 namespace canyon::fusion {
@@ -11,7 +13,7 @@ namespace {
 
 struct RangesParameters {
   double range_sigma_scale = 1.0;
-  double range_rate_sigma_m_s = 0.1;
+  double range_rate_sigma_m_s = 0.2;
 };
 void visit(FieldVisitor& f, RangesParameters& p) {
   f.number("range_sigma_scale", p.range_sigma_scale, {0.01, 1000},
@@ -20,26 +22,39 @@ void visit(FieldVisitor& f, RangesParameters& p) {
 }
 
 /// Pseudoranges and their rates, as the receiver has corrected them, one by one and each judged by itself: what one
-/// satellite tells that is wrong does not spoil the others, and one satellite alone still tells something. Rates leave
-/// out what the Earth turns during the signal's travel (5 mm/s).
+/// satellite tells that is wrong does not spoil the others, and one satellite alone still tells something. With the
+/// block range_errors, what lasts of each satellite's error is estimated; where there are more satellites than states
+/// it counts as noise. Rates leave out what the Earth turns during the signal's travel (5 mm/s).
 class Ranges final : public Copied<MeasurementModel, Ranges> {
  public:
-  Ranges(const RangesParameters& p, const ErrorState& state)
-      : p_(p), age_(state), clock_(state.offset("receiver_clock")) {
+  Ranges(const RangesParameters& p, const RangeErrorsParameters& lasting, const ErrorState& state)
+      : p_(p),
+        lasting_(lasting),
+        age_(state),
+        clock_(state.offset("receiver_clock")),
+        errors_(state.offset("range_errors")),
+        slots_(errors_ < 0 ? 0 : static_cast<int>(lasting.range_error_slots)) {
     CANYON_CHECK(clock_ >= 0, "measurement \"ranges\" without state \"receiver_clock\"");
   }
 
   void start() override {
     set_ = false;
     steered_m_ = 0.0;
+    last_ = {};
+    slots_.clear();
+    renewed_.clear();
   }
 
   int parts(const FilterView& filter, const AidingMessage& message) override {
+    renewed_.clear();
     const auto* epoch = std::get_if<GnssEpoch>(&message);
     if (epoch == nullptr) return 0;
+    if (errors_ >= 0) renew(filter, *epoch);
     steer(filter, *epoch);
     return 2 * static_cast<int>(epoch->observations.size());
   }
+
+  std::span<const Renewal> renewed() const override { return renewed_; }
 
   std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message, int part) override {
     const auto* epoch = std::get_if<GnssEpoch>(&message);
@@ -50,6 +65,18 @@ class Ranges final : public Copied<MeasurementModel, Ranges> {
   }
 
  private:
+  /// A satellite that comes begins anew; of one that was there the antenna's way has changed the echoes.
+  void renew(const FilterView& filter, const GnssEpoch& epoch) {
+    const double way_m = last_ ? std::abs(epoch.t - *last_) * antenna_velocity(filter).v_E.norm() : 0.0;
+    const double kept = std::exp(-way_m / lasting_.range_error_way_m);
+    last_ = epoch.t;
+    slots_.assign(epoch);
+    for (const int slot : slots_.begun()) renewed_.push_back({errors_ + slot, 0.0});
+    if (kept == 1.0) return;
+    for (int slot = 0; slot < slots_.count(); ++slot)
+      if (slots_.taken(slot)) renewed_.push_back({errors_ + slot, kept});
+  }
+
   /// Receivers let their clock run and set it back by a millisecond at a time: what so many satellites share is taken
   /// out before the states see it.
   void steer(const FilterView& filter, const GnssEpoch& epoch) {
@@ -86,7 +113,27 @@ class Ranges final : public Copied<MeasurementModel, Ranges> {
     m.H(0, clock_ + ClockIndex::kClock) = 1.0;
     if (const int own = ClockIndex::of(o.sv.system); own >= 0) m.H(0, clock_ + own) = 1.0;
     m.R(0, 0) = std::pow(p_.range_sigma_scale * o.sigma_m, 2);
+    if (errors_ >= 0) add_lasting(filter, o, u, m);
     return m;
+  }
+
+  void add_lasting(const FilterView& filter, const GnssObservation& o, const Eigen::RowVector3d& u,
+                   Measurement& m) const {
+    const double cn0 = cn0_dbhz(filter, o, u), sigma_m = lasting_.sigma_m(cn0);
+    m.residual[0] -= lasting_.mean_m(cn0);
+    if (const int slot = slots_.of(o.sv); slot >= 0) {
+      m.residual[0] -= sigma_m * filter.state.values(errors_ + slot, 1)[0];
+      m.H(0, errors_ + slot) = sigma_m;
+    } else {
+      m.R(0, 0) += sigma_m * sigma_m;
+    }
+  }
+
+  /// Where the receiver does not tell it: a patch antenna in the open, which loses some 7 dB from the zenith to the
+  /// horizon.
+  static double cn0_dbhz(const FilterView& filter, const GnssObservation& o, const Eigen::RowVector3d& u) {
+    if (std::isfinite(o.cn0_dbhz)) return o.cn0_dbhz;
+    return kClearCn0Dbhz - 7.0 * (1.0 - std::max(u.dot(filter.state.nav.p_EU_E.normalized()), 0.0));
   }
 
   std::optional<Measurement> rate(const FilterView& filter, const GnssObservation& o, double age_s) const {
@@ -102,15 +149,21 @@ class Ranges final : public Copied<MeasurementModel, Ranges> {
     m.H = by_place * (antenna.H + age_s * moving.H) - u.transpose() * moving.H;
     age_.set_column(m.H, by_place * moving.v_E);
     m.H(0, clock_ + ClockIndex::kRate) = 1.0;
-    m.R(0, 0) = p_.range_rate_sigma_m_s * p_.range_rate_sigma_m_s;
+    double sigma_m_s = p_.range_rate_sigma_m_s;
+    if (errors_ >= 0) sigma_m_s *= lasting_.growth(cn0_dbhz(filter, o, u.transpose()));
+    m.R(0, 0) = sigma_m_s * sigma_m_s;
     return m;
   }
 
   static constexpr double kJump_m = 3000.0;  // 10 microseconds
 
   RangesParameters p_;
+  RangeErrorsParameters lasting_;
   FixAge age_;
-  int clock_;
+  int clock_, errors_;
+  SatelliteSlots slots_;
+  std::optional<GpsTime> last_;
+  std::vector<Renewal> renewed_;
   bool set_ = false;
   double steered_m_ = 0.0;
 };
@@ -118,7 +171,7 @@ class Ranges final : public Copied<MeasurementModel, Ranges> {
 }  // namespace
 
 std::unique_ptr<MeasurementModel> make_ranges(const ModelParameters& own, const MeasurementSetup& at) {
-  return std::make_unique<Ranges>(own.get<RangesParameters>(), at.state);
+  return std::make_unique<Ranges>(own.get<RangesParameters>(), own.get<RangeErrorsParameters>(), at.state);
 }
 
 void ranges_parameters(ModelParameters& section) {

@@ -27,6 +27,10 @@ void FixResponse::corrected(const Correction& correction) {
   since_.setIdentity();
 }
 
+void FixResponse::renewed(std::span<const Renewal> states) {
+  for (const auto [state, kept] : states) since_.row(state) *= kept;
+}
+
 void FixResponse::restarted(const Measurement& fix) {
   using Index = ErrorIndex;
   const Eigen::Matrix3d H_theta = fix.H.leftCols<3>();

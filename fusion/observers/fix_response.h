@@ -25,6 +25,7 @@ class FixResponse final : public FilterObserver {
   void begin(const ErrorState& state) override;
   void predicted(ErrorPropagation& step) override;
   void corrected(const Correction& correction) override;
+  void renewed(std::span<const Renewal> states) override;
   /// The antenna is where the fix says, at the lever arm whose dependence on the attitude is H's first three columns.
   /// Attitude and sensor errors stay, and with them what earlier fixes did to them.
   void restarted(const Measurement& fix) override;

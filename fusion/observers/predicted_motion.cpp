@@ -50,6 +50,10 @@ void PredictedMotion::Tracker::corrected(const Correction& correction) {
   Q = 0.5 * (Q + Q.transpose()).eval();
 }
 
+void PredictedMotion::Tracker::renewed(std::span<const Renewal> states) {
+  CANYON_CHECK(false, "no epoch reaches a prediction: ", states.size(), " states");
+}
+
 void PredictedMotion::Tracker::restarted(const Measurement& fix) {
   CANYON_CHECK(false, "no fix reaches a prediction: residual ", fix.residual.transpose());
 }

@@ -30,6 +30,7 @@ class PredictedMotion {
     void begin(const ErrorState& state) override;
     void predicted(ErrorPropagation& step) override;
     void corrected(const Correction& correction) override;
+    void renewed(std::span<const Renewal> states) override;
     void restarted(const Measurement& fix) override;
     ErrorMatrix Phi, Q;
   };

@@ -63,6 +63,10 @@ void RtsSmoother::corrected(const Correction& correction) {
                              .residual = correction.measurement.residual};
 }
 
+void RtsSmoother::renewed(std::span<const Renewal> states) {
+  for (const auto [state, kept] : states) since_.row(state) *= kept;
+}
+
 void RtsSmoother::restarted(const Measurement&) {
   add_record().restart = true;
 }

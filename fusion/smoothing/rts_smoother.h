@@ -32,6 +32,7 @@ class RtsSmoother final : public FilterObserver {
   void begin(const ErrorState& state) override;
   void predicted(ErrorPropagation& step) override;
   void corrected(const Correction& correction) override;
+  void renewed(std::span<const Renewal> states) override;
   void restarted(const Measurement& fix) override;
 
   /// The state as the filter now has it will be smoothed.

@@ -71,6 +71,8 @@ std::unique_ptr<StateBlock> make_time_offset(const ModelParameters& own, const S
 void time_offset_parameters(ModelParameters& section);
 std::unique_ptr<StateBlock> make_receiver_clock(const ModelParameters& own, const StateSetup& setup);
 void receiver_clock_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_range_errors(const ModelParameters& own, const StateSetup& setup);
+void range_errors_parameters(ModelParameters& section);
 std::unique_ptr<StateBlock> make_barometer_bias(const ModelParameters& own, const StateSetup& setup);
 void barometer_bias_parameters(ModelParameters& section);
 std::unique_ptr<StateBlock> make_hard_iron(const ModelParameters& own, const StateSetup& setup);

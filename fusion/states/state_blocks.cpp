@@ -17,6 +17,8 @@ constexpr ModelRow<MakeStateBlock> kBlocks[] = {
      fix_error_parameters},
     {"receiver_clock", make_receiver_clock,
      "clock of the receiver and its rate, and each system's own time against GPS", receiver_clock_parameters},
+    {"range_errors", make_range_errors, "the part of the pseudoranges' errors that lasts, satellite by satellite",
+     range_errors_parameters},
     {"barometer_bias", make_barometer_bias, "height of the air's pressure against the standard atmosphere",
      barometer_bias_parameters},
     {"hard_iron", make_hard_iron, "magnetic field of the vehicle", hard_iron_parameters},

@@ -20,6 +20,8 @@ class PredictionAlone final : public FilterObserver {
   void begin(const ErrorState&) override {}
   void predicted(ErrorPropagation& step) override;
   void corrected(const Correction&) override {}
+  /// Stationary as such states are, nothing becomes of their covariance.
+  void renewed(std::span<const Renewal>) override {}
   void restarted(const Measurement&) override {}
 
   const ErrorMatrix& covariance() const { return P_; }

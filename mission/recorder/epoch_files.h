@@ -25,13 +25,16 @@ void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run);
 
 /// What a filter is given, to the last bit: messages of IMU, odometer, barometer and magnetometer, of the last three
-/// with their truth records behind them, and fixes in E with their covariances.
+/// with their truth records behind them, fixes in E with their covariances, and corrected ranges.
 extern const char *const kImuColumns, *const kOdometerColumns, *const kBarometerColumns, *const kMagnetometerColumns,
-                                                                                             *const kFixColumns;
+                                                                                             *const kFixColumns,
+                                                                                                 *const kRangeColumns;
 void write(CsvWriter& csv, const ImuSample& sample, const RowPlace& run);
 void write(CsvWriter& csv, const inertial::Odometer::Reading& reading, const RowPlace& run);
 void write(CsvWriter& csv, const inertial::Barometer::Reading& reading, const RowPlace& run);
 void write(CsvWriter& csv, const inertial::Magnetometer::Reading& reading, const RowPlace& run);
 void write_fix(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
+/// One row per satellite.
+void write_ranges(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 
 }  // namespace canyon::mission

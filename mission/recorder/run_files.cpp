@@ -48,6 +48,8 @@ Result<std::unique_ptr<RunFiles>> RunFiles::create(const std::string& directory,
     if (sensors.magnetometer)
       CANYON_TRY_STATUS(files->open(kMagnetometer, stem + "_magnetometer.csv", kMagnetometerColumns));
     CANYON_TRY_STATUS(files->open(kFixes, stem + "_fixes.csv", kFixColumns));
+    if (fusion::measures_with(config.fusion, "ranges"))
+      CANYON_TRY_STATUS(files->open(kRanges, stem + "_ranges.csv", kRangeColumns));
   }
   if (config.run.record_tape) {
     std::filesystem::create_directories(directory + "/tapes", ignored);
@@ -102,6 +104,10 @@ Status RunFiles::gnss(const GnssRow& row) {
   if (tables_[kFixes]) {
     write_fix(tables_[kFixes]->rows, row, place_);
     CANYON_TRY_STATUS(tables_[kFixes]->flush(kPiece));
+  }
+  if (tables_[kRanges]) {
+    write_ranges(tables_[kRanges]->rows, row, place_);
+    CANYON_TRY_STATUS(tables_[kRanges]->flush(kPiece));
   }
   CANYON_TRY_STATUS(tables_[kGnss]->flush(kPiece));
   return tables_[kSatellites]->flush(kPiece);

@@ -94,7 +94,7 @@ void FacetIndex::build_tiles() {
   using Square = std::pair<int, int>;  // row, column
   const auto place_in = [&](const Facet& f, double edge_m) {
     return Square(static_cast<int>((f.center_W.y() - origin_.y()) / edge_m),
-                 static_cast<int>((f.center_W.x() - origin_.x()) / edge_m));
+                  static_cast<int>((f.center_W.x() - origin_.x()) / edge_m));
   };
   const auto square = [&](const Square& place, double edge_m) {
     return Square{.x_m = origin_.x() + (place.second + 0.5) * edge_m,

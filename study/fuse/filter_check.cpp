@@ -11,7 +11,7 @@ constexpr const char* kMeasurements = "fusion.measurements";
 
 /// Rows that no message of another sensor is needed for, and those whose messages may be among the inputs.
 constexpr std::string_view kFed[] = {"position", "velocity",  "non_holonomic", "standstill",
-                                     "odometer", "barometer", "magnetometer"};
+                                     "odometer", "barometer", "magnetometer",  "ranges"};
 
 std::string quoted(const std::string& name) {
   return "\"" + name + "\"";
@@ -35,6 +35,7 @@ bool has_sensor(const FuseInputs& in, const std::string& name) {
   if (name == "odometer") return !in.odometer.empty();
   if (name == "barometer") return !in.barometer.empty();
   if (name == "magnetometer") return !in.magnetometer.empty();
+  if (name == "ranges") return !in.ranges.empty();
   return true;
 }
 
@@ -44,6 +45,9 @@ Error without_sensor(const FuseInputs& in, const FuseConfig& config, const std::
     return at_key(config, kMeasurements, "\"velocity\", but " + in.gnss_path + " has no velocity with a sigma",
                   of_run ? "a run whose receiver gives one"
                          : "columns vn,ve,vu,sd_vn,sd_ve,sd_vu, or gnss.velocity_sigma_enu_m_s");
+  if (name == "ranges" && !of_run)
+    return at_key(config, kMeasurements, "\"ranges\", but " + in.gnss_path + " holds positions",
+                  "RINEX observations, and --nav FILE");
   if (of_run)
     return at_key(config, kMeasurements, quoted(name) + ", of which the run " + quoted(in.of_run) + " has no record",
                   "a run whose own filter measures with it");

@@ -57,6 +57,8 @@ Result<FixLog> solve(const std::string& path, const std::vector<std::string>& na
   for (const auto* lines : {&data.observations.warnings, &solved.warnings})
     out.warnings.insert(out.warnings.end(), lines->begin(), lines->end());
   for (const auto& epoch : solved.epochs) {
+    if (!epoch.epoch.observations.empty() && (out.ranges.empty() || epoch.epoch.t > out.ranges.back().t))
+      out.ranges.push_back(epoch.epoch);
     if (epoch.fix.status == FixStatus::kNone)
       ++out.without_solution;
     else if (!out.fixes.empty() && epoch.fix.t <= out.fixes.back().t)

@@ -12,7 +12,8 @@ namespace canyon::study {
 /// Fixes of a log; those that say that there was none are left out and counted.
 struct FixLog {
   std::vector<GnssFix> fixes;
-  std::vector<GpsTime> came;  ///< the same index: as StateRow::came
+  std::vector<GpsTime> came;      ///< the same index: as StateRow::came
+  std::vector<GnssEpoch> ranges;  ///< of RINEX observations, corrected; also of epochs without a fix
   bool has_week = false;
   std::size_t without_solution = 0, withheld = 0;
   PassedOver passed_over;

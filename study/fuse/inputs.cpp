@@ -188,10 +188,12 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
   const auto missing = [&](bool has_week) { return has_week ? 0 : week; };
   for (GnssFix& fix : fixes.fixes) shift(fix.t, missing(week_of_fixes), config.gnss.clock_offset_s);
   for (GpsTime& came : fixes.came) shift(came, missing(week_of_fixes), config.gnss.clock_offset_s);
+  for (GnssEpoch& epoch : fixes.ranges) shift(epoch.t, missing(week_of_fixes), config.gnss.clock_offset_s);
   for (StateRow& row : truth.rows) shift(row.t, missing(week_of_truth), 0.0);
   for (OdometerSample& sample : odometer.samples) shift(sample.t, missing(odometer.has_week), 0.0);
   out.fixes = std::move(fixes.fixes);
   out.fixes_came = std::move(fixes.came);
+  out.ranges = std::move(fixes.ranges);
   out.odometer = std::move(odometer.samples);
   if (!files.truth.empty()) {
     CANYON_TRY(out.truth, truth_from(files.truth, truth, config));

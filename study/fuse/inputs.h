@@ -33,6 +33,7 @@ struct FuseInputs {
   std::vector<GnssFix> fixes;  ///< in order of time; of one time in that of the file
   /// The same index: when each came, which is the latest time that stands before it in its file.
   std::vector<GpsTime> fixes_came;
+  std::vector<GnssEpoch> ranges;  ///< in order of time; of RINEX observations and recorded runs alone
   std::vector<OdometerSample> odometer;
   std::vector<BarometerSample> barometer;        ///< of recorded runs alone, as the next
   std::vector<MagnetometerSample> magnetometer;  ///< axes of U

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
@@ -171,6 +172,42 @@ Result<std::vector<GnssFix>> read_fixes(const std::string& path, GpsTime start, 
   return out;
 }
 
+/// "G05"; nothing of what is no satellite.
+std::optional<SatelliteId> satellite_of(std::string_view name) {
+  for (const GnssSystem system : {GnssSystem::kGps, GnssSystem::kGlonass, GnssSystem::kGalileo, GnssSystem::kBeidou,
+                                  GnssSystem::kQzss, GnssSystem::kSbas}) {
+    if (name.size() != 3 || name[0] != system_letter(system)) continue;
+    if (name[1] < '0' || name[1] > '9' || name[2] < '0' || name[2] > '9') continue;
+    return SatelliteId{system, static_cast<std::uint8_t>(10 * (name[1] - '0') + (name[2] - '0'))};
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<GnssEpoch>> read_ranges(const std::string& path, GpsTime start) {
+  std::vector<GnssEpoch> out;
+  if (!std::filesystem::exists(path)) return out;
+  CANYON_TRY(auto rows, LogRows::open(path, {"t_ns", "offered", "satellite", "corrected_m", "rate_m_s", "sigma_m",
+                                             "cn0_dbhz", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"}));
+  while (true) {
+    CANYON_TRY(const bool more, rows.next());
+    if (!more) return out;
+    CANYON_TRY(const GpsTime t, rows.time(0, start));
+    if (rows.text(1) == "0") continue;
+    const auto sv = satellite_of(rows.text(2));
+    if (!sv) return rows.error("no satellite");
+    GnssObservation o;
+    o.sv = *sv;
+    CANYON_TRY(o.pseudorange_m, rows.number(3));  // the corrections are in it
+    CANYON_TRY(o.rate_m_s, rows.number(4));
+    CANYON_TRY(o.sigma_m, rows.number(5));
+    CANYON_TRY(o.cn0_dbhz, rows.number(6));
+    CANYON_TRY(o.p_E, rows.three(7));
+    CANYON_TRY(o.v_E, rows.three(10));
+    if (out.empty() || out.back().t != t) out.push_back({.t = t, .observations = {}});
+    out.back().observations.push_back(o);
+  }
+}
+
 Result<std::vector<OdometerSample>> read_counts(const std::string& path, GpsTime start) {
   std::vector<OdometerSample> out;
   if (!std::filesystem::exists(path)) return out;
@@ -314,6 +351,7 @@ Result<RecordedRun> read_recorded_run(const std::string& directory, const std::s
   std::size_t withheld = 0;
   CANYON_TRY(out.inputs.fixes, read_fixes(out.inputs.gnss_path, start, withheld));
   if (withheld > 0) out.inputs.diagnoses["fixes_marked_withheld"] = withheld;
+  CANYON_TRY(out.inputs.ranges, read_ranges(stem + "_ranges.csv", start));
   CANYON_TRY(out.inputs.odometer, read_counts(out.inputs.odometer_path, start));
   CANYON_TRY(out.inputs.barometer, read_pressures(stem + "_barometer.csv", start));
   CANYON_TRY(out.inputs.magnetometer, read_fields(stem + "_magnetometer.csv", start));

@@ -17,7 +17,7 @@ constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to s
 
 /// What waits for its time. Of one time the order of `kind` holds.
 struct Message {
-  enum Kind { kOdometer, kBarometer, kMagnetometer, kFix, kEpoch };
+  enum Kind { kOdometer, kBarometer, kMagnetometer, kFix, kRanges, kEpoch };
   GpsTime came;
   Kind kind;
   std::size_t index;
@@ -33,6 +33,7 @@ std::vector<Message> messages_of(const FuseInputs& in, const FusePlan& plan) {
   add(in.magnetometer, Message::kMagnetometer);
   for (std::size_t i = 0; i < in.fixes.size(); ++i)
     out.push_back({in.fixes_came.empty() ? in.fixes[i].t : in.fixes_came[i], Message::kFix, i});
+  if (fusion::measures_with(plan.filter, "ranges")) add(in.ranges, Message::kRanges);
   for (std::size_t i = 0; i < plan.epochs.size(); ++i) out.push_back({plan.epochs[i], Message::kEpoch, i});
   std::stable_sort(out.begin(), out.end(), [](const Message& a, const Message& b) {
     return a.came != b.came ? a.came < b.came : a.kind < b.kind;
@@ -74,6 +75,7 @@ class Run {
   void take(ImuSample sample, GpsTime due);
   void give(const Message& message);
   void give(const GnssFix& fix);
+  void give(const GnssEpoch& epoch);
   void keep(const fusion::ErrorStateFilter& filter);
   void note(const fusion::UpdateReport& report);
   void settle(const fusion::ErrorStateFilter& filter);
@@ -158,6 +160,10 @@ void Run::give(const GnssFix& fix) {
   if (plan_.keep_segments) out_.segments.back().fixes.push_back(fix);
 }
 
+void Run::give(const GnssEpoch& epoch) {
+  if (!outages_.withholds(epoch.t)) timeline_->add(fusion::AidingMessage(epoch));
+}
+
 void Run::give(const Message& message) {
   const auto add = [this](const auto& sample) { timeline_->add(fusion::AidingMessage(sample)); };
   switch (message.kind) {
@@ -169,6 +175,8 @@ void Run::give(const Message& message) {
       return add(in_.magnetometer[message.index]);
     case Message::kFix:
       return give(in_.fixes[message.index]);
+    case Message::kRanges:
+      return give(in_.ranges[message.index]);
     case Message::kEpoch:
       return timeline_->look(plan_.epochs[message.index]);
   }

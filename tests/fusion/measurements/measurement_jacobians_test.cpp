@@ -119,6 +119,7 @@ AidingMessage epoch() {
   o.v_E = kFrame.R_EW() * Eigen::Vector3d(2000.0, -1500.0, 700.0);
   o.pseudorange_m = 2.24e7;
   o.sigma_m = 2.0;
+  o.cn0_dbhz = 37.0;
   o.rate_m_s = 100.0;
   return GnssEpoch{.t = kNow + 0.02, .observations = {o}};
 }

@@ -116,6 +116,19 @@ TEST(FuseReplay, WithBarometerAndMagnetometer) {
   expect_same(drive);
 }
 
+// Without a fix, satellite by satellite; where other fixes come between samples as well.
+TEST(FuseReplay, OfRanges) {
+  expect_same("naive", R"(states = ["biases", "receiver_clock", "range_errors"]
+measurements = ["ranges"]
+acceptance = "student_t"
+[imu]
+rate_hz = 90.0
+[gnss]
+rate_hz = 3.0
+[run]
+)");
+}
+
 // Fixes, counts and epochs that fall between samples divide them, as in the run.
 TEST(FuseReplay, WhereFixesAndEpochsDivideSamples) {
   expect_same(RecordedDrive(

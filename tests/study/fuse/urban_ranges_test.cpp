@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canyon/core/config/config.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/timeline/filter_timeline.h"
 #include "canyon/gnss/single_point/recorded_data.h"
@@ -66,8 +67,14 @@ ImuNoise car() {
   return n;
 }
 
-Errors filtered(const gnss::SinglePointResult& solved, const std::vector<TruePoint>& truth, const std::string& keys) {
-  const auto first = std::find_if(solved.epochs.begin(), solved.epochs.end(),
+/// Epochs of the same observations: solved each by itself, and by the receiver's own Kalman filter, which corrects the
+/// ranges of those too that have no position of their own.
+struct Solved {
+  gnss::SinglePointResult alone, kalman;
+};
+
+Errors filtered(const Solved& solved, const std::vector<TruePoint>& truth, const std::string& keys) {
+  const auto first = std::find_if(solved.alone.epochs.begin(), solved.alone.epochs.end(),
                                   [](const auto& e) { return e.fix.status != FixStatus::kNone; });
   const LocalFrame frame(geodetic_from_ecef(first->fix.p_A_E));
   fusion::ErrorStateFilter filter(
@@ -79,26 +86,41 @@ Errors filtered(const gnss::SinglePointResult& solved, const std::vector<TruePoi
   fusion::FilterTimeline timeline(filter, {});
   std::vector<double> off_m;
   auto at = truth.begin();
+  const auto note = [&](const TruePoint& point) {
+    off_m.push_back(horizontal_m(timeline.filter().nav_state().p_EU_E, point.p_E));
+  };
   for (; at != truth.end() && first->fix.t - at->t > 0.05; ++at) off_m.push_back(kNaN);
-  for (auto epoch = first; epoch != solved.epochs.end(); ++epoch) {
-    const GpsTime t = epoch->fix.t;
+  for (auto i = static_cast<std::size_t>(first - solved.alone.epochs.begin()); i < solved.kalman.epochs.size(); ++i) {
+    const auto& epoch = solved.kalman.epochs[i];
+    const GpsTime t = epoch.fix.t;
     for (; at != truth.end() && t - at->t > 0.05; ++at) {
       timeline.coast(at->t);
-      off_m.push_back(horizontal_m(timeline.filter().nav_state().p_EU_E, at->p_E));
+      note(*at);
     }
     timeline.coast(t);
-    timeline.add(fusion::AidingMessage(epoch->epoch));
-    timeline.add(fusion::AidingMessage(epoch->fix));
-    for (; at != truth.end() && std::abs(at->t - t) <= 0.05; ++at)
-      off_m.push_back(horizontal_m(timeline.filter().nav_state().p_EU_E, at->p_E));
+    timeline.add(fusion::AidingMessage(epoch.epoch));
+    timeline.add(fusion::AidingMessage(solved.alone.epochs[i].fix));
+    for (; at != truth.end() && std::abs(at->t - t) <= 0.05; ++at) note(*at);
   }
   for (; at != truth.end(); ++at) off_m.push_back(kNaN);
   return errors_of(off_m);
 }
 
-/// What 12 m (median) and 40 m (95 %) are asked of. Missed: reflections last, and with 1-sigmas as the receiver assumes
-/// them, a metre or three, epoch after epoch, the filter is sure to 0.3 m of where the first epochs have put it; rows
-/// of `acceptance` that take innovations for outliers then hold on to that.
+Errors of_fixes(const gnss::SinglePointResult& solved, const std::vector<TruePoint>& truth) {
+  std::vector<double> off_m;
+  for (const TruePoint& point : truth) {
+    double off = kNaN;
+    for (const auto& e : solved.epochs)
+      if (std::abs(e.fix.t - point.t) < 0.05 && e.fix.status != FixStatus::kNone)
+        off = horizontal_m(e.fix.p_A_E, point.p_E);
+    off_m.push_back(off);
+  }
+  return errors_of(off_m);
+}
+
+/// What 12 m (median) and 40 m (95 %) are asked of. The median is missed: the lasting errors' sizes are those of
+/// simulated streets (range_errors.h), fixed before this drive was looked at, and the echoes of Potsdamer Platz are
+/// later: 33 m in the median where streets of the built-in kind give 11 m (docs/fusion.md).
 TEST(UrbanRanges, EveryInstantHasAPositionInBerlin) {
   CANYON_REAL_DATA(observations, "gnss/urban_berlin/Berlin_Potsdamer_Platz.obs.gz");
   CANYON_REAL_DATA(gps, "gnss/urban_berlin/brdc1580.16n");
@@ -111,33 +133,44 @@ TEST(UrbanRanges, EveryInstantHasAPositionInBerlin) {
   const auto data = gnss::read_recorded_data(
       {.observations = observations, .navigation = {gps, glonass}, .sp3 = {}, .antex = {}, .ionex = {}}, config);
   ASSERT_TRUE(data.ok()) << data.error().str();
-  const auto solved = gnss::solve_observations(data->observations, data->inputs(), config);
-  ASSERT_TRUE(solved.ok()) << solved.error().str();
-
-  std::vector<double> single;
-  for (const TruePoint& point : truth) {
-    double off = kNaN;
-    for (const auto& e : solved->epochs)
-      if (std::abs(e.fix.t - point.t) < 0.05 && e.fix.status != FixStatus::kNone)
-        off = horizontal_m(e.fix.p_A_E, point.p_E);
-    single.push_back(off);
-  }
-  const auto print = [&](const char* what, const Errors& e) {
-    std::printf("%-40s median %.1f m, 95 %% %.1f m, %d of %zu missing\n", what, e.median_m, e.p95_m, e.missing,
-                truth.size());
+  const auto solve = [&](const char* estimator) {
+    gnss::SinglePointConfig c = config;
+    const auto node = ConfigNode::parse(std::string("estimator = \"") + estimator + "\"", "test");
+    EXPECT_TRUE(read_config(&*node, "", c).ok());
+    return gnss::solve_observations(data->observations, data->inputs(), c);
   };
-  const Errors alone = errors_of(single);
-  print("single point", alone);
-  const std::string tight = "states = [\"receiver_clock\"]\nmeasurements = [\"ranges\"]\n";
-  for (const char* acceptance : {"huber", "student_t", "innovation_adaptive"})
-    print(acceptance, filtered(*solved, truth, tight + "acceptance = \"" + acceptance + "\""));
-  print("loosely", filtered(*solved, truth,
-                            "measurements = [\"position\"]\nstates = [\"fix_error\"]\nacceptance = \"student_t\""));
-  const Errors all = filtered(*solved, truth, tight + "acceptance = \"accept_all\"");
-  print("accept_all", all);
-  EXPECT_GT(alone.missing, 0);
-  EXPECT_EQ(all.missing, 0);
-  EXPECT_LT(all.p95_m, alone.p95_m);
+  const auto alone = solve("least_squares"), kalman = solve("kalman");
+  ASSERT_TRUE(alone.ok()) << alone.error().str();
+  ASSERT_TRUE(kalman.ok()) << kalman.error().str();
+  const Solved solved{*alone, *kalman};
+
+  const auto print = [&](const char* what, const Errors& e) {
+    std::printf("%-44s median %.1f m, 95 %% %.1f m, %d of %zu missing\n", what, e.median_m, e.p95_m, e.missing,
+                truth.size());
+    return e;
+  };
+  const Errors single = print("single point", of_fixes(solved.alone, truth));
+  const Errors receiver = print("receiver's own Kalman filter", of_fixes(solved.kalman, truth));
+  const auto with = [&](const char* what, const std::string& keys) {
+    return print(what, filtered(solved, truth, keys));
+  };
+  const Errors loose =
+      with("loosely", "measurements = [\"position\"]\nstates = [\"fix_error\"]\nacceptance = \"student_t\"");
+  const std::string ranges = "measurements = [\"ranges\"]\nacceptance = ",
+                    clock = "states = [\"receiver_clock\"]\n" + ranges,
+                    lasting = "states = [\"receiver_clock\", \"range_errors\"]\n" + ranges;
+  const Errors as_white = with("ranges, errors as white, accept_all", clock + "\"accept_all\"");
+  with("ranges, errors as white, student_t", clock + "\"student_t\"");
+  with("ranges, errors that last, accept_all", lasting + "\"accept_all\"");
+  with("ranges, errors that last, gate of 3 sigma", lasting + "\"gate\"\ngate_sigma = 3.0");
+  const Errors tight = with("ranges, errors that last, student_t", lasting + "\"student_t\"");
+  EXPECT_GT(single.missing, 0);
+  EXPECT_EQ(tight.missing, 0);
+  EXPECT_LT(tight.p95_m, 40.0);
+  for (const Errors& other : {single, receiver, loose, as_white}) {
+    EXPECT_LT(tight.median_m, other.median_m);
+    EXPECT_LT(tight.p95_m, other.p95_m);
+  }
 }
 
 }  // namespace
