@@ -188,7 +188,7 @@ Trouble FilterTimeline::judge(const AidingMessage& message) {
   return frozen ? Trouble::kFrozen : Trouble::kNone;
 }
 
-Trouble FilterTimeline::add(const AidingMessage& message) {
+Trouble FilterTimeline::add(const AidingMessage& message, GpsTime t) {
   const auto* fix = std::get_if<GnssFix>(&message);
   if (fix != nullptr && fix->status == FixStatus::kNone) return Trouble::kNone;
   const auto told = [&](Trouble trouble) {
@@ -196,7 +196,6 @@ Trouble FilterTimeline::add(const AidingMessage& message) {
     return trouble;
   };
   if (const Trouble trouble = judge(message); trouble != Trouble::kNone) return told(trouble);
-  const GpsTime t = due(message);
   std::int64_t at = end();
   while (at > first_ && event(at - 1).t > t) --at;
   if (at < next_ || at_ - t > config_.same_instant_s) {

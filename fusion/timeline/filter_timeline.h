@@ -43,7 +43,9 @@ class FilterTimeline {
   /// Takes it in, and says what was wrong with it. The time of the filter is that of the last sample.
   Trouble add(const ImuSample& sample) { return add(sample, sample.t); }
   Trouble add(const ImuSample& sample, GpsTime at);
-  Trouble add(const AidingMessage& message);
+  Trouble add(const AidingMessage& message) { return add(message, due(message)); }
+  /// One that is due at another time than its stamp says, which is by the clock of its receiver.
+  Trouble add(const AidingMessage& message, GpsTime due);
   /// Calls on_look once all before t, and what came of t, has been taken in: a sample that holds t is divided there.
   void look(GpsTime t);
   /// Goes on to t without an IMU: nothing turns and nothing pushes, as unsure as the IMU's noise that the filter was

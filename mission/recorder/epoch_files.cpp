@@ -186,11 +186,12 @@ void write_fix(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
 }
 
 const char* const kRangeColumns =
-    "t_ns,offered,satellite,corrected_m,rate_m_s,sigma_m,cn0_dbhz,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s";
+    "t_ns,offered,received_ns,satellite,corrected_m,rate_m_s,sigma_m,cn0_dbhz,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s";
 
 void write_ranges(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
   for (const GnssObservation& o : row.epoch.observations) {
-    csv.integer(row.epoch.t.ns - run.start.ns).integer(row.withheld ? 0 : 1).word(o.sv.str());
+    csv.integer(row.fix.t.ns - run.start.ns).integer(row.withheld ? 0 : 1).integer(row.epoch.t.ns - run.start.ns);
+    csv.word(o.sv.str());
     csv.exact(o.corrected_m()).exact(o.rate_m_s).exact(o.sigma_m).exact(o.cn0_dbhz);
     for (const Eigen::Vector3d* of_satellite : {&o.p_E, &o.v_E})
       for (const double value : *of_satellite) csv.exact(value);

@@ -193,7 +193,7 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
   for (OdometerSample& sample : odometer.samples) shift(sample.t, missing(odometer.has_week), 0.0);
   out.fixes = std::move(fixes.fixes);
   out.fixes_came = std::move(fixes.came);
-  out.ranges = std::move(fixes.ranges);
+  for (GnssEpoch& epoch : fixes.ranges) out.ranges.push_back({epoch.t, std::move(epoch)});
   out.odometer = std::move(odometer.samples);
   if (!files.truth.empty()) {
     CANYON_TRY(out.truth, truth_from(files.truth, truth, config));

@@ -27,13 +27,19 @@ struct FuseTruth {
   TruthPoint of = TruthPoint::kImu;
 };
 
+/// The ranges of an epoch, and when they come; the epoch's own time is by the receiver's clock.
+struct DueRanges {
+  GpsTime due;
+  GnssEpoch epoch;
+};
+
 /// Everything that a filter is run on, and what was wrong with it.
 struct FuseInputs {
   ImuRecording imu;            ///< axes of B
   std::vector<GnssFix> fixes;  ///< in order of time; of one time in that of the file
   /// The same index: when each came, which is the latest time that stands before it in its file.
   std::vector<GpsTime> fixes_came;
-  std::vector<GnssEpoch> ranges;  ///< in order of time; of RINEX observations and recorded runs alone
+  std::vector<DueRanges> ranges;  ///< in order of time; of RINEX observations, or of a run that measured with ranges
   std::vector<OdometerSample> odometer;
   std::vector<BarometerSample> barometer;        ///< of recorded runs alone, as the next
   std::vector<MagnetometerSample> magnetometer;  ///< axes of U

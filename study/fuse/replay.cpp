@@ -183,28 +183,30 @@ std::optional<SatelliteId> satellite_of(std::string_view name) {
   return std::nullopt;
 }
 
-Result<std::vector<GnssEpoch>> read_ranges(const std::string& path, GpsTime start) {
-  std::vector<GnssEpoch> out;
+Result<std::vector<DueRanges>> read_ranges(const std::string& path, GpsTime start) {
+  std::vector<DueRanges> out;
   if (!std::filesystem::exists(path)) return out;
-  CANYON_TRY(auto rows, LogRows::open(path, {"t_ns", "offered", "satellite", "corrected_m", "rate_m_s", "sigma_m",
-                                             "cn0_dbhz", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"}));
+  CANYON_TRY(auto rows,
+             LogRows::open(path, {"t_ns", "offered", "received_ns", "satellite", "corrected_m", "rate_m_s", "sigma_m",
+                                  "cn0_dbhz", "x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"}));
   while (true) {
     CANYON_TRY(const bool more, rows.next());
     if (!more) return out;
     CANYON_TRY(const GpsTime t, rows.time(0, start));
     if (rows.text(1) == "0") continue;
-    const auto sv = satellite_of(rows.text(2));
+    CANYON_TRY(const GpsTime received, rows.time(2, start));
+    const auto sv = satellite_of(rows.text(3));
     if (!sv) return rows.error("no satellite");
     GnssObservation o;
     o.sv = *sv;
-    CANYON_TRY(o.pseudorange_m, rows.number(3));  // the corrections are in it
-    CANYON_TRY(o.rate_m_s, rows.number(4));
-    CANYON_TRY(o.sigma_m, rows.number(5));
-    CANYON_TRY(o.cn0_dbhz, rows.number(6));
-    CANYON_TRY(o.p_E, rows.three(7));
-    CANYON_TRY(o.v_E, rows.three(10));
-    if (out.empty() || out.back().t != t) out.push_back({.t = t, .observations = {}});
-    out.back().observations.push_back(o);
+    CANYON_TRY(o.pseudorange_m, rows.number(4));  // the corrections are in it
+    CANYON_TRY(o.rate_m_s, rows.number(5));
+    CANYON_TRY(o.sigma_m, rows.number(6));
+    CANYON_TRY(o.cn0_dbhz, rows.number(7));
+    CANYON_TRY(o.p_E, rows.three(8));
+    CANYON_TRY(o.v_E, rows.three(11));
+    if (out.empty() || out.back().due != t) out.push_back({.due = t, .epoch = {.t = received, .observations = {}}});
+    out.back().epoch.observations.push_back(o);
   }
 }
 

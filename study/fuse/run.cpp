@@ -33,7 +33,8 @@ std::vector<Message> messages_of(const FuseInputs& in, const FusePlan& plan) {
   add(in.magnetometer, Message::kMagnetometer);
   for (std::size_t i = 0; i < in.fixes.size(); ++i)
     out.push_back({in.fixes_came.empty() ? in.fixes[i].t : in.fixes_came[i], Message::kFix, i});
-  if (fusion::measures_with(plan.filter, "ranges")) add(in.ranges, Message::kRanges);
+  if (fusion::measures_with(plan.filter, "ranges"))
+    for (std::size_t i = 0; i < in.ranges.size(); ++i) out.push_back({in.ranges[i].due, Message::kRanges, i});
   for (std::size_t i = 0; i < plan.epochs.size(); ++i) out.push_back({plan.epochs[i], Message::kEpoch, i});
   std::stable_sort(out.begin(), out.end(), [](const Message& a, const Message& b) {
     return a.came != b.came ? a.came < b.came : a.kind < b.kind;
@@ -75,7 +76,7 @@ class Run {
   void take(ImuSample sample, GpsTime due);
   void give(const Message& message);
   void give(const GnssFix& fix);
-  void give(const GnssEpoch& epoch);
+  void give(const DueRanges& ranges);
   void keep(const fusion::ErrorStateFilter& filter);
   void note(const fusion::UpdateReport& report);
   void settle(const fusion::ErrorStateFilter& filter);
@@ -160,8 +161,8 @@ void Run::give(const GnssFix& fix) {
   if (plan_.keep_segments) out_.segments.back().fixes.push_back(fix);
 }
 
-void Run::give(const GnssEpoch& epoch) {
-  if (!outages_.withholds(epoch.t)) timeline_->add(fusion::AidingMessage(epoch));
+void Run::give(const DueRanges& ranges) {
+  if (!outages_.withholds(ranges.due)) timeline_->add(fusion::AidingMessage(ranges.epoch), ranges.due);
 }
 
 void Run::give(const Message& message) {

@@ -379,7 +379,7 @@ TEST_F(FuseRunTest, InputsThatDoNotFitAreErrors) {
     EXPECT_EQ(error(drive(), ("[fusion]\nmeasurements = [\"" + row + "\"]\n").c_str()),
               "test.toml:2: fusion.measurements: \"" + row +
                   "\", for which canyon fuse has no messages, expected one of \"position\", \"velocity\", "
-                  "\"non_holonomic\", \"standstill\", \"odometer\", \"barometer\", \"magnetometer\"");
+                  "\"non_holonomic\", \"standstill\", \"odometer\", \"barometer\", \"magnetometer\", \"ranges\"");
   EXPECT_EQ(error(drive(), "[fusion]\nmeasurements = [\"relative_pose\"]\nstates = [\"biases\"]\n"),
             "test.toml:2: fusion.measurements: \"relative_pose\" without state \"clone\", expected \"clone\" in "
             "fusion.states");
