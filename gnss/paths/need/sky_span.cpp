@@ -21,14 +21,14 @@ double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 }  // namespace
 
-std::optional<std::size_t> SkySpan::through(const Ball& from, const Ball& at) const {
+std::optional<std::size_t> SkySpan::through(const Ball& from, const Ball& at, std::size_t first) const {
   const Eigen::Vector3d v = at.center_W - from.center_W;
   const double distance_m = v.norm(), reach_m = at.radius_m + from.radius_m;
-  if (directions.empty()) return std::nullopt;
-  if (distance_m <= reach_m) return 0;
+  if (first >= directions.size()) return std::nullopt;
+  if (distance_m <= reach_m) return first;
   const double wide_rad = std::asin(reach_m / distance_m) + spread_rad;
   const double least = wide_rad < kPi ? std::cos(wide_rad) * distance_m : -distance_m;
-  for (std::size_t i = 0; i < directions.size(); ++i)
+  for (std::size_t i = first; i < directions.size(); ++i)
     if (v.dot(directions[i].s_W) >= least) return i;
   return std::nullopt;
 }

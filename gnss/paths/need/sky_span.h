@@ -26,7 +26,9 @@ struct SkySpan {
   /// A direction in which a ray that leaves from somewhere in `from` may pass through `at`, by its index; none: no
   /// satellite of the span is seen through `at`. Errs on the side of "may": a ray from a point of one ball through a
   /// point of the other is turned from the line of their centers, of length D, by asin((r1 + r2) / D) at most.
-  std::optional<std::size_t> through(const Ball& from, const Ball& at) const;
+  std::optional<std::size_t> through(const Ball& from, const Ball& at) const { return through(from, at, 0); }
+  /// The same of the directions from index `first` on.
+  std::optional<std::size_t> through(const Ball& from, const Ball& at, std::size_t first) const;
 };
 
 inline constexpr double kSkyStep_s = 30.0;

@@ -52,6 +52,13 @@ class Field {
     mesh.quad({-d, -d, 0}, {d, -d, 0}, {d, -d, h}, {-d, -d, h}, concrete);
     return *this;
   }
+  /// Upright, from foot to top; seen from where it goes from left to right it faces you.
+  Field& wall(const Eigen::Vector3d& foot, const Eigen::Vector3d& top, const char* material) {
+    scene::MeshBuilder mesh(parts_);
+    mesh.begin_object("wall " + std::to_string(parts_.objects.size()), scene::ObjectKind::kWall);
+    mesh.quad(foot, {top.x(), top.y(), foot.z()}, top, {foot.x(), foot.y(), top.z()}, mesh.material(material));
+    return *this;
+  }
   Field& box(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double height_m) {
     scene::MeshBuilder mesh(parts_);
     mesh.begin_object("house " + std::to_string(parts_.objects.size()), scene::ObjectKind::kBuilding);
@@ -225,6 +232,59 @@ TEST(PathNeeds, ThingsThatMoveBeyondTheGroundCount) {
                                 .heights = heights,
                                 .limits = asked.limits};
     EXPECT_EQ(specular_needs(0, question)[0].verdict, bus ? Verdict::kUndecidable : Verdict::kNotNeeded);
+  }
+}
+
+/// Two walls of 60 m along the corridor, 12 m apart, 25 m high in the north and 9 m in the south.
+Field& street(Field& field, const char* material) {
+  return field.wall({-30, 6, 0}, {30, 6, 25}, material).wall({30, -6, 0}, {-30, -6, 9}, material);
+}
+
+/// A satellite in the south at 17 degrees, hidden by the lower wall, whose wave comes over it to the corridor by way of
+/// the higher wall (at 10.5 m), the lower one (6.8 m) and the higher one again (3.1 m), nearly at right angles to both.
+Asked across_the_street(const char* material, double weakest_db) {
+  Field field;
+  RouteSegment narrow = corridor({0, 0});
+  narrow.points_W = {{0, 0, 0}};
+  narrow.half_width_m = 0.5;
+  Asked asked(street(field, material), narrow);
+  asked.sky.spread_rad = 0.003;
+  asked.sky.directions = {{{}, Eigen::Vector3d(0.05, -std::cos(0.3), std::sin(0.3)).normalized()}};
+  asked.limits.weakest_db = asked.limits.weakest_nlos_db = weakest_db;
+  return asked;
+}
+
+// Off 5.24 as permittivity, three times, no more than -23 dB is left at that incidence, off metal nearly all. Followed
+// down to -40 dB it may act again.
+TEST(PathNeeds, WhatWallsReflectDecidesOfWaysOverThree) {
+  const auto verdict = [](const Asked& asked) { return reflection_need(3, asked.question()); };
+  const Need weak = verdict(across_the_street("roofing", -20.0));
+  EXPECT_EQ(weak.verdict, Verdict::kNotNeeded) << weak.reason;
+  EXPECT_TRUE(weak.reason.starts_with("what walls mirror of a satellite is below -2")) << weak.reason;
+  EXPECT_EQ(weak.bound, 0.0);
+  EXPECT_EQ(verdict(across_the_street("roofing", -40.0)).verdict, Verdict::kUndecidable);
+  const Need metal = verdict(across_the_street("metal", -20.0));
+  EXPECT_EQ(metal.verdict, Verdict::kUndecidable);
+  EXPECT_TRUE(metal.reason.ends_with(" dB at most")) << metal.reason;
+}
+
+// The search itself, over what the bound was taken of: nothing is found there, which off metal is.
+TEST(PathNeeds, WaysOverThreeWallsThatReflectTooLittleAreNotFound) {
+  const RandomStream stream(5, "test.street");
+  for (const char* material : {"roofing", "metal"}) {
+    const Asked asked = across_the_street(material, -20.0);
+    const auto paths = make_specular3(asked.limits);
+    const scene::SceneAt scene(*asked.scene);
+    int over_three = 0;
+    for (std::uint64_t k = 0; k < 50; ++k) {
+      const Eigen::Vector3d antenna(stream.uniform(-0.5, 0.5, 0, k), stream.uniform(-0.5, 0.5, 1, k), 1.2);
+      const std::vector<Eigen::Vector3d> satellites{asked.sky.directions[0].s_W};
+      std::vector<SignalPaths> found(1);
+      GnssCounters counters;
+      paths->trace(antenna, satellites, scene, found, counters);
+      for (const SignalPath& path : found[0].echoes) over_three += path.reflections == 3 ? 1 : 0;
+    }
+    EXPECT_EQ(over_three > 0, material == std::string("metal")) << material;
   }
 }
 
