@@ -8,6 +8,7 @@
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
 #include "canyon/report/tradeoff/ladder_section.h"
+#include "canyon/report/tradeoff/run_charts.h"
 
 namespace canyon::report {
 namespace {
@@ -72,7 +73,8 @@ std::string runs_section(const TradeoffSummary& t) {
   const std::string outcomes = outcome_table(t);
   if (!outcomes.empty())
     words += " And how missions end that each drives by itself, over seeds, against what one costs to its end.";
-  return section("runs", "The mission as a whole", words, error_table(t) + outcomes);
+  return section("runs", "The mission as a whole", words,
+                 legend() + run_error_charts(t) + error_table(t) + run_outcome_chart(t) + outcomes);
 }
 
 std::string choice_section(const TradeoffChoice& c) {
