@@ -48,6 +48,7 @@ CodeTracking::CodeTracking(const CorrelatorDesign& design)
   const double d = design.spacing_chips;
   taps_ = {{0.5 * d, 1.0}, {-0.5 * d, -1.0}};
   if (design.double_delta) taps_.insert(taps_.end(), {{d, -0.5}, {-d, 0.5}});
+  noise_ = noise_shape();
 }
 
 CodeTracking::Composite CodeTracking::composite(std::span<const EchoSignal> signals, std::size_t reference) const {
@@ -219,22 +220,28 @@ std::optional<CodeLock> CodeTracking::track(std::span<const EchoSignal> signals)
   return lock;
 }
 
-double CodeTracking::noise_m(double cn0_dbhz) const {
-  const double cn0_hz = std::pow(10.0, cn0_dbhz / 10.0);
-  const double B = design_.code_loop_hz, T = design_.integration_s;
-  double variance = 0.0, slope = 0.0;
+CodeTracking::NoiseShape CodeTracking::noise_shape() const {
+  NoiseShape shape;
   const auto weight = [&](const Tap& tap) {
     return design_.coherent ? tap.weight : tap.weight * correlation_.at(tap.offset_chips);
   };
   for (const Tap& a : taps_) {
-    slope -= weight(a) * correlation_.slope(a.offset_chips);
-    for (const Tap& b : taps_) variance += weight(a) * weight(b) * correlation_.at(a.offset_chips - b.offset_chips);
+    shape.slope -= weight(a) * correlation_.slope(a.offset_chips);
+    for (const Tap& b : taps_)
+      shape.variance += weight(a) * weight(b) * correlation_.at(a.offset_chips - b.offset_chips);
   }
-  double chips2 = B * (1.0 - 0.5 * B * T) * variance / (cn0_hz * slope * slope);
-  if (!design_.coherent) {
-    const double d = design_.spacing_chips, half = correlation_.at(0.5 * d);
-    chips2 *= 1.0 + (correlation_.at(0.0) + correlation_.at(d)) / (2.0 * T * cn0_hz * half * half);
-  }
+  const double d = design_.spacing_chips;
+  shape.squaring_power = correlation_.at(0.0) + correlation_.at(d);
+  shape.half_peak = correlation_.at(0.5 * d);
+  return shape;
+}
+
+double CodeTracking::noise_m(double cn0_dbhz) const {
+  const double cn0_hz = std::pow(10.0, cn0_dbhz / 10.0);
+  const double B = design_.code_loop_hz, T = design_.integration_s;
+  double chips2 = B * (1.0 - 0.5 * B * T) * noise_.variance / (cn0_hz * noise_.slope * noise_.slope);
+  if (!design_.coherent)
+    chips2 *= 1.0 + noise_.squaring_power / (2.0 * T * cn0_hz * noise_.half_peak * noise_.half_peak);
   return std::sqrt(chips2) * correlation_.chip_m();
 }
 

@@ -102,7 +102,13 @@ class CodeTracking {
     double offset_chips, weight;
   };
   struct Composite;
+  /// What thermal noise depends on beside C/N0: sine integrals of the design alone, in a band-limited front end.
+  struct NoiseShape {
+    double variance = 0.0, slope = 0.0;            ///< u'Ru, and of the discriminator
+    double squaring_power = 0.0, half_peak = 0.0;  ///< R(0) + R(d), R(d/2)
+  };
 
+  NoiseShape noise_shape() const;
   Composite composite(std::span<const EchoSignal> signals, std::size_t reference) const;
   double discriminator(const Composite& c, double t_chips) const;
   void scan_points(const Composite& c, std::vector<double>& points) const;
@@ -112,6 +118,7 @@ class CodeTracking {
   CorrelatorDesign design_;
   CodeCorrelation correlation_;
   std::vector<Tap> taps_;
+  NoiseShape noise_;
 };
 
 }  // namespace canyon::gnss
