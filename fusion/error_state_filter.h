@@ -72,6 +72,10 @@ class ErrorStateFilter {
   /// What all measurements but the position of a fix have done in and since the last predict().
   const std::vector<UpdateReport>& reports() const { return reports_; }
 
+  /// From now on its integrator leaves these out (fusion/strapdown/strapdown_omissions.h); throws as it does. The
+  /// covariance keeps them, so that gains depend on them through the estimate alone.
+  void leave_out(const StrapdownOmissions& omissions) { strapdown_->leave_out(omissions); }
+
   /// From now on tells this of all that it does; null: nobody. It must outlive this. Call after initialize().
   void watch(FilterObserver* observer);
   /// d (B's origin, in E) / d [theta, p, v], m per rad, 1, s.

@@ -13,6 +13,7 @@
 #include "canyon/core/earth/gravity.h"
 #include "canyon/core/time.h"
 #include "canyon/fusion/copied.h"
+#include "canyon/fusion/strapdown/strapdown_omissions.h"
 
 namespace canyon::fusion {
 
@@ -52,6 +53,8 @@ class Strapdown {
   virtual void reset() = 0;
   /// Moves `state` (its time too) over one interval and returns what was integrated, for linearization.
   virtual InertialStep advance(NavState& state, const Increments& increments) = 0;
+  /// From now on without these; throws for a row that has no such effect.
+  virtual void leave_out(const StrapdownOmissions& omissions) = 0;
 };
 
 /// One row of the table of integrators. The orders are those of the global error in the interval, for smooth motion
@@ -59,6 +62,8 @@ class Strapdown {
 struct StrapdownModel {
   std::unique_ptr<Strapdown> (*make)(GravityFunction gravity);
   int velocity_order, attitude_order;  ///< the row's `order` is that of position, the lowest
+  /// What it can leave out (fusion/strapdown/strapdown_omissions.h); null: it does not say, and leaves out nothing.
+  std::span<const StrapdownEffect> (*effects)() = nullptr;
 };
 using StrapdownRow = ModelRow<StrapdownModel>;
 

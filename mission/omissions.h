@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "canyon/core/motion/route_segment.h"
+#include "canyon/fusion/strapdown/strapdown_omissions.h"
 #include "canyon/gnss/paths/path_omissions.h"
 #include "canyon/gnss/receiver/modes/delay_omissions.h"
 #include "canyon/lidar/clearance.h"
@@ -28,6 +29,9 @@ struct Omissions {
   bool autonomy = false;      ///< it is neither shown nor asked anything; only on a tape
   bool unkept_rays = false;   ///< those whose returns the autonomy would drop; only where it alone takes scans
 
+  // Because it acts by less than is asked for.
+  fusion::StrapdownOmissions strapdown;  ///< of the filter's integrator
+
   // Because it cannot act there.
   std::vector<PlannedPlace> corridor;                                 ///< empty: nothing is known of places
   double corridor_until_s = std::numeric_limits<double>::infinity();  ///< after the start; the sky moves on
@@ -35,8 +39,11 @@ struct Omissions {
   // Because it acts by less than is asked for, or cancels.
   gnss::RangeOmissions ranges;
 
+  /// Whether any of it moves an estimate.
+  bool moves() const { return ranges.bound_m > 0.0 || strapdown.any(); }
   bool any() const {
-    return registration || maps || keyframes || autonomy || unkept_rays || !corridor.empty() || ranges.any();
+    return registration || maps || keyframes || autonomy || unkept_rays || !corridor.empty() || ranges.any() ||
+           strapdown.any();
   }
 };
 

@@ -24,6 +24,14 @@ Schedule::Rates rates_of(const MissionConfig& config) {
           config.run.epoch_rate_hz};
 }
 
+fusion::ErrorStateFilter filter_of(const MissionConfig& config, const PreparedMission& mission, const ImuNoise& noise,
+                                   const Omissions& omissions) {
+  fusion::ErrorStateFilter filter(config.fusion, noise, mission.scene->frame(), config.imu.lever_arm_m,
+                                  config.gnss.lever_arm_m);
+  filter.leave_out(omissions.strapdown);
+  return filter;
+}
+
 }  // namespace
 
 MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock)
@@ -39,9 +47,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       imu_(std::move(parts.imu)),
       aiding_(aiding_sensors(config), config, *mission.scene, imu_->R_BU(), mission.start),
       scanner_(std::move(parts.scanner)),
-      localizer_(
-          {config.fusion, parts.imu_noise, mission.scene->frame(), config.imu.lever_arm_m, config.gnss.lever_arm_m},
-          mission.start, boundaries_, clock),
+      localizer_(filter_of(config, mission, parts.imu_noise, parts.omissions), mission.start, boundaries_, clock),
       mapper_(config.registration, std::move(parts.registration), lidar::sensor_in_body(config.lidar)),
       omissions_(std::move(parts.omissions)),
       corridor_(omissions_.corridor, omissions_.corridor_until_s),

@@ -5,7 +5,6 @@
 namespace canyon::fusion {
 
 NavEstimate estimate_of(const SmoothedState& state, const LocalFrame& frame, const Eigen::Vector3d& lever_U_B) {
-  using Index = ErrorIndex;
   const NavState& nav = state.nav;
   const Eigen::Matrix3d R_WE = frame.R_EW().transpose();
   const Eigen::Matrix3d R_EB = nav.R_EU.toRotationMatrix();  // axes of U are parallel to B
@@ -25,7 +24,7 @@ NavEstimate estimate_of(const SmoothedState& state, const LocalFrame& frame, con
   out.pose_covariance = J * state.covariance.topLeftCorner<6, 6>() * J.transpose();
   Eigen::Matrix<double, 3, 9> H = Eigen::Matrix<double, 3, 9>::Zero();
   H.leftCols<3>() = R_WE * R_EB * skew(swing_U);
-  H.middleCols<3>(Index::kVelocity) = R_WE;
+  H.middleCols<3>(ErrorIndex::kVelocity) = R_WE;
   out.velocity_covariance_W = H * state.covariance * H.transpose();
   return out;
 }

@@ -21,8 +21,12 @@ class ConstantRate final : public Copied<Strapdown, ConstantRate> {
     const InertialStep step{.rotation_U = now.dtheta_U,
                             .dv_start_U = now.dv_U + k.velocity * turned + k.square * twice};
     const Eigen::Vector3d displacement = now.dt_s * (0.5 * now.dv_U + k.square * turned + k.fourth * twice);
-    move(state, step, now.dt_s, gravity_, displacement - 0.5 * now.dt_s * step.dv_start_U);
+    move(state, step, now.dt_s, gravity_, earth_turns_, displacement - 0.5 * now.dt_s * step.dv_start_U);
     return step;
+  }
+  void leave_out(const StrapdownOmissions& omissions) override {
+    check_has_no_coning(omissions);
+    earth_turns_ = !omissions.earth_rate;
   }
 
  private:
@@ -43,6 +47,7 @@ class ConstantRate final : public Copied<Strapdown, ConstantRate> {
     }
   };
   GravityFunction gravity_;
+  bool earth_turns_ = true;
 };
 
 }  // namespace

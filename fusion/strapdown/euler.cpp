@@ -11,12 +11,17 @@ class Euler final : public Copied<Strapdown, Euler> {
   void reset() override {}
   InertialStep advance(NavState& state, const Increments& now) override {
     const InertialStep step{.rotation_U = now.dtheta_U, .dv_start_U = now.dv_U};
-    move(state, step, now.dt_s, gravity_);
+    move(state, step, now.dt_s, gravity_, earth_turns_);
     return step;
+  }
+  void leave_out(const StrapdownOmissions& omissions) override {
+    check_has_no_coning(omissions);
+    earth_turns_ = !omissions.earth_rate;
   }
 
  private:
   GravityFunction gravity_;
+  bool earth_turns_ = true;
 };
 
 }  // namespace

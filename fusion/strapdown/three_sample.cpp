@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "canyon/core/check.h"
 #include "canyon/core/earth/earth.h"
 #include "canyon/core/motion/rotation.h"
 #include "canyon/fusion/strapdown/models.h"
@@ -53,6 +54,9 @@ class ThreeSample final : public Copied<Strapdown, ThreeSample> {
  public:
   explicit ThreeSample(GravityFunction gravity) : gravity_(gravity) {}
   void reset() override { known_ = 0; }
+  void leave_out(const StrapdownOmissions& omissions) override {
+    CANYON_CHECK(!omissions.any(), "three_sample does not say what it can leave out");
+  }
 
   InertialStep advance(NavState& state, const Increments& now) override {
     const double h = now.dt_s;

@@ -91,8 +91,7 @@ Result<Plan> make_plan(const mission::MissionConfig& config, const mission::Prep
   const auto keeps_all = [](const mission::PlannedPlace& place) {
     return place.paths == gnss::PathOmissions{} && place.around.clear_m <= 0.0;
   };
-  if (plan.omissions.ranges.bound_m <= 0.0 &&
-      std::all_of(plan.omissions.corridor.begin(), plan.omissions.corridor.end(), keeps_all))
+  if (!plan.omissions.moves() && std::all_of(plan.omissions.corridor.begin(), plan.omissions.corridor.end(), keeps_all))
     plan.omissions.corridor.clear();
   for (PlannedEffect& effect : by_effect(pieces)) plan.effects.push_back(std::move(effect));
   return plan;

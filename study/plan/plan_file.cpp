@@ -15,7 +15,7 @@ namespace canyon::study {
 
 namespace {
 
-constexpr const char *kKind = "canyon-plan-3", *kAnyKind = "canyon-plan-";
+constexpr const char *kKind = "canyon-plan-4", *kAnyKind = "canyon-plan-";
 
 /// Of all that a plan depends on but the scene's own geometry: the keys, and what stands in the files that they name.
 std::string mission_hash(const mission::MissionConfig& config, const mission::PreparedMission& mission) {
@@ -88,12 +88,13 @@ gnss::RangeOmissions ranges_of(const nlohmann::json& json) {
 bool sound(const Plan& plan) {
   const gnss::RangeOmissions& ranges = plan.omissions.ranges;
   if (!(ranges.bound_m >= 0.0) || !(ranges.most_gain >= 0.0)) return false;
-  if (ranges.bound_m > 0.0 && (plan.tolerances.empty() || !std::isfinite(ranges.most_gain))) return false;
+  if (ranges.bound_m > 0.0 && !std::isfinite(ranges.most_gain)) return false;
+  if (plan.omissions.moves() && plan.tolerances.empty()) return false;
   for (const auto& [figure, tolerance] : plan.tolerances) {
     const auto bound = plan.figure_bounds.find(figure);
     if (!(tolerance > 0.0) || (bound != plan.figure_bounds.end() && !(bound->second <= tolerance))) return false;
   }
-  if (ranges.bound_m > 0.0 && (plan.outputs != std::vector<Output>{Output::kPosition} || plan.tape_hash.empty()))
+  if (plan.omissions.moves() && (plan.outputs != std::vector<Output>{Output::kPosition} || plan.tape_hash.empty()))
     return false;
   return check_reached(plan.tolerances, "").ok() && plan.epoch_t_s.size() == plan.epoch_bound_m.size();
 }
@@ -122,6 +123,8 @@ bool fill(const nlohmann::json& json, Plan& plan) {
   plan.omissions.corridor_until_s = out.at("corridor_until_s");
   for (const auto& place : out.at("corridor")) plan.omissions.corridor.push_back(place_of(place));
   plan.omissions.ranges = ranges_of(out.at("ranges"));
+  plan.omissions.strapdown = {.coning = out.at("strapdown").at("coning"),
+                              .earth_rate = out.at("strapdown").at("earth_rate")};
   for (const auto& asked : json.at("tolerances")) {
     const std::string figure = asked.at("figure");
     plan.tolerances[figure] = asked.at("tolerance");
@@ -236,26 +239,29 @@ std::string plan_text(const Plan& plan, const mission::MissionConfig& config, co
   Json outputs = Json::array(), corridor = Json::array();
   for (const Output output : plan.outputs) outputs.push_back(name(output));
   for (const mission::PlannedPlace& place : plan.omissions.corridor) corridor.push_back(place_json(place));
-  const Json json{{"kind", kKind},
-                  {"version", kVersion},
-                  {"mission", plan.mission},
-                  {"fidelity", plan.fidelity},
-                  {"mission_hash", mission_hash(config, mission)},
-                  {"scene_hash", mission.scene->hash()},
-                  {"outputs", outputs},
-                  {"half_width_m", plan.half_width_m},
-                  {"tolerances", tolerances_json(plan)},
-                  {"position_bounds", position_bounds_json(plan)},
-                  {"effects", effects_json(plan)},
-                  {"leave_out",
-                   {{"registration", plan.omissions.registration},
-                    {"maps", plan.omissions.maps},
-                    {"keyframes", plan.omissions.keyframes},
-                    {"autonomy", plan.omissions.autonomy},
-                    {"unkept_rays", plan.omissions.unkept_rays},
-                    {"ranges", ranges_json(plan.omissions.ranges)},
-                    {"corridor_until_s", plan.omissions.corridor_until_s},
-                    {"corridor", corridor}}}};
+  const Json json{
+      {"kind", kKind},
+      {"version", kVersion},
+      {"mission", plan.mission},
+      {"fidelity", plan.fidelity},
+      {"mission_hash", mission_hash(config, mission)},
+      {"scene_hash", mission.scene->hash()},
+      {"outputs", outputs},
+      {"half_width_m", plan.half_width_m},
+      {"tolerances", tolerances_json(plan)},
+      {"position_bounds", position_bounds_json(plan)},
+      {"effects", effects_json(plan)},
+      {"leave_out",
+       {{"registration", plan.omissions.registration},
+        {"maps", plan.omissions.maps},
+        {"keyframes", plan.omissions.keyframes},
+        {"autonomy", plan.omissions.autonomy},
+        {"unkept_rays", plan.omissions.unkept_rays},
+        {"ranges", ranges_json(plan.omissions.ranges)},
+        {"strapdown",
+         {{"coning", plan.omissions.strapdown.coning}, {"earth_rate", plan.omissions.strapdown.earth_rate}}},
+        {"corridor_until_s", plan.omissions.corridor_until_s},
+        {"corridor", corridor}}}};
   return json_text(json, 1) + "\n";
 }
 
@@ -282,7 +288,7 @@ Result<Plan> read_plan(const std::string& path, const mission::MissionConfig& co
   if (!sound(plan) || !std::all_of(corridor.begin(), corridor.end(), sound_place) ||
       !mission::can_leave_out(config, plan.omissions))
     return no_plan;
-  if (plan.omissions.ranges.bound_m > 0.0) CANYON_TRY_STATUS(check_tape_of(plan, path, tape));
+  if (plan.omissions.moves()) CANYON_TRY_STATUS(check_tape_of(plan, path, tape));
   if (plan.omissions.autonomy && tape == nullptr)
     return Error{.file = path,
                  .what = "is a plan for an open loop, in which nobody drives",

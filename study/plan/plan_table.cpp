@@ -63,7 +63,7 @@ void add_rows(const Plan& plan, Verdict verdict, const char* title, std::string&
   for (const Row& row : found) {
     const std::string saved = !left_out ? "" : !row.measured ? "-" : table_text("%.2f s", row.saved_s);
     out += table_text("  %-28s %-14s %9s  ", row.effect.c_str(), row.where.c_str(), saved.c_str());
-    if (with_effect) out += table_text("a range by %.2g %s at most: ", row.bound, row.unit.c_str());
+    if (with_effect && row.unit == "m") out += table_text("a range by %.2g m at most: ", row.bound);
     out += row.reason + "\n";
   }
   out += "\n";
@@ -128,8 +128,9 @@ std::string verification_table(const Verification& verification) {
             .c_str());
   if (verification.effects.empty()) out += "  nothing is left out\n";
   if (std::isfinite(verification.tightness()))
-    out += table_text("Tightness, the median of bound / largest difference: %.1f of ranges, %.1f of positions\n",
-                      verification.tightness(), verification.position_tightness());
+    out +=
+        table_text("Tightness, the median of bound / largest difference: %.1f in their own units, %.1f of positions\n",
+                   verification.tightness(), verification.position_tightness());
   return out;
 }
 

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
 
 #include "canyon/core/process/cpu_time.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/fusion/strapdown.h"
 #include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/mission/route_tape.h"
 #include "canyon/study/plan/replay/position_chain.h"
@@ -19,21 +21,32 @@ namespace {
 constexpr std::int64_t kToleratedEpochs = 200;  // that a saving is measured at
 constexpr int kRepeats = 3;                     // of which the fastest counts
 
-double most(const PositionChain& chain) {
-  return chain.any.empty() ? 0.0 : *std::max_element(chain.any.begin(), chain.any.end());
+/// What leaving out an effect moves the rows of a run by: `times` these.
+struct Moves {
+  const std::vector<double>&any, &up;
+  double times;
+};
+Moves moves_of(const PositionChain& chain, const Need& need) {
+  for (const PositionChain::Strapdown& of_steps : chain.strapdown)
+    if (of_steps.need.effect == need.effect) return {of_steps.any, of_steps.up, 1.0};
+  return {chain.any, chain.up, need.bound};
 }
-double rms(const PositionChain& chain) {
-  return chain.rms();
+
+double most(const Moves& moves) {
+  return moves.any.empty() ? 0.0 : moves.times * *std::max_element(moves.any.begin(), moves.any.end());
 }
-double rms_up(const PositionChain& chain) {
-  return chain.rms_up();
+double rms(const Moves& moves) {
+  return moves.times * rms_of(moves.any);
+}
+double rms_up(const Moves& moves) {
+  return moves.times * rms_of(moves.up);
 }
 
 /// Figures of the estimate's error, and what moves them at most where the estimate is moved: an RMS by the RMS of the
 /// moves, the largest error and a percentile by the largest of them.
 struct Reached {
   const char* figure;
-  double (*per_metre)(const PositionChain&);
+  double (*moved)(const Moves&);
 };
 constexpr Reached kReached[] = {
     {"position_error_rms_m", rms},       {"position_error_e_rms_m", rms}, {"position_error_n_rms_m", rms},
@@ -99,9 +112,15 @@ const char* exceeded(const Plan& plan, const PlannedEffect& candidate) {
   return nullptr;
 }
 
+/// Of the kinds of bounds that there are, in words.
+std::string moved(const Need& need) {
+  return text(need.bound_unit == "m" ? "moves a range by up to %.2g m" : "turns the attitude by up to %.2g deg/h",
+              need.bound);
+}
+
 void keep(PlannedEffect& effect, const std::string& why) {
   effect.need.verdict = Verdict::kNeeded;
-  effect.need.reason = text("moves a range by up to %.2g m", effect.need.bound) + why + "; " + effect.need.reason;
+  effect.need.reason = moved(effect.need) + why + "; " + effect.need.reason;
   effect.saved_cpu_s = kNaN;
 }
 
@@ -132,16 +151,19 @@ Status check_reached(const FigureValues& tolerances, const std::string& option) 
 void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEffect>& candidates, Plan& plan) {
   // By counted work, so that the same mission has the same plan each time. Of equal savings per bound the smaller bound
   // first.
-  std::stable_sort(candidates.begin(), candidates.end(), [](const PlannedEffect& a, const PlannedEffect& b) {
-    const double of_a = static_cast<double>(a.saved_work) / a.need.bound;
-    const double of_b = static_cast<double>(b.saved_work) / b.need.bound;
+  const auto per_move = [&](const PlannedEffect& candidate) {
+    const double most_m = most(moves_of(chain, candidate.need));
+    return most_m > 0.0 ? static_cast<double>(candidate.saved_work) / most_m : 0.0;
+  };
+  std::stable_sort(candidates.begin(), candidates.end(), [&](const PlannedEffect& a, const PlannedEffect& b) {
+    const double of_a = per_move(a), of_b = per_move(b);
     return of_a != of_b ? of_a > of_b : a.need.bound < b.need.bound;
   });
   std::vector<Need> chosen;
   gnss::RangeOmissions& ranges = plan.omissions.ranges;
   for (PlannedEffect& candidate : candidates) {
     for (const auto& [figure, tolerance] : plan.tolerances)
-      candidate.moves[figure] = candidate.need.bound * reached(figure)->per_metre(chain);
+      candidate.moves[figure] = reached(figure)->moved(moves_of(chain, candidate.need));
     if (candidate.saved_work <= 0) {
       keep(candidate, ", and leaving it out saves no work");
       continue;
@@ -151,15 +173,18 @@ void choose_within_tolerances(const PositionChain& chain, std::vector<PlannedEff
       continue;
     }
     for (const auto& [figure, move] : candidate.moves) plan.figure_bounds[figure] += move;
-    ranges.bound_m += candidate.need.bound;
+    const Moves moves = moves_of(chain, candidate.need);
+    plan.epoch_bound_m.resize(moves.any.size(), 0.0);
+    for (std::size_t i = 0; i < moves.any.size(); ++i) plan.epoch_bound_m[i] += moves.times * moves.any[i];
+    if (&moves.any == &chain.any) ranges.bound_m += candidate.need.bound;
     chosen.push_back(candidate.need);
   }
   if (chosen.empty()) return;
   ranges.delays = ranges.delays | gnss::delays_of(chosen);
-  ranges.most_gain = chain.most_gain;
+  if (ranges.bound_m > 0.0) ranges.most_gain = chain.most_gain;
+  plan.omissions.strapdown = fusion::strapdown_omissions_of(chosen);
   plan.epoch_t_s = chain.t_s;
   plan.seeds = chain.seeds;
-  for (const double per_metre : chain.any) plan.epoch_bound_m.push_back(ranges.bound_m * per_metre);
 }
 
 namespace {
@@ -173,21 +198,40 @@ bool answers_to_positions_alone(const fusion::FilterConfig& filter) {
          });
 }
 
+/// Why nothing that acts can be held against the tolerances, if there are any; empty: it can.
+std::string undecided(const fusion::FilterConfig& filter, const Plan& plan, bool open_loop) {
+  if (!answers_to_positions_alone(filter))
+    return "the filter measures with more than the fixes' positions, or decides what it makes of each";
+  return plan.tolerances.empty() ? "" : beyond_tolerances(plan, open_loop);
+}
+
+std::span<const fusion::StrapdownEffect> strapdown_effects(const fusion::FilterConfig& filter) {
+  const auto& row = model_row(fusion::strapdown_models(), filter.integrator);
+  return row.make.effects != nullptr ? row.make.effects() : std::span<const fusion::StrapdownEffect>{};
+}
+
+/// What the filter's integrator can leave out. What it saves is a term in each step, over as many epochs as the savings
+/// of delays are counted at; nothing that a clock shows (docs/plan.md).
+void add_strapdown(const mission::MissionConfig& config, const PositionChain& chain,
+                   std::vector<PlannedEffect>& candidates) {
+  const auto steps = static_cast<std::int64_t>(static_cast<double>(kEpochs) * config.imu.rate_hz / config.gnss.rate_hz);
+  for (const PositionChain::Strapdown& effect : chain.strapdown)
+    candidates.push_back(
+        {.need = effect.need, .segment = "whole run", .saved_work = chain.steps > 0 ? steps : 0, .saved_cpu_s = 0.0});
+}
+
 }  // namespace
 
 Status leave_out_tolerated(const std::vector<Need>& needs, const mission::MissionConfig& config,
                            const mission::PreparedMission& mission, bool open_loop, Plan& plan) {
   std::vector<PlannedEffect> candidates, lines;
+  const std::string why_not = undecided(config.fusion, plan, open_loop);
   for (const Need& need : needs) {
     PlannedEffect line{.need = need, .segment = "whole run"};
-    if (need.verdict == Verdict::kNotNeeded && need.bound > 0.0 && !answers_to_positions_alone(config.fusion)) {
-      line.need.verdict = Verdict::kUndecidable;
-      line.need.reason = "the filter measures with more than the fixes' positions, or decides what it makes of each";
-    }
     const bool acts = line.need.verdict == Verdict::kNotNeeded && need.bound > 0.0;
-    if (const std::string why = beyond_tolerances(plan, open_loop); acts && !plan.tolerances.empty() && !why.empty()) {
+    if (acts && !why_not.empty()) {
       line.need.verdict = Verdict::kUndecidable;
-      line.need.reason = text("moves a range by up to %.2g m, ", need.bound) + why;
+      line.need.reason = moved(need) + ", " + why_not;
     }
     const bool left_out = line.need.verdict == Verdict::kNotNeeded, free = left_out && need.bound <= 0.0;
     if (free) plan.omissions.ranges.delays = plan.omissions.ranges.delays | gnss::delays_of({line.need});
@@ -195,12 +239,19 @@ Status leave_out_tolerated(const std::vector<Need>& needs, const mission::Missio
     const bool candidate = left_out && !free && !plan.tolerances.empty();
     (candidate ? candidates : lines).push_back(std::move(line));
   }
-  if (!candidates.empty()) {
+  if (!plan.tolerances.empty() && why_not.empty()) {
     CANYON_TRY(const Tape tape, mission::drive_route(config, mission));
     CANYON_TRY(const PositionChain chain, position_chain(config, mission, tape));
     CANYON_TRY_STATUS(measure(config, mission, tape, candidates));
+    add_strapdown(config, chain, candidates);
     choose_within_tolerances(chain, candidates, plan);
-    if (plan.omissions.ranges.bound_m > 0.0) plan.tape_hash = tape_hash(tape);
+    if (plan.omissions.moves()) plan.tape_hash = tape_hash(tape);
+  } else {
+    for (const fusion::StrapdownEffect& effect : strapdown_effects(config.fusion))
+      lines.push_back(
+          {.need = {.effect = effect.name,
+                    .reason = why_not.empty() ? "known along a tape alone, and no tolerance is given" : why_not},
+           .segment = "whole run"});
   }
   for (PlannedEffect& line : lines) plan.effects.push_back(std::move(line));
   for (PlannedEffect& line : candidates) plan.effects.push_back(std::move(line));

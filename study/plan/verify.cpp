@@ -90,6 +90,7 @@ Status verify_unread(mission::MissionConfig config, const mission::PreparedMissi
   if (!unread.unkept_rays) unread.corridor.clear();
   for (mission::PlannedPlace& place : unread.corridor) place.paths = {};
   if (unread.ranges.bound_m > 0.0) unread.ranges = {};
+  unread.strapdown = {};
   if (!unread.any()) return Ok{};
   VerifiedEffect found{.effect = kUnread, .kind = Verified::kReaders};
   config.time.limit_s = 0.0;  // a piece is as long as it is

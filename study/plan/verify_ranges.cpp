@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/process/progress.h"
+#include "canyon/core/units.h"
+#include "canyon/fusion/strapdown.h"
 #include "canyon/gnss/sensor/sensor_need.h"
+#include "canyon/mission/run.h"
 #include "canyon/study/plan/replay/replay.h"
 #include "canyon/study/plan/replay/run_pair.h"
 
@@ -88,17 +92,25 @@ double bound_at(const Plan& plan, double t_s) {
              : plan.epoch_bound_m[static_cast<std::size_t>(next - plan.epoch_t_s.begin() - 1)];
 }
 
+/// Of runs that show what fixes and steps do to the estimate: nobody looks, nothing is mapped, and the seeds are after
+/// those that the bounds were taken from.
+mission::MissionConfig fresh(mission::MissionConfig config, const Plan& plan) {
+  config.autonomy.model.name = "route_follower";
+  config.autonomy.map = mission::MapPose::kPrior;
+  config.registration.method.name = "none";
+  config.run.withhold_scans_after_s = 0.0;
+  config.run.seed += static_cast<std::int64_t>(plan.seeds.size());
+  return config;
+}
+
 Status verify_runs(mission::MissionConfig config, const mission::PreparedMission& mission, const Tape& tape,
                    const Plan& plan, std::int64_t epochs, Verification& verification) {
   VerifiedEffect found{
       .effect = "all that acts by less: estimates", .kind = Verified::kEstimates, .unit = "m", .of_position = true};
   mission::Omissions only_ranges;
   only_ranges.ranges = plan.omissions.ranges;
-  config.autonomy.model.name = "route_follower";  // nobody looks, and nothing is mapped
-  config.autonomy.map = mission::MapPose::kPrior;
-  config.registration.method.name = "none";
-  config.run.withhold_scans_after_s = 0.0;
-  config.run.seed += static_cast<std::int64_t>(plan.seeds.size());  // those that the bounds were taken from
+  only_ranges.strapdown = plan.omissions.strapdown;
+  config = fresh(std::move(config), plan);
   while (found.epochs < epochs) {
     throw_if_cancelled();
     CANYON_TRY(const RunPair pair, drive_pair(config, mission, tape, only_ranges));
@@ -113,18 +125,83 @@ Status verify_runs(mission::MissionConfig config, const mission::PreparedMission
   return Ok{};
 }
 
+struct Samples final : mission::Recorder {
+  std::vector<ImuSample> all;
+  Status imu(const ImuSample& sample) override {
+    all.push_back(sample);
+    return Ok{};
+  }
+};
+
+/// How far apart the attitudes are that two integrators come to, rad, at its most.
+double attitudes_apart_rad(const std::vector<ImuSample>& samples, const fusion::NavState& start,
+                           const std::string& integrator, const fusion::StrapdownOmissions& leave_out) {
+  const auto full = fusion::make_strapdown(integrator), less = fusion::make_strapdown(integrator);
+  less->leave_out(leave_out);
+  fusion::NavState a = start, b = start;
+  double most_rad = 0.0;
+  for (const ImuSample& sample : samples) {
+    const fusion::Increments in{.dt_s = sample.dt_s, .dtheta_U = sample.dtheta_U, .dv_U = sample.dv_U};
+    full->advance(a, in);
+    less->advance(b, in);
+    most_rad = std::max(most_rad, so3_log(a.R_EU.conjugate() * b.R_EU).norm());
+  }
+  return most_rad;
+}
+
+/// Free integrations of what the unit measures, in runs of seeds of their own; counted are the rows of estimates of the
+/// runs.
+Status verify_attitudes(mission::MissionConfig config, const mission::PreparedMission& mission, const Tape& tape,
+                        const Plan& plan, std::int64_t epochs, Verification& verification) {
+  std::vector<VerifiedEffect> found;
+  std::vector<Need> needs;
+  for (const PlannedEffect& line : plan.effects) {
+    if (!fusion::strapdown_omissions_of({line.need}).any()) continue;
+    needs.push_back(line.need);
+    found.push_back({.effect = line.need.effect + ": attitude",
+                     .kind = Verified::kEstimates,
+                     .unit = line.need.bound_unit,
+                     .bound = line.need.bound});
+  }
+  config = fresh(std::move(config), plan);
+  const LocalFrame& frame = mission.scene->frame();
+  while (!found.empty() && found.front().epochs < epochs) {
+    throw_if_cancelled();
+    Samples samples;
+    CANYON_TRY(const auto run, mission::run_mission(config, mission, nullptr,
+                                                    {.tape = &tape, .recorder = &samples, .autonomy = nullptr}));
+    if (samples.all.empty() || tape.duration_s() * config.run.epoch_rate_hz < 1.0) break;
+    const fusion::NavState start{.t = mission.start,
+                                 .R_EU = Eigen::Quaterniond(frame.R_EW()) * run.initial_X_WB.R,
+                                 .p_EU_E = frame.to_E(run.initial_X_WB.p),
+                                 .v_EU_E = frame.R_EW() * run.initial_v_WB_W};
+    const double time_s = samples.all.back().t - mission.start;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double apart_rad =
+          attitudes_apart_rad(samples.all, start, config.fusion.integrator, fusion::strapdown_omissions_of({needs[i]}));
+      found[i].replayed += static_cast<std::int64_t>(time_s * config.run.epoch_rate_hz);
+      found[i].epochs = found[i].replayed;
+      count(apart_rad / time_s * 3600.0 / kDegree, needs[i].bound, found[i]);
+    }
+    ++config.run.seed;
+  }
+  for (VerifiedEffect& effect : found) verification.effects.push_back(std::move(effect));
+  return Ok{};
+}
+
 }  // namespace
 
 Status verify_ranges(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
                      const Plan& plan, std::int64_t epochs, Verification& verification) {
+  if (!plan.omissions.moves()) return Ok{};
+  CANYON_TRY_STATUS(verify_attitudes(config, mission, tape, plan, epochs, verification));
   const std::vector<Asked> asked = asked_of(plan);
-  if (asked.empty()) return Ok{};
   GnssReplay replay(config, mission, tape, plan.omissions, epochs);
   CANYON_TRY(const auto sensor, replay.sensor());
   std::vector<gnss::GnssOutput> full;
   for (const GnssReplay::Epoch& epoch : replay.epochs()) {
     throw_if_cancelled();
-    full.push_back(replay.measure(*sensor, epoch, {}));
+    if (!asked.empty()) full.push_back(replay.measure(*sensor, epoch, {}));
   }
   for (const Asked& one : asked) CANYON_TRY_STATUS(verify_epochs(replay, full, one, verification));
   return verify_runs(config, mission, tape, plan, epochs, verification);

@@ -8,6 +8,8 @@ namespace canyon::study {
 /// - of each by itself and of all together: how far ranges move as the receiver sees them (corrected, less the distance
 ///   of the satellite that it computed) from the true antenna, against the bound in that unit; and how far the fix
 ///   moves, against the bound times that epoch's sum of |d position / d range|;
+/// - of what the filter's integrator leaves out: how far apart the attitudes of free integrations with and without it
+///   are at most along whole runs, against the bound;
 /// - of all together, in whole runs of seeds after those that the bounds were taken from: how far the estimate of
 /// position moves,
 ///   row by row, against the plan's bound for that time.

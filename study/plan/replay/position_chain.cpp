@@ -6,6 +6,7 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/fusion/error_state_filter.h"
 #include "canyon/fusion/observers/fix_response.h"
+#include "canyon/fusion/observers/step_response.h"
 #include "canyon/mission/run.h"
 
 namespace canyon::study {
@@ -40,12 +41,6 @@ struct Events final : mission::Recorder {
     return Ok{};
   }
 };
-
-double rms_of(const std::vector<double>& values) {
-  double square = 0.0;
-  for (const double value : values) square += value * value;
-  return values.empty() ? 0.0 : std::sqrt(square / static_cast<double>(values.size()));
-}
 
 struct Driven {
   mission::MissionConfig config;
@@ -106,7 +101,97 @@ void follow(const Events& given, double most_gain, const LocalFrame& frame, GpsT
   }
 }
 
+/// What the integrator's effects do, step by step and row by row.
+class StrapdownChain {
+ public:
+  StrapdownChain(std::span<const fusion::StrapdownEffect> effects, const Eigen::Vector3d& up_E)
+      : effects_(effects), up_E_(up_E), turned_rad_(effects.size(), 0.0), any_m_(effects.size(), 0.0), up_m_(any_m_) {}
+
+  /// Before the filter takes the sample.
+  void expect(const fusion::ErrorStateFilter& filter, const ImuSample& sample) {
+    const fusion::Increments now = filter.calibration().apply(sample.dt_s, sample.dtheta_U, sample.dv_U);
+    const fusion::StrapdownStep step{.dt_s = now.dt_s,
+                                     .dt_before_s = before_.dt_s,
+                                     .dtheta_U = now.dtheta_U,
+                                     .dv_U = now.dv_U,
+                                     .dtheta_before_U = before_.dtheta_U,
+                                     .dv_before_U = before_.dv_U,
+                                     .R_EU = filter.nav_state().R_EU.toRotationMatrix(),
+                                     .v_EU_E = filter.nav_state().v_EU_E};
+    std::vector<fusion::StepMove> moves;
+    for (std::size_t i = 0; i < effects_.size(); ++i) {
+      moves.push_back(effects_[i].of_step(step));
+      turned_rad_[i] += moves.back().theta_U.norm();
+    }
+    response.expect(std::move(moves));
+    before_ = now;
+    time_s_ += now.dt_s;
+  }
+  /// Raises the row to what it is moved by.
+  void row(const fusion::ErrorStateFilter& filter, std::size_t row, PositionChain& chain) {
+    for (std::size_t i = 0; i < effects_.size(); ++i) {
+      const Eigen::Vector3d moved_E = response.moved_E(i, filter.body_jacobian());
+      any_m_[i] = std::max(any_m_[i], moved_E.norm());
+      up_m_[i] = std::max(up_m_[i], std::abs(up_E_.dot(moved_E)));
+      PositionChain::Strapdown& all = chain.strapdown[i];
+      if (row == all.any.size()) {
+        all.any.push_back(0.0);
+        all.up.push_back(0.0);
+      }
+      all.any[row] = std::max(all.any[row], kMargin * any_m_[i]);
+      all.up[row] = std::max(all.up[row], kMargin * up_m_[i]);
+    }
+  }
+  void finish(const ImuNoise& noise, PositionChain& chain) const {
+    for (std::size_t i = 0; i < effects_.size(); ++i) {
+      PositionChain::Strapdown& all = chain.strapdown[i];
+      if (turned_rad_[i] < all.turned_rad) continue;
+      all.turned_rad = turned_rad_[i];
+      all.need = fusion::strapdown_need(effects_[i], turned_rad_[i], time_s_, noise);
+    }
+  }
+
+  fusion::StepResponse response;
+
+ private:
+  static constexpr double kMargin = 2.0;
+
+  std::span<const fusion::StrapdownEffect> effects_;
+  Eigen::Vector3d up_E_;
+  fusion::Increments before_;
+  double time_s_ = 0.0;
+  std::vector<double> turned_rad_, any_m_, up_m_;
+};
+
+/// The run's filter once more, with what its integrator could leave out. A watcher of its own, so another filter.
+void follow_steps(const Events& given, const LocalFrame& frame, fusion::ErrorStateFilter& filter,
+                  std::span<const fusion::StrapdownEffect> effects, const ImuNoise& noise, PositionChain& chain) {
+  StrapdownChain steps(effects, frame.R_EW().col(2));
+  chain.strapdown.resize(effects.size());
+  filter.watch(&steps.response);
+  auto sample = given.imu_samples.begin();
+  std::size_t row = 0;
+  for (const Event& event : given.events) {
+    throw_if_cancelled();
+    for (; sample != given.imu_samples.end() && sample->t - event.t < 0.5 * sample->dt_s; ++sample) {
+      steps.expect(filter, *sample);
+      filter.predict(*sample);
+    }
+    if (event.is_row)
+      steps.row(filter, row++, chain);
+    else
+      filter.update(event.fix);
+  }
+  steps.finish(noise, chain);
+}
+
 }  // namespace
+
+double rms_of(const std::vector<double>& values) {
+  double square = 0.0;
+  for (const double value : values) square += value * value;
+  return values.empty() ? 0.0 : std::sqrt(square / static_cast<double>(values.size()));
+}
 
 double PositionChain::rms() const {
   return rms_of(any);
@@ -132,7 +217,12 @@ Result<PositionChain> position_chain(const mission::MissionConfig& config, const
     const LocalFrame& frame = mission.scene->frame();
     fusion::ErrorStateFilter filter(config.fusion, noise, frame, config.imu.lever_arm_m, config.gnss.lever_arm_m);
     filter.initialize(mission.start, run.record.initial_X_WB, run.record.initial_v_WB_W);
+    fusion::ErrorStateFilter once_more = filter;
     follow(run.events, chain.most_gain, frame, mission.start, filter, chain);
+    chain.steps = std::max(chain.steps, static_cast<std::int64_t>(run.events.imu_samples.size()));
+    const auto& integrator = model_row(fusion::strapdown_models(), config.fusion.integrator);
+    if (integrator.make.effects != nullptr)
+      follow_steps(run.events, frame, once_more, integrator.make.effects(), noise, chain);
   }
   return chain;
 }

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "canyon/core/files/tape.h"
+#include "canyon/core/need.h"
 #include "canyon/mission/config/mission_file.h"
 
 namespace canyon::study {
@@ -20,6 +23,10 @@ namespace canyon::study {
 /// Rigorous are the norms and the worst signs; first order is the linearization of solver and filter, whose remainder
 /// falls with the square of b. Which fixes there are is decided by the seed's noise too (tests of residuals,
 /// exclusion): the figures are the largest of those of `seeds`.
+///
+/// What the filter's own integrator can leave out acts in every step, and is known there: it is carried along as it is
+/// (fusion/observers/step_response.h), and moves a row by no more than twice the largest that it has moved any row up
+/// to then. Twice, for what is not of first order, and for the gains and estimates of other seeds.
 struct PositionChain {
   double most_gain = 0.0;
   std::vector<std::int64_t> seeds;  ///< that the tape was driven with
@@ -27,7 +34,18 @@ struct PositionChain {
   std::vector<double> any, up;      ///< the estimate there, in space and along W's vertical
   double rms() const;               ///< of `any` over the rows: an RMS of errors moves by no more
   double rms_up() const;
+
+  /// Of an effect of the filter's integrator.
+  struct Strapdown {
+    Need need;                    ///< in its own unit
+    std::vector<double> any, up;  ///< as above, m
+    double turned_rad = 0.0;      ///< the sum of what it turned the attitude by, |theta| of each step
+  };
+  std::vector<Strapdown> strapdown{};
+  std::int64_t steps = 0;  ///< of the filter in a run
 };
+
+double rms_of(const std::vector<double>& values);
 
 /// Drives sensor, IMU and filter along the tape, without LIDAR and autonomy, with the mission's seed and those after
 /// it, `seeds` of them. Errors as of run_mission.

@@ -305,8 +305,8 @@ TEST_F(PlanFileTest, OfAnotherMissionSceneOrVersionIsRefused) {
               ::testing::StartsWith(": is a plan for another scene, expected one for the scene of this mission ("));
   EXPECT_THAT(refusal(with("\"version\": \"", "\"version\": \"9."), planned_.config),
               ::testing::StartsWith(": is a plan of canyon 9."));
-  EXPECT_EQ(refusal(with("canyon-plan-3", "canyon-plan-2"), planned_.config),
-            ": is a plan of the form canyon-plan-2, expected canyon-plan-3: make it again with canyon plan --write");
+  EXPECT_EQ(refusal(with("canyon-plan-4", "canyon-plan-3"), planned_.config),
+            ": is a plan of the form canyon-plan-3, expected canyon-plan-4: make it again with canyon plan --write");
   EXPECT_EQ(refusal(with("\"autonomy\": false", "\"autonomy\": true"), planned_.config),
             ": is a plan for an open loop, in which nobody drives, expected --open-loop, or a plan made without it");
   EXPECT_EQ(refusal("{}", planned_.config), ": is no plan, expected a file of canyon plan --write");

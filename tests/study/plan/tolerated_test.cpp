@@ -130,6 +130,8 @@ TEST(Tolerated, BoundsHoldAlongOneTapeAndInNoClosedLoop) {
   const auto read = read_plan(path, planned.config, planned.mission, &*tape);
   ASSERT_TRUE(read.ok()) << read.error().str();
   EXPECT_EQ(read->seeds, planned.plan.seeds);
+  EXPECT_EQ(read->omissions.strapdown, planned.plan.omissions.strapdown);
+  EXPECT_TRUE(read->omissions.strapdown.coning);
   const auto closed = read_plan(path, planned.config, planned.mission);
   ASSERT_FALSE(closed.ok());
   EXPECT_EQ(closed.error().str().substr(path.size()),
@@ -216,6 +218,50 @@ TEST(Tolerated, WithoutAToleranceNothingThatActsIsLeftOut) {
     EXPECT_TRUE(!left_out || line.need.bound == 0.0) << line.need.effect;
   }
   EXPECT_EQ(planned.verdict(gnss::kIonosphere), Verdict::kNeeded);
+}
+
+// What the filter's integrator leaves out acts in every step: its own unit is the attitude's drift. The Earth's is
+// known to all digits, so that half of it is broken; of the estimate the bound is twice what was found along three
+// seeds.
+TEST(Tolerated, WhatTheFiltersIntegratorLeavesOutIsBoundedAndVerified) {
+  const Planned planned("high", kShort, {Output::kPosition}, true, {{kRms, 1.0}});
+  EXPECT_TRUE(planned.plan.omissions.strapdown.coning);
+  EXPECT_TRUE(planned.plan.omissions.strapdown.earth_rate);
+  const auto tape = mission::drive_route(planned.config, planned.mission);
+  ASSERT_TRUE(tape.ok());
+  const auto verified = [&](const Plan& plan) {
+    auto found = verify_plan(planned.config, planned.mission, *tape, plan, 160);
+    EXPECT_TRUE(found.ok());
+    return *std::move(found);
+  };
+  const auto violations = [](const Verification& found, const std::string& effect) {
+    for (const VerifiedEffect& one : found.effects)
+      if (one.effect == effect) return one.violations;
+    ADD_FAILURE() << effect;
+    return std::int64_t{-1};
+  };
+  const Verification right = verified(planned.plan);
+  EXPECT_EQ(right.violations(), 0);
+  for (const VerifiedEffect& one : right.effects)
+    EXPECT_TRUE(one.unit != "deg/h" || one.largest_difference > 0.0) << one.effect;
+  Plan wrong = planned.plan;
+  for (PlannedEffect& line : wrong.effects) {
+    if (line.need.effect != fusion::kEarthRate) continue;
+    EXPECT_NEAR(line.need.bound, 15.041, 0.001);
+    line.need.bound *= 0.5;
+  }
+  for (double& bound_m : wrong.epoch_bound_m) bound_m *= 0.1;
+  const Verification found = verified(wrong);
+  EXPECT_GT(violations(found, "turning of the Earth: attitude"), 0);
+  EXPECT_EQ(violations(found, "coning and sculling: attitude"), 0);
+  EXPECT_GT(violations(found, "all that acts by less: estimates"), 0);
+}
+
+TEST(Tolerated, WhatAnIntegratorDoesNotSayIsKept) {
+  const Planned planned("high", std::string(kShort) + "[fusion]\nintegrator = \"three_sample\"\n", {Output::kPosition},
+                        true, {{kRms, 1.0}});
+  EXPECT_FALSE(planned.plan.omissions.strapdown.any());
+  EXPECT_TRUE(planned.plan.omissions.ranges.any());
 }
 
 // The paper's differential mode removes ionosphere and ephemeris error whole: not a bit differs.
