@@ -91,20 +91,20 @@ void FacetIndex::Square::add(const Facet& f, bool leans_back) {
 
 void FacetIndex::build_tiles() {
   const double block_m = std::max(kFacetBlock_m, cell_m_);
-  using Square = std::pair<int, int>;  // row, column
+  using RowColumn = std::pair<int, int>;  // row, column
   const auto place_in = [&](const Facet& f, double edge_m) {
-    return Square(static_cast<int>((f.center_W.y() - origin_.y()) / edge_m),
-                  static_cast<int>((f.center_W.x() - origin_.x()) / edge_m));
+    return RowColumn(static_cast<int>((f.center_W.y() - origin_.y()) / edge_m),
+                     static_cast<int>((f.center_W.x() - origin_.x()) / edge_m));
   };
-  const auto square = [&](const Square& place, double edge_m) {
+  const auto square = [&](const RowColumn& place, double edge_m) {
     return Square{.x_m = origin_.x() + (place.second + 0.5) * edge_m,
                   .y_m = origin_.y() + (place.first + 0.5) * edge_m};
   };
-  std::map<Square, std::map<Square, Block>> blocks;  // ordered by tile, then by block
+  std::map<RowColumn, std::map<RowColumn, Block>> blocks;  // ordered by tile, then by block
   for (std::uint32_t i = 0; i < facets_.size(); ++i) {
     throw_if_cancelled();
     const Facet& f = facets_[i];
-    const Square place = place_in(f, block_m);
+    const RowColumn place = place_in(f, block_m);
     auto& of_tile = blocks[place_in(f, kFacetTile_m)];
     Block& block = of_tile.try_emplace(place, Block{square(place, block_m), {}}).first->second;
     const std::size_t lean = lean_class(f.normal_W.z());
