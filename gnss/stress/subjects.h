@@ -21,5 +21,8 @@ std::vector<StressCase> wave_cases();
 std::vector<StressCase> product_cases();
 std::vector<StressCase> time_border_cases();
 std::vector<StressCase> place_cases();
+std::vector<StressCase> way_cases();
+std::vector<StressCase> sensor_cases();
+std::vector<StressCase> file_cases();
 
 }  // namespace canyon::gnss

@@ -13,6 +13,7 @@ std::vector<StressCase> error_chain_cases();
 std::vector<StressCase> gauss_markov_cases();
 std::vector<StressCase> imu_log_cases();
 std::vector<StressCase> increment_cases();
+std::vector<StressCase> motion_cases();
 std::vector<StressCase> paper_recursion_cases();
 std::vector<StressCase> proof_mass_cases();
 

@@ -11,7 +11,7 @@
 #include "canyon/fusion/smoothing/smoother.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/tests/fusion/recorded_run.h"
-#include "canyon/tests/fusion/smoothing/simulated_drive.h"
+#include "canyon/fusion/stress/simulated_drive.h"
 #include "canyon/tests/support/test_data.h"
 
 /// The smoothers on the run of sim_leador_a15, whose truth is exact: with all fixes, without them for 30 and 60 s as
@@ -79,7 +79,7 @@ Score score(const std::vector<SmoothedState>& states, const testing::RecordedRun
     if (ref == run.truth.size() || run.truth[ref].t - state.nav.t > 1e-4) continue;
     const testing::ReferencePoint& truth = run.truth[ref];
     if (truth.t - run.truth.front().t < 60.0) continue;
-    const auto error = testing::error_of(truth.state, state.nav);
+    const auto error = error_of(truth.state, state.nav);
     nees.add(normalized_squared(error, state.covariance), 9);
     const Eigen::Vector3d ned = truth.R_E_ned.transpose() * error.segment<3>(3);
     s.rms_m += ned.squaredNorm();
@@ -116,7 +116,7 @@ struct Stage {
   }
 
   Score of(const char* smoother, const std::string& keys = "") const {
-    testing::Drive drive;
+    Drive drive;
     drive.config = config_of(unit);
     drive.noise = noise_of(unit);
     const testing::ReferencePoint& first = run.truth.front();
@@ -129,7 +129,7 @@ struct Stage {
     drive.v_WB_W = R_WE * first.state.v_EU_E;
     drive.imu = run.imu;
     drive.fixes = fixes;
-    const Score s = score(testing::smoothed_by(smoother, drive, keys).states, run, outages);
+    const Score s = score(smoothed_by(smoother, drive, keys).states, run, outages);
     std::printf(
         "%s, outages of %g s, %s %s: %.4f m 3-D RMS, NEES %.2f; in outages %.3f m horizontal, %.3f m vertical\n",
         unit.name, outages.length_s, smoother, keys.c_str(), s.rms_m, s.nees, s.horizontal_m, s.vertical_m);

@@ -9,13 +9,11 @@
 
 #include "canyon/core/check.h"
 #include "canyon/fusion/consistency.h"
-#include "canyon/tests/fusion/smoothing/simulated_drive.h"
+#include "canyon/fusion/stress/simulated_drive.h"
 
 namespace canyon::fusion {
 namespace {
 
-using testing::Drive;
-using testing::DriveSetup;
 
 /// The state at a time from the start, and the truth there.
 struct At {
@@ -45,12 +43,12 @@ TEST_P(SmootherConsistency, CovarianceIsThatOfTheErrors) {
   ConsistencyMean nees[kCount];
   int beyond[kCount] = {};
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Drive drive = testing::simulated_drive(static_cast<std::uint64_t>(draw) + 1, {});
-    const Smoothed smoothed = testing::smoothed_by(GetParam(), drive);
+    const Drive drive = simulated_drive(static_cast<std::uint64_t>(draw) + 1, {});
+    const Smoothed smoothed = smoothed_by(GetParam(), drive);
     for (std::size_t i = 0; i < kCount; ++i) {
       const At here = at(smoothed, drive, kInstants[i]);
       const double normalized =
-          normalized_squared(testing::error_of(here.truth, here.state.nav), here.state.covariance);
+          normalized_squared(error_of(here.truth, here.state.nav), here.state.covariance);
       nees[i].add(normalized, 9);
       beyond[i] += normalized > kQuantile99 ? 1 : 0;
     }
@@ -71,9 +69,9 @@ INSTANTIATE_TEST_SUITE_P(Rows, SmootherConsistency, ::testing::Values("none", "r
 // variances as units, is not negative by more than rounding (some eps of the 33 terms of an element, times the
 // condition of what the smoother says beside it).
 TEST(RtsSmoother, IsNeverLessCertainThanTheFilter) {
-  const Drive drive = testing::simulated_drive(7, {});
-  const auto filtered = testing::smoothed_by("none", drive).states,
-             smoothed = testing::smoothed_by("rts", drive).states;
+  const Drive drive = simulated_drive(7, {});
+  const auto filtered = smoothed_by("none", drive).states,
+             smoothed = smoothed_by("rts", drive).states;
   ASSERT_EQ(filtered.size(), smoothed.size());
   double least = 1.0;
   for (std::size_t i = 0; i < filtered.size(); ++i) {
@@ -99,11 +97,11 @@ TEST(RtsSmoother, TakesAnySetOfStates) {
   for (const char* keys :
        {"states = [\"biases\"]", "states = [\"turn_on_biases\", \"in_run_biases\", \"gains\"]\nimu_gain_tau_s = 100",
         "states = [\"biases\", \"gains\", \"mounting\", \"wheel_scale\", \"fix_error\"]\nfix_error_sigma_m = 0.2"}) {
-    const Drive drive = testing::simulated_drive(3, {.keys = keys});
-    const Smoothed filtered = testing::smoothed_by("none", drive), smoothed = testing::smoothed_by("rts", drive);
+    const Drive drive = simulated_drive(3, {.keys = keys});
+    const Smoothed filtered = smoothed_by("none", drive), smoothed = smoothed_by("rts", drive);
     const auto miss = [&](const Smoothed& s) {
       const At here = at(s, drive, 38.0);
-      return testing::error_of(here.truth, here.state.nav).segment<3>(3).norm();
+      return error_of(here.truth, here.state.nav).segment<3>(3).norm();
     };
     EXPECT_LT(miss(smoothed), miss(filtered)) << keys;
     EXPECT_LT(at(smoothed, drive, 38.0).state.covariance.trace(), at(filtered, drive, 38.0).state.covariance.trace());
@@ -112,7 +110,7 @@ TEST(RtsSmoother, TakesAnySetOfStates) {
 
 /// By how many of the smoother's own sigmas two of them differ.
 double difference_in_sigmas(const SmoothedState& a, const SmoothedState& b) {
-  return (testing::error_of(a.nav, b.nav).array() / a.covariance.diagonal().array().sqrt()).abs().maxCoeff();
+  return (error_of(a.nav, b.nav).array() / a.covariance.diagonal().array().sqrt()).abs().maxCoeff();
 }
 
 /// The largest difference of the two, in sigmas, and of their variances, relative.
@@ -120,8 +118,8 @@ struct Apart {
   double sigmas = 0.0, variances = 0.0;
 };
 Apart rts_and_batch_graph(double noise_scale) {
-  const Drive drive = testing::simulated_drive(11, {.noise_scale = noise_scale});
-  const Smoothed rts = testing::smoothed_by("rts", drive), graph = testing::smoothed_by("batch_graph", drive);
+  const Drive drive = simulated_drive(11, {.noise_scale = noise_scale});
+  const Smoothed rts = smoothed_by("rts", drive), graph = smoothed_by("batch_graph", drive);
   Apart out;
   for (double t = 1.0; t <= 60.0; t += 1.0) {
     const SmoothedState a = at(rts, drive, t).state, b = at(graph, drive, t).state;
@@ -144,9 +142,9 @@ TEST(BatchGraph, AgreesWithRtsButForTheLinearization) {
 }
 
 TEST(FixedLagGraph, WithTheWholeRunInItIsTheBatchGraph) {
-  const Drive drive = testing::simulated_drive(11, {});
-  const Smoothed batch = testing::smoothed_by("batch_graph", drive),
-                 lag = testing::smoothed_by("fixed_lag_graph", drive, "graph_lag_s = 100");
+  const Drive drive = simulated_drive(11, {});
+  const Smoothed batch = smoothed_by("batch_graph", drive),
+                 lag = smoothed_by("fixed_lag_graph", drive, "graph_lag_s = 100");
   ASSERT_EQ(batch.states.size(), lag.states.size());
   // The one of a lag ends where a step gains 1e-6 of the cost, which is some 100: sqrt(2e-4) sigma.
   for (std::size_t i = 0; i < batch.states.size(); ++i)
@@ -155,19 +153,19 @@ TEST(FixedLagGraph, WithTheWholeRunInItIsTheBatchGraph) {
 
 // What leaves the graph is not lost: a lag of a second, three nodes, ends as the filter does, which never looks back.
 TEST(FixedLagGraph, WithAShortLagEndsAsTheFilterDoes) {
-  const Drive drive = testing::simulated_drive(11, {});
-  const Smoothed filtered = testing::smoothed_by("none", drive),
-                 lag = testing::smoothed_by("fixed_lag_graph", drive, "graph_lag_s = 1");
+  const Drive drive = simulated_drive(11, {});
+  const Smoothed filtered = smoothed_by("none", drive),
+                 lag = smoothed_by("fixed_lag_graph", drive, "graph_lag_s = 1");
   EXPECT_LT(difference_in_sigmas(filtered.states.back(), lag.states.back()), 0.2);
   for (int i = 0; i < 9; ++i)
     EXPECT_NEAR(lag.states.back().covariance(i, i) / filtered.states.back().covariance(i, i), 1.0, 0.05);
 }
 
 TEST(FactorGraphs, GiveTheSameBitsTwice) {
-  const Drive drive = testing::simulated_drive(4, {.outlier_share = 0.2, .outlier_m = 50.0});
+  const Drive drive = simulated_drive(4, {.outlier_share = 0.2, .outlier_m = 50.0});
   for (const char* row : {"batch_graph", "fixed_lag_graph"}) {
-    const Smoothed a = testing::smoothed_by(row, drive, "graph_robustness = \"switchable\""),
-                   b = testing::smoothed_by(row, drive, "graph_robustness = \"switchable\"");
+    const Smoothed a = smoothed_by(row, drive, "graph_robustness = \"switchable\""),
+                   b = smoothed_by(row, drive, "graph_robustness = \"switchable\"");
     for (std::size_t i = 0; i < a.states.size(); ++i) {
       EXPECT_EQ(a.states[i].nav.p_EU_E, b.states[i].nav.p_EU_E);
       EXPECT_EQ(a.states[i].covariance, b.states[i].covariance);
@@ -194,15 +192,15 @@ TEST(SwitchableConstraints, SwitchOffWhatIsNotThere) {
     constexpr int kRuns = 10;
     for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
       DriveSetup setup{.outage_from_s = 1e9, .outage_to_s = 1e9};
-      clean += rms_m(testing::smoothed_by(row, testing::simulated_drive(seed, setup)),
-                     testing::simulated_drive(seed, setup)) /
+      clean += rms_m(smoothed_by(row, simulated_drive(seed, setup)),
+                     simulated_drive(seed, setup)) /
                kRuns;
       setup.outlier_share = 0.2;
       setup.outlier_m = 50.0;
-      const Drive drive = testing::simulated_drive(seed, setup);
-      none += rms_m(testing::smoothed_by(row, drive), drive) / kRuns;
-      huber += rms_m(testing::smoothed_by(row, drive, "graph_robustness = \"huber\""), drive) / kRuns;
-      const Smoothed s = testing::smoothed_by(row, drive, "graph_robustness = \"switchable\"");
+      const Drive drive = simulated_drive(seed, setup);
+      none += rms_m(smoothed_by(row, drive), drive) / kRuns;
+      huber += rms_m(smoothed_by(row, drive, "graph_robustness = \"huber\""), drive) / kRuns;
+      const Smoothed s = smoothed_by(row, drive, "graph_robustness = \"switchable\"");
       switched += rms_m(s, drive) / kRuns;
       ASSERT_EQ(s.fixes.size(), drive.fixes.size());
       for (std::size_t i = 0; i < s.fixes.size(); ++i, ++all)

@@ -7,12 +7,11 @@
 #include "canyon/core/motion/rotation.h"
 #include "canyon/fusion/smoothing/graph/chain_builder.h"
 #include "canyon/fusion/smoothing/graph/chain_solver.h"
-#include "canyon/tests/fusion/smoothing/simulated_drive.h"
+#include "canyon/fusion/stress/simulated_drive.h"
 
 namespace canyon::fusion {
 namespace {
 
-using testing::Drive;
 
 /// Gains are constants of the graph, biases wander from node to node; all measurements that a graph takes, of a vehicle
 /// that is not one.
@@ -24,7 +23,7 @@ constexpr const char* kKeys =
 struct Aided {
   Drive drive;
   std::vector<OdometerSample> odometer;
-  Aided() : drive(testing::simulated_drive(2, {.seconds = 6.0, .outage_from_s = 1e9, .keys = kKeys})) {
+  Aided() : drive(simulated_drive(2, {.seconds = 6.0, .outage_from_s = 1e9, .keys = kKeys})) {
     for (GnssFix& fix : drive.fixes) {
       fix.v_A_E = drive.truth[static_cast<std::size_t>(std::lround(50.0 * (fix.t - drive.start)))].v_EU_E;
       fix.velocity_covariance_E = 0.01 * Eigen::Matrix3d::Identity();

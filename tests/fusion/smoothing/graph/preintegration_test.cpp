@@ -9,7 +9,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/fusion/smoothing/graph/imu_factor.h"
 #include "canyon/fusion/stress/at_rest.h"
-#include "canyon/tests/fusion/smoothing/simulated_drive.h"
+#include "canyon/fusion/stress/simulated_drive.h"
 #include "canyon/tests/fusion/tactical_noise.h"
 
 namespace canyon::fusion {
@@ -70,7 +70,7 @@ struct Stage {
 
 /// Of position (m), velocity (m/s) and attitude (rad).
 Eigen::Vector3d apart(const NavState& a, const NavState& b) {
-  const auto e = testing::error_of(a, b);
+  const auto e = error_of(a, b);
   return {e.segment<3>(3).norm(), e.tail<3>().norm(), e.head<3>().norm()};
 }
 

@@ -7,7 +7,7 @@
 #include "canyon/fusion/strapdown.h"
 
 /// A drive of which the filter's model is exactly true: the twin of the recorded runs.
-namespace canyon::testing {
+namespace canyon::fusion {
 
 struct DriveSetup {
   double seconds = 60.0, rate_hz = 50.0;
@@ -19,7 +19,7 @@ struct DriveSetup {
 };
 
 struct Drive {
-  fusion::FilterConfig config;
+  FilterConfig config;
   ImuNoise noise;
   LocalFrame frame;
   Eigen::Vector3d lever_U_B, lever_A_B;
@@ -29,9 +29,9 @@ struct Drive {
   std::vector<ImuSample> imu;
   std::vector<GnssFix> fixes;
   std::vector<bool> outlier;            ///< of each fix
-  std::vector<fusion::NavState> truth;  ///< at the start, and after each sample
+  std::vector<NavState> truth;  ///< at the start, and after each sample
 
-  fusion::SmootherInput input() const;
+  SmootherInput input() const;
 };
 
 /// Scale factors that are constant, biases that wander (Gauss-Markov), white noise; a start drawn from the filter's own
@@ -39,9 +39,9 @@ struct Drive {
 Drive simulated_drive(std::uint64_t seed, const DriveSetup& setup);
 
 /// Error [theta, p, v] of a state, truth minus estimate.
-Eigen::Matrix<double, 9, 1> error_of(const fusion::NavState& truth, const fusion::NavState& estimate);
+Eigen::Matrix<double, 9, 1> error_of(const NavState& truth, const NavState& estimate);
 
 /// What a row of smoothers() with these keys makes of a drive.
-fusion::Smoothed smoothed_by(const char* smoother, const Drive& drive, const std::string& keys = "");
+Smoothed smoothed_by(const char* smoother, const Drive& drive, const std::string& keys = "");
 
-}  // namespace canyon::testing
+}  // namespace canyon::fusion

@@ -1,4 +1,4 @@
-#include "canyon/tests/fusion/smoothing/simulated_drive.h"
+#include "canyon/fusion/stress/simulated_drive.h"
 
 #include <cmath>
 
@@ -6,10 +6,8 @@
 #include "canyon/core/units.h"
 #include "canyon/fusion/stress/at_rest.h"
 
-namespace canyon::testing {
+namespace canyon::fusion {
 namespace {
-
-using fusion::NavState;
 
 ImuNoise drive_noise(double scale) {
   ImuNoise n;
@@ -24,10 +22,10 @@ ImuNoise drive_noise(double scale) {
 }
 
 /// True increments of a body that winds its way, from where it is.
-fusion::Increments true_increments(const NavState& s, double t, double dt) {
+Increments true_increments(const NavState& s, double t, double dt) {
   const Eigen::Vector3d turn(0.05 * std::sin(0.7 * t), 0.04 * std::cos(0.9 * t), 0.25 * std::sin(0.3 * t));
   const Eigen::Vector3d push(1.5 * std::cos(0.4 * t), 0.8 * std::sin(0.5 * t), 0.3 * std::cos(1.1 * t));
-  fusion::Increments in = fusion::rest_increments(s, dt);
+  Increments in = rest_increments(s, dt);
   in.dtheta_U += dt * turn;
   in.dv_U += dt * push;
   return in;
@@ -56,7 +54,7 @@ class TriadErrors {
 
 void disturb_start(Drive& d, const NavState& truth, std::uint64_t seed) {
   const RandomStream stream(seed, "drive.start");
-  const fusion::FilterConfig& c = d.config;
+  const FilterConfig& c = d.config;
   const double tilt = c.initial_attitude_sigma_deg_roll_pitch * kDegree,
                heading = c.initial_attitude_sigma_deg_heading * kDegree;
   const Eigen::Vector3d turn_W = Eigen::Vector3d(tilt, tilt, heading).cwiseProduct(stream.normal3(0));
@@ -68,7 +66,7 @@ void disturb_start(Drive& d, const NavState& truth, std::uint64_t seed) {
 
 }  // namespace
 
-fusion::SmootherInput Drive::input() const {
+SmootherInput Drive::input() const {
   return {.config = config,
           .noise = noise,
           .frame = frame,
@@ -84,7 +82,7 @@ fusion::SmootherInput Drive::input() const {
 
 Drive simulated_drive(std::uint64_t seed, const DriveSetup& setup) {
   Drive d;
-  d.config = fusion::configured(setup.keys);
+  d.config = configured(setup.keys);
   d.config.initial_attitude_sigma_deg_roll_pitch *= setup.noise_scale;
   d.config.initial_attitude_sigma_deg_heading *= setup.noise_scale;
   d.config.initial_position_sigma_m *= setup.noise_scale;
@@ -94,18 +92,18 @@ Drive simulated_drive(std::uint64_t seed, const DriveSetup& setup) {
   d.frame = LocalFrame(Geodetic{45.0 * kDegree, 7.0 * kDegree, 200.0});
   d.lever_U_B = {0.0, 0.0, 0.4};
   d.lever_A_B = {-0.3, 0.1, 1.2};
-  NavState truth = fusion::resting_at(45.0, 7.0, 200.0);
+  NavState truth = resting_at(45.0, 7.0, 200.0);
   d.start = truth.t;
   disturb_start(d, truth, seed);
   d.truth.push_back(truth);
 
   TriadErrors gyro(d.noise.gyro, seed, "drive.gyro"), accel(d.noise.accel, seed, "drive.accel");
   const RandomStream fix_error(seed, "drive.fix");
-  const auto strapdown = fusion::make_strapdown(d.config.integrator);
+  const auto strapdown = make_strapdown(d.config.integrator);
   const double dt = 1.0 / setup.rate_hz;
   const auto per_fix = static_cast<std::uint64_t>(std::lround(setup.rate_hz));
   for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(std::lround(setup.seconds * setup.rate_hz)); ++k) {
-    const fusion::Increments in = true_increments(truth, static_cast<double>(k) * dt, dt);
+    const Increments in = true_increments(truth, static_cast<double>(k) * dt, dt);
     ImuSample& sample = d.imu.emplace_back();
     sample.t = tick(d.start, static_cast<std::int64_t>(k) + 1, setup.rate_hz);
     sample.dt_s = dt;
@@ -134,8 +132,8 @@ Eigen::Matrix<double, 9, 1> error_of(const NavState& truth, const NavState& esti
   return e;
 }
 
-fusion::Smoothed smoothed_by(const char* smoother, const Drive& drive, const std::string& keys) {
-  const auto& row = model_row(fusion::smoothers(), smoother);
+Smoothed smoothed_by(const char* smoother, const Drive& drive, const std::string& keys) {
+  const auto& row = model_row(smoothers(), smoother);
   ModelParameters own;
   row.parameters(own);
   const auto node = ConfigNode::parse(keys, "keys");
@@ -143,4 +141,4 @@ fusion::Smoothed smoothed_by(const char* smoother, const Drive& drive, const std
   return *row.make(own)->smooth(drive.input());
 }
 
-}  // namespace canyon::testing
+}  // namespace canyon::fusion
