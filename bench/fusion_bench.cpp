@@ -82,8 +82,7 @@ BENCHMARK(Estimate)->ArgName("gains")->Arg(1);
 /// A minute of a drive at 100 Hz with a fix a second, as a row of smoothers() makes a trajectory of it; the counter
 /// says how many seconds of the drive one second is enough for. Row `none` is the filter.
 void Smooth(benchmark::State& state, const char* row, const char* states) {
-  const Drive drive =
-      simulated_drive(1, {.rate_hz = 100.0, .outage_from_s = 1e9, .outage_to_s = 1e9, .keys = states});
+  const Drive drive = simulated_drive(1, {.rate_hz = 100.0, .outage_from_s = 1e9, .outage_to_s = 1e9, .keys = states});
   for (auto _ : state) benchmark::DoNotOptimize(smoothed_by(row, drive));
   state.counters["x_real_time"] =
       benchmark::Counter(60.0 * static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);

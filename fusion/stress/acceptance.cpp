@@ -51,7 +51,8 @@ StressFigure gate() {
     const double nis = chi_square_threshold(normal_two_sided_tail(sigma), 3.0);
     Judge judge("gate", "gate_sigma = " + number_text(sigma));
     for (const double off : {-1e-9, 1e-9})
-      worst.look(judge.decide(0.0, sigmas_of(nis * (1.0 + off))).accepted == (off < 0.0) ? 0.0 : stress::kInfinity, 1.0);
+      worst.look(judge.decide(0.0, sigmas_of(nis * (1.0 + off))).accepted == (off < 0.0) ? 0.0 : stress::kInfinity,
+                 1.0);
   }
   Judge judge("gate", "gate_sigma = 3");
   for (int k = 0; k <= 10; ++k) {
@@ -63,26 +64,26 @@ StressFigure gate() {
   Judge seldom("gate", "gate_sigma = 3\ngate_recovery_s = 1");
   for (int k = 0; k < 5; ++k)  // five at least, however long it is
     worst.look(seldom.decide(100.0 * k, 100.0).accepted == (k == 4) ? 0.0 : stress::kInfinity, 1.0);
-  worst.look(Judge("gate", "").takes_all() && !Judge("gate", "gate_sigma = 3").takes_all() ? 0.0 : stress::kInfinity, 1.0);
+  worst.look(Judge("gate", "").takes_all() && !Judge("gate", "gate_sigma = 3").takes_all() ? 0.0 : stress::kInfinity,
+             1.0);
   return worst.figure();
 }
 
-/// Weights of a single innovation in closed form: those of Huber and Student, and what nearer ones do not do. Roundings.
+/// Weights of a single innovation in closed form: those of Huber and Student, and what nearer ones do not do.
+/// Roundings.
 StressFigure weights() {
   Worst worst;
   for (const double sigmas : {0.0, 0.5, 1.0, 3.0, 30.0, 1e6, 1e100}) {
     const double d = sigmas / std::sqrt(2.0), nis = 3.0 * d * d;
     worst.look(Judge("huber", "huber_sigma = 2").decide(0, sigmas).noise_scale / std::max(1.0, d / 2.0) - 1.0,
                16.0 * kEpsilon);
-    worst.look(Judge("student_t", "student_t_dof = 4").decide(0, sigmas).noise_scale /
-                       std::max(1.0, (4.0 + nis) / 7.0) -
-                   1.0,
-               16.0 * kEpsilon);
+    worst.look(
+        Judge("student_t", "student_t_dof = 4").decide(0, sigmas).noise_scale / std::max(1.0, (4.0 + nis) / 7.0) - 1.0,
+        16.0 * kEpsilon);
     // Twice the prediction's part is taken off what is measured.
-    worst.look(Judge("innovation_adaptive", "").decide(0, sigmas).noise_scale /
-                       std::max(1.0, sigmas * sigmas - 1.0) -
-                   1.0,
-               16.0 * kEpsilon);
+    worst.look(
+        Judge("innovation_adaptive", "").decide(0, sigmas).noise_scale / std::max(1.0, sigmas * sigmas - 1.0) - 1.0,
+        16.0 * kEpsilon);
   }
   // No larger than expected: no rule but the first; far beyond it, the last.
   worst.look(Judge("fuzzy_adaptive", "").decide(0, 1.0).noise_scale - 1.0, 16.0 * kEpsilon);
@@ -136,12 +137,15 @@ StressFigure at_rest(double lat_deg, double heading_deg) {
   }
   const AlignmentInputs inputs{.imu = imu, .fixes = fixes, .noise = {}, .lever_U_B = imu_B, .lever_A_B = antenna_B};
   Worst worst;
-  const double force = 1e4 * kEpsilon, compass = force / std::cos(lat_deg * kDegree);
+  // What is level is so at the antenna, which stands beside the unit: their distance over Earth's radius, by which
+  // north turns tan(latitude) times too, and a compass once more by what is not level.
+  const double force = 1e4 * kEpsilon + (antenna_B - imu_B).norm() / 6.35e6,
+               meridians = force * std::abs(std::tan(lat_deg * kDegree)), compass = force + 2.0 * meridians;
   for (const bool known : {false, true}) {
     const auto found = aligned("static", known ? "static_heading_deg = " + number_text(heading_deg) : "", inputs);
     if (!found) return {stress::kInfinity, 1.0};
     const Vector3d off_E = so3_log(found->nav.R_EU * s.R_EU.conjugate());
-    worst.look(off_E.norm(), known ? force : compass);
+    worst.look(off_E.norm(), known ? force + meridians : compass);
     // Gravity is that of the antenna's place, 3e-7 of it a metre up and sideways.
     worst.look((found->nav.p_EU_E - s.p_EU_E).norm(), 2e-6 + 4.0 * compass);
     worst.look(found->nav.v_EU_E.norm(), 1e-300);
@@ -149,8 +153,8 @@ StressFigure at_rest(double lat_deg, double heading_deg) {
   return worst.figure();
 }
 
-/// In a bend of even speed the course turns evenly; what the alignment takes for the nose is the course of the last fix,
-/// and for the acceleration the difference of two velocities: half the turn between them squared over six.
+/// In a bend of even speed the course turns evenly; what the alignment takes for the nose is the course of the last
+/// fix, and for the acceleration the difference of two velocities: half the turn between them squared over six.
 StressFigure in_motion(double lat_deg, double heading_deg, double turn_rad_s) {
   NavState s = levelled({lat_deg * kDegree, 170.0 * kDegree, 50.0}, heading_deg * kDegree, {0.0, 0.0, 1.0});
   s.t = GpsTime::from_week_sow(1590, 1000.0);
@@ -192,7 +196,9 @@ StressFigure in_motion(double lat_deg, double heading_deg, double turn_rad_s) {
   // Between two fixes 1 to 2 s apart the force bends by the square of the turn over 24, of v w against g; a step of
   // 10 ms by its own turn.
   const double span = 2.0, bend = 12.0 * std::abs(turn_rad_s) / 9.8;
-  const double off = bend * (std::pow(turn_rad_s * span, 2) / 24.0 + std::abs(turn_rad_s) * 0.01) + 2e-5;
+  // Coriolis' 2 w v is left out of the force.
+  const double off = bend * (std::pow(turn_rad_s * span, 2) / 24.0 + std::abs(turn_rad_s) * 0.01) +
+                     2.0 * Wgs84::rate_rad_s * 12.0 / 9.8 + 5e-6;
   Worst worst;
   worst.look((nose_E - last->v_A_E.normalized()).norm(), off);
   worst.look((found->nav.R_EU * Vector3d::UnitZ() - up_E).norm(), off);
@@ -219,9 +225,11 @@ StressFigure given() {
       const double a = heading * kDegree;
       worst.look((found->nav.p_EU_E - ecef_from_geodetic(at)).norm(), 64.0 * kEpsilon * 6.4e6);
       worst.look((R_EN.transpose() * found->nav.v_EU_E - Vector3d(2.0, 1.0, -3.0)).norm(), 64.0 * kEpsilon);
-      worst.look((R_EN.transpose() * (found->nav.R_EU * Vector3d::UnitX()) - Vector3d(std::sin(a), std::cos(a), 0.0)).norm(),
+      worst.look(
+          (R_EN.transpose() * (found->nav.R_EU * Vector3d::UnitX()) - Vector3d(std::sin(a), std::cos(a), 0.0)).norm(),
+          64.0 * kEpsilon);
+      worst.look((R_EN.transpose() * (found->nav.R_EU * Vector3d::UnitZ()) - Vector3d::UnitZ()).norm(),
                  64.0 * kEpsilon);
-      worst.look((R_EN.transpose() * (found->nav.R_EU * Vector3d::UnitZ()) - Vector3d::UnitZ()).norm(), 64.0 * kEpsilon);
       worst.look(found->nav.t - (first.t - first.dt_s), 1e-9);
     }
   return worst.figure();
@@ -232,7 +240,8 @@ StressFigure given() {
 std::vector<StressCase> acceptance_cases() {
   const StressMechanism judged{StressGroup::kData, "an innovation at a threshold, and far beyond it",
                                "a threshold of another number of axes; a filter that refuses the truth for ever",
-                               "the NIS as rare as the stated deviation, to 1e-9; weights in closed form", "of the bound"};
+                               "the NIS as rare as the stated deviation, to 1e-9; weights in closed form",
+                               "of the bound"};
   const StressMechanism remembered{StressGroup::kLong, "innovations that are remembered",
                                    "a mean that forgets by samples and not by time, or never",
                                    "a mean with weights e^(-age / tau), to roundings of its terms", "of the bound"};
@@ -243,7 +252,9 @@ std::vector<StressCase> acceptance_cases() {
   StressRows rows;
   rows.of(judged).add("acceptance/gate", gate).add("acceptance/weights", weights);
   for (const double tau_s : {0.1, 10.0, 1e5})
-    rows.of(remembered).add("acceptance/adaptive_over_" + stress::text(tau_s) + "_s", [tau_s] { return memory(tau_s); });
+    rows.of(remembered).add("acceptance/adaptive_over_" + stress::text(tau_s) + "_s", [tau_s] {
+      return memory(tau_s);
+    });
   rows.of(start);
   for (const auto& [lat, heading] : {std::pair{0.0, 10.0}, {-45.0, 200.0}, {80.0, 300.0}})
     rows.add("acceptance/rest_at_" + stress::text(lat) + "_deg_heading_" + stress::text(heading) + "_deg",

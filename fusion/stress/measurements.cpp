@@ -166,7 +166,10 @@ StressFigure derivative(const std::string& row, int part) {
     // The estimate moves towards the truth by e, and the residual loses H e.
     const Measurement::Vector numeric = (residual(-step) - residual(step)) / (2.0 * step);
     const double size = std::max(1.0, at->H.col(j).cwiseAbs().maxCoeff());
-    const double curved = j < 3 ? step * step : j < 6 ? step / kRadius_m / 10.0 : j < 9 ? 1e-9 : 0.1 * step * step;
+    const double curved = j < 3   ? step * step
+                          : j < 6 ? step * step / (kRadius_m * kRadius_m)
+                          : j < 9 ? 1e-9
+                                  : 0.1 * step * step;
     worst.look((numeric - at->H.col(j)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), curved * size + 4e-9 / step);
   }
   return worst.figure();
@@ -222,8 +225,7 @@ StressFigure nothing_left() {
   const auto& clone = *stage.state().clone();
   const Pose then = Pose{clone.R_EU, clone.p_EU_E} * Pose{Eigen::Quaterniond::Identity(), -kImu},
              now = Pose{nav.R_EU, nav.p_EU_E} * Pose{Eigen::Quaterniond::Identity(), -kImu};
-  message =
-      RelativePose{.source = kNow, .target = kNow, .X_TS = then.inverse() * now, .covariance = some_covariance()};
+  message = RelativePose{.source = kNow, .target = kNow, .X_TS = then.inverse() * now, .covariance = some_covariance()};
   left("relative_pose", &message, 0, ulp_m, some_covariance());
 
   // The clock is set by the farther one of two: the nearer one's pseudorange is 5 m less than that says.
@@ -301,10 +303,9 @@ std::vector<StressCase> measurement_cases() {
       "a lever arm, a turn or a block that stands in the residual and not in H, or with the other sign",
       "H is the difference of the residual, to the step's third derivative and an ulp of its places over the step",
       "of the bound"};
-  const StressMechanism exact{
-      StressGroup::kGeometry, "a measurement of what the state itself says",
-      "a frame, a unit or a sign that a filter learns to live with", "no residual, and the noise as stated: roundings",
-      "of the bound"};
+  const StressMechanism exact{StressGroup::kGeometry, "a measurement of what the state itself says",
+                              "a frame, a unit or a sign that a filter learns to live with",
+                              "no residual, and the noise as stated: roundings", "of the bound"};
   const StressMechanism none{StressGroup::kData, "a message that is none of a measurement",
                              "not a number, another instant or another row's message corrects the filter",
                              "no measurement is made", "made"};

@@ -28,7 +28,7 @@ struct Drive {
   Eigen::Vector3d v_WB_W;
   std::vector<ImuSample> imu;
   std::vector<GnssFix> fixes;
-  std::vector<bool> outlier;            ///< of each fix
+  std::vector<bool> outlier;    ///< of each fix
   std::vector<NavState> truth;  ///< at the start, and after each sample
 
   SmootherInput input() const;

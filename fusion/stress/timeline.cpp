@@ -54,7 +54,7 @@ int differ(const FilterTimeline& a, const FilterTimeline& b) {
 /// In time, late by less than is waited for, and all of them ahead of the IMU: the same bits once all have come; each
 /// late one is a replay and each early one told.
 StressFigure any_order(const std::string& keys) {
-  const Drive drive = simulated_drive(4, {.seconds = 6.5, .outage_from_s = 1e9, .keys = keys.c_str()});
+  const Drive drive = simulated_drive(4, {.seconds = 6.4, .outage_from_s = 1e9, .keys = keys.c_str()});
   const auto fixes = static_cast<std::int64_t>(drive.fixes.size());
   const FilterTimeline in_time = taken(arrivals(drive, 0.0), drive);
   std::int64_t wrong = in_time.replays();
@@ -88,8 +88,8 @@ StressFigure gap(double gap_s) {
   worst.look(told == Trouble::kGap ? 0.0 : stress::kInfinity, 1.0);
   for (std::int64_t k = 0; k <= missing; ++k) alone.predict();
   const auto more = (timeline.filter().covariance() - alone.filter.covariance()).eval();
-  const double pushed = 3.0 * gap_s, expected[] = {std::pow(0.5 * kDegree * gap_s, 2), std::pow(0.5 * pushed * gap_s, 2),
-                                                   pushed * pushed};
+  const double pushed = 3.0 * gap_s,
+               expected[] = {std::pow(0.5 * kDegree * gap_s, 2), std::pow(0.5 * pushed * gap_s, 2), pushed * pushed};
   // The sample after it moves the place by the new velocity's 10 ms, and the velocity by the new tilt; the white noise
   // over steps of other lengths is the same, and what the known part of the covariance makes meanwhile differs by the
   // order of the steps.

@@ -33,8 +33,8 @@ NormalSeries markov(double kept, int count, std::uint64_t seed) {
   return out;
 }
 
-/// A Markov process of N vectors: mean square 1 and lags kept^k, off by 5 sigma (false alarm 6e-7 each), sigma being 1 /
-/// root of what they are worth, n N (1 - kept^2) / (1 + kept^2) numbers, doubled by the mean square that lags are
+/// A Markov process of N vectors: mean square 1 and lags kept^k, off by 5 sigma (false alarm 6e-7 each), sigma being 1
+/// / root of what they are worth, n N (1 - kept^2) / (1 + kept^2) numbers, doubled by the mean square that lags are
 /// divided by; what they are worth by the same of its sum of squares, 1 / e after -dt / ln(kept), where lags lie up to
 /// a sixteenth of it apart.
 StressFigure series(double kept) {
@@ -59,8 +59,8 @@ StressFigure series(double kept) {
 }
 
 /// Errors drawn from a covariance of three axes that hang together: each share within its ellipsoid, each axis and the
-/// whole of mean square 1 over their claimed one: 5 sigma of binomial and chi-square; and with sigma claimed a third the
-/// mean square is 9, of which that of an axis is found off.
+/// whole of mean square 1 over their claimed one: 5 sigma of binomial and chi-square; and with sigma claimed a third
+/// the mean square is 9, of which that of an axis is found off.
 StressFigure coverage(double claimed) {
   constexpr int kCount = 20'000;
   const RandomStream stream(7, "stress.errors");
@@ -151,7 +151,7 @@ StressFigure observed() {
 /// with the growth that is stated: k = sqrt(2 G M / r^3) of height and velocity once that has the upper hand.
 StressFigure growth(double hours) {
   const NavState truth = resting_at(45.0, 7.0, 200.0);
-  const auto strapdown = make_strapdown("two_sample");
+  const auto strapdown = make_strapdown("three_sample");
   const Increments in = rest_increments(truth, 1.0);
   NavState state = truth;
   RoundingGrowth bound(truth);
@@ -178,10 +178,10 @@ std::vector<StressCase> verdict_cases() {
   const StressMechanism correlated{StressGroup::kLong, "how much a correlated series is worth",
                                    "lags beyond a ring that are no lags, a sum over them that counts each once",
                                    "a Markov process's own lags, worth and time: 5 sigma", "of the bound"};
-  const StressMechanism covered{StressGroup::kData, "errors that are those of their covariance, or three times as large",
-                                "an ellipsoid of other axes, a share of another distribution, a false alarm",
-                                "each share to 5 sigma; found fault with where sigma is a third, and only there",
-                                "of the bound"};
+  const StressMechanism covered{
+      StressGroup::kData, "errors that are those of their covariance, or three times as large",
+      "an ellipsoid of other axes, a share of another distribution, a false alarm",
+      "each share to 5 sigma; found fault with where sigma is a third, and only there", "of the bound"};
   const StressMechanism innovated{StressGroup::kData, "innovations of one instant and of many",
                                   "parts of an epoch that count as instants; a median of binned numbers",
                                   "mean, median and number: 5 sigma, and the bins' 1 %", "of the bound"};

@@ -51,7 +51,9 @@ const SatelliteId kG7{GnssSystem::kGps, 7}, kE3{GnssSystem::kGalileo, 3}, kR5{Gn
 /// that are not known, epochs said twice, and what comes after the end.
 StressFigure sp3(const char* scale, double ahead_s) {
   const auto orbits = make_nominal("GE");
-  std::string text = "#cV2010  7  1  0  0  0.00000000       8 ORBIT IGS05 HLM  IGS\n## 1590 345600.00000000   900.00000000 55378 0.0000000000000\n";
+  std::string text =
+      "#cV2010  7  1  0  0  0.00000000       8 ORBIT IGS05 HLM  IGS\n## 1590 345600.00000000   900.00000000 55378 "
+      "0.0000000000000\n";
   text += printed("%%c M  cc %s ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc\n", scale);
   const auto row = [](char kind, SatelliteId sv, const Vector3d& x, double fourth, const char* flags = "") {
     std::string line = printed("%c%s%14.6f%14.6f%14.6f%14.6f", kind, sv.str().c_str(), x.x(), x.y(), x.z(), fourth);
@@ -69,7 +71,8 @@ StressFigure sp3(const char* scale, double ahead_s) {
       if (sv == kG7) text += row('V', sv, 10.0 * state->v_E, 0.0);
     }
     const SatelliteId none{GnssSystem::kGps, static_cast<std::uint8_t>(9 + k)};
-    const double radius_km = std::array{0.0, 1.0, 6399.9, 1e5 + 0.1, 5e5, 6300.0, 6390.0, 2e5}[static_cast<std::size_t>(k)];
+    const double radius_km =
+        std::array{0.0, 1.0, 6399.9, 1e5 + 0.1, 5e5, 6300.0, 6390.0, 2e5}[static_cast<std::size_t>(k)];
     text += row('P', none, {0.0, radius_km, 0.0}, 1.0);
     if (k == 6) text += row('P', kG7, {20000.0, 0.0, 0.0}, 1.0);
   }
@@ -99,8 +102,8 @@ StressFigure sp3(const char* scale, double ahead_s) {
   return worst.figure();
 }
 
-/// A clock file of a quadratic clock: samples as written, straight lines between them, nothing across a gap, beside it, or
-/// of another satellite. 1e-12 s as written; between samples the quadratic's h^2 / 8.
+/// A clock file of a quadratic clock: samples as written, straight lines between them, nothing across a gap, beside it,
+/// or of another satellite. 1e-12 s as written; between samples the quadratic's h^2 / 8.
 StressFigure clocks() {
   std::string text = labelled("     3.00           CLOCK DATA", "RINEX VERSION / TYPE") +
                      labelled("   GPS", "TIME SYSTEM ID") + labelled("", "END OF HEADER");
@@ -136,7 +139,9 @@ StressFigure clocks() {
 /// ANTEX whose patterns are linear in zenith angle and azimuth, so that they are the same between the columns, to the
 /// hundredth of a millimetre that is written; beyond the last column its value, and a turn is none.
 StressFigure antennas() {
-  const auto value_mm = [](double zenith_deg, double azimuth_deg) { return 0.1 * zenith_deg + 0.02 * azimuth_deg - 3.0; };
+  const auto value_mm = [](double zenith_deg, double azimuth_deg) {
+    return 0.1 * zenith_deg + 0.02 * azimuth_deg - 3.0;
+  };
   const auto numbers = [&](const std::string& head, double last, double step, const auto& of) {
     std::string line = head;
     line.resize(8, ' ');
@@ -144,8 +149,9 @@ StressFigure antennas() {
     return line + "\n";
   };
   const auto frequency = [&](const char* code, double last, double step, bool azimuths, double offset_mm) {
-    std::string out = labelled(printed("   %s", code), "START OF FREQUENCY") +
-                      labelled(printed("%10.2f%10.2f%10.2f", offset_mm, offset_mm + 1.0, offset_mm + 80.0), "NORTH / EAST / UP");
+    std::string out =
+        labelled(printed("   %s", code), "START OF FREQUENCY") +
+        labelled(printed("%10.2f%10.2f%10.2f", offset_mm, offset_mm + 1.0, offset_mm + 80.0), "NORTH / EAST / UP");
     out += numbers("   NOAZI", last, step, [&](double z) { return value_mm(z, 180.0); });
     for (double a = 0.0; azimuths && a <= 360.0; a += 30.0)
       out += numbers(printed("%8.1f", a), last, step, [&](double z) { return value_mm(z, a); });
@@ -158,10 +164,13 @@ StressFigure antennas() {
            frequency("G01", last, step, azimuths, 10.0) + frequency("G02", last, step, azimuths, -20.0) +
            labelled("", "END OF ANTENNA");
   };
-  const std::string receiver = "TRM29659.00     NONE", satellite = "BLOCK IIR-M         G07                 G048      2008-012A ";
+  const std::string receiver = "TRM29659.00     NONE",
+                    satellite = "BLOCK IIR-M         G07                 G048      2008-012A ";
   const std::string text = labelled("     1.4            M", "ANTEX VERSION / SYST") + labelled("", "END OF HEADER") +
-                           antenna(receiver, 90.0, 5.0, true, "") + antenna(satellite, 14.0, 1.0, false,
-                           labelled(words_of(kStart, "%13.7f"), "VALID FROM") + labelled(words_of(kStart + 86400.0 * 9, "%13.7f"), "VALID UNTIL"));
+                           antenna(receiver, 90.0, 5.0, true, "") +
+                           antenna(satellite, 14.0, 1.0, false,
+                                   labelled(words_of(kStart, "%13.7f"), "VALID FROM") +
+                                       labelled(words_of(kStart + 86400.0 * 9, "%13.7f"), "VALID UNTIL"));
   const auto found = parse_antex_file(text, "made.atx");
   if (!found || found->antennas.size() != 2 || !found->warnings.empty()) return {kInfinity, 1.0};
   Worst worst;
@@ -175,13 +184,18 @@ StressFigure antennas() {
   for (double z = 0.0; z <= 100.0; z += 2.5)
     for (double a = -360.0; a < 720.0; a += 12.5) {
       const double turned = a - 360.0 * std::floor(a / 360.0);
-      worst.look(ground->pattern("G01")->variation_m(z * kDegree, a * kDegree) - 1e-3 * value_mm(std::min(z, 90.0), turned), ulp_m);
-      worst.look(space->pattern("G02")->variation_m(0.2 * z * kDegree, a * kDegree) - 1e-3 * value_mm(std::min(0.2 * z, 14.0), 180.0), ulp_m);
+      worst.look(
+          ground->pattern("G01")->variation_m(z * kDegree, a * kDegree) - 1e-3 * value_mm(std::min(z, 90.0), turned),
+          ulp_m);
+      worst.look(space->pattern("G02")->variation_m(0.2 * z * kDegree, a * kDegree) -
+                     1e-3 * value_mm(std::min(0.2 * z, 14.0), 180.0),
+                 ulp_m);
     }
   worst.look((ground->pattern("G02")->offset_m - Vector3d(-0.020, -0.019, 0.060)).norm(), 8.0 * kEpsilon);
   worst.look(ground->pattern("G05") == nullptr ? 0.0 : kInfinity, 1.0);
 
-  // From the centre of mass: z to the Earth, y across the Sun, the combination 2.546 of the first less 1.546 of the second.
+  // From the centre of mass: z to the Earth, y across the Sun, the combination 2.546 of the first less 1.546 of the
+  // second.
   const double f1 = 154.0, f2 = 120.0, first = f1 * f1 / (f1 * f1 - f2 * f2);
   const Vector3d offset_m = first * space->pattern("G01")->offset_m + (1.0 - first) * space->pattern("G02")->offset_m;
   for (const Vector3d& p : {Vector3d(2e7, 1e7, 1.2e7), Vector3d(-1e7, 2e7, -1.3e7)}) {
@@ -198,7 +212,8 @@ StressFigure antennas() {
 /// The two-frequency combination: it takes the ionosphere's 1 / f^2 out, and leaves ranges.
 StressFigure combination() {
   Worst worst;
-  for (const GnssSystem system : {GnssSystem::kGps, GnssSystem::kGalileo, GnssSystem::kBeidou, GnssSystem::kQzss, GnssSystem::kGlonass}) {
+  for (const GnssSystem system :
+       {GnssSystem::kGps, GnssSystem::kGalileo, GnssSystem::kBeidou, GnssSystem::kQzss, GnssSystem::kGlonass}) {
     const BandPair bands = precise_clock_bands(system);
     const CombinationWeights w = ionosphere_free(system, bands);
     const double f1 = carrier_hz(system, bands.first), f2 = carrier_hz(system, bands.second);
@@ -206,8 +221,10 @@ StressFigure combination() {
     worst.look((w.first / (f1 * f1) + w.second / (f2 * f2)) * f1 * f1, 32.0 * kEpsilon);
     std::array<double, 10> delays{};
     for (std::size_t i = 0; i < 10; ++i) delays[i] = 1e-9 * static_cast<double>(i * i);
-    const double expected = w.first * delays[static_cast<std::size_t>(bands.first)] + w.second * delays[static_cast<std::size_t>(bands.second)];
-    worst.look(delay_of_precise_clock_s(system, delays) - (system == GnssSystem::kGlonass ? 0.0 : expected), 1e-9 * 64.0 * kEpsilon);
+    const double expected = w.first * delays[static_cast<std::size_t>(bands.first)] +
+                            w.second * delays[static_cast<std::size_t>(bands.second)];
+    worst.look(delay_of_precise_clock_s(system, delays) - (system == GnssSystem::kGlonass ? 0.0 : expected),
+               1e-9 * 64.0 * kEpsilon);
   }
   return worst.figure();
 }
@@ -215,11 +232,14 @@ StressFigure combination() {
 /// IONEX maps of a function that is bilinear in latitude and the longitude that stands still below the Sun: between
 /// the points and the maps it is itself, to the tenth of a unit that is written.
 StressFigure maps() {
-  const auto value = [](double lat_deg, double sun_deg) { return 20.0 + 0.1 * lat_deg + 0.05 * std::abs(std::remainder(sun_deg, 360.0)); };
-  std::string text = labelled("     1.0            IONOSPHERE MAPS", "IONEX VERSION / TYPE") + labelled("     2", "MAP DIMENSION") +
-                     labelled("  6371.0", "BASE RADIUS") + labelled("   450.0 450.0   0.0", "HGT1 / HGT2 / DHGT") +
-                     labelled("    87.5 -87.5  -2.5", "LAT1 / LAT2 / DLAT") + labelled("  -180.0 180.0   5.0", "LON1 / LON2 / DLON") +
-                     labelled("    -1", "EXPONENT") + labelled("", "END OF HEADER");
+  const auto value = [](double lat_deg, double sun_deg) {
+    return 20.0 + 0.1 * lat_deg + 0.05 * std::abs(std::remainder(sun_deg, 360.0));
+  };
+  std::string text =
+      labelled("     1.0            IONOSPHERE MAPS", "IONEX VERSION / TYPE") + labelled("     2", "MAP DIMENSION") +
+      labelled("  6371.0", "BASE RADIUS") + labelled("   450.0 450.0   0.0", "HGT1 / HGT2 / DHGT") +
+      labelled("    87.5 -87.5  -2.5", "LAT1 / LAT2 / DLAT") + labelled("  -180.0 180.0   5.0", "LON1 / LON2 / DLON") +
+      labelled("    -1", "EXPONENT") + labelled("", "END OF HEADER");
   for (int m = 0; m < 3; ++m) {
     // Epochs are UTC; GPS time was 15 s ahead. Two hours are 30 degrees, six columns.
     text += labelled(printed("%6d", m + 1), "START OF TEC MAP");
@@ -242,13 +262,17 @@ StressFigure maps() {
   for (const double hours : {0.0, 0.7, 2.0, 3.9, 4.0})
     for (double lat = -87.5; lat <= 87.5; lat += 3.5)
       for (double lon = -190.0; lon < 540.0; lon += 12.5) {
-        const double sun_deg = lon + 15.0 * hours, kink = std::min(std::abs(std::remainder(sun_deg, 360.0)), 180.0 - std::abs(std::remainder(sun_deg, 360.0)));
+        const double sun_deg = lon + 15.0 * hours, kink = std::min(std::abs(std::remainder(sun_deg, 360.0)),
+                                                                   180.0 - std::abs(std::remainder(sun_deg, 360.0)));
         if (kink < 5.0) continue;  // where the function bends within a column
-        worst.look(found->vtec_tecu(lat * kDegree, lon * kDegree, kStart + 15.0 + 3600.0 * hours) - value(lat, sun_deg), 0.05 * 1.0001);
+        worst.look(found->vtec_tecu(lat * kDegree, lon * kDegree, kStart + 15.0 + 3600.0 * hours) - value(lat, sun_deg),
+                   0.05 * 1.0001);
       }
   for (const double hours : {-0.001, 4.001})
     worst.look(std::isnan(found->vtec_tecu(0.0, 0.0, kStart + 15.0 + 3600.0 * hours)) ? 0.0 : kInfinity, 1.0);
-  worst.look(found->vtec_tecu(89.9 * kDegree, 0.3, kStart + 3600.0) - found->vtec_tecu(87.5 * kDegree, 0.3, kStart + 3600.0), 1e-12);
+  worst.look(
+      found->vtec_tecu(89.9 * kDegree, 0.3, kStart + 3600.0) - found->vtec_tecu(87.5 * kDegree, 0.3, kStart + 3600.0),
+      1e-12);
   return worst.figure();
 }
 
@@ -259,15 +283,17 @@ StressFigure almanac(int turns) {
   const GpsTime near = GpsTime::from_week_sow(week, 100000.0);
   std::string yuma, sem = "2 CURRENT.ALM\n" + printed("%d 319488\n\n", week % 1024);
   for (const auto& [prn, e] : {std::pair{7, 0.0123}, {9, 1.2}}) {
-    yuma += printed("******** Week %d almanac for PRN-%02d ********\n", week % 1024, prn) + printed("ID:                         %02d\n", prn) +
-            "Health:                     000\n" + printed("Eccentricity:               %.10E\n", e) +
-            "Time of Applicability(s):  319488.0000\n" + printed("Orbital Inclination(rad):   %.10f\n", 0.96) +
-            printed("Rate of Right Ascen(r/s):  %.10E\n", -8e-9) + printed("SQRT(A)  (m 1/2):           %.6f\n", 5153.6) +
-            printed("Right Ascen at Week(rad):   %.10E\n", 1.25) + printed("Argument of Perigee(rad):   %.9f\n", -0.75) +
-            printed("Mean Anom(rad):             %.10E\n", 2.5) + printed("Af0(s):                     %.10E\n", 1e-4) +
-            printed("Af1(s/s):                   %.10E\n", -2e-12) + printed("week:                        %d\n\n", week % 1024);
-    sem += printed("%d\n48\n0\n %.14E %.14E %.14E\n %.14E %.14E %.14E\n %.14E %.14E %.14E\n0\n11\n\n", prn, e, 0.96 / kPi - 0.30,
-                   -8e-9 / kPi, 5153.6, 1.25 / kPi, -0.75 / kPi, 2.5 / kPi, 1e-4, -2e-12);
+    yuma +=
+        printed("******** Week %d almanac for PRN-%02d ********\n", week % 1024, prn) +
+        printed("ID:                         %02d\n", prn) + "Health:                     000\n" +
+        printed("Eccentricity:               %.10E\n", e) + "Time of Applicability(s):  319488.0000\n" +
+        printed("Orbital Inclination(rad):   %.10f\n", 0.96) + printed("Rate of Right Ascen(r/s):  %.10E\n", -8e-9) +
+        printed("SQRT(A)  (m 1/2):           %.6f\n", 5153.6) + printed("Right Ascen at Week(rad):   %.10E\n", 1.25) +
+        printed("Argument of Perigee(rad):   %.9f\n", -0.75) + printed("Mean Anom(rad):             %.10E\n", 2.5) +
+        printed("Af0(s):                     %.10E\n", 1e-4) + printed("Af1(s/s):                   %.10E\n", -2e-12) +
+        printed("week:                        %d\n\n", week % 1024);
+    sem += printed("%d\n48\n0\n %.14E %.14E %.14E\n %.14E %.14E %.14E\n %.14E %.14E %.14E\n0\n11\n\n", prn, e,
+                   0.96 / kPi - 0.30, -8e-9 / kPi, 5153.6, 1.25 / kPi, -0.75 / kPi, 2.5 / kPi, 1e-4, -2e-12);
   }
   Worst worst;
   for (const std::string& text : {yuma, sem}) {
@@ -276,16 +302,23 @@ StressFigure almanac(int turns) {
     const KeplerEphemeris& k = found->kepler[0];
     worst.look(k.sv == kG7 && k.health == 0 ? 0.0 : kInfinity, 1.0);
     worst.look(k.toe - GpsTime::from_week_sow(week, 319488.0), 1e-9);
-    for (const auto& [x, expected] : {std::pair{k.e, 0.0123}, {k.i0_rad, 0.96}, {k.sqrt_a, 5153.6}, {k.omega0_rad, 1.25},
-                                      {k.argument_of_perigee_rad, -0.75}, {k.m0_rad, 2.5}, {k.af0_s, 1e-4}, {k.af1, -2e-12}, {k.omega_dot_rad_s, -8e-9}})
+    for (const auto& [x, expected] : {std::pair{k.e, 0.0123},
+                                      {k.i0_rad, 0.96},
+                                      {k.sqrt_a, 5153.6},
+                                      {k.omega0_rad, 1.25},
+                                      {k.argument_of_perigee_rad, -0.75},
+                                      {k.m0_rad, 2.5},
+                                      {k.af0_s, 1e-4},
+                                      {k.af1, -2e-12},
+                                      {k.omega_dot_rad_s, -8e-9}})
       worst.look(x - expected, 1e-13 * std::max(std::abs(expected), 0.1));
   }
   return worst.figure();
 }
 
-/// Records fitted to the built-in orbits over a span, each instant of which has one whose fit interval it is in: the orbit
-/// to what the fits themselves leave (a micrometre of rounding times 100 that the fit's directions weaken; GLONASS 1 cm as
-/// documented), and no satellite is without a record at either end.
+/// Records fitted to the built-in orbits over a span, each instant of which has one whose fit interval it is in: the
+/// orbit to what the fits themselves leave (rounding of 1e-7 m, a hundred times of which weak directions make; GLONASS
+/// 1 cm as documented), and no satellite is without a record at either end.
 StressFigure fitted(const char* systems, double from_s, double span_s, double bound_m) {
   const auto orbits = make_nominal(systems);
   std::vector<SatelliteId> some;
@@ -308,9 +341,9 @@ StressFigure fitted(const char* systems, double from_s, double span_s, double bo
   return worst.figure();
 }
 
-/// In inertial space a built-in orbit is Kepler's but for what the Earth's flattening does in a day: the angular momentum
-/// keeps its size and the energy its value to some J2 (R / a)^2, the pole turns by the node's drift, and the radius stays
-/// between the apsides.
+/// In inertial space a built-in orbit is Kepler's but for what the Earth's flattening does in a day: the angular
+/// momentum keeps its size and the energy its value to some J2 (R / a)^2, the pole turns by the node's drift, and the
+/// radius stays between the apsides.
 StressFigure conserved(const char* systems) {
   const auto orbits = make_nominal(systems);
   Worst worst;
@@ -333,7 +366,8 @@ StressFigure conserved(const char* systems) {
     const double n = std::sqrt(kMu / (a * a * a));
     for (std::size_t k = 0; k < momentum.size(); ++k) {
       worst.look(momentum[k].norm() / momentum[0].norm() - 1.0, 6.0 * flattening);
-      worst.look((momentum[k].normalized() - momentum[0].normalized()).norm(), 1.5 * flattening * n * 86400.0 + 6.0 * flattening);
+      worst.look((momentum[k].normalized() - momentum[0].normalized()).norm(),
+                 1.5 * flattening * n * 86400.0 + 6.0 * flattening);
       // a itself is known to the step between two looks, (n 450 s)^2 e / 2 of it.
       worst.look(energy[k] / (-0.5 * kMu / a) - 1.0, 12.0 * flattening + 2e-3 * (*most - *least) / a);
     }
@@ -341,8 +375,8 @@ StressFigure conserved(const char* systems) {
   return worst.figure();
 }
 
-/// Precise minus itself moved outwards, forwards and across: those figures, by name, to what an SP3 of a millimetre says;
-/// of a clock common to all nothing is left.
+/// Precise minus itself moved outwards, forwards and across: those figures, by name, to what an SP3 of a millimetre
+/// says; of a clock common to all nothing is left.
 StressFigure moved() {
   const auto truth = make_nominal("G");
   PreciseOrbits precise;
@@ -355,8 +389,8 @@ StressFigure moved() {
       PreciseSample sample;
       sample.t = kStart + 900.0 * k;
       sample.p_E = s->p_E - 1.5 * out + 2.5 * along - 4.0 * across;
-      // The broadcast has the periodic relativity, which a sample has not, and 30 ns that all satellites share.
-      sample.clock_s = s->clock_s + 2.0 * sample.p_E.dot(s->v_E) / (kSpeedOfLight * kSpeedOfLight) + 30e-9;
+      // 30 ns that all satellites share; the shift's own relativity, 2 r . v / c, is below 0.2 mm.
+      sample.clock_s = s->clock_s + 30e-9;
       precise.satellites[sv].push_back(sample);
     }
   const OrbitErrorFigures found = orbit_errors(*truth, precise).figures();
@@ -369,9 +403,9 @@ StressFigure moved() {
   worst.look(found.along_rms_m - 2.5, turn);
   worst.look(found.cross_rms_m - 4.0, turn);
   worst.look(found.rms_3d_m - std::sqrt(1.5 * 1.5 + 2.5 * 2.5 + 16.0), turn);
-  worst.look(found.clock_rms_m, 1e-6);
-  worst.look(found.sisre_m - std::sqrt(std::pow(0.98 * 1.5, 2) + (2.5 * 2.5 + 16.0) / 49.0), 1e-5);
-  worst.look(found.sisre_unbiased_m - std::sqrt((2.5 * 2.5 + 16.0) / 49.0), 1e-5);
+  worst.look(found.clock_rms_m, 2e-4);
+  worst.look(found.sisre_m - std::sqrt(std::pow(0.98 * 1.5, 2) + (2.5 * 2.5 + 16.0) / 49.0), 4e-4);
+  worst.look(found.sisre_unbiased_m - std::sqrt((2.5 * 2.5 + 16.0) / 49.0), 4e-4);
   return worst.figure();
 }
 
@@ -399,13 +433,16 @@ std::vector<StressCase> file_cases() {
            "a grid of times that ends before the span, elements that do not belong together",
            "the orbit everywhere in the span, to what the fit leaves", "of the bound"});
   for (const double from_s : {0.0, 3500.0, 7199.0})
-    rows.add("files/fitted_from_" + stress::text(from_s) + "_s", [from_s] { return fitted("GEC", from_s, 7000.0, 1e-4); });
+    rows.add("files/fitted_from_" + stress::text(from_s) + "_s",
+             [from_s] { return fitted("GEC", from_s, 7000.0, 1e-5); });
   rows.add("files/fitted_state_vectors", [] { return fitted("R", 400.0, 1500.0, 0.01); });
-  rows.of({StressGroup::kLong, "what an orbit keeps in inertial space", "axes that are no frame, a rate that is not the radius's",
+  rows.of({StressGroup::kLong, "what an orbit keeps in inertial space",
+           "axes that are no frame, a rate that is not the radius's",
            "momentum, energy and pole to the Earth's flattening", "of the bound"});
   for (const char* systems : {"G", "R", "E", "C", "J"})
     rows.add(std::string("files/conserved_by_") + systems, [systems] { return conserved(systems); });
-  rows.of({StressGroup::kGeometry, "orbits that are moved along their own axes", "an axis of another orbit, a mean for a root",
+  rows.of({StressGroup::kGeometry, "orbits that are moved along their own axes",
+           "an axis of another orbit, a mean for a root",
            "each figure what it was moved by, to the square of the shift over the radius", "of the bound"});
   rows.add("files/orbit_errors_by_axis", moved);
   return rows.take();

@@ -72,8 +72,7 @@ StressFigure budget(const std::string& keys, bool error_free) {
       // The receiver takes the satellite's place at the time that its own pseudorange says.
       const double range_m = (o.p_E - out.truth.p_A_E).norm();
       const double late_m = 1e3 * 1e-9;
-      worst.look(o.corrected_m() - truth.range_m - out.truth.receiver_clock_m - errors,
-                 ulp_m + late_m + 1e-3);
+      worst.look(o.corrected_m() - truth.range_m - out.truth.receiver_clock_m - errors, ulp_m + late_m + 1e-3);
       // Delays of up to 30 m place the satellite 1e-7 s, 0.4 mm, off along its way.
       worst.look(range_m - truth.range_m, 1e-3);
       const double wavelength_m = kSpeedOfLight / carrier_hz(o.sv.system, o.band);
@@ -102,8 +101,8 @@ StressFigure budget(const std::string& keys, bool error_free) {
   return worst.figure();
 }
 
-/// Errors of a fix over 2000 epochs: mean none, mean square that of the keys, per axis of W, epochs independent; 5 sigma
-/// (false alarm 6e-7 each). And the covariance is that stated.
+/// Errors of a fix over 2000 epochs: mean none, mean square that of the keys, per axis of W, epochs independent; 5
+/// sigma (false alarm 6e-7 each). And the covariance is that stated.
 struct Statistics {
   Vector3d mean = Vector3d::Zero(), square = Vector3d::Zero();
   double lag = 0.0;
@@ -118,7 +117,8 @@ StressFigure noise(const std::string& keys, const Vector3d& sigma_m, const Vecto
   Worst worst;
   const Eigen::Matrix3d R_WE = place->frame().R_EW().transpose();
   for (std::int64_t k = 0; k < kCount; ++k) {
-    const GnssOutput out = sensor->measure(k, kStart + 0.5 * static_cast<double>(k), {1.0, 2.0, 3.0}, {4.0, 5.0, 0.0}, at);
+    const GnssOutput out =
+        sensor->measure(k, kStart + 0.5 * static_cast<double>(k), {1.0, 2.0, 3.0}, {4.0, 5.0, 0.0}, at);
     if (out.fix.status == FixStatus::kNone) return {kInfinity, 1.0};
     const Vector3d e = R_WE * (out.fix.p_A_E - place->frame().to_E({1.0, 2.0, 3.0}));
     s.mean += e / kCount;
@@ -145,9 +145,10 @@ StressFigure noise(const std::string& keys, const Vector3d& sigma_m, const Vecto
 StressFigure counted() {
   Worst worst;
   const auto place = open_place();
-  const auto sensor = sensor_of("model = \"satellite_count\"\nsystems = \"GR\"\ncount_noise_max_m = 12\ncount_noise_min_m = 3\n"
-                                "mask_deg = 5",
-                                *place);
+  const auto sensor = sensor_of(
+      "model = \"satellite_count\"\nsystems = \"GR\"\ncount_noise_max_m = 12\ncount_noise_min_m = 3\n"
+      "mask_deg = 5",
+      *place);
   std::set<int> counts;
   for (int width = 0; width < 24; ++width) {
     scene::SceneParts parts = place->parts();
@@ -181,8 +182,8 @@ StressFigure counted() {
   return worst.figure();
 }
 
-/// Asked again from the beginning, in another order, or by another sensor of the same seed: the same bits. Another seed:
-/// other ones.
+/// Asked again from the beginning, in another order, or by another sensor of the same seed: the same bits. Another
+/// seed: other ones.
 StressFigure repeated(const std::string& keys) {
   const auto place = open_place();
   const scene::SceneAt at(*place);
@@ -224,12 +225,10 @@ std::vector<StressCase> sensor_cases() {
            "a clock, a delay or a turn of the Earth with the other sign, once in the range and not in its correction",
            "corrected pseudorange = range + clock + the truth record's errors; a fix without any to GDOP roundings",
            "of the bound"});
-  rows.add("sensors/error_free", [] {
-    return budget(std::string(kErrorFree) + "mode = \"single_uncorrected\"\n", true);
-  });
-  rows.add("sensors/error_free_of_all_systems", [] {
-    return budget(std::string(kErrorFree) + "mode = \"single_uncorrected\"\nsystems = \"GREC\"\n", true);
-  });
+  rows.add("sensors/error_free",
+           [] { return budget(std::string(kErrorFree) + "mode = \"single_uncorrected\"\n", true); });
+  rows.add("sensors/error_free_of_three_systems",
+           [] { return budget(std::string(kErrorFree) + "mode = \"single_uncorrected\"\nsystems = \"GEC\"\n", true); });
   rows.add("sensors/dgps_as_it_is", [] { return budget("", false); });
   rows.add("sensors/single_of_all_systems", [] { return budget("mode = \"single\"\nsystems = \"GREC\"\n", false); });
   rows.add("sensors/dual_frequency", [] { return budget("mode = \"dual\"\nsystems = \"GE\"\n", false); });
@@ -237,8 +236,8 @@ std::vector<StressCase> sensor_cases() {
            "a direction that prefers the poles, an axis of another frame, epochs that hang together",
            "mean, mean square and lag per axis of W: 5 sigma of 2000 epochs", "of the bound"});
   rows.add("sensors/white_noise", [] {
-    return noise("model = \"truth_plus_white\"\nwhite_sigma_m = 1.5\nwhite_sigma_up_m = 4", {1.5, 1.5, 4.0}, {1.5, 1.5, 4.0},
-                 true);
+    return noise("model = \"truth_plus_white\"\nwhite_sigma_m = 1.5\nwhite_sigma_up_m = 4", {1.5, 1.5, 4.0},
+                 {1.5, 1.5, 4.0}, true);
   });
   rows.add("sensors/isotropic_noise", [] {
     // U(a, b) has the mean square (a^2 + a b + b^2) / 3, a third of it along each axis.
@@ -252,8 +251,9 @@ std::vector<StressCase> sensor_cases() {
   rows.add("sensors/satellites_counted", counted);
   rows.of({StressGroup::kLong, "epochs of a receiver asked again", "a state that outlives its epochs",
            "the same bits, and others of another seed", "differences"});
-  rows.add("sensors/pseudoranges_again", [] { return repeated(""); })
-      .add("sensors/filtered_again", [] { return repeated("estimator = \"kalman\"\n"); });
+  rows.add("sensors/pseudoranges_again", [] { return repeated(""); }).add("sensors/filtered_again", [] {
+    return repeated("estimator = \"kalman\"\n");
+  });
   rows.of({StressGroup::kData, "keys of a receiver that contradict one another", "a guard the wrong way round",
            "refused, and equal ends taken", "wrong"});
   rows.add("sensors/contradictions", contradictions);

@@ -13,5 +13,6 @@ std::vector<StressCase> receiver_cases();
 std::vector<StressCase> packet_cases();
 std::vector<StressCase> cloud_cases();
 std::vector<StressCase> registration_cases();
+std::vector<StressCase> chain_cases();
 
 }  // namespace canyon::lidar

@@ -84,6 +84,82 @@ StressFigure far_grid(double off_m) {
   return {1.0 * wrong, 0.0};
 }
 
+/// Steps of 1 m in some cells of a grid, in others ones that a wheel climbs, too few points, or points too high and too
+/// low: the distances from the first alone, of all cells from middle to middle of the nearest, by trying all; single
+/// precision of 10 m. What has not been seen for the memory is forgotten, not before half of it.
+StressFigure all_distances() {
+  LocalGridConfig config;
+  config.half_size_m = 8.0;
+  LocalGrid grid(config);
+  std::vector<Vector2d> places;
+  std::vector<Eigen::Vector3f> points;
+  const auto add = [&](double x, double y, int hits, double low_m, double high_m) {
+    for (int k = 0; k < hits; ++k)
+      points.emplace_back(static_cast<float>(x), static_cast<float>(y),
+                          static_cast<float>(k % 2 == 0 ? low_m : high_m));
+  };
+  for (int k = 0; k < 12; ++k) {
+    const Vector2d cell(std::floor(28.0 * std::sin(1.7 * k)), std::floor(28.0 * std::cos(2.9 * k)));
+    places.push_back(0.25 * (cell + Vector2d(0.5, 0.5)));
+    add(places.back().x(), places.back().y(), 4, 0.0, 1.0);
+  }
+  add(0.625, 0.625, 8, 0.0, 0.39), add(-1.375, 0.625, 2, 0.0, 1.0), add(0.625, -1.375, 8, 2.3, 3.0),
+      add(2.1, 2.1, 8, -4.0, -2.6);
+  const Pose X_WL{Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()};
+  grid.add(points, X_WL, X_WL, 100.0);
+  grid.update_distances();
+  stress::Worst worst;
+  worst.look(static_cast<double>(grid.obstacles()) - 12.0, 1e-9);
+  for (int i = -31; i < 31; ++i)
+    for (int j = -31; j < 31; ++j) {
+      const Vector2d middle = 0.25 * Vector2d(i + 0.5, j + 0.5);
+      double nearest = LocalGrid::kFar;
+      for (const Vector2d& place : places) nearest = std::min(nearest, (place - middle).norm());
+      worst.look(grid.distance_m(middle) - nearest, 8.0 * stress::kHalfUlp * 10.0);
+    }
+  grid.add({}, X_WL, X_WL, 100.0 + 0.45 * config.memory_s);
+  grid.update_distances();
+  worst.look(static_cast<double>(grid.obstacles()) - 12.0, 1e-9);
+  grid.add({}, X_WL, X_WL, 100.0 + 1.1 * config.memory_s);
+  grid.update_distances();
+  worst.look(static_cast<double>(grid.obstacles()), 1e-9);
+  return worst.figure();
+}
+
+/// Four right angles rounded by arcs of radius r: shorter than the corners by (4 - pi) r in all, but for chords of the
+/// spacing h, h^2 / (24 r^2) of the arcs; on an arc the curvature is 1 / r with its sign, beside the way a metre is a
+/// metre; and mirrored or driven backwards it is as long.
+StressFigure rounded(double radius_m) {
+  std::vector<Vector2d> way = {{0, 0}, {60, 0}, {60, 50}, {120, 50}, {120, 0}};
+  const Path path(way, radius_m);
+  const double corners_m = 60.0 + 50.0 + 60.0 + 50.0, h = 0.25, arc = 1.5 * kPi * radius_m;
+  const double exact_m = corners_m - 6.0 * radius_m + arc, chords = arc * h * h / (24.0 * radius_m * radius_m);
+  stress::Worst worst;
+  worst.look(path.length_m() - exact_m, 2.0 * chords + 1e-9);
+  std::vector<Vector2d> mirrored = way, reversed(way.rbegin(), way.rend());
+  for (Vector2d& p : mirrored) p.y() = -p.y();
+  const Path left(mirrored, radius_m), back(reversed, radius_m);
+  worst.look(left.length_m() - path.length_m(), 1e-9);
+  worst.look(back.length_m() - path.length_m(), 2.0 * chords + 1e-9);
+  // The middle of the first arc: a left turn; of the second a right one.
+  const double first_m = 60.0 - radius_m + 0.25 * kPi * radius_m;
+  const double second_m = 60.0 + 50.0 - 3.0 * radius_m + 0.75 * kPi * radius_m;
+  worst.look(path.curvature(first_m) * radius_m - 1.0, 0.5 * h / radius_m);
+  worst.look(path.curvature(second_m) * radius_m + 1.0, 0.5 * h / radius_m);
+  worst.look(left.curvature(first_m) * radius_m + 1.0, 0.5 * h / radius_m);
+  worst.look(path.curvature(20.0), 1e-9);
+  const Vector2d beside = path.at(30.0) + Vector2d(0.0, 1.0);
+  worst.look(path.offset(beside, 30.0) - 1.0, 1e-9);
+  worst.look(left.offset(beside, 30.0) - 1.0, 1e-9);
+  worst.look(path.project(beside, 0.0, path.length_m()) - 30.0, 1e-6);
+  // Driven at v with stops at both ends: the length over v, half of v over a at either end more, and in the corners the
+  // speed sqrt(a_lateral r), reached and left evenly.
+  const double v = 4.0, a = 2.0, lateral = 100.0;
+  const double time_s = nominal_drive_time_s(path, {v, lateral, a, a}, {0.0, path.length_m()});
+  worst.look(time_s - (exact_m / v + v / a), 2.0 * h / v + 0.1 * std::sqrt(h / a));
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> path_cases() {
@@ -97,7 +173,17 @@ std::vector<StressCase> path_cases() {
   const StressMechanism grid{group, "a rolling grid far from its origin",
                              "cell numbers in single precision, or a remainder that is negative",
                              "the same obstacles, the same distances to the bit", "cells"};
+  const StressMechanism nearest{group, "distances of a grid's cells to the nearest obstacle",
+                                "parabolas of a row that hide one another, a step that a wheel climbs",
+                                "as trying all finds them, to single precision; forgotten after the memory",
+                                "of the bound"};
+  const StressMechanism corners{
+      group, "rounded corners of a way", "an arc of the other hand, a tangent that is not met",
+      "its length, curvature, offset and time in closed form, to chords of the spacing", "of the bound"};
   StressRows rows;
+  rows.of(nearest).add("path/grid_distances", all_distances);
+  for (const double radius_m : {2.0})
+    rows.of(corners).add("path/corners_of_" + stress::text(radius_m) + "_m", [radius_m] { return rounded(radius_m); });
   rows.of(degenerate).add("path/degenerate_ways", degenerate_ways);
   rows.of(far).add("path/100_km_off", far_way);
   rows.of(grid).add("path/local_grid_64_km_off", [] { return far_grid(65536.0); });

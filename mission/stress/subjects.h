@@ -8,6 +8,7 @@
 namespace canyon::mission {
 
 std::vector<StressCase> boundary_cases();
+std::vector<StressCase> drive_cases();
 std::vector<StressCase> localizer_cases();
 std::vector<StressCase> path_cases();
 std::vector<StressCase> schedule_cases();

@@ -12,5 +12,6 @@ std::vector<StressCase> far_cases();
 std::vector<StressCase> surface_cases();
 std::vector<StressCase> ground_cases();
 std::vector<StressCase> crown_cases();
+std::vector<StressCase> index_cases();
 
 }  // namespace canyon::scene

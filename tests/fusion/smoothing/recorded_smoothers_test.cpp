@@ -10,8 +10,8 @@
 #include "canyon/fusion/consistency.h"
 #include "canyon/fusion/smoothing/smoother.h"
 #include "canyon/fusion/stress/at_rest.h"
-#include "canyon/tests/fusion/recorded_run.h"
 #include "canyon/fusion/stress/simulated_drive.h"
+#include "canyon/tests/fusion/recorded_run.h"
 #include "canyon/tests/support/test_data.h"
 
 /// The smoothers on the run of sim_leador_a15, whose truth is exact: with all fixes, without them for 30 and 60 s as

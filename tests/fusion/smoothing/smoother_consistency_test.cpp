@@ -14,7 +14,6 @@
 namespace canyon::fusion {
 namespace {
 
-
 /// The state at a time from the start, and the truth there.
 struct At {
   SmoothedState state;
@@ -47,8 +46,7 @@ TEST_P(SmootherConsistency, CovarianceIsThatOfTheErrors) {
     const Smoothed smoothed = smoothed_by(GetParam(), drive);
     for (std::size_t i = 0; i < kCount; ++i) {
       const At here = at(smoothed, drive, kInstants[i]);
-      const double normalized =
-          normalized_squared(error_of(here.truth, here.state.nav), here.state.covariance);
+      const double normalized = normalized_squared(error_of(here.truth, here.state.nav), here.state.covariance);
       nees[i].add(normalized, 9);
       beyond[i] += normalized > kQuantile99 ? 1 : 0;
     }
@@ -70,8 +68,7 @@ INSTANTIATE_TEST_SUITE_P(Rows, SmootherConsistency, ::testing::Values("none", "r
 // condition of what the smoother says beside it).
 TEST(RtsSmoother, IsNeverLessCertainThanTheFilter) {
   const Drive drive = simulated_drive(7, {});
-  const auto filtered = smoothed_by("none", drive).states,
-             smoothed = smoothed_by("rts", drive).states;
+  const auto filtered = smoothed_by("none", drive).states, smoothed = smoothed_by("rts", drive).states;
   ASSERT_EQ(filtered.size(), smoothed.size());
   double least = 1.0;
   for (std::size_t i = 0; i < filtered.size(); ++i) {
@@ -154,8 +151,7 @@ TEST(FixedLagGraph, WithTheWholeRunInItIsTheBatchGraph) {
 // What leaves the graph is not lost: a lag of a second, three nodes, ends as the filter does, which never looks back.
 TEST(FixedLagGraph, WithAShortLagEndsAsTheFilterDoes) {
   const Drive drive = simulated_drive(11, {});
-  const Smoothed filtered = smoothed_by("none", drive),
-                 lag = smoothed_by("fixed_lag_graph", drive, "graph_lag_s = 1");
+  const Smoothed filtered = smoothed_by("none", drive), lag = smoothed_by("fixed_lag_graph", drive, "graph_lag_s = 1");
   EXPECT_LT(difference_in_sigmas(filtered.states.back(), lag.states.back()), 0.2);
   for (int i = 0; i < 9; ++i)
     EXPECT_NEAR(lag.states.back().covariance(i, i) / filtered.states.back().covariance(i, i), 1.0, 0.05);
@@ -192,9 +188,7 @@ TEST(SwitchableConstraints, SwitchOffWhatIsNotThere) {
     constexpr int kRuns = 10;
     for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
       DriveSetup setup{.outage_from_s = 1e9, .outage_to_s = 1e9};
-      clean += rms_m(smoothed_by(row, simulated_drive(seed, setup)),
-                     simulated_drive(seed, setup)) /
-               kRuns;
+      clean += rms_m(smoothed_by(row, simulated_drive(seed, setup)), simulated_drive(seed, setup)) / kRuns;
       setup.outlier_share = 0.2;
       setup.outlier_m = 50.0;
       const Drive drive = simulated_drive(seed, setup);

@@ -12,7 +12,6 @@
 namespace canyon::fusion {
 namespace {
 
-
 /// Gains are constants of the graph, biases wander from node to node; all measurements that a graph takes, of a vehicle
 /// that is not one.
 constexpr const char* kKeys =
