@@ -75,6 +75,26 @@ double rounding_of_HPHt(const Measurement::Rows& H, const ErrorMatrix& P) {
   return known * known * std::numeric_limits<double>::epsilon() * static_cast<double>(H.rows()) * terms;
 }
 
+/// Whether what is measured was known better than the noise by so much that P may hold nothing of it but rounding.
+bool nearly_exact(const Measurement& m, const Measurement::Square& predicted) {
+  return (m.R.diagonal().array() <= 1e-12 * predicted.diagonal().array().abs()).any();
+}
+
+/// Of what an earlier measurement without noise has told, P holds rounding, which may have no part in a correction: no
+/// row of H P is larger than its own variance and that of the other state allow (Cauchy & Schwarz). What is beyond
+/// counts as noise, with all of that row's part in H P H'.
+void count_rounding(Measurement& m, const Measurement::Rows& HP, const Measurement::Square& predicted,
+                    const ErrorMatrix& P) {
+  m.R.diagonal().array() += rounding_of_HPHt(m.H, P);
+  for (Eigen::Index i = 0; i < HP.rows(); ++i) {
+    double least = 0.0;
+    for (Eigen::Index j = 0; j < HP.cols(); ++j)
+      if (P(j, j) > 0.0) least = std::max(least, HP(i, j) * HP(i, j) / P(j, j));
+    constexpr double kRounded = 1.0 + 1e-6;
+    if (least > kRounded * predicted(i, i)) m.R(i, i) += least + predicted.row(i).cwiseAbs().sum();
+  }
+}
+
 }  // namespace
 
 ErrorStateFilter::ErrorStateFilter(const FilterConfig& config, const ImuNoise& noise, const LocalFrame& frame,
@@ -282,10 +302,10 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
   Measurement::Rows HP = rows_of(m.H, P());
   Measurement::Square predicted = times_transposed(HP, m.H);
   Eigen::LLT<Measurement::Square> S_llt(predicted + m.R);
-  if (S_llt.info() != Eigen::Success) {
+  if (S_llt.info() != Eigen::Success || nearly_exact(m, predicted)) {
     // Both what is measured and the measurement are known better than the terms of H P H' are rounded: it then counts
     // as known to that rounding.
-    m.R.diagonal().array() += rounding_of_HPHt(m.H, P());
+    count_rounding(m, HP, predicted, P());
     S_llt.compute(predicted + m.R);
   }
   CANYON_CHECK(S_llt.info() == Eigen::Success, "innovation covariance is not positive definite: diagonal ",

@@ -13,6 +13,9 @@ namespace canyon::fusion {
 /// K = P H' S^-1.
 using Gain = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostStates, Measurement::kMost>;
 
+/// K residual: an error of all states, padded; it needs no memory of its own.
+using ErrorVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostStates, 1>;
+
 /// The form in which a filter keeps the covariance of its errors, and what of an error a correction takes to be kept.
 /// One-level interface; the models are in the table below, each in its own file.
 class Estimator {
@@ -28,7 +31,7 @@ class Estimator {
   /// By a measurement with its gain, and H P.
   virtual void correct(const Measurement& m, const Gain& K, const Measurement::Rows& HP) = 0;
   /// Adds the estimated error to the state; the errors are then counted from the corrected one.
-  virtual void inject(ErrorState& state, const Eigen::VectorXd& error) = 0;
+  virtual void inject(ErrorState& state, const ErrorVector& error) = 0;
 };
 
 using MakeEstimator = std::unique_ptr<Estimator>();

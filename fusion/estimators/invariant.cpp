@@ -43,14 +43,14 @@ class Invariant final : public Copied<Estimator, Invariant> {
   void propagate(ErrorPropagation& step) override { form_.propagate(step); }
   void correct(const Measurement& m, const Gain& K, const Measurement::Rows& HP) override { form_.correct(m, K, HP); }
 
-  void inject(ErrorState& state, const Eigen::VectorXd& error) override {
+  void inject(ErrorState& state, const ErrorVector& error) override {
     const Eigen::Matrix3d R = state.nav.R_EU.toRotationMatrix();
     Eigen::Matrix<double, 9, 1> xi = error.head<9>();
     xi.segment<3>(Index::kPosition) = R.transpose() * xi.segment<3>(Index::kPosition);
     xi.segment<3>(Index::kVelocity) = R.transpose() * xi.segment<3>(Index::kVelocity);
     // Exp moves by the left Jacobian of SO(3), which is the right one of the opposite turn.
     const Eigen::Matrix3d along = R * so3_right_jacobian(-xi.head<3>());
-    Eigen::VectorXd moved = error;
+    ErrorVector moved = error;
     moved.segment<3>(Index::kPosition) = along * xi.segment<3>(Index::kPosition);
     moved.segment<3>(Index::kVelocity) = along * xi.segment<3>(Index::kVelocity);
     state.inject(moved);

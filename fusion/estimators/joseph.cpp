@@ -10,7 +10,7 @@ class Joseph final : public Copied<Estimator, Joseph> {
   const ErrorMatrix& covariance() override { return form_.covariance(); }
   void propagate(ErrorPropagation& step) override { form_.propagate(step); }
   void correct(const Measurement& m, const Gain& K, const Measurement::Rows& HP) override { form_.correct(m, K, HP); }
-  void inject(ErrorState& state, const Eigen::VectorXd& error) override {
+  void inject(ErrorState& state, const ErrorVector& error) override {
     state.inject(error);
     form_.reset_attitude(error.segment<3>(ErrorIndex::kTheta));
   }

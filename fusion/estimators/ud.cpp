@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 #include "canyon/core/motion/rotation.h"
@@ -62,14 +64,15 @@ class Ud final : public Copied<Estimator, Ud> {
   }
 
   void correct(const Measurement& m, const Gain&, const Measurement::Rows&) override {
-    // Rows whose noises are independent and of one unit.
-    const Eigen::LLT<Eigen::MatrixXd> R(m.R);
-    const Eigen::MatrixXd H = R.matrixL().solve(Eigen::MatrixXd(m.H));
-    for (Eigen::Index i = 0; i < H.rows(); ++i) correct(Eigen::VectorXd(H.row(i).transpose()));
+    // Rows whose noises are independent; what is measured without noise has none.
+    const Eigen::LDLT<Eigen::MatrixXd> R{Eigen::MatrixXd(m.R)};
+    const Eigen::MatrixXd H = R.matrixL().solve(R.transpositionsP() * Eigen::MatrixXd(m.H));
+    const Eigen::VectorXd noise = R.vectorD();
+    for (Eigen::Index i = 0; i < H.rows(); ++i) correct(Eigen::VectorXd(H.row(i).transpose()), std::max(noise[i], 0.0));
     made_ = false;
   }
 
-  void inject(ErrorState& state, const Eigen::VectorXd& error) override {
+  void inject(ErrorState& state, const ErrorVector& error) override {
     state.inject(error);
     // Exp(theta + e) = Exp(theta) Exp(Jr(theta) e): the rows of attitude, whose own corner is then factorized anew.
     U_.topRows<3>() = (so3_right_jacobian(error.segment<3>(Index::kTheta)) * U_.topRows<3>()).eval();
@@ -101,17 +104,17 @@ class Ud final : public Copied<Estimator, Ud> {
     made_ = false;
   }
 
-  /// By a scalar measurement of unit noise (Bierman's algorithm).
-  void correct(const Eigen::VectorXd& h) {
+  /// By a scalar measurement of this variance (Bierman's algorithm); of none, the first variance that it meets is gone.
+  void correct(const Eigen::VectorXd& h, double variance) {
     const Eigen::Index n = D_.size();
     const Eigen::VectorXd f = U_.transpose() * h;
     Eigen::VectorXd gain = Eigen::VectorXd::Zero(n);
-    double alpha = 1.0;
+    double alpha = variance;
     for (Eigen::Index j = 0; j < n; ++j) {
       const double v = D_[j] * f[j], before = alpha;
       alpha += v * f[j];
-      const double lambda = -f[j] / before;
-      D_[j] *= before / alpha;
+      const double lambda = before > 0.0 ? -f[j] / before : 0.0;
+      if (alpha > 0.0) D_[j] *= before / alpha;
       for (Eigen::Index i = 0; i < j; ++i) {
         const double u = U_(i, j);
         U_(i, j) = u + lambda * gain[i];

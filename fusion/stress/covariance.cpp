@@ -47,6 +47,42 @@ StressFigure noise_ratio(double ratio, std::int64_t steps) {
   return {1.0 * broken, 0.0};
 }
 
+/// Smallest eigenvalue of P in units of the variances of `before`, by 2 n^2 epsilons of them: rounding of sums of n x n
+/// terms of that size. Infinite where P is not symmetric to the bit.
+double below_nothing(const Matrix& P, const Matrix& before) {
+  if (!P.allFinite() || P != P.transpose()) return stress::kInfinity;
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(P.rows());
+  for (Eigen::Index i = 0; i < P.rows(); ++i)
+    if (before(i, i) > 0.0) scale[i] = 1.0 / std::sqrt(before(i, i));
+  const Matrix relative = scale.asDiagonal() * P * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(relative, Eigen::EigenvaluesOnly);
+  const auto n = static_cast<double>(P.rows());
+  return -eigen.eigenvalues().minCoeff<Eigen::PropagateNaN>() / (2.0 * n * n * kEpsilon);
+}
+
+/// A pose measured without any noise, R = 0, every ten predictions, and once more at the same instant: what is left of
+/// P is singular, nothing and rounding, no more of it below nothing than rounding of what was; ten predictions on it is
+/// definite again.
+StressFigure perfect_poses(const std::string& estimator, std::int64_t steps) {
+  RestingFilter rest(configured("measurements = [\"map_pose\"]\nestimator = \"" + estimator + "\""), usual_noise(),
+                     100.0);
+  stress::Worst worst;
+  for (std::int64_t k = 1; k <= steps; ++k) {
+    rest.predict();
+    if (k % 10 != 0) continue;
+    const bool look = k < 1000 || k % 1000 == 0;
+    const Matrix before = look ? rest.filter.covariance() : Matrix();
+    if (look) worst.look(is_broken(before) ? stress::kInfinity : 0.0, 1.0);
+    for (int again = 0; again < 2; ++again) {
+      rest.filter.update(AidingMessage(PoseInMap{rest.filter.nav_state().t, Pose{}, Matrix6d::Zero()}));
+      if (look) worst.look(std::max(0.0, below_nothing(rest.filter.covariance(), before)), 1.0);
+    }
+  }
+  worst.look(rest.filter.estimate().X_WB.p.norm(),
+             1e-6);  // and it is where the pose says, to rounding of Earth's radius
+  return worst.figure();
+}
+
 /// Biases that live for 0.1 ms and for 1e6 s in one state, gain errors beside them, 10 000 steps: the fast one's
 /// variance is its stationary one to an epsilon a step, the slow one's never grows beyond it, and all stays definite.
 StressFigure time_constants(double fast_s, double slow_s) {
@@ -112,6 +148,11 @@ std::vector<StressCase> covariance_cases() {
       "P - K H P cancels to the 16th digit of what was: variances below zero, and an update that goes astray",
       "symmetric to the bit, variances above zero, correlations definite to the rounding of n by n terms, n states",
       "covariances"};
+  const StressMechanism perfect{
+      StressGroup::kData, "a measurement without noise",
+      "R = 0 leaves a singular P, whose rounding is of either sign; its factor is divided by",
+      "symmetric to the bit, semidefinite to the rounding of n by n terms of what was; definite once predicted",
+      "of the bound"};
   const StressMechanism constants{
       StressGroup::kStiff, "time constants of ten decades in one state",
       "1 - dt / tau is -99 for the fast one, and 1 - e^(-2 dt / tau) cancels for the slow one",
@@ -126,6 +167,11 @@ std::vector<StressCase> covariance_cases() {
                        [r] { return noise_ratio(r, 10'000); });
   rows.of(ratio).add("covariance/noise_ratio_1e12_1e5_steps", [] { return noise_ratio(1e12, 100'000); });
   rows.of(ratio).add("covariance/noise_ratio_1e12_1e7_steps", [] { return noise_ratio(1e12, 10'000'000); });
+  rows.long_running();
+  for (const char* estimator : {"joseph", "ud", "invariant"})
+    rows.of(perfect).add(std::string("covariance/perfect_poses_by_") + estimator,
+                         [=] { return perfect_poses(estimator, 5'000); });
+  rows.of(perfect).add("covariance/perfect_poses_1e7_steps", [] { return perfect_poses("joseph", 10'000'000); });
   rows.long_running();
   for (const auto& [fast_s, slow_s] : {std::pair{1e-4, 1e6}, {1e-2, 1e4}, {1.0, 100.0}})
     rows.of(constants).add("covariance/biases_of_" + stress::text(fast_s) + "_and_" + stress::text(slow_s) + "_s",

@@ -178,6 +178,70 @@ StressFigure after_hours_without() {
   return {1.0 * wrong, 0.0};
 }
 
+/// Position and velocity along one axis, pushed by white noise N^2, in a field that pulls back by w^2 a metre (pushes
+/// away if that is negative): the textbook's two states, by themselves.
+struct TwoStates {
+  double pp, pv = 0.0, vv;
+  void predict(double dt, double w2, double N2) {
+    const double a = 1.0 - 0.5 * w2 * dt * dt, c = -w2 * dt;
+    const double pp_ = a * a * pp + 2.0 * a * dt * pv + dt * dt * vv, vv_ = c * c * pp + 2.0 * a * c * pv + a * a * vv;
+    pv = a * c * pp + (a * a + c * dt) * pv + a * dt * vv + N2 * dt * dt / 2.0;
+    pp = pp_ + N2 * dt * dt * dt / 3.0;
+    vv = vv_ + N2 * dt;
+  }
+  void update(double R) {
+    const double S = pp + R;
+    vv -= pv * pv / S;
+    pv *= R / S;
+    pp *= R / S;
+  }
+};
+
+/// Fixes of a metre at this rate, the accelerometer's white noise alone to carry over from one to the next: variances
+/// along east, north and up against those of two states. They remember for T = max(1 / rate, (s^2 / rate / N^2)^(1/4)),
+/// twice which is what the rest has time for: Coriolis, which couples the axes by 2 w_e (2 T) and the variances by its
+/// square; flattening and the Earth's turn, 1 % of the field's pull; the start's tilt of 1e-6 degrees; rounding.
+StressFigure fixes_at(double rate_hz) {
+  constexpr double kN = 1e-3, kStart_m = 10.0, kStart_m_s = 1.0, kTilt_deg = 1e-6;
+  ImuNoise noise;
+  noise.accel.white_per_sqrt_hz = kN;
+  FilterConfig config;
+  config.initial_attitude_sigma_deg_roll_pitch = config.initial_attitude_sigma_deg_heading = kTilt_deg;
+  config.initial_position_sigma_m = kStart_m;
+  config.initial_velocity_sigma_m_s = kStart_m_s;
+  const double imu_hz = std::max(rate_hz, 100.0), fix_s = 1.0 / rate_hz;
+  const double memory_s = std::max(fix_s, std::pow(fix_s / (kN * kN), 0.25));
+  RestingFilter rest(config, noise, imu_hz);
+  const auto each = static_cast<std::int64_t>(std::llround(imu_hz / rate_hz));
+  const auto steps = each * static_cast<std::int64_t>(std::max(20.0, std::ceil(10.0 * memory_s / fix_s)));
+  const double g = 9.81, radius_m = 6.37e6;
+  TwoStates axes[3];
+  for (TwoStates& axis : axes) axis = {.pp = kStart_m * kStart_m, .vv = kStart_m_s * kStart_m_s};
+  int wrong = 0;
+  for (std::int64_t k = 1; k <= steps; ++k) {
+    rest.predict();
+    for (int i = 0; i < 3; ++i) axes[i].predict(1.0 / imu_hz, (i < 2 ? 1.0 : -2.0) * g / radius_m, kN * kN);
+    if (k % each != 0 || k == steps) continue;
+    wrong += rest.filter.update(rest.fix(1.0)).dimension == 3 ? 0 : 1;
+    for (TwoStates& axis : axes) axis.update(1.0);
+  }
+  const Matrix3d R_WE = rest.frame.R_EW().transpose();
+  const Eigen::MatrixXd P = rest.filter.covariance();
+  const Matrix3d p = R_WE * P.block<3, 3>(3, 3) * R_WE.transpose(), v = R_WE * P.block<3, 3>(6, 6) * R_WE.transpose();
+  const double reach_s = 2.0 * memory_s, turn = std::pow(2.0 * Wgs84::rate_rad_s * reach_s, 2);
+  const double pull = 0.01 * 2.0 * g / radius_m * reach_s * reach_s, tilt = g * kTilt_deg * kDegree;
+  const double rounding = 10.0 * kEpsilon * static_cast<double>(steps);
+  stress::Worst worst;
+  worst.look(wrong == 0 && P == P.transpose() ? 0.0 : stress::kInfinity, 1.0);
+  for (int i = 0; i < 3; ++i) {
+    const double tilted_v = std::pow(tilt * reach_s, 2) / axes[i].vv,
+                 tilted_p = std::pow(0.5 * tilt * reach_s * reach_s, 2) / axes[i].pp;
+    worst.look(p(i, i) / axes[i].pp - 1.0, turn + pull + tilted_p + rounding);
+    worst.look(v(i, i) / axes[i].vv - 1.0, turn + pull + tilted_v + rounding);
+  }
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> fix_cases() {
@@ -208,6 +272,12 @@ std::vector<StressCase> fix_cases() {
   const StressMechanism lost{StressGroup::kLong, "a position that is not known on Earth",
                              "gravity linear over 10^7 m pulls the update anywhere",
                              "the first fix takes the position's place, and the filter goes on", "looks"};
+  const StressMechanism rates{StressGroup::kStiff, "fixes at rates from 0.01 to 1000 Hz",
+                              "noise per fix in place of per root hertz, a fix too many or too few, an update that "
+                              "loses what the last thousand told",
+                              "position and velocity as a filter of these two states has them, to what Coriolis and "
+                              "flattening do within what it remembers",
+                              "of the bound"};
   StressRows rows;
   rows.of(rank).add("fix/rank_deficient_covariance", rank_deficient_fixes);
   rows.of(outlier).add("fix/outliers_to_1e300_m", outliers);
@@ -216,6 +286,8 @@ std::vector<StressCase> fix_cases() {
   rows.of(lost).add("fix/after_4_h_without", after_hours_without);
   for (const double sigma_m : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15})
     rows.of(perfect).add("fix/sigma_" + stress::text(sigma_m) + "_m", [=] { return nearly_perfect_fixes(sigma_m); });
+  for (const double rate_hz : {0.01, 1.0, 100.0, 1000.0})
+    rows.of(rates).add("fix/rate_" + stress::text(rate_hz) + "_hz", [=] { return fixes_at(rate_hz); });
   for (const double apart_m : {1.0, 1e5, 1e9})
     rows.of(contradiction).add("fix/contradiction_of_" + stress::text(apart_m) + "_m", [=] {
       return contradictory_fixes(apart_m);

@@ -1,5 +1,6 @@
 #include <vector>
 
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/subjects.h"
@@ -108,6 +109,38 @@ StressFigure gaps(const char* integrator, double gap_s) {
           missed_m_s2 * all_s * all_s / 2.0 + rounding_m};
 }
 
+ImuSample rounded_to_single(ImuSample sample) {
+  sample.dtheta_U = sample.dtheta_U.cast<float>().cast<double>();
+  sample.dv_U = sample.dv_U.cast<float>().cast<double>();
+  return sample;
+}
+
+/// A body that turns about all axes and is pushed to all sides, unaided, by increments as they are and by the same
+/// rounded to single precision. Each is off by half a unit u of itself at most: the velocity by u f a second, the
+/// attitude by u w, which turns the force f: u (f T^2 / 2 + w f T^3 / 6) after T, and e^(T / 570 s) of the height's.
+StressFigure single_precision_unaided(double seconds) {
+  const NavState truth = resting_at(45.0, 7.0, 200.0);
+  constexpr double kRate_hz = 100.0;
+  std::vector<ImuSample> exact, rounded;
+  double f = 0.0, w = 0.0;
+  for (int k = 0; k < static_cast<int>(seconds * kRate_hz); ++k) {
+    const double t = k / kRate_hz;
+    ImuSample s = rest_sample(truth, k, kRate_hz);
+    s.dtheta_U = s.dt_s * Eigen::Vector3d(0.3 * std::sin(1.1 * t), 0.2 * std::cos(0.7 * t), 0.4 * std::sin(0.3 * t));
+    s.dv_U += s.dt_s * Eigen::Vector3d(2.0 * std::sin(0.9 * t), std::cos(1.3 * t), 3.0 * std::sin(5.0 * t));
+    f = std::max(f, s.dv_U.norm() / s.dt_s);
+    w = std::max(w, s.dtheta_U.norm() / s.dt_s);
+    exact.push_back(s);
+    rounded.push_back(rounded_to_single(s));
+  }
+  const auto end = [&](const std::vector<ImuSample>& log) {
+    return dead_reckon(log, truth, *make_strapdown("two_sample")).back().p_EU_E;
+  };
+  const double T = seconds,
+               off_m = stress::kHalfUlp * (f * T * T / 2.0 + w * f * T * T * T / 6.0) * std::exp(T / 570.0);
+  return {(end(rounded) - end(exact)).norm() / off_m, 1.0};
+}
+
 }  // namespace
 
 std::vector<StressCase> sample_cases() {
@@ -126,11 +159,17 @@ std::vector<StressCase> sample_cases() {
       group, "a gap in a log at rest", "the integrator looks back over the gap, or the time is lost",
       "rest, to half the Earth's turn within the gap for euler, its square for the others, and rounding", "m"};
   gap.loose = "the bound adds the turn of the longest interval over the whole time";
+  const StressMechanism single{group, "samples in single precision",
+                               "a time or a sum in single precision stands still; rounding that is taken for motion",
+                               "no farther off than half a unit of each increment carries it", "of the bound"};
   StressRows rows;
   rows.of(broken).add("sample/not_finite_field_by_field", not_finite_samples);
   rows.of(order).add("sample/out_of_order", out_of_order_samples);
   for (const char* integrator : {"euler", "two_sample", "three_sample"})
     rows.of(logs).add(std::string("sample/bad_logs_by_") + integrator, [=] { return bad_logs(integrator); });
+  for (const double seconds : {10.0, 60.0})
+    rows.of(single).add("sample/single_precision_unaided_" + stress::text(seconds) + "_s",
+                        [=] { return single_precision_unaided(seconds); });
   for (const char* integrator : {"euler", "two_sample", "three_sample"})
     for (const double gap_s : {0.1, 60.0})
       rows.of(gap).add("sample/gap_of_" + stress::text(gap_s) + "_s_by_" + integrator,

@@ -18,6 +18,7 @@ std::vector<StressCase> sample_cases();
 std::vector<StressCase> smoother_cases();
 std::vector<StressCase> timeline_cases();
 std::vector<StressCase> unaided_cases();
+std::vector<StressCase> vehicle_filter_cases();
 std::vector<StressCase> verdict_cases();
 
 }  // namespace canyon::fusion

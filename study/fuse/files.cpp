@@ -47,6 +47,13 @@ Json innovations_json(const Fused& run) {
   return out;
 }
 
+Json parameters_json(const Fused& run) {
+  Json out = Json::object();
+  for (const FuseParameter& p : run.parameters)
+    out[p.name] = {{"value", p.value}, {"sigma", p.sigma}, {"sigma_at_start", p.sigma_at_start}};
+  return out;
+}
+
 /// What was wrong with what reached the filter; those of nothing are left out.
 Json incidents_json(const fusion::Incidents& incidents) {
   Json out = Json::object();
@@ -193,6 +200,7 @@ Json fuse_json(const FuseInputs& in, const Fused& run, const FuseSmoothed* smoot
   out["outage"] = outage_json(run.windows);
   out.update(Json{{"smoother", smoothed != nullptr ? smoothed_json(*smoothed) : Json(nullptr)},
                   {"innovations", innovations_json(run)},
+                  {"estimated", parameters_json(run)},
                   {"verdict", fusion::verdict_lines(run.verdict)},
                   {"evidence", evidence_json(run.verdict)},
                   {"start", {{"from", run.start_from}, {"sow_s", run.start.sow_s()}, {"week", run.start.week()}}},

@@ -9,6 +9,7 @@
 #include "canyon/fusion/alignment/alignment.h"
 #include "canyon/fusion/divided_sample.h"
 #include "canyon/fusion/reference_track.h"
+#include "canyon/fusion/verdict/state_record.h"
 
 namespace canyon::study {
 namespace {
@@ -81,6 +82,7 @@ class Run {
   void note(const fusion::UpdateReport& report);
   void settle(const fusion::ErrorStateFilter& filter);
   void stepped(const ImuSample& sample, const fusion::NavState& before, const fusion::ErrorStateFilter& filter);
+  void keep_parameters();
   /// By the clock of the messages.
   fusion::NavState stamped(fusion::NavState state, GpsTime t) const {
     state.t = t;
@@ -99,6 +101,7 @@ class Run {
   GpsTime left_, next_epoch_;
   bool has_last_ = false;
   Eigen::Vector3d rate_U_ = Eigen::Vector3d::Zero();
+  Eigen::VectorXd start_variances_;
 };
 
 void Run::begin(GpsTime t, const Pose& X_WB, const Eigen::Vector3d& v_WB_W) {
@@ -195,6 +198,15 @@ void Run::keep(const fusion::ErrorStateFilter& filter) {
   out_.epochs.push_back(epoch);
 }
 
+void Run::keep_parameters() {
+  const fusion::ErrorStateFilter& filter = timeline_->filter();
+  const auto names = fusion::state_names(filter.state());
+  const Eigen::VectorXd variances = filter.covariance().diagonal();
+  for (int i = fusion::ErrorIndex::kMoving; i < filter.state().size(); ++i)
+    out_.parameters.push_back({names[static_cast<std::size_t>(i)].name, filter.value(i), std::sqrt(variances[i]),
+                               std::sqrt(start_variances_[i])});
+}
+
 void Run::settle(const fusion::ErrorStateFilter& filter) {
   left_ = timeline_->at();
   scorer_.settled(stamped(filter.nav_state(), left_), filter, rate_U_, outages_);
@@ -252,6 +264,7 @@ Result<Fused> Run::all() {
   out_.measurements = parts.measurements;
   tell_fix_errors(in_, plan_, evidence_);
   begin(plan_.start, plan_.X_WB, plan_.v_WB_W);
+  start_variances_ = timeline_->filter().covariance().diagonal();
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (k % kSamplesPerLook == 0) throw_if_cancelled();
     ImuSample sample = samples[k];
@@ -273,6 +286,7 @@ Result<Fused> Run::all() {
   out_.messages_outside += messages_.size() - next_;
   out_.gaps_bridged = static_cast<std::size_t>(out_.incidents.count(fusion::Trouble::kGap));
   out_.end = timeline_->at();
+  keep_parameters();
   out_.errors = scorer_.errors();
   out_.windows = outages_.windows();
   out_.verdict = evidence_.numbers();

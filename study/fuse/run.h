@@ -76,12 +76,19 @@ struct FuseSegment {
   std::vector<fusion::Loosening> loosened;
 };
 
+/// What the run has made of one state beside attitude, position and velocity, at its end; SI.
+struct FuseParameter {
+  std::string name;  ///< "mounting z"
+  double value = 0.0, sigma = 0.0, sigma_at_start = 0.0;
+};
+
 struct Fused {
   std::string start_from;
   GpsTime start, end;
   LocalFrame frame;
   std::vector<std::string> states, measurements;  ///< rows of the filter
   std::vector<FuseEpoch> epochs;
+  std::vector<FuseParameter> parameters;
   std::vector<fusion::UpdateReport> updates;
   std::map<std::string, MeasurementScore> by_measurement;
   std::vector<FuseError> errors;

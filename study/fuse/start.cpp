@@ -113,6 +113,15 @@ Status search_heading(const FuseInputs& in, FusePlan& plan) {
   return Ok{};
 }
 
+/// A unit that levels itself says how it stands, not how the vehicle does: of that it knows no more than of its
+/// mounting, where that is estimated. The course is the vehicle's own.
+double tilt_of_body(double tilt_of_unit_rad, const FusePlan& plan) {
+  const fusion::ErrorState state(fusion::filter_parts(plan.filter).states, plan.filter.own, {.noise = plan.noise});
+  for (const fusion::ErrorState::Member& member : state.members())
+    if (member.offset == state.mounting()) return std::hypot(tilt_of_unit_rad, std::sqrt(member.block->variance(0)));
+  return tilt_of_unit_rad;
+}
+
 }  // namespace
 
 Status settle_heading(const FuseInputs& inputs, FusePlan& plan) {
@@ -129,11 +138,11 @@ Result<FusePlan> plan_fuse(const FuseInputs& in, const FuseConfig& config, const
   const auto set = [](double sigma, double unit, double least, double& key) {
     if (std::isfinite(sigma)) key = std::max(sigma / unit, least);
   };
-  set(start.tilt_rad, kDegree, 1e-6, plan.filter.initial_attitude_sigma_deg_roll_pitch);
   set(start.heading_rad, kDegree, 1e-6, plan.filter.initial_attitude_sigma_deg_heading);
   set(start.position_m, 1.0, 1e-6, plan.filter.initial_position_sigma_m);
   set(start.velocity_m_s, 1.0, 1e-6, plan.filter.initial_velocity_sigma_m_s);
   CANYON_TRY(plan.noise, fuse_noise(config));
+  set(tilt_of_body(start.tilt_rad, plan), kDegree, 1e-6, plan.filter.initial_attitude_sigma_deg_roll_pitch);
   plan.lever_U_B = config.imu.lever_m;
   plan.lever_A_B = config.gnss.lever_m;
   plan.frame = LocalFrame(geodetic_from_ecef(start.nav.p_EU_E));

@@ -50,6 +50,9 @@ class DrivenTruth {
   /// Its white noise.
   double gyro_per_sqrt_hz = 0.0, accel_per_sqrt_hz = 0.0;
 
+  /// Begins at rest; before the first step.
+  void stand() { state_.v_EU_E.setZero(); }
+
   const fusion::NavState& state() const { return state_; }
   double elapsed_s() const { return state_.t - start(); }
   Pose X_WB() const {

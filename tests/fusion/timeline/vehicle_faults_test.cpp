@@ -1,0 +1,84 @@
+// The same faults to the filter `vehicle`, with wheels and velocities, and beside it `naive`, which takes what comes.
+#include <cstdio>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "canyon/tests/fusion/timeline/faulty_drive.h"
+
+namespace canyon::fusion {
+namespace {
+
+using namespace testing;
+
+const std::string kBare = "filter = \"naive\"", kVehicle = "filter = \"vehicle\"";
+/// With a way back, which it has not by itself.
+const std::string kWithWayBack = kVehicle + "\nacceptance = \"gate\"\ngate_sigma = 4\ngate_recovery_s = 5";
+/// Three sigma of the filter with sound fixes, three axes: 0.5 m each after filtering.
+constexpr double kSound_m = 3.0;
+
+struct Three {
+  Worst bare, vehicle, with_way_back;
+};
+
+Three drive_all(const char* what, const Fault& fault, double seconds = 180.0) {
+  Three out{drive(kBare, fault, seconds), drive(kVehicle, fault, seconds, Carries::kWheelsToo),
+            drive(kWithWayBack, fault, seconds, Carries::kWheelsToo)};
+  std::printf(
+      "%s: naive %.1f m at most, %.2f m at the end; vehicle %.2f, %.2f; with a gate that recovers %.2f, %.2f; %s\n",
+      what, out.bare.off_m, out.bare.final_m, out.vehicle.off_m, out.vehicle.final_m, out.with_way_back.off_m,
+      out.with_way_back.final_m, out.vehicle.incidents.text().c_str());
+  return out;
+}
+
+TEST(VehicleFaults, NoneIsWhatTheyAreMeasuredAgainst) {
+  const Three r = drive_all("no fault", {});
+  EXPECT_LT(r.vehicle.off_m, kSound_m);
+  EXPECT_EQ(r.vehicle.incidents.text(), "");
+}
+
+TEST(VehicleFaults, OneFixInFiveIsAnywhere) {
+  const Three r = drive_all("one in five", one_in_five_anywhere());
+  EXPECT_GT(r.bare.off_m, 10.0 * kSound_m);
+  EXPECT_LT(r.vehicle.off_m, kSound_m);
+}
+
+TEST(VehicleFaults, FixesFreezeForTenSeconds) {
+  const Three r = drive_all("frozen", frozen_for_ten_seconds());
+  EXPECT_LT(r.vehicle.off_m, kSound_m);
+  EXPECT_EQ(r.vehicle.incidents.count(Trouble::kFrozen), 19);  // the first of twenty is one
+}
+
+/// Wheels and velocities contradict fixes that lag: the vehicle's filter is worse off than the naive one (6.9 m for 2.7
+/// m) unless it estimates the lag.
+TEST(VehicleFaults, LatencyNobodyDeclared) {
+  const Three r = drive_all("200 ms", late_by_200_ms());
+  const Worst told = drive(kVehicle +
+                               "\nstates = [\"biases\", \"gains\", \"mounting\", \"wheel_scale\", \"fix_error\", "
+                               "\"time_offset\"]\ntime_offset_sigma_s = 0.2",
+                           late_by_200_ms(), 180.0, Carries::kWheelsToo);
+  std::printf("  with state time_offset %.2f m at most, %.2f m at the end\n", told.off_m, told.final_m);
+  EXPECT_LT(told.off_m, r.vehicle.off_m);
+  EXPECT_LT(told.final_m, kSound_m);
+}
+
+TEST(VehicleFaults, TwiceIsOnce) {
+  const Three none = drive_all("no fault", {}), twice = drive_all("twice", all_twice());
+  EXPECT_EQ(twice.vehicle.off_m, none.vehicle.off_m);  // to the bit
+  EXPECT_EQ(twice.vehicle.final_m, none.vehicle.final_m);
+  EXPECT_EQ(twice.vehicle.incidents.count(Trouble::kDuplicate), 18000 + 2 * 360);
+}
+
+/// Asked is 10 s; neither meets it. `vehicle` takes the wander for noise, is 70 m off at most where the naive filter is
+/// 306 m, and has no way back: 69 m after 10 s, 25 m after five minutes. With a gate that recovers it follows the bad
+/// fixes (282 m), and is 12 m off after 10 s and 1.0 m after five minutes.
+TEST(VehicleFaultsNightly, AnHourOfBadFixes) {
+  const Three r = drive_all("an hour of bad fixes", bad_until(360000), 3610.0),
+              later = drive_all("the same 5 minutes later", bad_until(360000), 3900.0);
+  EXPECT_LT(r.vehicle.off_m, 0.5 * r.bare.off_m);
+  EXPECT_LT(later.vehicle.final_m, r.vehicle.final_m);
+  EXPECT_LT(later.with_way_back.final_m, kSound_m);
+}
+
+}  // namespace
+}  // namespace canyon::fusion
