@@ -26,6 +26,10 @@ void StepResponse::corrected(const Correction& correction) {
   errors_ -= correction.gain * by_what_is_measured;
 }
 
+void StepResponse::renewed(std::span<const Renewal> states) {
+  for (const auto [state, kept] : states) errors_.row(state) *= kept;
+}
+
 void StepResponse::restarted(const Measurement& fix) {
   const ErrorMatrix theta = errors_.topRows<3>();
   errors_.middleRows<3>(Index::kPosition) = -fix.H.leftCols<3>() * theta;

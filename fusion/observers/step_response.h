@@ -24,6 +24,7 @@ class StepResponse final : public FilterObserver {
   void begin(const ErrorState& state) override;
   void predicted(ErrorPropagation& step) override;
   void corrected(const Correction& correction) override;
+  void renewed(std::span<const Renewal> states) override;
   void restarted(const Measurement& fix) override;
 
   /// By what a place in E is off without that effect, m, which depends on the present errors of theta, p and v as J

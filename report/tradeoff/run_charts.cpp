@@ -50,7 +50,7 @@ Line front_line(const ErrorOf& error, const TradeoffSummary& t) {
   return line;
 }
 
-Axis scale(double min, double max) {
+Axis scale_of(double min, double max) {
   return max > 10.0 * min ? Axis::decades(min, max) : Axis::logarithmic(min, max);
 }
 
@@ -76,7 +76,7 @@ Panel panel_of(const ErrorOf& error, const TradeoffSummary& t) {
   }
   const Extremes y = positive_extremes_of(panel.lines);
   if (!y.drawn) return panel;
-  panel.y = scale(0.8 * y.min, 1.25 * y.max);
+  panel.y = scale_of(0.8 * y.min, 1.25 * y.max);
   panel.lines.push_back(front_line(error, t));
   return panel;
 }
@@ -105,7 +105,7 @@ std::string run_error_charts(const TradeoffSummary& t) {
     chart.panels.push_back(std::move(panel));
   }
   if (chart.panels.empty()) return "";
-  chart.x = scale(0.9 * low, 1.1 * high);
+  chart.x = scale_of(0.9 * low, 1.1 * high);
   return figure(draw(chart), "Whole missions in an open loop: the same true motion and draws for all.");
 }
 
@@ -129,7 +129,7 @@ std::string run_outcome_chart(const TradeoffSummary& t) {
   }
   if (panel.lines.empty()) return "";
   Chart chart{.id = "runs-outcomes",
-              .x = scale(0.9 * low, 1.1 * high),
+              .x = scale_of(0.9 * low, 1.1 * high),
               .x_label = "CPU time of a mission to its end, s",
               .solid = true,
               .title = "Outcomes of whole missions",

@@ -214,7 +214,8 @@ std::span<const fusion::StrapdownEffect> strapdown_effects(const fusion::FilterC
 /// of delays are counted at; nothing that a clock shows (docs/plan.md).
 void add_strapdown(const mission::MissionConfig& config, const PositionChain& chain,
                    std::vector<PlannedEffect>& candidates) {
-  const auto steps = static_cast<std::int64_t>(static_cast<double>(kEpochs) * config.imu.rate_hz / config.gnss.rate_hz);
+  const auto steps =
+      static_cast<std::int64_t>(static_cast<double>(kToleratedEpochs) * config.imu.rate_hz / config.gnss.rate_hz);
   for (const PositionChain::Strapdown& effect : chain.strapdown)
     candidates.push_back(
         {.need = effect.need, .segment = "whole run", .saved_work = chain.steps > 0 ? steps : 0, .saved_cpu_s = 0.0});

@@ -227,7 +227,11 @@ TEST(MatchedRanges, EveryBlockIsAsFarOffAsItSays) {
 TEST(SatelliteSlots, WhoComesTakesThePlaceOfWhoHasGoneForTheLongest) {
   const auto epoch = [](double t_s, std::initializer_list<int> prns) {
     GnssEpoch e{.t = GpsTime::from_week_sow(1590, t_s), .observations = {}};
-    for (const int prn : prns) e.observations.push_back({.sv = {GnssSystem::kGps, static_cast<std::uint8_t>(prn)}});
+    for (const int prn : prns) {
+      GnssObservation o;
+      o.sv = {GnssSystem::kGps, static_cast<std::uint8_t>(prn)};
+      e.observations.push_back(o);
+    }
     return e;
   };
   const auto gps = [](int prn) { return SatelliteId{GnssSystem::kGps, static_cast<std::uint8_t>(prn)}; };

@@ -117,7 +117,9 @@ TEST_P(ScanOverACorrection, IsDeskewedAsByTruth) {
   EXPECT_GT(last.speed_m_s, 3.0);
   EXPECT_GT(corrected_m, 4.0);
   EXPECT_LT(by_correction_m, 5e-3);
-  if (GetParam().absolutely) EXPECT_LT(by_prediction_m, 5e-3);
+  if (GetParam().absolutely) {
+    EXPECT_LT(by_prediction_m, 5e-3);
+  }
   EXPECT_GT(by_estimate_m, 0.9 * corrected_m);
 }
 

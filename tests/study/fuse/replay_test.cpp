@@ -118,15 +118,10 @@ TEST(FuseReplay, WithBarometerAndMagnetometer) {
 
 // Without a fix, satellite by satellite; where other fixes come between samples as well.
 TEST(FuseReplay, OfRanges) {
-  expect_same("naive", R"(states = ["biases", "receiver_clock", "range_errors"]
-measurements = ["ranges"]
-acceptance = "student_t"
-[imu]
-rate_hz = 90.0
-[gnss]
-rate_hz = 3.0
-[run]
-)");
+  expect_same(RecordedDrive(
+      "states = [\"biases\", \"receiver_clock\", \"range_errors\"]\nmeasurements = [\"ranges\"]\nacceptance = "
+      "\"student_t\"",
+      "[imu]\nrate_hz = 90.0\n[gnss]\nrate_hz = 3.0\n"));
 }
 
 // Fixes, counts and epochs that fall between samples divide them, as in the run.
