@@ -75,7 +75,7 @@ StressFigure perfect_poses(const std::string& estimator, std::int64_t steps) {
     if (look) worst.look(is_broken(before) ? stress::kInfinity : 0.0, 1.0);
     for (int again = 0; again < 2; ++again) {
       rest.filter.update(AidingMessage(PoseInMap{rest.filter.nav_state().t, Pose{}, Matrix6d::Zero()}));
-      if (look) worst.look(std::max(0.0, below_nothing(rest.filter.covariance(), before)), 1.0);
+      if (look) worst.look(worse(0.0, below_nothing(rest.filter.covariance(), before)), 1.0);
     }
   }
   worst.look(rest.filter.estimate().X_WB.p.norm(),

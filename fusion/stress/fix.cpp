@@ -210,7 +210,7 @@ StressFigure fixes_at(double rate_hz) {
   config.initial_position_sigma_m = kStart_m;
   config.initial_velocity_sigma_m_s = kStart_m_s;
   const double imu_hz = std::max(rate_hz, 100.0), fix_s = 1.0 / rate_hz;
-  const double memory_s = std::max(fix_s, std::pow(fix_s / (kN * kN), 0.25));
+  const double memory_s = worse(fix_s, std::pow(fix_s / (kN * kN), 0.25));
   RestingFilter rest(config, noise, imu_hz);
   const auto each = static_cast<std::int64_t>(std::llround(imu_hz / rate_hz));
   const auto steps = each * static_cast<std::int64_t>(std::max(20.0, std::ceil(10.0 * memory_s / fix_s)));

@@ -128,8 +128,8 @@ StressFigure single_precision_unaided(double seconds) {
     ImuSample s = rest_sample(truth, k, kRate_hz);
     s.dtheta_U = s.dt_s * Eigen::Vector3d(0.3 * std::sin(1.1 * t), 0.2 * std::cos(0.7 * t), 0.4 * std::sin(0.3 * t));
     s.dv_U += s.dt_s * Eigen::Vector3d(2.0 * std::sin(0.9 * t), std::cos(1.3 * t), 3.0 * std::sin(5.0 * t));
-    f = std::max(f, s.dv_U.norm() / s.dt_s);
-    w = std::max(w, s.dtheta_U.norm() / s.dt_s);
+    f = worse(f, s.dv_U.norm() / s.dt_s);
+    w = worse(w, s.dtheta_U.norm() / s.dt_s);
     exact.push_back(s);
     rounded.push_back(rounded_to_single(s));
   }

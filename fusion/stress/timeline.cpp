@@ -83,7 +83,8 @@ StressFigure gap(double gap_s) {
     timeline.add(rest_sample(rest.truth, k, 100.0));
     alone.predict();
   }
-  worst.look((timeline.filter().covariance() - alone.filter.covariance()).cwiseAbs().maxCoeff(), 1e-300);
+  worst.look((timeline.filter().covariance() - alone.filter.covariance()).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+             1e-300);
   const Trouble told = timeline.add(rest_sample(rest.truth, 200 + missing, 100.0));
   worst.look(told == Trouble::kGap ? 0.0 : stress::kInfinity, 1.0);
   for (std::int64_t k = 0; k <= missing; ++k) alone.predict();
@@ -93,8 +94,8 @@ StressFigure gap(double gap_s) {
   // The sample after it moves the place by the new velocity's 10 ms, and the velocity by the new tilt; the white noise
   // over steps of other lengths is the same, and what the known part of the covariance makes meanwhile differs by the
   // order of the steps.
-  const double known_p = alone.filter.covariance().diagonal().segment<3>(3).maxCoeff(),
-               known_v = alone.filter.covariance().diagonal().segment<3>(6).maxCoeff();
+  const double known_p = alone.filter.covariance().diagonal().segment<3>(3).maxCoeff<Eigen::PropagateNaN>(),
+               known_v = alone.filter.covariance().diagonal().segment<3>(6).maxCoeff<Eigen::PropagateNaN>();
   const double after[] = {0.0, 0.01 * 0.01 * expected[2], std::pow(9.82 * 0.01, 2) * expected[0]};
   const double known[] = {1e-6 * expected[0], 1e-3 * known_p, 1e-3 * known_v};
   for (int block = 0; block < 3; ++block)

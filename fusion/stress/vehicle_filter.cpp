@@ -199,7 +199,7 @@ StressFigure round_and_round(double hours) {
     const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(unit, Eigen::EigenvaluesOnly)
                              .eigenvalues()
                              .minCoeff<Eigen::PropagateNaN>();
-    worst.look(std::max(0.0, -least), 2.0 * size * size * stress::kEpsilon);
+    worst.look(worse(0.0, -least), 2.0 * size * size * stress::kEpsilon);
     const NavState& s = filter.nav_state();
     NavState truth = ring.at(t);
     truth.R_EU = truth.R_EU * sensors.R_UB().conjugate();

@@ -135,7 +135,7 @@ StressFigure observed() {
     record.add(filter, alone);
   }
   for (const StateHistory& state : record.states()) {
-    worst.look(std::max(state.share, 0.0) - 1.0 > 0.0 ? stress::kInfinity : 0.0, 1.0);
+    worst.look(worse(state.share, 0.0) - 1.0 > 0.0 ? stress::kInfinity : 0.0, 1.0);
     if (state.block == "position") worst.look(state.share, 0.2);
     if (state.block == "position") worst.look(state.halved_after_s.value_or(stress::kInfinity), 15.0);
   }

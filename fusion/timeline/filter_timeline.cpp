@@ -15,6 +15,7 @@ namespace canyon::fusion {
 namespace {
 
 /// Between copies to go back to, and between the steps of a long gap.
+constexpr double kMostAge_s = 0.1;  // ErrorStateFilter::update(const GnssFix&)
 constexpr double kApart_s = 0.1;
 
 bool is_finite(const ImuSample& s) {
@@ -300,6 +301,11 @@ void FilterTimeline::take(const AidingMessage& message, bool done) {
   if (const auto* fix = std::get_if<GnssFix>(&message)) {
     GnssFix by_its_clock = *fix;
     by_its_clock.t.ns += own_ns;
+    // What the state time_offset says may have moved while the fix has waited, by more than the filter takes.
+    if (std::min(std::abs(fix->t - at_), std::abs(due(message) - at_)) > kMostAge_s) {
+      if (!done) incidents_.add(Trouble::kTooLate, fix->t);
+      return;
+    }
     UpdateReport report = filter_.update(by_its_clock);
     report.t = fix->t;
     if (on_update && !done && (report.dimension > 0 || report.accepted)) on_update(report, filter_);

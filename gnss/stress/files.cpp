@@ -88,12 +88,12 @@ StressFigure sp3(const char* scale, double ahead_s) {
       const GpsTime written = kStart + 900.0 * static_cast<double>(k);
       const auto state = orbits->state(sv, written);
       worst.look((s.t - written) - ahead_s, 1e-9);
-      worst.look((s.p_E - state->p_E).cwiseAbs().maxCoeff(), 0.5e-3 + 64.0 * kEpsilon * 4e7);
+      worst.look((s.p_E - state->p_E).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 0.5e-3 + 64.0 * kEpsilon * 4e7);
       const bool unknown = sv == kE3 && k == 4;
       worst.look(unknown == std::isnan(s.clock_s) ? 0.0 : kInfinity, 1.0);
       if (!unknown) worst.look(s.clock_s - 1e-6 * (10.0 + 0.25 * static_cast<double>(k)), 1e-12 * 1e-3);
       worst.look(s.v_E.has_value() == (sv == kG7) ? 0.0 : kInfinity, 1.0);
-      if (s.v_E) worst.look((*s.v_E - state->v_E).cwiseAbs().maxCoeff(), 0.5e-7 + 1e-11);
+      if (s.v_E) worst.look((*s.v_E - state->v_E).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 0.5e-7 + 1e-11);
       worst.look(s.clock_event == (sv == kG7 && k == 5) && s.manoeuvre == (sv == kG7 && k == 5) ? 0.0 : kInfinity, 1.0);
     }
   }

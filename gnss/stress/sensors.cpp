@@ -127,7 +127,7 @@ StressFigure noise(const std::string& keys, const Vector3d& sigma_m, const Vecto
     before = e;
     const Eigen::Matrix3d P = R_WE * out.fix.covariance_E * R_WE.transpose();
     if (k % 500 == 0)
-      worst.look((P - Eigen::Matrix3d(claimed_m.cwiseAbs2().asDiagonal())).cwiseAbs().maxCoeff(),
+      worst.look((P - Eigen::Matrix3d(claimed_m.cwiseAbs2().asDiagonal())).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
                  64.0 * kEpsilon * claimed_m.squaredNorm());
   }
   // Of a Gaussian the square's own spread is sqrt(2) of it; a length that varies less has less.
@@ -163,7 +163,7 @@ StressFigure counted() {
       // The roof ends where its rim is seen under atan(19 / distance along it).
       const Vector3d d(std::sin(truth.azimuth_rad) * std::cos(truth.elevation_rad),
                        std::cos(truth.azimuth_rad) * std::cos(truth.elevation_rad), std::sin(truth.elevation_rad));
-      const double scale = 19.0 / d.z(), rim = std::max(std::abs(d.x()), std::abs(d.y())) * scale;
+      const double scale = 19.0 / d.z(), rim = worse(std::abs(d.x()), std::abs(d.y())) * scale;
       const bool sees = rim > half;
       if (std::abs(rim - half) > 1e-3 * half + 1e-3) worst.look(truth.line_of_sight == sees ? 0.0 : kInfinity, 1.0);
       seen += truth.line_of_sight ? 1 : 0;

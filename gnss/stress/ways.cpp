@@ -213,8 +213,8 @@ StressFigure launched() {
       worst.look((same->arrival_W - echo.arrival_W).norm(), 2.0 * cone);
     }
     // A ray that meets a wall within a cone of its border may reflect where the image's way does not.
-    worst.look(std::max(0.0, static_cast<double>(rays.paths[k].echoes.size()) -
-                                 static_cast<double>(images.paths[k].echoes.size())),
+    worst.look(worse(0.0, static_cast<double>(rays.paths[k].echoes.size()) -
+                              static_cast<double>(images.paths[k].echoes.size())),
                1.5);
   }
   worst.look(shared >= 5 && missed <= shared / 4 ? 0.0 : kInfinity, 1.0);
@@ -317,7 +317,7 @@ StressFigure mask() {
     const double band = std::sin((e + 1) * kDegree) - std::sin(e * kDegree);
     for (int a = 0; a < ObstructionMask::kAzimuths; ++a) {
       const double east = std::sin((a + 0.5) * kDegree);
-      const double margin = 10.0 * std::tan((e + 0.5) * kDegree) - 10.0 * std::max(east, 0.0);
+      const double margin = 10.0 * std::tan((e + 0.5) * kDegree) - 10.0 * worse(east, 0.0);
       const bool behind = east > 0.003 && margin < 0.0;  // beyond 4000 m there is none
       if (std::abs(margin) > 1e-6 && std::abs(east) > 0.003)
         worst.look(mask.blocked(a, e) == behind ? 0.0 : kInfinity, 1.0);

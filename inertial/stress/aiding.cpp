@@ -140,9 +140,9 @@ StressFigure field() {
       said.row(k) = disturbed.sample(k, {k}, R).message.field_U_t.transpose();
     }
     const Eigen::Matrix<double, 4, 3> fit = seen.colPivHouseholderQr().solve(said);
-    worst.look((seen * fit - said).cwiseAbs().maxCoeff() / 40e-6, 64.0 * kEpsilon);
+    worst.look((seen * fit - said).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() / 40e-6, 64.0 * kEpsilon);
     const Eigen::Matrix3d iron = fit.topRows<3>() - Eigen::Matrix3d::Identity();
-    worst.look((iron - iron.transpose()).cwiseAbs().maxCoeff(), 256.0 * kEpsilon);
+    worst.look((iron - iron.transpose()).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 256.0 * kEpsilon);
     hard += (40.0 * fit.row(3)).squaredNorm() / (3.0 * kUnits);
     soft +=
         (iron.diagonal().squaredNorm() + iron(0, 1) * iron(0, 1) + iron(0, 2) * iron(0, 2) + iron(1, 2) * iron(1, 2)) /

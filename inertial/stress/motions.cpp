@@ -296,8 +296,10 @@ StressFigure turned_log() {
   if (found.size() != where.size()) return {kInfinity, 1.0};
   for (std::size_t p = 0; p < found.size(); ++p) {
     const double from = 700.0 * static_cast<double>(p);
-    worst.look((found[p].force - measured(where[p])).cwiseAbs().maxCoeff(), 5.0 * 0.02 / std::sqrt(400.0));
-    worst.look((found[p].rate - Vector3d(0.01, 0.02, -0.01)).cwiseAbs().maxCoeff(), 5.0 * 0.002 / std::sqrt(400.0));
+    worst.look((found[p].force - measured(where[p])).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+               5.0 * 0.02 / std::sqrt(400.0));
+    worst.look((found[p].rate - Vector3d(0.01, 0.02, -0.01)).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(),
+               5.0 * 0.002 / std::sqrt(400.0));
     // Half a window to either end is taken off, and one may be lost.
     worst.look(static_cast<double>(found[p].begin) - from - 50.0, 75.0);
     worst.look(static_cast<double>(found[p].end) - from - 450.0, 75.0);
@@ -307,8 +309,8 @@ StressFigure turned_log() {
   const auto fit = fit_to_positions({log, "made"}, given_gravity(kStandardGravity));
   if (fit && fit->calibration[1]) {
     // 12 parameters of 18 means, each 0.02 / sqrt(400).
-    worst.look((fit->calibration[1]->bias - kBias).cwiseAbs().maxCoeff(), 6.0 * 1e-3);
-    worst.look((fit->calibration[1]->gain - kGain).cwiseAbs().maxCoeff(), 6.0 * 1e-3 / 9.8 * 3.0);
+    worst.look((fit->calibration[1]->bias - kBias).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 6.0 * 1e-3);
+    worst.look((fit->calibration[1]->gain - kGain).cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 6.0 * 1e-3 / 9.8 * 3.0);
   } else {
     worst.look(can_fit_noise() ? kInfinity : 0.0, 1.0);
   }

@@ -30,7 +30,8 @@ using stress::Worst;
 /// near that was to being otherwise.
 bool meets(const Vector3d& o, const Vector3d& d, const Vector3d& low, const Vector3d& high, double& margin_m) {
   bool met = (o.array() > low.array()).all() && (o.array() < high.array()).all();
-  margin_m = std::min((o - low).cwiseAbs().minCoeff(), (o - high).cwiseAbs().minCoeff());
+  margin_m = std::min((o - low).cwiseAbs().minCoeff<Eigen::PropagateNaN>(),
+                      (o - high).cwiseAbs().minCoeff<Eigen::PropagateNaN>());
   for (int axis = 0; axis < 3; ++axis)
     for (const double face : {low[axis], high[axis]}) {
       const double way = (face - o[axis]) / d[axis];
@@ -242,7 +243,8 @@ StressFigure tilts(double noise_m) {
   double tilt2 = 0.0, told2 = 0.0;
   std::size_t n = 0;
   for (std::size_t k = 0; k < cloud.points.size(); ++k) {
-    if (cloud.normals[k].isZero() || cloud.points[k].head<2>().cwiseAbs().maxCoeff() > 4.0f) continue;
+    if (cloud.normals[k].isZero() || cloud.points[k].head<2>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>() > 4.0f)
+      continue;
     tilt2 += cloud.normals[k].head<2>().squaredNorm();
     told2 += cloud.tilt_variance[k];
     ++n;

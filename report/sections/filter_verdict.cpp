@@ -35,7 +35,7 @@ std::string band(const ConsistencyRow& row) {
 std::string consistency_line(const ConsistencyRow& row) {
   const bool off = row.factor > row.high || row.factor < row.low;
   const std::string share = row.refused > 0.0 ? ", " + show_count(row.refused) + " refused" : "";
-  return "<tr><th scope=\"row\">" + escape_html(row.name) + "</th><td class=\"ratio" + (off ? " strong" : "") + "\">" +
+  return "<tr><th scope=\"row\">" + escape_html(row.name) + "</th><td" + (off ? " class=\"strong\"" : "") + ">" +
          show_number(row.factor) + "</td>" + band(row) + cell(row.rms, row.unit) + cell(row.claimed, row.unit) +
          figure_cell(show_count(row.count) + share, !std::isfinite(row.count)) +
          figure_cell(row.correlation_s > 0.0 ? show_quantity(row.correlation_s, "s") : "", !(row.correlation_s > 0.0)) +

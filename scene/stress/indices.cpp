@@ -70,7 +70,7 @@ StressFigure facets(std::uint64_t seed) {
     for (std::uint32_t i = 0; i < all.size(); ++i) {
       const Facet& f = all[i];
       // Horizontal distances of its corners: what is nearer than the nearest point of its ball is none of it.
-      const double middle_m = (f.center_W - p).head<2>().norm(), near_m = std::max(middle_m - f.radius_m, 0.0);
+      const double middle_m = (f.center_W - p).head<2>().norm(), near_m = worse(middle_m - f.radius_m, 0.0);
       const double far_m = middle_m + f.radius_m, up = f.normal_W.z();
       const bool wall = std::abs(up)<1e-4, roof = up> 1.0 - 1e-7;
       const double top = std::tan(elevation) * near_m, rise_m = f.top_m - p.z();
@@ -122,7 +122,7 @@ StressFigure edges(std::uint64_t seed) {
         const double distance = q.head<2>().norm(), angle = std::atan2(q.z(), distance);
         above = above || angle >= elevation;
         const double half = 0.5 * (all[i].b_W - all[i].a_W).norm();
-        const double reach = std::max(distance - 2.0 * half, 0.0);
+        const double reach = worse(distance - 2.0 * half, 0.0);
         const double bend =
             std::sqrt(2.0 * detour_m * (q.norm() + 2.0 * half) / std::cos(elevation)) / std::cos(elevation);
         far_below = far_below && q.z() + 2.0 * half + 2.0 * bend < reach * std::tan(elevation);
@@ -246,8 +246,8 @@ StressFigure any_city(std::uint64_t seed) {
       const Eigen::Vector2d a = plan.streets.nodes_W[street.a], b = plan.streets.nodes_W[street.b];
       const Eigen::Vector2d low = a.cwiseMin(b).array() - 0.5 * street.width_m,
                             high = a.cwiseMax(b).array() + 0.5 * street.width_m;
-      const double overlap_x = std::min(high.x(), block.kerb.x1) - std::max(low.x(), block.kerb.x0),
-                   overlap_y = std::min(high.y(), block.kerb.y1) - std::max(low.y(), block.kerb.y0);
+      const double overlap_x = std::min(high.x(), block.kerb.x1) - worse(low.x(), block.kerb.x0),
+                   overlap_y = std::min(high.y(), block.kerb.y1) - worse(low.y(), block.kerb.y0);
       worst.look(beyond(std::min(overlap_x, overlap_y), 0.0), 1e-9);
     }
   }
@@ -328,7 +328,7 @@ StressFigure soundness_of_boxes() {
   double highest = 0.0;
   std::size_t high = 0;
   for (const double h : grid.values)
-    if (h > 0.01) highest = std::max(highest, h), ++high;
+    if (h > 0.01) highest = worse(highest, h), ++high;
   out.figure += std::abs(highest - 4.0) < 1e-5 ? 0.0 : 1.0;
   // Four roofs of 2 x 4 m, in cells of 0.5 m whose middles lie in them or on their rim.
   out.figure += high >= 4 * 3 * 7 && high <= 4 * 5 * 9 ? 0.0 : 1.0;

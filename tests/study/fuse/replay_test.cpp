@@ -121,7 +121,7 @@ TEST(FuseReplay, OfRanges) {
   expect_same(RecordedDrive(
       "states = [\"biases\", \"receiver_clock\", \"range_errors\"]\nmeasurements = [\"ranges\"]\nacceptance = "
       "\"student_t\"",
-      "[imu]\nrate_hz = 90.0\n[gnss]\nrate_hz = 3.0\n"));
+      "[imu]\nrate_hz = 90.0\n[gnss]\nrate_hz = 3.0\n[run]\n"));
 }
 
 // Fixes, counts and epochs that fall between samples divide them, as in the run.

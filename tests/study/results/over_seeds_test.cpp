@@ -146,6 +146,7 @@ Comparison comparison_of_seed(std::int64_t seed) {
 nlohmann::ordered_json without_timing(const RunSummary& run) {
   auto json = run_json(run);
   json.erase("timing");
+  json.erase("evidence");  // of further seeds the words alone are kept
   return json;
 }
 
