@@ -15,6 +15,9 @@ namespace canyon::fusion {
 /// what acts, and adds it up as it is: an effect of the same sign in each step, as the Earth's turning, is mostly taken
 /// up by the estimated biases, and the sum of its absolute responses would say nothing.
 ///
+/// What comes of noise in the steps is another draw in another run. How much it may be there is known beside it: the
+/// covariance of the same, were each step's move of either sign by chance, whatever that of the others.
+///
 /// First order, as FixResponse.
 class StepResponse final : public FilterObserver {
  public:
@@ -30,10 +33,13 @@ class StepResponse final : public FilterObserver {
   /// By what a place in E is off without that effect, m, which depends on the present errors of theta, p and v as J
   /// says.
   Eigen::Vector3d moved_E(std::size_t effect, const Eigen::Matrix<double, 3, 9>& J) const;
+  /// Its covariance if signs were chance, m^2.
+  Eigen::Matrix3d by_chance_E(std::size_t effect, const Eigen::Matrix<double, 3, 9>& J) const;
 
  private:
   std::vector<StepMove> moves_;
-  ErrorMatrix errors_;  // a column an effect
+  ErrorMatrix errors_;                  // a column an effect
+  std::vector<ErrorMatrix> by_chance_;  // of each effect
 };
 
 }  // namespace canyon::fusion

@@ -131,6 +131,8 @@ class StrapdownChain {
   void row(const fusion::ErrorStateFilter& filter, std::size_t row, PositionChain& chain) {
     for (std::size_t i = 0; i < effects_.size(); ++i) {
       const Eigen::Vector3d moved_E = response.moved_E(i, filter.body_jacobian());
+      const Eigen::Matrix3d by_chance_E = response.by_chance_E(i, filter.body_jacobian());
+      const double up_by_chance_m2 = up_E_.dot(by_chance_E * up_E_);
       any_m_[i] = std::max(any_m_[i], moved_E.norm());
       up_m_[i] = std::max(up_m_[i], std::abs(up_E_.dot(moved_E)));
       PositionChain::Strapdown& all = chain.strapdown[i];
@@ -138,8 +140,8 @@ class StrapdownChain {
         all.any.push_back(0.0);
         all.up.push_back(0.0);
       }
-      all.any[row] = std::max(all.any[row], kMargin * any_m_[i]);
-      all.up[row] = std::max(all.up[row], kMargin * up_m_[i]);
+      all.any[row] = std::max(all.any[row], kMargin * any_m_[i] + kChance * std::sqrt(by_chance_E.trace()));
+      all.up[row] = std::max(all.up[row], kMargin * up_m_[i] + kChance * std::sqrt(up_by_chance_m2));
     }
   }
   void finish(const ImuNoise& noise, PositionChain& chain) const {
@@ -155,6 +157,7 @@ class StrapdownChain {
 
  private:
   static constexpr double kMargin = 2.0;
+  static constexpr double kChance = 5.0;  // sigmas: one row in a million
 
   std::span<const fusion::StrapdownEffect> effects_;
   Eigen::Vector3d up_E_;

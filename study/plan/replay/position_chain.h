@@ -26,7 +26,9 @@ namespace canyon::study {
 ///
 /// What the filter's own integrator can leave out acts in every step, and is known there: it is carried along as it is
 /// (fusion/observers/step_response.h), and moves a row by no more than twice the largest that it has moved any row up
-/// to then. Twice, for what is not of first order, and for the gains and estimates of other seeds.
+/// to then, and five sigmas of what it would were the signs of its moves chance. Twice, for what is not of first order,
+/// and for the gains and estimates of other seeds; the sigmas, since what it makes of noise is another draw there: at
+/// the first rows, half a second after the start, that is all there is.
 struct PositionChain {
   double most_gain = 0.0;
   std::vector<std::int64_t> seeds;  ///< that the tape was driven with
