@@ -22,12 +22,18 @@ class NonHolonomic final : public Copied<MeasurementModel, NonHolonomic> {
  public:
   explicit NonHolonomic(const NonHolonomicParameters& p) : p_(p) {}
 
-  void start() override { waited_s_ = 0.0; }
+  void start() override {
+    began_.reset();
+    used_ = 0;
+  }
 
   std::optional<Measurement> stepped(const FilterView& filter, const Increments& in) override {
-    waited_s_ += in.dt_s;
-    if (waited_s_ < (1.0 - 1e-9) / p_.non_holonomic_rate_hz) return {};
-    waited_s_ = 0.0;
+    const GpsTime now = filter.state.nav.t;
+    if (!began_) began_ = now - in.dt_s;
+    // Of a grid of its own, so that it is used as often, and when, whether or not messages divide samples.
+    const auto due = static_cast<std::int64_t>((now - *began_) * p_.non_holonomic_rate_hz + 1e-6);
+    if (due <= used_) return {};
+    used_ = due;
     const BodyVelocity axle = body_velocity(filter, Eigen::Vector3d::Zero());
     Measurement m(2, filter.state, ErrorIndex::kVelocity);
     m.residual = -axle.v_B.tail<2>();
@@ -42,7 +48,8 @@ class NonHolonomic final : public Copied<MeasurementModel, NonHolonomic> {
 
  private:
   NonHolonomicParameters p_;
-  double waited_s_ = 0.0;
+  std::optional<GpsTime> began_;
+  std::int64_t used_ = 0;  // ticks since then
 };
 
 }  // namespace

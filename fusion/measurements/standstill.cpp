@@ -38,9 +38,10 @@ class Standstill final : public Copied<MeasurementModel, Standstill> {
     elapsed_s_ += in.dt_s;
     const Eigen::Vector3d force = in.dv_U / in.dt_s;
     if (samples_ == 1) first_ = force;
-    force_sum_ += force - first_;
-    force_squares_ += (force - first_).cwiseAbs2();
-    rate_sum_ += filter.w_EU_U;
+    // By time: a message may have divided the sample.
+    force_sum_ += in.dt_s * (force - first_);
+    force_squares_ += in.dt_s * (force - first_).cwiseAbs2();
+    rate_sum_ += in.dt_s * filter.w_EU_U;
     if (elapsed_s_ < (1.0 - 1e-9) * p_.standstill_window_s) return {};
     const bool still = stood();
     begin();
@@ -65,14 +66,14 @@ class Standstill final : public Copied<MeasurementModel, Standstill> {
 
   bool stood() const {
     if (samples_ < 4) return false;
-    const double n = samples_, per_root_s = std::sqrt(n / elapsed_s_);
-    const Eigen::Vector3d variance = force_squares_ / n - (force_sum_ / n).cwiseAbs2();
+    const double per_root_s = std::sqrt(samples_ / elapsed_s_);
+    const Eigen::Vector3d variance = force_squares_ / elapsed_s_ - (force_sum_ / elapsed_s_).cwiseAbs2();
     // Twice the unit's own: of twenty samples' standard deviations one in 5e8 is larger (chi-square of 19 above 80).
     const double own_force = 2.0 * noise_.accel.white_per_sqrt_hz * per_root_s;
     const double force = std::hypot(p_.standstill_force_m_s2, own_force);
     const double own_rate = 3.0 * noise_.gyro.white_per_sqrt_hz / std::sqrt(elapsed_s_);
     const double rate = std::hypot(p_.standstill_rate_deg_s * kDegree, own_rate);
-    return variance.maxCoeff() < force * force && (rate_sum_ / n).norm() < rate;
+    return variance.maxCoeff() < force * force && (rate_sum_ / elapsed_s_).norm() < rate;
   }
 
   StandstillParameters p_;
