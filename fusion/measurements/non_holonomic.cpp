@@ -23,15 +23,14 @@ class NonHolonomic final : public Copied<MeasurementModel, NonHolonomic> {
   explicit NonHolonomic(const NonHolonomicParameters& p) : p_(p) {}
 
   void start() override {
-    began_.reset();
+    elapsed_s_ = 0.0;
     used_ = 0;
   }
 
   std::optional<Measurement> stepped(const FilterView& filter, const Increments& in) override {
-    const GpsTime now = filter.state.nav.t;
-    if (!began_) began_ = now - in.dt_s;
+    elapsed_s_ += in.dt_s;
     // Of a grid of its own, so that it is used as often, and when, whether or not messages divide samples.
-    const auto due = static_cast<std::int64_t>((now - *began_) * p_.non_holonomic_rate_hz + 1e-6);
+    const auto due = static_cast<std::int64_t>(elapsed_s_ * p_.non_holonomic_rate_hz + 1e-6);
     if (due <= used_) return {};
     used_ = due;
     const BodyVelocity axle = body_velocity(filter, Eigen::Vector3d::Zero());
@@ -48,8 +47,8 @@ class NonHolonomic final : public Copied<MeasurementModel, NonHolonomic> {
 
  private:
   NonHolonomicParameters p_;
-  std::optional<GpsTime> began_;
-  std::int64_t used_ = 0;  // ticks since then
+  double elapsed_s_ = 0.0;
+  std::int64_t used_ = 0;  // ticks
 };
 
 }  // namespace
