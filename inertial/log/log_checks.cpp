@@ -59,19 +59,30 @@ bool turns_fast(const ImuLog& log) {
 
 /// The magnitude of the specific force on average: a log that turns, as one of many positions does, has no mean
 /// direction.
-double mean_force(const ImuLog& log) {
-  double force = 0.0;
+double mean_magnitude(const ImuLog& log, std::size_t first) {
+  double sum = 0.0;
   for (std::size_t k = 0; k < log.size(); ++k)
-    force += std::hypot(log.channels[3][k], log.channels[4][k], log.channels[5][k]) / static_cast<double>(log.size());
-  return force;
+    sum += std::hypot(log.channels[first][k], log.channels[first + 1][k], log.channels[first + 2][k]);
+  return sum / static_cast<double>(log.size());
 }
 bool near(double value, double expected) {
   return std::abs(value / expected - 1.0) < 0.1;
 }
 
+/// Whether what is named rates reads 1 or 9.8 on average, in whichever unit it was written, and what is named forces is
+/// nothing like that: gravity, in the other three columns.
+bool exchanged(const ImuLog& log, double force) {
+  if (log.channels[0].empty() || force > 0.5 * kStandardGravity) return false;
+  const double rate = mean_magnitude(log, 0);
+  for (const double unit : {1.0, kDegree})
+    for (const double gravity : {1.0, kStandardGravity})
+      if (near(rate, gravity * unit)) return true;
+  return false;
+}
+
 /// What no unit can show on average. `as_increments`: the file is said to hold increments.
 Status check_force(ImuLog& log, const Judge& judge, bool as_increments) {
-  const double force = mean_force(log), interval_s = judge.interval_s;
+  const double force = mean_magnitude(log, 3), interval_s = judge.interval_s;
   if (near(force, kStandardGravity)) return Ok{};
   const std::string figure = text("mean specific force %.4g m/s^2: ", force);
   if (as_increments) {
@@ -94,7 +105,11 @@ Status check_force(ImuLog& log, const Judge& judge, bool as_increments) {
   const auto off = [&](const Mistake& m) { return std::abs(force / m.force - 1.0); };
   const Mistake& nearest = *std::min_element(std::begin(mistakes), std::end(mistakes),
                                              [&](const Mistake& a, const Mistake& b) { return off(a) < off(b); });
-  if (!near(force, nearest.force)) return Ok{};
+  if (!near(force, nearest.force)) {
+    if (!exchanged(log, force)) return Ok{};
+    return judge.places.error(0, figure + "gravity is in the columns that are named rates",
+                              "rates and forces in the columns that name them");
+  }
   const Error error = judge.places.error(0, figure + nearest.what, nearest.expected);
   if (!judge.named_units || !turns_fast(log)) return error;
   log.doubts.push_back(error.str() + "; taken as named, for the unit turns fast");

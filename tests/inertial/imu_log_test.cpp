@@ -128,6 +128,14 @@ TEST_F(ImuLogTest, UnitMixUpsAreNamed) {
   EXPECT_EQ(mistake(resting(kSi, 0.01, 0.01)),
             "log.csv:2: mean specific force 0.09807 m/s^2: these are velocity increments, not rates, expected names in "
             "_m_s");
+  EXPECT_EQ(mistake(resting("t_s,ax_m_s2,ay_m_s2,az_m_s2,gx_rad_s,gy_rad_s,gz_rad_s", 1.0, 1.0)),
+            "log.csv:2: mean specific force 0.001623 m/s^2: gravity is in the columns that are named rates, expected "
+            "rates and "
+            "forces in the columns that name them");
+  EXPECT_EQ(mistake(resting("t_s,ax_g,ay_g,az_g,gx_deg_s,gy_deg_s,gz_deg_s", 1.0, 1.0 / kStandardGravity)),
+            "log.csv:2: mean specific force 0.01591 m/s^2: gravity is in the columns that are named rates, expected "
+            "rates and "
+            "forces in the columns that name them");
   EXPECT_EQ(mistake(resting("# rates", 1.0, 1.0), {.columns = "kf_gins"}),
             "log.csv:2: mean specific force 980.7 m/s^2: these are rates, where increments are said, expected names in "
             "_m_s2");
