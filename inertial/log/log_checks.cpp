@@ -71,8 +71,9 @@ bool near(double value, double expected) {
 
 /// Whether what is named rates reads 1 or 9.8 on average, in whichever unit it was written, and what is named forces is
 /// nothing like that: gravity, in the other three columns.
-bool exchanged(const ImuLog& log, double force) {
-  if (log.channels[0].empty() || force > 0.5 * kStandardGravity) return false;
+bool exchanged(const ImuLog& log) {
+  const auto& c = log.channels;
+  if (c[0].empty() || std::hypot(mean_of(c[3]), mean_of(c[4]), mean_of(c[5])) > 0.5 * kStandardGravity) return false;
   const double rate = mean_magnitude(log, 0);
   for (const double unit : {1.0, kDegree})
     for (const double gravity : {1.0, kStandardGravity})
@@ -106,7 +107,7 @@ Status check_force(ImuLog& log, const Judge& judge, bool as_increments) {
   const Mistake& nearest = *std::min_element(std::begin(mistakes), std::end(mistakes),
                                              [&](const Mistake& a, const Mistake& b) { return off(a) < off(b); });
   if (!near(force, nearest.force)) {
-    if (!exchanged(log, force)) return Ok{};
+    if (!exchanged(log)) return Ok{};
     return judge.places.error(0, figure + "gravity is in the columns that are named rates",
                               "rates and forces in the columns that name them");
   }
