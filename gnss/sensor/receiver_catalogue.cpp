@@ -134,47 +134,83 @@ bool is_tracked(const GnssConfig& c, GnssSystem system) {
   return c.satellites.systems.find(system_letter(system)) != std::string::npos;
 }
 
-/// What cannot all be true of one receiver, in words.
-std::vector<std::string> contradictions_in(const ConfigNode& sheet, const GnssConfig& c) {
-  std::vector<std::string> out;
+/// What cannot all be true of one receiver: figures in words, by the key of the first.
+struct Contradiction {
+  std::string key, what;
+};
+
+void figures_without_use(const ConfigNode& sheet, std::vector<Contradiction>& out) {
   for (const auto& row : conditionals()) {
     const std::string* word = text_at(sheet, row.word_of);
     if (sheet.find(row.key) != nullptr && word != nullptr && !has(row.words, *word))
-      out.push_back(std::string(row.key) + " with " + quoted_word(row.word_of, *word));
+      out.push_back({row.key, std::string(row.key) + " with " + quoted_word(row.word_of, *word)});
   }
-  const auto number = [](double v) { return number_text(v); };
-  if (c.tracking.front_end_mhz > 0.0) {
-    for (const GnssSystem system :
-         {GnssSystem::kGps, GnssSystem::kGlonass, GnssSystem::kGalileo, GnssSystem::kBeidou}) {
-      if (!is_tracked(c, system)) continue;
-      const Modulation m = modulation_of(system, first_band(system));
-      const double lobes_mhz = 1e-6 * (m == Modulation::kBoc11 ? 4.0 : 2.0) * chip_rate_hz(m);
-      if (c.tracking.front_end_mhz < lobes_mhz)
-        out.push_back("front_end_mhz = " + number(c.tracking.front_end_mhz) + " with the main lobes of " +
-                      system_letter(system) + ", " + number(lobes_mhz) + " MHz");
-    }
+}
+
+void narrow_front_end(const GnssConfig& c, std::vector<Contradiction>& out) {
+  if (c.tracking.front_end_mhz <= 0.0) return;
+  for (const GnssSystem system : {GnssSystem::kGps, GnssSystem::kGlonass, GnssSystem::kGalileo, GnssSystem::kBeidou}) {
+    if (!is_tracked(c, system)) continue;
+    const Modulation m = modulation_of(system, first_band(system));
+    const double lobes_mhz = 1e-6 * (m == Modulation::kBoc11 ? 4.0 : 2.0) * chip_rate_hz(m);
+    if (c.tracking.front_end_mhz < lobes_mhz)
+      out.push_back({"front_end_mhz", "front_end_mhz = " + number_text(c.tracking.front_end_mhz) +
+                                          " with the main lobes of " + system_letter(system) + ", " +
+                                          number_text(lobes_mhz) + " MHz"});
   }
+}
+
+void impossible_numbers(const GnssConfig& c, std::vector<Contradiction>& out) {
+  const auto clash = [&out](const char* key, double value, const char* with, double other) {
+    out.push_back({key, std::string(key) + " = " + number_text(value) + " with " + with + " = " + number_text(other)});
+  };
   constexpr double kMostLoop = 0.5;  // B T, beyond which a loop that is updated every T is unstable
-  const double T_s = 1e-3 * c.tracking.integration_ms;
-  if (c.tracking.carrier_loop_hz * T_s >= kMostLoop)
-    out.push_back("carrier_loop_hz = " + number(c.tracking.carrier_loop_hz) +
-                  " with integration_ms = " + number(c.tracking.integration_ms));
-  if (c.tracking.code_loop_hz * T_s >= kMostLoop)
-    out.push_back("code_loop_hz = " + number(c.tracking.code_loop_hz) +
-                  " with integration_ms = " + number(c.tracking.integration_ms));
-  if (c.locks.tracking_threshold_dbhz + c.locks.reacquisition_margin_db >= c.link.cn0_zenith_dbhz)
-    out.push_back("tracking_threshold_dbhz + reacquisition_margin_db = " +
-                  number(c.locks.tracking_threshold_dbhz + c.locks.reacquisition_margin_db) +
-                  " with cn0_zenith_dbhz = " + number(c.link.cn0_zenith_dbhz));
-  if (c.cn0_report.averaging_s > 0.0 && c.cn0_report.averaging_s < T_s)
-    out.push_back("cn0_averaging_s = " + number(c.cn0_report.averaging_s) +
-                  " with integration_ms = " + number(c.tracking.integration_ms));
-  if (c.position.solver.name == "trilateration" && c.receiver_clock.name != "none")
-    out.push_back(quoted_word("solver", "trilateration") + " with " +
-                  quoted_word("receiver_clock", c.receiver_clock.name));
-  if (c.position.solver.name == "trilateration" && c.position.estimator == Estimator::kKalman)
-    out.push_back(quoted_word("solver", "trilateration") + " with " + quoted_word("estimator", "kalman"));
+  const double T_ms = c.tracking.integration_ms;
+  if (c.tracking.carrier_loop_hz * T_ms >= 1e3 * kMostLoop)
+    clash("carrier_loop_hz", c.tracking.carrier_loop_hz, "integration_ms", T_ms);
+  if (c.tracking.code_loop_hz * T_ms >= 1e3 * kMostLoop)
+    clash("code_loop_hz", c.tracking.code_loop_hz, "integration_ms", T_ms);
+  if (c.cn0_report.averaging_s > 0.0 && 1e3 * c.cn0_report.averaging_s < T_ms)
+    clash("cn0_averaging_s", c.cn0_report.averaging_s, "integration_ms", T_ms);
+  const double found_dbhz = c.locks.tracking_threshold_dbhz + c.locks.reacquisition_margin_db;
+  if (found_dbhz >= c.link.cn0_zenith_dbhz)
+    out.push_back(
+        {"tracking_threshold_dbhz", "tracking_threshold_dbhz + reacquisition_margin_db = " + number_text(found_dbhz) +
+                                        " with cn0_zenith_dbhz = " + number_text(c.link.cn0_zenith_dbhz)});
+}
+
+void clock_without_unknown(const GnssConfig& c, std::vector<Contradiction>& out) {
+  if (c.position.solver.name != "trilateration") return;
+  const std::string solver = quoted_word("solver", "trilateration") + " with ";
+  if (c.receiver_clock.name != "none")
+    out.push_back({"solver", solver + quoted_word("receiver_clock", c.receiver_clock.name)});
+  if (c.position.estimator == Estimator::kKalman)
+    out.push_back({"solver", solver + quoted_word("estimator", "kalman")});
+}
+
+std::vector<Contradiction> contradictions_in(const ConfigNode& sheet, const GnssConfig& c) {
+  std::vector<Contradiction> out;
+  figures_without_use(sheet, out);
+  narrow_front_end(c, out);
+  impossible_numbers(c, out);
+  clock_without_unknown(c, out);
   return out;
+}
+
+/// All of it in one line; where nothing is missing, at the line of the first figure that contradicts.
+Status complete_and_possible(const ConfigNode& sheet, const GnssConfig& config) {
+  const std::vector<std::string> missing = missing_keys(sheet);
+  const std::vector<Contradiction> contradictions = contradictions_in(sheet, config);
+  if (missing.empty() && contradictions.empty()) return Ok{};
+  std::string what;
+  if (!missing.empty()) what = "is missing";
+  if (missing.size() > 1) what += ", and so are " + plain_list({missing.begin() + 1, missing.end()});
+  for (const auto& c : contradictions) what += (what.empty() ? "contradictory: " : "; contradictory: ") + c.what;
+  if (!missing.empty())
+    return sheet.error(missing.front(), what, "every figure of a receiver, each with its source or \"assumed\"");
+  const std::string& key = contradictions.front().key;
+  const ConfigNode* place = sheet.find(key);
+  return (place == nullptr ? sheet : *place).error(key, what, "figures of one receiver");
 }
 
 Result<ReceiverSheet> sheet_from(const ConfigNode& sheet) {
@@ -192,17 +228,7 @@ Result<ReceiverSheet> sheet_from(const ConfigNode& sheet) {
   GnssConfig config;
   CANYON_TRY_STATUS(read_config(&out.figures, "", config));
 
-  const std::vector<std::string> missing = missing_keys(sheet), contradictions = contradictions_in(sheet, config);
-  if (!missing.empty() || !contradictions.empty()) {
-    std::string what;
-    if (!missing.empty())
-      what = missing.size() == 1 ? "is missing"
-                                 : "is missing, and so are " + plain_list({missing.begin() + 1, missing.end()});
-    for (const std::string& c : contradictions) what += (what.empty() ? "contradictory: " : "; contradictory: ") + c;
-    return sheet.error(missing.empty() ? "" : missing.front(), what,
-                       missing.empty() ? "figures of one receiver"
-                                       : "every figure of a receiver, each with its source or \"assumed\"");
-  }
+  CANYON_TRY_STATUS(complete_and_possible(sheet, config));
   for (auto& [field, into] : {std::pair{"name", &out.name}, std::pair{"description", &out.description}}) {
     const std::string* text = text_at(sheet, field);
     if (text == nullptr) return sheet.find(field)->error(field, "found " + sheet.find(field)->describe(), "a text");

@@ -15,8 +15,8 @@ struct RecordedFiles {
   std::vector<std::string> navigation;
   std::vector<std::string> sp3;  ///< precise orbits and clocks instead of the broadcast ones
   std::string antex, ionex;
-  std::string base;                       ///< observations of a base
-  std::optional<Eigen::Vector3d> base_E;  ///< where its antenna is
+  std::string base{};                       ///< observations of a base
+  std::optional<Eigen::Vector3d> base_E{};  ///< where its antenna is
 };
 
 /// What they hold.

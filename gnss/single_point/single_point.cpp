@@ -189,11 +189,14 @@ class SinglePoint {
                  "a base that observed at the same time"};
   }
 
-  /// Leaves those that the base has at that time; false if the base has no such time.
+  /// Leaves those that the base has at that time; none, and false, if the base has no such time.
   bool take_differences(GpsTime t, std::vector<Candidate>& candidates) {
     if (base_ == nullptr) return true;
     const BaseDifferences::Epoch* now = base_->near(t, config_.base_age_s);
-    if (now == nullptr) return false;
+    if (now == nullptr) {
+      candidates.clear();
+      return false;
+    }
     ++near_base_;
     std::erase_if(candidates, [&](Candidate& c) {
       const auto of = now->satellites.find(c.sv);

@@ -35,21 +35,21 @@ TEST(ReceiverCatalogue, EveryFigureOfEveryReceiverHasASource) {
 
 TEST(ReceiverCatalogue, WhatIsMissingAndWhatContradictsIsToldAtOnce) {
   EXPECT_EQ(refusal("name = \"mine\"\ndescription = \"d\"\nsystems = \"G\"\n").substr(0, 60),
-            std::string("mine.toml:1: mode: is missing, and so are mask_deg, receiver_clock").substr(0, 60));
+            std::string("mine.toml: mode: is missing, and so are mask_deg, receiver_clock").substr(0, 60));
   std::string text = changed("m8", "mask_deg = 5.0\n", "");
   text.replace(text.find("smoothing_s_source"), std::string("smoothing_s_source").size(), "#");
   text.replace(text.find("front_end_mhz = 4.0"), 19, "front_end_mhz = 1.5");
   text += "second_frequency = \"L5\"\nsecond_frequency_source = \"a dream\"\n";
   EXPECT_EQ(
       refusal(text),
-      "mine.toml:1: mask_deg: is missing, and so are smoothing_s_source; contradictory: second_frequency with mode "
+      "mine.toml: mask_deg: is missing, and so are smoothing_s_source; contradictory: second_frequency with mode "
       "= \"single\"; contradictory: front_end_mhz = 1.5 with the main lobes of G, 2.046 MHz, expected every figure "
       "of a receiver, each with its source or \"assumed\"");
   EXPECT_EQ(refusal(changed("m8", "integration_ms = 20.0", "integration_ms = 40.0") + "carrier_lop_hz = 3\n"),
             "mine.toml:111: carrier_lop_hz: is not a figure of a receiver, expected \"carrier_loop_hz\"?");
-  EXPECT_EQ(
-      refusal(changed("phone", "integration_ms = 20.0", "integration_ms = 40.0")),
-      "mine.toml:1: contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected figures of one receiver");
+  EXPECT_EQ(refusal(changed("phone", "integration_ms = 20.0", "integration_ms = 40.0")),
+            "mine.toml:46: carrier_loop_hz: contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected "
+            "figures of one receiver");
 }
 
 TEST(ReceiverCatalogue, AnUnknownReceiverNamesTheNearest) {
