@@ -29,6 +29,14 @@ void print_statistics(const gnss::PositionStatistics& s, const char* what) {
 
 }  // namespace
 
+void add_reported(Json& json, const gnss::EllipseCoverage& reported) {
+  json["ellipse_50_share"] = or_null(reported.inside(0.5));
+  json["ellipse_95_share"] = or_null(reported.inside(0.95));
+  json["ellipse_997_share"] = or_null(reported.inside(0.997));
+  json["beyond_3_sigma"] = or_null(reported.beyond_3_sigma());
+  json["horizontal_log_score"] = or_null(reported.log_score());
+}
+
 Json single_point_json(const SinglePointAnswer& answer) {
   const gnss::PositionStatistics& s = answer.error;
   const gnss::ObservationFile& file = answer.data.observations;
@@ -37,6 +45,7 @@ Json single_point_json(const SinglePointAnswer& answer) {
   const char* const axes[] = {"e", "n", "u"};
   for (int i = 0; i < 3; ++i)
     json[std::string("velocity_rms_") + axes[i] + "_m_s"] = or_null(s.velocity_rms_enu_m_s[i]);
+  if (s.reported.count() > 0) add_reported(json, s.reported);
   json["damaged_records"] = file.damaged;
   json["other_system_satellites"] = file.other_system_satellites;
   json["warnings"] = answer.result.warnings.size() + file.warnings.size();

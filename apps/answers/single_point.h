@@ -15,6 +15,8 @@ struct SinglePointAnswer {
   gnss::PositionStatistics error;                      ///< against the truth, where there is one
   std::optional<gnss::ReceiverComparison> comparison;  ///< with the receiver's own positions
 };
+/// How honest the covariances are, by the horizontal errors.
+void add_reported(Json& json, const gnss::EllipseCoverage& reported);
 Json single_point_json(const SinglePointAnswer& answer);
 void print_single_point(const SinglePointAnswer& answer);
 

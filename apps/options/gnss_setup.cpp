@@ -16,8 +16,11 @@ void declare_gnss_setup(Arguments& arguments, GnssSetupOptions& options, const c
       .option("--scene", options.scene,
               "a mission file's scene, a scene file, \"vicksburg\" (built in) or \"none\" (open sky)")
       .default_shown();
-  arguments.option("--fidelity", options.fidelity, "whose receiver: high, paper, or one of the mission file's own")
+  arguments
+      .option("--fidelity", options.fidelity, "whose receiver: high, modern, paper, or one of the mission file's own")
       .default_shown();
+  arguments.option("--receiver", options.receiver,
+                   "receiver of the catalogue, or a TOML file of your own; default: the fidelity's");
   arguments.option("--nav", options.nav, "RINEX navigation files; without them the built-in constellation");
   arguments.option("--systems", options.systems,
                    "satellite systems received, letters of GRECJ; default: the fidelity's");
@@ -34,6 +37,7 @@ Result<GnssSetup> gnss_setup(const GnssSetupOptions& options, const std::optiona
   const bool open_sky = options.scene == "none", built_in = options.scene == mission::kDefaultMission;
   const bool mission_file = options.scene.ends_with(".toml");
   CANYON_TRY(auto file, mission::MissionFile::load(mission_file ? options.scene : ""));
+  if (!options.receiver.empty()) file.set_option("gnss.receiver", ConfigNode::of(options.receiver), "--receiver");
   if (!options.systems.empty()) file.set_option("gnss.systems", ConfigNode::of(options.systems), "--systems");
   if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
   CANYON_TRY_STATUS(file.check_fidelities({options.fidelity}, "--fidelity"));

@@ -19,7 +19,7 @@ struct GnssSetupOptions {
   std::string scene;  ///< a mission file, a scene file, "vicksburg", or "none"
   std::string fidelity = "high";
   std::vector<std::string> nav;
-  std::string systems, start, out;
+  std::string receiver, systems, start, out;
   std::int64_t seed = 1;
   bool force = false;
 };

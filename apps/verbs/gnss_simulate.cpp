@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/apps/answers/single_point.h"
 #include "canyon/apps/options/antenna_way.h"
 #include "canyon/apps/options/gnss_errors.h"
 #include "canyon/core/files/files.h"
@@ -26,12 +27,15 @@ struct Options {
 
 void tell(const Options& options, const gnss::DriveTotals& totals, const GnssSetup& setup) {
   if (options.setup.common.json) {
-    const Json json{{"epochs", totals.epochs},
-                    {"fixes", totals.fixes},
-                    {"satellites_mean", or_null(totals.satellites_mean())},
-                    {"nlos_share", or_null(totals.nlos_share())},
-                    {"gdop_median", or_null(totals.gdop_median())},
-                    {"rms_3d_m", or_null(totals.rms_m())}};
+    Json json{{"epochs", totals.epochs},
+              {"fixes", totals.fixes},
+              {"satellites_mean", or_null(totals.satellites_mean())},
+              {"nlos_share", or_null(totals.nlos_share())},
+              {"gdop_median", or_null(totals.gdop_median())},
+              {"rms_3d_m", or_null(totals.rms_m())},
+              {"h50_m", or_null(totals.horizontal_percentile_m(0.50))},
+              {"h95_m", or_null(totals.horizontal_percentile_m(0.95))}};
+    if (totals.reported.count() > 0) add_reported(json, totals.reported);
     std::printf("%s\n", json_text(json).c_str());
     return;
   }
@@ -42,6 +46,8 @@ void tell(const Options& options, const gnss::DriveTotals& totals, const GnssSet
   std::printf("  epochs with a fix          %8lld\n", static_cast<long long>(totals.fixes));
   std::printf("  GDOP, median               %8.2f\n", totals.gdop_median());
   std::printf("  3-D error, RMS, m          %8.3f\n", totals.rms_m());
+  std::printf("  horizontal 50 and 95 %%, m  %8.3f %8.3f\n", totals.horizontal_percentile_m(0.50),
+              totals.horizontal_percentile_m(0.95));
 }
 
 Result<int> run(const Options& options) {

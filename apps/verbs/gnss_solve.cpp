@@ -20,7 +20,7 @@ namespace {
 struct Options {
   CommonOptions common;
   gnss::RecordedFiles files;
-  std::string config, systems, truth_ecef, truth, compare, out;
+  std::string config, systems, truth_ecef, truth, compare, out, base_position;
   std::optional<double> mask_deg;
   bool force = false;
 };
@@ -36,19 +36,19 @@ Result<gnss::SinglePointConfig> configuration(const Options& options) {
   return config;
 }
 
-Result<Eigen::Vector3d> parse_ecef(const std::string& text) {
+Result<Eigen::Vector3d> parse_ecef(const std::string& text, const char* option) {
   Eigen::Vector3d p_E;
   int used = 0;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%n", &p_E.x(), &p_E.y(), &p_E.z(), &used) != 3 ||
       used != static_cast<int>(text.size()) || !p_E.allFinite())
-    return Error{"--truth-ecef", 0, "", "\"" + text + "\"", "X,Y,Z of a place on the Earth, metres"};
-  CANYON_TRY_STATUS(gnss::check_antenna_height(p_E, {.file = "--truth-ecef"}));
+    return Error{option, 0, "", "\"" + text + "\"", "X,Y,Z of a place on the Earth, metres"};
+  CANYON_TRY_STATUS(gnss::check_antenna_height(p_E, {.file = option}));
   return p_E;
 }
 
 Result<gnss::Truth> truth_of(const Options& options) {
   if (!options.truth_ecef.empty()) {
-    CANYON_TRY(const Eigen::Vector3d p_E, parse_ecef(options.truth_ecef));
+    CANYON_TRY(const Eigen::Vector3d p_E, parse_ecef(options.truth_ecef, "--truth-ecef"));
     return gnss::Truth([p_E](GpsTime) { return std::optional(gnss::TruePlace{p_E, Eigen::Vector3d::Zero().eval()}); });
   }
   if (options.truth.empty()) return gnss::Truth([](GpsTime) { return std::optional<gnss::TruePlace>(); });
@@ -61,6 +61,18 @@ Result<gnss::Truth> truth_of(const Options& options) {
     if (!state) return std::nullopt;
     return gnss::TruePlace{state->p_E, state->v_E};
   });
+}
+
+/// A base needs its place; a place needs a base.
+Result<gnss::RecordedFiles> files_of(const Options& options) {
+  gnss::RecordedFiles files = options.files;
+  if (files.base.empty() != options.base_position.empty())
+    return Error{files.base.empty() ? "--base-position" : "--base", 0, "", "stands alone",
+                 "both, observations of the base and where it is"};
+  if (!options.base_position.empty()) {
+    CANYON_TRY(files.base_E, parse_ecef(options.base_position, "--base-position"));
+  }
+  return files;
 }
 
 Status write_folder(const std::string& path, const gnss::SinglePointResult& result, const Json& json) {
@@ -76,7 +88,8 @@ Result<int> run(const Options& options) {
   CANYON_TRY(const StagedDirectory* const folder, outputs.directory(table_alone ? "" : options.out));
   CANYON_TRY(const auto config, configuration(options));
   CANYON_TRY(const auto truth, truth_of(options));
-  CANYON_TRY(const auto data, gnss::read_recorded_data(options.files, config));
+  CANYON_TRY(const auto files, files_of(options));
+  CANYON_TRY(const auto data, gnss::read_recorded_data(files, config));
   // Before the solution, which takes its time, so that a wrong file is told at once.
   std::optional<gnss::ReceiverLog> receiver;
   if (!options.compare.empty()) {
@@ -116,6 +129,10 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--antex", options->files.antex,
                    "satellite antennas (ANTEX), for SP3 files whose positions are those of the centre of mass");
   arguments.option("--ionex", options->files.ionex, "ionosphere maps (IONEX), for ionosphere = \"ionex\" in --config");
+  arguments.option("--base", options->files.base,
+                   "observations of a base near by: positions are differential (code, smoothed by carrier)");
+  arguments.option("--base-position", options->base_position,
+                   "X,Y,Z of the base's antenna, in the frame of the orbits");
   arguments.option("--systems", options->systems, "satellite systems by their letters, of GRECJ; default GREC");
   arguments.option("--mask", options->mask_deg, "elevation mask, degrees").within(-10.0, 89.0);
   arguments.option("--config", options->config,

@@ -4,6 +4,9 @@ namespace canyon::gnss {
 
 void visit(FieldVisitor& f, GnssConfig& c) {
   visit_choice(f, "model", c.model, "how a fix is made");
+  f.file("receiver", c.receiver, ".toml",
+         "entry of the catalogue of receivers, or a TOML file of your own: its figures take the place of what is set "
+         "for the keys that describe a receiver, those that stand beside this key excepted; empty = the keys alone");
   f.number("rate_hz", c.rate_hz, {0.01, 50.0}, "fixes per second");
   f.number("mask_deg", c.mask_deg, {0.0, 60.0}, "satellites below this elevation are not used");
   f.vector3("lever_arm_m", c.lever_arm_m, {-50.0, 50.0}, "antenna in the vehicle's frame B (x forward, y left, z up)");
@@ -19,6 +22,7 @@ void visit(FieldVisitor& f, GnssConfig& c) {
   visit(f, c.link);
   visit(f, c.tracking);
   visit(f, c.locks);
+  visit(f, c.cn0_report);
   visit(f, c.position);
   visit(f, c.satellites);
 }

@@ -10,6 +10,7 @@
 #include "canyon/gnss/receiver/modes/receiver_mode.h"
 #include "canyon/gnss/receiver/multipath_rule.h"
 #include "canyon/gnss/receiver/receiver_clock.h"
+#include "canyon/gnss/receiver/reports/cn0_estimator.h"
 #include "canyon/gnss/receiver/signal_lock.h"
 #include "canyon/gnss/sensor/satellite_source.h"
 #include "canyon/gnss/sensor/sensor_models.h"
@@ -21,6 +22,7 @@ namespace canyon::gnss {
 /// stand in the part's own file; in the mission file they are all keys of this one section.
 struct GnssConfig {
   ModelChoice<sensor_models> model{"pseudorange"};  ///< truth_plus_isotropic is the paper's low fidelity
+  std::string receiver;  ///< entry of gnss/receivers whose figures lie below this section's own keys; "": none
   double rate_hz = 2.0;
   double mask_deg = 10.0;
   Eigen::Vector3d lever_arm_m{-0.3, 0.0, 1.2};  ///< antenna in B
@@ -37,6 +39,7 @@ struct GnssConfig {
   LinkConfig link;
   TrackingConfig tracking;
   LockConfig locks;
+  Cn0ReportConfig cn0_report;
   PositionConfig position;
   SatelliteSourceConfig satellites;
 };

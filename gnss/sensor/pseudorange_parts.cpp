@@ -57,6 +57,7 @@ Result<PseudorangeParts> make_pseudorange_parts(const SensorSetup& at) {
   CANYON_TRY(parts.solver, c.position.solver.make("gnss.solver", c.position.parameters()));
   CANYON_TRY(parts.weighting,
              c.position.weighting.make("gnss.weighting", RangeWeightingParameters{c.position.solver_sigma_m}));
+  CANYON_TRY(parts.reported_covariance, c.position.reported_covariance.make("gnss.reported_covariance"));
   CANYON_TRY(parts.link, c.link.budget());
   parts.locks = lock_parameters(c, at.seed);
   if (!parts.solver->solves_clock() && !parts.clock->perfect())

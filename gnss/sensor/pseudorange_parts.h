@@ -29,6 +29,7 @@ struct PseudorangeParts {
   std::unique_ptr<ReceiverMode> mode;
   std::unique_ptr<PositionSolver> solver;
   std::unique_ptr<RangeWeighting> weighting;
+  std::unique_ptr<RangeErrorReport> reported_covariance;
   LinkBudget link;
   SignalLockParameters locks;
   std::vector<std::string> warnings;

@@ -36,8 +36,9 @@ class PseudorangeSensor final : public GnssSensor {
         frame_(frame),
         parts_(std::move(parts)),
         in_view_(parts_.constellation, frame, config.mask_deg * kDegree),
-        first_("gnss.", config.tracking, parts_),
-        second_("gnss.second.", config.tracking, parts_) {
+        first_("gnss.", config, parts_),
+        second_("gnss.second.", config, parts_) {
+    if (config_.position.smoothing_s > 0.0) smoothing_.emplace(config_.position.smoothing_s);
     if (config_.position.estimator != Estimator::kKalman) return;
     PvtFilterParameters p;
     p.acceleration_m_s2 = config_.position.estimator_acceleration_m_s2;
@@ -96,6 +97,7 @@ class PseudorangeSensor final : public GnssSensor {
       first_.restart();
       second_.restart();
       if (filter_) filter_->reset();
+      if (smoothing_) smoothing_.emplace(config_.position.smoothing_s);
     }
     last_index_ = index;
     first_.begin_epoch(index);
@@ -112,11 +114,15 @@ class PseudorangeSensor final : public GnssSensor {
       return;
     }
     const SignalLocks first = first_.locks(), second = second_.locks();
+    const auto filter = filter_;
+    const auto smoothing = smoothing_;
     const GnssOutput empty = epoch.out;
     if (solve_epoch(epoch, sights, paths, second_paths, ranges_.delays)) return;
     ++counters_.epochs_in_full;
     first_.set_locks(first);
     second_.set_locks(second);
+    filter_ = filter;
+    smoothing_ = smoothing;
     epoch.out = empty;
     solve_epoch(epoch, sights, paths, second_paths, {});
   }
@@ -134,13 +140,17 @@ class PseudorangeSensor final : public GnssSensor {
       if (truth.tracked) truth_of.push_back(i);
       out.truth.satellites.push_back(truth);
     }
-    const ReceiverParts receiver{*parts_.constellation,
-                                 *parts_.mode,
-                                 *parts_.solver,
-                                 *parts_.weighting,
-                                 config_.position.max_gdop,
-                                 frame_.origin_E(),
-                                 filter_ ? &*filter_ : nullptr};
+    const ReceiverParts receiver{
+        *parts_.constellation,
+        *parts_.mode,
+        *parts_.solver,
+        *parts_.weighting,
+        config_.position.max_gdop,
+        frame_.origin_E(),
+        filter_ ? &*filter_ : nullptr,
+        smoothing_ ? &*smoothing_ : nullptr,
+        {parts_.reported_covariance.get(), static_cast<int>(config_.position.fewest_satellites),
+         config_.position.accuracy_limit_m}};
     std::vector<Correction> corrections;
     PositionSolution solution;
     out.fix = compute_fix(receiver, epoch.t, out.epoch, inputs, corrections, &solution);
@@ -269,7 +279,7 @@ class PseudorangeSensor final : public GnssSensor {
     truth.ionosphere_m -= c.modelled.ionosphere_m;
     truth.troposphere_m -= c.modelled.troposphere_m;
     truth.ephemeris_m -= c.modelled.ephemeris_m;
-    truth.noise_m -= c.noise_m;
+    truth.noise_m -= c.noise_m + c.smoothing_m;
     truth.multipath_m -= c.multipath_m;
     truth.base_m -= c.base_m;
     if (leave_out.ionosphere) truth.ionosphere_delay_m = kNaN;
@@ -285,6 +295,7 @@ class PseudorangeSensor final : public GnssSensor {
   SatellitesInView in_view_;
   SignalTracker first_, second_;
   std::optional<PvtFilter> filter_;
+  std::optional<BandSmoothing> smoothing_;
   PathOmissions leave_out_;
   RangeOmissions ranges_;
   std::vector<std::pair<PathOmissions, std::unique_ptr<PathModel>>> reduced_;

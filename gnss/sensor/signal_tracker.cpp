@@ -25,12 +25,14 @@ std::uint64_t identity(const SignalPaths& paths, int source) {
 
 }  // namespace
 
-SignalTracker::SignalTracker(const std::string& prefix, const TrackingConfig& config, const PseudorangeParts& parts)
-    : config_(config),
+SignalTracker::SignalTracker(const std::string& prefix, const GnssConfig& config, const PseudorangeParts& parts)
+    : config_(config.tracking),
       parts_(parts),
-      code_(parts.locks.seed, prefix + "code_noise", config.code_loop_hz, parts.locks.interval_s),
+      code_(parts.locks.seed, prefix + "code_noise", config_.code_loop_hz, parts.locks.interval_s),
       carrier_(parts.locks.seed, prefix + "carrier_noise"),
       doppler_(parts.locks.seed, prefix + "doppler_noise"),
+      cn0_(parts.locks.seed, prefix + "cn0_noise", config.cn0_report, parts.locks.integration_s,
+           parts.locks.interval_s),
       locks_(parts.locks) {}
 
 const Channel& SignalTracker::channel(GnssSystem system, int band) const {
@@ -64,7 +66,7 @@ SignalMeasurement SignalTracker::measure(const ReceivingAntenna& antenna, const 
   if (!lock.tracked) return m;
 
   m.tracked = true;
-  m.cn0_dbhz = r.cn0_dbhz;
+  m.cn0_dbhz = cn0_.reported_dbhz(r.cn0_dbhz, sight.sv.entity(), antenna.index);
   m.slipped = lock.slipped;
   m.ambiguity_cycles = lock.ambiguity_cycles;
   const std::uint32_t entity = sight.sv.entity();

@@ -8,6 +8,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/receiver/loop_noise.h"
+#include "canyon/gnss/receiver/reports/cn0_estimator.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sensor/pseudorange_parts.h"
 #include "canyon/gnss/sensor/satellites_in_view.h"
@@ -40,7 +41,7 @@ struct SignalMeasurement {
 class SignalTracker {
  public:
   /// Streams are named by the prefix. `parts` outlives it.
-  SignalTracker(const std::string& prefix, const TrackingConfig& config, const PseudorangeParts& parts);
+  SignalTracker(const std::string& prefix, const GnssConfig& config, const PseudorangeParts& parts);
 
   /// Every lock is lost.
   void restart() { locks_.restart(); }
@@ -61,6 +62,7 @@ class SignalTracker {
   const PseudorangeParts& parts_;
   LoopNoise code_;
   RandomStream carrier_, doppler_;
+  Cn0Estimator cn0_;
   SignalLocks locks_;
 };
 

@@ -43,6 +43,9 @@ void visit(FieldVisitor& f, SinglePointConfig& c) {
            "least_squares = each epoch by itself; kalman = position, velocity and time filtered");
   f.number("acceleration_m_s2", c.acceleration_m_s2, {1e-6, 1000.0},
            "kalman: white acceleration of the antenna per axis, m/s^2/sqrt(Hz)");
+  visit_choice(f, "reported_covariance", c.reported_covariance, "the covariance that comes with a position");
+  f.number("base_age_s", c.base_age_s, {0.0, 3600.0},
+           "with a base: longest time from an epoch to the base's nearest, whose differences it is corrected by");
   f.choice("weighting", c.weighting, model_names(range_weightings()), "assumed 1-sigma of a corrected pseudorange");
   f.number("sigma_m", c.sigma_m, {1e-3, 1000.0}, "its size for a clear satellite at the zenith");
   f.number("doppler_sigma_m_s", c.doppler_sigma_m_s, {1e-4, 100.0},

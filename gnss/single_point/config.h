@@ -7,6 +7,7 @@
 #include "canyon/gnss/single_point/group_delay.h"
 #include "canyon/gnss/single_point/range_corrections.h"
 #include "canyon/gnss/solver/pvt_filter.h"
+#include "canyon/gnss/solver/reported_covariance.h"
 
 namespace canyon::gnss {
 
@@ -30,6 +31,9 @@ struct SinglePointConfig {
 
   Estimator estimator = Estimator::kLeastSquares;
   double acceleration_m_s2 = 1.0;  ///< kalman: white acceleration, m/s^2/sqrt(Hz)
+
+  ModelChoice<reported_covariances> reported_covariance{"geometry"};
+  double base_age_s = 30.0;  ///< with a base: how old or young its observations may be
 
   std::string weighting = "budget";
   double sigma_m = 0.5;

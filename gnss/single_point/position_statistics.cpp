@@ -34,6 +34,7 @@ PositionStatistics position_statistics(const std::vector<GnssFix>& fixes, const 
     if (!place) continue;
     const Eigen::Matrix3d R_enu_E = rotation_E_from_enu(geodetic_from_ecef(place->p_E)).transpose();
     errors.push_back(R_enu_E * (fix.p_A_E - place->p_E));
+    out.reported.add(errors.back(), R_enu_E * fix.covariance_E * R_enu_E.transpose());
     if (place->v_E && fix.v_A_E.allFinite()) {
       velocity_square += (R_enu_E * (fix.v_A_E - *place->v_E)).cwiseAbs2();
       ++velocities;

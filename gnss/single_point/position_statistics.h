@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "canyon/core/messages.h"
+#include "canyon/gnss/solver/ellipse_coverage.h"
 
 namespace canyon::gnss {
 
@@ -15,6 +16,7 @@ struct PositionStatistics {
   int epochs = 0, solved = 0, compared = 0;  ///< compared: solved epochs at which there is a truth
   Eigen::Vector3d mean_enu_m = Eigen::Vector3d::Constant(kNaN), std_enu_m = Eigen::Vector3d::Constant(kNaN);
   double h50_m = kNaN, h95_m = kNaN, v95_m = kNaN, rms_3d_m = kNaN;
+  EllipseCoverage reported;                                                ///< of those with a covariance
   Eigen::Vector3d velocity_rms_enu_m_s = Eigen::Vector3d::Constant(kNaN);  ///< where fixes and truth have a velocity
 };
 

@@ -40,6 +40,11 @@ Result<RecordedData> read_recorded_data(const RecordedFiles& files, const Single
     CANYON_TRY(out.ionosphere_maps, read_ionex_file(files.ionex));
     out.warnings.insert(out.warnings.end(), out.ionosphere_maps->warnings.begin(), out.ionosphere_maps->warnings.end());
   }
+  if (!files.base.empty()) {
+    CANYON_TRY(ObservationFile observations, read_observation_file(files.base));
+    out.warnings.insert(out.warnings.end(), observations.warnings.begin(), observations.warnings.end());
+    out.base = BaseRecording{std::move(observations), files.base_E.value()};
+  }
   return out;
 }
 

@@ -10,11 +10,11 @@
 #include "canyon/gnss/atmosphere/ionosphere_map.h"
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/signal.h"
-#include "canyon/gnss/single_point/carrier_smoothing.h"
 #include "canyon/gnss/single_point/code_choice.h"
 #include "canyon/gnss/single_point/group_delay.h"
 #include "canyon/gnss/single_point/range_corrections.h"
 #include "canyon/gnss/sky_view.h"
+#include "canyon/gnss/solver/carrier_smoothing.h"
 #include "canyon/gnss/solver/pvt_filter.h"
 #include "canyon/gnss/solver/velocity.h"
 #include "canyon/gnss/solver/weighting.h"
@@ -38,6 +38,7 @@ struct Candidate {
   double group_delay_sigma_m = 0.0;
   bool loss_of_lock = false;
   BroadcastKlobuchar klobuchar;
+  double base_m = 0.0, base_sigma_m = 0.0;  // what the base's range is off, and how uncertain that is
 };
 
 /// Satellites observed without an ephemeris: told once each.
@@ -104,6 +105,7 @@ class SinglePoint {
         lent_delay_(file.name,
                     "the navigation message does not tell this band's group delay; that of the band beside it is used, "
                     "and its ranges count for less") {
+    report_ = *config.reported_covariance.make("reported_covariance");  // the name was checked when it was read
     troposphere_m_ = model_row(troposphere_corrections(), config.troposphere).make;
     weighting_ = model_row(range_weightings(), config.weighting).make({}, {config.sigma_m});
     PositionSolverParameters p;
@@ -127,7 +129,33 @@ class SinglePoint {
     if (file.header.approx_position_E) guess_E_ = *file.header.approx_position_E;
   }
 
-  Result<SinglePointResult> run() {
+  /// As a base at p_E: what its ranges are off.
+  BaseDifferences differences(const Eigen::Vector3d& p_E) {
+    BaseDifferences out;
+    for (const auto& epoch : file_.epochs) {
+      throw_if_cancelled();
+      std::vector<Candidate> candidates = usable(epoch);
+      smooth(candidates, epoch, p_E);
+      GnssEpoch corrected;
+      std::vector<RangeMeasurement> ranges;
+      correct(candidates, epoch.t, p_E, corrected, ranges);
+      const Horizon horizon(p_E);
+      auto& of = out.epochs.emplace_back(BaseDifferences::Epoch{epoch.t, {}}).satellites;
+      for (const auto& o : corrected.observations)
+        of[o.sv] = {o.corrected_m() - (o.p_E - p_E).norm(), o.band, horizon.view(epoch.t, o.p_E).elevation_rad};
+    }
+    return out;
+  }
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> out = missing_.list();
+    without_channel_.append_to(out);
+    lent_delay_.append_to(out);
+    return out;
+  }
+
+  /// Errors: see solve_observations().
+  Result<SinglePointResult> run(const BaseDifferences* base) {
+    base_ = base;
     SinglePointResult out;
     for (const auto& epoch : file_.epochs) {
       throw_if_cancelled();
@@ -135,9 +163,7 @@ class SinglePoint {
       const auto& fix = out.epochs.back().fix;
       if (fix.status == FixStatus::kNone) ++out.reasons[kind_of(fix.reason)];
     }
-    out.warnings = missing_.list();
-    without_channel_.append_to(out.warnings);
-    lent_delay_.append_to(out.warnings);
+    out.warnings = warnings();
     if (observed_ == 0)
       return Error{file_.name, 0, "systems", "no pseudorange of the systems " + config_.systems + " in it",
                    "systems that were observed"};
@@ -146,20 +172,54 @@ class SinglePoint {
                    "no satellite observed from " + file_.epochs.front().t.iso(0) + " to " +
                        file_.epochs.back().t.iso(0) + " has a valid ephemeris in " + inputs_.navigation.names(),
                    "navigation files of the same day and systems"};
+    if (base_ != nullptr && with_base_ == 0) return lonely();
     return out;
   }
 
  private:
+  Error lonely() const {
+    const std::string span = file_.epochs.front().t.iso(0) + " to " + file_.epochs.back().t.iso(0);
+    const std::string& name = inputs_.base->observations.name;
+    if (near_base_ > 0)
+      return Error{name, 0, "", "has no satellite in common with " + file_.name + " from " + span,
+                   "a base near by that observed the same systems and bands"};
+    return Error{name, 0, "",
+                 "has epochs from " + base_->epochs.front().t.iso(0) + " to " + base_->epochs.back().t.iso(0) +
+                     ", none near those of " + file_.name + ", " + span,
+                 "a base that observed at the same time"};
+  }
+
+  /// Leaves those that the base has at that time; none, and false, if the base has no such time.
+  bool take_differences(GpsTime t, std::vector<Candidate>& candidates) {
+    if (base_ == nullptr) return true;
+    const BaseDifferences::Epoch* now = base_->near(t, config_.base_age_s);
+    if (now == nullptr) {
+      candidates.clear();
+      return false;
+    }
+    ++near_base_;
+    std::erase_if(candidates, [&](Candidate& c) {
+      const auto of = now->satellites.find(c.sv);
+      if (of == now->satellites.end() || of->second.band != c.signal.code.band - '0') return true;
+      c.base_m = of->second.m;
+      c.base_sigma_m = base_code_sigma_m(of->second.elevation_rad);
+      return false;
+    });
+    with_base_ += static_cast<std::int64_t>(candidates.size());
+    return true;
+  }
+
   SinglePointEpoch solve(const ObservationEpoch& epoch) {
     SinglePointEpoch out;
     out.fix.t = epoch.t;
     out.epoch.t = epoch.t;
     std::vector<Candidate> candidates = usable(epoch);
+    const bool corrected = take_differences(epoch.t, candidates);
     Eigen::Vector3d at_E = guess_E_;
     const PositionSolution rough = rough_position(candidates, at_E);
     if (!rough.ok) {
       out.fix.dop = rough.dop;
-      out.fix.reason = rough.reason;
+      out.fix.reason = corrected ? rough.reason : "the base observed nothing near that time";
       bridge(candidates, out);
       return out;
     }
@@ -186,6 +246,9 @@ class SinglePoint {
       return out;
     }
     fill(solution, out);
+    if (!report_->as_assumed())
+      out.fix.covariance_E = covariance_of_fit(
+          ranges, report_->sigma_m(evidence_of(ranges, signals_of(candidates, out.epoch), solution)), solution);
     guess_E_ = solution.p_E;
     if (filter_) {
       filter(candidates, ranges, solution.p_E, out);
@@ -297,6 +360,7 @@ class SinglePoint {
       const double travel_s = (c.state.p_E - at_E).norm() / kSpeedOfLight;
       GnssObservation o;
       o.sv = c.sv;
+      o.band = c.signal.code.band - '0';
       o.p_E = turned_by_earth(c.state.p_E, travel_s);
       const SkyView view = horizon.view(t, o.p_E);
       if (view.elevation_rad < config_.mask_deg * kDegree) continue;
@@ -309,22 +373,34 @@ class SinglePoint {
       o.rate_m_s = pseudorange_rate_m_s(o.doppler_hz, c.code.hz) + kSpeedOfLight * c.state.clock_rate;
       o.cn0_dbhz = c.signal.cn0_dbhz;
       o.clock_m = kSpeedOfLight * (c.state.clock_s - c.group_delay_s);
-      o.correction_m = delay_m + troposphere_m_(view);
+      o.correction_m = delay_m + troposphere_m_(view) + c.base_m;
       o.sigma_m = std::hypot(weighting_->sigma_m({.system = c.sv.system,
                                                   .elevation_rad = view.elevation_rad,
                                                   .cn0_dbhz = o.cn0_dbhz,
-                                                  .ionosphere_m = delay_m,
+                                                  .ionosphere_m = base_ != nullptr ? 0.0 : delay_m,
                                                   .code_factor = c.code.noise_factor,
-                                                  .accuracy_m = c.state.accuracy_m}),
-                             c.group_delay_sigma_m);
+                                                  .accuracy_m = c.state.accuracy_m,
+                                                  .differential = base_ != nullptr}),
+                             base_ != nullptr ? c.base_sigma_m : c.group_delay_sigma_m);
       epoch.observations.push_back(o);
-      ranges.push_back({c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, config_.shared_ionosphere * delay_m});
+      const double shared_m = base_ != nullptr ? 0.0 : config_.shared_ionosphere * delay_m;
+      ranges.push_back({c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, shared_m});
     }
   }
 
-  static void fill(const PositionSolution& solution, SinglePointEpoch& out) {
+  FixStatus status() const { return base_ != nullptr ? FixStatus::kDifferential : FixStatus::kSingle; }
+
+  static std::vector<RangeSignal> signals_of(const std::vector<Candidate>& candidates, const GnssEpoch& epoch) {
+    std::vector<RangeSignal> out;
+    for (const auto& o : epoch.observations)
+      for (const auto& c : candidates)
+        if (c.sv == o.sv) out.push_back({o.sv.entity(), o.cn0_dbhz, c.code.noise_factor});
+    return out;
+  }
+
+  void fill(const PositionSolution& solution, SinglePointEpoch& out) const {
     GnssFix& fix = out.fix;
-    fix.status = FixStatus::kSingle;
+    fix.status = status();
     fix.p_A_E = solution.p_E;
     fix.covariance_E = solution.covariance_E;
     fix.clock_m = solution.clock_m;
@@ -355,7 +431,9 @@ class SinglePoint {
               const Eigen::Vector3d& at_E, SinglePointEpoch& out) {
     const std::vector<GnssObservation> own = out.epoch.observations;
     for (auto& o : out.epoch.observations) o.used = true;
-    const PvtFilter::Estimate e = filter_->update(out.fix.t, ranges, rates_of(candidates, out.epoch), at_E);
+    const std::vector<RangeSignal> signals = signals_of(candidates, out.epoch);
+    const PvtFilter::Report report{*report_, signals};
+    const PvtFilter::Estimate e = filter_->update(out.fix.t, ranges, rates_of(candidates, out.epoch), at_E, &report);
     const auto used = std::count(e.ranges_used.begin(), e.ranges_used.end(), true);
     if (!e.ok || used == 0) {
       out.epoch.observations = own;
@@ -364,7 +442,7 @@ class SinglePoint {
     for (std::size_t i = 0; i < ranges.size(); ++i) out.epoch.observations[i].used = e.ranges_used[i];
     out.fix.satellites = static_cast<int>(used);
     out.excluded = static_cast<int>(ranges.size()) - out.fix.satellites;
-    out.fix.status = FixStatus::kSingle;
+    out.fix.status = status();
     out.fix.reason.clear();
     e.fill(out.fix);
     guess_E_ = e.p_E;
@@ -386,13 +464,15 @@ class SinglePoint {
   std::unique_ptr<RangeWeighting> weighting_;
   std::unique_ptr<PositionSolver> rough_, rough_robust_, solver_;
   std::optional<PvtFilter> filter_;
+  std::unique_ptr<RangeErrorReport> report_;
+  const BaseDifferences* base_ = nullptr;
   Eigen::Vector3d guess_E_ = Eigen::Vector3d::Zero();
   TroposphereCorrection* troposphere_m_;
   GroupDelays group_delays_;
   CarrierSmoothing smoothing_;
   MissingEphemerides missing_;
   Shortcomings without_channel_, lent_delay_;
-  std::int64_t observed_ = 0, with_ephemeris_ = 0;
+  std::int64_t observed_ = 0, with_ephemeris_ = 0, near_base_ = 0, with_base_ = 0;
 };
 
 }  // namespace
@@ -422,7 +502,12 @@ Result<SinglePointResult> solve_observations(const ObservationFile& observations
                  std::string("\"") + row_of(ionosphere_corrections(), config.ionosphere).name +
                      "\" needs Klobuchar coefficients, and there are none in it",
                  "a navigation file with them, or ionosphere = \"none\""};
-  return SinglePoint(observations, inputs, config).run();
+  if (inputs.base == nullptr) return SinglePoint(observations, inputs, config).run(nullptr);
+  SinglePoint at_base(inputs.base->observations, inputs, config);
+  const BaseDifferences base = at_base.differences(inputs.base->p_E);
+  CANYON_TRY(SinglePointResult out, SinglePoint(observations, inputs, config).run(&base));
+  for (std::string& warning : at_base.warnings()) out.warnings.push_back(std::move(warning));
+  return out;
 }
 
 }  // namespace canyon::gnss

@@ -9,6 +9,7 @@
 #include "canyon/gnss/rinex/observation/observation_file.h"
 #include "canyon/gnss/satellites/constellation.h"
 #include "canyon/gnss/satellites/navigation_data.h"
+#include "canyon/gnss/single_point/base_station.h"
 #include "canyon/gnss/single_point/config.h"
 #include "canyon/gnss/solver/position_solver.h"
 
@@ -35,13 +36,17 @@ struct SinglePointInputs {
   const Constellation& constellation;
   const NavigationData& navigation;            ///< for its ionosphere coefficients and its names in messages
   const IonexMaps* ionosphere_maps = nullptr;  ///< needed where config.ionosphere is "ionex"
+  /// Positions are differential then: ranges are corrected by what the base's, smoothed as configured, are off, beside
+  /// what the models differ by between the two places; satellites that the base does not have are not used.
+  const BaseRecording* base = nullptr;
 };
 
 /// Positions of a recorded observation file, epoch by epoch.
 ///
 /// Satellites are placed by their pseudorange; those without a valid healthy ephemeris are not used, and told in the
 /// warnings. Errors: no system of config.systems observed; no satellite of any epoch with an ephemeris (navigation data
-/// of another day); a Klobuchar correction without coefficients, or maps that do not cover the observations.
+/// of another day); a Klobuchar correction without coefficients, or maps that do not cover the observations; a base
+/// without an epoch near those of the observations, or without a satellite in common.
 Result<SinglePointResult> solve_observations(const ObservationFile& observations, const SinglePointInputs& inputs,
                                              const SinglePointConfig& config);
 

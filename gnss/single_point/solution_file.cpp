@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "canyon/core/earth/earth.h"
+#include "canyon/core/fix_status.h"
 #include "canyon/core/process/progress.h"
 
 namespace canyon::gnss {
@@ -46,7 +47,7 @@ std::string solution_csv(const SinglePointResult& result) {
     }
     out += std::to_string(fix.t.week()) + "," + field(fix.t.sow_s(), 7);
     for (int i = 0; i < 3; ++i) out += "," + field(fix.p_A_E[i], 4);
-    out += std::string(",") + (solved ? "single" : "none") + "," + std::to_string(fix.satellites);
+    out += std::string(",") + fix_status_name(fix.status) + "," + std::to_string(fix.satellites);
     for (const double dop : {fix.dop.gdop, fix.dop.pdop, fix.dop.hdop, fix.dop.vdop, fix.dop.tdop})
       out += "," + field(dop, 3);
     out += "," + std::to_string(e.excluded);

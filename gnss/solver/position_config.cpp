@@ -17,6 +17,13 @@ void visit(FieldVisitor& f, PositionConfig& c) {
            "fixes then have errors that last");
   f.number("estimator_acceleration_m_s2", c.estimator_acceleration_m_s2, {1e-6, 1000.0},
            "kalman: white acceleration of the antenna per axis, m/s^2/sqrt(Hz)");
+  f.number("smoothing_s", c.smoothing_s, {0.0, 3600.0},
+           "time constant of the smoothing of code by carrier phase (Hatch) in the receiver; 0 = off");
+  visit_choice(f, "reported_covariance", c.reported_covariance, "the covariance that comes with a fix");
+  f.integer("fewest_satellites", c.fewest_satellites, {0, 20},
+            "a fix that fewer satellites are used in is not given out; 0 = whatever can be solved");
+  f.number("accuracy_limit_m", c.accuracy_limit_m, {0.0, 1e6},
+           "a fix whose reported 3-D 1-sigma is larger is not given out; 0 = no limit");
 }
 
 PositionSolverParameters PositionConfig::parameters() const {

@@ -15,7 +15,8 @@ namespace canyon::gnss {
 namespace {
 
 constexpr double kMedianM = 10.0;
-constexpr double kUnknownClockM = 1e3;  // of a system's clock against GPS before it is seen: microseconds
+constexpr double kForgottenTaus = 20.0;  // an error not seen for so long has nothing left in common with the state
+constexpr double kUnknownClockM = 1e3;   // of a system's clock against GPS before it is seen: microseconds
 
 /// Which of the three differences a system's clock has; none for GPS and what shares its clock.
 std::optional<int> between(GnssSystem system) {
@@ -49,7 +50,7 @@ struct PvtFilter::Innovations {
   }
 };
 
-void PvtFilter::predict(double dt_s) {
+void PvtFilter::predict(double dt_s, const Report* report) {
   Covariance F = Covariance::Identity(), Q = Covariance::Zero();
   const auto integrate = [&](int position, int rate, double position_q, double rate_q) {
     F(position, rate) = dt_s;
@@ -63,6 +64,14 @@ void PvtFilter::predict(double dt_s) {
   for (int i = kBetween; i < kSize; ++i) Q(i, i) = squared(p_.inter_system_m) * dt_s;
   x_ = F * x_;
   P_ = F * P_ * F.transpose() + Q;
+  if (report == nullptr) return;
+  reported_.P = F * reported_.P * F.transpose() + Q;
+  const double tau_s = report->errors.correlation_s(), kept = tau_s > 0.0 ? std::exp(-dt_s / tau_s) : 0.0;
+  for (auto with = reported_.with.begin(); with != reported_.with.end();) {
+    with->second.c = kept * (F * with->second.c);
+    const bool forgotten = t_ - with->second.t > kForgottenTaus * tau_s;
+    with = forgotten ? reported_.with.erase(with) : std::next(with);
+  }
 }
 
 PvtFilter::Innovations PvtFilter::innovations(std::span<const RangeMeasurement> ranges,
@@ -95,7 +104,7 @@ PvtFilter::Innovations PvtFilter::innovations(std::span<const RangeMeasurement> 
 }
 
 bool PvtFilter::begin(GpsTime t, std::span<const RangeMeasurement> ranges, std::span<const RateMeasurement> rates,
-                      const Eigen::Vector3d& guess_E, Estimate& out) {
+                      const Eigen::Vector3d& guess_E, Estimate& out, const Report* report) {
   const PositionSolution position = make_least_squares(p_.start)->solve(ranges, guess_E);
   out.reason = position.reason;
   if (!position.ok) return false;
@@ -125,7 +134,68 @@ bool PvtFilter::begin(GpsTime t, std::span<const RangeMeasurement> ranges, std::
     P_(i, i) = squared(kUnknownClockM);
   }
   out.ranges_used = position.used;
+  if (report != nullptr) {
+    const std::vector<double> sigma_m = report->errors.sigma_m(evidence_of(ranges, report->signals, position));
+    reported_ = {};
+    reported_.P = P_;
+    const Eigen::MatrixXd spread_m = spread_of_fit(ranges, sigma_m, position);
+    reported_.P.block<3, 3>(kP, kP) = spread_m * spread_m.transpose();
+    for (std::size_t i = 0; i < ranges.size() && report->errors.correlation_s() > 0.0; ++i) {
+      Consider::With& with = reported_.with[report->signals[i].entity];
+      with = {State::Zero(), t};
+      with.c.segment<3>(kP) = spread_m.col(static_cast<Eigen::Index>(i));
+    }
+  }
   return true;
+}
+
+/// By the innovations of all ranges, also of those outside the gate: they too tell where the receiver is.
+std::vector<double> PvtFilter::reported_sigmas(const Innovations& all, std::span<const RangeMeasurement> ranges,
+                                               const Report& report) const {
+  const auto n = static_cast<Eigen::Index>(ranges.size());
+  RangeEvidence evidence;
+  const Eigen::MatrixXd H = all.H.topRows(n);
+  evidence.z = all.value.head(n);
+  evidence.B = Eigen::MatrixXd::Identity(n, n);
+  evidence.predicted = H * reported_.P * H.transpose();
+  for (Eigen::Index i = 0; i < n; ++i) evidence.assumed_m.push_back(std::sqrt(all.variance[i]));
+  evidence.signals.assign(report.signals.begin(), report.signals.end());
+  return report.errors.sigma_m(evidence);
+}
+
+/// The second covariance after an update with these gains. e+ = (I - K H) e + K v; v of a range is its sigma times an
+/// error that lasts, of a rate white noise as much larger than assumed as the ranges' are.
+void PvtFilter::consider(const Innovations& all, const std::vector<Eigen::Index>& used, const Eigen::MatrixXd& H,
+                         const Eigen::MatrixXd& K, const std::vector<double>& sigma_m, const Report& report) {
+  const auto n = static_cast<Eigen::Index>(used.size()), ranges = static_cast<Eigen::Index>(sigma_m.size());
+  double inflation = 0.0;
+  for (Eigen::Index i = 0; i < ranges; ++i)
+    inflation += sigma_m[static_cast<std::size_t>(i)] * sigma_m[static_cast<std::size_t>(i)] / all.variance[i] /
+                 static_cast<double>(ranges);
+  const Covariance I_KH = Covariance::Identity() - K * H;
+  Eigen::MatrixXd R = Eigen::MatrixXd::Zero(n, n), C = Eigen::MatrixXd::Zero(kSize, n);  // C: of e with v
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index k = used[static_cast<std::size_t>(i)];
+    if (k >= ranges) {
+      R(i, i) = std::max(1.0, inflation) * all.variance[k];
+      continue;
+    }
+    const double s = sigma_m[static_cast<std::size_t>(k)];
+    R(i, i) = s * s;
+    const auto with = reported_.with.find(report.signals[static_cast<std::size_t>(k)].entity);
+    if (with != reported_.with.end()) C.col(i) = s * with->second.c;
+  }
+  const Covariance cross = I_KH * C * K.transpose();
+  reported_.P = I_KH * reported_.P * I_KH.transpose() + K * R * K.transpose() + cross + cross.transpose();
+  for (auto& [entity, with] : reported_.with) with.c = I_KH * with.c;
+  if (report.errors.correlation_s() <= 0.0) return;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(used[static_cast<std::size_t>(i)]);
+    if (static_cast<Eigen::Index>(k) >= ranges) continue;
+    const auto [with, fresh] = reported_.with.try_emplace(report.signals[k].entity, Consider::With{State::Zero(), t_});
+    with->second.c += sigma_m[k] * K.col(i);
+    with->second.t = t_;
+  }
 }
 
 /// Receivers that steer their clock in steps, often of a millisecond, shift all ranges at once.
@@ -140,17 +210,21 @@ bool PvtFilter::take_clock_jump(std::span<const RangeMeasurement> ranges) {
   P_.col(kClock).setZero();
   // The median of ranges is good to metres; a wider variance would let faults through the gate now.
   P_(kClock, kClock) = kMedianM * kMedianM;
+  reported_.P.row(kClock).setZero();
+  reported_.P.col(kClock).setZero();
+  reported_.P(kClock, kClock) = kMedianM * kMedianM;
+  for (auto& [entity, with] : reported_.with) with.c[kClock] = 0.0;
   return true;
 }
 
-void PvtFilter::describe(Estimate& out) const {
+void PvtFilter::describe(Estimate& out, const Report* report) const {
   out.ok = true;
   out.reason.clear();
   out.p_E = x_.segment<3>(kP);
   out.v_E = x_.segment<3>(kV);
   out.clock_m = x_[kClock];
   out.drift_m_s = x_[kDrift];
-  out.covariance = P_.topLeftCorner<6, 6>();
+  out.covariance = (report == nullptr ? P_ : reported_.P).topLeftCorner<6, 6>();
 }
 
 void PvtFilter::Estimate::fill(GnssFix& fix) const {
@@ -163,15 +237,17 @@ void PvtFilter::Estimate::fill(GnssFix& fix) const {
 }
 
 PvtFilter::Estimate PvtFilter::update(GpsTime t, std::span<const RangeMeasurement> ranges,
-                                      std::span<const RateMeasurement> rates, const Eigen::Vector3d& guess_E) {
+                                      std::span<const RateMeasurement> rates, const Eigen::Vector3d& guess_E,
+                                      const Report* report) {
+  if (report != nullptr && report->errors.as_assumed()) report = nullptr;
   Estimate out;
   out.ranges_used.assign(ranges.size(), false);
   if (running_ && (t <= t_ || t - t_ > p_.longest_gap_s)) running_ = false;
   if (!running_) {
-    if (begin(t, ranges, rates, guess_E, out)) describe(out);
+    if (begin(t, ranges, rates, guess_E, out, report)) describe(out, report);
     return out;
   }
-  predict(t - t_);
+  predict(t - t_, report);
   t_ = t;
 
   const double gate = chi_square_threshold(p_.gate_probability, 1);
@@ -189,7 +265,7 @@ PvtFilter::Estimate PvtFilter::update(GpsTime t, std::span<const RangeMeasuremen
     // Neither position nor clock explains what is measured: it is not where it thinks.
     const Eigen::Vector3d here_E = x_.segment<3>(kP);
     running_ = false;
-    if (begin(t, ranges, rates, here_E, out)) describe(out);
+    if (begin(t, ranges, rates, here_E, out, report)) describe(out, report);
     return out;
   }
 
@@ -213,8 +289,9 @@ PvtFilter::Estimate PvtFilter::update(GpsTime t, std::span<const RangeMeasuremen
     // Joseph's form keeps it symmetric and positive.
     const Covariance I_KH = Covariance::Identity() - K * H;
     P_ = I_KH * P_ * I_KH.transpose() + K * R * K.transpose();
+    if (report != nullptr) consider(now, inside, H, K, reported_sigmas(now, ranges, *report), *report);
   }
-  describe(out);
+  describe(out, report);
   return out;
 }
 

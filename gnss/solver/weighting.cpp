@@ -65,7 +65,7 @@ class ElevationCn0 final : public Weighting {
 /// what broadcast ephemerides are measured to have, whatever URA they announce, GLONASS 2 m (its clocks; Montenbruck et
 /// al. 2018, "Multi-GNSS signal-in-space range error assessment"); a fifth of the modelled ionosphere, what differs
 /// between directions (the part that they share is PositionSolver's shared error); the troposphere's zenith 0.05 m,
-/// mapped.
+/// mapped. With differential corrections the tracking alone.
 class Budget final : public Weighting {
  public:
   using Weighting::Weighting;
@@ -73,6 +73,7 @@ class Budget final : public Weighting {
     const double s = sin_elevation(q);
     const double code_m = q.code_factor * zenith_m_;
     const double tracking2 = code_m * code_m * (0.5 / (s * s) + 0.5 * relative_noise(q));
+    if (q.differential) return std::sqrt(tracking2);
     const double orbit_m = q.system == GnssSystem::kGlonass ? 2.0 : 0.8;
     const double ionosphere_m = 0.2 * q.ionosphere_m, troposphere_m = 0.05 / (s + 0.01);
     return std::sqrt(tracking2 + orbit_m * orbit_m + ionosphere_m * ionosphere_m + troposphere_m * troposphere_m);

@@ -16,6 +16,7 @@ struct RangeQuality {
   double ionosphere_m = 0.0;   ///< what a model of the ionosphere subtracts; 0 = no model
   double code_factor = 1.0;    ///< of the code's own noise: 2 to 3 for an ionosphere-free combination
   double accuracy_m = kNaN;    ///< of the satellite's orbit and clock (URA, SISA), NaN: not known
+  bool differential = false;   ///< corrected by a base near by, so that the code's own error is what is left
 };
 
 /// 1-sigma that a solver assumes for a corrected pseudorange.

@@ -9,7 +9,7 @@
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/satellites/transmission.h"
-#include "canyon/gnss/single_point/carrier_smoothing.h"
+#include "canyon/gnss/solver/carrier_smoothing.h"
 #include "canyon/gnss/solver/pvt_filter.h"
 #include "canyon/gnss/stress/subjects.h"
 

@@ -22,7 +22,7 @@ A mission file is TOML. Beside the sections below it may hold
   `vehicle.start_m`, `vehicle.start_heading_deg` and the waypoints.
 
 Later layers win: the base mission, the built-in fidelity (at the foot of this page), the file's sections, the file's
-`[fidelity.NAME]`, options of the command line. An array, such as the waypoints, is replaced as a whole. Unknown keys are errors.
+`[fidelity.NAME]`, options of the command line. A layer that names a receiver (`[gnss] receiver`) has its figures just below it. An array, such as the waypoints, is replaced as a whole. Unknown keys are errors.
 A relative path starts at the folder of the file it is written in; on the command line, at the current directory.
 
 The default is that of a file without `base`; the columns "range" and "meaning" are what `canyon` itself checks and knows.

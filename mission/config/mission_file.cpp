@@ -7,6 +7,7 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/process/embedded.h"
 #include "canyon/core/units.h"
+#include "canyon/gnss/sensor/receiver_catalogue.h"
 
 namespace canyon::mission {
 
@@ -225,16 +226,20 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
                  .what = "unknown fidelity",
                  .expected = "one of " + plain_list(known)};
   CANYON_TRY(const std::vector<std::string> lineage, ancestry(fidelity));
-  ConfigNode tree = base_;
-  const auto lay_fidelity = [&](const ConfigNode& from) {
+  ConfigNode tree;
+  tree.value_ = ConfigNode::Table{};
+  const auto lay_fidelity = [&](const ConfigNode& from) -> Status {
     for (const std::string& name : lineage)
-      if (const ConfigNode* over = from.find("fidelity." + name)) tree.overlay(*over);
+      if (const ConfigNode* over = from.find("fidelity." + name))
+        CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, *over));
+    return Ok{};
   };
-  lay_fidelity(base_);
-  lay_fidelity(builtin_fidelities_);
-  tree.overlay(user_);
-  lay_fidelity(user_);
-  tree.overlay(options_);
+  CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, base_));
+  CANYON_TRY_STATUS(lay_fidelity(base_));
+  CANYON_TRY_STATUS(lay_fidelity(builtin_fidelities_));
+  CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, user_));
+  CANYON_TRY_STATUS(lay_fidelity(user_));
+  CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, options_));
   tree.erase("fidelity");
   tree.erase("base");
   return tree;

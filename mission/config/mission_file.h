@@ -19,10 +19,11 @@ inline constexpr const char* kDefaultMission = "vicksburg";
 /// A mission as the user states it: one description, and fidelities that override parts of it.
 ///
 /// Layers, later ones win: the base mission (`base = "vicksburg"`, a built-in), the built-in fidelity, the user's
-/// sections, the user's [fidelity.NAME], options of the command line. So a user's `[gnss] rate_hz = 5` holds for every
-/// fidelity. A fidelity that is not built in is laid over the one that its key `base` names, over `high` without it.
-/// What the runs of a comparison share (scene, time, seed, name, start, waypoints) cannot differ between fidelities.
-/// All fidelities of the user's file are read and checked at once, whichever will be used.
+/// sections, the user's [fidelity.NAME], options of the command line. A layer that names a receiver (gnss.receiver)
+/// has that receiver's figures just below it (gnss/sensor/receiver_catalogue.h). So a user's `[gnss] rate_hz = 5` holds
+/// for every fidelity. A fidelity that is not built in is laid over the one that its key `base` names, over `high`
+/// without it. What the runs of a comparison share (scene, time, seed, name, start, waypoints) cannot differ between
+/// fidelities. All fidelities of the user's file are read and checked at once, whichever will be used.
 class MissionFile {
  public:
   /// Reads a mission file; an empty path gives the built-in mission.

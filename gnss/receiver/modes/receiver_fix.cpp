@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
 #include "canyon/core/check.h"
 #include "canyon/core/units.h"
@@ -15,9 +17,27 @@ namespace {
 constexpr double kLowestElevationRad =
     5.0 * kDegree;  // models and weights are held there, wherever a poor guess puts the horizon
 
+/// Raw pseudorange less the smoothed one. With `gain`, that of the combination (1 + gain) P1 - gain P2: both bands are
+/// smoothed, each by its own carrier.
+double raw_less_smoothed_m(BandSmoothing& smoothing, GpsTime t, const GnssObservation& o, int frequency_channel,
+                           std::optional<double> gain) {
+  const auto of_band = [&](CarrierSmoothing& band_smoothing, int band, double code_m, double phase_cycles,
+                           bool slipped) {
+    const double wavelength_m = kSpeedOfLight / carrier_hz(o.sv.system, band, frequency_channel);
+    const CarrierSmoothing::Input in{code_m, phase_cycles * wavelength_m, 0.0, slipped};
+    return code_m - band_smoothing.smooth(o.sv, t, in).code_m;
+  };
+  const double first_m = of_band(smoothing.first, o.band, o.pseudorange_m, o.carrier_phase_cycles, o.slipped);
+  if (!gain) return first_m;
+  const GnssSecondSignal& s = o.second;
+  const double second_m = of_band(smoothing.second, s.band, s.pseudorange_m, s.carrier_phase_cycles, s.slipped);
+  return first_m - *gain * (second_m - first_m);
+}
+
 /// Satellites as told by the pseudoranges; what has no valid ephemeris there stays NaN.
 std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, const Constellation& constellation,
-                                                           std::span<CorrectionInput> inputs,
+                                                           std::span<CorrectionInput> inputs, BandSmoothing* smoothing,
+                                                           std::vector<double>& smoothed_m,
                                                            std::vector<RateMeasurement>& rates) {
   std::vector<RangeMeasurement> ranges;
   for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
@@ -33,14 +53,18 @@ std::vector<RangeMeasurement> satellites_from_pseudoranges(GnssEpoch& epoch, con
     const double carrier = carrier_hz(o.sv.system, o.band, view->state.frequency_channel);
     o.rate_m_s = pseudorange_rate_m_s(o.doppler_hz, carrier) + kSpeedOfLight * view->state.clock_rate;
     rates.push_back({view->state.p_E, view->state.v_E, o.rate_m_s, 1.0});
+    smoothed_m.push_back(smoothing != nullptr
+                             ? raw_less_smoothed_m(*smoothing, epoch.t, o, view->state.frequency_channel,
+                                                   inputs[i].two ? std::optional(inputs[i].two->gain) : std::nullopt)
+                             : 0.0);
   }
   return ranges;
 }
 
 /// Everything that depends on where the receiver believes to be.
 void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at_E, GnssEpoch& epoch,
-             std::span<CorrectionInput> inputs, std::vector<Correction>& corrections,
-             std::vector<RangeMeasurement>& ranges) {
+             std::span<CorrectionInput> inputs, const std::vector<double>& smoothed_m,
+             std::vector<Correction>& corrections, std::vector<RangeMeasurement>& ranges) {
   const Horizon horizon(at_E);
   for (std::size_t i = 0; i < epoch.observations.size(); ++i) {
     auto& o = epoch.observations[i];
@@ -49,6 +73,7 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
     view = horizon.view(t, o.p_E);
     view.elevation_rad = std::max(view.elevation_rad, kLowestElevationRad);
     corrections[i] = receiver.mode.correction(inputs[i]);
+    corrections[i].smoothing_m = smoothed_m[i];
     o.correction_m = corrections[i].total_m();
     // The difference of two frequencies tells the ionosphere, but not without their noise.
     const bool two = inputs[i].two.has_value(), lost = receiver.mode.dual_frequency() && !two;
@@ -81,8 +106,9 @@ void fill_velocity(const GnssEpoch& epoch, std::span<const RateMeasurement> all,
 /// The filter's fix, from all satellites that there are: what it expects tells a fault better than one epoch's
 /// residuals, which need redundancy. Says why where there is none.
 void filtered_fix(PvtFilter& filter, FixStatus status, std::span<const RangeMeasurement> ranges,
-                  std::span<const RateMeasurement> rates, const Eigen::Vector3d& at_E, GnssEpoch& epoch, GnssFix& fix) {
-  const PvtFilter::Estimate estimate = filter.update(fix.t, ranges, rates, at_E);
+                  std::span<const RateMeasurement> rates, const Eigen::Vector3d& at_E, const PvtFilter::Report* report,
+                  GnssEpoch& epoch, GnssFix& fix) {
+  const PvtFilter::Estimate estimate = filter.update(fix.t, ranges, rates, at_E, report);
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     epoch.observations[i].used = estimate.ranges_used[i];
     fix.satellites += estimate.ranges_used[i] ? 1 : 0;
@@ -95,6 +121,36 @@ void filtered_fix(PvtFilter& filter, FixStatus status, std::span<const RangeMeas
   fix.status = status;
   fix.reason.clear();
   estimate.fill(fix);
+}
+
+std::vector<RangeSignal> signals_of(const GnssEpoch& epoch, std::span<const CorrectionInput> inputs) {
+  std::vector<RangeSignal> out;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const double gain = inputs[i].two ? inputs[i].two->gain : 0.0;
+    const GnssObservation& o = epoch.observations[i];
+    out.push_back({o.sv.entity(), o.cn0_dbhz, std::hypot(1.0 + gain, gain)});
+  }
+  return out;
+}
+
+/// A fix that the receiver does not give out is none, and says why.
+void withhold(const FixOutput& output, GnssEpoch& epoch, GnssFix& fix) {
+  if (fix.status == FixStatus::kNone) return;
+  char text[128] = "";
+  const double sigma_m = std::sqrt(fix.covariance_E.trace());
+  if (fix.satellites < output.fewest_satellites)
+    std::snprintf(text, sizeof text, "too few satellites are used: %d, a fix needs %d", fix.satellites,
+                  output.fewest_satellites);
+  else if (output.accuracy_limit_m > 0.0 && !(sigma_m <= output.accuracy_limit_m))
+    std::snprintf(text, sizeof text, "the fix is too uncertain: 1-sigma %.0f m exceeds %g m", sigma_m,
+                  output.accuracy_limit_m);
+  if (text[0] == '\0') return;
+  GnssFix none;
+  none.t = fix.t;
+  none.dop = fix.dop;
+  none.reason = text;
+  fix = none;
+  for (auto& o : epoch.observations) o.used = false;
 }
 
 /// The epoch by itself.
@@ -117,7 +173,9 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
                " observations");
   std::vector<RateMeasurement> rates;
-  std::vector<RangeMeasurement> ranges = satellites_from_pseudoranges(epoch, receiver.constellation, inputs, rates);
+  std::vector<double> smoothed_m;
+  std::vector<RangeMeasurement> ranges =
+      satellites_from_pseudoranges(epoch, receiver.constellation, inputs, receiver.smoothing, smoothed_m, rates);
   corrections.assign(observations.size(), {});
 
   // Uncorrected ranges tell the position to some tens of metres; corrected for elevations and heights there, to metres;
@@ -131,7 +189,7 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   PositionSolution solution;
   constexpr int kPasses = 2;
   for (int pass = 0; pass < kPasses; ++pass) {
-    correct(receiver, t, at_E, epoch, inputs, corrections, ranges);
+    correct(receiver, t, at_E, epoch, inputs, smoothed_m, corrections, ranges);
     solution = receiver.solver.solve(ranges, at_E);
     if (solution.ok) at_E = solution.p_E;
   }
@@ -147,10 +205,20 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   fix.t = t;
   fix.dop = solution.dop;
   fix.reason = solution.reason;
-  if (receiver.filter != nullptr)
-    filtered_fix(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, epoch, fix);
-  else if (solution.ok)
+  const RangeErrorReport* errors = receiver.output.errors;
+  if (errors != nullptr && errors->as_assumed()) errors = nullptr;
+  const std::vector<RangeSignal> signals = errors != nullptr ? signals_of(epoch, inputs) : std::vector<RangeSignal>();
+  if (receiver.filter != nullptr) {
+    std::optional<PvtFilter::Report> report;
+    if (errors != nullptr) report.emplace(PvtFilter::Report{*errors, signals});
+    filtered_fix(*receiver.filter, receiver.mode.status(), ranges, rates, at_E, report ? &*report : nullptr, epoch,
+                 fix);
+  } else if (solution.ok) {
     snapshot_fix(solution, receiver.mode.status(), receiver.max_gdop, rates, epoch, fix);
+    if (errors != nullptr)
+      fix.covariance_E = covariance_of_fit(ranges, errors->sigma_m(evidence_of(ranges, signals, solution)), solution);
+  }
+  withhold(receiver.output, epoch, fix);
   if (last != nullptr) *last = std::move(solution);
   return fix;
 }

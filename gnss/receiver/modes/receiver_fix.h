@@ -6,11 +6,26 @@
 #include "canyon/core/messages.h"
 #include "canyon/gnss/receiver/modes/receiver_mode.h"
 #include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/solver/carrier_smoothing.h"
+#include "canyon/gnss/solver/position_config.h"
 #include "canyon/gnss/solver/position_solver.h"
 #include "canyon/gnss/solver/pvt_filter.h"
 #include "canyon/gnss/solver/weighting.h"
 
 namespace canyon::gnss {
+
+/// Smoothing of either band's codes by their own carriers.
+struct BandSmoothing {
+  explicit BandSmoothing(double time_constant_s) : first(time_constant_s), second(time_constant_s) {}
+  CarrierSmoothing first, second;
+};
+
+/// When a fix is not given out, and what is said of those that are.
+struct FixOutput {
+  const RangeErrorReport* errors = nullptr;  ///< none: the solution's own covariance
+  int fewest_satellites = 0;
+  double accuracy_limit_m = 0.0;  ///< 0: no limit
+};
 
 /// What a receiver knows and uses.
 struct ReceiverParts {
@@ -21,6 +36,8 @@ struct ReceiverParts {
   double max_gdop = 100.0;      ///< of a velocity
   Eigen::Vector3d guess_E;      ///< rough position, used while there is no fix; some kilometres are good enough
   PvtFilter* filter = nullptr;  ///< of position, velocity and time; without one each epoch is solved by itself
+  BandSmoothing* smoothing = nullptr;
+  FixOutput output{};
 };
 
 /// The receiver's own work, from pseudoranges to a fix: completes the observations (satellite position, velocity,

@@ -26,8 +26,10 @@ struct Correction {
   RangeDelays modelled;
   double base_m = 0.0;
   double noise_m = 0.0, multipath_m = 0.0;
+  double smoothing_m = 0.0;  ///< raw range less smoothed one; of the combination, where two frequencies are combined
   double total_m() const {
-    return modelled.ionosphere_m + modelled.troposphere_m + modelled.ephemeris_m + base_m + noise_m + multipath_m;
+    const double errors_m = modelled.ionosphere_m + modelled.troposphere_m + modelled.ephemeris_m;
+    return errors_m + base_m + noise_m + multipath_m + smoothing_m;
   }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/core/earth/earth.h"
 #include "canyon/core/fix_status.h"
 #include "canyon/core/math/median.h"
 #include "canyon/core/process/progress.h"
@@ -25,6 +26,10 @@ void DriveTotals::add(const GnssOutput& output) {
   if (output.fix.status == FixStatus::kNone) return;
   ++fixes;
   square_m2 += (output.fix.p_A_E - output.truth.p_A_E).squaredNorm();
+  const Geodetic place = geodetic_from_ecef(output.truth.p_A_E);
+  const Eigen::Vector3d error = rotation_E_from_enu(place).transpose() * (output.fix.p_A_E - output.truth.p_A_E);
+  horizontal_m.push_back(error.head<2>().norm());
+  reported.add(output.fix, output.truth.p_A_E);
   if (std::isfinite(output.fix.dop.gdop)) gdop.push_back(output.fix.dop.gdop);
 }
 
@@ -42,6 +47,16 @@ double DriveTotals::rms_m() const {
 
 double DriveTotals::gdop_median() const {
   return median(gdop);
+}
+
+double DriveTotals::horizontal_percentile_m(double share) const {
+  if (horizontal_m.empty()) return kNaN;
+  std::vector<double> sorted = horizontal_m;
+  std::sort(sorted.begin(), sorted.end());
+  const double at = share * static_cast<double>(sorted.size() - 1);
+  const auto i = static_cast<std::size_t>(at);
+  const std::size_t next = std::min(i + 1, sorted.size() - 1);
+  return sorted[i] + (at - static_cast<double>(i)) * (sorted[next] - sorted[i]);
 }
 
 double depth_below_ground_m(const scene::Scene& scene, const Eigen::Vector3d& p_W) {

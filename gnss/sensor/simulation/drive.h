@@ -7,6 +7,7 @@
 
 #include "canyon/core/files/place_files.h"
 #include "canyon/gnss/sensor/sensor.h"
+#include "canyon/gnss/solver/ellipse_coverage.h"
 
 namespace canyon::gnss {
 
@@ -29,13 +30,16 @@ struct DriveTotals {
   std::int64_t below_ground = 0;  ///< epochs with the antenna below the scene's ground, which hides the sky
   double deepest_m = 0.0;
   double square_m2 = 0.0;  ///< of the fixes' errors, sum
-  std::vector<double> gdop;
+  std::vector<double> gdop, horizontal_m;
+  EllipseCoverage reported;
 
   void add(const GnssOutput& output);
   double satellites_mean() const;
   double nlos_share() const;
   double rms_m() const;
   double gdop_median() const;
+  /// Of the fixes' horizontal errors.
+  double horizontal_percentile_m(double share) const;
 };
 
 /// How far a point is below the ground of the scene, m; 0 above it and beside the scene.

@@ -1,4 +1,4 @@
-#include "canyon/gnss/single_point/carrier_smoothing.h"
+#include "canyon/gnss/solver/carrier_smoothing.h"
 
 #include <algorithm>
 #include <cmath>

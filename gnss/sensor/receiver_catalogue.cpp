@@ -1,0 +1,294 @@
+#include "canyon/gnss/sensor/receiver_catalogue.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "canyon/core/config/text.h"
+#include "canyon/core/process/embedded.h"
+#include "canyon/gnss/sensor/gnss_config.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr std::string_view kReceiverFolder = "gnss/receivers/";
+constexpr std::string_view kTomlSuffix = ".toml";
+constexpr std::string_view kSourceSuffix = "_source";
+
+/// What every sheet must say.
+constexpr const char* kAlways[] = {
+    "systems",
+    "mode",
+    "mask_deg",
+    "receiver_clock",
+    "antenna",
+    "cn0_zenith_dbhz",
+    "correlator",
+    "discriminator",
+    "correlator_spacing_chips",
+    "front_end_mhz",
+    "code_loop_hz",
+    "carrier_loop_hz",
+    "integration_ms",
+    "tracking_threshold_dbhz",
+    "reacquisition_margin_db",
+    "reacquisition_s",
+    "cn0_averaging_s",
+    "cn0_resolution_db",
+    "smoothing_s",
+    "estimator",
+    "solver",
+    "weighting",
+    "solver_sigma_m",
+    "raim",
+    "max_gdop",
+    "fewest_satellites",
+    "accuracy_limit_m",
+    "reported_covariance",
+};
+
+/// What it must say, and may say only, if one of its words is among these.
+struct Conditional {
+  const char* key;
+  const char* word_of;
+  std::vector<std::string> words;
+};
+const std::vector<Conditional>& conditionals() {
+  static const std::vector<Conditional> rows{
+      {"second_frequency", "mode", {"dual"}},
+      {"ionosphere_correction", "mode", {"single", "dual"}},
+      {"baseline_km", "mode", {"dgps"}},
+      {"ionosphere_gradient_mm_per_km", "mode", {"dgps"}},
+      {"troposphere_gradient_mm_per_km", "mode", {"dgps"}},
+      {"base_error_scale", "mode", {"dgps"}},
+      {"antenna_horizon_loss_db", "antenna", {"sine"}},
+      {"lhcp_rejection_db", "antenna", {"sine"}},
+      {"estimator_acceleration_m_s2", "estimator", {"kalman"}},
+      {"raim_false_alarm", "raim", {"detect", "greedy", "leave_one_out"}},
+      {"error_correlation_s", "reported_covariance", {"residual_inflated", "environment"}},
+      {"light_variance_m2", "reported_covariance", {"environment"}},
+      {"light_variance_m2_hz", "reported_covariance", {"environment"}},
+      {"heavy_variance_m2", "reported_covariance", {"environment"}},
+      {"heavy_variance_m2_hz", "reported_covariance", {"environment"}},
+  };
+  return rows;
+}
+
+std::vector<std::string> figure_keys() {
+  std::vector<std::string> keys(std::begin(kAlways), std::end(kAlways));
+  for (const auto& row : conditionals()) keys.emplace_back(row.key);
+  return keys;
+}
+
+bool has(const std::vector<std::string>& list, const std::string& word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+const std::string* text_at(const ConfigNode& node, const std::string& key) {
+  const ConfigNode* found = node.find(key);
+  return found == nullptr ? nullptr : std::get_if<std::string>(&found->value_);
+}
+
+std::string quoted_word(const std::string& key, const std::string& word) {
+  return key + " = \"" + word + "\"";
+}
+
+/// Keys that cannot be a receiver's, with the nearest that can.
+Status check_names(const ConfigNode& sheet) {
+  const std::vector<std::string> keys = figure_keys();
+  for (const auto& [key, node] : *sheet.table()) {
+    if (key == "name" || key == "description" || has(keys, key)) continue;
+    std::string figure = key;
+    const bool source = key.size() > kSourceSuffix.size() && key.ends_with(kSourceSuffix);
+    if (source) figure.resize(key.size() - kSourceSuffix.size());
+    if (source && has(keys, figure)) continue;
+    const std::string nearest = nearest_word(figure, keys);
+    return node.error(key, "is not a figure of a receiver",
+                      nearest.empty() ? "one of those that docs/gnss.md lists"
+                                      : "\"" + nearest + (source ? std::string(kSourceSuffix) : "") + "\"?");
+  }
+  return Ok{};
+}
+
+/// Figures that are not there though they must, and sources of those that are.
+std::vector<std::string> missing_keys(const ConfigNode& sheet) {
+  std::vector<std::string> out;
+  const auto need = [&](const std::string& key) {
+    if (sheet.find(key) == nullptr) out.push_back(key);
+  };
+  need("name");
+  need("description");
+  for (const char* key : kAlways) need(key);
+  for (const auto& row : conditionals()) {
+    const std::string* word = text_at(sheet, row.word_of);
+    if (word != nullptr && has(row.words, *word)) need(row.key);
+  }
+  for (const std::string& key : figure_keys()) {
+    const std::string source = key + std::string(kSourceSuffix);
+    const std::string* text = text_at(sheet, source);
+    if (sheet.find(key) != nullptr && (text == nullptr || text->empty())) out.push_back(source);
+  }
+  return out;
+}
+
+bool is_tracked(const GnssConfig& c, GnssSystem system) {
+  return c.satellites.systems.find(system_letter(system)) != std::string::npos;
+}
+
+/// What cannot all be true of one receiver: figures in words, by the key of the first.
+struct Contradiction {
+  std::string key, what;
+};
+
+void figures_without_use(const ConfigNode& sheet, std::vector<Contradiction>& out) {
+  for (const auto& row : conditionals()) {
+    const std::string* word = text_at(sheet, row.word_of);
+    if (sheet.find(row.key) != nullptr && word != nullptr && !has(row.words, *word))
+      out.push_back({row.key, std::string(row.key) + " with " + quoted_word(row.word_of, *word)});
+  }
+}
+
+void narrow_front_end(const GnssConfig& c, std::vector<Contradiction>& out) {
+  if (c.tracking.front_end_mhz <= 0.0) return;
+  for (const GnssSystem system : {GnssSystem::kGps, GnssSystem::kGlonass, GnssSystem::kGalileo, GnssSystem::kBeidou}) {
+    if (!is_tracked(c, system)) continue;
+    const Modulation m = modulation_of(system, first_band(system));
+    const double lobes_mhz = 1e-6 * (m == Modulation::kBoc11 ? 4.0 : 2.0) * chip_rate_hz(m);
+    if (c.tracking.front_end_mhz < lobes_mhz)
+      out.push_back({"front_end_mhz", "front_end_mhz = " + number_text(c.tracking.front_end_mhz) +
+                                          " with the main lobes of " + system_letter(system) + ", " +
+                                          number_text(lobes_mhz) + " MHz"});
+  }
+}
+
+void impossible_numbers(const GnssConfig& c, std::vector<Contradiction>& out) {
+  const auto clash = [&out](const char* key, double value, const char* with, double other) {
+    out.push_back({key, std::string(key) + " = " + number_text(value) + " with " + with + " = " + number_text(other)});
+  };
+  constexpr double kMostLoop = 0.5;  // B T, beyond which a loop that is updated every T is unstable
+  const double T_ms = c.tracking.integration_ms;
+  if (c.tracking.carrier_loop_hz * T_ms >= 1e3 * kMostLoop)
+    clash("carrier_loop_hz", c.tracking.carrier_loop_hz, "integration_ms", T_ms);
+  if (c.tracking.code_loop_hz * T_ms >= 1e3 * kMostLoop)
+    clash("code_loop_hz", c.tracking.code_loop_hz, "integration_ms", T_ms);
+  if (c.cn0_report.averaging_s > 0.0 && 1e3 * c.cn0_report.averaging_s < T_ms)
+    clash("cn0_averaging_s", c.cn0_report.averaging_s, "integration_ms", T_ms);
+  const double found_dbhz = c.locks.tracking_threshold_dbhz + c.locks.reacquisition_margin_db;
+  if (found_dbhz >= c.link.cn0_zenith_dbhz)
+    out.push_back(
+        {"tracking_threshold_dbhz", "tracking_threshold_dbhz + reacquisition_margin_db = " + number_text(found_dbhz) +
+                                        " with cn0_zenith_dbhz = " + number_text(c.link.cn0_zenith_dbhz)});
+}
+
+void clock_without_unknown(const GnssConfig& c, std::vector<Contradiction>& out) {
+  if (c.position.solver.name != "trilateration") return;
+  const std::string solver = quoted_word("solver", "trilateration") + " with ";
+  if (c.receiver_clock.name != "none")
+    out.push_back({"solver", solver + quoted_word("receiver_clock", c.receiver_clock.name)});
+  if (c.position.estimator == Estimator::kKalman)
+    out.push_back({"solver", solver + quoted_word("estimator", "kalman")});
+}
+
+std::vector<Contradiction> contradictions_in(const ConfigNode& sheet, const GnssConfig& c) {
+  std::vector<Contradiction> out;
+  figures_without_use(sheet, out);
+  narrow_front_end(c, out);
+  impossible_numbers(c, out);
+  clock_without_unknown(c, out);
+  return out;
+}
+
+/// All of it in one line; where nothing is missing, at the line of the first figure that contradicts.
+Status complete_and_possible(const ConfigNode& sheet, const GnssConfig& config) {
+  const std::vector<std::string> missing = missing_keys(sheet);
+  const std::vector<Contradiction> contradictions = contradictions_in(sheet, config);
+  if (missing.empty() && contradictions.empty()) return Ok{};
+  std::string what;
+  if (!missing.empty()) what = "is missing";
+  if (missing.size() > 1) what += ", and so are " + plain_list({missing.begin() + 1, missing.end()});
+  for (const auto& c : contradictions) what += (what.empty() ? "contradictory: " : "; contradictory: ") + c.what;
+  if (!missing.empty())
+    return sheet.error(missing.front(), what, "every figure of a receiver, each with its source or \"assumed\"");
+  const std::string& key = contradictions.front().key;
+  const ConfigNode* place = sheet.find(key);
+  return (place == nullptr ? sheet : *place).error(key, what, "figures of one receiver");
+}
+
+Result<ReceiverSheet> sheet_from(const ConfigNode& sheet) {
+  CANYON_TRY_STATUS(check_names(sheet));
+  ReceiverSheet out;
+  out.figures.value_ = ConfigNode::Table{};
+  out.figures.file_ = sheet.file_;
+  out.figures.line_ = sheet.line_;
+  auto& figures = std::get<ConfigNode::Table>(out.figures.value_);
+  for (const std::string& key : figure_keys()) {
+    if (const ConfigNode* node = sheet.find(key)) figures.emplace(key, *node);
+    if (const std::string* source = text_at(sheet, key + std::string(kSourceSuffix)))
+      out.sources.emplace_back(key, *source);
+  }
+  GnssConfig config;
+  CANYON_TRY_STATUS(read_config(&out.figures, "", config));
+
+  CANYON_TRY_STATUS(complete_and_possible(sheet, config));
+  for (auto& [field, into] : {std::pair{"name", &out.name}, std::pair{"description", &out.description}}) {
+    const std::string* text = text_at(sheet, field);
+    if (text == nullptr) return sheet.find(field)->error(field, "found " + sheet.find(field)->describe(), "a text");
+    *into = *text;
+  }
+  return out;
+}
+
+/// As the reader does it: from the folder of the file that names it.
+std::string beside(const ConfigNode& node, const std::string& path) {
+  const std::filesystem::path given(path);
+  if (!path.ends_with(kTomlSuffix) || given.is_absolute() || node.line_ <= 0) return path;
+  return (std::filesystem::path(node.file_).parent_path() / given).lexically_normal().string();
+}
+
+}  // namespace
+
+std::vector<std::string> receiver_names() {
+  std::vector<std::string> names;
+  for (const std::string_view key : embedded_files(kReceiverFolder))
+    names.emplace_back(key.substr(kReceiverFolder.size(), key.size() - kReceiverFolder.size() - kTomlSuffix.size()));
+  return names;
+}
+
+Result<ReceiverSheet> parse_receiver(std::string_view toml, const std::string& file_name) {
+  CANYON_TRY(const ConfigNode node, ConfigNode::parse(toml, file_name));
+  return sheet_from(node);
+}
+
+Result<ReceiverSheet> load_receiver(const std::string& receiver) {
+  if (receiver.ends_with(kTomlSuffix)) {
+    CANYON_TRY(const ConfigNode node, ConfigNode::load(receiver));
+    return sheet_from(node);
+  }
+  const std::string key = std::string(kReceiverFolder) + receiver + std::string(kTomlSuffix);
+  if (const auto text = embedded_file(key)) return parse_receiver(*text, key);
+  const std::vector<std::string> known = receiver_names();
+  const std::string nearest = nearest_word(receiver, known);
+  return Error{
+      .file = "",
+      .key = "gnss.receiver",
+      .what = "no receiver \"" + receiver + "\" in the catalogue",
+      .expected = nearest.empty() ? "one of " + plain_list(known) + ", or a .toml file" : "\"" + nearest + "\"?"};
+}
+
+Status lay_with_receiver(ConfigNode& tree, const ConfigNode& over) {
+  const ConfigNode* named = over.find("gnss.receiver");
+  const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->value_);
+  if (name != nullptr && !name->empty()) {
+    const auto sheet = load_receiver(beside(*named, *name));
+    if (!sheet) {
+      const Error& error = sheet.error();
+      return error.file.empty() ? named->error(error.key, error.what, error.expected) : error;
+    }
+    ConfigNode below;
+    below.value_ = ConfigNode::Table{{"gnss", sheet->figures}};
+    tree.overlay(below);
+  }
+  tree.overlay(over);
+  return Ok{};
+}
+
+}  // namespace canyon::gnss

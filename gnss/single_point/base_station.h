@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "canyon/core/messages.h"
+#include "canyon/gnss/rinex/observation/observation_file.h"
+
+namespace canyon::gnss {
+
+/// A receiver at a known place, recorded beside the one that is to be positioned.
+struct BaseRecording {
+  ObservationFile observations;
+  Eigen::Vector3d p_E;  ///< of its antenna, in the frame of the orbits
+};
+
+/// What a base's corrected ranges are longer than its distance to the satellites, m: what the models leave of orbit,
+/// satellite clock and atmosphere, its own errors, and its clock, which is the same for all satellites of a system.
+struct BaseDifferences {
+  struct Of {
+    double m = 0.0;
+    int band = 0;
+    double elevation_rad = 0.0;
+  };
+  struct Epoch {
+    GpsTime t;
+    std::map<SatelliteId, Of> satellites;
+  };
+  std::vector<Epoch> epochs;  ///< in the order of time
+
+  /// The epoch nearest to t, if it is within longest_age_s. All differences of a fix come from one epoch, since the
+  /// base's clock may step between two.
+  const Epoch* near(GpsTime t, double longest_age_s) const;
+};
+
+/// 1-sigma of a base's code noise and multipath after 100 s of smoothing, m: ground accuracy designator B (McGraw et
+/// al. 2000).
+double base_code_sigma_m(double elevation_rad);
+
+}  // namespace canyon::gnss
