@@ -34,7 +34,7 @@ Wave edge_integral(double nu, double u, const Wave& half) {
     return half - turn(u) * height(u) / Wave(0.0, kPi * u) *
                       (1.0 - (1.0 / (u * u) + 2.0 / (u * u + nu * nu)) / Wave(0.0, kPi));
   // The peak at nu << 1 in closed form, the rest, which is smooth, by Simpson's rule.
-  const int steps = 2 * static_cast<int>(std::ceil(10.0 * u + 1.0));
+  const int steps = 2 * static_cast<int>(std::ceil(5.0 * u + 1.0));
   const double step = u / steps;
   Wave sum = 0.0;
   for (int i = 0; i <= steps; ++i) {

@@ -119,6 +119,8 @@ class Wedges final : public DiffractionModel {
     const auto m = wedge_meeting(edge, p_W, s);
     const double wavelength_m = waves.wavelength_m(k);
     if (!m || m->detour_m > largest_detour_m(largest_nu_, wavelength_m)) return;
+    // Rays are cheaper than fields, and most edges near a way are hidden.
+    if (!clear(edge, *m, p_W, s, scene, counters)) return;
     const double per_m = m->sine_beta * std::sqrt(2.0 / (wavelength_m * m->distance_m));
     const std::complex<double> part =
         finite_edge_factor(knife_edge_nu(m->detour_m, wavelength_m), -m->at_m * per_m, (m->length_m - m->at_m) * per_m);
@@ -131,7 +133,7 @@ class Wedges final : public DiffractionModel {
     if (kept == 0.0) return;
     path.copolar *= kept * part;
     path.crosspolar *= kept * part;
-    if (!clear(edge, *m, p_W, s, scene, counters) || !ends_in_air(edge, m->point_W, scene)) return;
+    if (!ends_in_air(edge, m->point_W, scene)) return;
     const Eigen::Vector3d leg_W = outside(edge, *m) - p_W;
     const Found one{k, m->detour_m, leg_W.normalized(), m->along_W};
     if (std::any_of(found.begin(), found.end(), [&](const Found& other) { return other.same(one); })) return;
