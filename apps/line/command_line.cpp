@@ -100,6 +100,7 @@ int parse_and_run(int argc, char** argv) {
                            gnss_solve_verb(),
                            gnss_orbit_error_verb(),
                            gnss_map_verb(),
+                           gnss_drive_check_verb(),
                            imu_allan_verb(),
                            imu_fit_verb(),
                            imu_simulate_verb(),

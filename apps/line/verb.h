@@ -33,6 +33,7 @@ Verb scene_info_verb();
 Verb scene_make_verb();
 Verb gnss_sky_verb();
 Verb gnss_map_verb();
+Verb gnss_drive_check_verb();
 Verb gnss_simulate_verb();
 Verb gnss_solve_verb();
 Verb gnss_orbit_error_verb();

@@ -38,6 +38,10 @@ double finite_facet_factor(double area_m2, double cos_incidence, double waveleng
   return std::min(1.0, area_m2 * cos_incidence / (wavelength_m * distance_m));
 }
 
+double mirror_factor(const Eigen::Vector3d& normal_W, double scattered_share) {
+  return std::abs(normal_W.z()) <= kUprightSlope ? std::sqrt(1.0 - scattered_share) : 1.0;
+}
+
 CircularField reflected_field(std::span<const Bounce> bounces) {
   CircularField field;
   // Basis after the bounce before; along x across = way.

@@ -41,4 +41,9 @@ CircularField reflected_field(std::span<const Bounce> bounces);
 /// `sigma_m`: exp(-2 (2 pi sigma cos(incidence) / wavelength)^2) (Ament 1953; ITU-R P.1546 and P.1411 use the same).
 double roughness_factor(double sigma_m, double cos_incidence, double wavelength_m);
 
+/// Walls whose normal's vertical part is at most this count as upright, and scatter.
+inline constexpr double kUprightSlope = 0.5;
+/// What is left of the mirror's field where an upright wall scatters that share of the power.
+double mirror_factor(const Eigen::Vector3d& normal_W, double scattered_share);
+
 }  // namespace canyon::gnss

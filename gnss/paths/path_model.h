@@ -31,6 +31,9 @@ struct SignalPath {
   static constexpr std::size_t kMaxReflections = 3;
   static constexpr std::uint32_t kNoFacet = 0xffffffffu;
   static constexpr std::uint32_t kTerrain = 0xfffffffeu;  ///< reflected by the ground
+  /// In the place of the first reflector: scattered by façades, all that come about as late; the second then tells how
+  /// late, in steps of the model.
+  static constexpr std::uint32_t kScattered = 0xfffffffdu;
 
   double excess_m = 0.0;  ///< longer than the straight way by this; >= 0
   /// Field at the antenna relative to the free direct signal of that satellite: right-hand circular that stays
@@ -70,6 +73,8 @@ struct PathParameters {
   double weakest_db = -20.0;       ///< visible satellites: weaker fields (relative to free direct) do not matter
   double weakest_nlos_db = -20.0;  ///< blocked satellites: weaker fields are not tracked
   double roughness_m = 0.0;        ///< standard deviation of the surfaces' height, for the Rayleigh factor
+  /// Share of the power given back by upright walls that goes elsewhere than a mirror's (scatter/scatter.h).
+  double scattered_share = 0.0;
   /// A facet smaller than its first Fresnel zone reflects less than an infinite one (finite_facet_factor). Off: every
   /// facet reflects like an infinite one.
   bool finite_facets = true;

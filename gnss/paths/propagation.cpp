@@ -10,8 +10,12 @@ namespace {
 class Propagation final : public PathModel {
  public:
   Propagation(std::unique_ptr<PathModel> paths, std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
-              const PathParameters& p)
-      : paths_(std::move(paths)), diffraction_(std::move(diffraction)), ground_reflection_(ground_reflection), p_(p) {}
+              const PathParameters& p, std::unique_ptr<ScatterModel> scatter)
+      : paths_(std::move(paths)),
+        diffraction_(std::move(diffraction)),
+        scatter_(std::move(scatter)),
+        ground_reflection_(ground_reflection),
+        p_(p) {}
 
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
@@ -19,6 +23,7 @@ class Propagation final : public PathModel {
     if (waves.empty()) return;
     if (ground_reflection_) add_ground_reflections(p_, p_A_W, waves, scene, out, counters);
     diffraction_->trace(p_A_W, waves, scene, out, counters);
+    if (scatter_ != nullptr) scatter_->trace(p_A_W, waves, scene, out, counters);
     for (auto& paths : out)
       std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
                        [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
@@ -27,6 +32,7 @@ class Propagation final : public PathModel {
  private:
   std::unique_ptr<PathModel> paths_;
   std::unique_ptr<DiffractionModel> diffraction_;
+  std::unique_ptr<ScatterModel> scatter_;
   bool ground_reflection_;
   PathParameters p_;
 };
@@ -36,6 +42,7 @@ class Propagation final : public PathModel {
 void visit(FieldVisitor& f, PropagationConfig& c) {
   visit_choice(f, "paths", c.paths, "propagation in the scene");
   visit_choice(f, "diffraction", c.diffraction, "what roofs and corners bend");
+  visit_choice(f, "scatter", c.scatter, "what walls send elsewhere than a mirror");
   f.flag("ground_reflection", c.ground_reflection, "the terrain around the antenna reflects");
   f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
            "standard deviation of the reflecting surfaces' height");
@@ -43,20 +50,25 @@ void visit(FieldVisitor& f, PropagationConfig& c) {
 
 Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits) {
   limits.roughness_m = config.surface_roughness_m;
+  CANYON_TRY(auto scatter, config.scatter.make("gnss.scatter", limits));
+  limits.scattered_share = scatter->scattered_share();
+  if (limits.scattered_share == 0.0) scatter = nullptr;
   CANYON_TRY(auto paths, config.paths.make("gnss.paths", limits));
   CANYON_TRY(auto diffraction, config.diffraction.make("gnss.diffraction", limits));
   const bool bends = diffraction->bends() && !limits.leave_out.diffraction;
-  if (!bends && !config.ground_reflection) return paths;
+  if (!bends && !config.ground_reflection && scatter == nullptr) return paths;
   if (!bends) {
     CANYON_TRY(diffraction, ModelChoice<diffraction_models>("none").make("gnss.diffraction", limits));
   }
-  return make_propagation(std::move(paths), std::move(diffraction), config.ground_reflection, limits);
+  return make_propagation(std::move(paths), std::move(diffraction), config.ground_reflection, limits,
+                          std::move(scatter));
 }
 
 std::unique_ptr<PathModel> make_propagation(std::unique_ptr<PathModel> paths,
                                             std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
-                                            const PathParameters& p) {
-  return std::make_unique<Propagation>(std::move(paths), std::move(diffraction), ground_reflection, p);
+                                            const PathParameters& p, std::unique_ptr<ScatterModel> scatter) {
+  return std::make_unique<Propagation>(std::move(paths), std::move(diffraction), ground_reflection, p,
+                                       std::move(scatter));
 }
 
 }  // namespace canyon::gnss

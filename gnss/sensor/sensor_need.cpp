@@ -81,6 +81,7 @@ std::vector<Need> pseudorange_path_needs(const GnssConfig& config, const GnssSur
   };
   ask(path_models(), config.propagation.paths.name);
   ask(diffraction_models(), config.propagation.diffraction.name);
+  ask(scatter_models(), config.propagation.scatter.name);
   return needs;
 }
 

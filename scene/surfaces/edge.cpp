@@ -62,7 +62,8 @@ void add_edges(const Scene& scene, const std::vector<std::uint32_t>& members, do
     const Side& one = list[0];
     if ((one.b - one.a).norm() < min_length_m || list.size() > 2) continue;
     if (list.size() == 1) {
-      out.push_back({one.a, one.b, one.normal, -one.normal, away(one.a, one.b, one.third)});
+      const std::uint16_t own = mesh.material[one.triangle];
+      out.push_back({one.a, one.b, one.normal, -one.normal, away(one.a, one.b, one.third), own, own});
       continue;
     }
     const Side& two = list[1];
@@ -70,7 +71,8 @@ void add_edges(const Scene& scene, const std::vector<std::uint32_t>& members, do
     if (!convex || one.normal.dot(two.normal) > kFlat) continue;
     const Eigen::Vector3d outward = one.normal + two.normal;
     out.push_back({one.a, one.b, one.normal, two.normal,
-                   outward.norm() > 1e-6 ? Eigen::Vector3d(outward.normalized()) : away(one.a, one.b, one.third)});
+                   outward.norm() > 1e-6 ? Eigen::Vector3d(outward.normalized()) : away(one.a, one.b, one.third),
+                   mesh.material[one.triangle], mesh.material[two.triangle]});
   }
 }
 

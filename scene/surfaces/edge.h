@@ -12,7 +12,8 @@ struct Edge {
   Eigen::Vector3d a_W, b_W;
   /// Outward normals of the two faces that meet there; of a sheet's border: of its two sides.
   Eigen::Vector3d normal_1_W, normal_2_W;
-  Eigen::Vector3d outward_W;  ///< unit, across the edge, away from the solid
+  Eigen::Vector3d outward_W;                     ///< unit, across the edge, away from the solid
+  std::uint16_t material_1 = 0, material_2 = 0;  ///< of those faces, index into Scene::materials()
 };
 
 /// Convex edges of a scene and a spatial index over them.

@@ -158,5 +158,42 @@ TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("gnss", "canyon gnss: no verb given, expected one of sky, ");
 }
 
+TEST_F(GnssVerbsTest, DriveCheckOfALogAndItsMistakes) {
+  // The reference lasts longer than the log, whose clock may tag its ends a little outside of the drive.
+  std::string way, truth;
+  for (int k = -1; k <= 21; ++k) {
+    const std::string place =
+        "1610," + std::to_string(306000 + k) + "," + std::to_string(32.35 + 2e-5 * k) + ",-90.88,60\n";
+    if (k >= 0 && k <= 20) way += place;
+    truth += place;
+  }
+  write("given.csv", way);
+  write("given_truth.csv", truth);
+  expect_mistake("gnss drive-check --obs given.obs --truth given_truth.csv",
+                 "command line: no navigation file given, expected --nav FILE of the day of the drive");
+  EXPECT_EQ(canyon("gnss drive-check --obs given.obs --nav given.nav"), 2);
+  EXPECT_THAT(read("stderr"), HasSubstr("--truth"));
+  ASSERT_EQ(canyon("gnss simulate --trajectory given.csv --rate 1 --rinex-obs given.obs --rinex-nav given.nav"), 0);
+  write("given_later.csv", "1610,307000,32.35,-90.88,60\n1610,307010,32.35,-90.88,60\n");
+  expect_mistake("gnss drive-check --obs given.obs --nav given.nav --truth given_later.csv --scene vicksburg",
+                 "given.obs: has no epoch at a time of given_later.csv, expected a reference of the same time\n");
+  write("given_far.csv", "1610,305999,33.35,-90.88,60\n1610,306021,33.35,-90.88,60\n");
+  expect_mistake("gnss drive-check --obs given.obs --nav given.nav --truth given_far.csv --scene vicksburg",
+                 "vicksburg: covers 0 of 21 epochs of the drive, expected a city around all of it, or --from-sow and "
+                 "--to-sow of the stretch that it covers\n");
+  ASSERT_EQ(canyon("gnss drive-check --obs given.obs --nav given.nav --truth given_truth.csv --scene vicksburg --json "
+                   "--out check"),
+            0)
+      << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(json["epochs"], 21);
+  for (const char* key : {"tracked_in_sight", "tracked_hidden", "cn0_in_sight_dbhz", "cn0_hidden_dbhz", "cn0_auc",
+                          "hidden_error_m", "in_sight_error_p95_m", "fix_h50_m", "fix_h95_m", "beyond_3_sigma"}) {
+    EXPECT_TRUE(json["simulated"].contains(key)) << key;
+    EXPECT_TRUE(json["measured"].contains(key)) << key;
+  }
+  EXPECT_THAT(read("check/signals.csv"), HasSubstr("\nmeasured,1610,306000.000,G"));
+}
+
 }  // namespace
 }  // namespace canyon::apps

@@ -35,5 +35,11 @@ std::unique_ptr<DiffractionModel> make_knife_edge(const PathParameters& p);
 /// The same, and for blocked satellites also two edges after each other (P.526-15 section 4.2, first method: the losses
 /// of the two edges, the second seen from the first, and the correction for their spacing if both exceed 15 dB).
 std::unique_ptr<DiffractionModel> make_double_knife_edge(const PathParameters& p);
+/// The same edges as wedges of their own angle and material, by the uniform theory of diffraction (wedge.h), of finite
+/// length (finite_edge_factor), both circular polarizations. All edges near a visible satellite's way add echoes too,
+/// that on the lit side take from the direct field; fields fade out over 3.5 dB above the weakest. The faces reflect as
+/// for the grazing angle of half the bend, which is the mirror's own at the border of its reflection and the same both
+/// ways. One edge only, of shadows: what edges make of reflections is finite_facet_factor.
+std::unique_ptr<DiffractionModel> make_wedge(const PathParameters& p);
 
 }  // namespace canyon::gnss

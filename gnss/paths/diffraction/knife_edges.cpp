@@ -5,14 +5,12 @@
 #include <Eigen/Geometry>
 
 #include "canyon/gnss/paths/diffraction/diffraction.h"
+#include "canyon/gnss/paths/diffraction/edge_air.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {
-
-constexpr double kOff_m = 0.03;   // legs meet the edge this far outside, beyond the rounding of single precision
-constexpr double kProbe_m = 0.3;  // a true edge has this much air around it
 
 /// Where a plane wave from s bends at an edge towards p.
 struct Bend {
@@ -89,7 +87,8 @@ class KnifeEdges final : public DiffractionModel {
         if (!b || b->detour_m > largest_detour_m(wavelength_m) || b->shadow == out[k].line_of_sight) continue;
         if (out[k].line_of_sight) {
           const double nu = knife_edge_nu(b->detour_m, wavelength_m);
-          if (nu < nearest_nu[k] && clear(edge, *b, p_A_W, s, scene, counters, nullptr) && solid(edge, *b, scene)) {
+          if (nu < nearest_nu[k] && clear(edge, *b, p_A_W, s, scene, counters, nullptr) &&
+              ends_in_air(edge, b->point_W, scene)) {
             nearest_nu[k] = nu;
             out[k].direct = knife_edge_field(-nu);
           }
@@ -110,7 +109,9 @@ class KnifeEdges final : public DiffractionModel {
   /// Beyond it the field is too weak to matter, and the lit side's ripples too small.
   double largest_detour_m(double wavelength_m) const { return gnss::largest_detour_m(largest_nu_, wavelength_m); }
 
-  static Eigen::Vector3d outside(const scene::Edge& edge, const Bend& b) { return b.point_W + kOff_m * edge.outward_W; }
+  static Eigen::Vector3d outside(const scene::Edge& edge, const Bend& b) {
+    return b.point_W + kOffEdge_m * edge.outward_W;
+  }
 
   /// Legs from the edge to the satellite and to p. With `behind`, only the second must be clear, and *behind says
   /// whether the first is.
@@ -126,15 +127,6 @@ class KnifeEdges final : public DiffractionModel {
     return !scene.blocked_towards(p_W, leg_W / leg_m, leg_m);
   }
 
-  /// Is this an edge of the whole, and not one that a neighbour continues (row houses of one height)?
-  static bool solid(const scene::Edge& edge, const Bend& b, const scene::SceneAt& scene) {
-    const Eigen::Vector3d start_W = b.point_W + kOff_m * (edge.normal_1_W + edge.normal_2_W);
-    const Eigen::Vector3d &n1 = edge.normal_1_W, &n2 = edge.normal_2_W;
-    if (n1.dot(n2) < -0.999) return true;  // a sheet
-    return !scene.blocked(start_W, b.point_W + kProbe_m * (n1 - 0.5 * n2)) &&
-           !scene.blocked(start_W, b.point_W + kProbe_m * (n2 - 0.5 * n1));
-  }
-
   void bent_way(const scene::Edge& edge, const Bend& b, const Eigen::Vector3d& p_W, const Wave& wave,
                 const scene::SceneAt& scene, GnssCounters& counters, SignalPaths& out) const {
     const Eigen::Vector3d& s = wave.s;
@@ -143,7 +135,7 @@ class KnifeEdges final : public DiffractionModel {
     bool open = false;
     if (!clear(edge, b, p_W, s, scene, counters, twice_ ? &open : nullptr)) return;
     if (!twice_) open = true;
-    if (!solid(edge, b, scene)) return;
+    if (!ends_in_air(edge, b.point_W, scene)) return;
     const Eigen::Vector3d at_W = outside(edge, b);
     if (!open) {
       second_edge(edge, b, at_W, p_W, wave, scene, counters, out);
@@ -165,10 +157,10 @@ class KnifeEdges final : public DiffractionModel {
     for (const std::uint32_t i : candidates) {
       const scene::Edge& edge = edges.edges()[i];
       const auto b = bend(edge, p_W, to_far_W);
-      if (!b || b->shadow || b->distance_m > far.distance_m - kOff_m) continue;
+      if (!b || b->shadow || b->distance_m > far.distance_m - kOffEdge_m) continue;
       const double detour_m = (far.point_W - b->point_W).norm() + b->distance_m - far.distance_m;
       const double nu = knife_edge_nu(std::max(detour_m, 0.0), wavelength_m);
-      if (nu >= nearest_nu || !solid(edge, *b, scene)) continue;
+      if (nu >= nearest_nu || !ends_in_air(edge, b->point_W, scene)) continue;
       const Eigen::Vector3d at_W = outside(edge, *b);
       counters.occlusion_rays += 2;
       if (scene.blocked(p_W, at_W) || scene.blocked(at_W, far_W)) continue;
@@ -205,7 +197,7 @@ class KnifeEdges final : public DiffractionModel {
       if (std::abs(near_field) < kDeep && std::abs(far_field) < kDeep)
         field *= std::sqrt(b->distance_m / (b->distance_m + first.distance_m));
       if (std::abs(field) < weakest_) continue;
-      if (!clear(edge, *b, first_W, s, scene, counters, nullptr) || !solid(edge, *b, scene)) continue;
+      if (!clear(edge, *b, first_W, s, scene, counters, nullptr) || !ends_in_air(edge, b->point_W, scene)) continue;
       const Eigen::Vector3d leg_W = second_W - first_W;
       const double leg_m = leg_W.norm();
       const double foliage_m = scene.foliage_m(second_W, s) + scene.foliage_m(first_W, leg_W / leg_m, leg_m);

@@ -3,7 +3,8 @@
 
 RECORDINGS is the folder gnss/urban_berlin of the shared recordings: what a u-blox receiver observed at Potsdamer Platz, Berlin, on
 2016-06-06 (smartLoc, TU Chemnitz, CC BY-SA 4.0), its surveyed way, and the buildings there (LoD2, Geoportal Berlin, dl-de/zero-2-0).
-Written to OUT: the buildings as GeoJSON, the truth as CSV, and the description that names them.
+Written to OUT: the buildings as GeoJSON, the truth as CSV, the description that names them, and city.toml, a mission of that
+scene with the same receiver as far as its maker tells, for `canyon gnss drive-check --scene OUT/city.toml`.
 
 Nothing is fitted to the drive: the receiver is canyon's patch antenna on a car roof and its defaults for what is not said.
 """
@@ -72,6 +73,19 @@ undulation_m = {UNDULATION_M}
 [gnss]
 antenna = "patch"
 tracking_threshold_dbhz = 25.0
+""")
+    (out / "city.toml").write_text(f"""[scene]
+file = "buildings.geojson"
+undulation_m = {UNDULATION_M}
+
+# A u-blox of 2016 on a car's roof: patch antenna; a front end of some 4 MHz and half a chip are ASSUMPTIONS, for its data sheet does not
+# say. 49 dB-Hz at the zenith is what it reported of the highest satellite, G12 at 85 degrees (49 to 51).
+[gnss]
+antenna = "patch"
+tracking_threshold_dbhz = 25.0
+correlator_spacing_chips = 0.5
+front_end_mhz = 4.0
+cn0_zenith_dbhz = 49.0
 """)
 
 

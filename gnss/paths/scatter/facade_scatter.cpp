@@ -1,0 +1,242 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/scatter/directive_lobe.h"
+#include "canyon/gnss/paths/scatter/facade_tiles.h"
+#include "canyon/gnss/paths/scatter/scatter.h"
+#include "canyon/scene/scene_at.h"
+
+namespace canyon::gnss {
+namespace {
+
+struct DirectiveParameters {
+  double coefficient = 0.4;
+  std::int64_t lobe = 4;
+  double tile_m = 8.0;
+  double reach_m = 150.0;
+};
+void visit(FieldVisitor& f, DirectiveParameters& c) {
+  f.number("scatter_coefficient", c.coefficient, {0.0, 0.95},
+           "scatter directive: S, field scattered over field given back; brick walls at 1.3 GHz 0.4");
+  f.integer("scatter_lobe", c.lobe, {1, 20}, "scatter directive: exponent of the lobe; brick walls 4");
+  f.number("scatter_tile_m", c.tile_m, {1.0, 50.0}, "scatter directive: walls are cut into squares of this side");
+  f.number("scatter_reach_m", c.reach_m, {10.0, 1000.0}, "scatter directive: walls farther away do not count");
+}
+
+/// Share of the power that a material gives back, both polarizations alike, by the cosine of incidence.
+class ReturnTable {
+ public:
+  ReturnTable(const scene::Material& material, double carrier_hz) {
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const double cosine = static_cast<double>(i) / static_cast<double>(nodes_.size() - 1);
+      const Eigen::Vector3d incoming(std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);
+      const Bounce b = bounce_off(material, incoming, Eigen::Vector3d::UnitZ(), 0.0, carrier_hz);
+      nodes_[i] = 0.5 * (std::norm(b.coefficients.te) + std::norm(b.coefficients.tm));
+    }
+  }
+  double at(double cosine) const {
+    const double x = cosine * static_cast<double>(nodes_.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), nodes_.size() - 2);
+    return nodes_[i] + (x - static_cast<double>(i)) * (nodes_[i + 1] - nodes_[i]);
+  }
+
+ private:
+  std::array<double, 65> nodes_;
+};
+
+/// What tiles send to one satellite's signal, gathered by delay. A phasor goes to the two bins around its delay, in
+/// shares that change evenly with it, and with the phase that it has at its own delay: the sum at the carrier is exact,
+/// and nothing jumps as a delay passes from bin to bin; the code sees delays to half a bin.
+class DelayBins {
+ public:
+  static constexpr double kWidth_m = 15.0;
+  static constexpr std::size_t kBins = 40;
+
+  struct Bin {
+    std::complex<double> co, cross;
+    Eigen::Vector3d from_W = Eigen::Vector3d::Zero();  ///< directions, by power
+  };
+
+  void clear() { bins_.fill({}); }
+  void add(const FacadeTile& tile, double amplitude, double excess_m, const Eigen::Vector3d& from_W,
+           double wavelength_m) {
+    const double place = excess_m / kWidth_m;
+    const auto first = static_cast<std::size_t>(place);
+    if (first + 1 >= kBins) return;
+    const double later = place - static_cast<double>(first);
+    for (const auto& [i, share] : {std::pair{first, 1.0 - later}, std::pair{first + 1, later}}) {
+      const double turn_rad = -2.0 * kPi * (excess_m - static_cast<double>(i) * kWidth_m) / wavelength_m;
+      // Half of the power to each hand: an assumption.
+      const double a = share * amplitude * std::sqrt(0.5);
+      bins_[i].co += std::polar(a, tile.phase_rad + turn_rad);
+      bins_[i].cross += std::polar(a, tile.cross_phase_rad + turn_rad);
+      bins_[i].from_W += a * a * from_W;
+    }
+  }
+  const std::array<Bin, kBins>& bins() const { return bins_; }
+
+ private:
+  std::array<Bin, kBins> bins_;
+};
+
+/// Each tile of a wall that is lit scatters S^2 of what the wall gives back, G^2 of the power that falls on it, into
+/// the lobe about its mirror's direction; the mirrors are left sqrt(1 - S^2) of their field. At the antenna, r away,
+/// relative to the free direct signal:
+///
+///   |E|^2 = S^2 G^2 A cos(incidence) lobe(psi) / (integral of the lobe x (r^2 + A / (2 pi))),
+///
+/// the last term because a tile nearby is no point. Both ways are tested for obstacles at the tile's middle. Fields
+/// fade out towards the reach (its last fifth), and over 6 dB above a tenth of the weakest field that matters, so that
+/// nothing but a shadow's border starts or ends at once, and that by one tile. Foliage is not looked at.
+class DirectiveScatter final : public ScatterModel {
+ public:
+  DirectiveScatter(const DirectiveParameters& own, const PathParameters& p)
+      : own_(own),
+        p_(p),
+        lobe_{static_cast<int>(own.lobe)},
+        weakest_(std::pow(10.0, p.weakest_db / 20.0)),
+        weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)) {
+    for (std::size_t i = 0; i < lobe_sr_.size(); ++i)
+      lobe_sr_[i] = lobe_.integral_sr(static_cast<double>(i) / static_cast<double>(lobe_sr_.size() - 1));
+  }
+
+  double scattered_share() const override { return own_.coefficient * own_.coefficient; }
+
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
+             std::span<SignalPaths> out, GnssCounters& counters) const override {
+    if (waves.empty() || own_.coefficient == 0.0) return;
+    const FacadeTiles& tiles = tiles_of(scene.scene());
+    thread_local std::vector<Seen> seen;
+    look(tiles, p_A_W, scene, counters, seen);
+    DelayBins bins;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      bins.clear();
+      gather(seen, waves, k, scene, out[k], counters, bins);
+      add_echoes(bins, out[k]);
+    }
+  }
+
+ private:
+  /// A tile that is seen from the antenna.
+  struct Seen {
+    const FacadeTile* tile;
+    Eigen::Vector3d to_W;  ///< unit, from the antenna
+    double r_m, fade;
+  };
+
+  void look(const FacadeTiles& tiles, const Eigen::Vector3d& p_W, const scene::SceneAt& scene, GnssCounters& counters,
+            std::vector<Seen>& seen) const {
+    seen.clear();
+    thread_local std::vector<std::uint32_t> near;
+    tiles.near(p_W, own_.reach_m, near);
+    for (const std::uint32_t i : near) {
+      const FacadeTile& tile = tiles.tiles()[i];
+      const Eigen::Vector3d way_W = tile.center_W - p_W;
+      if (way_W.dot(tile.normal_W) >= 0.0) continue;
+      const double r_m = way_W.norm(), fade = std::min(5.0 * (1.0 - r_m / own_.reach_m), 1.0);
+      if (fade <= 0.0 || r_m < 1e-3) continue;
+      ++counters.occlusion_rays;
+      const Eigen::Vector3d to_W = way_W / r_m;
+      if (!scene.blocked_towards(p_W, to_W, r_m)) seen.push_back({&tile, to_W, r_m, fade});
+    }
+  }
+
+  void gather(const std::vector<Seen>& seen, const PlaneWaves& waves, std::size_t k, const scene::SceneAt& scene,
+              const SignalPaths& paths, GnssCounters& counters, DelayBins& bins) const {
+    const Eigen::Vector3d& s = waves.direction_W(k);
+    const double wavelength_m = waves.wavelength_m(k);
+    const double faint = 0.1 * (paths.line_of_sight ? weakest_ : weakest_nlos_);
+    const ReturnTable* table = nullptr;  // of the tile before, mostly the same wall's
+    std::uint16_t of_table = 0;
+    for (const Seen& one : seen) {
+      const FacadeTile& tile = *one.tile;
+      if (table == nullptr || of_table != tile.material) {
+        table = &returned(scene, tile.material, waves.carrier_hz(k));
+        of_table = tile.material;
+      }
+      const double cosine = tile.normal_W.dot(s);
+      if (cosine <= 0.0) continue;
+      const double excess_m = one.r_m * (1.0 - one.to_W.dot(s));
+      if (paths.line_of_sight && excess_m > p_.cutoff_m) continue;
+      // The mirror's direction is 2 (n.s) n - s; the tile scatters towards -to.
+      const double cos_psi = one.to_W.dot(s) - 2.0 * cosine * tile.normal_W.dot(one.to_W);
+      const double at = cosine * static_cast<double>(lobe_sr_.size() - 1);
+      const double integral_sr = lobe_sr_[static_cast<std::size_t>(at + 0.5)];
+      const double power = scattered_share() * table->at(cosine) * tile.area_m2 * cosine * lobe_.at(cos_psi) /
+                           (integral_sr * (one.r_m * one.r_m + tile.area_m2 / (2.0 * kPi)));
+      const double amplitude = std::sqrt(power);
+      const double kept = one.fade * std::clamp(amplitude / faint - 1.0, 0.0, 1.0);
+      if (kept == 0.0) continue;
+      ++counters.occlusion_rays;
+      if (scene.blocked_towards(tile.center_W, s)) continue;
+      bins.add(tile, kept * amplitude, excess_m, one.to_W, wavelength_m);
+    }
+  }
+
+  void add_echoes(const DelayBins& bins, SignalPaths& out) const {
+    const double least = 0.5 * (out.line_of_sight ? weakest_ : weakest_nlos_);
+    for (std::size_t i = 0; i < DelayBins::kBins; ++i) {
+      const DelayBins::Bin& bin = bins.bins()[i];
+      const double amplitude = std::sqrt(std::norm(bin.co) + std::norm(bin.cross));
+      const double kept = std::clamp(amplitude / least - 1.0, 0.0, 1.0);
+      if (kept == 0.0) continue;
+      SignalPath path;
+      path.excess_m = static_cast<double>(i) * DelayBins::kWidth_m;
+      path.copolar = kept * bin.co;
+      path.crosspolar = kept * bin.cross;
+      path.arrival_W = bin.from_W.normalized();
+      path.facets = {SignalPath::kScattered, static_cast<std::uint32_t>(i), SignalPath::kNoFacet};
+      out.echoes.push_back(path);
+    }
+  }
+
+  /// Of the scene, made when it is first met; a sensor serves one.
+  const FacadeTiles& tiles_of(const scene::Scene& scene) const {
+    const std::scoped_lock lock(mutex_);
+    if (scene_ != &scene) {
+      tiles_ = std::make_unique<FacadeTiles>(scene, own_.tile_m);
+      returns_.clear();
+      scene_ = &scene;
+    }
+    return *tiles_;
+  }
+
+  /// At the first carrier met within 50 MHz.
+  const ReturnTable& returned(const scene::SceneAt& scene, std::uint16_t material, double carrier_hz) const {
+    const std::scoped_lock lock(mutex_);
+    const std::pair key(material, std::lround(carrier_hz / 50e6));
+    auto at = returns_.find(key);
+    if (at == returns_.end())
+      at = returns_
+               .emplace(key, ReturnTable(scene.scene().materials()[material], 50e6 * static_cast<double>(key.second)))
+               .first;
+    return at->second;
+  }
+
+  DirectiveParameters own_;
+  PathParameters p_;
+  DirectiveLobe lobe_;
+  double weakest_, weakest_nlos_;
+  std::array<double, 257> lobe_sr_;
+  mutable std::mutex mutex_;
+  mutable const scene::Scene* scene_ = nullptr;
+  mutable std::unique_ptr<FacadeTiles> tiles_;
+  mutable std::map<std::pair<std::uint16_t, long>, ReturnTable> returns_;
+};
+
+}  // namespace
+
+void directive_scatter_parameters(ModelParameters& section) {
+  section.add<DirectiveParameters>();
+}
+
+std::unique_ptr<ScatterModel> make_directive_scatter(const ModelParameters& own, const PathParameters& p) {
+  return std::make_unique<DirectiveScatter>(own.get<DirectiveParameters>(), p);
+}
+
+}  // namespace canyon::gnss
