@@ -16,9 +16,9 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr double kFirstSow = 126641.7;
+constexpr double kBerlinFirstSow = 126641.7;
 
-PlacePath reference(const std::string& file) {
+PlacePath reference_path(const std::string& file) {
   std::istringstream in(*read_text_file(file));
   std::vector<StampedPlace> places;
   std::string line;
@@ -28,7 +28,7 @@ PlacePath reference(const std::string& file) {
     double t_s = 0.0;
     Eigen::Vector3d p_E;
     if (words >> kind >> t_s >> p_E.x() >> p_E.y() >> p_E.z() && kind == "point3")
-      places.push_back({GpsTime::from_week_sow(1900, kFirstSow + t_s), p_E});
+      places.push_back({GpsTime::from_week_sow(1900, kBerlinFirstSow + t_s), p_E});
   }
   return PlacePath(std::move(places));
 }
@@ -63,7 +63,7 @@ class ReportedCovarianceBerlin : public ::testing::Test {
       const auto place = truth_->at(e.fix.t);
       if (e.fix.status == FixStatus::kNone || !place) continue;
       out.all.add(e.fix, place->p_E);
-      out.blocks[static_cast<int>((e.fix.t.sow_s() - kFirstSow) / 20.0)].add(e.fix, place->p_E);
+      out.blocks[static_cast<int>((e.fix.t.sow_s() - kBerlinFirstSow) / 20.0)].add(e.fix, place->p_E);
     }
     std::printf("  %s, %s: inside 50/95/99.7 %%:", estimator == Estimator::kKalman ? "kalman" : "least squares",
                 row.c_str());
@@ -90,7 +90,7 @@ TEST_F(ReportedCovarianceBerlin, TheEnvironmentsIsHonestWithinWhatFiveMinutesTel
   auto data = read_recorded_data(files, {});
   ASSERT_TRUE(data.ok()) << data.error().str();
   data_ = *std::move(data);
-  truth_.emplace(reference(track));
+  truth_.emplace(reference_path(track));
   for (const Estimator estimator : {Estimator::kLeastSquares, Estimator::kKalman}) {
     const Judged geometry = judge(estimator, "geometry"), inflated = judge(estimator, "residual_inflated"),
                  environment = judge(estimator, "environment");
