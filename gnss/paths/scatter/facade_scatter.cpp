@@ -22,8 +22,8 @@ struct DirectiveParameters {
 };
 void visit(FieldVisitor& f, DirectiveParameters& c) {
   f.number("scatter_coefficient", c.coefficient, {0.0, 0.95},
-           "scatter directive: S, field scattered over field given back; brick walls at 1.3 GHz 0.4");
-  f.integer("scatter_lobe", c.lobe, {1, 20}, "scatter directive: exponent of the lobe; brick walls 4");
+           "scatter directive: S, field scattered over field given back; 0.4 is assumed for all walls");
+  f.integer("scatter_lobe", c.lobe, {1, 20}, "scatter directive: exponent of the lobe; 4 is assumed");
   f.number("scatter_tile_m", c.tile_m, {1.0, 50.0}, "scatter directive: walls are cut into squares of this side");
   f.number("scatter_reach_m", c.reach_m, {10.0, 1000.0}, "scatter directive: walls farther away do not count");
 }
