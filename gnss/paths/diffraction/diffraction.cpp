@@ -26,7 +26,9 @@ constexpr ModelRow<MakeDiffractionModel> kModels[] = {
     {"double_knife_edge",
      {without_keys<make_double_knife_edge>, diffraction_needs},
      "also over two edges after each other"},
-    {"wedge", {without_keys<make_wedge>}, "uniform theory of diffraction: wedges of their material, finite edges"},
+    {"wedge",
+     {without_keys<make_wedge>, nullptr},
+     "uniform theory of diffraction: wedges of their material, finite edges"},
 };
 
 }  // namespace
