@@ -31,7 +31,7 @@ const std::vector<MeasuredFidelity>& measured() {
 }
 
 TEST(Fidelities, ThePlannedRunStandsBehindTheFirstAndIsTheSame) {
-  ASSERT_EQ(measured().size(), 4u);
+  ASSERT_EQ(measured().size(), 5u);  // low, paper, high, modern, and high planned
   EXPECT_EQ(measured()[0].name, "high");
   EXPECT_EQ(measured()[1].name, "high_planned");
   const MeasuredFidelity &full = measured()[0], &planned = measured()[1];
@@ -64,13 +64,13 @@ TEST(Fidelities, AreToldInEveryForm) {
   Tradeoff tradeoff;
   tradeoff.fidelities = measured();
   const auto json = tradeoff_json(tradeoff)["fidelities"];
-  ASSERT_EQ(json.size(), 4u);
+  ASSERT_EQ(json.size(), 5u);
   EXPECT_TRUE(json[1]["planned"].get<bool>());
   EXPECT_EQ(json[0]["closed_loop"]["n"], 2);
   EXPECT_TRUE(json[1]["map_error_rms_m"].is_null());
   const std::string csv = fidelities_csv(tradeoff);
   EXPECT_THAT(csv, HasSubstr("\nhigh_planned,1,"));
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
   const std::string table = tradeoff_table(tradeoff);
   EXPECT_THAT(table, HasSubstr("closed loop, 2 seeds: outcomes against CPU time"));
   EXPECT_THAT(table, HasSubstr("high_planned"));
