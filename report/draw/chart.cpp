@@ -140,6 +140,7 @@ class ChartWriter {
   /// before it is covered.
   void point_labels(const Panel& panel, const PlotArea& area, int height_px) {
     constexpr double kLine_px = 13.0, kLetter = 7.0;  // of a page 1000 units wide
+    constexpr double kCovers_px = 0.999 * kLine_px;   // a box moved by a line may round to a little less than one
     struct Box {
       double left, right, top_px;
     };
@@ -152,7 +153,7 @@ class ChartWriter {
       for (bool moved = true; moved;) {
         moved = false;
         for (const Box& other : taken)
-          if (box.left < other.right && other.left < box.right && std::abs(box.top_px - other.top_px) < kLine_px)
+          if (box.left < other.right && other.left < box.right && std::abs(box.top_px - other.top_px) < kCovers_px)
             box.top_px = other.top_px + kLine_px, moved = true;
       }
       taken.push_back(box);

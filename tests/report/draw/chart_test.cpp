@@ -97,6 +97,28 @@ TEST(Chart, ExtremesPassOverGaps) {
   EXPECT_EQ(positive_extremes_of({{.x = {0, 1, 2}, .y = {0, -3, 7}}}).min, 7);
 }
 
+TEST(Chart, WordsAtOnePlaceMoveApartWhereverItIs) {  // 2026-11-23: at some heights a page was never finished
+  for (int at = 0; at < 200; ++at) {
+    Panel panel{.title = "p", .unit = "%", .y = Axis::linear(-5, 105)};
+    panel.height_px = 170;
+    for (const double x : {0.2, 0.2, 0.21, 0.2}) panel.labels.push_back({0, x, 0.5 * at, "word"});
+    Chart chart{.id = "c",
+                .x = Axis::linear(0, 1),
+                .x_label = "x",
+                .title = "t",
+                .description = "d",
+                .panels = {panel},
+                .marks = {}};
+    const std::string drawn = draw(chart);
+    std::vector<double> tops_px;
+    for (std::size_t i = 0; (i = drawn.find("point-label", i)) != std::string::npos; ++i)
+      tops_px.push_back(1.70 * std::stod(drawn.substr(drawn.find("top:", i) + 4)));
+    ASSERT_EQ(tops_px.size(), 4u);
+    std::sort(tops_px.begin(), tops_px.end());
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_NEAR(tops_px[i] - tops_px[i - 1], 13, 0.02) << at;
+  }
+}
+
 /// Relative luminance of WCAG 2.1.
 double luminance(const Rgba& c) {
   const auto linear = [](std::uint8_t v) {
