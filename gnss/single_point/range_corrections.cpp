@@ -56,6 +56,10 @@ ModelTable<IonosphereCorrection> ionosphere_corrections() {
   return kRows;
 }
 
+bool is_klobuchar(IonosphereCorrection model) {
+  return model == IonosphereCorrection::kKlobuchar || model == IonosphereCorrection::kKlobucharOwn;
+}
+
 double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& coefficients, const SkyView& view) {
   SkyView held = view;
   held.elevation_rad = std::max(held.elevation_rad, kLowestRad);

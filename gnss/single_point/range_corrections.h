@@ -12,6 +12,8 @@ namespace canyon::gnss {
 /// or maps.
 enum class IonosphereCorrection { kNone, kKlobuchar, kKlobucharOwn, kIonex };
 ModelTable<IonosphereCorrection> ionosphere_corrections();
+bool is_klobuchar(IonosphereCorrection model);
+
 /// Klobuchar's delay at L1, m, with the coefficients of a system by that system's own formula: BeiDou's
 /// (gnss/atmosphere/beidou_klobuchar.h), else that of GPS. Elevations below 5 deg are held there.
 double klobuchar_correction_m(GnssSystem system, const KlobucharCoefficients& coefficients, const SkyView& view);

@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "canyon/core/messages.h"
-#include "canyon/gnss/products/ionex_file.h"
 #include "canyon/gnss/rinex/observation/observation_file.h"
-#include "canyon/gnss/satellites/constellation.h"
-#include "canyon/gnss/satellites/navigation_data.h"
-#include "canyon/gnss/single_point/base_station.h"
 #include "canyon/gnss/single_point/config.h"
+#include "canyon/gnss/single_point/observed_ranges.h"
 #include "canyon/gnss/solver/position_solver.h"
 
 namespace canyon::gnss {
@@ -29,16 +26,6 @@ struct SinglePointResult {
   std::map<std::string, int> reasons;    ///< why epochs have no fix, with figures left out, and how often
   std::vector<std::string> warnings;     ///< satellites that were observed but could not be used, `file:line: what`
   int solved() const;
-};
-
-/// What the observations are solved with.
-struct SinglePointInputs {
-  const Constellation& constellation;
-  const NavigationData& navigation;            ///< for its ionosphere coefficients and its names in messages
-  const IonexMaps* ionosphere_maps = nullptr;  ///< needed where config.ionosphere is "ionex"
-  /// Positions are differential then: ranges are corrected by what the base's, smoothed as configured, are off, beside
-  /// what the models differ by between the two places; satellites that the base does not have are not used.
-  const BaseRecording* base = nullptr;
 };
 
 /// Positions of a recorded observation file, epoch by epoch.

@@ -56,13 +56,11 @@ struct EnvironmentParameters {
 void visit(FieldVisitor& f, EnvironmentParameters& c);
 
 /// Rows:
-///   geometry     the assumed sigmas through the geometry, and nothing else
-///   residual_inflated  all assumed sigmas times one factor, whose square is z' S^-1 z / degrees of freedom, not below
-///   1
-///                (the a-posteriori variance of unit weight), S by the assumed sigmas; excluded ranges count as
-///                evidence
-///   environment  open sky (the assumed sigmas), a lightly or a heavily degraded environment, by what the epoch's
-///                evidence makes of the three, equal before it; variances averaged over the three
+/// - geometry: the assumed sigmas through the geometry, and nothing else.
+/// - residual_inflated: all assumed sigmas times the root of z' S^-1 z / degrees of freedom, or 1 if that is less (the
+///   a-posteriori variance of unit weight), S by the assumed sigmas; excluded ranges count as evidence.
+/// - environment: open sky (the assumed sigmas), a lightly or a heavily degraded environment, by what the epoch's
+///   evidence makes of the three, equal before it; variances averaged over the three.
 using MakeRangeErrorReport = std::unique_ptr<RangeErrorReport>(const ModelParameters& own);
 ModelTable<MakeRangeErrorReport> reported_covariances();
 

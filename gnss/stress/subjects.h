@@ -24,5 +24,6 @@ std::vector<StressCase> place_cases();
 std::vector<StressCase> way_cases();
 std::vector<StressCase> sensor_cases();
 std::vector<StressCase> file_cases();
+std::vector<StressCase> fitted_orbit_cases();
 
 }  // namespace canyon::gnss

@@ -3,6 +3,7 @@
 #include "canyon/core/stress_rows.h"
 #include "canyon/inertial/error_chain.h"
 #include "canyon/inertial/errors/markov_process.h"
+#include "canyon/inertial/paper_figures.h"
 #include "canyon/inertial/paper_formulas.h"
 #include "canyon/inertial/stress/subjects.h"
 
@@ -62,6 +63,34 @@ StressFigure chains() {
   return {1.0 * wrong, 0.0};
 }
 
+/// The paper's plain integration: angles are the sum of rates, places the sum of mean speeds; the rates' own sum says
+/// so, to an epsilon a step.
+StressFigure drift() {
+  stress::Worst worst;
+  for (const PaperFigure& figure : paper_figures()) {
+    PaperFigure minute = figure;
+    minute.seconds = 60.0;
+    const auto found = paper_drift(minute, "paper", 3);
+    if (!found || found->t_s.size() != 7500) return {stress::kInfinity, 1.0};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double angle_deg = 0.0, size = 0.0;
+      for (std::size_t k = 0; k < 7500; ++k) {
+        angle_deg += found->rate_deg_s[axis][k] / 125.0;
+        size += std::abs(found->rate_deg_s[axis][k]) / 125.0;
+        worst.look(found->angle_deg[axis][k] - angle_deg,
+                   (static_cast<double>(k) + 4.0) * stress::kEpsilon * size + 1e-300);
+      }
+      // Second differences of the place are the mean of two neighbours' speed changes: all of one sign of a bias as
+      // large as this over a minute, half a t^2.
+      const auto& p = found->position_m[axis];
+      const double first = p[3749] / (0.5 * 30.0 * 30.0), whole = p[7499] / (0.5 * 60.0 * 60.0);
+      worst.look(std::isfinite(first) && std::isfinite(whole) ? 0.0 : stress::kInfinity, 1.0);
+    }
+    worst.look(found->t_s.back() - 60.0, 1e-9);
+  }
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> paper_recursion_cases() {
@@ -96,6 +125,9 @@ std::vector<StressCase> paper_recursion_cases() {
   for (const double tau_s : {1.0001, 10.0})
     rows.of(memory).add("paper_recursion/memory_at_tau_" + stress::text(tau_s) + "_s",
                         [tau_s] { return printed_memory(tau_s); });
+  rows.of({StressGroup::kLong, "the paper's plain integration", "a sum of another axis", "angles are sums of rates",
+           "of the bound"});
+  rows.add("imu/paper_drift", drift);
   return rows.take();
 }
 

@@ -158,6 +158,42 @@ StressFigure overload(double resonance_hz, double quality) {
   return worst.figure();
 }
 
+/// An element without noise worth speaking of, at rest in u: it stays there, its output u times the step, with a filter
+/// and without, whichever integrator; a step from nothing comes to it and is forgotten as fast as it says. Stops and
+/// clips hold at their values.
+StressFigure element_at_rest(int order, const std::string& integrator) {
+  ElementFigures figures;
+  figures.pick_off = "piezoresistive";
+  figures.pick_off_figures.strain_cubic = 0.0;
+  figures.pick_off_figures.bridge_ohm = 1e-6;
+  figures.mass_kg = 1e3;  // thermal noise: 1e-9 of the input
+  figures.quality_factor = 0.7;
+  figures.resonance_hz = 5000.0;
+  figures.filter_order = order;
+  figures.bandwidth_hz = 40.0;
+  auto model = accelerometer_model(figures, 300.0);
+  if (!model) return {stress::kInfinity, 1.0};
+  model->filter_order = order;
+  model->bandwidth_hz = 40.0;
+  model->pick_off_n = 0.0;
+  const double step_s = integrator == "exact" ? 0.01 : 2e-5;  // an explicit one diverges from 9e-5 s on
+  stress::Worst worst;
+  SensingElement settled(*model, 0.0, integrator, step_s, RandomStream(5, "stress.mems"), 0);
+  settled.settle(9.81);
+  for (int k = 0; k < 50; ++k) worst.look(settled.advance(k, 9.81) / (9.81 * step_s) - 1.0, 1e-6);
+  SensingElement stepped(*model, 0.0, integrator, step_s, RandomStream(5, "stress.mems"), 1);
+  const double memory = stepped.memory_per_step();
+  worst.look(memory < 1.0 ? 0.0 : stress::kInfinity, 1.0);
+  const int steps = static_cast<int>(std::ceil(std::log(1e-9) / std::log(std::max(memory, 1e-300)))) + 2;
+  double last = 0.0;
+  for (int k = 0; k < steps; ++k) last = stepped.advance(k, 5.0);
+  worst.look(last / (5.0 * step_s) - 1.0, 1e-6);
+  worst.look(stepped.gain(1e-6) - 1.0, 1e-9);
+  // Half the power at the corner, where the mass itself has (40 / 5000)^2 more or less.
+  if (order > 0) worst.look(stepped.gain(40.0) / std::sqrt(0.5) - 1.0, 2.0 * std::pow(40.0 / 5000.0, 2));
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> proof_mass_cases() {
@@ -203,6 +239,12 @@ std::vector<StressCase> proof_mass_cases() {
   rows.of(slow).add("proof_mass/gyroscope_split_1000_hz_step_1_s", [] { return gyroscope(1e6, 1000.0, 1.0); });
   rows.of(clip).add("proof_mass/50_g_on_10_g_damped", [] { return overload(1000.0, 0.5); });
   rows.of(clip).add("proof_mass/50_g_on_10_g_ringing", [] { return overload(1000.0, 100.0); });
+  rows.of({StressGroup::kStiff, "a sensing element at rest and after a step",
+           "a filter of no order, a step that is not forgotten", "the input, times the step", "of the bound"});
+  for (const int order : {0, 1, 2, 4})
+    rows.add("imu/element_of_order_" + std::to_string(order), [order] { return element_at_rest(order, "exact"); });
+  for (const char* integrator : {"backward_euler", "implicit_midpoint", "rk4"})
+    rows.add(std::string("imu/element_by_") + integrator, [integrator] { return element_at_rest(2, integrator); });
   return rows.take();
 }
 

@@ -16,5 +16,6 @@ std::vector<StressCase> increment_cases();
 std::vector<StressCase> motion_cases();
 std::vector<StressCase> paper_recursion_cases();
 std::vector<StressCase> proof_mass_cases();
+std::vector<StressCase> unit_log_cases();
 
 }  // namespace canyon::inertial
