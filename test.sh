@@ -5,9 +5,10 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 . "$root/cmake/steps.sh"
 
-sections=(build test) filter=(--label-exclude '^nightly$') arguments=("$@")
+sections=(build test) filter=(--label-exclude '^nightly$' --timeout 900)  # s; one that hangs must not take the others' time
+arguments=("$@")
 if [ "${1:-}" = --nightly ]; then
-  sections+=(nightly) filter=(--label-regex '^nightly$')
+  sections+=(nightly) filter=(--label-regex '^nightly$' --timeout 14400)
   shift
 fi
 

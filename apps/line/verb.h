@@ -26,6 +26,7 @@ Verb compare_verb();
 Verb tradeoff_verb();
 Verb run_verb();
 Verb plan_verb();
+Verb reproduce_verb();
 Verb stress_verb();
 Verb report_verb();
 Verb keys_verb();
@@ -41,7 +42,6 @@ Verb imu_allan_verb();
 Verb imu_fit_verb();
 Verb imu_simulate_verb();
 Verb imu_dead_reckon_verb();
-Verb imu_paper_verb();
 Verb fuse_verb();
 Verb lidar_scan_verb();
 

@@ -210,21 +210,6 @@ TEST_F(ImuMotionVerbsTest, JitterOfTheClockIsInTheStampsAlone) {
   EXPECT_GT(most_s, 0.0205);
 }
 
-TEST_F(ImuMotionVerbsTest, PaperFiguresAreWritten) {
-  const auto json = json_of("imu paper --out figures");
-  ASSERT_EQ(json["figures"].size(), 6U);
-  for (const char* name : {"figures_2_and_3", "figure_7", "figure_7_text_parameters"})
-    for (const char* form : {"as_printed", "corrected"}) {
-      const std::string file = std::string("figures/") + name + "_" + form;
-      EXPECT_THAT(read(file + ".csv"), StartsWith("t_s,rate_x_deg_s,rate_y_deg_s,rate_z_deg_s,angle_x_deg,"));
-      EXPECT_THAT(read(file + ".svg"), HasSubstr("Integral of each gyroscope (heading), deg"));
-    }
-  for (const auto& figure : json["figures"])
-    if (figure["figure"] == "figures_2_and_3" && figure["form"] == "as corrected") {
-      EXPECT_NEAR(figure["drift_deg_per_hr"][0].get<double>(), 3.0, 2.0);
-    }
-}
-
 TEST_F(ImuMotionVerbsTest, MistakenLogsAreRecognized) {
   ASSERT_EQ(canyon("imu simulate --at 45,7,200 --duration 2 --rate 50 --out given_still"), 0) << read("stderr");
   const std::string truth = " --truth given_still/truth.nav";

@@ -85,7 +85,7 @@ TEST_F(OutputTest, AReportOnAFullDiskKeepsTheOldOne) {
 // 2026-11-22: --json, keys, tables and --help written to a full disk: exit status 0, and the output was lost.
 TEST_F(OutputTest, WhatIsPrintedAndDoesNotArriveIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
-  for (const char* verb : {"keys", "keys --json", "--help", "--version", "compare --help", "imu paper",
+  for (const char* verb : {"keys", "keys --json", "--help", "--version", "compare --help", "imu dead-reckon --help",
                            "imu simulate --path circle --duration 1 --json"}) {
     EXPECT_EQ(shell(std::string("\"$CANYON\" ") + verb + " > /dev/full 2> stderr"), 1) << verb;
     const std::string message = read("stderr");

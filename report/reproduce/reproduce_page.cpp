@@ -1,0 +1,164 @@
+#include "canyon/report/reproduce/reproduce_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/core/process/embedded.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/report/draw/chart.h"
+#include "canyon/report/draw/html.h"
+#include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
+#include "canyon/report/reproduce/paper_summary.h"
+
+namespace canyon::report {
+namespace {
+
+constexpr std::size_t kColours = 6;
+constexpr double kPlane_px = 420.0, kPage_px = 1000.0;  // of a drawing of places: to scale on a page so wide
+
+std::string embedded_asset(std::string_view key) {
+  const auto bytes = embedded_file(key);
+  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
+  return std::string(*bytes);
+}
+
+std::string shown_range(const PaperOurs& ours) {
+  if (!std::isfinite(ours.low) || !std::isfinite(ours.high)) return "";
+  return show_number(ours.low) + "\xE2\x80\x93" + show_number(ours.high);
+}
+
+/// A row a form of ours; the paper's number stands in the first.
+std::string number_rows(const PaperNumber& number) {
+  std::string out;
+  for (std::size_t i = 0; i < number.ours.size(); ++i) {
+    const PaperOurs& ours = number.ours[i];
+    const bool near = ours.form == number.nearest;
+    const std::string value = show_number(ours.value);
+    const auto once = [&](const std::string& html) { return i == 0 ? html : std::string(); };
+    out += "<tr><th scope=\"row\">" + once(escape_html(number.what + (number.unit.empty() ? "" : ", " + number.unit))) +
+           "</th><td>" + once(show_number(number.paper)) + "</td><td>" + once(show_number(number.real)) +
+           "</td><td class=\"text\">" + escape_html(ours.form) + "</td><td>" + (near ? "<b>" + value + "</b>" : value) +
+           "</td><td>" + shown_range(ours) + "</td><td>" +
+           (near ? "\xC3\x97 " + show_number(number.ratio) : std::string()) + "</td></tr>\n";
+  }
+  return out;
+}
+
+std::string number_table(const PaperSection& part) {
+  if (part.rows.empty()) return "";
+  std::string out =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" + escape_html(part.title) +
+      "\"><table>\n<thead><tr><th scope=\"col\" class=\"text\">what</th><th>paper</th><th>its real sensor</th><th "
+      "class=\"text\">ours</th><th>value</th><th>range</th><th>of the paper's</th></tr></thead>\n<tbody>";
+  for (const PaperNumber& number : part.rows) out += number_rows(number);
+  return out + "</tbody></table></div>\n";
+}
+
+/// Both axes so that a metre is as long upright as across, on a page of the usual width.
+void draw_to_scale(Chart& chart, Panel& panel, const Extremes& x, const Extremes& y) {
+  const double scale = std::max({(x.max - x.min) / kPage_px, (y.max - y.min) / kPlane_px, 1e-9}) * 1.08;
+  const double mx = 0.5 * (x.min + x.max), my = 0.5 * (y.min + y.max);
+  chart.x = Axis::linear(mx - 0.5 * scale * kPage_px, mx + 0.5 * scale * kPage_px, 9);
+  panel.y = Axis::linear(my - 0.5 * scale * kPlane_px, my + 0.5 * scale * kPlane_px);
+  panel.height_px = static_cast<int>(kPlane_px);
+}
+
+Extremes extremes_along_x(const std::vector<Line>& lines) {
+  std::vector<Line> turned = lines;
+  for (Line& line : turned) std::swap(line.x, line.y);
+  return extremes_of(turned);
+}
+
+std::string names_of(const Panel& panel) {
+  std::string out = "<p class=\"legend\">";
+  for (const Line& line : panel.lines)
+    out += "<span class=\"tag keep " + run_class(line.run) +
+           "\"><svg class=\"swatch\" viewBox=\"0 0 22 8\" aria-hidden=\"true\"><path d=\"M1 4H21\"/></svg>" +
+           escape_html(line.name) + "</span> ";
+  return out + "</p>\n";
+}
+
+/// One drawing a panel: each has its own lines, and those that are places are to scale.
+std::string drawings(const PaperSection& part) {
+  std::vector<std::string> names;
+  for (const PaperLine& line : part.curves)
+    if (std::ranges::find(names, line.panel) == names.end()) names.push_back(line.panel);
+  std::string out;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    Panel panel{.title = names[k]};
+    for (const PaperLine& line : part.curves) {
+      if (line.panel != names[k]) continue;
+      panel.unit = line.unit;
+      panel.lines.push_back({.run = panel.lines.size() % kColours,
+                             .name = line.name,
+                             .x = line.x,
+                             .y = line.y,
+                             .style = line.points ? Line::Style::kPoints : Line::Style::kNormal});
+    }
+    const Extremes x = extremes_along_x(panel.lines), y = extremes_of(panel.lines);
+    if (!x.drawn || !y.drawn) continue;
+    Chart chart{.id = part.name + "-" + std::to_string(k),
+                .x = Axis::linear(x.min, x.max, 9),
+                .x_label = part.x_label,
+                .solid = true,
+                .title = part.title,
+                .description = names[k],
+                .panels = {},
+                .marks = {}};
+    panel.y = Axis::linear_rounded(y.min, y.max);
+    if (names[k] == "North") draw_to_scale(chart, panel, x, y);
+    const std::string legend = names_of(panel);
+    chart.panels.push_back(std::move(panel));
+    out += legend + figure(draw(chart), escape_html(part.title));
+  }
+  return out;
+}
+
+std::string part_section(const PaperSection& part) {
+  std::string intro =
+      "<b>The paper:</b> " + escape_html(part.paper_says) + "<br><b>Ours:</b> " + escape_html(part.made);
+  std::string body = number_table(part);
+  for (const std::string& line : part.difference) body += note(line);
+  return section(part.name, part.title, intro, body + drawings(part));
+}
+
+std::string head(const PaperSummary& summary) {
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
+      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: Durst &amp; Goodin 2012 reproduced</title>\n<style>\n" +
+      theme_css(kColours) + embedded_asset("report/assets/report.css") +
+      "</style>\n</head>\n<body>\n<main>\n<header>\n";
+  out += "<p class=\"kicker\">Canyon \xC2\xB7 satellites: " + escape_html(summary.ephemeris) + ", from " +
+         escape_html(summary.start) +
+         " GPS time</p>\n<h1>Durst &amp; Goodin 2012, beside ours</h1>\n<nav "
+         "aria-label=\"Contents\">";
+  for (const PaperSection& part : summary.parts)
+    out += "<a href=\"#" + escape_html(part.name) + "\">" + escape_html(part.title.substr(0, part.title.find(':'))) +
+           "</a> ";
+  return out + "</nav>\n</header>\n<p class=\"intro\">" +
+         escape_html(
+             "Numbers are medians over " + show_count(summary.draws) + " draws with the least and the most of them" +
+             (summary.missions > 0.0
+                  ? "; of missions over " + show_count(summary.missions) + " seeds, shares with Wilson's 95 % interval"
+                  : std::string()) +
+             ". Bold: the form of ours that is nearest to the paper's number by ratio.") +
+         "</p>\n";
+}
+
+}  // namespace
+
+Result<std::string> reproduce_page(const std::string& summary_path) {
+  CANYON_TRY(const PaperSummary summary, read_paper_summary(summary_path));
+  std::string out = head(summary);
+  for (const PaperSection& part : summary.parts) {
+    throw_if_cancelled();
+    out += part_section(part);
+  }
+  if (!(summary.missions > 0.0))
+    out += note("The mission (figures 8 to 10) was not driven: canyon reproduce --missions N.");
+  return out + "</main>\n<script>\n" + embedded_asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace canyon::report
