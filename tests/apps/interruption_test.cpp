@@ -143,6 +143,7 @@ TEST_F(Interruption, PlanTradeoffAndStressAtAnyMoment) {
     expect_clean_end({"tradeoff", "mission.toml", "--part", "fusion", "--out", "given_out", "--force"}, moment_s,
                      SIGTERM);
     expect_clean_end({"stress", "--long"}, moment_s);
+    expect_clean_end({"reproduce", "--draws", "1000", "--out", "given_out", "--force"}, moment_s);
     expect_clean_end({"stress", "mission.toml"}, moment_s, SIGTERM);
   }
 }
@@ -156,6 +157,7 @@ TEST_F(Interruption, EveryLongVerbAtRandomMomentsNightly) {
       {"tradeoff", "mission.toml", "--out", "given_out", "--force"},
       {"stress", "--long"},
       {"stress", "mission.toml"},
+      {"reproduce", "--draws", "1000", "--out", "given_out", "--force"},
       {"scene", "make", "city", "--out", "given_city.json", "--force"},
       {"gnss", "simulate", "--at", "32.3,-90.9,50", "--duration", "100000", "--rinex-obs", "given.rnx", "--force"},
       {"gnss", "map", "--out", "given_map", "--force"},

@@ -1,6 +1,7 @@
 // `canyon reproduce` as it is typed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "canyon/tests/apps/command_line_fixture.h"
 
@@ -8,6 +9,7 @@ namespace canyon::apps::testing {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ReproduceTest : public CommandLineTest {};
 
@@ -18,6 +20,22 @@ TEST_F(ReproduceTest, WritesThePageAndTheNumbers) {
               HasSubstr("satellites: the built-in constellation of 24 GPS slots, from 2010-11-17T13:00:00"));
   EXPECT_THAT(read("paper/report.html"), HasSubstr("<h1>Durst &amp; Goodin 2012, beside ours</h1>"));
   EXPECT_THAT(read("paper/summary.json"), HasSubstr("\"name\": \"table_2\""));
+}
+
+TEST_F(ReproduceTest, DrivesTheMissionToo) {
+  ASSERT_EQ(canyon("reproduce mission.toml --draws 1 --missions 2 --out paper"), 0) << read("stderr");
+  const auto json = nlohmann::json::parse(read("paper/summary.json"));
+  ASSERT_EQ(json["parts"].size(), 7u);
+  const auto& mission = json["parts"][5];
+  EXPECT_EQ(mission["name"], "figures_8_to_10");
+  const auto& share = mission["rows"][0];
+  ASSERT_EQ(share["ours"].size(), 3u);
+  EXPECT_EQ(share["ours"][0]["form"], "low");
+  // No run of two has a share that is known to less than Wilson's interval.
+  EXPECT_GT(share["ours"][0]["high"].get<double>() - share["ours"][0]["low"].get<double>(), 0.5);
+  for (const auto& curve : mission["curves"]) EXPECT_GT(curve["x"].size(), 2u) << curve["name"];
+  EXPECT_EQ(json["parts"][6]["rows"].size(), 5u);
+  EXPECT_THAT(read("paper/report.html"), Not(HasSubstr("was not driven")));
 }
 
 TEST_F(ReproduceTest, MistakesAreOneLine) {
