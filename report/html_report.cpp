@@ -12,6 +12,7 @@
 #include "canyon/report/format.h"
 #include "canyon/report/fuse/fuse_page.h"
 #include "canyon/report/read/read_results.h"
+#include "canyon/report/reproduce/reproduce_page.h"
 #include "canyon/report/sections/sections.h"
 #include "canyon/report/tradeoff/tradeoff_page.h"
 
@@ -76,6 +77,7 @@ std::string page(const Results& results) {
 Result<std::string> html_report(const std::string& results_dir) {
   std::error_code code;
   if (std::filesystem::exists(results_dir + "/tradeoff.csv", code)) return tradeoff_page(results_dir + "/summary.json");
+  if (std::filesystem::exists(results_dir + "/paper.csv", code)) return reproduce_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/innovations.csv", code)) return fuse_page(results_dir);
   CANYON_TRY(Results results, read_results(results_dir));
   // As they were asked for, which also gives the colours; the mixed runs last.

@@ -68,6 +68,7 @@ Result<int> run(const Options& options) {
   auto json = study::reproduction_json(all);
   const std::string summary = directory.staging_path() + "/summary.json";
   CANYON_TRY_STATUS(write_text_file(summary, json_text(json, 2) + "\n"));
+  CANYON_TRY_STATUS(write_text_file(directory.staging_path() + "/paper.csv", study::reproduction_csv(all)));
   CANYON_TRY(const std::string page, report::reproduce_page(summary));
   CANYON_TRY_STATUS(write_text_file(directory.staging_path() + "/report.html", page));
   throw_if_cancelled();

@@ -91,6 +91,18 @@ nlohmann::ordered_json reproduction_json(const Reproduction& reproduction) {
           {"draws", reproduction.draws},    {"missions", reproduction.missions},   {"parts", parts}};
 }
 
+std::string reproduction_csv(const Reproduction& reproduction) {
+  const auto number = [](double v) { return std::isfinite(v) ? printed("%.9g", v) : std::string(); };
+  std::string out = "part,what,unit,paper,real,form,value,low,high\n";
+  for (const PaperPart& part : reproduction.parts)
+    for (const PaperRow& row : part.rows)
+      for (const Ours& one : row.ours)
+        out += part.name + ",\"" + row.what + "\"," + row.unit + "," + number(row.paper) + "," + number(row.real) +
+               ",\"" + one.form + "\"," + number(one.value) + "," + number(one.range.low) + "," +
+               number(one.range.high) + "\n";
+  return out;
+}
+
 std::string reproduction_table(const Reproduction& reproduction) {
   std::string out = "Durst & Goodin 2012 beside Canyon; satellites: " + reproduction.ephemeris + ", from " +
                     reproduction.start + " GPS time\n";

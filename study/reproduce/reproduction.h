@@ -63,6 +63,9 @@ const Ours* nearest(const PaperRow& row);
 /// summary.json, which is also what --json prints: undefined values are null.
 nlohmann::ordered_json reproduction_json(const Reproduction& reproduction);
 
+/// paper.csv: one row per form of ours of every number.
+std::string reproduction_csv(const Reproduction& reproduction);
+
 /// For the terminal: each part's rows, ours beside the paper's.
 std::string reproduction_table(const Reproduction& reproduction);
 

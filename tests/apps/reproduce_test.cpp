@@ -20,6 +20,10 @@ TEST_F(ReproduceTest, WritesThePageAndTheNumbers) {
               HasSubstr("satellites: the built-in constellation of 24 GPS slots, from 2010-11-17T13:00:00"));
   EXPECT_THAT(read("paper/report.html"), HasSubstr("<h1>Durst &amp; Goodin 2012, beside ours</h1>"));
   EXPECT_THAT(read("paper/summary.json"), HasSubstr("\"name\": \"table_2\""));
+  EXPECT_THAT(read("paper/paper.csv"), HasSubstr("table_1,\"ionosphere\",m,4.73,,\"as printed, ranges alone, raw\","));
+  const std::string page = read("paper/report.html");
+  EXPECT_EQ(canyon("report paper"), 0) << read("stderr");
+  EXPECT_EQ(read("paper/report.html"), page);
 }
 
 TEST_F(ReproduceTest, DrivesTheMissionToo) {

@@ -122,6 +122,7 @@ TEST(Reproduction, IsToldAsTableAndJson) {
   const std::string table = reproduction_table(all);
   EXPECT_THAT(table, HasSubstr("its real sensor         4"));
   EXPECT_THAT(table, HasSubstr("3  (2.5 to 3.5)\n  It differs.\n"));
+  EXPECT_EQ(reproduction_csv(all), "part,what,unit,paper,real,form,value,low,high\np,\"w\",m,2,4,\"f\",3,2.5,3.5\n");
   const auto json = reproduction_json(all);
   EXPECT_EQ(json["parts"][0]["rows"][0]["ratio"], 1.5);
   EXPECT_EQ(json["parts"][0]["rows"][0]["nearest"], "f");
