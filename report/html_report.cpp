@@ -5,9 +5,9 @@
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/output/staged.h"
-#include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/draw/html.h"
+#include "canyon/report/draw/page.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
 #include "canyon/report/fuse/fuse_page.h"
@@ -18,12 +18,6 @@
 
 namespace canyon::report {
 namespace {
-
-std::string asset(std::string_view key) {
-  const auto bytes = embedded_file(key);
-  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
-  return std::string(*bytes);
-}
 
 /// Check boxes that show and hide runs; they work by CSS alone, so they stand before everything they govern.
 std::string run_boxes(const Results& results) {
@@ -52,24 +46,17 @@ std::string contents(bool seeds, bool two_by_two) {
 
 std::string page(const Results& results) {
   const std::string two_by_two = two_by_two_section(results);
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" "
-      "content=\"light dark\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<title>Canyon: ";
-  out += escape_html(results.mission.name) + "</title>\n<style>\n" + theme_css(results.runs.size()) +
-         asset("report/assets/report.css") + "</style>\n</head>\n<body>\n" + run_boxes(results) +
-         "<main>\n<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
-         (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) + "</p>\n<h1>" +
-         escape_html(headline(results)) + "</h1>\n" + contents(results.over_seeds.has_value(), !two_by_two.empty()) +
-         "</header>\n";
+  std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
+                    (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) +
+                    "</p>\n<h1>" + escape_html(headline(results)) + "</h1>\n" +
+                    contents(results.over_seeds.has_value(), !two_by_two.empty()) + "</header>\n";
   for (const auto part : {verdict_section, seeds_section, figures_section, scene_section, error_section, filter_section,
                           satellites_section, multipath_section, maps_section, registration_section}) {
     throw_if_cancelled();
     out += part(results);
   }
   out += two_by_two + cost_section(results) + provenance_section(results);
-  return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+  return whole_page("Canyon: " + results.mission.name, results.runs.size(), out, run_boxes(results));
 }
 
 }  // namespace

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "canyon/core/math/chi_square.h"
-#include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
+#include "canyon/report/draw/page.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
 #include "canyon/report/fuse/fused_run.h"
@@ -17,12 +17,6 @@
 
 namespace canyon::report {
 namespace {
-
-std::string asset(std::string_view key) {
-  const auto bytes = embedded_file(key);
-  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
-  return std::string(*bytes);
-}
 
 bool has_errors(const FusedRun& run) {
   return run.errors.front().has_value() && run.errors.front()->rows > 0;
@@ -267,21 +261,18 @@ std::string made_section(const FusedRun& run) {
 Result<std::string> fuse_page(const std::string& directory) {
   CANYON_TRY(const FusedRun run, read_fused_run(directory));
   std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
-      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: fused logs</title>\n<style>\n" +
-      theme_css(2) + asset("report/assets/report.css") + "</style>\n</head>\n<body>\n<main>\n<header>\n";
-  out += "<p class=\"kicker\">Canyon \xC2\xB7 the filter on recorded data</p>\n<h1>" + escape_html(headline(run)) +
-         "</h1>\n<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> <a href=\"#errors\">Errors</a> " +
-         std::string(run.outages.front().empty() ? "" : "<a href=\"#outages\">Outages</a> ") +
-         "<a href=\"#innovations\">Innovations</a> <a href=\"#filter\">Filter</a> <a href=\"#made\">What it was made "
-         "of</a></nav>\n</header>\n";
+      "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 the filter on recorded data</p>\n<h1>" +
+      escape_html(headline(run)) +
+      "</h1>\n<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> <a href=\"#errors\">Errors</a> " +
+      std::string(run.outages.front().empty() ? "" : "<a href=\"#outages\">Outages</a> ") +
+      "<a href=\"#innovations\">Innovations</a> <a href=\"#filter\">Filter</a> <a href=\"#made\">What it was made "
+      "of</a></nav>\n</header>\n";
   for (const auto part :
        {verdict_section, errors_section, outages_section, innovations_section, consistency_section, made_section}) {
     throw_if_cancelled();
     out += part(run);
   }
-  return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+  return whole_page("Canyon: fused logs", 2, out);
 }
 
 }  // namespace canyon::report

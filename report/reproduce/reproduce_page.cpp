@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
+#include "canyon/report/draw/page.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
 #include "canyon/report/reproduce/paper_summary.h"
@@ -16,12 +16,6 @@ namespace {
 
 constexpr std::size_t kColours = 6;
 constexpr double kPlane_px = 420.0, kPage_px = 1000.0;  // of a drawing of places: to scale on a page so wide
-
-std::string embedded_asset(std::string_view key) {
-  const auto bytes = embedded_file(key);
-  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
-  return std::string(*bytes);
-}
 
 std::string shown_range(const PaperOurs& ours) {
   if (!std::isfinite(ours.low) || !std::isfinite(ours.high)) return "";
@@ -124,16 +118,10 @@ std::string part_section(const PaperSection& part) {
 }
 
 std::string head(const PaperSummary& summary) {
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
-      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: Durst &amp; Goodin 2012 reproduced</title>\n<style>\n" +
-      theme_css(kColours) + embedded_asset("report/assets/report.css") +
-      "</style>\n</head>\n<body>\n<main>\n<header>\n";
-  out += "<p class=\"kicker\">Canyon \xC2\xB7 satellites: " + escape_html(summary.ephemeris) + ", from " +
-         escape_html(summary.start) +
-         " GPS time</p>\n<h1>Durst &amp; Goodin 2012, beside ours</h1>\n<nav "
-         "aria-label=\"Contents\">";
+  std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 satellites: " + escape_html(summary.ephemeris) +
+                    ", from " + escape_html(summary.start) +
+                    " GPS time</p>\n<h1>Durst &amp; Goodin 2012, beside ours</h1>\n<nav "
+                    "aria-label=\"Contents\">";
   for (const PaperSection& part : summary.parts)
     out += "<a href=\"#" + escape_html(part.name) + "\">" + escape_html(part.title.substr(0, part.title.find(':'))) +
            "</a> ";
@@ -158,7 +146,7 @@ Result<std::string> reproduce_page(const std::string& summary_path) {
   }
   if (!(summary.missions > 0.0))
     out += note("The mission (figures 8 to 10) was not driven: canyon reproduce --missions N.");
-  return out + "</main>\n<script>\n" + embedded_asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+  return whole_page("Canyon: Durst & Goodin 2012 reproduced", kColours, out);
 }
 
 }  // namespace canyon::report

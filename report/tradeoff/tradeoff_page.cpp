@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/draw/html.h"
+#include "canyon/report/draw/page.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
 #include "canyon/report/tradeoff/ladder_section.h"
@@ -12,12 +12,6 @@
 
 namespace canyon::report {
 namespace {
-
-std::string asset(std::string_view key) {
-  const auto bytes = embedded_file(key);
-  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
-  return std::string(*bytes);
-}
 
 std::string swatch(TradeoffColour colour, const char* words) {
   return "<span class=\"tag keep " + run_class(colour) +
@@ -122,13 +116,9 @@ std::string intro(const TradeoffSummary& t) {
 
 Result<std::string> tradeoff_page(const std::string& summary_path) {
   CANYON_TRY(const TradeoffSummary t, read_tradeoff(summary_path));
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
-      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: error against run time</title>\n<style>\n" +
-      theme_css(kTradeoffColours) + asset("report/assets/report.css") + "</style>\n</head>\n<body>\n<main>\n<header>\n";
-  out += "<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(t.mission) + " \xC2\xB7 seed " +
-         escape_html(t.seed) + "</p>\n<h1>Error against run time</h1>\n" + contents(t) + "</header>\n";
+  std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(t.mission) +
+                    " \xC2\xB7 seed " + escape_html(t.seed) + "</p>\n<h1>Error against run time</h1>\n" + contents(t) +
+                    "</header>\n";
   out += choice_section(t.choice) + runs_section(t);
   if (!t.ladders.empty()) out += intro(t) + legend();
   for (std::size_t i = 0; i < t.ladders.size(); ++i) {
@@ -136,7 +126,7 @@ Result<std::string> tradeoff_page(const std::string& summary_path) {
     out += ladder_section(t.ladders[i], "ladder-" + std::to_string(i));
   }
   for (const std::string& one : t.skipped) out += note("Not measured here: " + one);
-  return out + "</main>\n<script>\n" + asset("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+  return whole_page("Canyon: error against run time", kTradeoffColours, out);
 }
 
 }  // namespace canyon::report
