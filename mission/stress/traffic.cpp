@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "canyon/core/stress_rows.h"
-#include "canyon/mission/stress/open_ground.h"
 #include "canyon/mission/stress/subjects.h"
+#include "canyon/scene/flat_ground.h"
 
 namespace canyon::mission {
 namespace {
@@ -14,7 +14,7 @@ scene::Traffic traffic_of(const std::vector<double>& path_m, double speed_m_s, d
   config.path_m = path_m;
   config.speed_m_s = speed_m_s;
   config.start_s = start_s;
-  return *scene::Traffic::make({config}, open_ground());
+  return *scene::Traffic::make({config}, scene::flat_ground());
 }
 
 /// It stands until it starts and at its end, however long that is, and in between it is where its speed has brought it,

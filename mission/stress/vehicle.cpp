@@ -9,8 +9,8 @@
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/motion/side_slip.h"
 #include "canyon/mission/motion/sprung_mass.h"
-#include "canyon/mission/stress/open_ground.h"
 #include "canyon/mission/stress/subjects.h"
+#include "canyon/scene/flat_ground.h"
 
 namespace canyon::mission {
 namespace {
@@ -71,9 +71,9 @@ StressFigure roughest_road(double hz, double damping) {
   config.suspension_damping = damping;
   config.roughness = "E";
   config.max_speed_m_s = 30.0;
-  Vehicle vehicle(config, open_ground(), 3, kStart);
+  Vehicle vehicle(config, scene::flat_ground(), 3, kStart);
   const Boundaries boundaries(kStart);
-  const double level_m = open_ground().ground(0.0, 0.0)->height_m;
+  const double level_m = scene::flat_ground().ground(0.0, 0.0)->height_m;
   stress::Worst worst;
   double lowest_m = stress::kInfinity, highest_m = -stress::kInfinity;
   for (int k = 0; k < 3000; ++k) {
@@ -93,7 +93,7 @@ StressFigure roughest_road(double hz, double damping) {
 StressFigure wild_commands() {
   VehicleConfig config;
   config.roughness = "none";
-  Vehicle vehicle(config, open_ground(), 3, kStart);
+  Vehicle vehicle(config, scene::flat_ground(), 3, kStart);
   stress::Worst worst;
   const double most_curvature = std::tan(config.max_steering_deg * kDegree) / config.wheelbase_m;
   const double rate = config.max_steering_rate_deg_s * kDegree * 0.01;
@@ -119,7 +119,7 @@ StressFigure wild_commands() {
 
 StressFigure refused_commands() {
   int passed = 0;
-  Vehicle vehicle({}, open_ground(), 3, kStart);
+  Vehicle vehicle({}, scene::flat_ground(), 3, kStart);
   const Eigen::Vector3d before = vehicle.state().X_WB.p;
   for (const double bad : {std::nan(""), stress::kInfinity, -stress::kInfinity}) {
     passed += stress::not_refused([&] { vehicle.advance({bad, 0.0}); });
@@ -166,7 +166,7 @@ StressFigure wildest_slip() {
   config.max_acceleration_m_s2 = config.max_deceleration_m_s2 = 10.0;
   config.max_steering_deg = 60.0;
   config.max_steering_rate_deg_s = 360.0;
-  Vehicle vehicle(config, open_ground(), 3, kStart);
+  Vehicle vehicle(config, scene::flat_ground(), 3, kStart);
   const Boundaries boundaries(kStart);
   stress::Worst worst;
   double most_m_s = 0.0;

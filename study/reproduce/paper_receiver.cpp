@@ -1,21 +1,10 @@
 #include "canyon/study/reproduce/paper_receiver.h"
 
 #include "canyon/core/process/progress.h"
-#include "canyon/scene/city/city.h"
+#include "canyon/scene/flat_ground.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::study {
-
-const scene::Scene& paper_field() {
-  static const scene::Scene kField = [] {
-    scene::CityConfig config;
-    config.empty = true;
-    config.extent_m = scene::kCityExtent_m.min;
-    config.slope_percent = config.hill_height_m = 0.0;
-    return scene::Scene(scene::make_city(config));
-  }();
-  return kField;
-}
 
 gnss::GnssConfig error_free_receiver(const PaperSky& sky, const char* mode, const char* solver) {
   gnss::GnssConfig c;
@@ -35,7 +24,7 @@ Result<std::vector<gnss::GnssOutput>> measured(const gnss::GnssConfig& config, s
                                                const PaperWay& way) {
   gnss::GnssConfig c = config;
   c.rate_hz = way.rate_hz;
-  const scene::Scene& field = paper_field();
+  const scene::Scene& field = scene::flat_ground();
   const scene::SceneAt at(field);
   CANYON_TRY(const auto sensor, gnss::make_gnss_sensor(c, seed, start, start + way.seconds, field));
   std::vector<gnss::GnssOutput> out;

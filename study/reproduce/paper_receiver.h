@@ -8,14 +8,10 @@
 #include "canyon/core/result.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sensor/sensor.h"
-#include "canyon/scene/scene.h"
 #include "canyon/study/reproduce/parts.h"
 
 /// The receiver of the paper's field tests: an open place near Vicksburg, one frequency, seven satellites.
 namespace canyon::study {
-
-/// Flat ground without a house.
-const scene::Scene& paper_field();
 
 /// No error acts and nothing is corrected: rows and solver are the caller's to name. No path but the direct one, no
 /// noise, no clock error, equal weights as in "a generic trilateration algorithm"; the mask leaves seven satellites at

@@ -1,6 +1,7 @@
 // Table 1 and figure 1: mean receiver offset by each range error alone.
 #include <cmath>
 
+#include "canyon/scene/flat_ground.h"
 #include "canyon/study/reproduce/paper_receiver.h"
 
 namespace canyon::study {
@@ -29,7 +30,7 @@ Result<CircleOffsets> offsets_on_circle(const gnss::GnssConfig& config, GpsTime 
                    .expected = "navigation data with at least four satellites above 18 deg"};
     out.mean_m += (o.fix.p_A_E - o.truth.p_A_E).norm() / kPoints;
     out.pdop += o.fix.dop.pdop / kPoints;
-    const Eigen::Vector3d p_W = paper_field().frame().to_W(o.fix.p_A_E);
+    const Eigen::Vector3d p_W = scene::flat_ground().frame().to_W(o.fix.p_A_E);
     out.places.x.push_back(p_W.x());
     out.places.y.push_back(p_W.y());
   }

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "canyon/scene/flat_ground.h"
 #include "canyon/study/reproduce/draws.h"
 #include "canyon/study/reproduce/paper_receiver.h"
 
@@ -82,7 +83,7 @@ struct Scatter {
 /// The errors of the fixes in W.
 std::vector<Eigen::Vector3d> errors_of(const std::vector<gnss::GnssOutput>& outputs) {
   std::vector<Eigen::Vector3d> out;
-  const Eigen::Matrix3d R_WE = paper_field().frame().R_EW().transpose();
+  const Eigen::Matrix3d R_WE = scene::flat_ground().frame().R_EW().transpose();
   for (const gnss::GnssOutput& o : outputs)
     out.push_back(o.fix.status == FixStatus::kNone ? Eigen::Vector3d::Constant(kNaN)
                                                    : Eigen::Vector3d(R_WE * (o.fix.p_A_E - o.truth.p_A_E)));
@@ -101,7 +102,7 @@ Scatter scatter_of(const std::vector<Eigen::Vector3d>& errors) {
   if (n < 2.0) return {};
   const Eigen::Vector3d variance = ((squares - sum.cwiseAbs2() / n) / (n - 1.0)).cwiseMax(0.0);
   // A degree of latitude and of longitude at the place.
-  const Geodetic& at = paper_field().frame().origin();
+  const Geodetic& at = scene::flat_ground().frame().origin();
   const LocalFrame frame(at);
   constexpr double kStep_rad = 1e-6;
   const double lat_m = frame.from_geodetic({at.lat_rad + kStep_rad, at.lon_rad, at.h_m}).norm() / (kStep_rad / kDegree);
