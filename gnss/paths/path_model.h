@@ -34,6 +34,7 @@ struct SignalPath {
   /// In the place of the first reflector: scattered by façades, all that come about as late; the second then tells how
   /// late, in steps of the model.
   static constexpr std::uint32_t kScattered = 0xfffffffdu;
+  static constexpr std::uint32_t kClutter = 0xfffffffcu;  ///< the same by clutter that the scene lacks
 
   double excess_m = 0.0;  ///< longer than the straight way by this; >= 0
   /// Field at the antenna relative to the free direct signal of that satellite: right-hand circular that stays
@@ -85,6 +86,7 @@ struct PathParameters {
   int launched_rays = 20000;        ///< launching: over the whole sphere
   /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
   bool exhaustive = false;
+  std::uint64_t seed = 0;     ///< of the run: what moves beside the scene's moving things is drawn from it
   PathOmissions leave_out{};  ///< what cannot act where the antenna is
 };
 

@@ -9,6 +9,7 @@ namespace canyon::study {
 
 /// A fix of a drive beside the reference; NaN: there was none.
 struct DriveFix {
+  GpsTime t;  ///< of the reference
   double horizontal_m = kNaN;
   /// Horizontal error, squared, in units of the covariance that came with the fix: chi-square of two degrees if that
   /// is honest.
