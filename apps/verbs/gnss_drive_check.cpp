@@ -9,6 +9,7 @@
 #include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/antenna_height.h"
+#include "canyon/report/html_report.h"
 #include "canyon/study/drive_check/drive_check.h"
 
 namespace canyon::apps {
@@ -60,6 +61,7 @@ Result<int> run(const Options& options) {
   if (folder != nullptr) {
     CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/signals.csv", study::drive_signals_csv(check)));
     CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/summary.json", json_text(json, 2) + "\n"));
+    CANYON_TRY_STATUS(report::write_html_report(folder->staging_path(), folder->staging_path() + "/report.html"));
   }
   CANYON_TRY_STATUS(outputs.commit());
   print_warnings(data.warnings);

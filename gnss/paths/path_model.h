@@ -43,6 +43,9 @@ struct SignalPath {
   std::complex<double> copolar, crosspolar;
   Eigen::Vector3d arrival_W{0, 0, 1};  ///< unit, from the antenna to where the signal comes from
   double foliage_m = 0.0;              ///< way through tree crowns, all legs
+  /// Of an echo that many scatterers make together: what they have in power, each by itself, of either hand, and how
+  /// far they stand apart in direction, 0 to 1 (root mean square, of unit vectors). 0: it is one way.
+  double gathered_copolar = 0.0, gathered_crosspolar = 0.0, spread = 0.0;
   int reflections = 0;
   int diffractions = 0;
   /// Reflectors in order from the antenna, the first `reflections` of them: index into Scene::facets(), or kTerrain.

@@ -117,7 +117,9 @@ Json drive_check_json(const DriveCheck& check) {
   Json out{{"epochs", check.measured.epochs.size()},
            {"reference_instants", check.measured.figures.instants},
            {"simulated", side_json(check.simulated.figures)},
-           {"measured", side_json(check.measured.figures)}};
+           {"measured", side_json(check.measured.figures)},
+           {"figures", Json::array()}};
+  for (const DriveRow& row : kRows) out["figures"].push_back(Json{{"key", row.key}, {"label", row.label}});
   if (!check.measured.spread.empty()) out["measured_interval"] = spread_json(check.measured.spread);
   if (!check.simulated.spread.empty()) {
     out["simulated_draws"] = spread_json(check.simulated.spread);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/clutter/clutter.h"
@@ -12,6 +13,8 @@
 
 namespace canyon::gnss {
 namespace {
+
+constexpr float kAcross_m = 100.0F;
 
 struct StreetClutterParameters {
   std::string environment = "suburban";
@@ -93,10 +96,10 @@ class SoftSight {
 /// - **Scatterers** (clutter_scatterers.h), points about the antenna with complex normal fields. Their power at r
 ///   follows the radar equation, 1 / (r^2 + b^2) with b^2 = cell / (2 pi), fading out over the last fifth of the reach;
 ///   together, all in sight, they have the power that the table gives for multipath: each that the satellite lights
-///   as in the good state, each that it does not as in the bad one, where it is lit by what others send on (its longer
-///   way there is not counted). A scatterer counts as far as it is seen (SoftSight). So delays and Doppler come from
-///   geometry, where Lehner & Steingass (2005) draw them. In the open the sum is complex normal: Rayleigh by itself,
-///   Rician with what else arrives.
+///   as in the good state, each in the shadow as in the bad one, where light comes to it off what stands across the
+///   street, later by that way; where nothing stands there it is dark. A scatterer counts as far as it is seen
+///   (SoftSight). So delays and Doppler come from geometry, where Lehner & Steingass (2005) draw them. In the open the
+///   sum is complex normal: Rayleigh by itself, Rician with what else arrives.
 ///
 /// Everything is a function of place, direction and, for the moving share, seed and time. Not shaded: scatterers, which
 /// stand among the clutter themselves.
@@ -133,6 +136,8 @@ class StreetClutter final : public ClutterModel {
     if (paths.line_of_sight) paths.direct *= left(s_W);
     for (SignalPath& echo : paths.echoes) {
       const double factor = left(echo.arrival_W);
+      echo.gathered_copolar *= factor * factor;
+      echo.gathered_crosspolar *= factor * factor;
       echo.copolar *= factor;
       echo.crosspolar *= factor;
     }
@@ -187,11 +192,28 @@ class StreetClutter final : public ClutterModel {
     const double unlit = extra * std::sqrt(law_.multipath_power(true, elevation_rad));
     for (const Seen& one : seen) {
       ++counters.occlusion_rays;
-      const double scale = scene.blocked_towards(one.p_W, s) ? unlit : lit;
+      double scale = lit, detour_m = 0.0;
+      if (scene.blocked_towards(one.p_W, s)) {
+        ++counters.occlusion_rays;
+        scale = unlit;
+        detour_m = across_m(one.p_W, s, scene);
+        if (!std::isfinite(detour_m)) continue;
+      }
       const double co = std::abs(one.co), cross = std::abs(one.cross), power = co * co + cross * cross;
-      bins.add({scale * co, scale * cross, std::arg(one.co), std::arg(one.cross)}, one.r_m * (1.0 - one.to_W.dot(s)),
-               one.to_W, power * power, waves.wavelength_m(k));
+      bins.add({scale * co, scale * cross, std::arg(one.co), std::arg(one.cross)},
+               one.r_m * (1.0 - one.to_W.dot(s)) + detour_m, one.to_W, power * power, waves.wavelength_m(k));
     }
+  }
+
+  /// How much later light comes to a place in the shadow from what stands across the street from it: off a wall
+  /// horizontally behind it, as the satellite sees it, at distance w, 2 w cos(elevation). Infinite if nothing stands
+  /// there within 100 m (assumed).
+  double across_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& s_W, const scene::SceneAt& scene) const {
+    const double level = s_W.head<2>().norm();
+    if (level < 1e-6) return 0.0;
+    const Eigen::Vector3f away_W(static_cast<float>(-s_W.x() / level), static_cast<float>(-s_W.y() / level), 0.0F);
+    const scene::Hit hit = scene.trace({p_W, away_W, kAcross_m});
+    return hit.hit() ? 2.0 * level * static_cast<double>(hit.range_m) : std::numeric_limits<double>::infinity();
   }
 
   StreetClutterParameters own_;

@@ -26,6 +26,8 @@ class DelayBins {
   struct Bin {
     std::complex<double> co, cross;
     Eigen::Vector3d from_W = Eigen::Vector3d::Zero();  ///< directions, by weight
+    double co_power = 0.0, cross_power = 0.0;          ///< of each phasor by itself
+    Eigen::Vector3d by_power_W = Eigen::Vector3d::Zero();
   };
   /// Of one scatterer, both hands, without the phase of its way.
   struct Phasor {
@@ -44,6 +46,10 @@ class DelayBins {
       bins_[i].co += std::polar(share * a.co, a.co_rad + turn_rad);
       bins_[i].cross += std::polar(share * a.cross, a.cross_rad + turn_rad);
       bins_[i].from_W += share * share * weight * from_W;
+      const double co2 = share * share * a.co * a.co, cross2 = share * share * a.cross * a.cross;
+      bins_[i].co_power += co2;
+      bins_[i].cross_power += cross2;
+      bins_[i].by_power_W += (co2 + cross2) * from_W;
     }
   }
   const std::array<Bin, kBins>& bins() const { return bins_; }
@@ -53,7 +59,9 @@ class DelayBins {
   void append(double least, std::uint32_t kind, std::vector<SignalPath>& out) const {
     for (std::size_t i = 0; i < kBins; ++i) {
       const Bin& bin = bins_[i];
-      const double amplitude = std::sqrt(std::norm(bin.co) + std::norm(bin.cross));
+      const double power = bin.co_power + bin.cross_power;
+      // Of the power, not of the field: what fades for a moment is still tracked through it.
+      const double amplitude = std::sqrt(std::max(power, std::norm(bin.co) + std::norm(bin.cross)));
       const double kept = std::clamp(amplitude / least - 1.0, 0.0, 1.0);
       if (kept == 0.0) continue;
       SignalPath path;
@@ -61,6 +69,10 @@ class DelayBins {
       path.copolar = kept * bin.co;
       path.crosspolar = kept * bin.cross;
       path.arrival_W = bin.from_W.normalized();
+      path.gathered_copolar = kept * kept * bin.co_power;
+      path.gathered_crosspolar = kept * kept * bin.cross_power;
+      const double mean = bin.by_power_W.norm() / power;  // of unit vectors: 1 if they are one
+      path.spread = std::sqrt(std::max(1.0 - mean * mean, 0.0));
       path.facets = {kind, static_cast<std::uint32_t>(i), SignalPath::kNoFacet};
       out.push_back(path);
     }

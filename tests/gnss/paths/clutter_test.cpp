@@ -184,6 +184,25 @@ std::unique_ptr<scene::Scene> open_place() {
   return WallScene().wall({-9e4, -5, 0}, {0, 10, 0}, {0, 0, 3}).build();
 }
 
+// At rest an echo of many has the power of its field, on the move that of its parts; between, as the loop's first-order
+// response says: at f = f0 half of each. Of one scatterer both are the same.
+TEST(StreetClutter, MovingAveragesOverFading) {
+  const auto scene = open_place();
+  const auto model = model_of("clutter_moving_share = 0.0");
+  const Eigen::Vector3d s = direction(100.0, 30.0);
+  const SignalPaths paths = trace(*model, *scene, {3.0, 4.0, 1.5}, s);
+  ASSERT_GT(paths.echoes.size(), 2u);
+  LinkBudget link;
+  for (const SignalPath& e : paths.echoes) {
+    ASSERT_GT(e.spread, 0.0);
+    const auto power = [&](double v_m_s) {
+      return std::pow(10.0, 0.1 * receive(e, link, Eigen::Vector3d::UnitZ(), s, {v_m_s, 0.0, 0.0}).cn0_dbhz);
+    };
+    const double f0_m_s = 0.5 / kPi * kL1WavelengthM / e.spread;
+    EXPECT_NEAR(power(f0_m_s) / (0.5 * (power(0.0) + power(1e9))), 1.0, 1e-9);
+  }
+}
+
 // Without obstacles the sum of scatterers is complex normal with the table's multipath as its power, half to each hand:
 // places farther apart than twice the reach are independent. With a direct signal of 1 the amplitude is Rician of
 // K = 2 / power: its distribution by the midpoint rule over I0, at 2000 places, shares within 4 sigma; the fading-in of
@@ -283,11 +302,12 @@ TEST(StreetClutter, ThreadsDoNotMatter) {
   set_threads(0);
 }
 
-// Behind a wall of 200 m all scatterers within 60 m are unlit, but for those behind it, which are not seen: their mean
-// power, over 1000 places along the wall farther apart than twice the reach, is that of the table's bad state times the
-// share of the power that is in sight; open to the other side, of the good state.
+// Behind a wall of 200 m all scatterers in sight within 30 m are in its shadow, and across from them stands another
+// wall: their mean power, over 1000 places along the walls farther apart than twice the reach, is that of the table's
+// bad state; from the other side, lit, that of the good one. Their light comes off the wall across: 15 to 75 m behind
+// them, 21 to 106 m late, and bins are 15 m wide. Without the wall across they are dark.
 TEST(StreetClutter, UnlitScatterersHaveTheBadStatesMultipath) {
-  const auto scene = WallScene().box({-300, -30, 0}, {70000, -10, 200}).build();
+  const auto scene = WallScene().box({-300, -30, 0}, {70000, -10, 200}).box({-300, 85, 0}, {70000, 95, 6}).build();
   const auto model = model_of("clutter_reach_m = 30.0\nclutter_moving_share = 0.0");
   const TwoStateLaw law("suburban", 1.0);
   double unlit = 0.0, lit = 0.0;
@@ -296,12 +316,15 @@ TEST(StreetClutter, UnlitScatterersHaveTheBadStatesMultipath) {
     const Eigen::Vector3d p(65.0 * i, 40.0, 1.5);
     const SignalPaths hidden = trace(*model, *scene, p, direction(180.0, 45.0));
     EXPECT_FALSE(hidden.line_of_sight);
+    for (const SignalPath& e : hidden.echoes) EXPECT_GE(e.excess_m, 15.0);
     unlit += std::norm(scattered(hidden)) / kPlaces;
     lit += std::norm(scattered(trace(*model, *scene, p, direction(0.0, 45.0)))) / kPlaces;
   }
   const double bound = 4.0 / std::sqrt(kPlaces);
   EXPECT_NEAR(unlit / (0.5 * law.multipath_power(true, 45.0 * kDegree)), 1.0, bound);
   EXPECT_NEAR(lit / (0.5 * law.multipath_power(false, 45.0 * kDegree)), 1.0, bound);
+  const auto one_wall = WallScene().box({-300, -30, 0}, {300, -10, 200}).build();
+  EXPECT_EQ(trace(*model, *one_wall, {0, 40, 1.5}, direction(180.0, 45.0)).echoes.size(), 0u);
 }
 
 // What the scene finds is shaded by where it comes from, as the straight way is by where the satellite stands.
