@@ -104,13 +104,14 @@ TEST(StreetShading, MeanLevelsAreTheTwoStates) {
   }
 }
 
-/// Means of a level as a street would have them, over places 50 m apart and directions of one elevation.
-std::vector<double> street_levels(const StreetShading& shading, double elevation_deg, double t_s) {
+/// Levels at places 50 m apart and directions of one elevation; from place to place `step_s` later.
+std::vector<double> street_levels(const StreetShading& shading, double elevation_deg, double t_s, double step_s = 0.0) {
   std::vector<double> out;
   for (int x = 0; x < 100; ++x)
     for (int y = 0; y < 100; ++y)
       out.push_back(shading.level_db({50.0 * x + 3.0, 50.0 * y + 8.0, 2.0},
-                                     direction(17.0 * ((x * 100 + y) % 21), elevation_deg), GpsTime{} + t_s));
+                                     direction(17.0 * ((x * 100 + y) % 21), elevation_deg),
+                                     GpsTime{} + (t_s + step_s * (x * 100 + y))));
   return out;
 }
 
@@ -129,7 +130,7 @@ TEST(StreetShading, LevelsAreTheLawsOwn) {
   }
   for (const double moving : {0.0, 0.2}) {
     const StreetShading shading(law, {.moving_share = moving}, 0, 1);
-    const auto levels_db = street_levels(shading, 30.0, 100.0);
+    const auto levels_db = street_levels(shading, 30.0, 100.0, 10.0);
     for (const double x_db : {-16.0, -12.0, -8.0, -4.0, -2.0, 0.0, 1.0}) {
       const double p = share_below(expected_db, x_db);
       EXPECT_NEAR(share_below(levels_db, x_db), p, 0.01 + 1.5 * four_sigma(p, levels_db.size())) << x_db << moving;
