@@ -58,7 +58,7 @@ DriveFix compare(const GnssFix& fix, const Eigen::Vector3d& truth_E) {
   const Eigen::Matrix3d R_E_enu = rotation_E_from_enu(geodetic_from_ecef(truth_E));
   const Eigen::Vector2d error = (R_E_enu.transpose() * (fix.p_A_E - truth_E)).head<2>();
   const Eigen::Matrix2d covariance = (R_E_enu.transpose() * fix.covariance_E * R_E_enu).topLeftCorner<2, 2>();
-  return {.t = {}, .horizontal_m = error.norm(), .normalised2 = error.dot(covariance.ldlt().solve(error))};
+  return {.horizontal_m = error.norm(), .normalised2 = error.dot(covariance.ldlt().solve(error))};
 }
 
 /// The fix of each instant of the reference: of the epoch that is at most half an interval away.

@@ -46,8 +46,10 @@ TEST_F(DrivePage, ShowsBothSidesWithTheirIntervals) {
   const auto page = html_report(directory_.path());
   ASSERT_TRUE(page) << page.error().str();
   const std::string text = canyon::testing::without(*page, "<", ">");
-  EXPECT_THAT(text, HasSubstr("4.5\xC2\xA0m off in the median, of the recorded 25.5\xC2\xA0m, over 2 epochs."));
-  EXPECT_THAT(text, HasSubstr("|error| &lt;hidden&gt;10 / 849 to 11 / 80 to 9031 / 12225 to 40 / 90 to 150"));
+  EXPECT_THAT(text, HasSubstr("4.50\xC2\xA0m off in the median, of the recorded 25.5\xC2\xA0m, over 2 epochs."));
+  EXPECT_THAT(
+      text,
+      HasSubstr("|error| &lt;hidden&gt;10.0 / 84.09.00 to 11.0 / 80.0 to 90.031.0 / 12225.0 to 40.0 / 90.0 to 150"));
   EXPECT_THAT(text, HasSubstr("CRPS 11.5\xC2\xA0m"));
   EXPECT_THAT(text, HasSubstr("R07"));
   EXPECT_THAT(*page, Not(HasSubstr("http")));

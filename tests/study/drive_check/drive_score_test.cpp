@@ -78,7 +78,7 @@ TEST(DriveScore, SaysNothingWithoutDrawsOrOtherBlocks) {
 TEST(DriveResampling, BlocksKeepTheirEpochs) {
   const auto epochs = drive(7, 100.0);
   std::vector<DriveFix> fixes;
-  for (const DriveEpoch& e : epochs) fixes.push_back({.t = e.t, .horizontal_m = 12.0, .normalised2 = 1.0});
+  for (const DriveEpoch& e : epochs) fixes.push_back({.horizontal_m = 12.0, .normalised2 = 1.0, .t = e.t});
   const auto figures = resampled_figures(epochs, fixes, 50, 3);
   ASSERT_EQ(figures.size(), 50u);
   double least = 1e9, most = -1e9;
