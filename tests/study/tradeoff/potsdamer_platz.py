@@ -7,7 +7,8 @@ Written to OUT: the buildings as GeoJSON, the truth as CSV, the description that
 scene with the same receiver as far as its maker tells, for `canyon gnss drive-check --scene OUT/city.toml`. street.toml is the
 same with wedges, scattering walls and clutter, and with a receiver that tracks down to the weakest signal that the log holds.
 
-But for the gain and, in street.toml, the threshold nothing is fitted to the drive: the receiver is canyon's patch antenna on a car roof and its defaults for what is not said.
+But for the gain and, in street.toml, the threshold nothing is fitted to the drive: the receiver is canyon's patch antenna on a car
+roof and its defaults for what is not said.
 """
 import json
 import pathlib
