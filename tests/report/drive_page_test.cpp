@@ -46,7 +46,8 @@ TEST_F(DrivePage, ShowsBothSidesWithTheirIntervals) {
   const auto page = html_report(directory_.path());
   ASSERT_TRUE(page) << page.error().str();
   const std::string text = canyon::testing::without(*page, "<", ">");
-  EXPECT_THAT(text, HasSubstr("4.50\xC2\xA0m off in the median, of the recorded 25.5\xC2\xA0m, over 2 epochs."));
+  EXPECT_THAT(text, HasSubstr("4.50\xC2\xA0m off in the median, of the recorded 25.5\xC2\xA0m, over 2\xC2\xA0"
+                              "epochs."));
   EXPECT_THAT(
       text,
       HasSubstr("|error| &lt;hidden&gt;10.0 / 84.09.00 to 11.0 / 80.0 to 90.031.0 / 12225.0 to 40.0 / 90.0 to 150"));
