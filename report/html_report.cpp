@@ -9,6 +9,7 @@
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/page.h"
 #include "canyon/report/draw/theme.h"
+#include "canyon/report/drive_check/drive_page.h"
 #include "canyon/report/format.h"
 #include "canyon/report/fuse/fuse_page.h"
 #include "canyon/report/read/read_results.h"
@@ -66,6 +67,7 @@ Result<std::string> html_report(const std::string& results_dir) {
   if (std::filesystem::exists(results_dir + "/tradeoff.csv", code)) return tradeoff_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/paper.csv", code)) return reproduce_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/innovations.csv", code)) return fuse_page(results_dir);
+  if (std::filesystem::exists(results_dir + "/signals.csv", code)) return drive_page(results_dir);
   CANYON_TRY(Results results, read_results(results_dir));
   // As they were asked for, which also gives the colours; the mixed runs last.
   std::stable_partition(results.runs.begin(), results.runs.end(), [](const Run& run) { return run.is_pure(); });

@@ -9,6 +9,7 @@
 #include "canyon/core/output/staged.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/gnss/antenna_height.h"
+#include "canyon/report/html_report.h"
 #include "canyon/study/drive_check/drive_check.h"
 
 namespace canyon::apps {
@@ -20,6 +21,7 @@ struct Options {
   gnss::RecordedFiles files;
   std::string truth, solver;
   double from_sow = 0.0, to_sow = 604800.0;
+  int draws = 1;
 };
 
 Result<std::vector<StampedPlace>> reference(const Options& options) {
@@ -51,6 +53,7 @@ Result<int> run(const Options& options) {
                                        .receiver = setup.config,
                                        .solver = solver,
                                        .seed = setup.seed,
+                                       .draws = options.draws,
                                        .from_sow = options.from_sow,
                                        .to_sow = options.to_sow};
   CANYON_TRY(const study::DriveCheck check, study::check_drive(inputs));
@@ -58,6 +61,7 @@ Result<int> run(const Options& options) {
   if (folder != nullptr) {
     CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/signals.csv", study::drive_signals_csv(check)));
     CANYON_TRY_STATUS(write_text_file(folder->staging_path() + "/summary.json", json_text(json, 2) + "\n"));
+    CANYON_TRY_STATUS(report::write_html_report(folder->staging_path(), folder->staging_path() + "/report.html"));
   }
   CANYON_TRY_STATUS(outputs.commit());
   print_warnings(data.warnings);
@@ -81,6 +85,11 @@ VerbAction declare(Arguments& arguments) {
   arguments.option("--sp3", options->files.sp3, "precise orbits and clocks (SP3) for the recorded ranges");
   arguments.option("--antex", options->files.antex, "satellite antennas (ANTEX) for the SP3 files");
   arguments.option("--config", options->solver, "options of the solution of both (TOML), as of gnss solve");
+  arguments
+      .option("--draws", options->draws,
+              "simulations, each of another street's clutter and of the next seed; from two on signals are scored")
+      .default_shown()
+      .within(1, 1000);
   arguments.option("--from-sow", options->from_sow, "second of the GPS week at which the stretch begins")
       .within(0.0, 604800.0);
   arguments.option("--to-sow", options->to_sow, "and ends").within(0.0, 604800.0);

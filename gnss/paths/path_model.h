@@ -34,6 +34,7 @@ struct SignalPath {
   /// In the place of the first reflector: scattered by façades, all that come about as late; the second then tells how
   /// late, in steps of the model.
   static constexpr std::uint32_t kScattered = 0xfffffffdu;
+  static constexpr std::uint32_t kClutter = 0xfffffffcu;  ///< the same by clutter that the scene lacks
 
   double excess_m = 0.0;  ///< longer than the straight way by this; >= 0
   /// Field at the antenna relative to the free direct signal of that satellite: right-hand circular that stays
@@ -42,6 +43,9 @@ struct SignalPath {
   std::complex<double> copolar, crosspolar;
   Eigen::Vector3d arrival_W{0, 0, 1};  ///< unit, from the antenna to where the signal comes from
   double foliage_m = 0.0;              ///< way through tree crowns, all legs
+  /// Of an echo that many scatterers make together: what they have in power, each by itself, of either hand, and how
+  /// far they stand apart in direction, 0 to 1 (root mean square, of unit vectors). 0: it is one way.
+  double gathered_copolar = 0.0, gathered_crosspolar = 0.0, spread = 0.0;
   int reflections = 0;
   int diffractions = 0;
   /// Reflectors in order from the antenna, the first `reflections` of them: index into Scene::facets(), or kTerrain.
@@ -85,6 +89,7 @@ struct PathParameters {
   int launched_rays = 20000;        ///< launching: over the whole sphere
   /// The search as such, without any of its shortcuts: every facet of the scene, none taken to be hidden. Slow.
   bool exhaustive = false;
+  std::uint64_t seed = 0;     ///< of the run: what moves beside the scene's moving things is drawn from it
   PathOmissions leave_out{};  ///< what cannot act where the antenna is
 };
 

@@ -7,11 +7,12 @@
 #include <Eigen/Core>
 
 #include "canyon/core/check.h"
+#include "canyon/core/time.h"
 #include "canyon/gnss/signal.h"
 
 namespace canyon::gnss {
 
-/// One signal of each satellite in sight, plane over the scene.
+/// One signal of each satellite in sight, plane over the scene, as they arrive at an instant.
 class PlaneWaves {
  public:
   /// All at L1. `directions_W`: unit, from the antenna to each satellite; must outlive this.
@@ -24,6 +25,14 @@ class PlaneWaves {
     for (const double hz : carriers_hz) CANYON_CHECK(hz > 0.0, "carrier_hz = ", hz);
   }
 
+  /// The same at an instant, for models whose ways change with time by themselves; GPS time 0 if it is not said.
+  PlaneWaves at(GpsTime t) const {
+    PlaneWaves out = *this;
+    out.t_ = t;
+    return out;
+  }
+
+  GpsTime t() const { return t_; }
   std::size_t size() const { return directions_W_.size(); }
   bool empty() const { return directions_W_.empty(); }
   std::span<const Eigen::Vector3d> directions_W() const { return directions_W_; }
@@ -46,6 +55,7 @@ class PlaneWaves {
 
   std::span<const Eigen::Vector3d> directions_W_;
   std::span<const double> carriers_hz_;
+  GpsTime t_;
 };
 
 }  // namespace canyon::gnss

@@ -10,10 +10,11 @@ namespace {
 class Propagation final : public PathModel {
  public:
   Propagation(std::unique_ptr<PathModel> paths, std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
-              const PathParameters& p, std::unique_ptr<ScatterModel> scatter)
+              const PathParameters& p, std::unique_ptr<ScatterModel> scatter, std::unique_ptr<ClutterModel> clutter)
       : paths_(std::move(paths)),
         diffraction_(std::move(diffraction)),
         scatter_(std::move(scatter)),
+        clutter_(std::move(clutter)),
         ground_reflection_(ground_reflection),
         p_(p) {}
 
@@ -24,6 +25,7 @@ class Propagation final : public PathModel {
     if (ground_reflection_) add_ground_reflections(p_, p_A_W, waves, scene, out, counters);
     diffraction_->trace(p_A_W, waves, scene, out, counters);
     if (scatter_ != nullptr) scatter_->trace(p_A_W, waves, scene, out, counters);
+    if (clutter_ != nullptr) clutter_->trace(p_A_W, waves, scene, out, counters);
     for (auto& paths : out)
       std::stable_sort(paths.echoes.begin(), paths.echoes.end(),
                        [](const SignalPath& a, const SignalPath& b) { return a.excess_m < b.excess_m; });
@@ -33,6 +35,7 @@ class Propagation final : public PathModel {
   std::unique_ptr<PathModel> paths_;
   std::unique_ptr<DiffractionModel> diffraction_;
   std::unique_ptr<ScatterModel> scatter_;
+  std::unique_ptr<ClutterModel> clutter_;
   bool ground_reflection_;
   PathParameters p_;
 };
@@ -43,6 +46,7 @@ void visit(FieldVisitor& f, PropagationConfig& c) {
   visit_choice(f, "paths", c.paths, "propagation in the scene");
   visit_choice(f, "diffraction", c.diffraction, "what roofs and corners bend");
   visit_choice(f, "scatter", c.scatter, "what walls send elsewhere than a mirror");
+  visit_choice(f, "clutter", c.clutter, "what the street has and the scene lacks: poles, trees, vehicles, crowds");
   f.flag("ground_reflection", c.ground_reflection, "the terrain around the antenna reflects");
   f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
            "standard deviation of the reflecting surfaces' height");
@@ -53,22 +57,25 @@ Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& con
   CANYON_TRY(auto scatter, config.scatter.make("gnss.scatter", limits));
   limits.scattered_share = scatter->scattered_share();
   if (limits.scattered_share == 0.0) scatter = nullptr;
+  CANYON_TRY(auto clutter, config.clutter.make("gnss.clutter", limits));
+  if (!clutter->acts()) clutter = nullptr;
   CANYON_TRY(auto paths, config.paths.make("gnss.paths", limits));
   CANYON_TRY(auto diffraction, config.diffraction.make("gnss.diffraction", limits));
   const bool bends = diffraction->bends() && !limits.leave_out.diffraction;
-  if (!bends && !config.ground_reflection && scatter == nullptr) return paths;
+  if (!bends && !config.ground_reflection && scatter == nullptr && clutter == nullptr) return paths;
   if (!bends) {
     CANYON_TRY(diffraction, ModelChoice<diffraction_models>("none").make("gnss.diffraction", limits));
   }
   return make_propagation(std::move(paths), std::move(diffraction), config.ground_reflection, limits,
-                          std::move(scatter));
+                          std::move(scatter), std::move(clutter));
 }
 
 std::unique_ptr<PathModel> make_propagation(std::unique_ptr<PathModel> paths,
                                             std::unique_ptr<DiffractionModel> diffraction, bool ground_reflection,
-                                            const PathParameters& p, std::unique_ptr<ScatterModel> scatter) {
+                                            const PathParameters& p, std::unique_ptr<ScatterModel> scatter,
+                                            std::unique_ptr<ClutterModel> clutter) {
   return std::make_unique<Propagation>(std::move(paths), std::move(diffraction), ground_reflection, p,
-                                       std::move(scatter));
+                                       std::move(scatter), std::move(clutter));
 }
 
 }  // namespace canyon::gnss

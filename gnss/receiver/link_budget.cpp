@@ -7,6 +7,12 @@
 
 namespace canyon::gnss {
 
+namespace {
+
+constexpr double kFadingLoopHz = 2.0 * 0.25 / kPi;  // 4 B / (2 pi)
+
+}  // namespace
+
 double LinkBudget::foliage_db(double length_m) const {
   return foliage_max_db * (1.0 - std::exp(-length_m * foliage_db_per_m / foliage_max_db));
 }
@@ -19,10 +25,20 @@ double LinkBudget::direct_cn0_dbhz(double elevation_rad, double foliage_m, doubl
 ReceivedSignal receive(const SignalPath& path, const LinkBudget& link, const Eigen::Vector3d& up_W,
                        const Eigen::Vector3d& to_satellite_W, const Eigen::Vector3d& v_A_W, double wavelength_m) {
   const double elevation_rad = std::asin(std::clamp(path.arrival_W.dot(up_W), -1.0, 1.0));
-  const std::complex<double> right = path.copolar * std::pow(10.0, link.antenna->rhcp_db(elevation_rad) / 20.0);
-  const std::complex<double> left = path.crosspolar * std::pow(10.0, link.antenna->lhcp_db(elevation_rad) / 20.0);
+  const double right_gain = std::pow(10.0, link.antenna->rhcp_db(elevation_rad) / 20.0);
+  const double left_gain = std::pow(10.0, link.antenna->lhcp_db(elevation_rad) / 20.0);
+  const std::complex<double> right = path.copolar * right_gain;
+  const std::complex<double> left = path.crosspolar * left_gain;
+  double power = std::norm(right) + std::norm(left);
+  if (path.spread > 0.0) {
+    const double turns = v_A_W.norm() * path.spread / wavelength_m / kFadingLoopHz;
+    const double stands = 1.0 / (1.0 + turns * turns);
+    const double by_itself =
+        path.gathered_copolar * right_gain * right_gain + path.gathered_crosspolar * left_gain * left_gain;
+    power = stands * power + (1.0 - stands) * by_itself;
+  }
   // -200 dB stands for "nothing", so that the figures stay finite.
-  const double gain_db = 10.0 * std::log10(std::max(std::norm(right) + std::norm(left), 1e-20));
+  const double gain_db = 10.0 * std::log10(std::max(power, 1e-20));
 
   ReceivedSignal r;
   r.excess_m = path.excess_m;

@@ -47,7 +47,10 @@ struct ReceivedSignal {
 /// Echo at an antenna that moves with v_A_W; `to_satellite_W` and `up_W` are unit vectors at the antenna. Co- and
 /// cross-polar parts add in power (the antenna's relative phase of the two is not known); the carrier phase is that of
 /// the stronger one. Reflectors are at rest, so an echo's way shortens by the antenna's motion towards where it comes
-/// from.
+/// from. An echo of many scatterers fades as the antenna moves through their field; loops average that over about 1 s,
+/// and their powers add. At speed v its power is w that of the field where the antenna stands and 1 - w the sum of its
+/// scatterers' own, w = 1 / (1 + (f / f0)^2), f = v spread / wavelength, f0 = 2 x 0.25 Hz / pi (first-order loop of
+/// that noise bandwidth).
 ReceivedSignal receive(const SignalPath& path, const LinkBudget& link, const Eigen::Vector3d& up_W,
                        const Eigen::Vector3d& to_satellite_W = Eigen::Vector3d::UnitZ(),
                        const Eigen::Vector3d& v_A_W = Eigen::Vector3d::Zero(), double wavelength_m = kL1WavelengthM);

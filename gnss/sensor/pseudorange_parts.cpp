@@ -48,6 +48,7 @@ Result<PseudorangeParts> make_pseudorange_parts(const SensorSetup& at) {
     parts.channels[i].tracking = std::make_unique<CodeTracking>(design);
   }
   parts.path_limits = path_limits(c);
+  parts.path_limits.seed = at.seed;
   parts.path_limits.cutoff_m = parts.channels[0].multipath->reach_m();
   CANYON_TRY(parts.paths, make_propagation(c.propagation, parts.path_limits));
   CANYON_TRY(parts.clock,

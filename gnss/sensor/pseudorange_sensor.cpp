@@ -65,13 +65,13 @@ class PseudorangeSensor final : public GnssSensor {
 
     const std::vector<Sight> sights = in_view_.at(t, out.epoch.t, out.truth.p_A_E, epoch.horizon);
     const std::vector<SignalPaths> paths = trace(
-        p_A_W, sights, [](GnssSystem system) { return first_band(system); }, scene);
+        t, p_A_W, sights, [](GnssSystem system) { return first_band(system); }, scene);
     // Fields, and so which ways are worth following, depend on the carrier.
     std::vector<SignalPaths> second_paths;
     if (parts_.mode->dual_frequency())
       second_paths = trace(
-          p_A_W, sights, [this](GnssSystem system) { return second_band(system, config_.tracking.second_frequency); },
-          scene);
+          t, p_A_W, sights,
+          [this](GnssSystem system) { return second_band(system, config_.tracking.second_frequency); }, scene);
     receive_epoch(epoch, sights, paths, second_paths);
     return std::move(out);
   }
@@ -175,8 +175,8 @@ class PseudorangeSensor final : public GnssSensor {
   }
 
   template <class BandOf>
-  std::vector<SignalPaths> trace(const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights, const BandOf& band_of,
-                                 const scene::SceneAt& scene) {
+  std::vector<SignalPaths> trace(GpsTime t, const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights,
+                                 const BandOf& band_of, const scene::SceneAt& scene) {
     std::vector<Eigen::Vector3d> directions_W;
     std::vector<double> carriers_hz;
     for (const auto& s : sights) {
@@ -184,7 +184,7 @@ class PseudorangeSensor final : public GnssSensor {
       carriers_hz.push_back(s.carrier_hz(band_of(s.sv.system)));
     }
     std::vector<SignalPaths> paths(sights.size());
-    paths_now().trace(p_A_W, {directions_W, carriers_hz}, scene, paths, counters_);
+    paths_now().trace(p_A_W, PlaneWaves(directions_W, carriers_hz).at(t), scene, paths, counters_);
     return paths;
   }
 

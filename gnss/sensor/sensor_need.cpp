@@ -82,6 +82,7 @@ std::vector<Need> pseudorange_path_needs(const GnssConfig& config, const GnssSur
   ask(path_models(), config.propagation.paths.name);
   ask(diffraction_models(), config.propagation.diffraction.name);
   ask(scatter_models(), config.propagation.scatter.name);
+  ask(clutter_models(), config.propagation.clutter.name);
   return needs;
 }
 

@@ -5,10 +5,14 @@
 
 #include "canyon/core/fix_status.h"
 #include "canyon/core/math/median.h"
+#include "canyon/gnss/paths/clutter/street_number.h"
+#include "canyon/study/drive_check/drive_resampling.h"
 #include "canyon/study/drive_check/simulated_log.h"
 
 namespace canyon::study {
 namespace {
+
+constexpr int kResampledDrives = 200;
 
 /// Horizontal bounds of what stands around.
 struct Bounds {
@@ -54,7 +58,7 @@ DriveFix compare(const GnssFix& fix, const Eigen::Vector3d& truth_E) {
   const Eigen::Matrix3d R_E_enu = rotation_E_from_enu(geodetic_from_ecef(truth_E));
   const Eigen::Vector2d error = (R_E_enu.transpose() * (fix.p_A_E - truth_E)).head<2>();
   const Eigen::Matrix2d covariance = (R_E_enu.transpose() * fix.covariance_E * R_E_enu).topLeftCorner<2, 2>();
-  return {error.norm(), error.dot(covariance.ldlt().solve(error))};
+  return {.horizontal_m = error.norm(), .normalised2 = error.dot(covariance.ldlt().solve(error))};
 }
 
 /// The fix of each instant of the reference: of the epoch that is at most half an interval away.
@@ -68,6 +72,7 @@ std::vector<DriveFix> fixes_at_reference(const std::vector<gnss::SinglePointEpoc
     DriveFix fix;
     if (next < solved.size() && solved[next].fix.t - place.t <= half_interval_s)
       if (const auto at = stretch.truth.at(solved[next].fix.t)) fix = compare(solved[next].fix, at->p_E);
+    fix.t = place.t;
     out.push_back(fix);
   }
   return out;
@@ -87,9 +92,21 @@ Result<DriveSide> side_of(const gnss::ObservationFile& log, const gnss::SinglePo
   out.epochs = drive_signals(log, sky.constellation, sky.navigation, inputs.solver, stretch);
   CANYON_TRY(const auto solved, gnss::solve_observations(log, sky, inputs.solver));
   warnings.insert(warnings.end(), solved.warnings.begin(), solved.warnings.end());
-  out.figures = drive_figures(
-      out.epochs, fixes_at_reference(solved.epochs, half_interval_s(inputs.reference), inputs.reference, stretch));
+  out.fixes = fixes_at_reference(solved.epochs, half_interval_s(inputs.reference), inputs.reference, stretch);
+  out.figures = drive_figures(out.epochs, out.fixes);
   return out;
+}
+
+/// The draw of that number: its seed, and what stands in its street.
+Result<DriveSide> simulated_side(const DriveCheckInputs& inputs, int draw, const PlacePath& truth,
+                                 const std::vector<GpsTime>& epochs, const DriveStretch& stretch,
+                                 std::vector<std::string>& warnings) {
+  DriveCheckInputs own = inputs;
+  own.seed += static_cast<std::uint64_t>(draw);
+  gnss::move_to_street(own.receiver.propagation.clutter.own, draw);
+  CANYON_TRY(const SimulatedLog simulated, simulated_log(own, truth, epochs, warnings));
+  return side_of(simulated.observations, {*simulated.source.constellation, inputs.data.navigation}, inputs, stretch,
+                 warnings);
 }
 
 }  // namespace
@@ -99,10 +116,22 @@ Result<DriveCheck> check_drive(const DriveCheckInputs& inputs) {
   const DriveStretch stretch{truth, inputs.scene, inputs.from_sow, inputs.to_sow};
   CANYON_TRY(const auto epochs, epochs_with_reference(inputs, stretch));
   DriveCheck out;
-  CANYON_TRY(const SimulatedLog simulated, simulated_log(inputs, truth, epochs, out.warnings));
-  CANYON_TRY(out.simulated, side_of(simulated.observations, {*simulated.source.constellation, inputs.data.navigation},
-                                    inputs, stretch, out.warnings));
   CANYON_TRY(out.measured, side_of(inputs.data.observations, inputs.data.inputs(), inputs, stretch, out.warnings));
+  out.measured.spread = resampled_figures(out.measured.epochs, out.measured.fixes, kResampledDrives, inputs.seed);
+  std::vector<std::vector<DriveEpoch>> draws;
+  for (int k = 0; k < inputs.draws; ++k) {
+    std::vector<std::string> own;
+    CANYON_TRY(DriveSide side, simulated_side(inputs, k, truth, epochs, stretch, own));
+    if (k == 0) out.warnings.insert(out.warnings.begin(), own.begin(), own.end());
+    if (inputs.draws > 1) {
+      draws.push_back(side.epochs);
+      out.simulated.spread.push_back(side.figures);
+    }
+    if (k > 0) continue;
+    side.spread = std::move(out.simulated.spread);
+    out.simulated = std::move(side);
+  }
+  if (inputs.draws > 1) out.score = drive_score(out.measured.epochs, draws, inputs.seed);
   return out;
 }
 

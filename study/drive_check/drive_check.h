@@ -6,6 +6,7 @@
 #include "canyon/core/output/json.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/study/drive_check/drive_figures.h"
+#include "canyon/study/drive_check/drive_score.h"
 
 namespace canyon::study {
 
@@ -18,17 +19,22 @@ struct DriveCheckInputs {
   gnss::GnssConfig receiver;       ///< the one simulated; satellites as of the log's navigation files
   gnss::SinglePointConfig solver;  ///< that both are solved with
   std::uint64_t seed = 1;
+  int draws = 1;  ///< of the simulation, each with the next seed and the next `clutter_street`
   double from_sow = 0.0, to_sow = 604800.0;
 };
 
 /// One drive as a receiver logged it, real or simulated.
 struct DriveSide {
   std::vector<DriveEpoch> epochs;
+  std::vector<DriveFix> fixes;
   DriveFigures figures;
+  /// Simulated: of each draw, where there are several. Measured: of 200 block bootstraps (drive_resampling.h).
+  std::vector<DriveFigures> spread;
 };
 
 struct DriveCheck {
-  DriveSide simulated, measured;
+  DriveSide simulated, measured;  ///< the first draw; the log
+  DriveScore score;               ///< where there are several draws
   std::vector<std::string> warnings;
 };
 

@@ -67,6 +67,42 @@ Json side_json(const DriveFigures& figures) {
   return out;
 }
 
+/// 5 and 95 % over several of a drive; of a list one pair for each.
+Json spread_json(const std::vector<DriveFigures>& spread) {
+  Json out = Json::object();
+  for (const DriveRow& row : kRows) {
+    Json pairs = Json::array();
+    for (std::size_t i = 0; i < row.get(spread.front()).size(); ++i) {
+      std::vector<double> values;
+      for (const DriveFigures& f : spread)
+        if (const double v = row.get(f)[i]; !std::isnan(v)) values.push_back(v);
+      pairs.push_back(Json::array({or_null(drive_quantile(values, 0.05)), or_null(drive_quantile(values, 0.95))}));
+    }
+    out[row.key] = row.list ? pairs : pairs.front();
+  }
+  return out;
+}
+
+Json score_json(const DriveScore& score) {
+  const auto pair = [](const std::array<double, 2>& v) { return Json::array({or_null(v[0]), or_null(v[1])}); };
+  return Json{{"draws", score.draws},
+              {"signals", score.signals},
+              {"foretold_share", or_null(score.foretold_share)},
+              {"crps_simulation_m", or_null(score.simulation_m)},
+              {"crps_blind_m", or_null(score.blind_m)},
+              {"crps_elevation_m", or_null(score.elevation_m)},
+              {"against_blind_m", pair(score.against_blind_m)},
+              {"against_elevation_m", pair(score.against_elevation_m)}};
+}
+
+std::string score_text(const DriveScore& s) {
+  return printed(
+      "CRPS of range errors over %d signals, %d draws, m: simulation %.2f, measured errors of other times %.2f,\n"
+      "  those of like elevation %.2f; simulation less these %.2f to %.2f and %.2f to %.2f (95 %%)\n",
+      s.signals, s.draws, s.simulation_m, s.blind_m, s.elevation_m, s.against_blind_m[0], s.against_blind_m[1],
+      s.against_elevation_m[0], s.against_elevation_m[1]);
+}
+
 std::string words(const DriveRow& row, const DriveFigures& figures) {
   std::string out;
   for (const double value : row.get(figures))
@@ -78,10 +114,18 @@ std::string words(const DriveRow& row, const DriveFigures& figures) {
 }  // namespace
 
 Json drive_check_json(const DriveCheck& check) {
-  return Json{{"epochs", check.measured.epochs.size()},
-              {"reference_instants", check.measured.figures.instants},
-              {"simulated", side_json(check.simulated.figures)},
-              {"measured", side_json(check.measured.figures)}};
+  Json out{{"epochs", check.measured.epochs.size()},
+           {"reference_instants", check.measured.figures.instants},
+           {"simulated", side_json(check.simulated.figures)},
+           {"measured", side_json(check.measured.figures)},
+           {"figures", Json::array()}};
+  for (const DriveRow& row : kRows) out["figures"].push_back(Json{{"key", row.key}, {"label", row.label}});
+  if (!check.measured.spread.empty()) out["measured_interval"] = spread_json(check.measured.spread);
+  if (!check.simulated.spread.empty()) {
+    out["simulated_draws"] = spread_json(check.simulated.spread);
+    out["score"] = score_json(check.score);
+  }
+  return out;
 }
 
 std::string drive_check_text(const DriveCheck& check) {
@@ -91,6 +135,7 @@ std::string drive_check_text(const DriveCheck& check) {
   for (const DriveRow& row : kRows)
     out += printed("%-42s%-26s%s\n", row.label, words(row, check.simulated.figures).c_str(),
                    words(row, check.measured.figures).c_str());
+  if (check.score.draws > 0) out += score_text(check.score);
   return out;
 }
 

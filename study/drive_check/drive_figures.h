@@ -13,6 +13,7 @@ struct DriveFix {
   /// Horizontal error, squared, in units of the covariance that came with the fix: chi-square of two degrees if that
   /// is honest.
   double normalised2 = kNaN;
+  GpsTime t{};  ///< of the reference
 };
 
 /// What a drive looked like to its receiver. Quantiles are linear between ranks; NaN where nothing was there to count.

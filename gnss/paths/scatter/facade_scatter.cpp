@@ -6,6 +6,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/scatter/delay_bins.h"
 #include "canyon/gnss/paths/scatter/directive_lobe.h"
 #include "canyon/gnss/paths/scatter/facade_tiles.h"
 #include "canyon/gnss/paths/scatter/scatter.h"
@@ -49,41 +50,6 @@ class ReturnTable {
   std::array<double, 65> nodes_;
 };
 
-/// What tiles send to one satellite's signal, gathered by delay. A phasor goes to the two bins around its delay, in
-/// shares that change evenly with it, and with the phase that it has at its own delay: the sum at the carrier is exact,
-/// and nothing jumps as a delay passes from bin to bin; the code sees delays to half a bin.
-class DelayBins {
- public:
-  static constexpr double kWidth_m = 15.0;
-  static constexpr std::size_t kBins = 40;
-
-  struct Bin {
-    std::complex<double> co, cross;
-    Eigen::Vector3d from_W = Eigen::Vector3d::Zero();  ///< directions, by power
-  };
-
-  void clear() { bins_.fill({}); }
-  void add(const FacadeTile& tile, double amplitude, double excess_m, const Eigen::Vector3d& from_W,
-           double wavelength_m) {
-    const double place = excess_m / kWidth_m;
-    const auto first = static_cast<std::size_t>(place);
-    if (first + 1 >= kBins) return;
-    const double later = place - static_cast<double>(first);
-    for (const auto& [i, share] : {std::pair{first, 1.0 - later}, std::pair{first + 1, later}}) {
-      const double turn_rad = -2.0 * kPi * (excess_m - static_cast<double>(i) * kWidth_m) / wavelength_m;
-      // Half of the power to each hand: an assumption.
-      const double a = share * amplitude * std::sqrt(0.5);
-      bins_[i].co += std::polar(a, tile.phase_rad + turn_rad);
-      bins_[i].cross += std::polar(a, tile.cross_phase_rad + turn_rad);
-      bins_[i].from_W += a * a * from_W;
-    }
-  }
-  const std::array<Bin, kBins>& bins() const { return bins_; }
-
- private:
-  std::array<Bin, kBins> bins_;
-};
-
 /// Each tile of a wall that is lit scatters S^2 of what the wall gives back, G^2 of the power that falls on it, into
 /// the lobe about its mirror's direction; the mirrors are left sqrt(1 - S^2) of their field. At the antenna, r away,
 /// relative to the free direct signal:
@@ -117,7 +83,7 @@ class DirectiveScatter final : public ScatterModel {
     for (std::size_t k = 0; k < out.size(); ++k) {
       bins.clear();
       gather(seen, waves, k, scene, out[k], counters, bins);
-      add_echoes(bins, out[k]);
+      bins.append(0.5 * (out[k].line_of_sight ? weakest_ : weakest_nlos_), SignalPath::kScattered, out[k].echoes);
     }
   }
 
@@ -174,24 +140,9 @@ class DirectiveScatter final : public ScatterModel {
       if (kept == 0.0) continue;
       ++counters.occlusion_rays;
       if (scene.blocked_towards(tile.center_W, s)) continue;
-      bins.add(tile, kept * amplitude, excess_m, one.to_W, wavelength_m);
-    }
-  }
-
-  void add_echoes(const DelayBins& bins, SignalPaths& out) const {
-    const double least = 0.5 * (out.line_of_sight ? weakest_ : weakest_nlos_);
-    for (std::size_t i = 0; i < DelayBins::kBins; ++i) {
-      const DelayBins::Bin& bin = bins.bins()[i];
-      const double amplitude = std::sqrt(std::norm(bin.co) + std::norm(bin.cross));
-      const double kept = std::clamp(amplitude / least - 1.0, 0.0, 1.0);
-      if (kept == 0.0) continue;
-      SignalPath path;
-      path.excess_m = static_cast<double>(i) * DelayBins::kWidth_m;
-      path.copolar = kept * bin.co;
-      path.crosspolar = kept * bin.cross;
-      path.arrival_W = bin.from_W.normalized();
-      path.facets = {SignalPath::kScattered, static_cast<std::uint32_t>(i), SignalPath::kNoFacet};
-      out.echoes.push_back(path);
+      // Half of the power to each hand: an assumption.
+      const double a = kept * amplitude * std::sqrt(0.5);
+      bins.add({a, a, tile.phase_rad, tile.cross_phase_rad}, excess_m, one.to_W, a * a, wavelength_m);
     }
   }
 

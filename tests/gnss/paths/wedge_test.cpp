@@ -197,5 +197,19 @@ TEST(Wedge, CornerOfAHouseIsContinuous) {
   }
 }
 
+// The transition function as published in tables (McNamara, Pistorius & Malherbe, Introduction to the Uniform
+// Geometrical Theory of Diffraction, 1990, appendix B), to the four digits that they are usually printed with.
+TEST(Wedge, TransitionFunctionIsAsPublished) {
+  struct Row {
+    double x, real, imaginary;
+  };
+  for (const Row& row :
+       {Row{0.3, 0.5717, 0.2730}, Row{0.5, 0.6768, 0.2682}, Row{0.7, 0.7440, 0.2549}, Row{1.0, 0.8095, 0.2322},
+        Row{1.5, 0.8730, 0.1982}, Row{2.3, 0.9240, 0.1577}, Row{4.0, 0.9658, 0.1073}, Row{5.5, 0.9797, 0.0828}}) {
+    EXPECT_NEAR(wedge_transition(row.x).real(), row.real, 0.5001e-4) << row.x;
+    EXPECT_NEAR(wedge_transition(row.x).imag(), row.imaginary, 0.5001e-4) << row.x;
+  }
+}
+
 }  // namespace
 }  // namespace canyon::gnss

@@ -4,9 +4,11 @@
 RECORDINGS is the folder gnss/urban_berlin of the shared recordings: what a u-blox receiver observed at Potsdamer Platz, Berlin, on
 2016-06-06 (smartLoc, TU Chemnitz, CC BY-SA 4.0), its surveyed way, and the buildings there (LoD2, Geoportal Berlin, dl-de/zero-2-0).
 Written to OUT: the buildings as GeoJSON, the truth as CSV, the description that names them, and city.toml, a mission of that
-scene with the same receiver as far as its maker tells, for `canyon gnss drive-check --scene OUT/city.toml`.
+scene with the same receiver as far as its maker tells, for `canyon gnss drive-check --scene OUT/city.toml`. street.toml is the
+same with wedges, scattering walls and clutter, and with a receiver that tracks down to the weakest signal that the log holds.
 
-Nothing is fitted to the drive: the receiver is canyon's patch antenna on a car roof and its defaults for what is not said.
+But for the gain and, in street.toml, the threshold nothing is fitted to the drive: the receiver is canyon's patch antenna on a car
+roof and its defaults for what is not said.
 """
 import json
 import pathlib
@@ -87,6 +89,10 @@ correlator_spacing_chips = 0.5
 front_end_mhz = 4.0
 cn0_zenith_dbhz = 49.0
 """)
+    city = (out / "city.toml").read_text()
+    (out / "street.toml").write_text(
+        city.replace("tracking_threshold_dbhz = 25.0", "tracking_threshold_dbhz = 21.0")
+        + 'diffraction = "wedge"\nscatter = "directive"\nclutter = "street"\n')
 
 
 if __name__ == "__main__":

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/clutter/clutter.h"
+#include "canyon/gnss/paths/clutter/clutter_scatterers.h"
+#include "canyon/gnss/paths/clutter/street_number.h"
+#include "canyon/gnss/paths/clutter/street_shading.h"
+#include "canyon/gnss/paths/scatter/delay_bins.h"
+#include "canyon/scene/scene_at.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr float kAcross_m = 100.0F;
+
+struct StreetClutterParameters {
+  std::string environment = "suburban";
+  double shaded_scale = 1.0;
+  double echo_db = 0.0;
+  double moving_share = 0.2;
+  double coherence_s = 2.0;
+  double cell_m = 8.0;
+  double reach_m = 80.0;
+  std::int64_t street = 0;
+};
+void visit(FieldVisitor& f, StreetClutterParameters& c) {
+  f.choice("clutter_environment", c.environment, TwoStateLaw::environments(),
+           "clutter street: table of ITU-R P.681; suburban stands for what fills a street whose houses the scene has");
+  f.number("clutter_shaded_scale", c.shaded_scale, {0.0, 5.0},
+           "clutter street: the table's share of the bad state is taken this many times");
+  f.number("clutter_echo_db", c.echo_db, {-40.0, 20.0},
+           "clutter street: power of the scatterers against the table's multipath");
+  f.number("clutter_moving_share", c.moving_share, {0.0, 1.0},
+           "clutter street: share of variance and power that changes with time; 0.2 is assumed");
+  f.number("clutter_coherence_s", c.coherence_s, {0.05, 3600.0},
+           "clutter street: time after which what moves is another; 2 s are assumed");
+  f.number("clutter_cell_m", c.cell_m, {1.0, 50.0}, "clutter street: one scatterer in each square of this side");
+  f.number("clutter_reach_m", c.reach_m, {10.0, 500.0}, "clutter street: scatterers farther away do not count");
+  f.integer(
+      "clutter_street", c.street, {0, 1000000000},
+      "clutter street: number of the draw of what stands; each is the same street on every pass and for every seed");
+}
+
+/// A scatterer that is seen from the antenna, and the field that it would send on if it is lit.
+struct Seen {
+  Eigen::Vector3d p_W, to_W;  ///< unit, from the antenna
+  double r_m;
+  std::complex<double> co, cross;  ///< variance over streets: half of its share of the multipath's power
+};
+
+/// What is seen from places on a lattice of 2 m, between them in shares that change evenly: as the antenna moves no
+/// scatterer comes or goes at once.
+class SoftSight {
+ public:
+  SoftSight(const Eigen::Vector3d& p_W, const scene::SceneAt& scene) : scene_(scene) {
+    const Eigen::Vector3d low_W = (p_W / kCell_m).array().floor() * kCell_m;
+    const Eigen::Vector3d f = (p_W - low_W) / kCell_m;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Eigen::Vector3d node_W = low_W;
+      double weight = 1.0;
+      for (int k = 0; k < 3; ++k) {
+        const bool upper = (corner >> k & 1U) != 0;
+        node_W[k] += upper ? kCell_m : 0.0;
+        weight *= upper ? f[k] : 1.0 - f[k];
+      }
+      nodes_[corner] = {node_W, weight};
+    }
+  }
+  /// 0 to 1.
+  double share(const Eigen::Vector3d& q_W, GnssCounters& counters) const {
+    double seen = 0.0;
+    for (const auto& [node_W, weight] : nodes_) {
+      const Eigen::Vector3d way_W = q_W - node_W;
+      const double r_m = way_W.norm();
+      if (weight == 0.0 || r_m < 1e-3) continue;
+      ++counters.occlusion_rays;
+      if (!scene_.blocked_towards(node_W, way_W / r_m, r_m)) seen += weight;
+    }
+    return seen;
+  }
+
+ private:
+  static constexpr double kCell_m = 2.0;
+  const scene::SceneAt& scene_;
+  std::array<std::pair<Eigen::Vector3d, double>, 8> nodes_;
+};
+
+/// What a street has beside the scene. Two parts:
+///
+/// - **Shading** (street_shading.h) of the straight way and of every echo of the scene, by where they come from, by the
+///   two states of ITU-R P.681 for the environment. Its urban table counts houses as its bad state; those the scene
+///   has, so it is not the default.
+/// - **Scatterers** (clutter_scatterers.h), points about the antenna with complex normal fields. Their power at r
+///   follows the radar equation, 1 / (r^2 + b^2) with b^2 = cell / (2 pi), fading out over the last fifth of the reach;
+///   together, all in sight, they have the power that the table gives for multipath: each that the satellite lights
+///   as in the good state, each in the shadow as in the bad one, where light comes to it off what stands across the
+///   street, later by that way; where nothing stands there it is dark. A scatterer counts as far as it is seen
+///   (SoftSight). So delays and Doppler come from geometry, where Lehner & Steingass (2005) draw them. In the open the
+///   sum is complex normal: Rayleigh by itself, Rician with what else arrives.
+///
+/// Everything is a function of place, direction and, for the moving share, seed and time. Not shaded: scatterers, which
+/// stand among the clutter themselves.
+class StreetClutter final : public ClutterModel {
+ public:
+  StreetClutter(const StreetClutterParameters& own, const PathParameters& p)
+      : own_(own),
+        law_(own.environment, own.shaded_scale),
+        shading_(law_, {.moving_share = own.moving_share, .coherence_s = own.coherence_s},
+                 static_cast<std::uint64_t>(own.street), p.seed),
+        scatterers_(own.cell_m, static_cast<std::uint64_t>(own.street)),
+        passing_(p.seed, "gnss.clutter.traffic"),
+        weakest_(std::pow(10.0, p.weakest_db / 20.0)),
+        weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)) {}
+
+  void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
+             std::span<SignalPaths> out, GnssCounters& counters) const override {
+    thread_local std::vector<Seen> seen;
+    look(p_A_W, waves.t(), scene, counters, seen);
+    DelayBins bins;
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      shade(p_A_W, waves.direction_W(k), waves.t(), out[k]);
+      bins.clear();
+      gather(seen, waves, k, scene, counters, bins);
+      bins.append(0.5 * (out[k].line_of_sight ? weakest_ : weakest_nlos_), SignalPath::kClutter, out[k].echoes);
+    }
+  }
+
+ private:
+  void shade(const Eigen::Vector3d& p_W, const Eigen::Vector3d& s_W, GpsTime t, SignalPaths& paths) const {
+    const auto left = [&](const Eigen::Vector3d& from_W) {
+      return std::pow(10.0, shading_.level_db(p_W, from_W, t) / 20.0);
+    };
+    if (paths.line_of_sight) paths.direct *= left(s_W);
+    for (SignalPath& echo : paths.echoes) {
+      const double factor = left(echo.arrival_W);
+      echo.gathered_copolar *= factor * factor;
+      echo.gathered_crosspolar *= factor * factor;
+      echo.copolar *= factor;
+      echo.crosspolar *= factor;
+    }
+  }
+
+  void look(const Eigen::Vector3d& p_W, GpsTime t, const scene::SceneAt& scene, GnssCounters& counters,
+            std::vector<Seen>& seen) const {
+    thread_local std::vector<ClutterScatterer> near;
+    scatterers_.near(scene.scene(), p_W, own_.reach_m, near);
+    seen.clear();
+    const SoftSight sight(p_W, scene);
+    const double blunt_m2 = own_.cell_m * own_.cell_m / (2.0 * kPi);
+    double whole = 0.0;
+    for (const ClutterScatterer& one : near) {
+      const Eigen::Vector3d way_W = one.p_W - p_W;
+      const double r_m = way_W.norm(), fade = std::min(5.0 * (1.0 - way_W.head<2>().norm() / own_.reach_m), 1.0);
+      const double power = fade * fade / (r_m * r_m + blunt_m2);
+      whole += power;
+      if (r_m < 1e-3) continue;
+      const double share = sight.share(one.p_W, counters);
+      if (share == 0.0) continue;
+      const double amplitude = share * std::sqrt(0.5 * power);
+      seen.push_back(
+          {one.p_W, way_W / r_m, r_m, amplitude * now(one.co, one.id, 0, t), amplitude * now(one.cross, one.id, 1, t)});
+    }
+    const double scale = whole > 0.0 ? 1.0 / std::sqrt(whole) : 0.0;
+    for (Seen& one : seen) {
+      one.co *= scale;
+      one.cross *= scale;
+    }
+  }
+
+  /// Of the same variance, at that time.
+  std::complex<double> now(const std::complex<double>& still, std::uint64_t id, std::uint32_t hand, GpsTime t) const {
+    if (own_.moving_share == 0.0) return still;
+    const double seconds = static_cast<double>(t.ns) / static_cast<double>(kNsPerSecond);
+    // Cells of time do not begin at once for all; the identity is a whole number of cells.
+    const double place = seconds / own_.coherence_s + static_cast<double>(id % 1021) / 1021.0;
+    const auto draw = [&](std::uint32_t layer) {
+      return passing_.at<3>({place, static_cast<double>(id >> 32), static_cast<double>(id & 0xffffffffu)}, layer);
+    };
+    const std::complex<double> moving(std::sqrt(0.5) * draw(2 * hand), std::sqrt(0.5) * draw(2 * hand + 1));
+    return std::sqrt(1.0 - own_.moving_share) * still + std::sqrt(own_.moving_share) * moving;
+  }
+
+  void gather(const std::vector<Seen>& seen, const PlaneWaves& waves, std::size_t k, const scene::SceneAt& scene,
+              GnssCounters& counters, DelayBins& bins) const {
+    const Eigen::Vector3d& s = waves.direction_W(k);
+    const double elevation_rad = std::asin(std::clamp(s.z(), -1.0, 1.0));
+    const double extra = std::pow(10.0, own_.echo_db / 20.0);
+    const double lit = extra * std::sqrt(law_.multipath_power(false, elevation_rad));
+    const double unlit = extra * std::sqrt(law_.multipath_power(true, elevation_rad));
+    for (const Seen& one : seen) {
+      ++counters.occlusion_rays;
+      double scale = lit, detour_m = 0.0;
+      if (scene.blocked_towards(one.p_W, s)) {
+        ++counters.occlusion_rays;
+        scale = unlit;
+        detour_m = across_m(one.p_W, s, scene);
+        if (!std::isfinite(detour_m)) continue;
+      }
+      const double co = std::abs(one.co), cross = std::abs(one.cross), power = co * co + cross * cross;
+      bins.add({scale * co, scale * cross, std::arg(one.co), std::arg(one.cross)},
+               one.r_m * (1.0 - one.to_W.dot(s)) + detour_m, one.to_W, power * power, waves.wavelength_m(k));
+    }
+  }
+
+  /// How much later light comes to a place in the shadow from what stands across the street from it: off a wall
+  /// horizontally behind it, as the satellite sees it, at distance w, 2 w cos(elevation). Infinite if nothing stands
+  /// there within 100 m (assumed).
+  double across_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& s_W, const scene::SceneAt& scene) const {
+    const double level = s_W.head<2>().norm();
+    if (level < 1e-6) return 0.0;
+    const Eigen::Vector3f away_W(static_cast<float>(-s_W.x() / level), static_cast<float>(-s_W.y() / level), 0.0F);
+    const scene::Hit hit = scene.trace({p_W, away_W, kAcross_m});
+    return hit.hit() ? 2.0 * level * static_cast<double>(hit.range_m) : std::numeric_limits<double>::infinity();
+  }
+
+  StreetClutterParameters own_;
+  TwoStateLaw law_;
+  StreetShading shading_;
+  ClutterScatterers scatterers_;
+  LatticeNoise passing_;
+  double weakest_, weakest_nlos_;
+};
+
+}  // namespace
+
+void street_clutter_parameters(ModelParameters& section) {
+  section.add<StreetClutterParameters>();
+}
+
+void move_to_street(ModelParameters& clutter, std::int64_t by) {
+  clutter.get<StreetClutterParameters>().street += by;
+}
+
+std::unique_ptr<ClutterModel> make_street_clutter(const ModelParameters& own, const PathParameters& p) {
+  return std::make_unique<StreetClutter>(own.get<StreetClutterParameters>(), p);
+}
+
+}  // namespace canyon::gnss

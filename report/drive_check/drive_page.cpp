@@ -1,0 +1,240 @@
+#include "canyon/report/drive_check/drive_page.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/core/files/files.h"
+#include "canyon/core/process/embedded.h"
+#include "canyon/core/process/progress.h"
+#include "canyon/report/draw/chart.h"
+#include "canyon/report/draw/html.h"
+#include "canyon/report/draw/theme.h"
+#include "canyon/report/format.h"
+#include "canyon/report/read/epoch_table.h"
+#include "canyon/report/read/json_fields.h"
+#include "canyon/report/sections/figures.h"
+
+namespace canyon::report {
+namespace {
+
+constexpr std::array kSides{"simulated", "measured"};
+
+std::string side_tag(std::size_t i) {
+  return "<span class=\"tag keep " + run_class(i) +
+         "\"><svg class=\"swatch\" viewBox=\"0 0 22 8\" aria-hidden=\"true\"><path d=\"M1 4H21\"/></svg>" + kSides[i] +
+         "</span>";
+}
+
+std::string both_tags() {
+  return "<p class=\"legend\">" + side_tag(0) + " " + side_tag(1) + "</p>\n";
+}
+
+/// A number, or several that belong together: "10 / 84"; undefined ones are dashes.
+std::string shown(const JsonNode* node) {
+  if (node == nullptr || node->is_null()) return "\xE2\x80\x93";
+  if (node->is_number()) return show_number(node->get<double>());
+  std::string out;
+  if (node->is_array())
+    for (const JsonNode& one : *node) out += (out.empty() ? "" : " / ") + shown(&one);
+  return out;
+}
+
+/// "8 to 12" of a pair, or of each pair of a list.
+std::string shown_interval(const JsonNode* node) {
+  if (node == nullptr || !node->is_array() || node->empty()) return {};
+  if (!node->front().is_array()) return node->size() == 2 ? shown(&(*node)[0]) + " to " + shown(&(*node)[1]) : "";
+  std::string out;
+  for (const JsonNode& pair : *node) out += (out.empty() ? "" : " / ") + shown_interval(&pair);
+  return out;
+}
+
+std::string figure_rows(const JsonFields& f) {
+  std::string rows;
+  for (const auto& [node, path] : f.list("figures", true)) {
+    const JsonFields row(node, f.file(), path, f.error());
+    const std::string key = row.required_text("key");
+    rows += "<tr><th scope=\"row\">" + escape_html(row.required_text("label")) + "</th>";
+    for (const char* side : kSides) {
+      const std::string spread = side == kSides[0] ? "simulated_draws" : "measured_interval";
+      const std::string interval = shown_interval(f.object(spread).find(key));
+      rows += "<td>" + escape_html(shown(f.object(side).find(key))) +
+              (interval.empty() ? "" : "<span class=\"def\">" + escape_html(interval) + "</span>") + "</td>";
+    }
+    rows += "</tr>\n";
+  }
+  return rows;
+}
+
+std::string score_words(const JsonFields& f) {
+  if (!f.has("score")) return {};
+  const JsonFields s = f.object("score");
+  return "<p>Range errors of single signals, foretold by " + count_of(s.number("draws"), "draw", "draws") +
+         " of the simulation: CRPS " + show_quantity(s.number("crps_simulation_m"), "m") +
+         "; by measured errors of other times " + show_quantity(s.number("crps_blind_m"), "m") +
+         ", by those of satellites as high " + show_quantity(s.number("crps_elevation_m"), "m") +
+         ". Simulation less these, 95 %: " + escape_html(shown_interval(s.find("against_blind_m"))) + " and " +
+         escape_html(shown_interval(s.find("against_elevation_m"))) + " m.</p>\n";
+}
+
+std::string figures_section(const JsonFields& f) {
+  const std::string table =
+      "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Figures\"><table "
+      "class=\"figures\">\n<thead><tr><th "
+      "scope=\"col\" class=\"text\">figure</th><th scope=\"col\">" +
+      side_tag(0) + "</th><th scope=\"col\">" + side_tag(1) + "</th></tr></thead>\n<tbody>" + figure_rows(f) +
+      "</tbody></table></div>\n";
+  return section(
+      "figures", "Side by side",
+      "Both receivers measured by the same rules at the same epochs. Beneath: 5 to 95 %, of the simulated over "
+      "draws of what the map does not know, of the measured over resampled blocks of 20 s.",
+      table + score_words(f));
+}
+
+struct Signals {
+  EpochTable table;
+
+  std::vector<double> of(std::size_t side, double in_sight, const char* column) const {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < table.rows; ++i)
+      if (table.text("side")[i] == kSides[side] && table["in_sight"][i] == in_sight && std::isfinite(table[column][i]))
+        out.push_back(table[column][i]);
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+};
+
+/// Shares of what is less, at 200 places at most.
+Line distribution(std::size_t side, const std::vector<double>& sorted) {
+  Line line{.run = side, .name = kSides[side]};
+  const std::size_t n = sorted.size(), step = std::max<std::size_t>(n / 200, 1);
+  for (std::size_t i = 0; i < n; i += step) {
+    line.x.push_back(sorted[i]);
+    line.y.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(n));
+  }
+  return line;
+}
+
+std::string distribution_chart(const Signals& signals, const char* id, const char* title, const char* unit,
+                               const char* column, double in_sight) {
+  Chart chart;
+  chart.id = id;
+  chart.title = title;
+  chart.x_label = std::string(title) + ", " + unit;
+  Panel panel{.title = "share that is less"};
+  panel.height_px = 150;
+  double low = 1e300, high = -1e300;
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    const auto values = signals.of(side, in_sight, column);
+    if (values.empty()) continue;
+    // A few outliers do not draw the rest together.
+    low = std::min(low, values[values.size() / 200]);
+    high = std::max(high, values[values.size() - 1 - values.size() / 200]);
+    panel.lines.push_back(distribution(side, values));
+    chart.description +=
+        std::string(kSides[side]) + ": median " + show_quantity(values[values.size() / 2], unit) + ". ";
+  }
+  if (panel.lines.empty()) return note(std::string(title) + ": nothing was tracked.");
+  chart.x = Axis::linear_rounded(low, std::max(high, low + 1e-3), 6);
+  chart.panels.push_back(std::move(panel));
+  return figure(draw(chart), escape_html(title));
+}
+
+std::string distributions_section(const Signals& signals) {
+  return section(
+      "distributions", "Distributions", {},
+      both_tags() +
+          distribution_chart(signals, "cn0-in-sight", "C/N0 of satellites in sight", "dB-Hz", "cn0_dbhz", 1.0) +
+          distribution_chart(signals, "cn0-hidden", "C/N0 of hidden satellites", "dB-Hz", "cn0_dbhz", 0.0) +
+          distribution_chart(signals, "error-in-sight", "Range error of satellites in sight", "m", "error_m", 1.0) +
+          distribution_chart(signals, "error-hidden", "Range error of hidden satellites", "m", "error_m", 0.0));
+}
+
+std::string satellites_section(const Signals& signals) {
+  const EpochTable& t = signals.table;
+  if (t.rows == 0) return section("satellites", "Each satellite over time", {}, note("Nothing was tracked."));
+  const double start_s = *std::min_element(t["sow"].begin(), t["sow"].end());
+  const double end_s = *std::max_element(t["sow"].begin(), t["sow"].end());
+  std::map<std::string, std::array<Line, 2>> lines;
+  std::map<std::string, std::vector<double>> hidden_s;
+  for (std::size_t i = 0; i < t.rows; ++i) {
+    const std::size_t side = t.text("side")[i] == kSides[0] ? 0 : 1;
+    Line& line = lines[t.text("satellite")[i]][side];
+    line.run = side;
+    line.name = kSides[side];
+    line.style = Line::Style::kPoints;
+    line.x.push_back(t["sow"][i] - start_s);
+    line.y.push_back(t["error_m"][i]);
+    if (t["in_sight"][i] == 0.0) hidden_s[t.text("satellite")[i]].push_back(t["sow"][i] - start_s);
+  }
+  Chart chart;
+  chart.id = "satellite-chart";
+  chart.title = "Range errors";
+  chart.x_label = "time from start, s";
+  chart.x = Axis::seconds(0, std::max(end_s - start_s, 1.0));
+  chart.time = true;
+  for (auto& [name, sides] : lines) {
+    throw_if_cancelled();
+    Panel panel{.title = name, .unit = "m"};
+    panel.height_px = 90;
+    panel.zero_line = true;
+    for (Line& line : sides)
+      if (!line.x.empty()) panel.lines.push_back(std::move(line));
+    const Extremes e = extremes_of(panel.lines);
+    if (!e.drawn) continue;
+    panel.y = Axis::linear_rounded(std::min(e.min, 0.0), std::max(e.max, 1.0), 3);
+    const double share = static_cast<double>(hidden_s[name].size());
+    panel.notes.push_back(share > 0.0 ? count_of(share, "time", "times") + " tracked while hidden" : "always in sight");
+    chart.panels.push_back(std::move(panel));
+  }
+  chart.description = count_of(static_cast<double>(chart.panels.size()), "satellite", "satellites") + ".";
+  return section("satellites", "Each satellite over time",
+                 "Range error against the free straight way, the receiver\xE2\x80\x99s clock taken out.",
+                 both_tags() + figure(draw(chart), {}));
+}
+
+std::string embedded_text(std::string_view key) {
+  const auto bytes = embedded_file(key);
+  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
+  return std::string(*bytes);
+}
+
+}  // namespace
+
+Result<std::string> drive_page(const std::string& directory) {
+  const std::string path = directory + "/summary.json", table = directory + "/signals.csv";
+  CANYON_TRY(const std::string text, read_text_file(path));
+  CANYON_TRY(const JsonFile file, JsonFile::parse(text, path));
+  std::optional<Error> error;
+  const JsonFields f(&file.root(), file, "", error);
+  CANYON_TRY(const std::string csv, read_text_file(table));
+  Signals signals;
+  CANYON_TRY(signals.table, parse_epoch_table(csv, table,
+                                              {.numbers = {"gps_week", "sow", "in_sight", "cn0_dbhz", "error_m"},
+                                               .texts = {"side", "satellite"},
+                                               .in_order = false}));
+  const std::string figures = figures_section(f);
+  const double epochs = f.required_number("epochs");
+  if (error) return *error;
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
+      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: a recorded drive and its simulation</title>\n<style>\n" +
+      theme_css(2) + embedded_text("report/assets/report.css") + "</style>\n</head>\n<body>\n<main>\n<header>\n";
+  out +=
+      "<p class=\"kicker\">Canyon \xC2\xB7 a recorded drive and its simulation</p>\n<h1>Fixes of the simulated drive "
+      "are " +
+      escape_html(show_quantity(f.object("simulated").number("fix_h50_m"), "m")) +
+      " off in the median, of the recorded " +
+      escape_html(show_quantity(f.object("measured").number("fix_h50_m"), "m")) + ", over " +
+      count_of(epochs, "epoch", "epochs") +
+      ".</h1>\n<nav aria-label=\"Contents\"><a href=\"#figures\">Side by side</a> <a "
+      "href=\"#distributions\">Distributions</a> <a href=\"#satellites\">Satellites</a></nav>\n</header>\n";
+  out += figures + distributions_section(signals) + satellites_section(signals);
+  return out + "</main>\n<script>\n" + embedded_text("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+}
+
+}  // namespace canyon::report
