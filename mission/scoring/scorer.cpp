@@ -116,9 +116,8 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
   return t_s < time_limit_s_;  // finish() says what that means
 }
 
-void Scorer::autonomy_fault(const KinematicState& truth, const DriveCommand& command) {
-  fail(Outcome::kAutonomyFault, truth,
-       "its command was " + number(command.speed_m_s, "m/s") + ", " + number(command.curvature_1_m, "1/m"));
+void Scorer::autonomy_fault(const KinematicState& truth, std::string how) {
+  fail(Outcome::kAutonomyFault, truth, std::move(how));
 }
 
 void Scorer::finish(const KinematicState& truth, bool done) {
