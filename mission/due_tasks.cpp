@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
+#include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/deskew.h"
 #include "canyon/mission/mission_run.h"
@@ -142,7 +144,7 @@ void MissionRun::fire(const Due& due, lidar::LidarOutput& output) {
   lidar::Scanner::InstancesAt moving;
   if (!mission_.traffic.empty())
     moving = [&](double after_s) { return mission_.traffic.at(due.t - mission_.start + after_s); };
-  const auto kept = omissions_.unkept_rays ? autonomy_->keeps() : std::nullopt;
+  const auto kept = omissions_.unkept_rays ? answers_.keeps : std::nullopt;
   const auto room = kept ? kept_room(*kept, due.t) : std::nullopt;
   scanner_->keep(room ? &*room : nullptr);
   scanner_->scan(due.k, due.t, true_motion_, scene_, moving, output);
@@ -209,7 +211,7 @@ void MissionRun::forget_motion_before(GpsTime t) {
 /// An autonomy that does not look leaves the map, which takes keyframes only. Whether a scan becomes one is known
 /// before it is made, if the filter has come there.
 bool MissionRun::scan_is_wanted(GpsTime t) const {
-  return (autonomy_->looks() && !omissions_.autonomy) ||
+  return (answers_.looks && !omissions_.autonomy) ||
          (!omissions_.keyframes && (localizer_.at() != t || mapper_.wants(estimate(t))));
 }
 
@@ -231,18 +233,49 @@ Status MissionRun::use_scan(const LidarScan& scan) {
 
   if (omissions_.autonomy) return Ok{};
   const NavEstimate seen = with_correction(estimate(scan.t));
-  clock_.charge(Part::kAutonomy, [&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); });
+  clock_.charge(Part::kAutonomy, [&] { ask([&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); }); });
   return Ok{};
+}
+
+void MissionRun::ask(const std::function<void()>& call) {
+  if (autonomy_lost_) return;
+  auto wrong = watch_.ask(call);
+  Answers answers;
+  const auto take_answers = [&] {
+    answers = {autonomy_->state(), autonomy_->next_waypoint(), autonomy_->looks(), autonomy_->keeps()};
+  };
+  if (!wrong) wrong = watch_.ask(take_answers);
+  if (!wrong) answers_ = answers;
+  if (wrong) lose_autonomy(*wrong);
+}
+
+/// Where the true motion is given that is no outcome: the run goes on without it.
+void MissionRun::lose_autonomy(const std::string& why) {
+  autonomy_lost_ = true;
+  answers_.looks = false;
+  if (open_loop_) {
+    record_.warnings.push_back("the autonomy was not asked any more after " + number_text(elapsed_s()) + " s: " + why);
+  } else {
+    scorer_.autonomy_fault(source_->now().motion, why);
+  }
+}
+
+void MissionRun::abandon_autonomy() {
+  lose_autonomy(watch_.overtime());
 }
 
 Status MissionRun::ask_autonomy(const Due& due) {
   if (omissions_.autonomy) return Ok{};
   const NavEstimate seen = with_correction(estimate(due.t));
-  const DriveCommand command = clock_.charge(Part::kAutonomy, [&] { return autonomy_->drive(seen); });
+  DriveCommand command = command_;
+  clock_.charge(Part::kAutonomy, [&] { ask([&] { command = autonomy_->drive(seen); }); });
+  if (autonomy_lost_) return Ok{};
   if (is_finite(command)) {
     command_ = command;
   } else if (!open_loop_) {
-    scorer_.autonomy_fault(truth_at(due.t), command);
+    char what[96];
+    std::snprintf(what, sizeof what, "its command was %.1f m/s, %.1f 1/m", command.speed_m_s, command.curvature_1_m);
+    scorer_.autonomy_fault(truth_at(due.t), what);
   }
   return Ok{};
 }
@@ -262,13 +295,8 @@ void MissionRun::compare(const NavRow& row, const Eigen::Vector3d& v_WB_W_true) 
 
 Status MissionRun::record_epoch(const Due& due) {
   const KinematicState truth = truth_at(due.t);
-  NavRow row{due.t,
-             truth.X_WB,
-             truth.v_WB_W.head<2>().norm(),
-             {},
-             command_,
-             autonomy_->next_waypoint() + 1,
-             autonomy_->state()};
+  NavRow row{due.t,         truth.X_WB, truth.v_WB_W.head<2>().norm(), {}, command_, answers_.next_waypoint + 1,
+             answers_.state};
   return localizer_.once_at(due.t, [this, row, v_WB_W_true = truth.v_WB_W]() mutable -> Status {
     row.estimate = localizer_.estimate();
     row.estimate.X_WB.p.z() += config_.run.estimate_up_offset_m;

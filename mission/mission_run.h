@@ -1,8 +1,10 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "canyon/core/motion/true_motion.h"
 #include "canyon/fusion/error_state_filter.h"
@@ -10,6 +12,7 @@
 #include "canyon/lidar/deskew.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/mission/aiding.h"
+#include "canyon/mission/autonomy/call_watch.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/corridor_guard.h"
 #include "canyon/mission/localizer.h"
@@ -30,6 +33,10 @@ class MissionRun {
   /// One master step: true motion, then what is due within it. False once the run has ended.
   Result<bool> step();
   Result<RunRecord> finish();
+  CallWatch& watch() { return watch_; }
+  /// After watch().take_over(): the run ends where it is. It must not be destroyed afterwards: the call that never
+  /// returned has the autonomy and its watch.
+  void abandon_autonomy();
   double elapsed_s() const { return source_->now().motion.t - mission_.start; }
 
  private:
@@ -57,6 +64,9 @@ class MissionRun {
   Status ask_autonomy(const Due& due);
   Status record_epoch(const Due& due);
   bool score();
+  /// Has something asked of the autonomy, and what it is asked after every call; nothing once it has failed.
+  void ask(const std::function<void()>& call);
+  void lose_autonomy(const std::string& why);
 
   void follow_correction();
   /// To recorder and filter; the counter's name, and the recorder's method for such readings.
@@ -100,6 +110,16 @@ class MissionRun {
   const Omissions omissions_;
   CorridorGuard corridor_;
   std::unique_ptr<Autonomy> autonomy_;
+  CallWatch watch_;
+  /// What it said of itself after the last call.
+  struct Answers {
+    AutonomyState state = AutonomyState::kDriving;
+    int next_waypoint = 0;
+    bool looks = true;
+    std::optional<KeptReturns> keeps;
+  };
+  Answers answers_;
+  bool asked_ = false, autonomy_lost_ = false;
   Scorer scorer_;
   Schedule schedule_;
   Pose X_BL_;

@@ -2,7 +2,12 @@
 
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
 
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
@@ -52,6 +57,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       omissions_(std::move(parts.omissions)),
       corridor_(omissions_.corridor, omissions_.corridor_until_s),
       autonomy_(std::move(parts.autonomy)),
+      watch_(config.autonomy.call_limit_s),
       scorer_(config, mission, scene_),
       schedule_(mission.start, rates_of(config)),
       X_BL_(lidar::sensor_in_body(config.lidar)),
@@ -111,6 +117,8 @@ void MissionRun::place_traffic(GpsTime t) {
 }
 
 Result<bool> MissionRun::step() {
+  if (!asked_) ask([] {});  // what it says of itself before the first call
+  asked_ = true;
   const TapeNode& node = clock_.charge(Part::kVehicle, [&]() -> const TapeNode& { return source_->advance(command_); });
   CANYON_TRY_STATUS(boundaries_.check(node.motion));
   motion_.append(node.motion);
@@ -132,7 +140,7 @@ bool MissionRun::score() {
     return !source_->over() && (limit_s <= 0.0 || elapsed_s() < limit_s);
   }
   const TapeNode& node = source_->now();
-  const AutonomyState state = autonomy_->state();
+  const AutonomyState state = answers_.state;
   const bool on_purpose = state == AutonomyState::kObserving || state == AutonomyState::kDone;
   const bool go_on = clock_.charge(
       Part::kScoring, [&] { return scorer_.step(node.motion, node.speed_m_s, source_->on_terrain(), on_purpose); });
@@ -141,7 +149,7 @@ bool MissionRun::score() {
 
 Result<RunRecord> MissionRun::finish() {
   if (!open_loop_) {
-    scorer_.finish(source_->now().motion, autonomy_->state() == AutonomyState::kDone);
+    scorer_.finish(source_->now().motion, answers_.state == AutonomyState::kDone);
     record_.outcome = scorer_.outcome();
     record_.failure = scorer_.failure();
     record_.waypoints = scorer_.waypoints();
@@ -151,7 +159,7 @@ Result<RunRecord> MissionRun::finish() {
   record_.distance_m = source_->now().distance_m;
   CANYON_TRY_STATUS(boundaries_.check_end(record_.simulated_s, record_.distance_m));
   record_.verdict = evidence_.numbers();
-  record_.warnings = mission_.warnings;
+  record_.warnings.insert(record_.warnings.begin(), mission_.warnings.begin(), mission_.warnings.end());
   for (std::string& warning : gnss_->warnings()) record_.warnings.push_back(std::move(warning));
   if (corridor_.left()) record_.warnings.push_back(*corridor_.left());
   CANYON_TRY_STATUS(maps_.finish(scene_, boundaries_, record_, recorder_));
@@ -184,19 +192,55 @@ void MissionRun::count_work() {
 
 namespace {
 
-Result<RunRecord> drive(const MissionConfig& config, const PreparedMission& mission, Progress* progress, RunParts given,
-                        PartClock& clock) {
-  CANYON_TRY(auto run, MissionRun::make(config, mission, std::move(given), clock));
+/// The steps of a run, to its end.
+Result<bool> drive(MissionRun& run, Progress* progress) {
   double reported_s = 0.0;
   for (bool go_on = true; go_on;) {
-    CANYON_TRY(go_on, run->step());
+    CANYON_TRY(go_on, run.step());
     throw_if_cancelled();
-    if (progress != nullptr && run->elapsed_s() - reported_s >= 1.0) {
-      progress->advance(run->elapsed_s() - reported_s);
-      reported_s = run->elapsed_s();
+    if (progress != nullptr && run.elapsed_s() - reported_s >= 1.0) {
+      progress->advance(run.elapsed_s() - reported_s);
+      reported_s = run.elapsed_s();
     }
   }
-  return run->finish();
+  return true;
+}
+
+/// Drives on a thread of its own, so that an autonomy which never returns holds up nobody: its run then ends where it
+/// is, and the thread is left behind (CallWatch).
+Result<RunRecord> drive_watched(std::unique_ptr<MissionRun> whole, Progress* progress, PartClock& clock) {
+  MissionRun& run = *whole;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<Result<bool>> driven;
+  std::exception_ptr thrown;
+  std::thread driver([&] {
+    std::optional<Result<bool>> result;
+    std::exception_ptr exception;
+    try {
+      result.emplace(clock.charge(Part::kOther, [&] { return drive(run, progress); }));
+    } catch (...) {
+      exception = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    driven = std::move(result);
+    thrown = exception;
+    changed.notify_one();
+  });
+  constexpr std::chrono::milliseconds kLook(50);
+  std::unique_lock lock(mutex);
+  while (!changed.wait_for(lock, kLook, [&] { return driven || thrown; })) {
+    if (!run.watch().take_over()) continue;
+    driver.detach();
+    [[maybe_unused]] const MissionRun* left_behind = whole.release();
+    run.abandon_autonomy();
+    return run.finish();
+  }
+  lock.unlock();
+  driver.join();
+  if (thrown) std::rethrow_exception(thrown);
+  if (!*driven) return driven->error();
+  return run.finish();
 }
 
 }  // namespace
@@ -205,8 +249,11 @@ Result<RunRecord> run_mission(const MissionConfig& config, const PreparedMission
                               RunParts given) {
   const auto wall_start = std::chrono::steady_clock::now();
   PartClock clock;
-  CANYON_TRY(RunRecord record,
-             clock.charge(Part::kOther, [&] { return drive(config, mission, progress, std::move(given), clock); }));
+  const auto drive_it = [&]() -> Result<RunRecord> {
+    CANYON_TRY(auto run, MissionRun::make(config, mission, std::move(given), clock));
+    return drive_watched(std::move(run), progress, clock);
+  };
+  CANYON_TRY(RunRecord record, clock.charge(Part::kOther, drive_it));
   record.clock = clock;
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start).count();
   return record;

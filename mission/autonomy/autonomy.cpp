@@ -1,7 +1,8 @@
 #include "canyon/mission/autonomy/autonomy.h"
 
 #include "canyon/core/check.h"
-#include "canyon/mission/autonomy/reference_autonomy.h"
+#include "canyon/mission/autonomy/reference.h"
+#include "canyon/mission/autonomy/reference_2012.h"
 #include "canyon/mission/autonomy/route_driver.h"
 
 namespace canyon::mission {
@@ -9,7 +10,10 @@ namespace canyon::mission {
 namespace {
 
 constexpr ModelRow<MakeAutonomy> kAutonomies[] = {
-    {"reference", make_reference_autonomy, "keeps clear of what its local grid shows",
+    {"reference_2012", make_reference_2012,
+     "the one of up to 2026-11: points of its rear axle in a grid of heights in W, beside the street by choice",
+     parameters_of<Reference2012Parameters>},
+    {"reference", make_reference, "in exchangeable parts: drives its own body along arcs it can drive, by what it sees",
      parameters_of<ReferenceParameters>},
     {"route_follower",
      [](const ModelParameters&, const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
@@ -32,7 +36,8 @@ void visit(FieldVisitor& f, Waypoint& w) {
 
 void visit(FieldVisitor& f, AutonomyConfig& c) {
   visit_choice(f, "model", c.model,
-               "which autonomy drives: reference, or route_follower: the centre line, whatever stands there");
+               "which autonomy drives: reference, in exchangeable parts; reference_2012, the one before it; or "
+               "route_follower: the centre line, whatever stands there");
   f.choice("map", c.map, ModelTable<MapPose>(kMapPoses),
            "pose it works with: the filter's, or corrected by the last registered keyframe");
   f.number("rate_hz", c.rate_hz, {1, 1000}, "commands per second; each takes effect at the next master step of 10 ms");
@@ -41,6 +46,9 @@ void visit(FieldVisitor& f, AutonomyConfig& c) {
   f.number("braking_m_s2", c.braking_m_s2, {0.1, 10}, "deceleration it plans with");
   f.number("corner_radius_m", c.corner_radius_m, {1, 100}, "radius of the planned turns");
   f.number("hold_s", c.hold_s, {0, 600}, "how long it looks at a building");
+  f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
+  f.number("call_limit_s", c.call_limit_s, {0.1, 1e4},
+           "wall time after which one call of the autonomy counts as never returning; a sound one comes nowhere near");
   f.list("waypoint", c.waypoints, "places to drive through, in order");
 }
 
@@ -76,7 +84,7 @@ Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::Str
     from = waypoint.p_m;
     corner.push_back(polyline.size() - 1);
   }
-  PriorKnowledge prior{Path(polyline, config.corner_radius_m), {}};
+  PriorKnowledge prior{.route = Path(polyline, config.corner_radius_m)};
   if (prior.route.empty())
     return Error{.key = "autonomy.waypoint[1], vehicle.start_m",
                  .what = "start and waypoints are one place",

@@ -11,6 +11,8 @@
 #include "canyon/core/messages.h"
 #include "canyon/core/model_choice.h"
 #include "canyon/core/result.h"
+#include "canyon/mission/autonomy/kept_returns.h"
+#include "canyon/mission/autonomy/known_vehicle.h"
 #include "canyon/mission/autonomy/path.h"
 #include "canyon/scene/city/street_graph.h"
 
@@ -37,14 +39,16 @@ ModelTable<MakeAutonomy> autonomy_models();
 
 /// [autonomy] of a mission file.
 struct AutonomyConfig {
-  ModelChoice<autonomy_models> model{"reference"};
+  ModelChoice<autonomy_models> model{"reference_2012"};
   MapPose map = MapPose::kPrior;
   double rate_hz = 100.0;  ///< commands per second
   double cruise_m_s = 5.0;
   double lateral_m_s2 = 1.2;  ///< lateral acceleration in corners
   double braking_m_s2 = 1.2;
   double corner_radius_m = 6.5;
-  double hold_s = 6.0;  ///< how long it looks at a building
+  double hold_s = 6.0;         ///< how long it looks at a building
+  double blind_after_s = 0.5;  ///< stops when no scan with returns came for this long
+  double call_limit_s = 10.0;  ///< of wall time, for one call of the autonomy
   std::vector<Waypoint> waypoints;
 };
 void visit(FieldVisitor& f, AutonomyConfig& c);
@@ -52,23 +56,15 @@ void visit(FieldVisitor& f, AutonomyConfig& c);
 enum class AutonomyState { kDriving, kObserving, kBlocked, kBlind, kDone };
 const char* name(AutonomyState state);
 
-/// What the vehicle knows before it starts: streets and waypoints, no obstacles.
+/// What is known before the start: streets and waypoints, no obstacles, and the vehicle itself.
 struct PriorKnowledge {
   Path route;
-  std::vector<double> waypoint_s_m;  ///< arc length of each waypoint along the route
+  std::vector<double> waypoint_s_m{};  ///< arc length of each waypoint along the route
+  KnownVehicle vehicle{};
 };
 /// Error (without file and line) if the streets do not connect the waypoints, or if all of them lie at the start.
 Result<PriorKnowledge> plan_route(const AutonomyConfig& config, const scene::StreetGraph& streets,
                                   const Eigen::Vector2d& start_m);
-
-/// What an autonomy keeps of the scans that it is shown: returns between two heights over the ground plane of the
-/// vehicle as it believes (along B's z, from B's origin), within a square about it. Of a scan of fewer returns than
-/// `enough` it may keep none.
-struct KeptReturns {
-  double low_m = 0.0, high_m = 0.0;
-  double half_size_m = 0.0;
-  int enough = 0;
-};
 
 /// Drives the vehicle on estimates and scans alone; never sees truth.
 class Autonomy {

@@ -7,7 +7,7 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/registration/registration.h"
-#include "canyon/mission/autonomy/reference_autonomy.h"
+#include "canyon/mission/autonomy/reference_2012.h"
 
 namespace canyon::mission {
 
@@ -65,6 +65,11 @@ Status check_measurements(const MissionConfig& config) {
   return Ok{};
 }
 
+/// Keys of an autonomy that does not drive contradict nothing.
+bool is_2012(const AutonomyConfig& autonomy) {
+  return autonomy.model.name == "reference_2012";
+}
+
 /// What the autonomy plans with, against what the vehicle can do.
 Status check_driving(const AutonomyConfig& autonomy, const VehicleConfig& vehicle) {
   CANYON_TRY_STATUS(
@@ -84,8 +89,8 @@ Status check_driving(const AutonomyConfig& autonomy, const VehicleConfig& vehicl
                  .what = text,
                  .expected = "autonomy.corner_radius_m of vehicle.wheelbase_m / tan(vehicle.max_steering_deg) or more"};
   }
-  const ReferenceParameters& reference = autonomy.model.own.get<ReferenceParameters>();
-  if (reference.clearance_m < 0.5 * vehicle.width_m)
+  const Reference2012Parameters& reference = autonomy.model.own.get<Reference2012Parameters>();
+  if (is_2012(autonomy) && reference.clearance_m < 0.5 * vehicle.width_m)
     return Error{.key = "autonomy.clearance_m, vehicle.width_m",
                  .what = "a vehicle " + number_text(vehicle.width_m) + " m wide does not pass an obstacle " +
                          number_text(reference.clearance_m) + " m beside its axis",
@@ -94,11 +99,14 @@ Status check_driving(const AutonomyConfig& autonomy, const VehicleConfig& vehicl
 }
 
 /// What the autonomy looks at, against what it is shown.
-Status check_seeing(const ReferenceParameters& autonomy, double lidar_hz) {
-  CANYON_TRY_STATUS(check_limit({"autonomy.choice.horizon_m", autonomy.choice.horizon_m, "autonomy.grid.half_size_m",
-                                 autonomy.grid.half_size_m,
-                                 "paths are checked " + number_text(autonomy.choice.horizon_m) +
-                                     " m ahead, the grid reaches " + number_text(autonomy.grid.half_size_m) + " m"}));
+Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
+  const Reference2012Parameters& of_2012 = autonomy.model.own.get<Reference2012Parameters>();
+  if (is_2012(autonomy)) {
+    CANYON_TRY_STATUS(check_limit({"autonomy.choice.horizon_m", of_2012.choice.horizon_m, "autonomy.grid.half_size_m",
+                                   of_2012.grid.half_size_m,
+                                   "paths are checked " + number_text(of_2012.choice.horizon_m) +
+                                       " m ahead, the grid reaches " + number_text(of_2012.grid.half_size_m) + " m"}));
+  }
   const double period_s = 1.0 / lidar_hz;
   if (autonomy.blind_after_s >= period_s * (1.0 - 1e-9)) return Ok{};
   return Error{.key = "autonomy.blind_after_s, lidar.rate_hz",
@@ -114,7 +122,7 @@ Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_body(config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_measurements(config));
-  return check_seeing(config.autonomy.model.own.get<ReferenceParameters>(), config.lidar.rate_hz);
+  return check_seeing(config.autonomy, config.lidar.rate_hz);
 }
 
 }  // namespace canyon::mission

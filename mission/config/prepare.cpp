@@ -30,6 +30,7 @@ Result<std::vector<InputFile>> read_inputs(const MissionConfig& config) {
 Status plan(const MissionConfig& config, const scene::Site& site, PreparedMission& mission) {
   CANYON_TRY_STATUS(check_places(config, site));
   CANYON_TRY(mission.prior, plan_route(config.autonomy, site.streets, config.vehicle.start_m));
+  mission.prior.vehicle = known_vehicle(config.vehicle);
   CANYON_TRY_STATUS(check_route(config, mission.prior));
   std::vector<double> stops{mission.prior.route.length_m()};
   double holds_s = 0.0;

@@ -17,6 +17,7 @@ void visit(FieldVisitor& f, VehicleConfig& c) {
   f.number("width_m", c.width_m, {0.2, 3}, "of the body, for collisions");
   f.number("height_m", c.height_m, {0.3, 4}, "of the body, for collisions");
   f.number("max_speed_m_s", c.max_speed_m_s, {0.1, 30}, "limit");
+  f.number("max_reverse_m_s", c.max_reverse_m_s, {0, 10}, "limit of a negative speed; 0: it stands instead");
   f.number("max_acceleration_m_s2", c.max_acceleration_m_s2, {0.1, 10}, "limit");
   f.number("max_deceleration_m_s2", c.max_deceleration_m_s2, {0.1, 10}, "limit");
   f.number("max_steering_deg", c.max_steering_deg, {5, 60}, "limit of the steering angle");
@@ -118,16 +119,25 @@ KinematicState Vehicle::state_at(GpsTime t, const PlanMotion& plan, double tau) 
   return state;
 }
 
-/// What the command makes of the plan motion over the coming step, as far as the limits allow.
+/// +1 forwards, -1 in reverse: as it rolls, at rest as it is asked to.
+double Vehicle::direction(const DriveCommand& command) const {
+  if (plan_.speed_0 != 0.0) return plan_.speed_0 > 0.0 ? 1.0 : -1.0;
+  return command.speed_m_s < 0.0 && config_.max_reverse_m_s > 0.0 ? -1.0 : 1.0;
+}
+
+/// What the command makes of the plan motion over the coming step, as far as the limits allow. In reverse all that is
+/// said of speed and acceleration holds of their negatives; from one direction to the other it comes to a stop.
 Vehicle::PlanMotion Vehicle::planned(const DriveCommand& command, double dt_s) const {
   constexpr double kSpeedTime_s = 0.1;      // within which a difference of speed is to be made up
   constexpr double kStandstill_m_s = 1e-3;  // slower than this it comes to a true stop
   PlanMotion plan = plan_;
-  const double target = std::clamp(command.speed_m_s, 0.0, config_.max_speed_m_s);
+  const double sign = direction(command), speed = sign * plan.speed_0;
+  const double fastest = sign > 0.0 ? config_.max_speed_m_s : config_.max_reverse_m_s;
+  const double target = std::clamp(sign * command.speed_m_s, 0.0, fastest);
   const double acceleration =
-      std::clamp((target - plan.speed_0) / kSpeedTime_s, -config_.max_deceleration_m_s2, config_.max_acceleration_m_s2);
-  plan.jerk = (acceleration - plan.acceleration_0) / dt_s;
-  if (target == 0.0 && plan.speed(dt_s) < kStandstill_m_s) {
+      std::clamp((target - speed) / kSpeedTime_s, -config_.max_deceleration_m_s2, config_.max_acceleration_m_s2);
+  plan.jerk = (sign * acceleration - plan.acceleration_0) / dt_s;
+  if (target == 0.0 && sign * plan.speed(dt_s) < kStandstill_m_s) {
     plan.acceleration_0 = -plan.speed_0 / dt_s;
     plan.jerk = 0.0;
   }
@@ -145,10 +155,11 @@ const KinematicState& Vehicle::advance(const DriveCommand& command) {
   constexpr double dt_s = 1e-9 * static_cast<double>(kStep_ns);
   PlanMotion plan = planned(command, dt_s);
   if (slip_.yields()) plan.sideways = slip_.advance(plan.drive(dt_s / 3.0), plan.drive(dt_s), dt_s);
-  const bool stops = plan.speed(dt_s) <= 0.0;
+  const double sign = direction(command);
+  const bool stops = sign * plan.speed(dt_s) <= 0.0;
 
   p_ += plan.displacement(dt_s);
-  distance_ += plan.distance(dt_s);
+  distance_ += sign * plan.distance(dt_s);
   last_inputs_ = terrain_inputs(p_, plan.yaw(dt_s));
   heave_.advance(last_inputs_.heave_m, dt_s);
   pitch_.advance(last_inputs_.pitch_rad, dt_s);

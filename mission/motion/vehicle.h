@@ -25,12 +25,13 @@ class Vehicle {
   /// Stands still at the start, body settled on the terrain. `scene` must outlive the vehicle.
   Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::uint64_t seed, GpsTime start);
 
-  /// Advances by one step under `command`, within the limits of speed, acceleration and steering.
+  /// Advances by one step under `command`, within the limits of speed, acceleration and steering. A negative speed is
+  /// driven in reverse.
   const KinematicState& advance(const DriveCommand& command);
 
   const KinematicState& state() const { return state_; }
   double speed_m_s() const { return plan_.speed_0; }
-  double distance_m() const { return distance_; }
+  double distance_m() const { return distance_; }  ///< driven, either way
   /// False once a wheel has left the terrain.
   bool on_terrain() const { return on_terrain_; }
   const VehicleConfig& config() const { return config_; }
@@ -52,6 +53,7 @@ class Vehicle {
     Eigen::Vector2d displacement(double tau) const;
     SideSlip::Drive drive(double tau) const;
   };
+  double direction(const DriveCommand& command) const;
   PlanMotion planned(const DriveCommand& command, double dt_s) const;
   Inputs terrain_inputs(const Eigen::Vector2d& rear_axle, double yaw);
   KinematicState state_at(GpsTime t, const PlanMotion& plan, double tau) const;

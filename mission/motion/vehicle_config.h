@@ -20,6 +20,7 @@ struct VehicleConfig {
   double width_m = 1.5;
   double height_m = 1.6;
   double max_speed_m_s = 6.0;
+  double max_reverse_m_s = 1.5;  ///< as fast a negative speed may be commanded; 0: it stands instead
   double max_acceleration_m_s2 = 1.5;
   double max_deceleration_m_s2 = 3.0;
   double max_steering_deg = 32.0;

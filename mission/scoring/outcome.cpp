@@ -8,8 +8,9 @@ constexpr ModelRow<Outcome> kOutcomes[] = {
     {"left_scene", Outcome::kLeftScene, "a wheel is off the terrain"},
     {"stuck", Outcome::kStuck, "the vehicle stands for `[success] stuck_after_s` without looking at a building"},
     {"autonomy_fault", Outcome::kAutonomyFault,
-     "the autonomy gives a command that is not finite. It is what is under test, so this is a result like the others, "
-     "and the exit status is 0"},
+     "the autonomy gives a command that is not finite, throws, or takes longer than `[autonomy] call_limit_s` for one "
+     "call; `detail` says which. It is what is under test, so this is a result like the others, and the exit status is "
+     "0"},
     {"timeout", Outcome::kTimeout, "`[success] limit_factor` times the nominal time is over"},
     {"stopped", Outcome::kStopped,
      "`[time] limit_s` is over, and it is shorter than that: neither success nor failure"},

@@ -73,7 +73,7 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
   const double dt = truth.t - last_t_, t_s = truth.t - start_;
   last_t_ = truth.t;
   const Eigen::Vector2d p = truth.X_WB.p.head<2>();
-  const bool standing = speed_m_s < config_.stopped_speed_m_s;
+  const bool standing = std::abs(speed_m_s) < config_.stopped_speed_m_s;
 
   for (std::size_t i = 0; i < waypoints_.size(); ++i) {
     WaypointScore& score = waypoints_[i];
@@ -116,9 +116,8 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
   return t_s < time_limit_s_;  // finish() says what that means
 }
 
-void Scorer::autonomy_fault(const KinematicState& truth, const DriveCommand& command) {
-  fail(Outcome::kAutonomyFault, truth,
-       "its command was " + number(command.speed_m_s, "m/s") + ", " + number(command.curvature_1_m, "1/m"));
+void Scorer::autonomy_fault(const KinematicState& truth, std::string how) {
+  fail(Outcome::kAutonomyFault, truth, std::move(how));
 }
 
 void Scorer::finish(const KinematicState& truth, bool done) {

@@ -41,8 +41,8 @@ class Scorer {
   /// One true step; `observing` (the autonomy stands on purpose) excuses standing still.
   /// Returns false once the run has to end: collision, stuck, off the terrain, out of time.
   bool step(const KinematicState& truth, double speed_m_s, bool on_terrain, bool observing);
-  /// The autonomy gave a command that is not finite.
-  void autonomy_fault(const KinematicState& truth, const DriveCommand& command);
+  /// The autonomy itself failed: how is said in the detail.
+  void autonomy_fault(const KinematicState& truth, std::string how);
   /// To be called once at the end: decides what is still open. `done` = the autonomy believes it has finished.
   void finish(const KinematicState& truth, bool done);
 

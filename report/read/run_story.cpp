@@ -19,7 +19,7 @@ std::string outcome_words(const std::string& outcome) {
        {"no_line_of_sight", "did not see its building of interest"},
        {"stuck", "got stuck"},
        {"left_scene", "left the scene"},
-       {"autonomy_fault", "was given a command that is no number by its autonomy"}}};
+       {"autonomy_fault", "was ended by a fault of its autonomy's own"}}};
   for (const auto& [kind, words] : kWords) {
     if (kind == outcome) return std::string(words);
   }

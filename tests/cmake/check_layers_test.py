@@ -140,8 +140,8 @@ class CheckLayers(unittest.TestCase):
 
     def test_truth_does_not_reach_the_autonomy(self):
         self.assert_breach(
-            {"mission/autonomy/reference_autonomy.cpp": '#include "canyon/core/truth.h"\n'},
-            'mission/autonomy/reference_autonomy.cpp:1: "core/truth.h": truth is for sensors, recorder and scorer only')
+            {"mission/autonomy/reference_2012.cpp": '#include "canyon/core/truth.h"\n'},
+            'mission/autonomy/reference_2012.cpp:1: "core/truth.h": truth is for sensors, recorder and scorer only')
 
     # 2026-11-22: deskewing, on the way of the estimate, could see the truth through the scanner's header, and no rule
     # forbade it; nor was it forbidden to the mapper and to what registration stands on.

@@ -6,7 +6,7 @@
 #include "canyon/core/units.h"
 #include "canyon/inertial/errors/error_link.h"
 #include "canyon/inertial/imu_model.h"
-#include "canyon/mission/autonomy/reference_autonomy.h"
+#include "canyon/mission/autonomy/reference_2012.h"
 #include "canyon/tests/mission/summary_of.h"
 
 namespace canyon::mission::testing {
@@ -39,9 +39,9 @@ TEST(Couplings, WithFixesWithheldTheEstimateDriftsAndTheVehicleLeavesItsPath) {
   // It keeps to its path by its own estimate, at most max_offset_m beside the centre line. With fixes, each within 0.5
   // m of the truth, it truly keeps to it; alone, what it drifts, it drives beside the street.
   EXPECT_LE(largest_distance_from_route(aided, with_fixes),
-            with_fixes.autonomy.model.own.get<ReferenceParameters>().max_offset_m + 0.5);
+            with_fixes.autonomy.model.own.get<Reference2012Parameters>().max_offset_m + 0.5);
   EXPECT_GT(largest_distance_from_route(coasting, without),
-            without.autonomy.model.own.get<ReferenceParameters>().max_offset_m + 0.5);
+            without.autonomy.model.own.get<Reference2012Parameters>().max_offset_m + 0.5);
 }
 
 // 2026-11-22: the sweep of the first scan began before the vehicle did, and of later ones the motion was forgotten:
@@ -146,7 +146,7 @@ TEST(Couplings, ALidarBlindedWhileDrivingStopsTheVehicle) {
                          [&](const NavRow& row) { return row.t - record.start > t_s - 0.05; });
   };
   const double braking = config.vehicle.max_deceleration_m_s2, step_s = 1.0 / config.imu.rate_hz;
-  const double noticed_s = 7.9 + config.autonomy.model.own.get<ReferenceParameters>().blind_after_s + 2 * step_s;
+  const double noticed_s = 7.9 + config.autonomy.blind_after_s + 2 * step_s;
   EXPECT_EQ(at(8.0).state, AutonomyState::kDriving);
   const double speed = at(noticed_s).true_speed_m_s;
   EXPECT_GT(at(8.0).true_speed_m_s, 3.0) << "it must be moving to stop";

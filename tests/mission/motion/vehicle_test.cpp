@@ -91,6 +91,56 @@ TEST_F(VehicleTest, StopsCompletelyAndStaysWithinItsLimits) {
   EXPECT_EQ(vehicle.distance_m(), distance);
 }
 
+TEST_F(VehicleTest, BacksUpWithinItsLimits) {
+  VehicleConfig config;
+  config.roughness = "none";
+  Vehicle vehicle = make(config);
+  double last_speed = 0;
+  for (int k = 1; k <= 1100; ++k) {
+    // Forwards, in reverse faster than it can, forwards again.
+    vehicle.advance({k < 200 ? 2.0 : k < 600 ? -100.0 : 1.0, 0.0});
+    const double speed = vehicle.speed_m_s(), a = (speed - last_speed) / 0.01;
+    EXPECT_GE(speed, -config.max_reverse_m_s - 1e-12);
+    const bool halts = speed == 0.0;  // the last step of a halt may end harder, as forwards
+    if (!halts && std::abs(speed) > std::abs(last_speed)) {
+      EXPECT_LE(std::abs(a), config.max_acceleration_m_s2 + 1e-9) << k;
+    }
+    if (!halts && std::abs(speed) < std::abs(last_speed)) {
+      EXPECT_LE(std::abs(a), config.max_deceleration_m_s2 + 1e-9) << k;
+    }
+    EXPECT_GE(speed * last_speed, 0.0) << "it comes to a stop between the two";
+    last_speed = speed;
+    if (k == 599) {
+      EXPECT_NEAR(speed, -config.max_reverse_m_s, 1e-9);
+    }
+  }
+  EXPECT_NEAR(last_speed, 1.0, 1e-9);  // exp(-t / 0.1 s) over more than 3 s
+}
+
+// A steered reverse runs along the same circle, the other way; the way back counts as driven too.
+TEST_F(VehicleTest, InReverseItGoesBackTheWayItCame) {
+  VehicleConfig config;
+  config.roughness = "none";
+  Vehicle vehicle = make(config);
+  for (int k = 0; k < 100; ++k) vehicle.advance({0.0, 0.2});  // turns its wheels at rest
+  const Eigen::Vector2d start = vehicle.state().X_WB.p.head<2>();
+  while (vehicle.distance_m() < 3.0) vehicle.advance({1.5, 0.2});
+  for (int k = 0; k < 300; ++k) vehicle.advance({0.0, 0.2});
+  const double there_m = vehicle.distance_m();
+  while (vehicle.distance_m() < 2.0 * there_m - 0.2) vehicle.advance({-1.0, 0.2});
+  const Eigen::Vector2d back = vehicle.state().X_WB.p.head<2>();
+  // A step of a metre a second before the start, at the latest one after it.
+  EXPECT_NEAR((back - start).norm(), 0.2, 0.01 + 1e-3);
+}
+
+TEST_F(VehicleTest, WithoutAReverseGearItStands) {
+  VehicleConfig config;
+  config.max_reverse_m_s = 0.0;
+  Vehicle vehicle = make(config);
+  for (int k = 0; k < 100; ++k) vehicle.advance({-1.0, 0.0});
+  EXPECT_EQ(vehicle.distance_m(), 0.0);
+}
+
 // On a full circle of the tightest turn the rear axle runs on radius L / tan(delta).
 TEST_F(VehicleTest, TurningRadiusIsThatOfTheBicycle) {
   VehicleConfig config;

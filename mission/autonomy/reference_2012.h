@@ -21,19 +21,18 @@ struct PathChoiceConfig {
 void visit(FieldVisitor& f, PathChoiceConfig& c);
 
 /// Keys of the reference autonomy.
-struct ReferenceParameters {
-  double max_offset_m = 3.5;   ///< how far it may leave the street's centre line
-  double clearance_m = 1.0;    ///< from its axis to an obstacle
-  double blind_after_s = 0.5;  ///< stops when no scan with returns came for this long
+struct Reference2012Parameters {
+  double max_offset_m = 3.5;  ///< how far it may leave the street's centre line
+  double clearance_m = 1.0;   ///< from its axis to an obstacle
   LocalGridConfig grid;
   PathChoiceConfig choice;
 };
-void visit(FieldVisitor& f, ReferenceParameters& c);
+void visit(FieldVisitor& f, Reference2012Parameters& c);
 
 /// The reference autonomy: keeps a local height grid of what it sees, chooses among paths shifted sideways from the
 /// street's centre line the cheapest that is free, follows it by pure pursuit (Coulter 1992), slows for corners,
 /// obstacles and waypoints, and decides from its estimate that a waypoint is reached.
-std::unique_ptr<Autonomy> make_reference_autonomy(const ModelParameters& own, const AutonomyConfig& config,
-                                                  const PriorKnowledge& prior, GpsTime start);
+std::unique_ptr<Autonomy> make_reference_2012(const ModelParameters& own, const AutonomyConfig& config,
+                                              const PriorKnowledge& prior, GpsTime start);
 
 }  // namespace canyon::mission

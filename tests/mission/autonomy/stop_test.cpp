@@ -1,4 +1,4 @@
-#include "canyon/mission/autonomy/reference_autonomy.h"
+#include "canyon/mission/autonomy/reference_2012.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "canyon/mission/autonomy/reference_autonomy.h"
+#include "canyon/mission/autonomy/reference_2012.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,11 +26,16 @@ struct Candidate {
   }
 };
 
-class ReferenceAutonomy final : public Autonomy {
+class Reference2012 final : public Autonomy {
  public:
-  ReferenceAutonomy(const ReferenceParameters& own, const AutonomyConfig& config, const PriorKnowledge& prior,
-                    GpsTime start)
-      : own_(own), driver_(config, prior), start_(start), grid_(own.grid), last_seen_(start) {}
+  Reference2012(const Reference2012Parameters& own, const AutonomyConfig& config, const PriorKnowledge& prior,
+                GpsTime start)
+      : own_(own),
+        blind_after_s_(config.blind_after_s),
+        driver_(config, prior),
+        start_(start),
+        grid_(own.grid),
+        last_seen_(start) {}
 
   void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
     if (static_cast<int>(scan.points.size()) < kEnoughReturns) return;
@@ -59,7 +64,7 @@ class ReferenceAutonomy final : public Autonomy {
       state_ = driver_.done() ? AutonomyState::kDone : AutonomyState::kObserving;
       return command;
     }
-    if (estimate.t - last_seen_ > own_.blind_after_s) {
+    if (estimate.t - last_seen_ > blind_after_s_) {
       state_ = AutonomyState::kBlind;
       return command;
     }
@@ -113,7 +118,8 @@ class ReferenceAutonomy final : public Autonomy {
     return std::min(v, driver_.braking_to_m_s(free_m - margin_m));
   }
 
-  ReferenceParameters own_;
+  Reference2012Parameters own_;
+  double blind_after_s_;
   RouteDriver driver_;
   GpsTime start_;
   LocalGrid grid_;
@@ -138,17 +144,17 @@ void visit(FieldVisitor& f, PathChoiceConfig& c) {
   f.number("change_cost_1_m", c.change_cost_1_m, {0, 1e3}, "cost of every metre beside the path chosen last");
 }
 
-void visit(FieldVisitor& f, ReferenceParameters& c) {
-  f.number("max_offset_m", c.max_offset_m, {0, 20}, "how far it may leave the centre line of the street");
-  f.number("clearance_m", c.clearance_m, {0.1, 5}, "from its axis to an obstacle");
-  f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
-  f.group("grid", c.grid, "its picture of the surroundings: a rolling height grid");
-  f.group("choice", c.choice, "how it chooses among paths beside the centre line");
+void visit(FieldVisitor& f, Reference2012Parameters& c) {
+  f.number("max_offset_m", c.max_offset_m, {0, 20},
+           "reference_2012: how far it may leave the centre line of the street");
+  f.number("clearance_m", c.clearance_m, {0.1, 5}, "reference_2012: from its axis to an obstacle");
+  f.group("grid", c.grid, "reference_2012: its picture of the surroundings: a rolling height grid");
+  f.group("choice", c.choice, "reference_2012: how it chooses among paths beside the centre line");
 }
 
-std::unique_ptr<Autonomy> make_reference_autonomy(const ModelParameters& own, const AutonomyConfig& config,
-                                                  const PriorKnowledge& prior, GpsTime start) {
-  return std::make_unique<ReferenceAutonomy>(own.get<ReferenceParameters>(), config, prior, start);
+std::unique_ptr<Autonomy> make_reference_2012(const ModelParameters& own, const AutonomyConfig& config,
+                                              const PriorKnowledge& prior, GpsTime start) {
+  return std::make_unique<Reference2012>(own.get<Reference2012Parameters>(), config, prior, start);
 }
 
 }  // namespace canyon::mission

@@ -1,0 +1,54 @@
+#include "canyon/mission/autonomy/call_watch.h"
+
+#include <exception>
+#include <thread>
+
+#include "canyon/core/config/text.h"
+#include "canyon/core/process/progress.h"
+
+namespace canyon::mission {
+namespace {
+
+[[noreturn]] void sleep_for_ever() {
+  for (;;) std::this_thread::sleep_for(std::chrono::hours(24));
+}
+
+}  // namespace
+
+std::optional<std::string> CallWatch::ask(const std::function<void()>& call) {
+  const Clock::time_point began = Clock::now();
+  since_.store(began.time_since_epoch().count());
+  std::uint64_t turn = turn_.fetch_add(1) + 1;
+  std::optional<std::string> wrong;
+  std::exception_ptr pass_on;
+  try {
+    call();
+  } catch (const Cancelled&) {
+    pass_on = std::current_exception();
+  } catch (const std::exception& thrown) {
+    wrong = std::string("it threw: ") + thrown.what();
+  } catch (...) {
+    wrong = "it threw what is no std::exception";
+  }
+  if (!turn_.compare_exchange_strong(turn, turn + 1)) sleep_for_ever();
+  if (pass_on) std::rethrow_exception(pass_on);
+  if (!wrong && over(began)) wrong = overtime();
+  return wrong;
+}
+
+bool CallWatch::take_over() {
+  std::uint64_t turn = turn_.load();
+  if (turn % 2 == 0 || turn == kTaken) return false;
+  const Clock::rep since = since_.load();  // of a later call, if this one has returned: then the turn is another
+  return over(Clock::time_point(Clock::duration(since))) && turn_.compare_exchange_strong(turn, kTaken);
+}
+
+bool CallWatch::over(Clock::time_point since) const {
+  return std::chrono::duration<double>(Clock::now() - since).count() > limit_s_;
+}
+
+std::string CallWatch::overtime() const {
+  return "a call took longer than autonomy.call_limit_s = " + number_text(limit_s_) + " s";
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,31 @@
+#include "canyon/mission/autonomy/known_vehicle.h"
+
+#include <cmath>
+
+#include "canyon/core/units.h"
+
+namespace canyon::mission {
+
+KnownVehicle known_vehicle(const VehicleConfig& config) {
+  const double rear_m = -0.5 * (config.length_m - config.wheelbase_m);
+  return {.rear_m = rear_m,
+          .front_m = rear_m + config.length_m,
+          .half_width_m = 0.5 * config.width_m,
+          .wheelbase_m = config.wheelbase_m,
+          .max_steering_rad = config.max_steering_deg * kDegree,
+          .max_steering_rate_rad_s = config.max_steering_rate_deg_s * kDegree,
+          .max_deceleration_m_s2 = config.max_deceleration_m_s2};
+}
+
+Eigen::Vector2d PlanPose::forward() const {
+  return {std::cos(yaw_rad), std::sin(yaw_rad)};
+}
+
+PlanPose PlanPose::along(double kappa_1_m, double distance_m) const {
+  const double turn = kappa_1_m * distance_m, middle = yaw_rad + 0.5 * turn;
+  // The chord of an arc: sin(x) / x of half the turn, by its series where that is exact to 1e-17.
+  const double x = 0.5 * turn, ratio = std::abs(x) < 1e-4 ? 1.0 - x * x / 6.0 : std::sin(x) / x;
+  return {p_m + distance_m * ratio * Eigen::Vector2d(std::cos(middle), std::sin(middle)), yaw_rad + turn};
+}
+
+}  // namespace canyon::mission

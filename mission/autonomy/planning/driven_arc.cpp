@@ -1,0 +1,73 @@
+#include "canyon/mission/autonomy/planning/driven_arc.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace canyon::mission {
+namespace {
+
+/// What has to be kept after a way: what there was at its beginning if that was less, and a little more with every
+/// metre.
+class LeastClearance {
+ public:
+  LeastClearance(double least_m, double at_start_m) : least_(least_m), start_(std::max(0.0, at_start_m - kSlack_m)) {}
+  double after(double way_m) const { return std::min(least_, start_ + kGrowth * way_m); }
+
+ private:
+  static constexpr double kSlack_m = 0.05, kGrowth = 0.1;
+  double least_, start_;
+};
+
+constexpr double kSlowest_m_s = 1.0;  // that steering rates are reckoned with
+
+}  // namespace
+
+double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const KnownVehicle& vehicle) {
+  const double wanted =
+      std::clamp(std::atan(curvature_1_m * vehicle.wheelbase_m), -vehicle.max_steering_rad, vehicle.max_steering_rad);
+  const double most = vehicle.max_steering_rate_rad_s * dt_s;
+  return steering_rad + std::clamp(wanted - steering_rad, -most, most);
+}
+
+DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
+                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle) {
+  DrivenArc arc;
+  if (line.empty()) return arc;
+  MovingBody body = from;
+  const double speed = std::max(kSlowest_m_s, from.speed_m_s), dt_s = DrivenArc::kStep_m / speed;
+  const double reach = std::max(clearances.comfort_m, clearances.least_m);
+  const LeastClearance least(clearances.least_m, blocked.clearance_m(body.pose, vehicle, reach));
+  std::size_t nearest = line.nearest(body.pose.p_m, 0);
+  const int steps = static_cast<int>(std::ceil(length_m / DrivenArc::kStep_m));
+  arc.curvature_1_m.reserve(static_cast<std::size_t>(steps));
+  for (int i = 1; i <= steps; ++i) {
+    nearest = line.nearest(body.pose.p_m, nearest);
+    const double wanted = tracker.curvature_1_m(line, nearest, body.pose, speed);
+    const double before = body.steering_rad;
+    body.steering_rad = steered_rad(before, wanted, dt_s, vehicle);
+    const double kappa = std::tan(0.5 * (before + body.steering_rad)) / vehicle.wheelbase_m;
+    body.pose = body.pose.along(kappa, DrivenArc::kStep_m);
+    const double clearance = blocked.clearance_m(body.pose, vehicle, reach);
+    if (clearance < least.after(i * DrivenArc::kStep_m)) return arc;
+    arc.free_m = i * DrivenArc::kStep_m;
+    arc.closeness_m2 += DrivenArc::kStep_m * std::max(0.0, clearances.comfort_m - clearance);
+    arc.curvature_1_m.push_back(static_cast<float>(kappa));
+  }
+  arc.ends_free = true;
+  return arc;
+}
+
+double free_along(const PlanPose& from, double curvature_1_m, double distance_m, const Clearances& clearances,
+                  const BlockedCells& blocked, const KnownVehicle& vehicle) {
+  const LeastClearance least(clearances.least_m, blocked.clearance_m(from, vehicle, clearances.least_m));
+  const double sign = distance_m < 0.0 ? -1.0 : 1.0;
+  const int steps = static_cast<int>(std::floor(std::abs(distance_m) / DrivenArc::kStep_m));
+  for (int i = 1; i <= steps; ++i) {
+    const double way = i * DrivenArc::kStep_m;
+    const PlanPose pose = from.along(curvature_1_m, sign * way);
+    if (blocked.clearance_m(pose, vehicle, clearances.least_m) < least.after(way)) return way - DrivenArc::kStep_m;
+  }
+  return std::abs(distance_m);
+}
+
+}  // namespace canyon::mission

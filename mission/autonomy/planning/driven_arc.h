@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "canyon/mission/autonomy/perception/blocked_cells.h"
+#include "canyon/mission/autonomy/planning/tracker.h"
+
+namespace canyon::mission {
+
+/// The vehicle as it moves in the local frame.
+struct MovingBody {
+  PlanPose pose;
+  double speed_m_s = 0.0;
+  double steering_rad = 0.0;
+};
+
+/// What is driven when a tracker follows a line with the vehicle's limits of steering angle and rate, and what the body
+/// sweeps on the way.
+struct DrivenArc {
+  static constexpr double kStep_m = 0.25;
+
+  double free_m = 0.0;               ///< driven before the body comes too near to a blocked cell
+  bool ends_free = false;            ///< nothing is in the way
+  double closeness_m2 = 0.0;         ///< way driven, times how much nearer than the comfortable clearance
+  std::vector<float> curvature_1_m;  ///< at every step
+};
+
+struct Clearances {
+  double least_m = 0.3;    ///< from the body to a blocked cell, at which it counts as hit
+  double comfort_m = 0.8;  ///< nearer than this costs
+};
+
+/// Steering once the vehicle has been asked for a curvature for a while.
+double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const KnownVehicle& vehicle);
+
+/// Over `length_m`, the first pose being the body's own. A body that already stands nearer to something than the least
+/// clearance may go on where it does not come nearer.
+DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
+                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle);
+
+/// How far the body may go along an arc of constant curvature, in reverse if `distance_m` is negative; at most that.
+double free_along(const PlanPose& from, double curvature_1_m, double distance_m, const Clearances& clearances,
+                  const BlockedCells& blocked, const KnownVehicle& vehicle);
+
+}  // namespace canyon::mission

@@ -1,0 +1,193 @@
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "canyon/core/units.h"
+#include "canyon/mission/autonomy/perception/lane_reference.h"
+#include "canyon/mission/autonomy/perception/local_frame.h"
+#include "canyon/mission/autonomy/reference.h"
+
+namespace canyon::mission {
+namespace {
+
+const GpsTime kSeenFrom = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+constexpr double kMast_m = 1.8;
+
+/// A box with level faces in the world's axes; its lower corner and its upper one.
+struct Box {
+  Eigen::Vector3d low, high;
+};
+
+/// A parked car of the built-in city, headed along x, by the middle of its ground: hull and cabin.
+std::vector<Box> car_at(double x, double y) {
+  return {{{x - 2.25, y - 0.9, 0.2}, {x + 2.25, y + 0.9, 0.9}}, {{x - 1.4, y - 0.78, 0.9}, {x + 1.0, y + 0.78, 1.5}}};
+}
+
+/// What sixteen beams from -15 to 15 degrees see from `p`, 1.8 m over ground that rises by `slope` along x.
+LidarScan scan_from(const Eigen::Vector2d& p, const std::vector<Box>& boxes, GpsTime t, double slope = 0.0) {
+  LidarScan scan;
+  scan.t = t;
+  const Eigen::Vector3d from(p.x(), p.y(), slope * p.x() + kMast_m);
+  for (int ring = 0; ring < 16; ++ring) {
+    const double elevation = (2 * ring - 15) * kDegree;
+    for (int step = 0; step < 900; ++step) {
+      const double azimuth = step * 0.4 * kDegree;
+      const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                              std::sin(elevation));
+      double nearest = 80.0;
+      const double down = slope * d.x() - d.z();
+      if (down > 0.0) nearest = std::min(nearest, kMast_m / down);
+      for (const Box& box : boxes) {
+        double enter = 0.0, leave = 80.0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const double a = (box.low[axis] - from[axis]) / d[axis], b = (box.high[axis] - from[axis]) / d[axis];
+          enter = std::max(enter, std::min(a, b));
+          leave = std::min(leave, std::max(a, b));
+        }
+        if (enter < leave) nearest = std::min(nearest, enter);
+      }
+      if (nearest >= 80.0) continue;
+      const Eigen::Vector3f q = (nearest * d).cast<float>();
+      scan.points.push_back({q.x(), q.y(), q.z(), 0.3F, 0.0F, static_cast<std::uint16_t>(ring), 0});
+    }
+  }
+  return scan;
+}
+
+/// A ground_grid, shown scans from places.
+class Eyes {
+ public:
+  Eyes() : perception_(model_row(perceptions(), "ground_grid").make(ReferenceParameters{}.perception.model.own, {})) {}
+  /// `height_m` is where the estimate has the vehicle.
+  void see(const Eigen::Vector2d& p, const std::vector<Box>& boxes, double slope = 0.0, double height_m = 0.0) {
+    t_s_ += 0.1;
+    const Eigen::Quaterniond R(Eigen::AngleAxisd(-std::atan(slope), Eigen::Vector3d::UnitY()));
+    const Pose X_OB{R, {p.x(), p.y(), height_m}};
+    const Pose X_OL{Eigen::Quaterniond::Identity(), {p.x(), p.y(), height_m + kMast_m}};
+    EXPECT_TRUE(perception_->see(scan_from(p, boxes, kSeenFrom + t_s_, slope), X_OL, X_OB, t_s_));
+  }
+  void wait(double s) { t_s_ += s; }
+  const BlockedCells& blocked() const { return perception_->blocked(); }
+  /// How far the vehicle may go straight ahead from p.
+  double free_m(const Eigen::Vector2d& p) const {
+    return free_along({p, 0.0}, 0.0, 25.0, {}, perception_->blocked(), {});
+  }
+  const Perception& perception() const { return *perception_; }
+
+ private:
+  std::unique_ptr<Perception> perception_;
+  double t_s_ = 0.0;
+};
+
+TEST(GroundGrid, LevelAndSlopingStreetsAreFree) {
+  for (const double slope : {0.0, 0.08, -0.08}) {
+    Eyes eyes;
+    for (int k = 0; k < 30; ++k) eyes.see({0.5 * k, 0.0}, {}, slope);
+    EXPECT_TRUE(eyes.blocked().all().empty()) << slope;
+    EXPECT_GT(eyes.perception().seen_m({1.0, 0.0}), 20.0) << slope;
+  }
+}
+
+// A car ahead, wherever it stands within sight: its back is 2.25 m before its middle. Cells are of 0.2 m, steps of
+// 0.25 m; what it keeps clear is the bumper at 2.2 m, and 0.3 m more. Nearer than 6.7 m the lowest beam passes over
+// what may stand before it, 1 m at most; from 12 m on the hull may lie between two rings, and its cabin, 0.85 m on, is
+// what is seen.
+TEST(GroundGrid, ACarAheadBlocksAtEveryDistance) {
+  for (double gap_m = 0.6; gap_m < 18.0; gap_m += 0.43) {
+    Eyes eyes;
+    const double back_m = 2.2 + gap_m;
+    for (int k = 0; k < 3; ++k) eyes.see({0.0, 0.0}, car_at(back_m + 2.25, 0.1));
+    EXPECT_LE(eyes.free_m({0.0, 0.0}), gap_m + (gap_m > 12.0 ? 0.85 : 0.0)) << gap_m;
+    EXPECT_GE(eyes.free_m({0.0, 0.0}), gap_m - 0.3 - 0.2 - 0.25 - (back_m < 6.7 ? 1.0 : 0.0)) << gap_m;
+  }
+}
+
+TEST(GroundGrid, OneScanAloneBlocksNothing) {
+  Eyes eyes;
+  eyes.see({0.0, 0.0}, car_at(12.0, 0.0));
+  EXPECT_TRUE(eyes.blocked().all().empty());
+  eyes.see({0.0, 0.0}, car_at(12.0, 0.0));
+  EXPECT_FALSE(eyes.blocked().all().empty());
+}
+
+TEST(GroundGrid, WhatDrivesAwayIsForgotten) {
+  Eyes eyes;
+  for (int k = 0; k < 10; ++k) eyes.see({0.0, 0.0}, car_at(12.0, 0.0));
+  for (int k = 0; k < 25; ++k) eyes.see({0.0, 0.0}, {});
+  EXPECT_TRUE(eyes.blocked().all().empty());
+}
+
+// Beside the vehicle the lowest beam passes over a hull: it stands there all the same.
+TEST(GroundGrid, WhatItsBeamsPassOverStays) {
+  Eyes eyes;
+  const std::vector<Box> kerbstones{{{9.0, 1.5, 0.0}, {12.0, 2.0, 0.6}}};
+  for (int k = 0; k <= 20; ++k) eyes.see({0.5 * k, 0.0}, kerbstones);
+  for (int k = 0; k < 60; ++k) eyes.see({10.0, 0.0}, kerbstones);
+  const double clearance = eyes.blocked().clearance_m({{10.0, 0.0}, 0.0}, {}, 2.0);
+  EXPECT_LE(clearance, 0.75 + 0.1 + 0.05);  // half a cell, and LIDAR steps of 0.4 degrees
+  EXPECT_GE(clearance, 0.75 - 0.1);
+}
+
+// The fault that sent the one of 2012 beside the street: heights of the estimate that drift, or jump, change nothing.
+TEST(GroundGrid, ErrorsOfTheEstimatesHeightNeverMatter) {
+  Eyes steady, drifting;
+  for (int k = 0; k < 30; ++k) {
+    const Eigen::Vector2d p(0.4 * k, 0.0);
+    steady.see(p, car_at(25.0, 2.0), 0.03);
+    drifting.see(p, car_at(25.0, 2.0), 0.03, -7.0 + 0.1 * k + (k > 15 ? 3.0 : 0.0));
+  }
+  ASSERT_EQ(drifting.blocked().all().size(), steady.blocked().all().size());
+  for (std::size_t i = 0; i < steady.blocked().all().size(); ++i)
+    EXPECT_EQ(drifting.blocked().all()[i], steady.blocked().all()[i]);
+}
+
+// A fix moves the estimate by 2 m: what was seen stays where it stands, and the route moves.
+TEST(LocalFrame, AJumpOfTheEstimateDoesNotMoveIt) {
+  LocalFrame frame;
+  NavEstimate estimate;
+  estimate.v_WB_W = {3.0, 0.0, 0.0};
+  for (int k = 0; k <= 100; ++k) {
+    estimate.t = kSeenFrom + 0.01 * k;
+    estimate.X_WB.p = {0.03 * k, k < 50 ? 0.0 : 2.0, 5.0};
+    frame.follow(estimate, false);
+  }
+  EXPECT_NEAR(frame.body().p_m.x(), 3.0, 1e-12);
+  EXPECT_NEAR(frame.body().p_m.y(), 0.0, 1e-12);
+  EXPECT_NEAR(frame.from_O_to_W().y(), 2.0, 1e-12);
+  EXPECT_NEAR(frame.driven_m(), 3.0, 1e-12);
+  frame.follow(estimate, true);
+  EXPECT_NEAR(frame.driven_m(), 3.0, 1e-12) << "it is known to stand";
+}
+
+double middle_after(double seconds, double sigma_m, double wrong_by_m, double right_wall_m = -9.0) {
+  const auto lane = model_row(lane_references(), "seen_street").make(ReferenceParameters{}.lane.model.own);
+  const Path route({{0.0, 0.0}, {100.0, 0.0}}, 6.5);
+  std::vector<Eigen::Vector2d> walls;
+  for (double x = 0.0; x < 60.0; x += 0.2) {
+    walls.emplace_back(x, 9.0);
+    walls.emplace_back(x, right_wall_m);
+  }
+  const BlockedCells blocked({20.0, 0.0}, walls);
+  double middle = 0.0;
+  // In O the street lies about y = 0; the estimate has the vehicle `wrong_by_m` too far left.
+  for (double t = 0.0; t < seconds; t += 0.1)
+    middle = lane->middle_m({route, 20.0, {0.0, wrong_by_m}, {{20.0, 0.0}, 0.0}, sigma_m, 0.1, blocked});
+  return middle;
+}
+
+// Between two middles of the street, each with its variance, the lane is where the weighted mean has it.
+TEST(SeenStreet, WeighsTheStreetAgainstTheEstimate) {
+  EXPECT_NEAR(middle_after(20.0, 0.5, 2.0), 2.0 * 0.25 / (0.25 + 1.0), 1e-12);
+  EXPECT_NEAR(middle_after(20.0, 3.0, 2.0), 2.0 * 9.0 / (9.0 + 1.0), 1e-12);
+  // It goes there at half a metre a second.
+  EXPECT_NEAR(middle_after(1.0, 3.0, 2.0), 0.5, 0.05 + 1e-12);
+  // Farther off than three sigma for longer than three seconds: the filter is surer than right.
+  EXPECT_LT(middle_after(2.5, 0.3, 6.0), 0.6);
+  EXPECT_GT(middle_after(30.0, 0.3, 6.0), 5.5);
+  // Too wide for a street.
+  EXPECT_EQ(middle_after(20.0, 3.0, 2.0, -20.0), 0.0);
+}
+
+}  // namespace
+}  // namespace canyon::mission
