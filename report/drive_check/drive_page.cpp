@@ -8,11 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
-#include "canyon/core/process/embedded.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
-#include "canyon/report/draw/theme.h"
+#include "canyon/report/draw/page.h"
 #include "canyon/report/format.h"
 #include "canyon/report/read/epoch_table.h"
 #include "canyon/report/read/json_fields.h"
@@ -196,12 +195,6 @@ std::string satellites_section(const Signals& signals) {
                  both_tags() + figure(draw(chart), {}));
 }
 
-std::string embedded_text(std::string_view key) {
-  const auto bytes = embedded_file(key);
-  CANYON_CHECK(bytes.has_value(), "not embedded: ", key);
-  return std::string(*bytes);
-}
-
 }  // namespace
 
 Result<std::string> drive_page(const std::string& directory) {
@@ -220,12 +213,8 @@ Result<std::string> drive_page(const std::string& directory) {
   const double epochs = f.required_number("epochs");
   if (error) return *error;
   std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n<link "
-      "rel=\"icon\" href=\"data:,\">\n<title>Canyon: a recorded drive and its simulation</title>\n<style>\n" +
-      theme_css(2) + embedded_text("report/assets/report.css") + "</style>\n</head>\n<body>\n<main>\n<header>\n";
-  out +=
-      "<p class=\"kicker\">Canyon \xC2\xB7 a recorded drive and its simulation</p>\n<h1>Fixes of the simulated drive "
+      "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 a recorded drive and its simulation</p>\n<h1>Fixes of the "
+      "simulated drive "
       "are " +
       escape_html(show_quantity(f.object("simulated").number("fix_h50_m"), "m")) +
       " off in the median, of the recorded " +
@@ -234,7 +223,7 @@ Result<std::string> drive_page(const std::string& directory) {
       ".</h1>\n<nav aria-label=\"Contents\"><a href=\"#figures\">Side by side</a> <a "
       "href=\"#distributions\">Distributions</a> <a href=\"#satellites\">Satellites</a></nav>\n</header>\n";
   out += figures + distributions_section(signals) + satellites_section(signals);
-  return out + "</main>\n<script>\n" + embedded_text("report/assets/report.js") + "</script>\n</body>\n</html>\n";
+  return whole_page("Canyon: a recorded drive and its simulation", 2, out);
 }
 
 }  // namespace canyon::report
