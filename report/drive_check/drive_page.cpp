@@ -12,6 +12,7 @@
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/page.h"
+#include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
 #include "canyon/report/read/epoch_table.h"
 #include "canyon/report/read/json_fields.h"
