@@ -81,7 +81,8 @@ class RandomMission {
 /// How it ended, with the number, for messages.
 inline std::string drive_random(std::uint64_t number) {
   const RandomMission mission(number);
-  const auto prepared = prepare(mission.config(), scenes());
+  SceneCache own;  // each has other cars: the shared one would keep them all
+  const auto prepared = prepare(mission.config(), own);
   if (!prepared.ok()) return prepared.error().str();
   Omissions unread;  // nobody looks at maps
   unread.maps = unread.keyframes = unread.unkept_rays = true;
