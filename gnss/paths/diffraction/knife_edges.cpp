@@ -6,6 +6,7 @@
 
 #include "canyon/gnss/paths/diffraction/diffraction.h"
 #include "canyon/gnss/paths/diffraction/edge_air.h"
+#include "canyon/gnss/paths/diffraction/edges_near.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
 #include "canyon/scene/scene_at.h"
 
@@ -62,41 +63,12 @@ class KnifeEdges final : public DiffractionModel {
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
     if (waves.empty()) return;
-    const auto& edges = scene.scene().edges();
-    double lowest = 1.0;
-    for (const Eigen::Vector3d& s : waves.directions_W()) lowest = std::min(lowest, s.z());
-    const double reach_m = largest_detour_m(waves.longest_wavelength_m());
-    std::vector<std::uint32_t> candidates;
-    edges.shading(p_A_W, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_m, candidates);
     std::vector<double> nearest_nu(out.size(), kDeepestLitNu);
-    for (const std::uint32_t i : candidates) {
-      const scene::Edge& edge = edges.edges()[i];
-      const Eigen::Vector3d to_middle_W = 0.5 * (edge.a_W + edge.b_W) - p_A_W;
-      const double half_m = 0.5 * (edge.b_W - edge.a_W).norm();
-      const double distance_m = to_middle_W.norm();
-      // The whole edge, and how far a wave may bend there, lie in a cone around its middle.
-      const double near_m = std::max(distance_m - half_m, 0.1);
-      const double wide = std::min(half_m / distance_m, 1.0), bent = std::sqrt(2.0 * reach_m / near_m);
-      const double angle_rad = std::asin(wide) + bent * 1.1;
-      const double least = angle_rad < 3.0 ? std::cos(angle_rad) * distance_m : -distance_m;
-      for (std::size_t k = 0; k < out.size(); ++k) {
-        const Eigen::Vector3d& s = waves.direction_W(k);
-        if (to_middle_W.dot(s) < least) continue;
-        const double wavelength_m = waves.wavelength_m(k);
-        const auto b = bend(edge, p_A_W, s);
-        if (!b || b->detour_m > largest_detour_m(wavelength_m) || b->shadow == out[k].line_of_sight) continue;
-        if (out[k].line_of_sight) {
-          const double nu = knife_edge_nu(b->detour_m, wavelength_m);
-          if (nu < nearest_nu[k] && clear(edge, *b, p_A_W, s, scene, counters, nullptr) &&
-              ends_in_air(edge, b->point_W, scene)) {
-            nearest_nu[k] = nu;
-            out[k].direct = knife_edge_field(-nu);
-          }
-        } else {
-          bent_way(edge, *b, p_A_W, {s, wavelength_m}, scene, counters, out[k]);
-        }
-      }
-    }
+    look_at_edges_near(
+        p_A_W, waves, scene, largest_detour_m(waves.longest_wavelength_m()),
+        [&](const scene::Edge& edge, std::size_t k) {
+          look(edge, p_A_W, {waves.direction_W(k), waves.wavelength_m(k)}, scene, counters, nearest_nu[k], out[k]);
+        });
   }
 
  private:
@@ -105,6 +77,19 @@ class KnifeEdges final : public DiffractionModel {
     const Eigen::Vector3d& s;
     double length_m;
   };
+
+  void look(const scene::Edge& edge, const Eigen::Vector3d& p_W, const Wave& wave, const scene::SceneAt& scene,
+            GnssCounters& counters, double& nearest_nu, SignalPaths& out) const {
+    const auto b = bend(edge, p_W, wave.s);
+    if (!b || b->detour_m > largest_detour_m(wave.length_m) || b->shadow == out.line_of_sight) return;
+    if (!out.line_of_sight) return bent_way(edge, *b, p_W, wave, scene, counters, out);
+    const double nu = knife_edge_nu(b->detour_m, wave.length_m);
+    if (nu < nearest_nu && clear(edge, *b, p_W, wave.s, scene, counters, nullptr) &&
+        ends_in_air(edge, b->point_W, scene)) {
+      nearest_nu = nu;
+      out.direct = knife_edge_field(-nu);
+    }
+  }
 
   /// Beyond it the field is too weak to matter, and the lit side's ripples too small.
   double largest_detour_m(double wavelength_m) const { return gnss::largest_detour_m(largest_nu_, wavelength_m); }

@@ -8,6 +8,7 @@
 #include "canyon/gnss/paths/bounce.h"
 #include "canyon/gnss/paths/diffraction/diffraction.h"
 #include "canyon/gnss/paths/diffraction/edge_air.h"
+#include "canyon/gnss/paths/diffraction/edges_near.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
 #include "canyon/gnss/paths/diffraction/wedge.h"
 #include "canyon/scene/scene_at.h"
@@ -80,25 +81,11 @@ class Wedges final : public DiffractionModel {
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
     if (waves.empty()) return;
-    const auto& edges = scene.scene().edges();
-    double lowest = 1.0;
-    for (const Eigen::Vector3d& s : waves.directions_W()) lowest = std::min(lowest, s.z());
-    const double reach_m = largest_detour_m(largest_nu_, waves.longest_wavelength_m());
-    thread_local std::vector<std::uint32_t> candidates;
-    edges.shading(p_A_W, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_m, candidates);
     thread_local std::vector<Found> found;
     found.clear();
-    for (const std::uint32_t i : candidates) {
-      const scene::Edge& edge = edges.edges()[i];
-      const Eigen::Vector3d to_middle_W = 0.5 * (edge.a_W + edge.b_W) - p_A_W;
-      const double half_m = 0.5 * (edge.b_W - edge.a_W).norm(), distance_m = to_middle_W.norm();
-      // The edge, and how far a wave may bend there, lie in a cone around its middle.
-      const double near_m = std::max(distance_m - half_m, 0.1);
-      const double angle_rad = std::asin(std::min(half_m / distance_m, 1.0)) + 1.1 * std::sqrt(2.0 * reach_m / near_m);
-      const double least = angle_rad < 3.0 ? std::cos(angle_rad) * distance_m : -distance_m;
-      for (std::size_t k = 0; k < out.size(); ++k)
-        if (to_middle_W.dot(waves.direction_W(k)) >= least) bend(edge, p_A_W, waves, k, scene, counters, found, out[k]);
-    }
+    look_at_edges_near(
+        p_A_W, waves, scene, largest_detour_m(largest_nu_, waves.longest_wavelength_m()),
+        [&](const scene::Edge& edge, std::size_t k) { bend(edge, p_A_W, waves, k, scene, counters, found, out[k]); });
   }
 
  private:
