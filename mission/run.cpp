@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "canyon/core/process/parallel.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/mission_run.h"
@@ -215,6 +216,7 @@ Result<RunRecord> drive_watched(std::unique_ptr<MissionRun> whole, Progress* pro
   std::optional<Result<bool>> driven;
   std::exception_ptr thrown;
   std::thread driver([&] {
+    const OwnRoom room;  // whoever waits here may be a worker of a loop over runs
     std::optional<Result<bool>> result;
     std::exception_ptr exception;
     try {

@@ -29,6 +29,20 @@ int all_cores() {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+/// Where loops of the calling thread run; null: in the pool's.
+thread_local tbb::task_arena* own_arena = nullptr;
+
+class InArena {
+ public:
+  explicit InArena(tbb::task_arena* arena) : before_(own_arena) { own_arena = arena; }
+  ~InArena() { own_arena = before_; }
+  InArena(const InArena&) = delete;
+  InArena& operator=(const InArena&) = delete;
+
+ private:
+  tbb::task_arena* before_;
+};
+
 std::mutex pool_mutex;
 std::shared_ptr<Pool> current_pool;
 
@@ -56,9 +70,11 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
   if (n == 0) return;
   const std::size_t chunks = (n - 1) / chunk + 1;
   CpuAccount* const account = charged_cpu_account();
+  tbb::task_arena* const own = own_arena;
   const auto run_chunk = [&](std::size_t i) {
     throw_if_cancelled();
     const ChargeCpu charge(account);
+    const InArena in(own);  // loops of the chunk stay in the room of this one
     body(i * chunk, i * chunk + std::min(chunk, n - i * chunk));
   };
   const std::shared_ptr<Pool> keep = pool();
@@ -67,7 +83,7 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
     return;
   }
   // Isolated: a thread that waits for a nested loop takes up only that loop's chunks, never an unrelated one's.
-  keep->arena.execute([&] {
+  (own != nullptr ? *own : keep->arena).execute([&] {
     tbb::this_task_arena::isolate([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, chunks, 1),
@@ -77,6 +93,19 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
           tbb::simple_partitioner());
     });
   });
+}
+
+struct OwnRoom::Room {
+  tbb::task_arena arena{threads()};
+  tbb::task_arena* before = own_arena;
+};
+
+OwnRoom::OwnRoom() : room_(std::make_unique<Room>()) {
+  own_arena = &room_->arena;
+}
+
+OwnRoom::~OwnRoom() {
+  own_arena = room_->before;
 }
 
 void run_on_one_thread(const std::function<void()>& work) {

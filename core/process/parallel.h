@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 namespace canyon {
 
@@ -14,6 +15,21 @@ int threads();
 /// goes to the caller's account (core/process/cpu_time.h), whichever thread works on a chunk.
 /// Before each chunk it looks at the cancel flag and throws Cancelled: chunks are to take less than 100 ms.
 void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body);
+
+/// While it lives, loops that the calling thread starts have room of their own. A thread that workers of other loops
+/// wait for needs it: in the common room it would wait for the places that they hold. Its loops are helped by whoever
+/// is idle.
+class OwnRoom {
+ public:
+  OwnRoom();
+  ~OwnRoom();
+  OwnRoom(const OwnRoom&) = delete;
+  OwnRoom& operator=(const OwnRoom&) = delete;
+
+ private:
+  struct Room;
+  std::unique_ptr<Room> room_;
+};
 
 /// Runs `work` so that whatever it starts on oneTBB stays on the calling thread: for library calls whose result would
 /// depend on the number of threads.

@@ -100,6 +100,21 @@ TEST_F(Parallel, NestedLoopsFinish) {
   EXPECT_EQ(calls.load(), 600);
 }
 
+// 2026-11-23: runs that were compared waited for threads of theirs, and those for the places that the runs held.
+TEST_F(Parallel, ThreadsThatALoopWaitsForHaveRoomForLoopsOfTheirs) {
+  set_threads(2);
+  std::atomic<int> done{0};
+  parallel_for(6, 1, [&](std::size_t, std::size_t) {
+    std::thread waited_for([&] {
+      const OwnRoom room;
+      parallel_for(40, 1,
+                   [&](std::size_t, std::size_t) { parallel_for(8, 1, [&](std::size_t, std::size_t) { ++done; }); });
+    });
+    waited_for.join();
+  });
+  EXPECT_EQ(done, 6 * 40 * 8);
+}
+
 TEST_F(Parallel, ExceptionsReachTheCaller) {
   for (const int count : {1, 4}) {
     set_threads(count);
