@@ -101,13 +101,18 @@ StressFigure wild_commands() {
   const double slack = 1.0 + 4.0 * kEpsilon * 1e3;
   for (int k = 0; k < 4000; ++k) {
     const double size = std::pow(10.0, (k * 7) % 309), sign = k % 2 == 0 ? 1.0 : -1.0;
-    const KinematicState& s = vehicle.advance({k % 500 < 300 ? size : -size, sign * size});
+    const double asked = k % 500 < 300 ? 1.0 : -1.0;
+    const KinematicState& s = vehicle.advance({asked * size, sign * size});
     const double speed = vehicle.speed_m_s();
-    worst.look(speed, config.max_speed_m_s * slack);
-    worst.look(speed < 0.0 ? stress::kInfinity : 0.0, 1.0);
-    const double along = s.a_WB_W.head<2>().dot((s.X_WB.R * Eigen::Vector3d::UnitX()).head<2>());
+    worst.look(speed, (speed < 0.0 ? config.max_reverse_m_s : config.max_speed_m_s) * slack);
+    // In reverse what speeds it up points backwards.
+    const double way = speed != 0.0 ? std::copysign(1.0, speed) : asked;
+    const double along = way * s.a_WB_W.head<2>().dot((s.X_WB.R * Eigen::Vector3d::UnitX()).head<2>());
     worst.look(along, (along > 0.0 ? config.max_acceleration_m_s2 : config.max_deceleration_m_s2) * slack + 1e-9);
-    if (speed < 0.5) continue;
+    if (std::abs(speed) < 0.5) {
+      steering = 0.0;
+      continue;
+    }
     const double curvature = s.w_WB_B.z() / speed;
     worst.look(curvature, most_curvature * slack + 1e-6);  // pitch and roll of the flat road are below 1e-4
     const double now = std::atan(curvature * config.wheelbase_m);

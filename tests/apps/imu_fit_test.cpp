@@ -145,7 +145,7 @@ TEST_F(ImuFitTest, AMissingOrWrongMethodIsNamed) {
                  "canyon imu fit: --static, --positions together, expected one of --static, --positions, --truth\n");
   expect_mistake("imu fit given.csv --statik", "canyon imu fit: no option \"--statik\", expected \"--static\"?\n");
   expect_mistake("imu fit --static", "canyon imu fit: LOG is missing");
-  expect_mistake("imu", "canyon imu: no verb given, expected one of allan, fit, simulate, dead-reckon, paper\n");
+  expect_mistake("imu", "canyon imu: no verb given, expected one of allan, fit, simulate, dead-reckon\n");
 }
 
 }  // namespace
