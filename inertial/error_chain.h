@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ struct ChainSetup {
   double rate_hz = 100.0;
   std::vector<std::string> leave_out{};  ///< names of links (inertial/errors/error_link.h)
   Environment environment{};
+  std::optional<std::uint64_t> noise_seed{};  ///< of the white noise; none: `seed`
 };
 
 struct ErrorChainModel {

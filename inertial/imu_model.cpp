@@ -104,9 +104,14 @@ Result<Environment> environment_of(const ImuConfig& config) {
 
 }  // namespace
 
-Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, std::uint64_t seed) {
-  ChainSetup setup{
-      .entry = {}, .seed = seed, .rate_hz = config.rate_hz, .leave_out = config.leave_out, .environment = {}};
+Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, std::uint64_t seed,
+                                                     std::optional<std::uint64_t> noise_seed) {
+  ChainSetup setup{.entry = {},
+                   .seed = seed,
+                   .rate_hz = config.rate_hz,
+                   .leave_out = config.leave_out,
+                   .environment = {},
+                   .noise_seed = noise_seed};
   CANYON_TRY(setup.entry, entry_of(config));
   CANYON_TRY(setup.environment, environment_of(config));
   return make_error_chain(config.errors, setup);
@@ -117,8 +122,9 @@ Result<ImuNoise> datasheet_noise(const ImuConfig& config) {
   return entry.noise();
 }
 
-Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame) {
-  CANYON_TRY(std::unique_ptr<ErrorChain> errors, make_error_chain(config, seed));
+Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame,
+                                           std::optional<std::uint64_t> noise_seed) {
+  CANYON_TRY(std::unique_ptr<ErrorChain> errors, make_error_chain(config, seed, noise_seed));
   return std::unique_ptr<ImuModel>(
       std::make_unique<StrapdownImu>(frame, config.lever_arm_m, mounting(config, seed), std::move(errors)));
 }

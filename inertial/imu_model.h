@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,10 +32,14 @@ class ImuModel {
   virtual const ImuNoise& noise() const = 0;
 };
 
-Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame);
+/// `noise_seed`, where given, is that of the white noise alone, so that it can be another while biases and gains stay.
+/// Chains that are not made of links (inertial/error_chain.h) have none of their own.
+Result<std::unique_ptr<ImuModel>> make_imu(const ImuConfig& config, std::uint64_t seed, const LocalFrame& frame,
+                                           std::optional<std::uint64_t> noise_seed = {});
 
 /// The error chain of that configuration alone, for increments that come from elsewhere.
-Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, std::uint64_t seed);
+Result<std::unique_ptr<ErrorChain>> make_error_chain(const ImuConfig& config, std::uint64_t seed,
+                                                     std::optional<std::uint64_t> noise_seed = {});
 
 /// The datasheet noise of a catalogue entry.
 Result<ImuNoise> catalogue_noise(const std::string& sensor);

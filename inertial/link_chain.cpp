@@ -74,8 +74,11 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 /// `only`: the links the chain may have; empty = all.
 std::unique_ptr<ErrorChain> link_chain(const ChainSetup& setup, const UnitFigures& figures, const ImuNoise& noise,
                                        const std::vector<std::string>& only) {
-  const LinkSetup link_setup{
-      .figures = figures, .environment = setup.environment, .seed = setup.seed, .dt_s = 1.0 / setup.rate_hz};
+  const LinkSetup link_setup{.figures = figures,
+                             .environment = setup.environment,
+                             .seed = setup.seed,
+                             .dt_s = 1.0 / setup.rate_hz,
+                             .noise_seed = setup.noise_seed};
   std::vector<std::unique_ptr<ErrorLink>> links;
   for (const auto& row : error_links()) {
     if (contains(setup.leave_out, row.name) || (!only.empty() && !contains(only, row.name))) continue;

@@ -33,6 +33,15 @@ struct CorrelatorDesign {
   double integration_s = 0.020;  ///< predetection
 };
 
+/// What becomes of satellites whose direct path is blocked; all but the first are cuts for studies of what errs.
+enum class HiddenSignals {
+  kAsReceived,  ///< they are tracked by their echoes where these are strong enough
+  kDropped,     ///< they are not tracked
+  /// They are tracked by their echoes where these are strong enough; else, as any satellite that is not tracked, as if
+  /// the sky were clear: with the free direct signal's C/N0 and without multipath
+  kInSight,
+};
+
 /// Keys of a receiver's channels, alike for all signals.
 struct TrackingConfig {
   enum class Correlator { kEarlyLate, kDoubleDelta };
@@ -48,6 +57,8 @@ struct TrackingConfig {
   double carrier_loop_hz = 15.0;
   double integration_ms = 20.0;
   double thermal_noise_scale = 1.0;  ///< of code, carrier and Doppler, 1 = physical
+  double multipath_scale = 1.0;      ///< of what echoes make of code, carrier and Doppler, 1 = physical
+  HiddenSignals hidden_signals = HiddenSignals::kAsReceived;
 
   CorrelatorDesign channel(Modulation modulation_of_channel) const;
 };

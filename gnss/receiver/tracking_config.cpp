@@ -27,6 +27,11 @@ constexpr ModelRow<Tracking::Discriminator> kDiscriminators[] = {
     {"power", Tracking::Discriminator::kPower, "early minus late of powers"},
     {"coherent", Tracking::Discriminator::kCoherent, "early minus late in phase"},
 };
+constexpr ModelRow<HiddenSignals> kHiddenSignals[] = {
+    {"as_received", HiddenSignals::kAsReceived, "tracked by their echoes where these are strong enough"},
+    {"dropped", HiddenSignals::kDropped, "not tracked"},
+    {"in_sight", HiddenSignals::kInSight, "what is not tracked is received as under a clear sky"},
+};
 
 }  // namespace
 
@@ -47,6 +52,12 @@ void visit(FieldVisitor& f, TrackingConfig& c) {
   f.number("integration_ms", c.integration_ms, {1.0, 40.0}, "predetection integration");
   f.number("thermal_noise_scale", c.thermal_noise_scale, {0.0, 100.0},
            "thermal noise of code, carrier and Doppler, 1 = physical");
+  f.number("multipath_scale", c.multipath_scale, {0.0, 100.0},
+           "what echoes make of code, carrier and Doppler, 1 = physical; C/N0 and tracking stay");
+  f.choice(
+      "hidden_signals", c.hidden_signals, ModelTable<HiddenSignals>(kHiddenSignals),
+      "satellites whose direct path is blocked: as received; not tracked; or, as all that is not tracked, received "
+      "as under a clear sky");
 }
 
 CorrelatorDesign TrackingConfig::channel(Modulation modulation_of_channel) const {

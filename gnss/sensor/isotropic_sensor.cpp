@@ -68,7 +68,7 @@ Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const ModelParameters&
   if (p.max_m < p.min_m)
     return Error{"", 0, "gnss.isotropic_max_m", "is " + join_values(p.max_m),
                  "at least gnss.isotropic_min_m = " + join_values(p.min_m)};
-  return std::unique_ptr<GnssSensor>(std::make_unique<IsotropicSensor>(p, at.seed, at.scene.frame()));
+  return std::unique_ptr<GnssSensor>(std::make_unique<IsotropicSensor>(p, at.noise_seed, at.scene.frame()));
 }
 
 }  // namespace canyon::gnss

@@ -61,6 +61,7 @@ Result<PseudorangeParts> make_pseudorange_parts(const SensorSetup& at) {
   CANYON_TRY(parts.reported_covariance, c.position.reported_covariance.make("gnss.reported_covariance"));
   CANYON_TRY(parts.link, c.link.budget());
   parts.locks = lock_parameters(c, at.seed);
+  parts.noise_seed = at.noise_seed;
   if (!parts.solver->solves_clock() && !parts.clock->perfect())
     return Error{"", 0, "gnss.receiver_clock, gnss.solver",
                  "solver \"" + c.position.solver.name + "\" has no unknown for the receiver clock \"" +

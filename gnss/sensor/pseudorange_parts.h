@@ -32,6 +32,7 @@ struct PseudorangeParts {
   std::unique_ptr<RangeErrorReport> reported_covariance;
   LinkBudget link;
   SignalLockParameters locks;
+  std::uint64_t noise_seed = 0;  ///< of the noise of code, carrier, Doppler and C/N0
   std::vector<std::string> warnings;
 };
 

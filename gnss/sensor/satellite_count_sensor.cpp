@@ -121,8 +121,8 @@ Result<std::unique_ptr<GnssSensor>> make_satellite_count_sensor(const ModelParam
     return Error{"", 0, "gnss.count_noise_max_m", "is " + join_values(p.noise_max_m),
                  "at least gnss.count_noise_min_m = " + join_values(p.noise_min_m)};
   CANYON_TRY(SatelliteSource source, make_satellite_source(at.config.satellites, at.start, at.end));
-  return std::unique_ptr<GnssSensor>(std::make_unique<SatelliteCountSensor>(p, at.config.mask_deg * kDegree, at.seed,
-                                                                            at.scene.frame(), std::move(source)));
+  return std::unique_ptr<GnssSensor>(std::make_unique<SatelliteCountSensor>(
+      p, at.config.mask_deg * kDegree, at.noise_seed, at.scene.frame(), std::move(source)));
 }
 
 }  // namespace canyon::gnss

@@ -44,8 +44,9 @@ std::int64_t epoch_index(const GnssConfig& config, double t_s) {
 }
 
 Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
-                                                     GpsTime end, const scene::Scene& scene) {
-  return config.model.make("gnss.model", SensorSetup{config, seed, start, end, scene});
+                                                     GpsTime end, const scene::Scene& scene,
+                                                     std::optional<std::uint64_t> noise_seed) {
+  return config.model.make("gnss.model", SensorSetup{config, seed, start, end, scene, noise_seed.value_or(seed)});
 }
 
 }  // namespace canyon::gnss

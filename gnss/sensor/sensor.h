@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,7 +61,10 @@ struct GnssConfig;  // gnss/sensor/gnss_config.h
 std::int64_t epoch_index(const GnssConfig& config, double t_s);
 
 /// Builds the configured sensor: reads the navigation file if one is named and checks that it covers [start, end].
+/// `noise_seed`, where given, is that of what it draws anew at every epoch (thermal noise, errors that are white), so
+/// that these can be others while delays, clocks and ambiguities stay.
 Result<std::unique_ptr<GnssSensor>> make_gnss_sensor(const GnssConfig& config, std::uint64_t seed, GpsTime start,
-                                                     GpsTime end, const scene::Scene& scene);
+                                                     GpsTime end, const scene::Scene& scene,
+                                                     std::optional<std::uint64_t> noise_seed = {});
 
 }  // namespace canyon::gnss

@@ -17,6 +17,7 @@ struct SensorSetup {
   std::uint64_t seed;
   GpsTime start, end;
   const scene::Scene& scene;
+  std::uint64_t noise_seed;  ///< of what a receiver draws anew at every epoch
 };
 
 struct GnssSurroundings;

@@ -28,10 +28,10 @@ std::uint64_t identity(const SignalPaths& paths, int source) {
 SignalTracker::SignalTracker(const std::string& prefix, const GnssConfig& config, const PseudorangeParts& parts)
     : config_(config.tracking),
       parts_(parts),
-      code_(parts.locks.seed, prefix + "code_noise", config_.code_loop_hz, parts.locks.interval_s),
-      carrier_(parts.locks.seed, prefix + "carrier_noise"),
-      doppler_(parts.locks.seed, prefix + "doppler_noise"),
-      cn0_(parts.locks.seed, prefix + "cn0_noise", config.cn0_report, parts.locks.integration_s,
+      code_(parts.noise_seed, prefix + "code_noise", config_.code_loop_hz, parts.locks.interval_s),
+      carrier_(parts.noise_seed, prefix + "carrier_noise"),
+      doppler_(parts.noise_seed, prefix + "doppler_noise"),
+      cn0_(parts.noise_seed, prefix + "cn0_noise", config.cn0_report, parts.locks.integration_s,
            parts.locks.interval_s),
       locks_(parts.locks) {}
 
@@ -53,6 +53,19 @@ Reception SignalTracker::receive_signals(const ReceivingAntenna& antenna, const 
   return channel.multipath->receive(direct, echoes, wavelength_m);
 }
 
+Reception SignalTracker::with_cuts(Reception r, const Sight& sight, const SignalPaths& paths) const {
+  if (config_.hidden_signals == HiddenSignals::kDropped && !paths.line_of_sight) return {};
+  if (config_.hidden_signals == HiddenSignals::kInSight && !r.tracked) {
+    r = {};
+    r.tracked = true;
+    r.cn0_dbhz = parts_.link.direct_cn0_dbhz(sight.view.elevation_rad, 0.0, 1.0);
+  }
+  r.error_m *= config_.multipath_scale;
+  r.carrier_error_m *= config_.multipath_scale;
+  r.range_rate_error_m_s *= config_.multipath_scale;
+  return r;
+}
+
 SignalMeasurement SignalTracker::measure(const ReceivingAntenna& antenna, const Sight& sight, const SignalPaths& paths,
                                          int band, const ArrivingRange& range) {
   const SatelliteState& state = sight.signal.state;
@@ -60,7 +73,7 @@ SignalMeasurement SignalTracker::measure(const ReceivingAntenna& antenna, const 
   const double wavelength_m = kSpeedOfLight / carrier;
   const Channel& own = channel(sight.sv.system, band);
   SignalMeasurement m;
-  m.reception = receive_signals(antenna, sight, paths, own, wavelength_m);
+  m.reception = with_cuts(receive_signals(antenna, sight, paths, own, wavelength_m), sight, paths);
   const Reception& r = m.reception;
   const auto lock = locks_.update(sight.sv, r.tracked ? r.cn0_dbhz : kNaN, identity(paths, r.source));
   if (!lock.tracked) return m;

@@ -57,6 +57,8 @@ class SignalTracker {
   const Channel& channel(GnssSystem system, int band) const;
   Reception receive_signals(const ReceivingAntenna& antenna, const Sight& sight, const SignalPaths& paths,
                             const Channel& channel, double wavelength_m) const;
+  /// What [gnss] hidden_signals and multipath_scale leave of it.
+  Reception with_cuts(Reception r, const Sight& sight, const SignalPaths& paths) const;
 
   TrackingConfig config_;
   const PseudorangeParts& parts_;

@@ -59,7 +59,7 @@ void white_noise_parameters(ModelParameters& section) {
 
 Result<std::unique_ptr<GnssSensor>> make_white_noise_sensor(const ModelParameters& own, const SensorSetup& at) {
   return std::unique_ptr<GnssSensor>(
-      std::make_unique<WhiteNoiseSensor>(own.get<WhiteNoiseParameters>(), at.seed, at.scene.frame()));
+      std::make_unique<WhiteNoiseSensor>(own.get<WhiteNoiseParameters>(), at.noise_seed, at.scene.frame()));
 }
 
 }  // namespace canyon::gnss

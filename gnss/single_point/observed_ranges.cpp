@@ -152,6 +152,7 @@ void RangeObserver::correct(const std::vector<ObservedRange>& candidates, GpsTim
                                                 .accuracy_m = c.state.accuracy_m,
                                                 .differential = differential_}),
                            differential_ ? c.base_sigma_m : c.group_delay_sigma_m);
+    if (!std::isfinite(o.sigma_m)) continue;  // a signal strength of -6000 dB-Hz, as files may have it
     epoch.observations.push_back(o);
     const double shared_m = differential_ ? 0.0 : config_.shared_ionosphere * delay_m;
     ranges.push_back({c.state.p_E, o.corrected_m(), o.sigma_m, c.sv.system, shared_m});

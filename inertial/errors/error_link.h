@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,7 +37,8 @@ struct LinkSetup {
   UnitFigures figures;
   Environment environment;
   std::uint64_t seed = 0;
-  double dt_s = 0.01;  ///< nominal interval of the samples
+  double dt_s = 0.01;                         ///< nominal interval of the samples
+  std::optional<std::uint64_t> noise_seed{};  ///< of the white noise; none: `seed`
 };
 
 /// Gives null where the unit has no such error.

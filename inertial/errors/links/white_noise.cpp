@@ -13,7 +13,7 @@ namespace {
 class WhiteNoise {
  public:
   explicit WhiteNoise(const TriadSetup& s)
-      : stream_(s.unit.seed, s.name + ".white"),
+      : stream_(s.unit.noise_seed.value_or(s.unit.seed), s.name + ".white"),
         share_(share(s.figures.neighbour_correlation)),
         sigma_increment_(s.figures.white_per_sqrt_hz * std::sqrt(s.unit.dt_s) / (1.0 + share_)) {}
   static bool needed(const TriadFigures& f) { return f.white_per_sqrt_hz > 0.0; }
