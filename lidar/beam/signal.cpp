@@ -3,6 +3,14 @@
 #include <algorithm>
 
 namespace canyon::lidar {
+namespace {
+
+constexpr ModelRow<MattReflection> kReflections[] = {
+    {"lambertian", MattReflection::kLambertian, "with the cosine of the incidence"},
+    {"rough", MattReflection::kRough, "Oren and Nayar 1994, by the materials' lidar_slope_deg"},
+};
+
+}  // namespace
 
 void visit(FieldVisitor& f, SignalConfig& c) {
   f.number("pulse_m", c.pulse_m, {1e-3, 100}, "length of the pulse as range, half of it in space; nearer echoes merge");
@@ -11,6 +19,10 @@ void visit(FieldVisitor& f, SignalConfig& c) {
   f.number(
       "full_overlap_m", c.full_overlap_m, {0, 1e3},
       "from where on the receiver sees the whole beam; nearer, the signal is constant (radiometric, false returns)");
+  f.choice(
+      "reflection", c.reflection, ModelTable<MattReflection>(kReflections),
+      "how matt surfaces spread light: lambertian = with the cosine of the incidence; rough = Oren and Nayar 1994, "
+      "by the materials' lidar_slope_deg");
 }
 
 float full_overlap_m2(const SignalConfig& signal) {

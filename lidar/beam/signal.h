@@ -4,11 +4,18 @@
 
 namespace canyon::lidar {
 
+/// How a matt surface spreads the light that it sends back.
+enum class MattReflection {
+  kLambertian,  ///< evenly: with the cosine of the incidence
+  kRough,       ///< Oren & Nayar: facets turned towards the sensor send more of it back at grazing incidence
+};
+
 /// Keys of what the energy of an echo depends on.
 struct SignalConfig {
   double pulse_m = 0.75;                ///< length of the pulse, 5 ns (HDL-64E manual), as range
   double range_at_10_percent_m = 50.0;  ///< where a 10 % target square to the beam is at the detection threshold
   double full_overlap_m = 5.0;          ///< nearer, the signal is constant
+  MattReflection reflection = MattReflection::kLambertian;
 };
 void visit(FieldVisitor& f, SignalConfig& c);
 

@@ -7,7 +7,7 @@
 
 namespace canyon::lidar {
 
-Surfaces::Surfaces(const scene::SceneAt& scene, double wavelength_nm) : scene_(&scene) {
+Surfaces::Surfaces(const scene::SceneAt& scene, double wavelength_nm, MattReflection reflection) : scene_(&scene) {
   for (const scene::Material& m : scene.scene().materials()) {
     Light light;
     light.reflectance = static_cast<float>(m.reflectance(wavelength_nm));
@@ -17,6 +17,11 @@ Surfaces::Surfaces(const scene::SceneAt& scene, double wavelength_nm) : scene_(&
     light.through = static_cast<float>(m.lidar_transmittance);
     if (m.name == "foliage") foliage_ = static_cast<std::uint16_t>(lights_.size());
     light.plain = light.mirror == 0 && light.retro == 0;
+    if (reflection == MattReflection::kRough) {
+      const double slope = m.lidar_slope_deg * kDegree, square = slope * slope;
+      light.along = static_cast<float>(1.0 - 0.5 * square / (square + 0.33));
+      light.grazing = static_cast<float>(0.45 * square / (square + 0.09));
+    }
     lights_.push_back(light);
   }
 }
@@ -38,7 +43,7 @@ void Surfaces::each_lane(const scene::HitPacket& hits, float* out, const Visit& 
   static constexpr Light kNothing;
   constexpr scene::SceneAt::Surface kNowhere{kNoMaterial, kNoObject, false};
   const Light* lights[EchoPacket::kShots];
-  float reflectance[EchoPacket::kShots];
+  float reflectance[EchoPacket::kShots], along[EchoPacket::kShots], grazing[EchoPacket::kShots];
   bool plain = true;
   std::uint32_t triangle = scene::Hit::kMiss;
   const Light* light = &kNothing;
@@ -52,9 +57,14 @@ void Surfaces::each_lane(const scene::HitPacket& hits, float* out, const Visit& 
     }
     lights[i] = light;
     reflectance[i] = light->reflectance;
+    along[i] = light->along;
+    grazing[i] = light->grazing;
     visit(i, met);
   }
-  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) out[i] = reflectance[i] * hits.cos_incidence[i];
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) {
+    const float c = hits.cos_incidence[i];
+    out[i] = reflectance[i] * (along[i] * c + grazing[i] * (1.0f - c * c));
+  }
   if (plain) return;
   for (std::size_t i = 0; i < EchoPacket::kShots; ++i)
     if (!lights[i]->plain) out[i] += special(*lights[i], hits.cos_incidence[i]);
@@ -74,7 +84,8 @@ void Surfaces::reflectivities(const scene::HitPacket& hits, float* out) const {
   if (others == 0 && hits.triangle[0] != scene::Hit::kMiss) {
     const Light& light = lights_[scene_->surface(hits.triangle[0]).material];
     if (light.plain) {
-      for (std::size_t i = 0; i < EchoPacket::kShots; ++i) out[i] = light.reflectance * hits.cos_incidence[i];
+      for (std::size_t i = 0; i < EchoPacket::kShots; ++i)
+        out[i] = light.reflectance * light.matt(hits.cos_incidence[i]);
       return;
     }
   }

@@ -4,6 +4,7 @@
 
 #include "canyon/lidar/beam/echoes.h"
 #include "canyon/lidar/beam/pane.h"
+#include "canyon/lidar/beam/signal.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::lidar {
@@ -13,17 +14,20 @@ namespace canyon::lidar {
 /// Apparent reflectivity: what a Lambertian surface square to the beam would need to send as much. Of a surface met at
 /// the angle theta: reflectance * cos(theta) of its diffuse part; of its mirror, of facets whose slopes have the
 /// standard deviation s (Torrance and Sparrow 1967, no shadowing), share * exp(-tan(theta)^2 / (2 s^2)) / (8 s^2
-/// cos(theta)^5); of a retroreflector pi R_A cos(theta).
+/// cos(theta)^5); of a retroreflector pi R_A cos(theta). With the reflection "rough" the diffuse part is that of facets
+/// whose slopes have the standard deviation s, seen from where the light comes from (Oren and Nayar, SIGGRAPH 1994,
+/// eq. 30 with both angles theta on one side): reflectance * (A cos(theta) + B sin(theta)^2),
+/// A = 1 - s^2 / (2 (s^2 + 0.33)), B = 0.45 s^2 / (s^2 + 0.09).
 class Surfaces {
  public:
-  Surfaces(const scene::SceneAt& scene, double wavelength_nm);
+  Surfaces(const scene::SceneAt& scene, double wavelength_nm, MattReflection reflection = MattReflection::kLambertian);
 
   float reflectivity(std::uint32_t triangle, float cos_incidence) const {
     return of_material(scene_->surface(triangle).material, cos_incidence);
   }
   float of_material(std::uint16_t material, float cos_incidence) const {
     const Light& light = lights_[material];
-    const float diffuse = light.reflectance * cos_incidence;
+    const float diffuse = light.reflectance * light.matt(cos_incidence);
     return light.plain ? diffuse : diffuse + special(light, cos_incidence);
   }
 
@@ -57,6 +61,10 @@ class Surfaces {
     float retro = 0;
     float through = 0;
     bool plain = true;
+    float along = 1, grazing = 0;  ///< A and B of the class's description
+    float matt(float cos_incidence) const {
+      return along * cos_incidence + grazing * (1.0f - cos_incidence * cos_incidence);
+    }
   };
   static float special(const Light& light, float cos_incidence);
   /// Calls visit(lane, surface) for each lane and writes the reflectivities.

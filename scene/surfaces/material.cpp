@@ -35,6 +35,8 @@ void visit(FieldVisitor& f, Material& m) {
   };
   other("lidar_reflectance_850", m.lidar_reflectance_850, "diffuse reflectance at 850 nm; else as at 905 nm");
   other("lidar_reflectance_1550", m.lidar_reflectance_1550, "diffuse reflectance at 1550 nm; else as at 905 nm");
+  f.number("lidar_slope_deg", m.lidar_slope_deg, {0.0, 60.0},
+           "standard deviation of the slope of matt facets, for [lidar] reflection = \"rough\"");
   f.number("lidar_specular", m.lidar_specular, {0.0, 1.0}, "share of the light reflected as by a mirror");
   f.number("lidar_specular_lobe_deg", m.lidar_specular_lobe_deg, {0.001, 45.0},
            "standard deviation of the mirror's slope");

@@ -26,7 +26,8 @@ struct Material {
   double lidar_reflectance = 0.3;  ///< diffuse (Lambertian) reflectance at 905 nm, 0..1
   /// The same at 850 and 1550 nm; none: as at 905 nm.
   std::optional<double> lidar_reflectance_850, lidar_reflectance_1550;
-  double lidar_specular = 0.0;           ///< share of the light that is reflected as by a mirror, 0..1
+  double lidar_slope_deg = 0.0;  ///< standard deviation of the matt facets' slope (Oren & Nayar 1994); 0: Lambertian
+  double lidar_specular = 0.0;   ///< share of the light that is reflected as by a mirror, 0..1
   double lidar_specular_lobe_deg = 2.0;  ///< standard deviation of the mirror's slope
   /// Coefficient of retroreflection R_A, cd/(lx m^2), that is 1/sr: light sent back to where it came from. A white
   /// Lambertian surface has 1/pi.
