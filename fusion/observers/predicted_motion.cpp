@@ -5,15 +5,18 @@
 
 namespace canyon::fusion {
 
+bool is_of_motion(const AidingMessage& message) {
+  return !std::holds_alternative<GnssFix>(message) && !std::holds_alternative<GnssEpoch>(message) &&
+         !std::holds_alternative<PoseInMap>(message) && !std::holds_alternative<RelativePose>(message);
+}
+
 PredictedMotion::PredictedMotion(const ErrorStateFilter& filter)
     : filter_(filter), start_(filter.nav_state().t), start_pose_(filter.body_pose()), P_start_(filter.covariance()) {
   filter_.watch(&tracker_);
 }
 
 void PredictedMotion::update(const AidingMessage& message) {
-  const bool of_place = std::holds_alternative<GnssFix>(message) || std::holds_alternative<GnssEpoch>(message) ||
-                        std::holds_alternative<PoseInMap>(message);
-  CANYON_CHECK(!of_place, "a place at ", time_of(message).iso(), " is not motion");
+  CANYON_CHECK(is_of_motion(message), "a place at ", time_of(message).iso(), " is not motion");
   filter_.update(message);
 }
 

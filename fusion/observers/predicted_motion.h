@@ -4,6 +4,10 @@
 
 namespace canyon::fusion {
 
+/// Whether a message tells of motion, not of a place: as wheels do; and not by the filter's clone, which is of a time
+/// before a prediction began.
+bool is_of_motion(const AidingMessage& message);
+
 /// The motion that prediction alone gives from an instant on, with its covariance: a copy of a filter that goes on with
 /// IMU, constraints and wheels, and gets no fix. What a fix would correct is not motion.
 ///
@@ -17,7 +21,7 @@ class PredictedMotion {
   PredictedMotion& operator=(const PredictedMotion&) = delete;
 
   void predict(const ImuSample& sample) { filter_.predict(sample); }
-  /// Of wheels, and what else does not tell a place. A fix, an epoch or a pose in a map is a ProgramError.
+  /// Of wheels, and what else does not tell a place; of others (is_of_motion()) a ProgramError.
   void update(const AidingMessage& message);
 
   /// B now (source) in B at the start (target).
