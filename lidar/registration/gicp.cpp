@@ -1,10 +1,10 @@
-#include "canyon/lidar/registration/pcl_part.h"
+#include "canyon/lidar/registration/engine/engine_registration.h"
 #include "canyon/lidar/registration/registration_methods.h"
 
 namespace canyon::lidar {
 
 std::unique_ptr<Registration> make_gicp(const ModelParameters& own) {
-  return library_part("pcl", &canyon_pcl_part).make_gicp(own.get<MatchingParameters>());
+  return make_engine({plane_to_plane, 0.0}, own);
 }
 
 }  // namespace canyon::lidar

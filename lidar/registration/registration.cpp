@@ -1,20 +1,41 @@
 #include "canyon/lidar/registration/registration.h"
 
+#include "canyon/lidar/registration/engine/engine_registration.h"
 #include "canyon/lidar/registration/registration_methods.h"
 
 namespace canyon::lidar {
 namespace {
 
+#ifdef CANYON_WITH_PCL
+#define CANYON_ON_PCL(make) \
+  { make, "CANYON_WITH_PCL" }
+#else
+#define CANYON_ON_PCL(make) \
+  { nullptr, "CANYON_WITH_PCL" }
+#endif
+
 constexpr ModelRow<RegistrationMethod> kMethods[] = {
     {"none", {make_no_registration, "", false}, "believes the prior pose"},
-#ifdef CANYON_WITH_PCL
-    {"gicp",
-     {make_gicp, "CANYON_WITH_PCL"},
-     "generalized ICP, plane to plane (PCL)",
+    {"point_to_plane", {make_point_to_plane, ""}, "distances across the target's planes", engine_parameters},
+    {"gicp", {make_gicp, ""}, "generalized ICP, plane to plane", engine_parameters},
+    {"vgicp", {make_vgicp, ""}, "the same onto means over voxels of 2 leaf_m", engine_parameters},
+    {"pcl_shell_gicp", CANYON_ON_PCL(make_pcl_shell_gicp), "PCL's generalized ICP with our search and Newton step",
      parameters_of<MatchingParameters>},
-#else
-    {"gicp", {nullptr, "CANYON_WITH_PCL"}, "generalized ICP, plane to plane (PCL)", parameters_of<MatchingParameters>},
-#endif
+    {"pcl_icp_normals", CANYON_ON_PCL(make_pcl_icp_normals), "PCL's ICP of points to planes",
+     parameters_of<MatchingParameters>},
+    {"pcl_gicp", CANYON_ON_PCL(make_pcl_gicp), "PCL's generalized ICP", parameters_of<MatchingParameters>},
+    {"pcl_ndt", CANYON_ON_PCL(make_pcl_ndt), "PCL's normal distributions transform", parameters_of<MatchingParameters>},
+};
+
+constexpr ModelRow<RegistrationStatus> kStatuses[] = {
+    {"converged", RegistrationStatus::kConverged, "a pose with its covariance"},
+    {"not_converged", RegistrationStatus::kNotConverged, "the rounds were used up"},
+    {"too_few_points", RegistrationStatus::kTooFewPoints, "fewer than 50 in a cloud, or matched"},
+    {"degenerate", RegistrationStatus::kDegenerate, "what was matched determines no pose"},
+    {"diverged", RegistrationStatus::kDiverged, "guess or solution are not finite"},
+    {"ambiguous", RegistrationStatus::kAmbiguous, "another pose within the prior fits about as well"},
+    {"too_little_overlap", RegistrationStatus::kTooLittleOverlap, "most of the source has nothing to be matched to"},
+    {"beyond_prior", RegistrationStatus::kBeyondPrior, "outside of the prior's 99.9 % ellipsoid"},
 };
 
 }  // namespace
@@ -34,12 +55,21 @@ void visit(FieldVisitor& f, RegistrationConfig& c) {
   f.number("alignment_floor_m", c.alignment_floor_m, {1e-6, 10},
            "1-sigma of an alignment's position, per axis, beyond what its covariance says");
   f.number("alignment_floor_deg", c.alignment_floor_deg, {1e-6, 10}, "likewise of its attitude");
+  f.number(
+      "motion_floor_m_s", c.motion_floor_m_s, {1e-6, 100},
+      "1-sigma of the motion since the keyframe before as the filter predicts it, per axis and second, beyond what "
+      "its covariance says");
+  f.number("motion_floor_deg_s", c.motion_floor_deg_s, {1e-6, 1000}, "likewise of its turn");
   f.number("prior_correlation_s", c.prior_correlation_s, {0, 1e6},
            "how long the error of the filter's pose stays alike: so long it counts as one piece of knowledge");
 }
 
 ModelTable<RegistrationMethod> registration_methods() {
   return kMethods;
+}
+
+ModelTable<RegistrationStatus> registration_statuses() {
+  return kStatuses;
 }
 
 bool registers(const RegistrationConfig& config) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,13 +37,15 @@ void visit(FieldVisitor& f, MatchingParameters& c);
 
 /// [registration] of a mission file.
 struct RegistrationConfig {
-  ModelChoice<registration_methods> method{"gicp"};
+  ModelChoice<registration_methods> method{"pcl_shell_gicp"};
   std::int64_t submap_keyframes = 10;  ///< keyframes that form the target
   double keyframe_distance_m = 2.0;
   double keyframe_angle_deg = 10.0;
   // How the mapper weighs an alignment against the filter's pose; mission/mapper.h says where the figures come from.
   double alignment_floor_m = 0.02;
   double alignment_floor_deg = 0.05;
+  double motion_floor_m_s = 0.5;
+  double motion_floor_deg_s = 0.1;
   double prior_correlation_s = 10.0;
 };
 void visit(FieldVisitor& f, RegistrationConfig& c);
@@ -51,7 +54,21 @@ bool registers(const RegistrationConfig& config);
 
 /// kDegenerate: what was matched does not determine a pose, as points on one line do not. kDiverged: the guess or the
 /// solution is not finite. In either case, as with too few points, the guess stands and there is no covariance.
-enum class RegistrationStatus { kConverged, kNotConverged, kTooFewPoints, kDegenerate, kDiverged };
+/// kAmbiguous: another pose within the prior fits about as well. kTooLittleOverlap: most of the source has nothing to
+/// be matched to. kBeyondPrior: the solution lies outside of the prior's 99.9 % ellipsoid. The last three are for the
+/// own methods to say.
+enum class RegistrationStatus {
+  kConverged,
+  kNotConverged,
+  kTooFewPoints,
+  kDegenerate,
+  kDiverged,
+  kAmbiguous,
+  kTooLittleOverlap,
+  kBeyondPrior
+};
+/// With the word for files: "converged", "not_converged", ...
+ModelTable<RegistrationStatus> registration_statuses();
 
 struct RegistrationResult {
   RegistrationStatus status = RegistrationStatus::kNotConverged;
@@ -61,7 +78,25 @@ struct RegistrationResult {
   int iterations = 0;
   double rms_m = kNaN;               ///< of the matched points' distances along the surface normals
   std::int64_t correspondences = 0;  ///< work done: pairs matched, summed over the iterations
-  int pcl_objects = 0;               ///< clouds, search trees and registrations of PCL that were made for it
+  /// Directions that the surfaces leave open, source frame, of length 1 and at right angles where a rotation counts by
+  /// what it moves at the cloud's rms radius. Own methods only.
+  std::vector<Vector6d> open;
+  /// What the surfaces alone would have, where X_TS and covariance hold the prior's part too: for those who know the
+  /// prior already and must not be told it again.
+  struct Surfaces {
+    Pose X_TS;
+    Matrix6d covariance;
+  };
+  std::optional<Surfaces> surfaces;
+  double overlap = kNaN;  ///< share of the source's points that are matched; own methods only
+  int pcl_objects = 0;    ///< clouds, search trees and registrations of PCL that were made for it
+};
+
+/// What is known of a pose before it is registered: the pose, and the covariance of its xi (source frame). It may be
+/// singular; NaN: nothing is known, the pose is where to start.
+struct PosePrior {
+  Pose X_TS;
+  Matrix6d covariance = Matrix6d::Constant(kNaN);
 };
 
 /// A keyframe's cloud made ready for registration: thinned, with per-point covariances.
@@ -81,6 +116,13 @@ class Registration {
   /// counts. Whatever the clouds and the guess are, the answer is a status.
   virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
                                    const Pose& guess) const = 0;
+  /// The same with what is known before: the own methods search as far as the prior reaches, and their result is the
+  /// most probable pose by prior and surfaces together; along open directions it is the prior's. The others start from
+  /// its pose and make no use of its covariance.
+  virtual RegistrationResult align_with_prior(const PreparedCloud& source, std::span<const Placed> targets,
+                                              const PosePrior& prior) const {
+    return align(source, targets, prior.X_TS);
+  }
 };
 
 Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config);

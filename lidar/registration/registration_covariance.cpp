@@ -24,20 +24,8 @@ constexpr double kResolution_m = 1e-3;
 // to 3.5, in the open outskirts of a city 8 or more.
 constexpr double kSignificance = 4.0;
 
-/// Sums over all matches; names as in the header.
-struct Sums {
-  Matrix6d A = Matrix6d::Zero();
-  Matrix6d H = Matrix6d::Zero();
-  Matrix6d N = Matrix6d::Zero();
-  Vector6d along = Vector6d::Zero();  // g_along
-  double cost = 0;                    // d^T M' d
-  double weight = 0;                  // tr M'
-  double radius2 = 0;                 // |p_S|^2
-  std::vector<Vector6d> block_gradients;
-};
-
-Sums sum_up(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS, double block_m) {
-  Sums sums;
+CovarianceSums sum_up(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS, double block_m) {
+  CovarianceSums sums;
   VoxelIndex blocks(block_m);
   for (const Correspondence& match : matches) {
     Matrix36d J;
@@ -56,6 +44,7 @@ Sums sum_up(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS
       sums.along += J.transpose() * (kAlongSurface * d_along);
     }
     sums.radius2 += match.p_S.squaredNorm();
+    ++sums.matched;
     const auto place = blocks.coordinates(match.p_S.cast<float>());
     CANYON_CHECK(place, "match at ", match.p_S.transpose());
     const std::uint32_t block = blocks.insert(*place);
@@ -63,14 +52,6 @@ Sums sum_up(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS
     sums.block_gradients[block] += J.transpose() * (match.information * match.residual);
   }
   return sums;
-}
-
-Matrix6d gradient_scatter(const Sums& sums, double n) {
-  const auto b = static_cast<double>(sums.block_gradients.size());
-  Matrix6d B = kResolution_m * kResolution_m * sums.weight / n * sums.A + sums.along * sums.along.transpose();
-  if (sums.block_gradients.size() < kFewestBlocks) return B + sums.cost / (n - 6.0) * (n / b) * sums.A;
-  for (const Vector6d& g : sums.block_gradients) B += b / (b - 6.0) * g * g.transpose();
-  return B;
 }
 
 }  // namespace
@@ -86,11 +67,24 @@ bool determines_pose(const Matrix6d& A, double radius_m) {
   return eigen.eigenvalues()[0] > kSingular * eigen.eigenvalues()[5];
 }
 
+Matrix6d gradient_scatter(const CovarianceSums& sums) {
+  const auto n = static_cast<double>(sums.matched);
+  const auto b = static_cast<double>(sums.block_gradients.size());
+  Matrix6d B = kResolution_m * kResolution_m * sums.weight / n * sums.A + sums.along * sums.along.transpose();
+  if (sums.block_gradients.size() < kFewestBlocks) return B + sums.cost / (n - 6.0) * (n / b) * sums.A;
+  for (const Vector6d& g : sums.block_gradients) B += b / (b - 6.0) * g * g.transpose();
+  return B;
+}
+
 RegistrationPrecision registration_precision(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS,
                                              double block_m) {
   CANYON_CHECK(matches.size() > 6, "matches = ", matches.size());
-  const Sums sums = sum_up(matches, R_TS, block_m);
-  const auto n = static_cast<double>(matches.size());
+  const CovarianceSums sums = sum_up(matches, R_TS, block_m);
+  return registration_precision(sums, gradient_scatter(sums));
+}
+
+RegistrationPrecision registration_precision(const CovarianceSums& sums, const Matrix6d& B) {
+  const auto n = static_cast<double>(sums.matched);
   RegistrationPrecision precision;
   precision.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
   if (!determines_pose(sums.A, std::sqrt(sums.radius2 / n))) return precision;
@@ -114,9 +108,12 @@ RegistrationPrecision registration_precision(std::span<const Correspondence> mat
     const Vector6d v = V.col(k);
     open += kUnconstrainedSigma_m * kUnconstrainedSigma_m / v.dot(metric * v) * v * v.transpose();
     ++precision.unconstrained;
+    Vector6d direction = v;
+    for (const Vector6d& before : precision.open) direction -= before.dot(metric * direction) * before;
+    precision.open.push_back(direction / std::sqrt(direction.dot(metric * direction)));
   }
   const Matrix6d T = V * gain.asDiagonal() * V.transpose() * N * sums.A.inverse();
-  precision.covariance = T * gradient_scatter(sums, n) * T.transpose() + open;
+  precision.covariance = T * B * T.transpose() + open;
   precision.covariance = 0.5 * (precision.covariance + precision.covariance.transpose()).eval();
   return precision;
 }

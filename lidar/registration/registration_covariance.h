@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -16,11 +18,30 @@ struct Correspondence {
   double tilt_variance = 0.0;   ///< of the matched planes' common normal, rad^2
 };
 
+/// Sums over all matches of a registration, in the source frame; names as at registration_precision().
+struct CovarianceSums {
+  Matrix6d A = Matrix6d::Zero();
+  Matrix6d H = Matrix6d::Zero();
+  Matrix6d N = Matrix6d::Zero();
+  Vector6d along = Vector6d::Zero();  ///< g_along
+  double cost = 0;                    ///< d^T M' d
+  double weight = 0;                  ///< tr M'
+  double radius2 = 0;                 ///< |p_S|^2
+  std::int64_t matched = 0;
+  std::vector<Vector6d> block_gradients;
+  // What only the own engine sums up (engine/match_sums.h).
+  std::vector<Matrix6d> block_curvatures;    ///< A of each block
+  Matrix6d point_noise = Matrix6d::Zero();   ///< sum J^T M M J
+  Vector6d common_range = Vector6d::Zero();  ///< sum J^T M p / |p|
+};
+
 /// How well geometry and residuals determine X_TS.
 struct RegistrationPrecision {
   Matrix6d covariance;    ///< of xi in X = X_TS Exp(xi), source frame; NaN unless determines_pose(A)
   double rms_m = 0.0;     ///< of the residuals along the surface normals
   int unconstrained = 0;  ///< directions that the geometry leaves open
+  /// These, of length 1 and at right angles where a rotation counts by what it moves at the cloud's rms radius.
+  std::vector<Vector6d> open;
 };
 
 /// Whether a curvature A = sum J^T M J, as below, determines all six directions at all: points on a line leave the turn
@@ -56,5 +77,11 @@ inline constexpr double kUnconstrainedSigma_m = 10.0;
 /// Needs more than 6 matches.
 RegistrationPrecision registration_precision(std::span<const Correspondence> matches, const Eigen::Matrix3d& R_TS,
                                              double block_m);
+
+/// B as above, of the sums of 6 matches and more.
+Matrix6d gradient_scatter(const CovarianceSums& sums);
+
+/// The same of sums and any covariance B of the gradient at the solution.
+RegistrationPrecision registration_precision(const CovarianceSums& sums, const Matrix6d& B);
 
 }  // namespace canyon::lidar

@@ -9,6 +9,12 @@
 namespace canyon::lidar {
 
 std::unique_ptr<Registration> make_no_registration(const ModelParameters& own);
+std::unique_ptr<Registration> make_point_to_plane(const ModelParameters& own);
 std::unique_ptr<Registration> make_gicp(const ModelParameters& own);
+std::unique_ptr<Registration> make_vgicp(const ModelParameters& own);
+std::unique_ptr<Registration> make_pcl_shell_gicp(const ModelParameters& own);
+std::unique_ptr<Registration> make_pcl_icp_normals(const ModelParameters& own);
+std::unique_ptr<Registration> make_pcl_gicp(const ModelParameters& own);
+std::unique_ptr<Registration> make_pcl_ndt(const ModelParameters& own);
 
 }  // namespace canyon::lidar

@@ -7,7 +7,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/lidar/files/scan_files.h"
-#include "canyon/lidar/map_quality.h"
+#include "canyon/lidar/map_quality/map_error.h"
 #include "canyon/lidar/registration/neighbour_tree.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
 #include "canyon/lidar/registration/voxel_index.h"

@@ -169,7 +169,7 @@ StressFigure precision() {
 }
 
 bool has_gicp() {
-  return model_row(registration_methods(), "gicp").make.make != nullptr;
+  return model_row(registration_methods(), "pcl_shell_gicp").make.make != nullptr;
 }
 
 }  // namespace

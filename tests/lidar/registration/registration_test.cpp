@@ -22,7 +22,7 @@ using testing::kStart;
 using testing::pose_at;
 
 bool has_gicp() {
-  return model_row(registration_methods(), "gicp").make.make != nullptr;
+  return model_row(registration_methods(), "pcl_shell_gicp").make.make != nullptr;
 }
 
 #define CANYON_NEEDS_GICP() \
@@ -70,19 +70,21 @@ TEST(Registration, NoneBelievesTheGuess) {
 TEST(Registration, UnknownMethodsAndMethodsLeftOut) {
   RegistrationConfig config;
   config.method.name = "icp";
-  EXPECT_EQ(make_registration(config).error().str(),
-            "registration.method: unknown name \"icp\", expected one of \"none\", \"gicp\"; nearest is \"gicp\"");
+  EXPECT_EQ(
+      make_registration(config).error().str(),
+      "registration.method: unknown name \"icp\", expected one of \"none\", \"point_to_plane\", \"gicp\", \"vgicp\", "
+      "\"pcl_shell_gicp\", \"pcl_icp_normals\", \"pcl_gicp\", \"pcl_ndt\"; nearest is \"gicp\"");
   if (!has_gicp()) {
-    config.method.name = "gicp";
+    config.method.name = "pcl_shell_gicp";
     EXPECT_EQ(make_registration(config).error().str(),
-              "registration.method: \"gicp\" was not compiled in, expected a build with CANYON_WITH_PCL=ON");
+              "registration.method: \"pcl_shell_gicp\" was not compiled in, expected a build with CANYON_WITH_PCL=ON");
   }
 }
 
 TEST(Gicp, RecoversHalfAMetreAndTwoDegreesAtAStreetCrossing) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const Pose X_WT = pose_at(-1, 0.5, 1.8, 3);
   const Pose X_WS = pose_at(1.2, -0.4, 1.8, 8);
   const auto target = gicp->prepare(views.from(X_WT, 0));
@@ -107,7 +109,7 @@ TEST(Gicp, UnionOfPlacedCloudsInAFarFrame) {
   CANYON_NEEDS_GICP();
   // As a submap is: keyframes with poses in a map whose coordinates are hundreds of metres.
   Views views(testing::street_crossing());
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const Pose X_MW = pose_at(800, -700, 60, 140);
   std::vector<Registration::Placed> targets;
   for (int k = 0; k < 5; ++k) {
@@ -128,7 +130,7 @@ TEST(Gicp, UnionOfPlacedCloudsInAFarFrame) {
 TEST(Gicp, CovarianceAgreesWithMonteCarlo) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const RandomStream random(2, "test.poses");
   constexpr int kRuns = 40;
   Vector6d squares = Vector6d::Zero(), predicted = Vector6d::Zero();
@@ -168,7 +170,7 @@ TEST(Gicp, ACorridorSaysNothingAboutTheWayAlongIt) {
   testing::add_wall(parts, {-300, 6}, {300, 6}, 12);
   testing::add_wall(parts, {-300, -6}, {300, -6}, 12);
   Views views(parts);
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const Pose X_WT = pose_at(0, 0, 1.8, 0), X_WS = pose_at(1.0, 0.3, 1.8, 2);
   const Registration::Placed placed{gicp->prepare(views.from(X_WT, 0)), Pose{}};
   const auto source = gicp->prepare(views.from(X_WS, 1));
@@ -187,7 +189,7 @@ TEST(Gicp, SaysWhenItDidNotConverge) {
   Views views(testing::street_crossing());
   RegistrationConfig config;
   config.method.own.get<MatchingParameters>().max_iterations = 1;
-  const auto gicp = registration("gicp", config);
+  const auto gicp = registration("pcl_shell_gicp", config);
   const Pose X_WS = pose_at(0, 0, 1.8, 0);
   const Registration::Placed placed{gicp->prepare(views.from(X_WS, 0)), Pose{}};
   const auto source = gicp->prepare(views.from(X_WS, 1));
@@ -199,7 +201,7 @@ TEST(Gicp, SaysWhenItDidNotConverge) {
 TEST(Gicp, TooFewPointsOrMatchesIsAStatus) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const auto cloud = gicp->prepare(views.from(pose_at(0, 0, 1.8, 0), 0));
   const auto empty = gicp->prepare({});
   const Pose guess = pose_at(1, 2, 0, 3);
@@ -225,7 +227,7 @@ void expect_no_answer(const RegistrationResult& result, RegistrationStatus statu
 // 2026-11-22: "converged" with a covariance of NaN: the turn about the line is free, the curvature singular.
 TEST(Gicp, ACloudOnOneLineIsDegenerate) {
   CANYON_NEEDS_GICP();
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   std::vector<Eigen::Vector3f> line;
   for (int i = 0; i < 2000; ++i) line.emplace_back(1.0f + 0.02f * static_cast<float>(i), 2.0f, 0.5f);
   const auto cloud = gicp->prepare(line);
@@ -240,7 +242,7 @@ TEST(Gicp, ACloudOnOneLineIsDegenerate) {
 TEST(Gicp, FarPointsAndBadGuessesAreStatuses) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   auto points = views.from(pose_at(0, 0, 1.8, 0), 0);
   const auto clean = gicp->prepare(points);
   points.emplace_back(1e9f, 0.0f, 0.0f);
@@ -263,7 +265,7 @@ TEST(Gicp, FarPointsAndBadGuessesAreStatuses) {
 TEST(Gicp, SameBitsEveryTimeAndForAnyNumberOfThreads) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const auto points = views.from(pose_at(0.5, 0.5, 1.8, 3), 1);
   const auto target_points = views.from(pose_at(0, 0, 1.8, 0), 0);
   RegistrationResult first;
@@ -298,7 +300,7 @@ TEST(Gicp, RealScansAgreeWithTheirReference) {
   std::ifstream reference_file(reference_path);
   for (int i = 0; i < 16; ++i) reference_file >> T(i / 4, i % 4);
   const Pose reference = Pose::from_matrix(T);
-  const auto gicp = registration("gicp");
+  const auto gicp = registration("pcl_shell_gicp");
   const auto source = gicp->prepare(read_ply(source_path));
   const Registration::Placed placed{gicp->prepare(read_ply(target_path)), Pose{}};
   const auto result = gicp->align(*source, std::span(&placed, 1), Pose{});

@@ -1,0 +1,322 @@
+// The own methods: one engine, no PCL.
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <Eigen/Cholesky>
+
+#include "canyon/core/files/files.h"
+#include "canyon/core/math/chi_square.h"
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/files/clouds/read_cloud.h"
+#include "canyon/lidar/registration/cloud_pair.h"
+#include "canyon/lidar/registration/engine/engine_registration.h"
+#include "canyon/lidar/registration/prepared_cloud.h"
+#include "canyon/tests/support/test_data.h"
+
+namespace canyon::lidar {
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+constexpr const char* kOwnMethods[] = {"point_to_plane", "gicp", "vgicp"};
+
+std::unique_ptr<Registration> own_method(const std::string& name, double leaf_m = 0.5) {
+  RegistrationConfig config;
+  config.method.name = name;
+  config.method.own.get<MatchingParameters>().leaf_m = leaf_m;
+  config.method.own.get<MatchingParameters>().max_iterations = 50;
+  return *make_registration(config);
+}
+
+/// Points of rectangles with 1 cm of noise across. `number` chooses the noise.
+class Walls {
+ public:
+  explicit Walls(std::uint64_t number) : draws_(number, "test.walls") {}
+  Walls& add(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v, int n) {
+    const Eigen::Vector3d normal = u.cross(v).normalized();
+    for (int k = 0; k < n; ++k, ++drawn_)
+      points_.push_back((corner + draws_.uniform(0, 1, 0, drawn_) * u + draws_.uniform(0, 1, 1, drawn_) * v +
+                         0.01 * draws_.normal(2, drawn_) * normal)
+                            .cast<float>());
+    return *this;
+  }
+  Points take() { return std::move(points_); }
+
+ private:
+  RandomStream draws_;
+  std::uint64_t drawn_ = 0;
+  Points points_;
+};
+
+Points closed_room(std::uint64_t number) {
+  return Walls(number)
+      .add({-8, -6, -2}, {16, 0, 0}, {0, 12, 0}, 6000)
+      .add({-8, -6, -2}, {16, 0, 0}, {0, 0, 4}, 3000)
+      .add({-8, 6, -2}, {16, 0, 0}, {0, 0, 4}, 3000)
+      .add({-8, -6, -2}, {0, 12, 0}, {0, 0, 4}, 3000)
+      .add({8, -6, -2}, {0, 12, 0}, {0, 0, 4}, 3000)
+      .add({2, 1, -2}, {1.5, 0, 0}, {0, 0, 3}, 600)
+      .take();
+}
+Points long_corridor(std::uint64_t number) {
+  return Walls(number)
+      .add({-40, -3, -2}, {80, 0, 0}, {0, 6, 0}, 12000)
+      .add({-40, -3, -2}, {80, 0, 0}, {0, 0, 4}, 8000)
+      .add({-40, 3, -2}, {80, 0, 0}, {0, 0, 4}, 8000)
+      .take();
+}
+Points level_ground(std::uint64_t number) {
+  return Walls(number).add({-20, -20, -2}, {40, 0, 0}, {0, 40, 0}, 16000).take();
+}
+
+Matrix6d law(double sigma_m, double sigma_deg) {
+  Matrix6d P = Matrix6d::Zero();
+  P.diagonal() << Eigen::Vector3d::Constant(std::pow(sigma_deg * kDegree, 2)),
+      Eigen::Vector3d::Constant(sigma_m * sigma_m);
+  return P;
+}
+
+Pose offset(double x, double y, double z, double yaw_deg) {
+  return {so3_exp({0, 0, yaw_deg * kDegree}), {x, y, z}};
+}
+
+RegistrationResult place(const Registration& method, const Points& source, const Points& target,
+                         const PosePrior& prior) {
+  const auto s = method.prepare(source);
+  const Registration::Placed placed{method.prepare(target), Pose{}};
+  return method.align_with_prior(*s, {&placed, 1}, prior);
+}
+
+struct RealPair {
+  CloudPlaces source, target;
+  Pose reference;
+};
+RealPair real_pair(const std::string& source, const std::string& target, const std::string& reference) {
+  RealPair out{*read_cloud(source), *read_cloud(target), {}};
+  Eigen::Matrix4d T;
+  std::ifstream file(reference);
+  for (int i = 0; i < 16; ++i) file >> T(i / 4, i % 4);
+  out.reference = Pose::from_matrix(T);
+  return out;
+}
+#define CANYON_REAL_PAIR(pair)                                        \
+  CANYON_REAL_DATA(source_path, "lidar/pair/source.ply");             \
+  CANYON_REAL_DATA(target_path, "lidar/pair/target.ply");             \
+  CANYON_REAL_DATA(reference_path, "lidar/pair/T_target_source.txt"); \
+  const RealPair pair = real_pair(source_path, target_path, reference_path)
+
+Points floats(const CloudPlaces& cloud) {
+  Points out;
+  for (const Eigen::Vector3d& p : cloud.points) out.push_back(p.cast<float>());
+  return out;
+}
+
+TEST(OwnMethods, RealScansAgreeWithTheirReference) {
+  CANYON_REAL_PAIR(pair);
+  for (const char* name : kOwnMethods) {
+    const CloudPair found = register_pair(*own_method(name, 0.25), pair.source, pair.target, {});
+    EXPECT_EQ(found.result.status, RegistrationStatus::kConverged) << name;
+    const Vector6d error = (pair.reference.inverse() * found.result.X_TS).log();
+    // The reference itself is good to about 1 cm, its roll to about 0.7 deg (the data's MANIFEST).
+    EXPECT_LT(error.tail<3>().norm(), 0.02) << name;
+    EXPECT_LT(std::abs(error[0]), 0.7 * kDegree) << name;
+    EXPECT_LT(error.segment<2>(1).norm(), 0.25 * kDegree) << name;
+  }
+}
+
+TEST(OwnMethods, RealScansFromRingsOfGuesses) {
+  CANYON_REAL_PAIR(pair);
+  const auto gicp = own_method("gicp", 0.25);
+  const auto source = gicp->prepare(floats(pair.source));
+  const Registration::Placed placed{gicp->prepare(floats(pair.target)), Pose{}};
+  struct Ring {
+    double m, deg;
+    int wanted;  // of 200, as required
+  };
+  const RandomStream random(3, "test.rings");
+  for (const Ring& ring : {Ring{0.5, 2, 198}, Ring{1, 5, 198}, Ring{2, 10, 160}}) {
+    int right = 0;
+    for (std::uint64_t k = 0; k < 200; ++k) {
+      Vector6d off;
+      off << ring.deg * kDegree * random.direction(0, k), ring.m * random.direction(1, k);
+      const auto result = gicp->align(*source, {&placed, 1}, pair.reference * Pose::exp(off));
+      const Vector6d error = (pair.reference.inverse() * result.X_TS).log();
+      right += error.tail<3>().norm() < 0.1 && error.head<3>().norm() < kDegree ? 1 : 0;
+    }
+    RecordProperty("right_of_200_from_" + std::to_string(ring.m) + "_m", right);
+    std::printf("from %.1f m, %.0f deg: %d of 200 right\n", ring.m, ring.deg, right);
+    EXPECT_GE(right, ring.wanted) << ring.m;
+  }
+}
+
+TEST(OwnMethods, SameBitsForAnyNumberOfThreads) {
+  const Points source = closed_room(1), target = closed_room(2);
+  for (const char* name : kOwnMethods) {
+    RegistrationResult first;
+    for (const int n : {1, 2, 8, 1}) {
+      set_threads(n);
+      const auto result = place(*own_method(name, 0.2), source, target, {offset(0.2, -0.1, 0.05, 2), law(0.3, 3)});
+      if (first.iterations == 0) first = result;
+      EXPECT_EQ(result.X_TS.p, first.X_TS.p) << name;
+      EXPECT_EQ(result.X_TS.R.coeffs(), first.X_TS.R.coeffs()) << name;
+      EXPECT_EQ(result.covariance, first.covariance) << name;
+      EXPECT_EQ(result.status, first.status) << name;
+    }
+  }
+  set_threads(0);
+}
+
+TEST(OwnMethods, CloudsMovedToTheRadiusOfTheEarth) {
+  const Points source = closed_room(1), target = closed_room(2);
+  const Eigen::Vector3d far(6378e3, 0, 0);
+  CloudPlaces s, t, s_far, t_far;
+  for (const auto& p : source) s.points.push_back(p.cast<double>()), s_far.points.push_back(p.cast<double>() + far);
+  for (const auto& p : target) t.points.push_back(p.cast<double>()), t_far.points.push_back(p.cast<double>() + far);
+  const auto gicp = own_method("gicp");
+  const Pose guess = offset(0.1, 0.05, 0, 1);
+  const Pose shift{Eigen::Quaterniond::Identity(), far};
+  const auto here = register_pair(*gicp, s, t, {guess}),
+             there = register_pair(*gicp, s_far, t_far, {shift * guess * shift.inverse()});
+  ASSERT_EQ(there.result.status, RegistrationStatus::kConverged);
+  const Eigen::Vector3d middle_here = here.result.X_TS * Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d middle_there = there.result.X_TS * far - far;
+  EXPECT_LT((middle_here - middle_there).norm(), 1e-6);  // the requirement
+  EXPECT_LT(so3_log(here.result.X_TS.R.conjugate() * there.result.X_TS.R).norm(), 1e-7);
+}
+
+TEST(OwnMethods, FloatsBeyond10KmAreDoubted) {
+  CloudPlaces cloud{{{20e3, 0, 0}}, true};
+  EXPECT_EQ(cloud_doubt("a.bin", cloud), "a.bin: coordinates in single precision beyond 10 km are no finer than 1 mm");
+  cloud.single_precision = false;
+  EXPECT_EQ(cloud_doubt("a.las", cloud), "");
+}
+
+/// Along what the surfaces leave open the result is the prior, to 1e-3 of its sigma.
+void expect_prior_along(const char* name, const Points& source, const Points& target, const PosePrior& prior,
+                        const std::vector<int>& open) {
+  const auto result = place(*own_method(name), source, target, prior);
+  EXPECT_EQ(result.status, RegistrationStatus::kConverged) << name;
+  ASSERT_EQ(result.open.size(), open.size()) << name;
+  const Vector6d moved = (prior.X_TS.inverse() * result.X_TS).log();
+  for (const int k : open) {
+    const double sigma = std::sqrt(prior.covariance(k, k));
+    EXPECT_LT(std::abs(moved[k]), 0.05 * sigma) << name << " axis " << k;
+    EXPECT_GT(result.covariance(k, k), 0.5 * sigma * sigma) << name << " axis " << k;
+  }
+  Vector6d metric;
+  metric << Eigen::Vector3d::Constant(1.0), Eigen::Vector3d::Ones();
+  for (const Vector6d& v : result.open) {
+    // The metric of the directions is the cloud's: find its radius from the direction's unit length.
+    const double turn2 = v.head<3>().squaredNorm();
+    const double radius2 = turn2 > 1e-12 ? (1.0 - v.tail<3>().squaredNorm()) / turn2 : 0.0;
+    metric.head<3>().setConstant(radius2);
+    const Vector6d mv = metric.cwiseProduct(v);
+    const double sigma = std::sqrt(mv.dot(prior.covariance * mv));
+    EXPECT_LT(std::abs(mv.dot(moved)), 1e-3 * sigma) << name << ' ' << v.transpose();
+  }
+}
+
+TEST(OwnMethods, OpenDirectionsAreThePriors) {
+  for (const char* name : {"point_to_plane", "gicp"}) {
+    expect_prior_along(name, long_corridor(1), long_corridor(2), {offset(0.3, 0.1, 0.02, 0.5), law(0.3, 1)}, {3});
+    expect_prior_along(name, level_ground(1), level_ground(2), {offset(0.2, -0.3, 0.05, 1), law(0.3, 1)}, {2, 3, 4});
+  }
+}
+
+// 2026-11-24: it did not come up; the search never left the prior.
+TEST(OwnMethodsNightly, APriorThatTheCloudsContradictIsSaidToBe) {
+  const Points source = closed_room(1), target = closed_room(2);
+  for (const char* name : kOwnMethods) {
+    const auto method = own_method(name);
+    for (const double off_m : {0.3, 0.5, 1.0}) {
+      const auto result = place(*method, source, target, {offset(off_m, 0, 0, 0), law(0.02, 0.2)});
+      EXPECT_EQ(result.status, RegistrationStatus::kBeyondPrior) << name << ' ' << off_m;
+      ASSERT_TRUE(result.surfaces) << name;
+      EXPECT_LT(result.surfaces->X_TS.p.norm(), 0.1) << name;  // the room's own place, to the width of its noise
+    }
+    const auto agreed = place(*method, source, target, {offset(0.02, 0.01, 0, 0.1), law(0.02, 0.2)});
+    EXPECT_EQ(agreed.status, RegistrationStatus::kConverged) << name;
+  }
+}
+
+TEST(OwnMethods, SwappedCloudsAgree) {
+  int within = 0;
+  const auto gicp = own_method("gicp");
+  const RandomStream random(5, "test.swap");
+  for (std::uint64_t k = 0; k < 100; ++k) {
+    const auto a = gicp->prepare(closed_room(2 * k + 10)), b = gicp->prepare(closed_room(2 * k + 11));
+    const Registration::Placed onto_b{b, Pose{}}, onto_a{a, Pose{}};
+    Vector6d off;
+    off << kDegree * random.direction(0, k), 0.2 * random.direction(1, k);
+    const auto there = gicp->align(*a, {&onto_b, 1}, Pose::exp(off)), back = gicp->align(*b, {&onto_a, 1}, Pose{});
+    const Vector6d round = (back.X_TS * there.X_TS).log();
+    within +=
+        round.dot((there.covariance + back.covariance).ldlt().solve(round)) < chi_square_threshold(0.01, 6) ? 1 : 0;
+  }
+  EXPECT_GE(within, 97);  // the requirement
+}
+
+/// A pose that is finite where the prior was; a covariance that is finite as a whole or NaN as a whole.
+void expect_promise(const RegistrationResult& r, const Pose& prior, const std::string& what) {
+  EXPECT_TRUE(r.X_TS.matrix().allFinite() || !prior.matrix().allFinite()) << what;
+  EXPECT_TRUE(r.covariance.allFinite() || r.covariance.array().isNaN().all()) << what;
+  EXPECT_TRUE(r.status != RegistrationStatus::kConverged || r.covariance.allFinite()) << what;
+}
+
+TEST(OwnMethods, OddCloudsAndPriorsAreStatuses) {
+  constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+  const Points room = closed_room(1), ground = level_ground(1);
+  Points far = room, at_1e9 = room, line, half_nan = room;
+  for (auto& p : far) p.x() += 500.0f;
+  for (auto& p : at_1e9) p.x() += 1e9f;
+  for (int k = 0; k < 5000; ++k) line.emplace_back(0.02f * static_cast<float>(k), 1.0f, 0.5f);
+  for (std::size_t k = 0; k < half_nan.size(); k += 2) half_nan[k].setConstant(kNanF);
+  const std::vector<std::pair<std::string, Points>> clouds{
+      {"none", {}},    {"one", {{1, 2, 3}}}, {"equal", Points(5000, Eigen::Vector3f(1, 2, 3))},
+      {"line", line},  {"ground", ground},   {"far", far},
+      {"1e9", at_1e9}, {"room", room},       {"half NaN", half_nan}};
+  Pose nan_rotation, nan_place = offset(NAN, 0, 0, 0);
+  nan_rotation.R.coeffs().setConstant(NAN);
+  Matrix6d line_of_sigma = Matrix6d::Zero(), negative = -law(0.1, 1);
+  line_of_sigma(3, 3) = 1.0;
+  const std::vector<PosePrior> priors{{Pose{}},
+                                      {nan_place},
+                                      {nan_rotation},
+                                      {offset(0, 0, 0, 180)},
+                                      {{so3_exp({kPi, 0, 0}), {0, 0, 0}}},
+                                      {offset(1e7, 0, 0, 0)},
+                                      {offset(1e300, 0, 0, 0)},
+                                      {Pose{}, Matrix6d::Zero()},
+                                      {Pose{}, line_of_sigma},
+                                      {Pose{}, negative},
+                                      {Pose{}, law(1e-9, 1e-9)}};
+  for (const char* name : kOwnMethods) {
+    const auto method = own_method(name);
+    for (const auto& [s_name, s] : clouds) {
+      for (const auto& [t_name, t] : clouds) {
+        const auto source = method->prepare(s);
+        const Registration::Placed placed{method->prepare(t), Pose{}};
+        const bool small = s.size() < 2 || s_name == "equal" || t.size() < 2 || t_name == "equal" || s_name == "1e9" ||
+                           t_name == "1e9";
+        for (std::size_t k = 0; k < priors.size(); ++k) {
+          const std::string what =
+              std::string(name) + ": " + s_name + " onto " + t_name + ", prior " + std::to_string(k);
+          const auto r = method->align_with_prior(*source, {&placed, 1}, priors[k]);
+          expect_promise(r, priors[k].X_TS, what);
+          const bool nowhere = !priors[k].X_TS.matrix().allFinite() || k == 5 || k == 6;
+          EXPECT_FALSE((small || nowhere) && r.status == RegistrationStatus::kConverged) << what;
+        }
+      }
+    }
+    EXPECT_EQ(place(*method, room, far, {}).status, RegistrationStatus::kTooLittleOverlap) << name;
+    EXPECT_EQ(place(*method, line, line, {}).status, RegistrationStatus::kDegenerate) << name;
+    EXPECT_EQ(place(*method, room, room, {nan_place}).status, RegistrationStatus::kDiverged) << name;
+  }
+}
+
+}  // namespace
+}  // namespace canyon::lidar

@@ -1,0 +1,161 @@
+// Silent failures and honest covariance of the own methods, by simulated trials. What the figures mean stands in
+// docs/registration.md.
+#include <cstdio>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "canyon/core/process/parallel.h"
+#include "canyon/tests/lidar/registration/trials/tally.h"
+
+namespace canyon::lidar::trials {
+namespace {
+
+std::string setting(const char* name, const char* otherwise) {
+  const char* value = std::getenv(name);
+  return value != nullptr ? value : otherwise;
+}
+
+/// One line per trial, where CANYON_TRIALS_CSV names a file.
+class Lines {
+ public:
+  Lines() : file_(std::fopen(setting("CANYON_TRIALS_CSV", "/dev/null").c_str(), "w")) {
+    if (file_)
+      std::fprintf(file_,
+                   "place,sensor,ring,trial,status,error_m,error_deg,inside,open,nees,closed,widest_3_sigma_m,"
+                   "overlap,points,ambiguous,pcl_right,error_roll,error_pitch,"
+                   "error_yaw,error_x,error_y,error_z,sigma_roll,sigma_pitch,sigma_yaw,sigma_x,sigma_y,sigma_z\n");
+  }
+  ~Lines() {
+    if (file_) std::fclose(file_);
+  }
+  void add(const std::string& cell, std::span<const Outcome> outcomes) {
+    for (std::size_t k = 0; file_ && k < outcomes.size(); ++k) {
+      const Outcome& o = outcomes[k];
+      const Verdict& v = o.verdict;
+      std::fprintf(file_, "%s,%zu,%s,%.4f,%.4f,%d,%d,%.3f,%d,%.4f,%.3f,%zu,%d,%d", cell.c_str(), k,
+                   row_of(registration_statuses(), o.status).name, v.error_m, v.error_deg, v.inside, v.undecided,
+                   v.nees, v.closed, v.widest_3_sigma_m, o.overlap, o.points, o.ambiguous, o.pcl_right);
+      for (const Vector6d& column : {v.error, v.sigma}) {
+        for (const double x : column) std::fprintf(file_, ",%.5f", x);
+      }
+      std::fprintf(file_, "\n");
+    }
+  }
+
+ private:
+  std::FILE* file_;
+};
+
+constexpr double kAlarm = 1e-4;
+
+/// All cells, or those that CANYON_TRIALS_PLACE and CANYON_TRIALS_SENSOR name.
+template <class Take>
+void every_cell(const Take& take) {
+  const std::string place_only = setting("CANYON_TRIALS_PLACE", ""), sensor_only = setting("CANYON_TRIALS_SENSOR", "");
+  for (const Place& place : places()) {
+    if (!place_only.empty() && place_only.find(place.name) == std::string::npos) continue;
+    for (const Sensor& sensor : sensors()) {
+      if (!sensor_only.empty() && sensor_only.find(sensor.name) == std::string::npos) continue;
+      take(place, sensor);
+    }
+  }
+}
+
+TEST(TrialsNightly, SilentFailures) {
+  const auto count = std::stoul(setting("CANYON_TRIALS_PER_CELL", "21"));
+  Asked asked;
+  asked.method = setting("CANYON_TRIALS_METHOD", "gicp");
+  asked.pcl = setting("CANYON_TRIALS_PCL", "1") == "1";
+  Lines lines;
+  std::printf("%s, %zu trials per place, sensor and ring\n%s", asked.method.c_str(), count, table_head().c_str());
+  Tally all;
+  std::vector<Tally> by_ring(rings().size());
+  every_cell([&](const Place& place, const Sensor& sensor) {
+    for (std::size_t r = 0; r < rings().size(); ++r) {
+      const Ring& ring = rings()[r];
+      const auto outcomes = run_trials(asked, place, sensor, ring, 1, count);
+      lines.add(std::string(place.name) + ',' + sensor.name + ',' + ring.name, outcomes);
+      Tally cell;
+      for (const Outcome& o : outcomes) cell.add(o);
+      const std::string name = std::string(place.name) + ' ' + sensor.name + ' ' + ring.name;
+      std::printf("%s", table_row(name, cell).c_str());
+      std::fflush(stdout);
+      EXPECT_LE(cell.silent, binomial_most(cell.converged, 0.02, kAlarm)) << name;  // the requirement: 2 %
+      by_ring[r].add(cell);
+      all.add(cell);
+    }
+  });
+  for (std::size_t r = 0; r < rings().size(); ++r) {
+    std::printf("%s", table_row(rings()[r].name, by_ring[r]).c_str());
+    if (asked.pcl) {
+      EXPECT_GE(by_ring[r].converged, by_ring[r].pcl_right) << rings()[r].name;
+    }
+  }
+  std::printf("%s", table_row("all", all).c_str());
+  // The requirements, with room for chance.
+  EXPECT_LE(all.silent, binomial_most(all.converged, 0.005, kAlarm));
+  EXPECT_LE(by_ring[0].refused_good, binomial_most(by_ring[0].right, 0.05, kAlarm));
+  EXPECT_GE(all.recalled, binomial_fewest(all.ambiguous, 0.9, kAlarm));
+  EXPECT_EQ(all.wide, 0);
+}
+
+TEST(TrialsNightly, CovarianceOfPlacesThatNothingIsCalibratedOn) {
+  const auto count = std::stoul(setting("CANYON_TRIALS_PER_CELL", "200"));
+  const bool calibrating = setting("CANYON_TRIALS_CALIBRATING", "0") == "1";
+  Asked asked;
+  asked.method = setting("CANYON_TRIALS_METHOD", "gicp");
+  asked.forms = {"calibrated"};
+  if (setting("CANYON_TRIALS_FORMS", "1") == "1")
+    asked.forms.insert(asked.forms.end(), {"sandwich", "hessian", "censi", "sampled", "guess_and_bias"});
+  Lines lines;
+  every_cell([&](const Place& place, const Sensor& sensor) {
+    if (place.judged == calibrating) return;
+    const auto outcomes = run_trials(asked, place, sensor, rings()[0], 2, count);
+    lines.add(std::string(place.name) + ',' + sensor.name + ',' + rings()[0].name, outcomes);
+    for (std::size_t f = 0; f < asked.forms.size(); ++f) {
+      const Tally tally = of_form(outcomes, f);
+      std::printf("%-12s %-8s %-15s converged %4d  NEES %9.3f  95 %% covers %5.1f %%\n", place.name, sensor.name,
+                  asked.forms[f].c_str(), tally.judged, tally.nees_mean(), 100 * tally.coverage());
+      std::fflush(stdout);
+      if (f > 0 || calibrating) continue;  // the requirement is of the default form
+      EXPECT_GT(tally.nees_mean(), 0.5) << place.name << ' ' << sensor.name;
+      EXPECT_LT(tally.nees_mean(), 2.0) << place.name << ' ' << sensor.name;
+      EXPECT_GE(tally.within_95, binomial_fewest(tally.judged, 0.88, kAlarm)) << place.name << ' ' << sensor.name;
+    }
+  });
+}
+
+TEST(TrialsNightly, ASubsetFailsSilentlyNoMoreOftenThanPromised) {
+  Tally all, near;
+  for (const Place& place : places()) {
+    for (std::size_t r = 0; r < 3; ++r) {
+      for (const Outcome& o : run_trials({}, place, sensors()[0], rings()[r], 3, 2)) {
+        all.add(o);
+        if (r == 0) near.add(o);
+      }
+    }
+  }
+  std::printf("%s%s", table_head().c_str(), table_row("subset", all).c_str());
+  EXPECT_LE(all.silent, binomial_most(all.converged, 0.005, kAlarm));
+  EXPECT_LE(near.refused_good, binomial_most(near.right, 0.05, kAlarm));
+  EXPECT_GE(all.recalled, binomial_fewest(all.ambiguous, 0.9, kAlarm));
+}
+
+TEST(Trials, SameOutcomesForAnyNumberOfThreads) {
+  std::vector<Outcome> first;
+  for (const int n : {1, 2, 8}) {
+    set_threads(n);
+    const auto outcomes = run_trials({}, places()[1], sensors()[0], rings()[1], 4, 3);
+    if (first.empty()) first = outcomes;
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      EXPECT_EQ(outcomes[k].verdict.error_m, first[k].verdict.error_m);
+      EXPECT_EQ(outcomes[k].verdict.nees, first[k].verdict.nees);
+      EXPECT_EQ(outcomes[k].status, first[k].status);
+    }
+  }
+  set_threads(0);
+}
+
+}  // namespace
+}  // namespace canyon::lidar::trials
