@@ -1,8 +1,10 @@
 #include "canyon/core/files/pcd.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <iterator>
 #include <set>
@@ -34,6 +36,8 @@ class Header {
   std::vector<PcdField> fields;
   std::size_t point_bytes = 0;
   std::size_t points = 0;
+  bool any_data = false;  ///< text and compressed data are taken as well
+  std::string data;       ///< "binary", ...
 
   /// One line of the header, split at blanks. Error: only what was expected is filled in.
   Status read(const std::vector<std::string>& parts) {
@@ -85,7 +89,10 @@ class Header {
 
   /// DATA ends the header: is all there, and does it agree?
   Status close(const std::vector<std::string>& parts) {
-    if (parts.size() != 2 || parts[1] != "binary") return expected("DATA binary");
+    const bool known = parts.size() == 2 &&
+                       (parts[1] == "binary" || (any_data && (parts[1] == "ascii" || parts[1] == "binary_compressed")));
+    if (!known) return expected(any_data ? "DATA ascii, binary or binary_compressed" : "DATA binary");
+    data = parts[1];
     for (const char* needed : {"FIELDS", "SIZE", "TYPE", "POINTS"})
       if (seen_.count(needed) == 0)
         return expected(std::string(needed) + (std::string_view(needed) == "POINTS" ? " N" : "") + " before it");
@@ -114,8 +121,9 @@ std::string shown(const std::vector<std::string>& parts) {
 }
 
 /// Leaves `in` where the points begin.
-Result<Header> read_header(std::istream& in, const std::string& path) {
+Result<Header> read_header(std::istream& in, const std::string& path, bool any_data = false) {
   Header header;
+  header.any_data = any_data;
   std::string line;
   for (int line_number = 1;; ++line_number) {
     if (!std::getline(in, line) || in.eof())
@@ -184,6 +192,160 @@ Result<std::span<const char>> PcdReader::next() {
     return Error{path_, 0, "POINTS", "cannot be read to its end", std::to_string(points_) + " points"};
   done_ += n;
   return std::span<const char>(bytes_);
+}
+
+namespace {
+
+/// Number `i` of a field in its bytes.
+double value_at(const PcdField& field, const char* bytes) {
+  const auto as = [bytes](auto value) {
+    std::memcpy(&value, bytes, sizeof value);
+    return static_cast<double>(value);
+  };
+  switch (field.type) {
+    case 'F':
+      return field.size == 4 ? as(float{}) : as(double{});
+    case 'I':
+      return field.size == 1   ? as(std::int8_t{})
+             : field.size == 2 ? as(std::int16_t{})
+             : field.size == 4 ? as(std::int32_t{})
+                               : as(std::int64_t{});
+    default:
+      return field.size == 1   ? as(std::uint8_t{})
+             : field.size == 2 ? as(std::uint16_t{})
+             : field.size == 4 ? as(std::uint32_t{})
+                               : as(std::uint64_t{});
+  }
+}
+
+/// LZF as PCL writes it: a control byte, then a literal run or a copy of what came before. Empty: the data are damaged.
+std::string unpacked_lzf(std::string_view packed, std::size_t size) {
+  std::string out;
+  out.reserve(size);
+  std::size_t at = 0;
+  while (at < packed.size()) {
+    const auto control = static_cast<unsigned char>(packed[at++]);
+    if (control < 32) {
+      const std::size_t run = control + 1u;
+      if (run > packed.size() - at || run > size - out.size()) return {};
+      out.append(packed.substr(at, run));
+      at += run;
+      continue;
+    }
+    std::size_t length = control >> 5;
+    if (length == 7) {
+      if (at >= packed.size()) return {};
+      length += static_cast<unsigned char>(packed[at++]);
+    }
+    if (at >= packed.size()) return {};
+    const std::size_t back =
+        (static_cast<std::size_t>(control & 0x1f) << 8) + static_cast<unsigned char>(packed[at++]) + 1;
+    length += 2;
+    if (back > out.size() || length > size - out.size()) return {};
+    for (std::size_t k = 0; k < length; ++k) out.push_back(out[out.size() - back]);
+  }
+  return out.size() == size ? out : std::string();
+}
+
+using Axes = std::array<const PcdField*, 3>;
+
+Result<Axes> axes_of(const Header& header, const std::string& path) {
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  Axes axes{};
+  for (const PcdField& field : header.fields) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (field.name != kNames[a]) continue;
+      if (axes[a] != nullptr) return Error{path, 0, field.name, "there are two such fields", "one"};
+      axes[a] = &field;
+    }
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (axes[a] == nullptr) return Error{path, 0, kNames[a], "no such field", "fields x, y and z"};
+    if (axes[a]->count != 1 || (axes[a]->type == 'F' && axes[a]->size < 4))
+      return Error{path, 0, kNames[a], "is no single number", "count 1, and 4 or 8 bytes of type F"};
+  }
+  return axes;
+}
+
+Error ends_early(const std::string& path, std::size_t held, std::size_t points) {
+  return Error{path, 0, "POINTS", "the file holds " + std::to_string(held) + " points",
+               std::to_string(points) + " as its header says"};
+}
+
+Status read_text_points(std::istream& in, const std::string& path, const Header& header, const Axes& axes,
+                        CloudPlaces& out) {
+  std::size_t columns = 0;
+  std::array<std::size_t, 3> column{};
+  for (const PcdField& field : header.fields) {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (axes[a] == &field) column[a] = columns;
+    columns += field.count;
+  }
+  std::string line;
+  while (out.points.size() < header.points && std::getline(in, line)) {
+    const auto parts = words(line);
+    if (parts.empty()) continue;
+    const Error damaged{path, 0, "point " + std::to_string(out.points.size()), '"' + shown(parts) + '"',
+                        std::to_string(columns) + " numbers"};
+    if (parts.size() != columns) return damaged;
+    Eigen::Vector3d p;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::string& word = parts[column[a]];
+      const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), p[static_cast<Eigen::Index>(a)]);
+      if (code != std::errc() || end != word.data() + word.size()) return damaged;
+    }
+    out.points.push_back(p);
+  }
+  if (out.points.size() < header.points) return ends_early(path, out.points.size(), header.points);
+  return Ok{};
+}
+
+}  // namespace
+
+Result<CloudPlaces> read_pcd_places(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  if (!in || unknown) return Error{path, 0, {}, "cannot be read", "a PCD file"};
+  CANYON_TRY(const Header header, read_header(in, path, true));
+  CANYON_TRY(const Axes axes, axes_of(header, path));
+  CloudPlaces out;
+  out.single_precision = axes[0]->type == 'F' && axes[0]->size == 4;
+  if (header.data == "ascii") {
+    out.single_precision = false;
+    CANYON_TRY_STATUS(read_text_points(in, path, header, axes, out));
+    return out;
+  }
+  const std::uintmax_t behind = size - static_cast<std::uintmax_t>(in.tellg());
+  if (header.data == "binary" && behind / header.point_bytes < header.points)
+    return ends_early(path, behind / header.point_bytes, header.points);
+  std::string bytes(behind, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (static_cast<std::uintmax_t>(in.gcount()) != behind)
+    return Error{path, 0, "", "cannot be read to its end", "points"};
+  const bool packed = header.data == "binary_compressed";
+  if (packed) {
+    // Two lengths, then all values of the first field, of the second, ...
+    std::uint32_t lengths[2] = {0, 0};
+    if (bytes.size() >= sizeof lengths) std::memcpy(lengths, bytes.data(), sizeof lengths);
+    const std::uintmax_t wanted = static_cast<std::uintmax_t>(header.points) * header.point_bytes;
+    if (bytes.size() < sizeof lengths || bytes.size() - sizeof lengths < lengths[0] || lengths[1] != wanted)
+      return Error{path, 0, "DATA", "the compressed data end early or are not as long as the header says",
+                   std::to_string(header.points) + " points"};
+    bytes = unpacked_lzf(std::string_view(bytes).substr(sizeof lengths, lengths[0]), lengths[1]);
+    if (bytes.size() != wanted)
+      return Error{path, 0, "DATA", "the compressed data are damaged", "LZF as PCL writes it"};
+  }
+  out.points.resize(header.points);
+  for (std::size_t i = 0; i < header.points; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const PcdField& field = *axes[a];
+      const std::size_t at =
+          packed ? field.offset * header.points + i * field.size : i * header.point_bytes + field.offset;
+      out.points[i][static_cast<Eigen::Index>(a)] = value_at(field, bytes.data() + at);
+    }
+  }
+  return out;
 }
 
 }  // namespace canyon

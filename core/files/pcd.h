@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "canyon/core/result.h"
 
-/// Point clouds as binary PCD 0.7 (https://pointclouds.org/documentation/tutorials/pcd_file_format.html),
+/// Point clouds as PCD 0.7 (https://pointclouds.org/documentation/tutorials/pcd_file_format.html),
 /// little-endian: the only place where the format is known.
 namespace canyon {
 
@@ -48,5 +50,14 @@ class PcdReader {
   std::size_t point_bytes_ = 0, points_ = 0, done_ = 0;
   std::vector<char> bytes_;
 };
+
+/// x, y and z of all points of a cloud.
+struct CloudPlaces {
+  std::vector<Eigen::Vector3d> points;  ///< as the file has them: they may not be finite
+  bool single_precision = false;        ///< that is how the file holds them
+};
+/// Reads a cloud of text, binary or compressed data (LZF) with any fields beside x, y and z, which may be of any type.
+/// A file that ends before its last point, or is no PCD, is an error.
+Result<CloudPlaces> read_pcd_places(const std::string& path);
 
 }  // namespace canyon

@@ -113,6 +113,21 @@ Result<Trajectory> read_kitti(const std::string& path, GpsTime start, double rat
   return trajectory;
 }
 
+/// Numbers read back to the same bits; times are not kept, as the format has none.
+Status write_kitti(const std::string& path, const Trajectory& trajectory) {
+  std::string out;
+  for (const StampedPose& pose : trajectory.poses()) {
+    const Eigen::Matrix3d R = pose.X_WB.R.toRotationMatrix();
+    std::string line;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j) append_number(line, R(i, j));
+      append_number(line, pose.X_WB.p[i]);
+    }
+    out.append(line, 1).append(1, '\n');
+  }
+  return write_text_file(path, out);
+}
+
 namespace {
 
 constexpr std::array<std::string_view, 9> kCsvColumns = {"gps_week", "sow", "x_m", "y_m", "z_m",

@@ -42,6 +42,7 @@ Result<Trajectory> read_tum(const std::string& path);
 Status write_tum(const std::string& path, const Trajectory& trajectory);
 /// KITTI: 12 numbers per line, row-major 3x4; no times, so `rate_hz` and `start` give them.
 Result<Trajectory> read_kitti(const std::string& path, GpsTime start, double rate_hz);
+Status write_kitti(const std::string& path, const Trajectory& trajectory);
 /// CSV with header `gps_week,sow,x_m,y_m,z_m,qw,qx,qy,qz`, or the true poses of a mission's epochs/RUN_nav.csv.
 Result<Trajectory> read_csv_trajectory(const std::string& path);
 

@@ -1,4 +1,4 @@
-#include "canyon/lidar/map_quality.h"
+#include "canyon/lidar/map_quality/map_error.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,0 +1,111 @@
+// canyon lidar evaluate and canyon lidar error-budget: as a user calls them.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/tests/apps/command_line_fixture.h"
+
+namespace canyon::apps {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A square of 40 m and a wall of 10 m on it, to the east.
+constexpr const char* kCourt = R"(o ground
+v -20 -20 0
+v 20 -20 0
+v 20 20 0
+v -20 20 0
+f 1 2 3 4
+o wall
+v 10 -15 0
+v 10 15 0
+v 10 15 10
+v 10 -15 10
+f 5 6 7 8
+)";
+
+/// `xyz` as a binary PCD.
+std::string pcd(const std::vector<float>& xyz) {
+  const std::string n = std::to_string(xyz.size() / 3);
+  std::string out = "VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + n +
+                    "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + n + "\nDATA binary\n";
+  out.append(reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float));
+  return out;
+}
+
+class LidarEvaluateTest : public testing::CommandLineTest {
+ protected:
+  void SetUp() override {
+    CommandLineTest::SetUp();
+    write("given.obj", kCourt);
+    std::vector<float> xyz;
+    for (int i = -40; i < 0; ++i)
+      for (int k = -40; k < 40; ++k)
+        xyz.insert(xyz.end(), {0.4F * static_cast<float>(i) + 0.1F, 0.2F * static_cast<float>(k), 0.07F});
+    write("given.pcd", pcd(xyz));
+  }
+  void refused(const std::string& arguments, const std::string& line) {
+    EXPECT_EQ(canyon("lidar evaluate " + arguments), 2);
+    EXPECT_EQ(read("stderr"), line + "\n");
+    EXPECT_EQ(read("stdout"), "");
+    EXPECT_TRUE(leftovers().empty());
+  }
+};
+
+TEST_F(LidarEvaluateTest, AGroundSevenCentimetresTooHigh) {
+  ASSERT_EQ(canyon("lidar evaluate given.pcd --scene given.obj --undulation 0 --json"), 0) << read("stderr");
+  const Json out = Json::parse(read("stdout"));
+  // Single precision of the scene's corners.
+  EXPECT_NEAR(out["rms_m"].get<double>(), 0.07, 1e-5);
+  EXPECT_NEAR(out["up_rms_m"].get<double>(), 0.07, 1e-5);
+  EXPECT_NEAR(out["p95_m"].get<double>(), 0.07, 1e-5);
+  EXPECT_EQ(out["points"], 3200);
+  EXPECT_EQ(out["accuracy_5cm"], 0.0);
+  EXPECT_EQ(out["accuracy_10cm"], 1.0);
+  EXPECT_EQ(out["completeness_of"], "surfaces near the map");
+  EXPECT_TRUE(out["completeness_5cm"].is_number());
+  EXPECT_TRUE(out["mean_map_entropy"].is_number());
+}
+
+TEST_F(LidarEvaluateTest, ATrajectoryLaidOverItsTruth) {
+  std::string truth, estimate;
+  for (int k = 0; k < 50; ++k) {
+    truth += std::to_string(100 + k) + " " + std::to_string(0.1 * k) + " 0 2 0 0 0 1\n";
+    estimate += std::to_string(100 + k) + " " + std::to_string(0.1 * k) + " 3 2 0 0 0 1\n";
+  }
+  write("given_truth.tum", truth);
+  write("given_estimate.tum", estimate);
+  ASSERT_EQ(canyon("lidar evaluate given.pcd --scene given.obj --undulation 0 --trajectory given_truth.tum --estimate "
+                   "given_estimate.tum --json"),
+            0)
+      << read("stderr");
+  const Json plain = Json::parse(read("stdout"));
+  EXPECT_NEAR(plain["trajectory"]["ate_rms_m"].get<double>(), 3.0, 1e-12);
+  EXPECT_EQ(plain["completeness_of"], "beams");
+  ASSERT_EQ(canyon("lidar evaluate given.pcd --scene given.obj --undulation 0 --trajectory given_truth.tum --estimate "
+                   "given_estimate.tum --alignment yaw --aligned given_aligned.kitti --json"),
+            0)
+      << read("stderr");
+  EXPECT_NEAR(Json::parse(read("stdout"))["trajectory"]["ate_rms_m"].get<double>(), 0.0, 1e-12);
+  EXPECT_FALSE(read("given_aligned.kitti").empty());
+}
+
+TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {
+  write("given.txt", "no cloud");
+  write("given_empty.pcd", pcd({}));
+  EXPECT_EQ(canyon("lidar evaluate given_missing.pcd --scene given.obj"), 2);
+  EXPECT_EQ(canyon("lidar evaluate given.txt --scene given.obj"), 2);
+  refused("given_empty.pcd --scene given.obj", "given_empty.pcd: holds no finite point, expected a map");
+  refused("given.pcd --scene given.obj --estimate given.txt",
+          "command line: --estimate without the true way, expected --trajectory FILE");
+  EXPECT_EQ(canyon("lidar error-budget mission.toml --fidelity hihg"), 2);
+  EXPECT_EQ(canyon("lidar error-budget mission.toml --permutations 1"), 2);
+  EXPECT_TRUE(leftovers().empty());
+}
+
+}  // namespace
+}  // namespace canyon::apps

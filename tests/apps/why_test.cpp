@@ -1,0 +1,54 @@
+// compare --why through the binary: what is said of a run that failed, and of how it is asked.
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/tests/apps/command_line_fixture.h"
+
+namespace canyon::apps::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+class WhyTest : public CommandLineTest {};
+
+// No source of error is to blame for a mission that ends after four seconds whatever it believes.
+TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 6 --out out"), 0)
+      << read("stderr");
+  EXPECT_THAT(read("stdout"), HasSubstr("Why low failed: not navigation: even with the true pose it never succeeds"));
+  const Json why = Json::parse(read("out/why.json"));
+  ASSERT_EQ(why["failures"].size(), 1U);
+  const Json& failure = why["failures"][0];
+  EXPECT_EQ(failure["run"], "low");
+  EXPECT_EQ(failure["draws"], 6);
+  EXPECT_TRUE(failure["cause"].is_null());
+  EXPECT_EQ(failure["removals"].size(), 8U);
+  for (const Json& removal : failure["removals"]) {
+    EXPECT_EQ(removal["success"], 0);
+    EXPECT_EQ(removal["p"], 1.0);
+    EXPECT_EQ(removal["rescues"], false);
+  }
+  EXPECT_THAT(read("out/report.html"), HasSubstr("<strong>Why:</strong> not navigation"));
+  // The same question again, on another number of threads: the same answer.
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 6 --threads 1 --out again"), 0);
+  EXPECT_EQ(read("again/why.json"), read("out/why.json"));
+}
+
+TEST_F(WhyTest, Mistakes) {
+  expect_mistake("compare mission.toml --why-draws 10 --out out",
+                 "--why-draws: is for replays, expected --why beside it\n");
+  expect_mistake("compare mission.toml --why --open-loop --out out",
+                 "--why: an open loop has no outcome, expected no --open-loop beside it\n");
+  expect_mistake("compare mission.toml --why --plan=none.plan --out out",
+                 "--why: replays leave nothing out by a plan, expected no --plan beside it\n");
+  expect_mistake("compare mission.toml --why --why-draws 5 --out out",
+                 "--why-draws: \"5\", expected a whole number from 6 to 10000\n");
+  EXPECT_FALSE(std::filesystem::exists(path("out")));
+}
+
+}  // namespace
+}  // namespace canyon::apps::testing

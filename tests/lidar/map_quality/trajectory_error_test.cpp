@@ -1,0 +1,169 @@
+#include "canyon/lidar/map_quality/trajectory_error.h"
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+
+namespace canyon::lidar {
+namespace {
+
+constexpr GpsTime kBegin{1'000'000'000'000'000'000};
+
+/// A winding climb, and an estimate that lies elsewhere, turned, with noise.
+struct Drive {
+  Trajectory truth, estimate;
+};
+Drive winding(const Pose& laid, double noise_m) {
+  const RandomStream random(7, "test.winding");
+  Drive out;
+  for (std::uint64_t k = 0; k <= 1200; ++k) {
+    const double s = 0.25 * static_cast<double>(k);
+    const Pose X{rotation_from({.yaw_rad = 0.02 * s, .pitch_rad = 0.01 * std::sin(0.1 * s), .roll_rad = 0.02}),
+                 {40.0 * std::sin(0.02 * s), 40.0 * std::cos(0.02 * s), 3.0 * std::sin(0.013 * s)}};
+    const GpsTime t = kBegin + 0.1 * static_cast<double>(k);
+    out.truth.append({t, X});
+    Vector6d xi;
+    xi << 0.01 * random.normal3(k, 0), noise_m * random.normal3(k, 1);
+    out.estimate.append({t, laid * X * Pose::exp(xi)});
+  }
+  return out;
+}
+
+// The second computation: homogeneous matrices, Horn's quaternion for the rotation, the angle from |R - I|.
+using Matrices = std::vector<Eigen::Matrix4d>;
+Matrices matrices(const Trajectory& trajectory) {
+  Matrices out;
+  for (const StampedPose& pose : trajectory.poses()) out.push_back(pose.X_WB.matrix());
+  return out;
+}
+
+double rotation_deg(const Eigen::Matrix4d& T) {
+  const double chord = (T.topLeftCorner<3, 3>() - Eigen::Matrix3d::Identity()).norm();
+  return 2.0 * std::asin(chord / (2.0 * std::sqrt(2.0))) / kDegree;
+}
+
+/// Horn, J. Opt. Soc. Am. A 4 (1987) 629.
+Eigen::Matrix4d horn(const Matrices& truth, const Matrices& estimate) {
+  Eigen::Vector3d mean_t = Eigen::Vector3d::Zero(), mean_e = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    mean_t += truth[i].topRightCorner<3, 1>() / static_cast<double>(truth.size());
+    mean_e += estimate[i].topRightCorner<3, 1>() / static_cast<double>(truth.size());
+  }
+  Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    M += (estimate[i].topRightCorner<3, 1>() - mean_e) * (truth[i].topRightCorner<3, 1>() - mean_t).transpose();
+  Eigen::Matrix4d N;
+  N << M.trace(), M(1, 2) - M(2, 1), M(2, 0) - M(0, 2), M(0, 1) - M(1, 0),  //
+      M(1, 2) - M(2, 1), M(0, 0) - M(1, 1) - M(2, 2), M(0, 1) + M(1, 0), M(2, 0) + M(0, 2), M(2, 0) - M(0, 2),
+      M(0, 1) + M(1, 0), M(1, 1) - M(0, 0) - M(2, 2), M(1, 2) + M(2, 1), M(0, 1) - M(1, 0), M(2, 0) + M(0, 2),
+      M(1, 2) + M(2, 1), M(2, 2) - M(0, 0) - M(1, 1);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(N);
+  const Eigen::Vector4d q = solver.eigenvectors().col(3);
+  Eigen::Matrix4d T = Eigen::Matrix4d::Identity();
+  T.topLeftCorner<3, 3>() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  T.topRightCorner<3, 1>() = mean_t - T.topLeftCorner<3, 3>() * mean_e;
+  return T;
+}
+
+double ate_rms(const Matrices& truth, const Matrices& estimate, const Eigen::Matrix4d& T) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    sum += ((T * estimate[i]).topRightCorner<3, 1>() - truth[i].topRightCorner<3, 1>()).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(truth.size()));
+}
+
+const Pose kLaid{rotation_from({.yaw_rad = 0.7, .pitch_rad = 0.1, .roll_rad = -0.2}), {100.0, -20.0, 5.0}};
+
+TEST(TrajectoryErrors, EqualASecondComputation) {
+  const Drive drive = winding(kLaid, 0.3);
+  const Matrices truth = matrices(drive.truth), estimate = matrices(drive.estimate);
+  // n eps scale: sums of 1201 squares of 1e2 m, roots of them; 1e-9 is asked for.
+  const TrajectoryErrors aligned = trajectory_errors(drive.truth, drive.estimate, TrajectoryAlignment::kSe3);
+  EXPECT_EQ(aligned.poses, 1201);
+  EXPECT_NEAR(aligned.ate_rms_m, ate_rms(truth, estimate, horn(truth, estimate)), 1e-9);
+  const TrajectoryErrors plain = trajectory_errors(drive.truth, drive.estimate, TrajectoryAlignment::kNone);
+  EXPECT_NEAR(plain.ate_rms_m, ate_rms(truth, estimate, Eigen::Matrix4d::Identity()), 1e-9);
+
+  std::vector<double> way{0.0};
+  for (std::size_t i = 1; i < truth.size(); ++i)
+    way.push_back(way.back() + (truth[i] - truth[i - 1]).topRightCorner<3, 1>().norm());
+  const auto check = [&](const RelativeErrors& r, const std::function<bool(std::size_t, std::size_t)>& far_enough) {
+    double m2 = 0.0, deg2 = 0.0;
+    std::int64_t count = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      for (std::size_t j = i; j < truth.size(); ++j) {
+        if (!far_enough(i, j)) continue;
+        const Eigen::Matrix4d E = (truth[i].inverse() * truth[j]).inverse() * (estimate[i].inverse() * estimate[j]);
+        m2 += E.topRightCorner<3, 1>().squaredNorm();
+        deg2 += std::pow(rotation_deg(E), 2);
+        ++count;
+        break;
+      }
+    EXPECT_EQ(r.pairs, count) << r.over;
+    EXPECT_NEAR(r.translation_rms_m, std::sqrt(m2 / static_cast<double>(count)), 1e-9) << r.over;
+    EXPECT_NEAR(r.rotation_rms_deg, std::sqrt(deg2 / static_cast<double>(count)), 1e-9) << r.over;
+  };
+  const double steps[] = {1.0, 10.0, 100.0};
+  for (std::size_t k = 0; k < 3; ++k)
+    check(plain.relative[k], [&](std::size_t i, std::size_t j) { return way[j] - way[i] >= steps[k]; });
+  const std::size_t samples[] = {10, 100};
+  for (std::size_t k = 0; k < 2; ++k)
+    check(plain.relative[3 + k], [&](std::size_t i, std::size_t j) { return j - i >= samples[k]; });
+  EXPECT_EQ(plain.relative[1].over, "10 m");
+  EXPECT_EQ(plain.relative[4].over, "10 s");
+}
+
+TEST(TrajectoryErrors, AlignmentFindsHowItWasLaid) {
+  const Drive drive = winding(kLaid, 0.0);
+  // Attitude noise alone: positions are exact, so the alignment is to rounding.
+  const TrajectoryErrors e = trajectory_errors(drive.truth, drive.estimate, TrajectoryAlignment::kSe3);
+  EXPECT_TRUE(e.alignment_determined);
+  EXPECT_LT((e.X_true_estimated.inverse().p - kLaid.p).norm(), 1e-9);
+  EXPECT_LT(e.ate_max_m, 1e-9);
+  const Pose turned{rotation_from({.yaw_rad = -1.1}), {3.0, 4.0, 5.0}};
+  const Drive level = winding(turned, 0.0);
+  EXPECT_LT(trajectory_errors(level.truth, level.estimate, TrajectoryAlignment::kYaw).ate_max_m, 1e-9);
+  // A tilt is no yaw: 0.1 rad over 40 m stays.
+  EXPECT_GT(trajectory_errors(drive.truth, drive.estimate, TrajectoryAlignment::kYaw).ate_rms_m, 1.0);
+}
+
+TEST(TrajectoryErrors, WhatIsNotDeterminedIsSaid) {
+  Trajectory straight;
+  for (int k = 0; k < 50; ++k) straight.append({kBegin + 0.1 * k, {Eigen::Quaterniond::Identity(), {0.5 * k, 0, 0}}});
+  EXPECT_FALSE(trajectory_errors(straight, straight, TrajectoryAlignment::kSe3).alignment_determined);
+  EXPECT_TRUE(trajectory_errors(straight, straight, TrajectoryAlignment::kYaw).alignment_determined);
+  const TrajectoryErrors same = trajectory_errors(straight, straight, TrajectoryAlignment::kNone);
+  EXPECT_EQ(same.ate_rms_m, 0.0);
+  EXPECT_EQ(same.relative[2].pairs, 0) << "24.5 m hold no stretch of 100 m";
+  EXPECT_TRUE(std::isnan(same.relative[2].translation_rms_m));
+  const TrajectoryErrors none = trajectory_errors(straight, {}, TrajectoryAlignment::kSe3);
+  EXPECT_EQ(none.poses, 0);
+  EXPECT_TRUE(std::isnan(none.ate_rms_m));
+}
+
+TEST(TrajectoryErrors, TumAndKittiReadBack) {
+  const Drive drive = winding(kLaid, 0.2);
+  const std::string stem = ::testing::TempDir() + "canyon_trajectory";
+  ASSERT_TRUE(write_tum(stem + ".tum", drive.estimate).ok());
+  ASSERT_TRUE(write_kitti(stem + ".kitti", drive.estimate).ok());
+  const auto tum = read_tum(stem + ".tum");
+  const auto kitti = read_kitti(stem + ".kitti", kBegin, 10.0);
+  ASSERT_TRUE(tum.ok() && kitti.ok());
+  const auto errors = [&](const Trajectory& t) {
+    return trajectory_errors(drive.truth, t, TrajectoryAlignment::kNone).ate_rms_m;
+  };
+  EXPECT_EQ(errors(*tum), errors(drive.estimate));
+  EXPECT_NEAR(errors(*kitti), errors(drive.estimate), 1e-12) << "positions to the bit, rotations are no quaternions";
+  std::filesystem::remove(stem + ".tum");
+  std::filesystem::remove(stem + ".kitti");
+}
+
+}  // namespace
+}  // namespace canyon::lidar
