@@ -10,6 +10,7 @@
 #include "canyon/report/draw/page.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/drive_check/drive_page.h"
+#include "canyon/report/error_budget/budget_page.h"
 #include "canyon/report/format.h"
 #include "canyon/report/fuse/fuse_page.h"
 #include "canyon/report/read/read_results.h"
@@ -65,6 +66,8 @@ std::string page(const Results& results) {
 Result<std::string> html_report(const std::string& results_dir) {
   std::error_code code;
   if (std::filesystem::exists(results_dir + "/tradeoff.csv", code)) return tradeoff_page(results_dir + "/summary.json");
+  if (std::filesystem::exists(results_dir + "/error_budget.csv", code))
+    return budget_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/paper.csv", code)) return reproduce_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/innovations.csv", code)) return fuse_page(results_dir);
   if (std::filesystem::exists(results_dir + "/signals.csv", code)) return drive_page(results_dir);

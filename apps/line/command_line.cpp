@@ -88,17 +88,31 @@ int parse_and_run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("\nExample, the same mission at three fidelities side by side:\n  canyon compare --out first");
   std::map<const CLI::App*, VerbAction> actions;
-  for (const Verb& verb : {compare_verb(),      run_verb(),
-                           plan_verb(),         tradeoff_verb(),
-                           stress_verb(),       reproduce_verb(),
-                           report_verb(),       keys_verb(),
-                           gnss_sky_verb(),     gnss_simulate_verb(),
-                           gnss_solve_verb(),   gnss_orbit_error_verb(),
-                           gnss_map_verb(),     gnss_drive_check_verb(),
-                           imu_allan_verb(),    imu_fit_verb(),
-                           imu_simulate_verb(), imu_dead_reckon_verb(),
-                           lidar_scan_verb(),   scene_make_verb(),
-                           scene_info_verb(),   fuse_verb()}) {
+  for (const Verb& verb : {compare_verb(),
+                           run_verb(),
+                           plan_verb(),
+                           tradeoff_verb(),
+                           stress_verb(),
+                           reproduce_verb(),
+                           report_verb(),
+                           keys_verb(),
+                           gnss_sky_verb(),
+                           gnss_simulate_verb(),
+                           gnss_solve_verb(),
+                           gnss_orbit_error_verb(),
+                           gnss_map_verb(),
+                           gnss_drive_check_verb(),
+                           imu_allan_verb(),
+                           imu_fit_verb(),
+                           imu_simulate_verb(),
+                           imu_dead_reckon_verb(),
+                           lidar_scan_verb(),
+                           scene_make_verb(),
+                           scene_info_verb(),
+                           fuse_verb(),
+                           lidar_register_verb(),
+                           lidar_evaluate_verb(),
+                           lidar_error_budget_verb()}) {
     CLI::App* sub = declare_verb(app, verb);
     sub->footer(std::string("\nExample:\n  ") + verb.example);
     Arguments arguments(*sub);

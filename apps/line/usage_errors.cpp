@@ -1,6 +1,7 @@
 #include "canyon/apps/line/usage_errors.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -93,6 +94,16 @@ std::string words_of(const std::string& type) {
   return words;
 }
 
+/// Whether a message speaks of this option, not of one whose name only begins with it.
+bool speaks_of(const std::string& message, const std::string& name) {
+  for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if (end == message.size() || (message[end] != '-' && std::isalnum(static_cast<unsigned char>(message[end])) == 0))
+      return true;
+  }
+  return false;
+}
+
 /// The option whose value was refused, and that value, by reading the arguments once more.
 std::optional<Error> refused_value(const CLI::App& verb, const std::string& message,
                                    const std::vector<std::string>& arguments) {
@@ -100,7 +111,7 @@ std::optional<Error> refused_value(const CLI::App& verb, const std::string& mess
     const std::string& word = arguments[i];
     const std::string name = word.substr(0, word.find('='));
     const CLI::Option* option = name.rfind("--", 0) == 0 ? verb.get_option_no_throw(name) : nullptr;
-    if (option == nullptr || message.find(name) == std::string::npos) continue;
+    if (option == nullptr || !speaks_of(message, name)) continue;
     const bool inside = name.size() < word.size();
     if (!inside && i + 1 >= arguments.size()) continue;
     const std::string value = inside ? word.substr(name.size() + 1) : arguments[i + 1];

@@ -44,6 +44,9 @@ Verb imu_simulate_verb();
 Verb imu_dead_reckon_verb();
 Verb fuse_verb();
 Verb lidar_scan_verb();
+Verb lidar_evaluate_verb();
+Verb lidar_error_budget_verb();
+Verb lidar_register_verb();
 
 /// The largest --seed: what a TOML integer and a JSON number both carry without loss.
 inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;

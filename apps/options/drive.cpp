@@ -16,6 +16,7 @@
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
+#include "canyon/study/causes/causes.h"
 #include "canyon/study/plan/follow.h"
 #include "canyon/study/results/over_seeds.h"
 #include "canyon/study/results/results.h"
@@ -26,14 +27,17 @@ namespace canyon::apps {
 namespace {
 
 constexpr const char* kMakePlan = "make";
+constexpr std::int64_t kWhyDraws = 10;
 
-void print_json(const study::Results& results, const std::string& directory, const std::string& hash) {
+void print_json(const study::Results& results, const std::vector<study::Explanation>& explanations,
+                const std::string& directory, const std::string& hash) {
   nlohmann::ordered_json out = study::summary_json(results);
   // The contract's figures of cost stand beside the others, not under `timing`.
   for (auto& run : out["runs"]) {
     run["real_time_factor"] = run["timing"]["real_time_factor"];
     run["cpu_s"] = run["timing"]["cpu_s"];
   }
+  if (!explanations.empty()) out["why"] = study::why_json(explanations)["failures"];
   out["seed"] = out["mission"]["seed"];
   out["results_dir"] = directory;
   out["hash"] = hash;
@@ -85,7 +89,37 @@ void declare_plan_options(Arguments& arguments, PlanOptions& options) {
                    "or what the file's plan was made for");
 }
 
+void declare_why_options(Arguments& arguments, WhyOptions& options) {
+  arguments.flag(
+      "--why", options.why,
+      "for each run that fails (of the first seed): its chain of events, and replays without each source of error, "
+      "beside replays with other noise alone: which source's removal rescues the mission");
+  arguments.option("--why-draws", options.draws, "replays with and without each source; without it 10")
+      .within(std::int64_t{6}, std::int64_t{10'000});
+}
+
 namespace {
+
+Status check_why(const WhyOptions& why, const LoopOptions& loop, const PlanOptions& leave_out) {
+  if (why.draws && !why.why)
+    return Error{.file = "--why-draws", .what = "is for replays", .expected = "--why beside it"};
+  if (why.why && loop.open_loop)
+    return Error{.file = "--why", .what = "an open loop has no outcome", .expected = "no --open-loop beside it"};
+  if (why.why && !leave_out.plan.empty())
+    return Error{.file = "--why", .what = "replays leave nothing out by a plan", .expected = "no --plan beside it"};
+  return Ok{};
+}
+
+void print_why(const std::vector<study::Explanation>& explanations) {
+  for (const study::Explanation& explanation : explanations) {
+    std::printf("Why %s failed: %s.\n", explanation.run.c_str(), study::verdict(explanation).c_str());
+    for (const std::string& line : study::chain(explanation)) std::printf("  %s\n", line.c_str());
+    for (const study::RemovalOutcome& outcome : explanation.outcomes)
+      std::printf("  without %-20s %2d of %d%s\n", outcome.removal->name, outcome.successes, explanation.draws,
+                  outcome.rescues ? "  rescues it" : "");
+    std::printf("\n");
+  }
+}
 
 Status follow_plan(const PlanOptions& options, study::Comparison& comparison) {
   if (options.plan.empty()) return Ok{};
@@ -104,7 +138,7 @@ Status follow_plan(const PlanOptions& options, study::Comparison& comparison) {
 
 Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const FigureOptions& figures,
                              const PlanOptions& leave_out, const mission::MissionFile& file,
-                             const std::vector<study::RunPlan>& plan) {
+                             const std::vector<study::RunPlan>& plan, const WhyOptions& why) {
   set_threads(options.common.threads);
   const auto keys = figures.figures.empty() ? std::vector<std::string>() : split_list(figures.figures);
   CANYON_TRY_STATUS(study::choose_figures(keys, "--figures"));
@@ -113,6 +147,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
     return Error{.file = loop.tape.tape.empty() ? "--trajectory" : "--tape",
                  .what = "is for open loops",
                  .expected = "--open-loop beside it"};
+  CANYON_TRY_STATUS(check_why(why, loop, leave_out));
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
   const std::string directory = output_directory(options, comparison.configs.front());
@@ -123,6 +158,14 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   if (figures.seeds)
     CANYON_TRY_STATUS(
         study::add_further_seeds(comparison, *figures.seeds - 1, staged.staging_path(), !options.common.json, results));
+  std::vector<study::Explanation> explanations;
+  if (why.why) {
+    CANYON_TRY(explanations,
+               study::explain_failures(comparison, results, static_cast<int>(why.draws.value_or(kWhyDraws)),
+                                       !options.common.json));
+    CANYON_TRY_STATUS(
+        write_text_file(staged.staging_path() + "/why.json", json_text(study::why_json(explanations)) + "\n"));
+  }
   results.command_line = invocation().command_line;
   results.commit = invocation().commit;
   CANYON_TRY(const std::string hash, study::write_results(staged.staging_path(), results));
@@ -132,7 +175,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
 
   print_warnings(results);
   if (options.common.json) {
-    print_json(results, staged.final_path(), hash);
+    print_json(results, explanations, staged.final_path(), hash);
     return 0;
   }
   const auto& mission = *results.mission;
@@ -145,6 +188,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   const std::string table = figures.seeds ? study::over_seeds_table(study::over_seeds(runs_by_seed(results)), keys)
                                           : study::comparison_table(results, keys);
   std::printf("%s\n", table.c_str());
+  print_why(explanations);
   const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
   std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),
               (place / "report.html").c_str());

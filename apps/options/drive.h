@@ -31,10 +31,17 @@ struct PlanOptions {
 };
 void declare_plan_options(Arguments& arguments, PlanOptions& options);
 
+/// Whether failed runs are explained by replays (study/causes/causes.h).
+struct WhyOptions {
+  bool why = false;
+  std::optional<std::int64_t> draws;  ///< replays of each kind; none: 10
+};
+void declare_why_options(Arguments& arguments, WhyOptions& options);
+
 /// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run
 /// share.
 Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& loop, const FigureOptions& figures,
                              const PlanOptions& leave_out, const mission::MissionFile& file,
-                             const std::vector<study::RunPlan>& plan);
+                             const std::vector<study::RunPlan>& plan, const WhyOptions& why = {});
 
 }  // namespace canyon::apps

@@ -13,6 +13,7 @@ VerbAction declare(Arguments& arguments) {
     LoopOptions loop;
     FigureOptions figures;
     PlanOptions leave_out;
+    WhyOptions why;
     std::string fidelities = "low,high,paper";
     std::string filters;
     bool no_two_by_two = false;
@@ -22,6 +23,7 @@ VerbAction declare(Arguments& arguments) {
   declare_loop_options(arguments, options->loop);
   declare_figures_option(arguments, options->figures);
   declare_plan_options(arguments, options->leave_out);
+  declare_why_options(arguments, options->why);
   arguments
       .option("--seeds", options->figures.seeds,
               "every run with so many seeds, from the mission's own on: shares of success, medians and paired "
@@ -45,7 +47,7 @@ VerbAction declare(Arguments& arguments) {
     for (const std::string& filter : filters) CANYON_TRY_STATUS(choose(fusion::filter_sets(), filter, "--filters"));
     const bool square = !options->no_two_by_two && fidelities.size() > 1;
     return drive_and_report(options->mission, options->loop, options->figures, options->leave_out, file,
-                            study::plan_runs(fidelities, square, filters));
+                            study::plan_runs(fidelities, square, filters), options->why);
   };
 }
 

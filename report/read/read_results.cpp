@@ -105,6 +105,10 @@ Result<Results> read_results(const std::string& directory) {
     CANYON_TRY(const std::string manifest_json, read_text_file(manifest));
     CANYON_TRY_STATUS(read_manifest(manifest_json, manifest, results));
   }
+  if (const std::string why = (root / "why.json").string(); fs::exists(why)) {
+    CANYON_TRY(const std::string why_json, read_text_file(why));
+    CANYON_TRY_STATUS(read_why(why_json, why, results));
+  }
   results.grid = MapGrid::over(results.drawing.min_W, results.drawing.max_W, kMapCells);
   for (Run& run : results.runs) {
     const fs::path epochs = root / "epochs";

@@ -70,11 +70,26 @@ struct Interval {
   double low = std::nan(""), high = std::nan("");
 };
 
+/// What replays say of why a run failed (why.json).
+struct Why {
+  struct Removal {
+    std::string name;
+    double successes = 0.0, p = 1.0;
+    Interval difference;
+    bool rescues = false;
+  };
+  std::string verdict;
+  std::vector<std::string> chain;  ///< of events, one a line
+  double draws = 0.0, successes_as_it_was = 0.0;
+  std::vector<Removal> removals;
+};
+
 /// One run's summary and whatever of its epochs and clouds the directory holds.
 struct Run {
   std::string fidelity, gnss, imu, outcome;
   std::string filter;  ///< where it is a factor of the comparison; else empty
   std::optional<Failure> failure;
+  std::optional<Why> why;                              ///< where it was asked for
   std::map<std::string, double, std::less<>> figures;  ///< by their keys, those under `timing` among them
   std::map<std::string, Interval, std::less<>> intervals;
   std::vector<MissionWaypoint> mission_waypoints;

@@ -183,6 +183,25 @@ std::string open_loop_section(const Results& results) {
                  body + "</ul>\n");
 }
 
+/// What replays say of why it failed.
+std::string why_of(const Why& why) {
+  std::string body = "<p class=\"more\"><strong>Why:</strong> " + escape_html(why.verdict) +
+                     ".</p>\n<details class=\"more\"><summary>" +
+                     "Chain of events, and what each removal does</summary>\n<ul>\n";
+  for (const std::string& line : why.chain) body += "<li>" + escape_html(line) + "</li>\n";
+  body +=
+      "</ul>\n<table><thead><tr><th scope=\"col\" class=\"text\">taken away</th><th scope=\"col\">succeeds</th><th "
+      "scope=\"col\">difference, 95 %</th><th scope=\"col\">p</th></tr></thead>\n<tbody><tr><th scope=\"row\">nothing, "
+      "other noise</th><td>" +
+      show_count(why.successes_as_it_was) + " of " + show_count(why.draws) + "</td><td></td><td></td></tr>\n";
+  for (const Why::Removal& removal : why.removals)
+    body += "<tr><th scope=\"row\">" + escape_html(removal.name) + "</th><td>" + show_count(removal.successes) +
+            " of " + show_count(why.draws) + "</td><td>" + show_number(100.0 * removal.difference.low, 2) + " to " +
+            show_number(100.0 * removal.difference.high, 2) + " %</td><td>" + show_number(removal.p, 2) +
+            (removal.rescues ? ", rescues" : "") + "</td></tr>\n";
+  return body + "</tbody></table>\n</details>\n";
+}
+
 }  // namespace
 
 std::string verdict_section(const Results& results) {
@@ -197,6 +216,7 @@ std::string verdict_section(const Results& results) {
             "</span> <strong>" + escape_html(run.fidelity) + "</strong>" + escape_html(sentence) + "</p>";
     if (const std::string more = circumstances(run); !more.empty())
       body += "<p class=\"more\">" + escape_html(more) + "</p>";
+    if (run.why) body += why_of(*run.why);
     body += "</li>\n";
   }
   return section("verdict", "Verdict", {}, body + "</ul>\n");

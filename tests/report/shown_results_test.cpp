@@ -64,6 +64,25 @@ TEST_F(ShownResults, TwoEqualOutcomesAreComparedByTheirErrors) {
                 "run high.</h1>"));
 }
 
+// why.json beside the results: the verdict's section says it, and what it lacks or has too much of is one line.
+TEST_F(ShownResults, WhyARunFailedStandsWithItsVerdict) {
+  store(file("why.json"), R"({"failures": [{"run": "high", "verdict": "cause: errors of the <inertial> sensor",
+    "chain": ["3.0 s: no fix", "8.1 s: collision"], "draws": 10, "success_as_it_was": 1,
+    "removals": [{"removal": "imu", "success": 9, "p": 0.004, "low": 0.4, "high": 0.95, "rescues": true},
+                 {"removal": "height", "success": 1, "p": 1, "low": -0.2, "high": 0.2, "rescues": false}]}]})");
+  const std::string verdict = section(page(), "verdict");
+  EXPECT_THAT(verdict, HasSubstr("<strong>Why:</strong> cause: errors of the &lt;inertial&gt; sensor"));
+  EXPECT_THAT(verdict, HasSubstr("<li>3.0 s: no fix</li>"));
+  EXPECT_THAT(verdict, HasSubstr("9 of 10"));
+  EXPECT_THAT(verdict, HasSubstr("40 to 95"));
+  store(file("why.json"), R"({"failures": [{"run": "nobody", "verdict": "", "chain": [], "draws": 10,
+    "success_as_it_was": 1, "removals": []}]})");
+  EXPECT_EQ(error(), "why.json:1: failures[0].run: no run \"nobody\", expected a run of summary.json");
+  store(file("why.json"), R"({"failures": [{"run": "high", "verdict": "", "chain": [7], "draws": 10,
+    "success_as_it_was": 1, "removals": []}]})");
+  EXPECT_EQ(error(), "why.json:1: failures[0].chain: number 7, expected a string");
+}
+
 TEST_F(ShownResults, RunsStandInTheOrderAskedFor) {
   edit_json(file("summary.json"), [](auto& json) { std::swap(json["runs"][0], json["runs"][1]); });
   const std::string html = page();

@@ -8,7 +8,9 @@ constexpr const char *kFix = "fix_x_m,fix_y_m,fix_z_m,sigma_e_m,sigma_n_m,sigma_
                      *kPosition = "x_m,y_m,z_m,xx_m2,xy_m2,xz_m2,yy_m2,yz_m2,zz_m2",
                      *kVelocity = "vx_m_s,vy_m_s,vz_m_s,vxx_m2_s2,vxy_m2_s2,vxz_m2_s2,vyy_m2_s2,vyz_m2_s2,vzz_m2_s2",
                      *kFixFigures = "gdop_median,gdop_max,pdop_median,satellites_mean,nlos_share,multipath_share",
-                     *kRegistered = "registered_error_m,registered_error_up_m",
+                     *kRegistered =
+                         "registered_error_m,registered_error_up_m,error_roll_deg,error_pitch_deg,error_yaw_deg,"
+                         "sigma_e_m,sigma_n_m,sigma_u_m,sigma_roll_deg,sigma_pitch_deg,sigma_yaw_deg,nees",
                      *kPriorMap = "map_error_prior_rms_m,map_error_p95_prior_m,map_capped_prior_share",
                      *kErrors =
                          "position_error_rms_m,position_error_p95_m,position_error_max_m,"
@@ -29,6 +31,9 @@ constexpr MayBeAbsent kRows[] = {
     {"gnss", "reason", "", "", "a fix, which needs none"},
     {"satellites", "cn0_dbhz", "tracked", "0", "not measured"},
     {"keyframes", kRegistered, "status", "not_registered", "`[registration] method = \"none\"`"},
+    {"keyframes", "step_error_m,step_error_deg,step_nees", "status", "not_registered",
+     "no keyframe before it to be registered to"},
+    {"keyframes", "overlap,open_directions", "", "", "the own methods alone tell them, of what they matched"},
     {"keyframes", "rms_m", "iterations", "0", "nothing was matched"},
     {"fixes", kPosition, "status", "none", "no fix"},
     {"fixes", kVelocity, "", "", "the receiver gives no velocity"},

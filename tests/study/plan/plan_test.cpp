@@ -24,7 +24,7 @@ using mission::testing::RecordedRun;
 using testing::kDriving;
 using testing::Planned;
 
-constexpr const char* kRegistered = "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"gicp\"\n";
+constexpr const char* kRegistered = "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"pcl_shell_gicp\"\n";
 constexpr const char* kEmpty =
     "[time]\nlimit_s = 6.0\n[scene]\nempty = true\n[[autonomy.waypoint]]\nname = \"1\"\np_m = [213.9, 109.9]\n";
 

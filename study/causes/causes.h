@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "canyon/study/causes/events.h"
+#include "canyon/study/causes/removals.h"
+#include "canyon/study/compare.h"
+#include "canyon/study/statistics/interval.h"
+#include "canyon/study/statistics/proportions.h"
+
+namespace canyon::study {
+
+/// What came of the replays without one source.
+struct RemovalOutcome {
+  const ModelRow<Removal>* removal = nullptr;
+  int successes = 0;     ///< out of Explanation::draws
+  PairedCounts pairs;    ///< a: as it was, b: without; the same redraws in both
+  Interval difference;   ///< of the shares of success, 95 %
+  double p = 1.0;        ///< one-sided, exact: as many rescues or more, were rescues and harms as likely
+  bool rescues = false;  ///< p within 5 % over all removals (Holm), and the interval excludes 0
+};
+
+/// Why one run failed.
+struct Explanation {
+  std::string run;
+  std::int64_t seed = 0;
+  mission::Failure failure;
+  std::vector<Event> events;    ///< of the whole run
+  double from_s = 0.0;          ///< since when sources were taken away and noise drawn anew
+  int draws = 0;                ///< replays with and without each
+  int successes_as_it_was = 0;  ///< with other draws, nothing taken away
+  std::vector<RemovalOutcome> outcomes;
+  const ModelRow<Removal>* cause = nullptr;  ///< the narrowest that rescues; null: undetermined
+};
+
+/// Drives each failed run of a closed-loop comparison again: `draws` times with the noise that follows the last chain
+/// of events (chain_start_s) drawn anew, and as often, on the same draws, without each source of removals(). A source
+/// is the cause if its removal rescues the mission more often than the redraws alone: the paired exact test of McNemar,
+/// Holm's correction over all removals (S. Holm, Scand. J. Stat. 6 (1979) 65). Closed loops are chaotic: without the
+/// paired redraws, any perturbation might rescue. Explained are the runs in `results`, of the comparison's own seed.
+Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
+                                                  bool show_progress);
+
+/// Which of several one-sided p are significant together at `level` (Holm 1979).
+std::vector<bool> holm(const std::vector<double>& p, double level);
+
+/// The verdict in one or two sentences.
+std::string verdict(const Explanation& explanation);
+/// The chain of events before the failure, one a line.
+std::vector<std::string> chain(const Explanation& explanation);
+/// why.json.
+nlohmann::ordered_json why_json(const std::vector<Explanation>& explanations);
+
+}  // namespace canyon::study

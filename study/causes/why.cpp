@@ -1,0 +1,107 @@
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "canyon/core/files/json_text.h"
+#include "canyon/study/causes/causes.h"
+
+// Causes in words and as JSON.
+namespace canyon::study {
+namespace {
+
+std::string seconds(double t_s) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f s", t_s);
+  return text;
+}
+
+std::string out_of(int count, int draws) {
+  return std::to_string(count) + " of " + std::to_string(draws);
+}
+
+std::string words(const Event& event) {
+  char size[32];
+  std::snprintf(size, sizeof size, "%.1f", event.size);
+  switch (event.kind) {
+    case EventKind::kDilutionJump:
+      return std::string("GDOP jumps, by up to ") + size;
+    case EventKind::kHiddenSignals:
+      return "fixes use up to " + std::to_string(static_cast<int>(event.size)) + " signals of hidden satellites";
+    case EventKind::kFixLost:
+      return "no fix";
+    case EventKind::kUnlikelyFix:
+      return std::string("the filter takes fixes whose innovation is up to ") + size + " times its 99.9 % bound";
+    case EventKind::kOverconfident:
+      return std::string("the position is off by up to ") + size + " times what the filter thinks possible (3 sigma)";
+    case EventKind::kStopped:
+      return "the autonomy stands";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string verdict(const Explanation& e) {
+  const std::string again = "with other noise from " + seconds(e.from_s) + " on it succeeds " +
+                            out_of(e.successes_as_it_was, e.draws) + " times";
+  if (e.cause != nullptr) {
+    for (const RemovalOutcome& outcome : e.outcomes) {
+      if (outcome.removal != e.cause) continue;
+      return std::string("cause: ") + e.cause->make.cause + "; without them (" + e.cause->doc + ") it succeeds " +
+             out_of(outcome.successes, e.draws) + " times, " + again;
+    }
+  }
+  const RemovalOutcome& navigation = e.outcomes.back();  // the widest is the last row
+  if (!navigation.rescues && navigation.successes == 0)
+    return "not navigation: even with the true pose it never succeeds; " + again;
+  return "cause undetermined: no removal rescues it more often than other noise does; " + again;
+}
+
+std::vector<std::string> chain(const Explanation& e) {
+  std::vector<std::string> lines;
+  for (const Event& event : e.events) {
+    if (event.to_s < e.from_s || event.from_s > e.failure.t_s) continue;
+    lines.push_back(seconds(event.from_s) + (event.to_s > event.from_s ? " to " + seconds(event.to_s) : std::string()) +
+                    ": " + words(event));
+  }
+  lines.push_back(seconds(e.failure.t_s) + ": " + name(e.failure.kind) + ", " + e.failure.detail);
+  return lines;
+}
+
+nlohmann::ordered_json why_json(const std::vector<Explanation>& explanations) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Explanation& e : explanations) {
+    nlohmann::ordered_json events = nlohmann::ordered_json::array(), removed = nlohmann::ordered_json::array();
+    for (const Event& event : e.events)
+      events.push_back({{"kind", row_of(event_kinds(), event.kind).name},
+                        {"from_s", event.from_s},
+                        {"to_s", event.to_s},
+                        {"size", event.size}});
+    for (const RemovalOutcome& outcome : e.outcomes)
+      removed.push_back({{"removal", outcome.removal->name},
+                         {"success", outcome.successes},
+                         {"rescued", outcome.pairs.only_b},
+                         {"harmed", outcome.pairs.only_a},
+                         {"difference", outcome.pairs.difference()},
+                         {"low", outcome.difference.low},
+                         {"high", outcome.difference.high},
+                         {"p", outcome.p},
+                         {"rescues", outcome.rescues}});
+    all.push_back({{"run", e.run},
+                   {"seed", e.seed},
+                   {"outcome", name(e.failure.kind)},
+                   {"failed_s", e.failure.t_s},
+                   {"detail", e.failure.detail},
+                   {"from_s", e.from_s},
+                   {"draws", e.draws},
+                   {"success_as_it_was", e.successes_as_it_was},
+                   {"cause", e.cause != nullptr ? nlohmann::ordered_json(e.cause->name) : nlohmann::ordered_json()},
+                   {"verdict", verdict(e)},
+                   {"chain", chain(e)},
+                   {"events", std::move(events)},
+                   {"removals", std::move(removed)}});
+  }
+  return {{"failures", std::move(all)}};
+}
+
+}  // namespace canyon::study

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include "canyon/study/causes/causes.h"
+
+namespace canyon::study {
+namespace {
+
+mission::GnssRow fix_at(double t_s, double gdop, int hidden = 0) {
+  mission::GnssRow row;
+  row.fix.t = GpsTime{} + t_s;
+  row.fix.status = gdop > 0.0 ? FixStatus::kSingle : FixStatus::kNone;
+  row.fix.dop.gdop = gdop > 0.0 ? gdop : kNaN;
+  for (int i = 0; i < hidden; ++i) {
+    GnssObservationTruth satellite;
+    satellite.tracked = true;
+    satellite.line_of_sight = false;
+    row.truth.satellites.push_back(satellite);
+  }
+  return row;
+}
+
+TEST(RunEvents, JumpsHiddenSignalsAndLostFixesAreSeenWhereTheyAre) {
+  RunEvents events;
+  for (int k = 0; k < 40; ++k) {
+    const double t_s = 0.5 * k;
+    const double gdop = t_s >= 5.0 && t_s < 7.0 ? 9.0 : t_s >= 15.0 && t_s < 16.0 ? 0.0 : 2.0;
+    ASSERT_TRUE(events.gnss(fix_at(t_s, gdop, t_s >= 10.0 && t_s < 12.0 ? 3 : 0)).ok());
+  }
+  const std::vector<Event> seen = events.events();
+  ASSERT_EQ(seen.size(), 3u) << "the jumps up and down are less than 2 s apart";
+  EXPECT_EQ(seen[0].kind, EventKind::kDilutionJump);
+  EXPECT_EQ(seen[0].from_s, 5.0);
+  EXPECT_EQ(seen[0].to_s, 7.0);
+  EXPECT_EQ(seen[0].size, 7.0);
+  EXPECT_EQ(seen[1].kind, EventKind::kHiddenSignals);
+  EXPECT_EQ(seen[1].to_s, 11.5);
+  EXPECT_EQ(seen[1].size, 3.0);
+  EXPECT_EQ(seen[2].kind, EventKind::kFixLost);
+  EXPECT_EQ(seen[2].from_s, 15.0);
+}
+
+TEST(RunEvents, OneIsOverconfidentBeyondTheEllipsoidOf3Sigma) {
+  RunEvents events;
+  for (const double error_m : {3.7, 3.8}) {  // chi-square of 3: 0.0027 is beyond 3.7636^2
+    mission::NavRow row;
+    row.t = GpsTime{} + 10.0 * error_m;
+    row.state = mission::AutonomyState::kDriving;
+    row.estimate.pose_covariance.setIdentity();
+    row.X_WB_true.p.x() = error_m;
+    ASSERT_TRUE(events.epoch(row).ok());
+  }
+  ASSERT_EQ(events.events().size(), 1u);
+  EXPECT_EQ(events.events()[0].kind, EventKind::kOverconfident);
+  EXPECT_NEAR(events.events()[0].size, 3.8 / 3.7636, 1e-3);
+}
+
+TEST(ChainStart, GoesBackOverGapsOfTenSecondsAndNoFurtherThanAMinute) {
+  const auto event = [](double from_s, double to_s, EventKind kind = EventKind::kFixLost) {
+    return Event{kind, from_s, to_s, 1.0};
+  };
+  EXPECT_EQ(chain_start_s({}, 100.0), 90.0);
+  EXPECT_EQ(chain_start_s({}, 4.0), 0.0);
+  EXPECT_EQ(chain_start_s({event(20, 30), event(70, 75), event(80, 95)}, 100.0), 70.0);
+  EXPECT_EQ(chain_start_s({event(62, 62), event(70, 75), event(80, 95)}, 100.0), 62.0);
+  EXPECT_EQ(chain_start_s({event(5, 99)}, 100.0), 40.0) << "no further than 60 s";
+  EXPECT_EQ(chain_start_s({event(80, 99, EventKind::kStopped)}, 100.0), 90.0) << "standing follows from others";
+  EXPECT_EQ(chain_start_s({event(101, 102)}, 100.0), 90.0) << "later than the failure";
+}
+
+TEST(Holm, StepsDownAsInHisPaper) {
+  // Holm (1979): with 4 hypotheses the smallest p is held against 0.05 / 4, the next against 0.05 / 3, ...
+  EXPECT_EQ(holm({0.010, 0.013, 0.030, 0.005}, 0.05), (std::vector<bool>{true, true, false, true}));
+  EXPECT_EQ(holm({0.020, 0.013, 0.030, 0.020}, 0.05), (std::vector<bool>{false, false, false, false}));
+  EXPECT_TRUE(holm({}, 0.05).empty());
+}
+
+}  // namespace
+}  // namespace canyon::study
