@@ -16,11 +16,13 @@ namespace canyon::mission {
 NavEstimate MissionRun::estimate(GpsTime t) const {
   NavEstimate estimate = localizer_.estimate();
   estimate.X_WB.p += (t - localizer_.at()) * estimate.v_WB_W;  // between two IMU samples
-  if (config_.run.truth_as_pose) {
+  if (truth_as_pose_) {
     const KinematicState truth = truth_at(t);
     estimate.t = t;
     estimate.X_WB = truth.X_WB;
     estimate.v_WB_W = truth.v_WB_W;
+  } else if (truth_as_height_) {
+    estimate.X_WB.p.z() = truth_at(t).X_WB.p.z();
   }
   estimate.X_WB.p.z() += config_.run.estimate_up_offset_m;
   return estimate;
@@ -84,6 +86,7 @@ Status MissionRun::take_gnss(const Due& due) {
   gnss::GnssOutput output =
       clock_.charge(Part::kGnss, [&] { return gnss_->measure(due.k, truth.t, p_A_W, v_A_W, scene_); });
   CANYON_TRY_STATUS(boundaries_.check(output));
+  if (later_) later_->gnss->measure(due.k, truth.t, p_A_W, v_A_W, scene_);
 
   GnssRow row;
   row.fix = output.fix;
@@ -306,12 +309,23 @@ Status MissionRun::record_epoch(const Due& due) {
   });
 }
 
+/// What an alignment begins from.
+RelativePose MissionRun::motion_since_keyframe(GpsTime scan_t, const NavEstimate& now) const {
+  RelativePose motion = localizer_.motion();
+  if (config_.run.truth_as_guess) {
+    motion.X_TS = last_keyframe_X_WB_.inverse() * true_motion_.at(scan_t).value();
+  } else if (truth_as_pose_) {
+    motion.X_TS = last_keyframe_X_WB_.inverse() * now.X_WB;
+  }
+  return motion;
+}
+
 Status MissionRun::map_scan(const LidarScan& deskewed, const NavEstimate& now) {
-  const Pose motion = config_.run.truth_as_pose ? last_keyframe_X_WB_.inverse() * now.X_WB : localizer_.motion();
+  const RelativePose motion = motion_since_keyframe(deskewed.t, now);
   const Keyframe* keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now, motion); });
   if (keyframe == nullptr) return Ok{};
-  localizer_.begin_motion();
-  last_keyframe_X_WB_ = now.X_WB;
+  if (lidar::registers(config_.registration)) localizer_.begin_motion();
+  last_keyframe_X_WB_ = config_.run.truth_as_guess ? true_motion_.at(deskewed.t).value() : now.X_WB;
   if (fusion::measures_with(config_.fusion, "relative_pose")) CANYON_TRY_STATUS(aid_by_map(*keyframe));
   CANYON_TRY_STATUS(boundaries_.check(*keyframe));
   return add_keyframe(deskewed, *keyframe, true_motion_.at(deskewed.t).value());
@@ -329,9 +343,21 @@ Status MissionRun::aid_by_map(const Keyframe& keyframe) {
 }
 
 Status MissionRun::add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true) {
-  const KeyframeRow row{
-      keyframe.t,      keyframe.points,     X_WB_true * X_BL_, keyframe.X_WL_prior, keyframe.X_WL_registered,
-      keyframe.status, keyframe.iterations, keyframe.rms_m};
+  const Pose X_WL_true = X_WB_true * X_BL_;
+  const KeyframeRow row{.t = keyframe.t,
+                        .points = keyframe.points,
+                        .X_WL_true = X_WL_true,
+                        .X_WL_prior = keyframe.X_WL_prior,
+                        .X_WL_registered = keyframe.X_WL_registered,
+                        .status = keyframe.status,
+                        .iterations = keyframe.iterations,
+                        .rms_m = keyframe.rms_m,
+                        .overlap = keyframe.overlap,
+                        .open = keyframe.open,
+                        .covariance = keyframe.covariance,
+                        .placed = keyframe.placed,
+                        .X_LL_true = last_keyframe_X_WL_true_.inverse() * X_WL_true};
+  last_keyframe_X_WL_true_ = X_WL_true;
   CANYON_TRY_STATUS(boundaries_.check(row));
   maps_.add(deskewed, keyframe);
   return recorder_.keyframe(row);

@@ -41,7 +41,10 @@ Status Localizer::once_at(GpsTime t, std::function<Status()> work) {
 }
 
 Status Localizer::predict(const ImuSample& sample, GpsTime t) {
-  clock_.charge(Part::kFilter, [&] { filter_.predict(sample); });
+  clock_.charge(Part::kFilter, [&] {
+    filter_.predict(sample);
+    if (without_fixes_) without_fixes_->predict(sample);
+  });
   ++predictions_;
   const Pose predicted = filter_.predicted_pose();
   motion_ = motion_ * (X_WB_.inverse() * predicted);
@@ -52,6 +55,18 @@ Status Localizer::predict(const ImuSample& sample, GpsTime t) {
   return boundaries_.check(filter_.estimate());
 }
 
+RelativePose Localizer::motion() const {
+  RelativePose motion{.source = at_, .target = motion_start_, .X_TS = motion_};
+  if (without_fixes_) motion.covariance = without_fixes_->motion().covariance;
+  return motion;
+}
+
+void Localizer::begin_motion() {
+  motion_ = Pose();
+  motion_start_ = at_;
+  without_fixes_.emplace(filter_);
+}
+
 void Localizer::corrected() {
   const Pose before = std::exchange(X_WB_, filter_.estimate().X_WB);
   const Pose by = X_WB_ * before.inverse();
@@ -60,7 +75,10 @@ void Localizer::corrected() {
 
 Status Localizer::aid(const fusion::AidingMessage& message) {
   const std::size_t reports = filter_.reports().size();
-  clock_.charge(Part::kFilter, [&] { filter_.update(message); });
+  clock_.charge(Part::kFilter, [&] {
+    filter_.update(message);
+    if (without_fixes_ && fusion::is_of_motion(message)) without_fixes_->update(message);
+  });
   if (filter_.reports().size() > reports) corrected();
   tell(reports);
   return boundaries_.check(filter_.estimate());

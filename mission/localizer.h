@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "canyon/fusion/error_state_filter.h"
+#include "canyon/fusion/observers/predicted_motion.h"
 #include "canyon/fusion/verdict/run_evidence.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/part_clock.h"
@@ -49,10 +50,11 @@ class Localizer {
   /// By what the estimate has been corrected since this was last asked, if it was: it is now this times what was
   /// predicted.
   std::optional<Pose> take_correction() { return std::exchange(correction_, std::nullopt); }
-  /// How B has moved since begin_motion(), by prediction alone: no correction is motion, though each makes what is
-  /// predicted after it better.
-  const Pose& motion() const { return motion_; }
-  void begin_motion() { motion_ = Pose(); }
+  /// How B (source) has moved since begin_motion() (target), by prediction alone: no correction is motion, though each
+  /// makes what is predicted after it better. The covariance is that of a prediction without them. Times are those of
+  /// at().
+  RelativePose motion() const;
+  void begin_motion();
   /// The fix is stamped in the time of at(); the unit's own clock may be any time off.
   Result<fusion::UpdateReport> update(const GnssFix& fix);
 
@@ -77,6 +79,8 @@ class Localizer {
   GpsTime clone_by_its_clock_;
   Pose X_WB_;    ///< as last estimated
   Pose motion_;  ///< since begin_motion()
+  GpsTime motion_start_;
+  std::optional<fusion::PredictedMotion> without_fixes_;  ///< since then
   std::optional<Pose> correction_;
   fusion::RunEvidence* evidence_ = nullptr;
   std::int64_t predictions_ = 0, updates_ = 0;

@@ -22,6 +22,23 @@ Matrix6d moved(const Matrix6d& covariance_B, const Pose& X_BL) {
   return adjoint * covariance_B * adjoint.transpose();
 }
 
+/// What two say of one pose together: X Exp(K xi) with xi = log(X^-1 Y), K = P_X (P_X + P_Y)^-1.
+lidar::PosePrior together(const lidar::PosePrior& x, const lidar::PosePrior& y) {
+  const Matrix6d sum = x.covariance + y.covariance;
+  const Matrix6d K = sum.transpose().partialPivLu().solve(x.covariance.transpose()).transpose();
+  const Vector6d xi = (x.X_TS.inverse() * y.X_TS).log();
+  const Matrix6d left = Matrix6d::Identity() - K;
+  const Matrix6d P = left * x.covariance * left.transpose() + K * y.covariance * K.transpose();
+  return {x.X_TS * Pose::exp(K * xi), 0.5 * (P + P.transpose())};
+}
+
+Matrix6d diagonal(double rotation_rad, double translation_m) {
+  Matrix6d P = Matrix6d::Zero();
+  P.diagonal() << Eigen::Vector3d::Constant(rotation_rad * rotation_rad),
+      Eigen::Vector3d::Constant(translation_m * translation_m);
+  return P;
+}
+
 }  // namespace
 
 Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration,
@@ -35,64 +52,74 @@ bool Mapper::wants(const NavEstimate& estimate) const {
            so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree);
 }
 
-const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate, const Pose& motion) {
+const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate, const RelativePose& motion) {
   if (!wants(estimate)) return nullptr;
   Keyframe keyframe;
   keyframe.t = scan.t;
   keyframe.X_WL_prior = keyframe.X_WL_registered = estimate.X_WB * X_BL_;
   keyframe.points = scan.points.size();
-  Matrix6d covariance = moved(estimate.pose_covariance, X_BL_);
+  keyframe.covariance = moved(estimate.pose_covariance, X_BL_);
   if (registers(config_)) {
     std::vector<Eigen::Vector3f> points;
     points.reserve(scan.points.size());
     for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);
     const auto cloud = registration_->prepare(points);
     // The first one defines the map.
-    if (has_last_) covariance = align(*cloud, X_BL_.inverse() * motion * X_BL_, covariance, keyframe);
+    if (has_last_) {
+      const double elapsed_s = scan.t - last_.t;
+      const lidar::PosePrior predicted{
+          X_BL_.inverse() * motion.X_TS * X_BL_,
+          moved(motion.covariance, X_BL_) +
+              diagonal(config_.motion_floor_deg_s * kDegree * elapsed_s, config_.motion_floor_m_s * elapsed_s)};
+      fuse(align(*cloud, predicted, keyframe), keyframe.covariance, keyframe);
+    }
     submap_.push_back({cloud, keyframe.X_WL_registered});
     while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
   }
   last_ = keyframe;
-  last_covariance_ = 0.5 * (covariance + covariance.transpose());
   has_last_ = true;
   correction_ = keyframe.X_WL_registered * keyframe.X_WL_prior.inverse();
   return &last_;
 }
 
-Matrix6d Mapper::align(const lidar::PreparedCloud& cloud, const Pose& guess, const Matrix6d& prior_covariance,
-                       Keyframe& keyframe) {
+lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted,
+                               Keyframe& keyframe) {
   // In the frame of the last keyframe, where numbers stay small.
   const Pose X_LW = last_.X_WL_registered.inverse();
   std::vector<lidar::Registration::Placed> targets;
   for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LW * placed.X_WL});
-  const lidar::RegistrationResult result = registration_->align(cloud, targets, guess);
+  const lidar::RegistrationResult result = registration_->align_with_prior(cloud, targets, predicted);
   keyframe.status = result.status;
   keyframe.iterations = result.iterations;
   keyframe.rms_m = result.rms_m;
+  keyframe.overlap = result.overlap;
   ++counters_.alignments;
   counters_.iterations += result.iterations;
   counters_.correspondences += result.correspondences;
   counters_.pcl_objects += result.pcl_objects;
-  if (result.status != lidar::RegistrationStatus::kConverged) return prior_covariance;
-  const Pose registered = last_.X_WL_registered * result.X_TS;
-  const double floor_rad = config_.alignment_floor_deg * kDegree, floor_m = config_.alignment_floor_m;
-  Matrix6d floor = Matrix6d::Zero();
-  floor.diagonal() << Eigen::Vector3d::Constant(floor_rad * floor_rad), Eigen::Vector3d::Constant(floor_m * floor_m);
+  if (result.status != lidar::RegistrationStatus::kConverged) return predicted;
+  const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
+  if (result.surfaces) keyframe.open = static_cast<int>(result.open.size());
+  const auto alone = result.surfaces.value_or(lidar::RegistrationResult::Surfaces{result.X_TS, result.covariance});
   const Pose X_LB = X_BL_.inverse();
   keyframe.aligned = RelativePose{.source = keyframe.t,
                                   .target = last_.t,
-                                  .X_TS = X_BL_ * result.X_TS * X_LB,
-                                  .covariance = moved(result.covariance + floor, X_LB)};
-  const Matrix6d P_Z = moved(last_covariance_, result.X_TS) + result.covariance + floor;
+                                  .X_TS = X_BL_ * alone.X_TS * X_LB,
+                                  .covariance = moved(alone.covariance + floor, X_LB)};
+  return {result.X_TS, result.covariance + floor};
+}
+
+void Mapper::fuse(const lidar::PosePrior& moved_by, const Matrix6d& prior_covariance, Keyframe& keyframe) const {
+  keyframe.placed =
+      RelativePose{.source = keyframe.t, .target = last_.t, .X_TS = moved_by.X_TS, .covariance = moved_by.covariance};
   const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
-  const Matrix6d P_Y = prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s);
-  const Matrix6d K = (P_Z + P_Y).transpose().partialPivLu().solve(P_Z.transpose()).transpose();
-  const Vector6d xi = (registered.inverse() * keyframe.X_WL_prior).log();
-  keyframe.X_WL_registered = registered * Pose::exp(K * xi);
-  const Matrix6d left = Matrix6d::Identity() - K;
-  Matrix6d covariance;  // assigned, not returned as an expression, which Eigen would sum in another order
-  covariance = left * P_Z * left.transpose() + K * P_Y * K.transpose();
-  return covariance;
+  const lidar::PosePrior carried{last_.X_WL_registered * moved_by.X_TS,
+                                 moved(last_.covariance, moved_by.X_TS) + moved_by.covariance};
+  const lidar::PosePrior absolute{keyframe.X_WL_prior,
+                                  prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s)};
+  const lidar::PosePrior fused = together(carried, absolute);
+  keyframe.X_WL_registered = fused.X_TS;
+  keyframe.covariance = fused.covariance;
 }
 
 }  // namespace canyon::mission

@@ -22,16 +22,24 @@ struct Keyframe {
   int iterations = 0;
   double rms_m = kNaN;
   std::size_t points = 0;
+  double overlap = kNaN;                           ///< as of lidar::RegistrationResult
+  std::optional<int> open;                         ///< directions that the surfaces leave open, where it is known
+  std::optional<RelativePose> placed;              ///< L in L at the keyframe before, by alignment and predicted motion
+  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_registered
   std::optional<RelativePose> aligned;  ///< B in B at the keyframe before, by the alignment alone, where it converged
 };
 
 /// Chooses keyframes, registers each onto the ones before it, and fuses the result with the filter's pose.
 ///
-/// Registration alone would drift, the prior alone jumps with the fixes. Each keyframe's pose Z from registration has
-/// the covariance of the keyframe before it, plus that of the alignment, plus a floor; the prior Y has the filter's
+/// Registration alone would drift, the prior alone jumps with the fixes. An alignment begins from the motion since the
+/// keyframe before as the filter has predicted it; methods that take a covariance (Registration::align_with_prior)
+/// weigh that motion, with a floor, with the surfaces. Each keyframe's pose Z from registration has the covariance of
+/// the keyframe before it, plus that of the alignment, plus a floor; the prior Y has the filter's
 /// covariance, enlarged by prior_correlation_s / (time since the last keyframe), because the filter's error hardly
 /// changes between keyframes and must not count as new knowledge each time. With xi = log(Z^-1 Y) the fused pose is
-/// Z Exp(K xi), K = P_Z (P_Z + P_Y)^-1. Where registration does not converge the prior stands.
+/// Z Exp(K xi), K = P_Z (P_Z + P_Y)^-1. Where registration does not converge, the predicted motion carries on from the
+/// keyframe before, with its own covariance, and is weighed with the filter's pose likewise: nothing jumps onto the
+/// prior.
 ///
 /// Where the three constants of [registration] come from. alignment_floor_m and _deg: the covariance of an alignment
 /// knows its residuals, not what biases it (correspondences, the sensor: Brossard, Bonnabel and Barrau 2020, "A new
@@ -39,7 +47,10 @@ struct Keyframe {
 /// much at 23 m, the root mean square distance of the returns in the built-in streets (22 to 28 m). Measured, with the
 /// true pose as guess and the prior left out (truth_as_pose = true, prior_correlation_s = 1e6, the first 430 m of the
 /// built-in mission): 215 alignments tilt the map by 1.1 degrees, which is 0.08 degrees each if they are independent,
-/// and its height jitters by 7 mm from one to the next. prior_correlation_s: the error of the filter's position falls
+/// and its height jitters by 7 mm from one to the next. motion_floor_m_s and _deg_s: a filter's covariance knows its
+/// noise, not what reflections make of the velocities that it has been given; those of signals that hidden satellites
+/// send over a wall err by the vehicle's own speed and more, and a filter that averages some of them by a tenth of it.
+/// prior_correlation_s: the error of the filter's position falls
 /// to 1/e of its autocorrelation after 7, 8 and 11 s (east, north, up) in the built-in mission's high run, after 5, 7
 /// and 11 s in its low one.
 class Mapper {
@@ -49,7 +60,7 @@ class Mapper {
   /// Offers a deskewed scan (in L at its stamp) with the filter's estimate at that time, and the motion of B since the
   /// last keyframe by prediction alone, which the alignment begins from: what fixes have corrected since is not motion.
   /// Returns the new keyframe if it became one, else nullptr. The pointer is valid until the next call.
-  const Keyframe* offer(const LidarScan& scan, const NavEstimate& estimate, const Pose& motion);
+  const Keyframe* offer(const LidarScan& scan, const NavEstimate& estimate, const RelativePose& motion);
 
   /// Whether a scan there would become a keyframe, if it has returns.
   bool wants(const NavEstimate& estimate) const;
@@ -68,16 +79,16 @@ class Mapper {
     std::shared_ptr<const lidar::PreparedCloud> cloud;
     Pose X_WL;
   };
-  /// Places `keyframe` onto those before it, together with its prior; the covariance of what came out.
-  Matrix6d align(const lidar::PreparedCloud& cloud, const Pose& guess, const Matrix6d& prior_covariance,
-                 Keyframe& keyframe);
+  /// L since the keyframe before, by the surfaces where they tell, else as predicted.
+  lidar::PosePrior align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted, Keyframe& keyframe);
+  /// Fuses where that puts the keyframe with its prior.
+  void fuse(const lidar::PosePrior& moved_by, const Matrix6d& prior_covariance, Keyframe& keyframe) const;
 
   lidar::RegistrationConfig config_;
   std::unique_ptr<lidar::Registration> registration_;
   Pose X_BL_;
   std::deque<Placed> submap_;
   Keyframe last_;
-  Matrix6d last_covariance_ = Matrix6d::Zero();
   bool has_last_ = false;
   Pose correction_;
   Counters counters_;

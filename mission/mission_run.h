@@ -24,6 +24,17 @@
 
 namespace canyon::mission {
 
+/// Sensors that take the place of others from some moment on. Until then the receiver measures beside the other one, as
+/// it has a memory.
+struct LaterSensors {
+  double from_s = 0.0;
+  bool truth_as_pose = false, truth_as_height = false;
+  lidar::Deskewing deskewing;
+  std::unique_ptr<gnss::GnssSensor> gnss;
+  std::unique_ptr<inertial::ImuModel> imu;
+  std::unique_ptr<lidar::Scanner> scanner;
+};
+
 /// The whole of one run while it happens; step() and perform() read as the order of events.
 class MissionRun {
  public:
@@ -51,6 +62,7 @@ class MissionRun {
     bool open_loop = false;
     Recorder* recorder = nullptr;
     Omissions omissions;
+    std::unique_ptr<LaterSensors> later;
   };
   MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock);
 
@@ -83,10 +95,13 @@ class MissionRun {
   LidarScan deskew(const LidarScan& scan, const NavEstimate& now) const;
   Status use_scan(const LidarScan& scan);
   Status map_scan(const LidarScan& deskewed, const NavEstimate& now);
+  RelativePose motion_since_keyframe(GpsTime scan_t, const NavEstimate& now) const;
   Status aid_by_map(const Keyframe& keyframe);
   Status add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true);
   void count_work();
   void place_traffic(GpsTime t);
+  /// Takes what is another from some moment on, once it is there.
+  void change_over();
   KinematicState truth_at(GpsTime t) const { return motion_.at(t); }
   /// What is handed on as the estimate at t.
   NavEstimate estimate(GpsTime t) const;
@@ -96,7 +111,8 @@ class MissionRun {
   const PreparedMission& mission_;
   PartClock& clock_;
   const bool open_loop_;
-  const lidar::Deskewing deskewing_;
+  lidar::Deskewing deskewing_;
+  bool truth_as_pose_, truth_as_height_;
   Boundaries boundaries_;
   scene::SceneAt scene_;
   std::unique_ptr<MotionSource> source_;
@@ -104,6 +120,7 @@ class MissionRun {
   std::unique_ptr<inertial::ImuModel> imu_;
   Aiding aiding_;
   std::unique_ptr<lidar::Scanner> scanner_;
+  std::unique_ptr<LaterSensors> later_;  // null: none, or in use already
   fusion::RunEvidence evidence_;
   Localizer localizer_;
   Mapper mapper_;
@@ -130,7 +147,8 @@ class MissionRun {
   TrueMotion motion_;                          // from the last IMU sample or sweep on
   Trajectory true_motion_, estimated_motion_;  // buffers of one revolution, at master steps and at IMU samples
   std::deque<GnssRow> fixes_;                  // measured, and not used yet
-  Pose last_keyframe_X_WB_;                    // as estimated then
+  Pose last_keyframe_X_WL_true_;
+  Pose last_keyframe_X_WB_;  // as estimated then; true with truth_as_guess
   ScoredMaps maps_;
   RunRecord record_;
 };

@@ -30,6 +30,25 @@ Schedule::Rates rates_of(const MissionConfig& config) {
           config.run.epoch_rate_hz};
 }
 
+lidar::Deskewing deskewing_of(const MissionConfig& config) {
+  return config.run.truth_as_pose ? lidar::Deskewing::kTruth : lidar::deskewing(config.lidar.deskew);
+}
+
+Result<std::unique_ptr<LaterSensors>> make_later(const LaterParts& later, const PreparedMission& mission, GpsTime end) {
+  const MissionConfig& config = later.config;
+  const auto seed = static_cast<std::uint64_t>(config.run.seed);
+  auto sensors = std::make_unique<LaterSensors>();
+  sensors->from_s = later.from_s;
+  sensors->truth_as_pose = config.run.truth_as_pose;
+  sensors->truth_as_height = config.run.truth_as_height;
+  sensors->deskewing = deskewing_of(config);
+  CANYON_TRY(sensors->gnss,
+             gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, *mission.scene, later.noise_seed));
+  CANYON_TRY(sensors->imu, inertial::make_imu(config.imu, seed, mission.scene->frame(), later.noise_seed));
+  CANYON_TRY(sensors->scanner, lidar::make_scanner(config.lidar, later.noise_seed));
+  return sensors;
+}
+
 fusion::ErrorStateFilter filter_of(const MissionConfig& config, const PreparedMission& mission, const ImuNoise& noise,
                                    const Omissions& omissions) {
   fusion::ErrorStateFilter filter(config.fusion, noise, mission.scene->frame(), config.imu.lever_arm_m,
@@ -45,7 +64,9 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       mission_(mission),
       clock_(clock),
       open_loop_(parts.open_loop),
-      deskewing_(config.run.truth_as_pose ? lidar::Deskewing::kTruth : lidar::deskewing(config.lidar.deskew)),
+      deskewing_(deskewing_of(config)),
+      truth_as_pose_(config.run.truth_as_pose),
+      truth_as_height_(config.run.truth_as_height),
       boundaries_(mission.start),
       scene_(*mission.scene),
       source_(std::move(parts.source)),
@@ -53,6 +74,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       imu_(std::move(parts.imu)),
       aiding_(aiding_sensors(config), config, *mission.scene, imu_->R_BU(), mission.start),
       scanner_(std::move(parts.scanner)),
+      later_(std::move(parts.later)),
       localizer_(filter_of(config, mission, parts.imu_noise, parts.omissions), mission.start, boundaries_, clock),
       mapper_(config.registration, std::move(parts.registration), lidar::sensor_in_body(config.lidar)),
       omissions_(std::move(parts.omissions)),
@@ -98,7 +120,10 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   Parts parts;
   parts.source = tape != nullptr ? make_taped_motion(*tape, mission.start)
                                  : make_driven_motion(config.vehicle, *mission.scene, seed, mission.start);
-  CANYON_TRY(parts.gnss, gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, *mission.scene));
+  parts.gnss = std::move(given.receiver);
+  if (parts.gnss == nullptr) {
+    CANYON_TRY(parts.gnss, gnss::make_gnss_sensor(config.gnss, seed, mission.start, end, *mission.scene));
+  }
   CANYON_TRY(parts.imu, inertial::make_imu(config.imu, seed, mission.scene->frame()));
   CANYON_TRY(parts.imu_noise, noise_told_to_filter(config));
   CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
@@ -108,6 +133,9 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   parts.open_loop = tape != nullptr;
   parts.recorder = given.recorder;
   if (given.omissions != nullptr) parts.omissions = *given.omissions;
+  if (given.later != nullptr) {
+    CANYON_TRY(parts.later, make_later(*given.later, mission, end));
+  }
   std::unique_ptr<MissionRun> run(new MissionRun(config, mission, std::move(parts), clock));
   CANYON_TRY_STATUS(run->recorder_.node(run->source_->now()));
   return run;
@@ -117,7 +145,20 @@ void MissionRun::place_traffic(GpsTime t) {
   if (!mission_.traffic.empty()) scene_.set_instances(mission_.traffic.at(t - mission_.start));
 }
 
+void MissionRun::change_over() {
+  constexpr double kSameInstant_s = 1e-9;
+  if (!later_ || elapsed_s() < later_->from_s - kSameInstant_s) return;
+  gnss_ = std::move(later_->gnss);
+  imu_ = std::move(later_->imu);
+  scanner_ = std::move(later_->scanner);
+  deskewing_ = later_->deskewing;
+  truth_as_pose_ = later_->truth_as_pose;
+  truth_as_height_ = later_->truth_as_height;
+  later_.reset();
+}
+
 Result<bool> MissionRun::step() {
+  change_over();
   if (!asked_) ask([] {});  // what it says of itself before the first call
   asked_ = true;
   const TapeNode& node = clock_.charge(Part::kVehicle, [&]() -> const TapeNode& { return source_->advance(command_); });

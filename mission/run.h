@@ -4,6 +4,7 @@
 
 #include "canyon/core/process/progress.h"
 #include "canyon/core/result.h"
+#include "canyon/gnss/sensor/sensor.h"
 #include "canyon/mission/autonomy/autonomy.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/omissions.h"
@@ -12,6 +13,14 @@
 
 namespace canyon::mission {
 
+/// From some moment of a run on, other sensors or another view of the truth; until then the run is the same to the bit.
+/// What would have been, had something been taken away there.
+struct LaterParts {
+  MissionConfig config;      ///< [gnss], [imu], run.truth_as_pose and run.truth_as_height hold from then on
+  double from_s = 0.0;       ///< after the start, >= 0; what is measured then is still as it was
+  std::uint64_t noise_seed;  ///< of the noise of ranges, IMU and LIDAR from then on; delays, biases, gains stay
+};
+
 /// What a run takes from its caller instead of making it from the configuration.
 struct RunParts {
   const Tape* tape = nullptr;          ///< the true motion; must outlive the run
@@ -19,6 +28,10 @@ struct RunParts {
   std::unique_ptr<Autonomy> autonomy;  ///< who drives
   /// What it leaves out; null: nothing. The configuration must be without() it; must outlive the run.
   const Omissions* omissions = nullptr;
+  /// Null: all stays as it is. Must outlive the run.
+  const LaterParts* later = nullptr;
+  /// Its receiver, as one that hands out what was measured on this tape before; null: made of the configuration.
+  std::unique_ptr<gnss::GnssSensor> receiver = nullptr;
 };
 
 /// Drives one mission. The master step is the vehicle's own (Vehicle::kStep_ns); within it everything else is due at

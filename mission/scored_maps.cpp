@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "canyon/lidar/map_quality.h"
+#include "canyon/lidar/map_quality/map_error.h"
 
 namespace canyon::mission {
 

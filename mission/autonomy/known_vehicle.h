@@ -18,7 +18,7 @@ struct KnownVehicle {
 };
 KnownVehicle known_vehicle(const VehicleConfig& config);
 
-/// The plan pose of B in a level frame.
+/// The pose of B on a level plane, as planning needs it.
 struct PlanPose {
   Eigen::Vector2d p_m{0, 0};
   double yaw_rad = 0.0;

@@ -33,7 +33,10 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.flag("record_filter_input", c.record_filter_input,
          "keeps what sensors tell the filter, fixes with full covariances, as epochs/RUN_imu.csv, RUN_fixes.csv and "
          "others, for other filters");
+  f.flag("truth_as_height", c.truth_as_height, "the height of the pose that is handed on is the true one");
   f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
+  f.flag("truth_as_guess", c.truth_as_guess,
+         "registration begins from the true motion since the last keyframe, not from the filter's");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
   f.optional_number("withhold_fixes_after_s", c.withhold_fixes_after_s, -1, {0, 1e5},
                     "no fix reaches the filter from then on; -1 = never");

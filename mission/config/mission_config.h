@@ -52,7 +52,9 @@ struct RunConfig {
   bool record_tape = true;           ///< keeps the true motion, so that other models can be driven on it
   bool record_filter_input = false;  ///< keeps what the filter was given: at 100 Hz some 55 MB an hour
   // Couplings that a study may cut on purpose.
+  bool truth_as_height = false;                  ///< hands the true height on with the rest of the estimate
   bool truth_as_pose = false;                    ///< hands the true pose on; what is recorded stays the filter's
+  bool truth_as_guess = false;                   ///< alignments begin from the true motion between keyframes
   double estimate_up_offset_m = 0.0;             ///< added to the estimate's height
   std::optional<double> withhold_fixes_after_s;  ///< no fix reaches the filter from then on
   std::optional<double> withhold_scans_after_s;  ///< no scan reaches map and autonomy from then on

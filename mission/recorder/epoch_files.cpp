@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string_view>
 
+#include <Eigen/Cholesky>
+
 #include "canyon/core/files/files.h"
 #include "canyon/core/fix_status.h"
 #include "canyon/core/units.h"
@@ -15,19 +17,7 @@ namespace {
 
 const char* word(std::optional<lidar::RegistrationStatus> status) {
   if (!status) return "not_registered";
-  switch (*status) {
-    case lidar::RegistrationStatus::kConverged:
-      return "converged";
-    case lidar::RegistrationStatus::kNotConverged:
-      return "not_converged";
-    case lidar::RegistrationStatus::kTooFewPoints:
-      return "too_few_points";
-    case lidar::RegistrationStatus::kDegenerate:
-      return "degenerate";
-    case lidar::RegistrationStatus::kDiverged:
-      return "diverged";
-  }
-  return "";
+  return row_of(lidar::registration_statuses(), *status).name;
 }
 
 void time_columns(CsvWriter& csv, GpsTime t, GpsTime start) {
@@ -124,7 +114,18 @@ void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run) {
 const char* const kKeyframeColumns =
     "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
     "status,"
-    "iterations,rms_m";
+    "iterations,rms_m,error_roll_deg,error_pitch_deg,error_yaw_deg,sigma_e_m,sigma_n_m,sigma_u_m,sigma_roll_deg,"
+    "sigma_pitch_deg,sigma_yaw_deg,nees,step_error_m,step_error_deg,step_nees,overlap,open_directions";
+
+namespace {
+
+/// Of a pose's error, 6 degrees of freedom; NaN where the covariance is none.
+double nees(const Pose& X, const Pose& X_true, const Matrix6d& covariance) {
+  const Vector6d xi = (X.inverse() * X_true).log();
+  return xi.dot(covariance.ldlt().solve(xi));
+}
+
+}  // namespace
 
 void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run) {
   const Eigen::Vector3d& p = row.X_WL_true.p;
@@ -132,7 +133,20 @@ void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run) {
   csv.number(row.t - run.start, 3).integer(static_cast<std::int64_t>(row.points));
   const double known = run.registers ? 1.0 : kNaN;
   csv.numbers(4, p.x(), p.y(), p.z(), prior.norm(), prior.z(), known * registered.norm(), known * registered.z());
-  csv.word(word(row.status)).integer(row.iterations).number(row.rms_m, 4).end_row();
+  csv.word(word(row.status)).integer(row.iterations).number(row.rms_m, 4);
+  const Eigen::Vector3d turned_deg = known * so3_log(row.X_WL_true.R.conjugate() * row.X_WL_registered.R) / kDegree;
+  const Eigen::Matrix3d R = row.X_WL_registered.R.toRotationMatrix();
+  const Eigen::Vector3d position = (R * row.covariance.bottomRightCorner<3, 3>() * R.transpose()).diagonal(),
+                        attitude = row.covariance.diagonal().head<3>();
+  const Eigen::Vector3d sigma_m = known * position.cwiseSqrt(), sigma_deg = known * attitude.cwiseSqrt() / kDegree;
+  for (const Eigen::Vector3d* of : {&turned_deg, &sigma_m, &sigma_deg})
+    for (const double value : *of) csv.number(value, 4);
+  csv.number(known * nees(row.X_WL_registered, row.X_WL_true, row.covariance), 3);
+  const Pose step = row.placed ? row.placed->X_TS.inverse() * row.X_LL_true : Pose{};
+  const double placed = row.placed ? 1.0 : kNaN;
+  csv.number(placed * step.p.norm(), 4).number(placed * so3_log(step.R).norm() / kDegree, 4);
+  csv.number(row.placed ? nees(row.placed->X_TS, row.X_LL_true, row.placed->covariance) : kNaN, 3);
+  csv.number(row.overlap, 4).number(row.open ? *row.open : kNaN, 0).end_row();
 }
 
 const char* const kImuColumns = "t_ns,dt_s,gx_rad,gy_rad,gz_rad,ax_m_s,ay_m_s,az_m_s,lost";

@@ -44,6 +44,12 @@ struct KeyframeRow {
   std::optional<lidar::RegistrationStatus> status;  ///< none: not registered
   int iterations = 0;
   double rms_m = kNaN;
+  double overlap = kNaN;                           ///< share of the points that were matched
+  std::optional<int> open;                         ///< directions that the surfaces leave open
+  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_registered
+  /// Since the keyframe before, as the map took it and as it was; none: not registered.
+  std::optional<RelativePose> placed;
+  Pose X_LL_true;
 };
 
 }  // namespace canyon::mission

@@ -8,7 +8,7 @@
 
 #include "canyon/core/earth/local_frame.h"
 #include "canyon/fusion/verdict/verdict.h"
-#include "canyon/lidar/map_quality.h"
+#include "canyon/lidar/map_quality/map_error.h"
 #include "canyon/mission/config/mission_config.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/part_clock.h"

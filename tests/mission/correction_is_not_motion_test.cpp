@@ -176,7 +176,7 @@ TEST(GuessBetweenKeyframes, IsThePredictedMotionOverACorrection) {
       estimated_before = localizer.estimate().X_WB;
     }
   }
-  const Pose true_motion = truly_before.inverse() * truth.X_WB(), guess = localizer.motion(),
+  const Pose true_motion = truly_before.inverse() * truth.X_WB(), guess = localizer.motion().X_TS,
              by_estimates = estimated_before.inverse() * localizer.estimate().X_WB;
   const RelativePose alone = predicted->motion();
   const double off_m = (guess.p - true_motion.p).norm(), off_by_estimates_m = (by_estimates.p - true_motion.p).norm();

@@ -254,8 +254,8 @@ TEST(Couplings, RegistrationReachesTheAutonomyOnlyWhereItIsAskedFor) {
     return y_m;
   };
   const auto unregistered = path_with("prior", "none");
-  EXPECT_EQ(path_with("prior", "gicp"), unregistered);
-  EXPECT_NE(path_with("registered", "gicp"), unregistered);
+  EXPECT_EQ(path_with("prior", "pcl_shell_gicp"), unregistered);
+  EXPECT_NE(path_with("registered", "pcl_shell_gicp"), unregistered);
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct Script {
   lidar::RegistrationResult result;
   Pose error;  ///< with which the guess comes back: X_TS = guess * error
   Pose guess;
+  Matrix6d prior_covariance;
   std::vector<Pose> targets_X_TC;
   int alignments = 0;
 };
@@ -38,6 +39,11 @@ class ScriptedRegistration final : public lidar::Registration {
     lidar::RegistrationResult result = script_.result;
     result.X_TS = guess * script_.error;
     return result;
+  }
+  lidar::RegistrationResult align_with_prior(const lidar::PreparedCloud& source, std::span<const Placed> targets,
+                                             const lidar::PosePrior& prior) const override {
+    script_.prior_covariance = prior.covariance;
+    return align(source, targets, prior.X_TS);
   }
 
  private:
@@ -75,12 +81,12 @@ class MapperTest : public ::testing::Test {
     estimate.t = scan.t;
     estimate.X_WB = X_WB;
     estimate.pose_covariance = prior_covariance_;
-    return mapper.offer(scan, estimate, motion);
+    return mapper.offer(scan, estimate, {scan.t, scan.t, motion, motion_covariance_});
   }
 
   Script script_;
   lidar::RegistrationConfig config_;
-  Matrix6d prior_covariance_ = diagonal(0.01, 0.2);
+  Matrix6d prior_covariance_ = diagonal(0.01, 0.2), motion_covariance_ = diagonal(1e6, 1e6);
   Pose last_X_WB_;  ///< of the last keyframe
 };
 
@@ -119,15 +125,53 @@ TEST_F(MapperTest, TheFirstKeyframeAndMethodNoneAreNotRegistered) {
   EXPECT_EQ(script_.alignments, 0);
 }
 
-TEST_F(MapperTest, WhereRegistrationDoesNotConvergeThePriorStands) {
+// The map stands 1 m beside the prior when an alignment fails; the vehicle has moved by 3 m as predicted, and a fix has
+// moved the estimate by 4 m more. By hand, along x: predicted place z with P_Z = (keyframe before) + (motion), prior y.
+TEST_F(MapperTest, WhereRegistrationDoesNotConvergeThePredictedMotionCarriesOn) {
+  script_.error = at(1.0);
+  config_.motion_floor_m_s = 0.02;
+  config_.prior_correlation_s = 0.0;
+  Mapper mapper = this->mapper();
+  prior_covariance_ = diagonal(1e-6, 0.01);
+  offer(mapper, 0.0, at(0));
+  prior_covariance_ = diagonal(1e3, 1e3);  // the alignment decides
+  EXPECT_NEAR(offer(mapper, 1.0, at(3))->X_WL_registered.p.x(), 4.0, 1e-6);
   script_.result.status = lidar::RegistrationStatus::kNotConverged;
-  script_.error = at(0.5);
+  motion_covariance_ = diagonal(1e-3, 0.05);
+  prior_covariance_ = diagonal(1e3, 0.2);
+  const double P_Z = 1e-4 + 1e-4 + 4e-4 + 0.0025 + 0.0004, P_Y = 0.04;
+  const Keyframe* keyframe = offer(mapper, 2.0, at(10), at(3));
+  EXPECT_EQ(keyframe->status, lidar::RegistrationStatus::kNotConverged);
+  EXPECT_NEAR(keyframe->X_WL_registered.p.x(), 7.0 + 3.0 * P_Z / (P_Z + P_Y), 1e-6);
+  EXPECT_NEAR(keyframe->covariance(3, 3), P_Z * P_Y / (P_Z + P_Y), 1e-6);
+  EXPECT_FALSE(keyframe->aligned) << "what was predicted tells the filter nothing";
+  ASSERT_TRUE(keyframe->placed);
+  EXPECT_LT((keyframe->placed->X_TS.p - at(3).p).norm(), 1e-12);
+}
+
+// The filter must not be told its own prediction again: what goes back to it is what the surfaces alone say.
+TEST_F(MapperTest, WhatTheSurfacesAloneSayGoesBackToTheFilter) {
+  script_.error = at(0.3);
+  script_.result.surfaces = {.X_TS = at(3.5), .covariance = diagonal(2e-3, 0.03)};
   Mapper mapper = this->mapper();
   offer(mapper, 0.0, at(0));
   const Keyframe* keyframe = offer(mapper, 1.0, at(3));
-  EXPECT_EQ(keyframe->status, lidar::RegistrationStatus::kNotConverged);
-  EXPECT_EQ(keyframe->X_WL_registered.p, at(3).p);
-  EXPECT_EQ(mapper.correction().p, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(keyframe->aligned && keyframe->placed);
+  EXPECT_NEAR(keyframe->placed->X_TS.p.x(), 3.3, 1e-12);
+  EXPECT_NEAR(keyframe->aligned->X_TS.p.x(), 3.5, 1e-12);
+  EXPECT_NEAR(keyframe->aligned->covariance(3, 3), 0.03 * 0.03 + 0.02 * 0.02, 1e-12);
+}
+
+TEST_F(MapperTest, AnAlignmentIsToldTheMotionWithItsCovariance) {
+  motion_covariance_ = diagonal(1e-3, 0.05);
+  config_.motion_floor_m_s = 0.02;
+  const Pose X_BL{Eigen::Quaterniond::Identity(), {10, 0, 0}};
+  Mapper mapper = this->mapper(X_BL);
+  offer(mapper, 0.0, at(0));
+  offer(mapper, 1.0, at(3));
+  // Sideways at the LIDAR: 0.05 m of B's own and 10 m times 1 mrad.
+  EXPECT_NEAR(script_.prior_covariance(4, 4), 0.05 * 0.05 + 0.01 * 0.01 + 0.02 * 0.02, 1e-12);
+  EXPECT_NEAR(script_.prior_covariance(3, 3), 0.05 * 0.05 + 0.02 * 0.02, 1e-12);
 }
 
 // 2026-11-23: the guess between keyframes held what a fix had corrected meanwhile, as if the vehicle had moved by it.

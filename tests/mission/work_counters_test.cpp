@@ -16,7 +16,7 @@ class Work {
   RecordedRun run_;
 };
 
-constexpr const char* kRegistered = "[registration]\nmethod = \"gicp\"";
+constexpr const char* kRegistered = "[registration]\nmethod = \"pcl_shell_gicp\"";
 
 TEST(WorkCounters, WithoutRegistrationThereIsNoSecondMapAndNothingOfPcl) {
   const Work off(""), on(kRegistered);
