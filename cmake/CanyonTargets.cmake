@@ -19,10 +19,10 @@ function(canyon_precompile target root)
   endif()
 endfunction()
 
-# canyon_join(TARGET): where headers are precompiled, up to eight files of one room are compiled as one, which halves the work. So
-# names in the unnamed namespaces of a room differ. Rooms whose files are alike by design (verbs, tests of one fixture) stay
-# apart, and files with definitions of their own.
-set(CANYON_APART verbs stress tables)
+# canyon_join(TARGET [ACROSS_ROOMS]): where headers are precompiled, up to eight files of one room are compiled as one, which
+# halves the work; of tests, whose rooms are small, up to eight that follow one another. So names in the unnamed namespaces of
+# those differ. Rooms whose files are alike by design (verbs) stay apart, and files with definitions of their own.
+set(CANYON_APART verbs stress tables contributing)
 function(canyon_join target)
   if(NOT CANYON_PRECOMPILED_HEADERS)
     return()
@@ -33,6 +33,9 @@ function(canyon_join target)
     if(IS_ABSOLUTE ${source} OR room IN_LIST CANYON_APART)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
+      if("ACROSS_ROOMS" IN_LIST ARGN)
+        set(room ${target})
+      endif()
       string(MAKE_C_IDENTIFIER "${room}" room)
       math(EXPR count_${room} "0${count_${room}} + 1")
       math(EXPR part "${count_${room}} / 8")
@@ -136,10 +139,11 @@ function(canyon_embed out_variable)
   set(${out_variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# canyon_test(FOLDER LINK libs... [EXCLUDE patterns...]): every .cpp of tests/FOLDER and its rooms in one executable, one ctest entry per test case.
+# canyon_test(FOLDER LINK libs... [EXCLUDE patterns...] [SHARED_OUT suites...]): every .cpp of tests/FOLDER and its rooms in one
+# executable, one ctest entry per test case; but the many small cases of a suite that is shared out are done by eight processes.
 # A name that contains "Nightly" gets the label nightly and is left out of ./test.sh.
 function(canyon_test folder)
-  cmake_parse_arguments(ARG "" "" "LINK;EXCLUDE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINK;EXCLUDE;SHARED_OUT" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   foreach(pattern IN LISTS ARG_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX ${pattern})
@@ -151,8 +155,18 @@ function(canyon_test folder)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE canyon_test_support ${ARG_LINK} GTest::gmock GTest::gtest_main)
   canyon_precompile(${target} canyon_test_support)
-  canyon_join(${target})
-  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "-*Nightly*" PROPERTIES LABELS ${folder} TIMEOUT 300)
+  canyon_join(${target} ACROSS_ROOMS)
+  set(alone "-*Nightly*")
+  foreach(suite IN LISTS ARG_SHARED_OUT)
+    string(APPEND alone ":*/${suite}.*")
+    foreach(share RANGE 1 8)
+      math(EXPR index "${share} - 1")
+      add_test(NAME ${suite}.Share${share}Of8 COMMAND ${target} --gtest_filter=*/${suite}.*)
+      set_tests_properties(${suite}.Share${share}Of8 PROPERTIES LABELS ${folder} TIMEOUT 900
+                           ENVIRONMENT "GTEST_TOTAL_SHARDS=8;GTEST_SHARD_INDEX=${index}")
+    endforeach()
+  endforeach()
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${alone}" PROPERTIES LABELS ${folder} TIMEOUT 300)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "*Nightly*" TEST_LIST ${target}_nightly
                        PROPERTIES LABELS "nightly" TIMEOUT 3600)
 endfunction()

@@ -9,7 +9,7 @@
 namespace canyon::fusion {
 namespace {
 
-const Geodetic kPlace{45.0 * kDegree, 7.0 * kDegree, 200.0};
+const Geodetic kReckonedPlace{45.0 * kDegree, 7.0 * kDegree, 200.0};
 
 /// A log at rest, one sample each 10 ms.
 std::vector<ImuSample> rest(const NavState& state, int samples) {
@@ -26,15 +26,15 @@ std::vector<ImuSample> rest(const NavState& state, int samples) {
 }
 
 NavState start() {
-  NavState state = levelled(kPlace, 30.0 * kDegree, {0.0, 0.0, 1.0});
+  NavState state = levelled(kReckonedPlace, 30.0 * kDegree, {0.0, 0.0, 1.0});
   state.t = GpsTime::from_week_sow(1590, 1000.0);
   return state;
 }
 
 TEST(Levelled, PutsTheForceUpAndTheNoseOnItsHeading) {
   const Eigen::Vector3d force = Eigen::Vector3d(1.0, -2.0, 9.0);
-  const NavState state = levelled(kPlace, 70.0 * kDegree, force);
-  const Eigen::Matrix3d enu = rotation_E_from_enu(kPlace);
+  const NavState state = levelled(kReckonedPlace, 70.0 * kDegree, force);
+  const Eigen::Matrix3d enu = rotation_E_from_enu(kReckonedPlace);
   const Eigen::Vector3d up = -gravity_E(state.p_EU_E).normalized();
   EXPECT_LT((state.R_EU * force.normalized() - up).norm(), 1e-15 * 10);
   EXPECT_NEAR(up.dot(enu.col(2)), 1.0, 1e-13);  // 1.6e-7 rad at 200 m, squared
@@ -82,7 +82,7 @@ TEST(Interpolation, IsExactOnCubicsAndAtTheEnds) {
 
 TEST(NavigationErrors, AreEstimateMinusReference) {
   NavState truth = start(), estimate = truth;
-  const Eigen::Matrix3d enu = rotation_E_from_enu(kPlace);
+  const Eigen::Matrix3d enu = rotation_E_from_enu(kReckonedPlace);
   estimate.p_EU_E += enu * Eigen::Vector3d(1.0, 2.0, -3.0);
   estimate.v_EU_E += enu * Eigen::Vector3d(0.1, -0.2, 0.3);
   estimate.R_EU = truth.R_EU * so3_exp({0.01, 0.02, -0.03});

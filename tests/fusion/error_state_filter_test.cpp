@@ -19,7 +19,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
+const GpsTime kFilterStart = GpsTime::from_week_sow(1590, 396000.0);
 const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
 const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
 
@@ -28,14 +28,14 @@ const std::vector<std::vector<std::string>> kStateChoices = {
 
 ErrorStateFilter started(const FilterConfig& config = {}, const ImuNoise& noise = tactical_noise()) {
   ErrorStateFilter filter(config, noise, kFrame, kImu, kAntenna);
-  filter.initialize(kStart, Pose{}, Eigen::Vector3d::Zero());
+  filter.initialize(kFilterStart, Pose{}, Eigen::Vector3d::Zero());
   return filter;
 }
 
 /// Sample k at rest, level, body axes along east, north, up.
 ImuSample at_rest(std::int64_t k, double rate_hz = 100.0) {
   ImuSample s;
-  s.t = tick(kStart, k + 1, rate_hz);
+  s.t = tick(kFilterStart, k + 1, rate_hz);
   s.dt_s = 1.0 / rate_hz;
   const Eigen::Matrix3d R_WE = kFrame.R_EW().transpose();
   s.dtheta_U = s.dt_s * (R_WE * earth_rate_E());
@@ -69,7 +69,7 @@ TEST(ErrorStateFilter, StartsWithTheConfiguredUncertainty) {
   c.initial_velocity_sigma_m_s = 0.3;
   ErrorStateFilter filter(c, tactical_noise(), kFrame, kImu, kAntenna);
   const Pose X{rotation_from({.yaw_rad = 0.8, .pitch_rad = 0.0, .roll_rad = 0.0}), {10.0, 20.0, 3.0}};
-  filter.initialize(kStart, X, {4.0, 3.0, 0.1});
+  filter.initialize(kFilterStart, X, {4.0, 3.0, 0.1});
   const NavEstimate e = filter.estimate();
   EXPECT_LT((e.X_WB.p - X.p).norm(), 3e-9);  // positions pass through E: eps of 6e6 m
   EXPECT_LT(e.X_WB.R.angularDistance(X.R), 1e-15);
@@ -87,7 +87,7 @@ TEST(ErrorStateFilter, StaysWhereItIsAtRest) {
   ErrorStateFilter filter = started();
   for (int k = 0; k < 6000; ++k) filter.predict(at_rest(k));
   const NavEstimate e = filter.estimate();
-  EXPECT_EQ(e.t, tick(kStart, 6000, 100.0));
+  EXPECT_EQ(e.t, tick(kFilterStart, 6000, 100.0));
   EXPECT_LT(e.X_WB.p.norm(), 1e-6);
   EXPECT_LT(e.v_WB_W.norm(), 1e-8);
   EXPECT_GT(std::sqrt(e.pose_covariance(3, 3)), 0.5);  // and grows less sure of it
@@ -111,7 +111,7 @@ TEST(ErrorStateFilter, UpdatePullsTheAntennaTowardsTheFix) {
   FilterConfig c;
   c.initial_position_sigma_m = 3.0;
   ErrorStateFilter filter = started(c);
-  const UpdateReport report = filter.update(fix_at(kStart, {0.0, 0.0, 4.0}, 4.0));
+  const UpdateReport report = filter.update(fix_at(kFilterStart, {0.0, 0.0, 4.0}, 4.0));
   EXPECT_TRUE(report.accepted);
   EXPECT_EQ(report.dimension, 3);
   // Scalar Kalman by hand: height is not touched by attitude, so gain 9 / 25 and NIS 16 / 25.
@@ -125,27 +125,27 @@ TEST(ErrorStateFilter, TheGateRefusesTheUnlikely) {
   FilterConfig c = configured("gate_sigma = 4");
   ErrorStateFilter gated = started(c), open = started();
   const auto P = gated.covariance();
-  const UpdateReport refused = gated.update(fix_at(kStart, {20.0, 0.0, 0.0}, 0.5));
+  const UpdateReport refused = gated.update(fix_at(kFilterStart, {20.0, 0.0, 0.0}, 0.5));
   EXPECT_FALSE(refused.accepted);
   EXPECT_EQ(refused.dimension, 3);
   EXPECT_GT(refused.nis, 100.0);
   EXPECT_EQ(gated.covariance(), P);
-  EXPECT_TRUE(open.update(fix_at(kStart, {20.0, 0.0, 0.0}, 0.5)).accepted);
-  EXPECT_TRUE(gated.update(fix_at(kStart, {0.5, 0.0, 0.0}, 0.5)).accepted);
+  EXPECT_TRUE(open.update(fix_at(kFilterStart, {20.0, 0.0, 0.0}, 0.5)).accepted);
+  EXPECT_TRUE(gated.update(fix_at(kFilterStart, {0.5, 0.0, 0.0}, 0.5)).accepted);
 
   // As rare as 2 sigma in one dimension is NIS 8.02 in three.
   c = configured("gate_sigma = 2");
   // Height is independent of attitude: variance 0.5^2 of the start plus 0.5^2 of the fix.
   const double limit = std::sqrt(8.0249 * 0.5);
   ErrorStateFilter below = started(c), above = started(c);
-  EXPECT_TRUE(below.update(fix_at(kStart, {0.0, 0.0, 0.999 * limit}, 0.5)).accepted);
-  EXPECT_FALSE(above.update(fix_at(kStart, {0.0, 0.0, 1.001 * limit}, 0.5)).accepted);
+  EXPECT_TRUE(below.update(fix_at(kFilterStart, {0.0, 0.0, 0.999 * limit}, 0.5)).accepted);
+  EXPECT_FALSE(above.update(fix_at(kFilterStart, {0.0, 0.0, 1.001 * limit}, 0.5)).accepted);
 }
 
 TEST(ErrorStateFilter, TheFloorMakesAFixNoBetterThanIt) {
   const FilterConfig c = configured("initial_position_sigma_m = 3\nfix_sigma_floor_m = 4");
   ErrorStateFilter filter = started(c);
-  EXPECT_NEAR(filter.update(fix_at(kStart, {0.0, 0.0, 4.0}, 0.01)).nis, 16.0 / 25.0, 1e-6);
+  EXPECT_NEAR(filter.update(fix_at(kFilterStart, {0.0, 0.0, 4.0}, 0.01)).nis, 16.0 / 25.0, 1e-6);
 }
 
 TEST(ErrorStateFilter, StopsWhatIsNotFiniteAndNamesTheProducer) {
@@ -156,13 +156,13 @@ TEST(ErrorStateFilter, StopsWhatIsNotFiniteAndNamesTheProducer) {
   bad = at_rest(0);
   bad.dt_s = 0.0;
   EXPECT_THAT(message_of([&] { filter.predict(bad); }), HasSubstr("IMU sample at "));
-  GnssFix fix = fix_at(kStart, Eigen::Vector3d::Zero(), 1.0);
+  GnssFix fix = fix_at(kFilterStart, Eigen::Vector3d::Zero(), 1.0);
   fix.p_A_E.x() = std::numeric_limits<double>::infinity();
   EXPECT_THAT(message_of([&] { filter.update(fix); }), HasSubstr("GNSS fix at "));
-  fix = fix_at(kStart, Eigen::Vector3d::Zero(), 1.0);
+  fix = fix_at(kFilterStart, Eigen::Vector3d::Zero(), 1.0);
   fix.covariance_E(1, 1) = -1.0;
   EXPECT_THAT(message_of([&] { filter.update(fix); }), HasSubstr("covariance of the GNSS fix at "));
-  fix = fix_at(kStart + 2.0, Eigen::Vector3d::Zero(), 1.0);
+  fix = fix_at(kFilterStart + 2.0, Eigen::Vector3d::Zero(), 1.0);
   EXPECT_THAT(message_of([&] { filter.update(fix); }), HasSubstr("2 s away from the last IMU sample"));
 }
 

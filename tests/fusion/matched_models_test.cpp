@@ -12,13 +12,13 @@ namespace {
 
 using testing::MatchedWorld;
 
-constexpr int kRuns = 100, kEpochs = 20;
+constexpr int kModelRuns = 100, kEpochs = 20;
 constexpr double kEpoch_s = 5.0;
 
 TEST(MatchedModels, EveryBlockIsAsFarOffAsItSays) {
   std::map<std::string, std::array<ConsistencyMean, kEpochs>> means;
   std::map<std::string, int> degrees;
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < kModelRuns; ++run) {
     MatchedWorld world(static_cast<std::uint64_t>(run) + 1);
     ErrorStateFilter filter = world.filter();
     for (int epoch = 0; epoch < kEpochs; ++epoch) {
@@ -40,7 +40,7 @@ TEST(MatchedModels, EveryBlockIsAsFarOffAsItSays) {
   // 20 epochs of 13 blocks: one false alarm in four tries at 1e-3 each, so the seeds are fixed.
   for (const auto& [name, epochs] : means) {
     const int dof = degrees[name];
-    const Band band = mean_chi_square_band(dof, kRuns, 1e-3);
+    const Band band = mean_chi_square_band(dof, kModelRuns, 1e-3);
     std::printf("%-15s NEES per state", name.c_str());
     for (const ConsistencyMean& mean : epochs) {
       std::printf(" %.2f", mean.per_state());

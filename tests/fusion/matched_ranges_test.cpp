@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 using testing::DrivenTruth;
 
-constexpr int kRuns = 100, kEpochs = 20, kInSight = 8, kSatellites = 20;
-constexpr double kEpoch_s = 5.0, kReceiver_s = 0.5;
+constexpr int kRangeRuns = 100, kRangeEpochs = 20, kInSight = 8, kSatellites = 20;
+constexpr double kRangeEpoch_s = 5.0, kReceiver_s = 0.5;
 constexpr double kTau_s = 20.0, kWay_m = 40.0, kRange_m = 1.0, kRate_m_s = 0.1;
 
 const char* const kKeys = R"(
@@ -187,13 +187,13 @@ double squared(const World::Errors& e, const Eigen::MatrixXd& P) {
 }
 
 TEST(MatchedRanges, EveryBlockIsAsFarOffAsItSays) {
-  std::map<std::string, std::array<ConsistencyMean, kEpochs>> means;
+  std::map<std::string, std::array<ConsistencyMean, kRangeEpochs>> means;
   std::map<std::string, int> degrees;
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < kRangeRuns; ++run) {
     World world(static_cast<std::uint64_t>(run) + 1);
     ErrorStateFilter filter = world.filter();
-    for (int epoch = 0; epoch < kEpochs; ++epoch) {
-      for (int k = 0; k < static_cast<int>(100 * kEpoch_s); ++k) world.step(filter);
+    for (int epoch = 0; epoch < kRangeEpochs; ++epoch) {
+      for (int k = 0; k < static_cast<int>(100 * kRangeEpoch_s); ++k) world.step(filter);
       const Eigen::MatrixXd P = filter.covariance();
       World::Errors all;
       auto errors = world.errors(filter);
@@ -213,7 +213,7 @@ TEST(MatchedRanges, EveryBlockIsAsFarOffAsItSays) {
   // 20 epochs of 7 blocks: one false alarm in seven tries at 1e-3 each, so the seeds are fixed.
   for (const auto& [name, epochs] : means) {
     const int dof = degrees[name];
-    const Band band = mean_chi_square_band(dof, kRuns, 1e-3);
+    const Band band = mean_chi_square_band(dof, kRangeRuns, 1e-3);
     std::printf("%-15s NEES per state", name.c_str());
     for (const ConsistencyMean& mean : epochs) {
       std::printf(" %.2f", mean.per_state());

@@ -8,16 +8,14 @@
 #include "canyon/inertial/aiding/barometer.h"
 #include "canyon/inertial/aiding/magnetometer.h"
 #include "canyon/inertial/aiding/odometer.h"
+#include "canyon/tests/support/four_sigma.h"
 
 namespace canyon::inertial {
 namespace {
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 0.0);
+using canyon::testing::four_sigma_of_variance;
 
-/// Four standard deviations of a mean square over n normals: false alarm 6e-5.
-double four_sigma_of_variance(int n) {
-  return 4.0 * std::sqrt(2.0 / n);
-}
+const GpsTime kStart = GpsTime::from_week_sow(1590, 0.0);
 
 BarometerConfig perfect_barometer() {
   BarometerConfig c;

@@ -16,7 +16,7 @@ namespace {
 using fusion::NavState;
 using inertial::PlacedMotion;
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
+const GpsTime kClosureStart = GpsTime::from_week_sow(1590, 396000.0);
 
 NavState true_state(const PlacedMotion& placed, double t_s) {
   const KinematicState k = placed.imu_at(t_s);
@@ -116,10 +116,10 @@ TEST(Closure, CentrifugeOfAHundredG) {
 }
 
 TEST(Closure, ThePathIsWithinItsStatedLimits) {
-  const testing::SmoothPath path(kStart);
+  const testing::SmoothPath path(kClosureStart);
   double speed = 0.0, rate = 0.0;
   for (int i = 0; i < 6000; ++i) {
-    const KinematicState k = path.at(kStart + 0.1 * i);
+    const KinematicState k = path.at(kClosureStart + 0.1 * i);
     speed = std::max(speed, k.v_WB_W.norm());
     rate = std::max(rate, k.w_WB_B.norm());
   }
@@ -129,10 +129,11 @@ TEST(Closure, ThePathIsWithinItsStatedLimits) {
 
 /// The path's rates are the derivatives of its attitude: a slip there would hide in generator and comparison alike.
 TEST(Closure, ThePathsDerivativesAreItsDerivatives) {
-  const testing::SmoothPath path(kStart);
+  const testing::SmoothPath path(kClosureStart);
   const double h = 1e-3;
   for (double s : {1.0, 7.3, 22.9}) {
-    const KinematicState a = path.at(kStart + (s - h)), k = path.at(kStart + s), b = path.at(kStart + (s + h));
+    const KinematicState a = path.at(kClosureStart + (s - h)), k = path.at(kClosureStart + s),
+                         b = path.at(kClosureStart + (s + h));
     const Eigen::Vector3d w =
         (so3_log(k.X_WB.R.conjugate() * b.X_WB.R) - so3_log(k.X_WB.R.conjugate() * a.X_WB.R)) / (2 * h);
     EXPECT_LT((w - k.w_WB_B).norm(), h * h) << s;  // second order: h^2 / 6 times the third derivative, under 1 1/s^3

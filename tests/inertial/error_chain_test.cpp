@@ -9,14 +9,12 @@
 #include "canyon/fusion/consistency.h"
 #include "canyon/inertial/imu_model.h"
 #include "canyon/tests/inertial/smooth_path.h"
+#include "canyon/tests/support/four_sigma.h"
 
 namespace canyon::inertial {
 namespace {
 
-/// Four standard deviations of a mean square over n normals: false alarm 6e-5.
-double four_sigma_of_variance(int n) {
-  return 4.0 * std::sqrt(2.0 / n);
-}
+using canyon::testing::four_sigma_of_variance;
 
 CatalogueEntry full_entry() {
   CatalogueEntry e = *load_catalogue_entry("stim300");

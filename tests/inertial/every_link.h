@@ -3,7 +3,9 @@
 #include "canyon/inertial/catalogue.h"
 #include "canyon/inertial/environment.h"
 
+namespace canyon::testing {}
 namespace canyon::inertial::testing {
+using namespace canyon::testing;  // so that testing:: is both
 
 /// A unit that has every error there is, of the size of a consumer part's.
 inline CatalogueEntry every_link() {

@@ -6,14 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/check.h"
+#include "canyon/tests/support/four_sigma.h"
 
 namespace canyon::inertial {
 namespace {
 
-/// Four standard deviations of a mean square over n normals: false alarm 6e-5.
-double four_sigma_of_variance(int n) {
-  return 4.0 * std::sqrt(2.0 / n);
-}
+using canyon::testing::four_sigma_of_variance;
 
 constexpr std::int64_t kBlock = kImuBlock;
 

@@ -14,8 +14,8 @@ namespace {
 
 using testing::SmoothPath;
 
-const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
-const GpsTime kStart = GpsTime::from_week_sow(1590, 0.0);
+const LocalFrame kMountedFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
+const GpsTime kMountedStart = GpsTime::from_week_sow(1590, 0.0);
 
 ImuConfig askew_by(double sigma_deg) {
   ImuConfig c;
@@ -27,7 +27,7 @@ ImuConfig askew_by(double sigma_deg) {
 
 TEST(ImuMounting, IsParallelUnlessItIsAskedFor) {
   EXPECT_FALSE(mounting(askew_by(0.0), 1));
-  EXPECT_EQ((*make_imu(askew_by(0.0), 1, kFrame))->R_BU().coeffs(), Eigen::Quaterniond::Identity().coeffs());
+  EXPECT_EQ((*make_imu(askew_by(0.0), 1, kMountedFrame))->R_BU().coeffs(), Eigen::Quaterniond::Identity().coeffs());
 }
 
 // Each of 3000 angles by itself: mean square to four sigma, false alarm 6e-5.
@@ -45,17 +45,18 @@ TEST(ImuMounting, AnglesHaveTheirSpread) {
 // series (rigid_motion.h), rate and force are then those of a body's origin. Roundings of 9.8 m/s^2 over 10 ms.
 TEST(ImuMounting, FeelsWhatABodyInItsPlaceFeels) {
   const ImuConfig config = askew_by(5.0);
-  const auto imu = make_imu(config, 3, kFrame);
+  const auto imu = make_imu(config, 3, kMountedFrame);
   ASSERT_TRUE(imu.ok());
   KinematicState place;
   place.X_WB = {*mounting(config, 3), config.lever_arm_m};
   EXPECT_GT(so3_log(place.X_WB.R).norm(), 1.0 * kDegree);
-  const SmoothPath path(kStart);
+  const SmoothPath path(kMountedStart);
   for (std::int64_t k = 0; k < 500; k += 7) {
     const std::vector<KinematicState> nodes = path.nodes(k, 100.0, 4);
     std::vector<KinematicState> own;
     for (const KinematicState& node : nodes) own.push_back(compose(node, place));
-    const ImuSample found = (*imu)->sample(k, nodes), expected = true_increments(own, kFrame, Eigen::Vector3d::Zero());
+    const ImuSample found = (*imu)->sample(k, nodes),
+                    expected = true_increments(own, kMountedFrame, Eigen::Vector3d::Zero());
     EXPECT_LT((found.dtheta_U - expected.dtheta_U).norm(), 1e-15) << k;
     EXPECT_LT((found.dv_U - expected.dv_U).norm(), 1e-14) << k;
   }

@@ -9,9 +9,12 @@
 #include "canyon/core/units.h"
 #include "canyon/inertial/paper_formulas.h"
 #include "canyon/tests/inertial/stationary_covariance.h"
+#include "canyon/tests/support/four_sigma.h"
 
 namespace canyon::inertial {
 namespace {
+
+using canyon::testing::four_sigma_of_variance;
 
 using testing::stationary_covariance;
 
@@ -34,11 +37,6 @@ SensingElement element(const ElementFigures& f, double step_s, std::uint32_t axi
       *accelerometer_model(f, kTemperature_k), electronics_n, integrator, step_s, RandomStream(5, "test.mems"), axis};
 }
 
-/// Four standard deviations of a mean square of n independent normals: false alarm 6e-5.
-double four_sigma(double n) {
-  return 4.0 * std::sqrt(2.0 / n);
-}
-
 // Equipartition: the mean of k x^2 over many samples is k_B T, from Q = 0.5 to 1e5. Samples are so far apart that they
 // are nearly independent (5 time constants; correlation 0.7 %).
 TEST(SensingElement, Equipartition) {
@@ -58,9 +56,9 @@ TEST(SensingElement, Equipartition) {
     }
     const double thermal = kBoltzmann * kTemperature_k / f.mass_kg;  // of w^2 x^2 and of v^2
     std::printf("Q %8g: k <x^2> / k_B T = %.4f, m <v^2> / k_B T = %.4f (band %.4f)\n", q, position2 / n / thermal,
-                speed2 / n / thermal, four_sigma(n));
-    EXPECT_NEAR(position2 / n / thermal, 1.0, four_sigma(n)) << q;
-    EXPECT_NEAR(speed2 / n / thermal, 1.0, four_sigma(n)) << q;
+                speed2 / n / thermal, four_sigma_of_variance(n));
+    EXPECT_NEAR(position2 / n / thermal, 1.0, four_sigma_of_variance(n)) << q;
+    EXPECT_NEAR(speed2 / n / thermal, 1.0, four_sigma_of_variance(n)) << q;
   }
 }
 
@@ -85,7 +83,7 @@ TEST(SensingElement, PointSamplingFoldsTheResonanceIn) {
     std::printf("Q %g: point samples %.4g times the noise of the band (theory %.4g)\n", q, measured,
                 std::sqrt(w * q / 250.0));
     EXPECT_NEAR(std::sqrt(w * q / 250.0) / factor, 1.0, 1e-3);
-    EXPECT_NEAR(measured * measured / (w * q / 250.0), 1.0, four_sigma(n)) << q;
+    EXPECT_NEAR(measured * measured / (w * q / 250.0), 1.0, four_sigma_of_variance(n)) << q;
     // Averaged over the sample behind a filter, the same mass shows its density and nothing else.
     f.filter_order = 2;
     f.bandwidth_hz = 40.0;
@@ -97,7 +95,7 @@ TEST(SensingElement, PointSamplingFoldsTheResonanceIn) {
       sum2 += std::pow(sum / (length * step_s), 2);
     }
     const double expected = 0.5 * density * density / (length * step_s);  // N = density / sqrt(2)
-    EXPECT_NEAR(sum2 / blocks / expected, 1.0, four_sigma(blocks)) << q;
+    EXPECT_NEAR(sum2 / blocks / expected, 1.0, four_sigma_of_variance(blocks)) << q;
   }
 }
 
@@ -343,7 +341,7 @@ TEST(Gyroscope, ThermalNoiseIsTheFormulas) {
     for (int k = 0; k < length; ++k) sum += axis.advance(b * length + k, 0.0);
     sum2 += sum * sum;  // angle over 1 s: N^2
   }
-  EXPECT_NEAR(sum2 / blocks / (model.thermal_n * model.thermal_n), 1.0, four_sigma(blocks));
+  EXPECT_NEAR(sum2 / blocks / (model.thermal_n * model.thermal_n), 1.0, four_sigma_of_variance(blocks));
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include "canyon/core/check.h"
 #include "canyon/inertial/mems/linear_plant.h"
 
+namespace canyon::testing {}
 namespace canyon::inertial::testing {
+using namespace canyon::testing;  // so that testing:: is both
 
 /// Covariance that the noise of repeated steps leads to: P = phi P phi^T + covariance. phi must be stable.
 inline Eigen::MatrixXd stationary_covariance(const DiscretePlant& step) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "canyon/apps/line/command_line.h"
@@ -22,6 +23,11 @@ const std::vector<Format>& formats() {
     return out;
   }();
   return all;
+}
+
+std::vector<Seed> with(std::vector<Seed> seeds, std::vector<Seed> more) {
+  seeds.insert(seeds.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  return seeds;
 }
 
 std::vector<Seed> written_by(const std::function<int()>& body, const std::vector<std::string>& names,

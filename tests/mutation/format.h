@@ -46,6 +46,9 @@ std::vector<Format> elevation_formats();
 std::vector<Format> mission_formats();
 std::vector<Format> report_formats();
 
+/// Both, in this order.
+std::vector<Seed> with(std::vector<Seed> seeds, std::vector<Seed> more);
+
 /// Files that `body` writes into its working folder, by their names. It runs in a process of its own, so that this one
 /// stays without threads. Throws if it does not return 0.
 std::vector<Seed> written_by(const std::function<int()>& body, const std::vector<std::string>& names,

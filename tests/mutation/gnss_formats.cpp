@@ -162,11 +162,6 @@ std::vector<Seed> sp3_seeds() {
   return out;
 }
 
-std::vector<Seed> with(std::vector<Seed> seeds, std::vector<Seed> more) {
-  seeds.insert(seeds.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  return seeds;
-}
-
 std::vector<Companion> both() {
   return {{"obs.rnx", observations()}, {"nav.rnx", navigation()}};
 }

@@ -4,17 +4,12 @@ namespace canyon::testing {
 namespace {
 
 /// A figure of eight, two seconds of it, by a sensor with errors: the log in both formats, and the truth.
-const std::vector<Seed>& simulated() {
+const std::vector<Seed>& simulated_imu() {
   static const std::vector<Seed> files =
       written_by_canyon({"imu", "simulate", "--path", "figure_eight", "--at", "45,7,200", "--rate", "50", "--duration",
                          "2", "--start", "1612:520200", "--out", "log"},
                         {"log/imu.csv", "log/imu_kf_gins.txt", "log/truth.nav"});
   return files;
-}
-
-std::vector<Seed> with(std::vector<Seed> seeds, std::vector<Seed> more) {
-  seeds.insert(seeds.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
-  return seeds;
 }
 
 /// At rest, long enough for an Allan deviation.
@@ -133,7 +128,7 @@ range_g = 10.0
 range_source = "made up"
 )";
 
-/// Of the first two seconds of simulated(): it drives north-east from there.
+/// Of the first two seconds of simulated_imu(): it drives north-east from there.
 constexpr const char* kFixes =
     "gps_week,sow,lat_deg,lon_deg,h_m,sd_n_m,sd_e_m,sd_u_m,vn,ve,vu,sd_vn,sd_ve,sd_vu,status\n"
     "1612,520200.5,45.00001,7.00001,200,3,3,5,1,1,0,0.1,0.1,0.2,single\n1612,520201,45.00002,7.00002,200,3,3,5,1,1,0,0."
@@ -167,7 +162,7 @@ rate_hz = 5.0
 )";
 
 std::vector<Companion> of_a_drive() {
-  return with({simulated()[0], simulated()[2]}, {{"fixes.csv", kFixes}});
+  return with({simulated_imu()[0], simulated_imu()[2]}, {{"fixes.csv", kFixes}});
 }
 
 Format recorded(const std::string& name, const std::function<std::vector<Seed>()>& seeds) {
@@ -193,8 +188,8 @@ std::vector<Format> inertial_formats() {
       {.name = "ImuCsvDeadReckon",
        .command = {"imu", "dead-reckon", "--imu", "@", "--truth", "truth.nav"},
        .read = {},
-       .seeds = [] { return std::vector<Seed>{simulated()[0]}; },
-       .beside = [] { return std::vector<Companion>{simulated()[2]}; }},
+       .seeds = [] { return std::vector<Seed>{simulated_imu()[0]}; },
+       .beside = [] { return std::vector<Companion>{simulated_imu()[2]}; }},
       {.name = "FuseFixes",
        .command = {"fuse", "--imu", "imu.csv", "--gnss", "@", "--truth", "truth.nav"},
        .read = {},
@@ -208,22 +203,22 @@ std::vector<Format> inertial_formats() {
        .read = {},
        .seeds =
            [] {
-             return std::vector<Seed>{simulated()[0], simulated()[1]};
+             return std::vector<Seed>{simulated_imu()[0], simulated_imu()[1]};
            },
        .beside =
            [] {
-             return std::vector<Companion>{simulated()[2], {"fixes.csv", kFixes}};
+             return std::vector<Companion>{simulated_imu()[2], {"fixes.csv", kFixes}};
            }},
       {.name = "FuseTruth",
        .command = {"fuse", "--imu", "imu.csv", "--gnss", "fixes.csv", "--truth", "@", "--outage", "0.5,1,0.2"},
        .read = {},
        .seeds =
            [] {
-             return std::vector<Seed>{simulated()[2], {"truth.csv", kTruthCsv}};
+             return std::vector<Seed>{simulated_imu()[2], {"truth.csv", kTruthCsv}};
            },
        .beside =
            [] {
-             return std::vector<Companion>{simulated()[0], {"fixes.csv", kFixes}};
+             return std::vector<Companion>{simulated_imu()[0], {"fixes.csv", kFixes}};
            }},
       {.name = "FuseOdometer",
        .command = {"fuse", "--imu", "imu.csv", "--gnss", "fixes.csv", "--truth", "truth.nav", "--odometer", "@"},
@@ -244,20 +239,20 @@ std::vector<Format> inertial_formats() {
       {.name = "KfGinsLog",
        .command = {"imu", "dead-reckon", "--imu", "@", "--truth", "truth.nav"},
        .read = {},
-       .seeds = [] { return std::vector<Seed>{simulated()[1]}; },
-       .beside = [] { return std::vector<Companion>{simulated()[2]}; }},
+       .seeds = [] { return std::vector<Seed>{simulated_imu()[1]}; },
+       .beside = [] { return std::vector<Companion>{simulated_imu()[2]}; }},
       {.name = "NavigationTruth",
        .command = {"imu", "dead-reckon", "--imu", "imu.csv", "--truth", "@"},
        .read = {},
        .seeds =
            [] {
-             return with({simulated()[2], {"truth.csv", kTruthCsv}},
+             return with({simulated_imu()[2], {"truth.csv", kTruthCsv}},
                          excerpt("inertial/kfgins_gnss_only/KF-GINS-Matlab_dataset2_truth.nav", "real.nav", 60));
            },
-       .beside = [] { return std::vector<Companion>{simulated()[0]}; }},
+       .beside = [] { return std::vector<Companion>{simulated_imu()[0]}; }},
       recorded("NavigationTrajectory",
                [] {
-                 return std::vector<Seed>{simulated()[2], {"truth.csv", kTruthCsv}};
+                 return std::vector<Seed>{simulated_imu()[2], {"truth.csv", kTruthCsv}};
                }),
       recorded("Tum",
                [] {

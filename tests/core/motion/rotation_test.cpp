@@ -12,7 +12,7 @@
 namespace canyon {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kRotationEps = std::numeric_limits<double>::epsilon();
 const RandomStream kRandom(1, "test.rotation");
 
 /// Angles through every branch: zero, the series, its border, ordinary ones, just under and at pi.
@@ -29,9 +29,9 @@ TEST(So3, ExpIsTheRotationAboutTheAxis) {
     for (std::uint64_t i = 0; i < 20; ++i) {
       const Eigen::Vector3d axis = kRandom.direction(0, i);
       const Eigen::Quaterniond q = so3_exp(angle * axis);
-      EXPECT_NEAR(q.norm(), 1.0, 4 * kEps);
+      EXPECT_NEAR(q.norm(), 1.0, 4 * kRotationEps);
       EXPECT_LT((q.toRotationMatrix() - Eigen::AngleAxisd(angle, axis).toRotationMatrix()).cwiseAbs().maxCoeff(),
-                16 * kEps)
+                16 * kRotationEps)
           << angle;
     }
   }
@@ -43,10 +43,10 @@ TEST(So3, LogInvertsExp) {
       const Eigen::Vector3d v = angle * kRandom.direction(1, i);
       const Eigen::Quaterniond q = so3_exp(v);
       const Eigen::Vector3d back = so3_log(q);
-      EXPECT_LE(back.norm(), kPi * (1 + 2 * kEps));
+      EXPECT_LE(back.norm(), kPi * (1 + 2 * kRotationEps));
       // Relative, also for the tiniest angles; at pi the axis may come back turned round.
       const bool turned_round = angle > kPi - 1e-14 && back.dot(v) < 0;
-      const double tolerance = 16 * kEps * angle + 1e-320;
+      const double tolerance = 16 * kRotationEps * angle + 1e-320;
       EXPECT_LT(((turned_round ? -1.0 : 1.0) * back - v).norm(), tolerance) << angle;
       const Eigen::Vector3d of_minus_q = so3_log({-q.w(), -q.x(), -q.y(), -q.z()});
       EXPECT_LT(((of_minus_q.dot(v) < 0 ? -1.0 : 1.0) * of_minus_q - v).norm(), tolerance) << angle;
@@ -58,7 +58,7 @@ TEST(So3, BranchesOfExpAndLogMeetSmoothly) {
   const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 3).normalized();
   const Eigen::Quaterniond below = so3_exp(axis * 1e-4 * (1 - 1e-9));
   const Eigen::Quaterniond above = so3_exp(axis * 1e-4 * (1 + 1e-9));
-  EXPECT_LT((below.coeffs() - above.coeffs()).norm(), 1e-4 * 2e-9 + 4 * kEps);
+  EXPECT_LT((below.coeffs() - above.coeffs()).norm(), 1e-4 * 2e-9 + 4 * kRotationEps);
 }
 
 // Exp(v + d) = Exp(v) Exp(Jr d) + second order; the central difference leaves step^2 / 6 times a third derivative of
@@ -75,7 +75,8 @@ TEST(So3, RightJacobianByDifferences) {
             (so3_log(so3_exp(v).conjugate() * so3_exp(v + d)) - so3_log(so3_exp(v).conjugate() * so3_exp(v - d))) /
             (2 * step);
       }
-      EXPECT_LT((so3_right_jacobian(v) - numerical).cwiseAbs().maxCoeff(), step * step + 8 * kEps / step) << angle;
+      EXPECT_LT((so3_right_jacobian(v) - numerical).cwiseAbs().maxCoeff(), step * step + 8 * kRotationEps / step)
+          << angle;
     }
   }
 }
@@ -86,7 +87,7 @@ TEST(YawPitchRoll, RoundTripAndMeaning) {
       for (double roll = -3.0; roll < 3.1; roll += 0.6) {
         const Eigen::Quaterniond q = rotation_from({yaw, pitch, roll});
         const YawPitchRoll back = yaw_pitch_roll(q);
-        const double tolerance = 16 * kEps / std::cos(pitch);
+        const double tolerance = 16 * kRotationEps / std::cos(pitch);
         EXPECT_NEAR(back.yaw_rad, yaw, tolerance);
         EXPECT_NEAR(back.pitch_rad, pitch, tolerance);
         EXPECT_NEAR(back.roll_rad, roll, tolerance);
@@ -105,8 +106,8 @@ TEST(YawPitchRoll, StraightUpAndDownStillGiveTheRotation) {
       const Eigen::Quaterniond q = rotation_from({yaw, pitch, 0.4});
       const YawPitchRoll angles = yaw_pitch_roll(q);
       // cos(pitch) is known to sqrt(eps) only there.
-      EXPECT_LT(q.angularDistance(rotation_from(angles)), 4 * std::sqrt(kEps));
-      EXPECT_NEAR(angles.pitch_rad, pitch, 4 * std::sqrt(kEps));
+      EXPECT_LT(q.angularDistance(rotation_from(angles)), 4 * std::sqrt(kRotationEps));
+      EXPECT_NEAR(angles.pitch_rad, pitch, 4 * std::sqrt(kRotationEps));
     }
   }
 }
@@ -120,7 +121,7 @@ TEST(Heading, FromYawAndBack) {
     const double heading = heading_from_yaw(yaw);
     EXPECT_GE(heading, 0.0);
     EXPECT_LT(heading, 2 * kPi);
-    EXPECT_NEAR(wrap_pi(yaw_from_heading(heading) - yaw), 0.0, 32 * kEps * 20);
+    EXPECT_NEAR(wrap_pi(yaw_from_heading(heading) - yaw), 0.0, 32 * kRotationEps * 20);
   }
   EXPECT_LT(heading_from_yaw(std::nextafter(kPi / 2, 2.0)), 2 * kPi);
 }
@@ -130,8 +131,8 @@ TEST(WrapPi, HalfOpenInterval) {
   EXPECT_EQ(wrap_pi(kPi), kPi);
   EXPECT_EQ(wrap_pi(-kPi), kPi);
   EXPECT_EQ(wrap_pi(3 * kPi), kPi);
-  EXPECT_NEAR(wrap_pi(7.0), 7.0 - 2 * kPi, 4 * kEps * 7);
-  EXPECT_NEAR(wrap_pi(-7.0), 2 * kPi - 7.0, 4 * kEps * 7);
+  EXPECT_NEAR(wrap_pi(7.0), 7.0 - 2 * kPi, 4 * kRotationEps * 7);
+  EXPECT_NEAR(wrap_pi(-7.0), 2 * kPi - 7.0, 4 * kRotationEps * 7);
 }
 
 Pose random_pose(std::uint64_t i, double angle) {
@@ -157,7 +158,8 @@ TEST(Se3, ExpIsTheMatrixExponentialWithCoupledTranslation) {
         sum += term;
       }
       for (int k = 0; k < kSquarings; ++k) sum = (sum * sum).eval();
-      EXPECT_LT((Pose::exp(xi).matrix() - sum).cwiseAbs().maxCoeff(), (1 << kSquarings) * 8 * kEps * 6) << angle;
+      EXPECT_LT((Pose::exp(xi).matrix() - sum).cwiseAbs().maxCoeff(), (1 << kSquarings) * 8 * kRotationEps * 6)
+          << angle;
     }
   }
 }
@@ -168,7 +170,7 @@ TEST(Se3, LogInvertsExp) {
     for (std::uint64_t i = 0; i < 20; ++i) {
       Vector6d xi;
       xi << angle * kRandom.direction(6, i), 5.0 * kRandom.direction(7, i);
-      EXPECT_LT((Pose::exp(xi).log() - xi).cwiseAbs().maxCoeff(), 64 * kEps * 5) << angle;
+      EXPECT_LT((Pose::exp(xi).log() - xi).cwiseAbs().maxCoeff(), 64 * kRotationEps * 5) << angle;
     }
   }
 }
@@ -176,17 +178,17 @@ TEST(Se3, LogInvertsExp) {
 TEST(Se3, ExpInvertsLogAtHalfATurn) {
   for (std::uint64_t i = 0; i < 20; ++i) {
     const Pose X = random_pose(i, kPi);
-    EXPECT_LT((Pose::exp(X.log()).matrix() - X.matrix()).cwiseAbs().maxCoeff(), 64 * kEps * X.p.norm());
+    EXPECT_LT((Pose::exp(X.log()).matrix() - X.matrix()).cwiseAbs().maxCoeff(), 64 * kRotationEps * X.p.norm());
   }
 }
 
 TEST(Pose, GroupLaws) {
   const Pose A = random_pose(1, 0.8), B = random_pose(2, 2.4);
   const Eigen::Vector3d p(1, -2, 3);
-  EXPECT_LT(((A * B) * p - A * (B * p)).norm(), 64 * kEps * 60);
-  EXPECT_LT((A.inverse() * (A * p) - p).norm(), 64 * kEps * 60);
-  EXPECT_LT(((A * B).matrix() - A.matrix() * B.matrix()).cwiseAbs().maxCoeff(), 64 * kEps * 60);
-  EXPECT_LT((Pose::from_matrix(A.matrix()).matrix() - A.matrix()).cwiseAbs().maxCoeff(), 16 * kEps);
+  EXPECT_LT(((A * B) * p - A * (B * p)).norm(), 64 * kRotationEps * 60);
+  EXPECT_LT((A.inverse() * (A * p) - p).norm(), 64 * kRotationEps * 60);
+  EXPECT_LT(((A * B).matrix() - A.matrix() * B.matrix()).cwiseAbs().maxCoeff(), 64 * kRotationEps * 60);
+  EXPECT_LT((Pose::from_matrix(A.matrix()).matrix() - A.matrix()).cwiseAbs().maxCoeff(), 16 * kRotationEps);
   EXPECT_EQ((A.matrix().row(3)), Eigen::RowVector4d(0, 0, 0, 1));
 }
 
@@ -196,7 +198,7 @@ TEST(Interpolate, EndsAreExactAndTheMiddleIsHalfWay) {
   EXPECT_EQ(interpolate(A, B, 1.0).matrix(), B.matrix());
   const Pose half = interpolate(A, B, 0.5);
   const Pose step = A.inverse() * half;
-  EXPECT_LT(((A * step * step).matrix() - B.matrix()).norm(), 256 * kEps * 30);
+  EXPECT_LT(((A * step * step).matrix() - B.matrix()).norm(), 256 * kRotationEps * 30);
 }
 
 // A body that turns and drives at constant rates in its own frame moves on the SE(3) geodesic: a circle, not a chord.
@@ -207,8 +209,8 @@ TEST(Interpolate, FollowsACircle) {
   };
   for (const double s : {0.1, 0.37, 0.5, 0.9}) {
     const Pose X = interpolate(on_circle(0), on_circle(turn), s);
-    EXPECT_LT((X.p - on_circle(s * turn).p).norm(), 32 * kEps * radius);
-    EXPECT_LT(X.R.angularDistance(on_circle(s * turn).R), 32 * kEps);
+    EXPECT_LT((X.p - on_circle(s * turn).p).norm(), 32 * kRotationEps * radius);
+    EXPECT_LT(X.R.angularDistance(on_circle(s * turn).R), 32 * kRotationEps);
   }
 }
 

@@ -7,13 +7,13 @@
 namespace canyon {
 namespace {
 
-constexpr GpsTime kStart{1'000'000'000'000'000'000};
+constexpr GpsTime kMotionStart{1'000'000'000'000'000'000};
 
 /// A body on a helix that turns about all axes; derivatives by hand.
 KinematicState helix(double t_s) {
   const double r = 20.0, w = 0.7;
   KinematicState k;
-  k.t = kStart + t_s;
+  k.t = kMotionStart + t_s;
   k.X_WB.p = {r * std::cos(w * t_s), r * std::sin(w * t_s), 0.3 * t_s};
   k.v_WB_W = {-r * w * std::sin(w * t_s), r * w * std::cos(w * t_s), 0.3};
   k.a_WB_W = {-r * w * w * std::cos(w * t_s), -r * w * w * std::sin(w * t_s), 0.0};
@@ -75,8 +75,8 @@ TEST(TrueMotion, DerivativesFitTogetherBetweenNodesOfAnyKind) {
   const double d = 1e-5, tolerance = d * d / 6.0 * 2.5e8;
   for (double t_s = 0.0005; t_s < 0.0295; t_s += 0.001) {
     if (std::abs(std::remainder(t_s, 0.01)) < 2 * d) continue;
-    const KinematicState before = motion.at(kStart + (t_s - d)), now = motion.at(kStart + t_s),
-                         after = motion.at(kStart + (t_s + d));
+    const KinematicState before = motion.at(kMotionStart + (t_s - d)), now = motion.at(kMotionStart + t_s),
+                         after = motion.at(kMotionStart + (t_s + d));
     EXPECT_LT(((after.X_WB.p - before.X_WB.p) / (2 * d) - now.v_WB_W).norm(), tolerance);
     EXPECT_LT(((after.v_WB_W - before.v_WB_W) / (2 * d) - now.a_WB_W).norm(), tolerance);
     EXPECT_LT((so3_log(before.X_WB.R.conjugate() * after.X_WB.R) / (2 * d) - now.w_WB_B).norm(), tolerance);
@@ -87,7 +87,7 @@ TEST(TrueMotion, DerivativesFitTogetherBetweenNodesOfAnyKind) {
 // Pieces end at the nodes, whatever the interval, and their integrals add up: the integral of the velocity is the way.
 TEST(TrueMotion, PiecesCoverAnyIntervalOnce) {
   const TrueMotion motion = helix_motion(0.01, 30);
-  const GpsTime from = kStart + 0.0137, to = kStart + 0.2512;
+  const GpsTime from = kMotionStart + 0.0137, to = kMotionStart + 0.2512;
   Eigen::Vector3d way = Eigen::Vector3d::Zero();
   GpsTime last = from;
   int pieces = 0;
@@ -108,10 +108,10 @@ TEST(TrueMotion, PiecesCoverAnyIntervalOnce) {
 
 TEST(TrueMotion, ForgetsWhatIsNotNeededAndRefusesWhatItDoesNotKnow) {
   TrueMotion motion = helix_motion(0.01, 30);
-  motion.forget_before(kStart + 0.105);
-  EXPECT_EQ(motion.first(), kStart + 0.1);
-  EXPECT_THROW(motion.at(kStart + 0.05), ProgramError);
-  EXPECT_THROW(motion.at(kStart + 0.5), ProgramError);
+  motion.forget_before(kMotionStart + 0.105);
+  EXPECT_EQ(motion.first(), kMotionStart + 0.1);
+  EXPECT_THROW(motion.at(kMotionStart + 0.05), ProgramError);
+  EXPECT_THROW(motion.at(kMotionStart + 0.5), ProgramError);
   EXPECT_THROW(motion.append(helix(0.1)), ProgramError);
   KinematicState turned = helix(0.3);
   turned.X_WB.R = turned.X_WB.R * so3_exp({0, 0, 1.5});

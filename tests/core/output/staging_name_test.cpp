@@ -19,7 +19,7 @@ namespace canyon {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::TemporaryFolder;
+using canyon::testing::TemporaryFolder;
 
 /// The staging directory that a process had that was killed.
 std::string left_by_a_killed_process(const std::string& path, pid_t* number = nullptr) {
@@ -29,7 +29,7 @@ std::string left_by_a_killed_process(const std::string& path, pid_t* number = nu
   if (child == 0) {
     auto staged = StagedDirectory::create(path, false);
     const std::string name = staged.ok() ? staged->staging_path() : "";
-    (void)!write(told[1], name.data(), name.size());
+    (void)!::write(told[1], name.data(), name.size());
     close(told[1]);
     pause();
     _exit(0);

@@ -12,21 +12,21 @@
 namespace canyon::fusion {
 namespace {
 
-constexpr int kFixes = 20, kSamplesPerFix = 50;
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
-const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
-const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
+constexpr int kFixCount = 20, kSamplesPerFix = 50;
+const GpsTime kFixStart = GpsTime::from_week_sow(1590, 396000.0);
+const LocalFrame kFixFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
+const Eigen::Vector3d kFixImu(0.0, 0.0, 0.4), kFixAntenna(-0.3, 0.0, 1.2);
 
 const Eigen::Vector3d kAcceleration_W(1.0, 2.0, 0.0);
 
 /// A level body, axes along east, north, up, that speeds up from rest: attitude, velocity and position are coupled.
 ImuSample sample(std::int64_t k) {
   ImuSample s;
-  s.t = tick(kStart, k + 1, 100.0);
+  s.t = tick(kFixStart, k + 1, 100.0);
   s.dt_s = 0.01;
-  const Eigen::Matrix3d R_WE = kFrame.R_EW().transpose();
+  const Eigen::Matrix3d R_WE = kFixFrame.R_EW().transpose();
   s.dtheta_U = s.dt_s * (R_WE * earth_rate_E());
-  s.dv_U = s.dt_s * (kAcceleration_W - R_WE * gravity_E(kFrame.to_E(kImu)));
+  s.dv_U = s.dt_s * (kAcceleration_W - R_WE * gravity_E(kFixFrame.to_E(kFixImu)));
   return s;
 }
 
@@ -34,27 +34,27 @@ ImuSample sample(std::int64_t k) {
 Eigen::Vector3d place_after(const std::vector<Eigen::Vector3d>& moves, FixResponse* response,
                             const std::vector<double>& expected = {}, FixResponse::Moved* moved = nullptr,
                             const FilterConfig& config = {}) {
-  ErrorStateFilter filter(config, tactical_noise(), kFrame, kImu, kAntenna);
-  filter.initialize(kStart, Pose{}, Eigen::Vector3d::Zero());
+  ErrorStateFilter filter(config, tactical_noise(), kFixFrame, kFixImu, kFixAntenna);
+  filter.initialize(kFixStart, Pose{}, Eigen::Vector3d::Zero());
   if (response != nullptr) filter.watch(response);
   std::int64_t k = 0;
-  for (int fix = 0; fix < kFixes; ++fix) {
+  for (int fix = 0; fix < kFixCount; ++fix) {
     for (int i = 0; i < kSamplesPerFix; ++i) filter.predict(sample(k++));
     GnssFix z;
     z.t = filter.nav_state().t;
     z.status = FixStatus::kDifferential;
-    const double t = z.t - kStart;
-    z.p_A_E = kFrame.to_E(kAntenna + 0.5 * t * t * kAcceleration_W) + moves[static_cast<std::size_t>(fix)];
+    const double t = z.t - kFixStart;
+    z.p_A_E = kFixFrame.to_E(kFixAntenna + 0.5 * t * t * kAcceleration_W) + moves[static_cast<std::size_t>(fix)];
     z.covariance_E = 0.25 * Eigen::Matrix3d::Identity();
     if (response != nullptr) response->expect(expected[static_cast<std::size_t>(fix)]);
     filter.update(z);
   }
   for (int i = 0; i < kSamplesPerFix / 2; ++i) filter.predict(sample(k++));
-  if (moved != nullptr) *moved = response->moved(filter.body_jacobian(), kFrame.R_EW().col(2));
-  return kFrame.R_EW() * filter.estimate().X_WB.p;
+  if (moved != nullptr) *moved = response->moved(filter.body_jacobian(), kFixFrame.R_EW().col(2));
+  return kFixFrame.R_EW() * filter.estimate().X_WB.p;
 }
 
-const std::vector<Eigen::Vector3d> kUnmoved(kFixes, Eigen::Vector3d::Zero());
+const std::vector<Eigen::Vector3d> kUnmoved(kFixCount, Eigen::Vector3d::Zero());
 
 // The derivative by one fix, found by moving it by 1 cm along each axis. What is of second order: attitudes that fixes
 // correct by up to 3 mrad, about which the filter linearizes anew, below 1 %.
@@ -68,14 +68,14 @@ TEST(FixResponse, OfOneFixIsTheDerivativeOfTheEstimate) {
       moves[fix][axis] = kMove_m;
       derivative.col(axis) = (place_after(moves, nullptr) - unmoved) / kMove_m;
     }
-    std::vector<double> expected(kFixes, 0.0);
+    std::vector<double> expected(kFixCount, 0.0);
     expected[fix] = 1.0;
     FixResponse response;
     FixResponse::Moved moved;
     place_after(kUnmoved, &response, expected, &moved);
     const double largest = Eigen::JacobiSVD<Eigen::Matrix3d>(derivative).singularValues()[0];
     EXPECT_NEAR(moved.any_m, largest, 0.01 * largest) << fix;
-    const double up = (kFrame.R_EW().col(2).transpose() * derivative).norm();
+    const double up = (kFixFrame.R_EW().col(2).transpose() * derivative).norm();
     EXPECT_NEAR(moved.up_m, up, 0.01 * largest) << fix;
   }
 }
@@ -93,7 +93,7 @@ TEST(FixResponse, OfAFixThatALostFilterStartsAgainFrom) {
       moves[fix][axis] = kMove_m;
       derivative.col(axis) = (place_after(moves, nullptr, {}, nullptr, lost) - unmoved) / kMove_m;
     }
-    std::vector<double> expected(kFixes, 0.0);
+    std::vector<double> expected(kFixCount, 0.0);
     expected[fix] = 1.0;
     FixResponse response;
     FixResponse::Moved moved;
@@ -109,14 +109,14 @@ TEST(FixResponse, TheSumBoundsEveryChoiceOfDirections) {
   constexpr double kMove_m = 0.01;
   FixResponse response;
   FixResponse::Moved moved;
-  const Eigen::Vector3d unmoved = place_after(kUnmoved, &response, std::vector<double>(kFixes, kMove_m), &moved);
+  const Eigen::Vector3d unmoved = place_after(kUnmoved, &response, std::vector<double>(kFixCount, kMove_m), &moved);
   const RandomStream stream(3, "test.directions");
   for (std::uint64_t trial = 0; trial < 20; ++trial) {
     auto moves = kUnmoved;
-    for (std::uint32_t fix = 0; fix < kFixes; ++fix) moves[fix] = kMove_m * stream.direction(fix, trial);
+    for (std::uint32_t fix = 0; fix < kFixCount; ++fix) moves[fix] = kMove_m * stream.direction(fix, trial);
     EXPECT_LE((place_after(moves, nullptr) - unmoved).norm(), moved.any_m) << trial;
   }
-  const std::vector<Eigen::Vector3d> bias(kFixes, kMove_m * Eigen::Vector3d::UnitX());
+  const std::vector<Eigen::Vector3d> bias(kFixCount, kMove_m * Eigen::Vector3d::UnitX());
   const double by_bias = (place_after(bias, nullptr) - unmoved).norm();
   EXPECT_LE(by_bias, moved.any_m);
   EXPECT_GT(by_bias, 0.2 * moved.any_m);
@@ -128,12 +128,12 @@ TEST(FixResponse, HalfTheSumIsExceededInTheWorstDirections) {
   constexpr double kMove_m = 0.01;
   FixResponse response;
   FixResponse::Moved moved;
-  const Eigen::Vector3d unmoved = place_after(kUnmoved, &response, std::vector<double>(kFixes, kMove_m), &moved);
+  const Eigen::Vector3d unmoved = place_after(kUnmoved, &response, std::vector<double>(kFixCount, kMove_m), &moved);
   double most_m = 0.0;
   for (const Eigen::Vector3d& along :
        {Eigen::Vector3d::UnitX().eval(), Eigen::Vector3d::UnitY().eval(), Eigen::Vector3d::UnitZ().eval()}) {
     auto worst = kUnmoved;
-    for (std::size_t fix = 0; fix < kFixes; ++fix) {
+    for (std::size_t fix = 0; fix < kFixCount; ++fix) {
       Eigen::Vector3d gain;
       for (int axis = 0; axis < 3; ++axis) {
         auto moves = kUnmoved;

@@ -14,13 +14,14 @@ namespace canyon::fusion {
 namespace {
 
 using testing::DrivenTruth;
-const Eigen::Vector3d kImu(0.2, -0.1, 0.5);
+const Eigen::Vector3d kMotionImu(0.2, -0.1, 0.5);
 
 ErrorStateFilter started(const DrivenTruth& truth, const std::string& keys, const Vector6d& off) {
-  ErrorStateFilter filter(configured(keys), tactical_noise(), DrivenTruth::frame(), kImu, Eigen::Vector3d::Zero());
+  ErrorStateFilter filter(configured(keys), tactical_noise(), DrivenTruth::frame(), kMotionImu,
+                          Eigen::Vector3d::Zero());
   Pose X = truth.X_WB();
   X.R = so3_exp(off.head<3>()) * X.R;
-  filter.initialize(truth.state().t, {X.R, X.p - X.R * kImu + off.tail<3>()}, truth.v_W());
+  filter.initialize(truth.state().t, {X.R, X.p - X.R * kMotionImu + off.tail<3>()}, truth.v_W());
   return filter;
 }
 
@@ -29,10 +30,10 @@ TEST(PredictedMotion, DoesNotDependOnPlaceAndHeading) {
   DrivenTruth a(1, 0.5), b(1, 0.5);
   ErrorStateFilter there = started(a, "", Vector6d::Zero());
   ErrorStateFilter elsewhere(configured("initial_position_sigma_m = 1000"), tactical_noise(), DrivenTruth::frame(),
-                             kImu, Eigen::Vector3d::Zero());
+                             kMotionImu, Eigen::Vector3d::Zero());
   const Eigen::Quaterniond turn = so3_exp({0.0, 0.0, 0.5});
   const Pose X = b.X_WB();
-  elsewhere.initialize(b.state().t, {turn * X.R, X.p - turn * X.R * kImu + Eigen::Vector3d(700, -700, 0)},
+  elsewhere.initialize(b.state().t, {turn * X.R, X.p - turn * X.R * kMotionImu + Eigen::Vector3d(700, -700, 0)},
                        turn * b.v_W());
   PredictedMotion first(there), second(elsewhere);
   for (int k = 0; k < 100; ++k) {

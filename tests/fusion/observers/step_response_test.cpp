@@ -15,9 +15,9 @@
 namespace canyon::fusion {
 namespace {
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
-const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
-const Eigen::Vector3d kImu(0.0, 0.0, 0.4), kAntenna(-0.3, 0.0, 1.2);
+const GpsTime kStepStart = GpsTime::from_week_sow(1590, 396000.0);
+const LocalFrame kStepFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
+const Eigen::Vector3d kStepImu(0.0, 0.0, 0.4), kStepAntenna(-0.3, 0.0, 1.2);
 
 StrapdownOmissions only(const char* effect) {
   return strapdown_omissions_of({{.effect = effect, .verdict = Verdict::kNotNeeded}});
@@ -43,10 +43,10 @@ StrapdownStep step_of(const NavState& at, const Increments& now, const Increment
 }
 
 NavState moving() {
-  return {.t = kStart,
-          .R_EU = Eigen::Quaterniond(kFrame.R_EW()) * so3_exp({0.1, -0.2, 0.7}),
-          .p_EU_E = kFrame.to_E(kImu),
-          .v_EU_E = kFrame.R_EW() * Eigen::Vector3d(8.0, 3.0, 0.1)};
+  return {.t = kStepStart,
+          .R_EU = Eigen::Quaterniond(kStepFrame.R_EW()) * so3_exp({0.1, -0.2, 0.7}),
+          .p_EU_E = kStepFrame.to_E(kStepImu),
+          .v_EU_E = kStepFrame.R_EW() * Eigen::Vector3d(8.0, 3.0, 0.1)};
 }
 
 // First order: what remains is the effect once more times what a step turns (0.4 rad/s x 10 ms) and times gravity's
@@ -128,7 +128,7 @@ TEST(StrapdownEffects, TheReasonHasTheNoiseBeside) {
   EXPECT_EQ(need.reason, "turns the attitude by 15 deg/h at most, the gyroscopes' noise by 0.91 (1-sigma)");
 }
 
-constexpr int kFixes = 40, kSamplesPerFix = 20;
+constexpr int kStepCount = 40, kSamplesPerStep = 20;
 
 using Moves = std::function<std::vector<StepMove>(std::int64_t k, const StrapdownStep& step)>;
 std::vector<StepMove> as_they_are(std::int64_t, const StrapdownStep& step) {
@@ -146,29 +146,32 @@ std::vector<Eigen::Vector3d> places(const StrapdownOmissions& leave_out, StepRes
                                     std::vector<Said>* said) {
   const auto truth = make_strapdown("two_sample");
   NavState at = moving();
-  ErrorStateFilter filter(FilterConfig(), tactical_noise(), kFrame, kImu, kAntenna);
-  const Eigen::Quaterniond R_WE(kFrame.R_EW().transpose().eval());
-  filter.initialize(kStart, {R_WE * at.R_EU, kFrame.to_W(at.p_EU_E) - (R_WE * at.R_EU) * kImu}, R_WE * at.v_EU_E);
+  ErrorStateFilter filter(FilterConfig(), tactical_noise(), kStepFrame, kStepImu, kStepAntenna);
+  const Eigen::Quaterniond R_WE(kStepFrame.R_EW().transpose().eval());
+  filter.initialize(kStepStart, {R_WE * at.R_EU, kStepFrame.to_W(at.p_EU_E) - (R_WE * at.R_EU) * kStepImu},
+                    R_WE * at.v_EU_E);
   filter.leave_out(leave_out);
   if (response != nullptr) filter.watch(response);
   const RandomStream noise(7, "test.fixes");
   std::vector<Eigen::Vector3d> out;
   Increments before;
-  for (std::int64_t k = 0; k < kFixes * kSamplesPerFix; ++k) {
+  for (std::int64_t k = 0; k < kStepCount * kSamplesPerStep; ++k) {
     const Increments now = increments(k);
     if (response != nullptr) response->expect(moves(k, step_of(filter.nav_state(), now, before)));
-    filter.predict(
-        {.t = kStart + 0.01 * static_cast<double>(k + 1), .dt_s = 0.01, .dtheta_U = now.dtheta_U, .dv_U = now.dv_U});
+    filter.predict({.t = kStepStart + 0.01 * static_cast<double>(k + 1),
+                    .dt_s = 0.01,
+                    .dtheta_U = now.dtheta_U,
+                    .dv_U = now.dv_U});
     truth->advance(at, now);
     before = now;
-    if ((k + 1) % kSamplesPerFix != 0) continue;
+    if ((k + 1) % kSamplesPerStep != 0) continue;
     GnssFix z;
     z.t = filter.nav_state().t;
     z.status = FixStatus::kDifferential;
-    z.p_A_E = at.p_EU_E + at.R_EU * (kAntenna - kImu) + 0.3 * noise.normal3(static_cast<std::uint64_t>(k));
+    z.p_A_E = at.p_EU_E + at.R_EU * (kStepAntenna - kStepImu) + 0.3 * noise.normal3(static_cast<std::uint64_t>(k));
     z.covariance_E = 0.09 * Eigen::Matrix3d::Identity();
     filter.update(z);
-    out.push_back(kFrame.R_EW() * filter.estimate().X_WB.p);
+    out.push_back(kStepFrame.R_EW() * filter.estimate().X_WB.p);
     if (said == nullptr) continue;
     const auto J = filter.body_jacobian();
     said->push_back({{}, response->by_chance_E(0, J)});
@@ -201,7 +204,7 @@ TEST(StepResponse, IsByWhatTheEstimateIsOffWithoutAnEffect) {
 // (three axes count as one); all fixes of a run go with each other.
 TEST(StepResponse, ByChanceIsTheCovarianceOfMovesOfEitherSign) {
   constexpr int kRuns = 20, kTogether = 12;
-  std::vector<double> square_m2(kFixes, 0.0), said_m2(kFixes, 0.0);
+  std::vector<double> square_m2(kStepCount, 0.0), said_m2(kStepCount, 0.0);
   for (int run = 0; run < kRuns; ++run) {
     const RandomStream lot(run + 1, "test.signs");
     const Moves either = [&](std::int64_t k, const StrapdownStep& step) {
@@ -224,7 +227,7 @@ TEST(StepResponse, ByChanceIsTheCovarianceOfMovesOfEitherSign) {
         square_m2[i] += moved_E.squaredNorm() / (kRuns * kTogether);
     }
   }
-  for (std::size_t i = 0; i < kFixes; ++i) {
+  for (std::size_t i = 0; i < kStepCount; ++i) {
     EXPECT_GT(said_m2[i], 0.0);
     EXPECT_NEAR(square_m2[i], said_m2[i], 0.37 * said_m2[i]) << i;
   }

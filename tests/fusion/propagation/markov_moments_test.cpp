@@ -9,7 +9,7 @@
 namespace canyon::fusion {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// [I_1, I_2, I_3, x] as one system of four.
 VanLoan chain(double dt_s, double tau_s) {
@@ -45,7 +45,7 @@ TEST(MarkovMoments, AreThoseOfTheMatrixExponential) {
 
 TEST(MarkovMoments, OfARandomWalkArePowers) {
   const double dt = 0.3;
-  const MarkovMoments moments(dt, kInfinite);
+  const MarkovMoments moments(dt, kUnbounded);
   EXPECT_EQ(moments.decay, 1.0);
   EXPECT_NEAR(moments.carried[0], dt, 1e-16);
   EXPECT_NEAR(moments.carried[1], dt * dt / 2.0, 1e-16);

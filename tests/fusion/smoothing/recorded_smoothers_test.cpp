@@ -98,14 +98,14 @@ Score score(const std::vector<SmoothedState>& states, const testing::RecordedRun
 }
 
 /// The run with the fixes that outages leave, a share of them off by so much in any direction.
-struct Stage {
+struct RecordedStage {
   Unit unit;
   testing::RecordedRun run;
   Outages outages;
   std::vector<GnssFix> fixes;
 
-  Stage(const Unit& u, const testing::RecordedRun& r, const Outages& without, double outlier_share = 0.0,
-        double outlier_m = 0.0)
+  RecordedStage(const Unit& u, const testing::RecordedRun& r, const Outages& without, double outlier_share = 0.0,
+                double outlier_m = 0.0)
       : unit(u), run(r), outages(without) {
     const RandomStream stream(17, "test.outliers");
     for (std::uint64_t i = 0; i < run.fixes.size(); ++i) {
@@ -156,7 +156,7 @@ void expect_consistent(const Score& s) {
 TEST_P(RecordedSmoothers, AreThreeTimesBetterThanTheFilterInOutages) {
   CANYON_SIM_LEADOR(run);
   for (const Outages& outages : {kNone, kShort, kLong}) {
-    const Stage stage(GetParam(), run, outages);
+    const RecordedStage stage(GetParam(), run, outages);
     const Score filter = stage.of("none"), rts = stage.of("rts"), graph = stage.of("batch_graph");
     stage.of("fixed_lag_graph");
     expect_consistent(rts);
@@ -175,8 +175,8 @@ TEST_P(RecordedSmoothers, AreThreeTimesBetterThanTheFilterInOutages) {
 // One fix in five is 10 m off, two hundred times its sigma and more.
 TEST_P(RecordedSmoothers, SwitchFixesOffThatAreFarOff) {
   CANYON_SIM_LEADOR(run);
-  const double clean = Stage(GetParam(), run, kNone).of("batch_graph").rms_m;
-  const Stage stage(GetParam(), run, kNone, 0.2, 10.0);
+  const double clean = RecordedStage(GetParam(), run, kNone).of("batch_graph").rms_m;
+  const RecordedStage stage(GetParam(), run, kNone, 0.2, 10.0);
   EXPECT_GT(stage.of("none").rms_m, 50.0 * clean);
   EXPECT_GT(stage.of("batch_graph").rms_m, 50.0 * clean);
   EXPECT_LT(stage.of("batch_graph", kSwitchable).rms_m, 1.5 * clean);
@@ -187,7 +187,7 @@ TEST_P(RecordedSmoothers, SwitchFixesOffThatAreFarOff) {
 // never came back (ADIS16465: 550 m).
 TEST_P(RecordedSmoothers, AGapDoesNotSwitchGoodFixesOff) {
   CANYON_SIM_LEADOR(run);
-  const Stage stage(GetParam(), run, kLong);
+  const RecordedStage stage(GetParam(), run, kLong);
   const double clean = stage.of("fixed_lag_graph").rms_m;
   EXPECT_LT(stage.of("fixed_lag_graph", kSwitchable).rms_m, 1.5 * clean);
 }
@@ -195,8 +195,8 @@ TEST_P(RecordedSmoothers, AGapDoesNotSwitchGoodFixesOff) {
 // With both, what a lag of 10 s decides just after a gap may be wrong, and is never taken back.
 TEST_P(RecordedSmoothers, AGapAndFixesThatAreFarOffNightly) {
   CANYON_SIM_LEADOR(run);
-  const double clean = Stage(GetParam(), run, kLong).of("fixed_lag_graph").rms_m;
-  EXPECT_LT(Stage(GetParam(), run, kLong, 0.2, 10.0).of("fixed_lag_graph", kSwitchable).rms_m, 2.0 * clean);
+  const double clean = RecordedStage(GetParam(), run, kLong).of("fixed_lag_graph").rms_m;
+  EXPECT_LT(RecordedStage(GetParam(), run, kLong, 0.2, 10.0).of("fixed_lag_graph", kSwitchable).rms_m, 2.0 * clean);
 }
 
 INSTANTIATE_TEST_SUITE_P(Units, RecordedSmoothers, ::testing::Values(kA15, kAdis),

@@ -9,7 +9,9 @@
 #include "canyon/tests/fusion/driven_truth.h"
 
 /// One winding drive with a tactical unit and fixes of 1 m twice a second, and what receivers and drivers do to them.
+namespace canyon::testing {}
 namespace canyon::fusion::testing {
+using namespace canyon::testing;  // so that testing:: is both
 
 using canyon::testing::DrivenTruth;
 

@@ -16,11 +16,11 @@ namespace {
 using testing::direction;
 using testing::WallScene;
 
-const Eigen::Vector3d kAntenna(0.0, 0.0, 2.0);
+const Eigen::Vector3d kPathAntenna(0.0, 0.0, 2.0);
 
-std::vector<SignalPaths> trace(const PathModel& model, const scene::Scene& scene,
-                               const std::vector<Eigen::Vector3d>& directions,
-                               const Eigen::Vector3d& antenna = kAntenna, GnssCounters* counters = nullptr) {
+std::vector<SignalPaths> traced(const PathModel& model, const scene::Scene& scene,
+                                const std::vector<Eigen::Vector3d>& directions,
+                                const Eigen::Vector3d& antenna = kPathAntenna, GnssCounters* counters = nullptr) {
   std::vector<SignalPaths> out(directions.size());
   GnssCounters own;
   model.trace(antenna, directions, scene::SceneAt(scene), out, counters != nullptr ? *counters : own);
@@ -36,7 +36,7 @@ WallScene west_wall(double distance_m, double half_width_m = 400.0, double heigh
 TEST(PathModel, NoneSeesEverything) {
   const auto scene = west_wall(5.0).build();
   for (const auto& p :
-       trace(*find_model(path_models(), "none")->make({}, {}), *scene, {direction(270, 20), direction(90, 20)})) {
+       traced(*find_model(path_models(), "none")->make({}, {}), *scene, {direction(270, 20), direction(90, 20)})) {
     EXPECT_TRUE(p.line_of_sight);
     EXPECT_TRUE(p.echoes.empty());
   }
@@ -48,7 +48,7 @@ TEST(PathModel, VisibilityIsTheSilhouette) {
   GnssCounters counters;
   // The roof edge stands 20 m above the antenna at 20 m: 45 deg towards the west.
   const auto paths =
-      trace(*model, *scene, {direction(270, 44.9), direction(270, 45.1), direction(90, 10)}, kAntenna, &counters);
+      traced(*model, *scene, {direction(270, 44.9), direction(270, 45.1), direction(90, 10)}, kPathAntenna, &counters);
   EXPECT_FALSE(paths[0].line_of_sight);
   EXPECT_TRUE(paths[1].line_of_sight);
   EXPECT_TRUE(paths[2].line_of_sight);
@@ -58,7 +58,7 @@ TEST(PathModel, VisibilityIsTheSilhouette) {
 
 TEST(PathModel, FoliageAttenuatesAndDoesNotBlock) {
   const auto scene = WallScene().box({-3000, -3000, -20}, {-2990, -2990, -10}).crown({10, 0, 12}, {4, 4, 4}).build();
-  const auto paths = trace(*make_visibility({}), *scene, {direction(90, 45), direction(270, 45)});
+  const auto paths = traced(*make_visibility({}), *scene, {direction(90, 45), direction(270, 45)});
   EXPECT_TRUE(paths[0].line_of_sight);
   EXPECT_NEAR(paths[0].foliage_m, 8.0, 1e-6);  // through the centre
   EXPECT_EQ(paths[1].foliage_m, 0.0);
@@ -73,7 +73,7 @@ TEST(Specular1, SingleWallAgainstTheClosedForm) {
   int found = 0;
   for (double az = 2.0; az < 360.0; az += 7.0) {
     for (double el = 5.0; el < 80.0; el += 7.5) {
-      const auto paths = trace(*model, *scene, {direction(az, el)});
+      const auto paths = traced(*model, *scene, {direction(az, el)});
       const double cos_incidence = std::cos(el * kDegree) * std::sin(az * kDegree);
       const double leg_m = distance_m / std::abs(cos_incidence);
       // Where the wave, reflected or direct, meets the plane of the wall: within its 2 x 400 m and up to 750 m?
@@ -102,52 +102,52 @@ TEST(Specular1, SingleWallAgainstTheClosedForm) {
 TEST(Specular1, ReachFollowsFromTheCutoffAndTheElevation) {
   const auto scene = west_wall(300.0).build();
   const Eigen::Vector3d high = direction(90, 86), low = direction(90, 60);  // excess 600 m x cos(86 deg) = 41.9 m
-  EXPECT_EQ(trace(*make_specular1({}), *scene, {high, low})[0].echoes.size(), 0u) << "800 m is not high enough";
+  EXPECT_EQ(traced(*make_specular1({}), *scene, {high, low})[0].echoes.size(), 0u) << "800 m is not high enough";
   const auto tower = west_wall(300.0, 400.0, 5000.0).build();
-  const auto paths = trace(*make_specular1({}), *tower, {high, low});
+  const auto paths = traced(*make_specular1({}), *tower, {high, low});
   ASSERT_EQ(paths[0].echoes.size(), 1u);
   EXPECT_NEAR(paths[0].echoes[0].excess_m, 600.0 * std::cos(86 * kDegree), 1e-9);
   EXPECT_EQ(paths[1].echoes.size(), 0u);
   PathParameters just_less;
   just_less.cutoff_m = paths[0].echoes[0].excess_m - 1e-6;
-  EXPECT_EQ(trace(*make_specular1(just_less), *tower, {high})[0].echoes.size(), 0u);
+  EXPECT_EQ(traced(*make_specular1(just_less), *tower, {high})[0].echoes.size(), 0u);
 }
 
 // Whether a blocked satellite is tracked depends on the strength alone.
 TEST(Specular1, ABlockedSatelliteHasNoCutoff) {
   auto walls = west_wall(300.0);
   walls.box({5, -5, 0}, {6, 5, 20}, "absorber");
-  const auto paths = trace(*make_specular1({}), *walls.build(), {direction(90, 30)});
+  const auto paths = traced(*make_specular1({}), *walls.build(), {direction(90, 30)});
   EXPECT_FALSE(paths[0].line_of_sight);
   ASSERT_EQ(paths[0].echoes.size(), 1u);
   EXPECT_NEAR(paths[0].echoes[0].excess_m, 600.0 * std::cos(30 * kDegree), 1e-9);
   PathParameters deaf;
   deaf.weakest_nlos_db = -5.0;
-  EXPECT_TRUE(trace(*make_specular1(deaf), *walls.build(), {direction(90, 30)})[0].echoes.empty());
+  EXPECT_TRUE(traced(*make_specular1(deaf), *walls.build(), {direction(90, 30)})[0].echoes.empty());
 }
 
 TEST(Specular1, BlockedLegsGiveNothing) {
   const Eigen::Vector3d s = direction(90, 30);
   const auto model = make_specular1({});
   // Reflection point at (-20, 0, 2 + 20 tan 30 = 13.5).
-  EXPECT_EQ(trace(*model, *west_wall(20.0).build(), {s})[0].echoes.size(), 1u);
+  EXPECT_EQ(traced(*model, *west_wall(20.0).build(), {s})[0].echoes.size(), 1u);
   // A screen between antenna and reflection point, which leaves the direct way free.
   auto inner = west_wall(20.0);
   inner.box({-10.5, -1, 6}, {-10, 1, 9}, "absorber");
-  const auto inside = trace(*model, *inner.build(), {s})[0];
+  const auto inside = traced(*model, *inner.build(), {s})[0];
   EXPECT_TRUE(inside.line_of_sight);
   EXPECT_EQ(inside.echoes.size(), 0u);
   // A screen between reflection point and satellite: the incoming way is 11.55 m above the direct one at the antenna's
   // x = 0.
   auto outer = west_wall(20.0);
   outer.box({5, -1, 26}, {5.5, 1, 30}, "absorber");
-  const auto outside = trace(*model, *outer.build(), {s})[0];
+  const auto outside = traced(*model, *outer.build(), {s})[0];
   EXPECT_TRUE(outside.line_of_sight);
   EXPECT_EQ(outside.echoes.size(), 0u);
   // A screen that blocks only the direct way.
   auto direct = west_wall(20.0);
   direct.box({5, -1, 3.5}, {5.5, 1, 6.5}, "absorber");
-  const auto nlos = trace(*model, *direct.build(), {s})[0];
+  const auto nlos = traced(*model, *direct.build(), {s})[0];
   EXPECT_FALSE(nlos.line_of_sight);
   ASSERT_EQ(nlos.echoes.size(), 1u);
   EXPECT_NEAR(nlos.echoes[0].excess_m, 40.0 * std::cos(30 * kDegree), 1e-9);
@@ -155,14 +155,14 @@ TEST(Specular1, BlockedLegsGiveNothing) {
 
 TEST(Specular1, AbsorbersReflectNothingAndBlockStill) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "absorber").build();
-  const auto paths = trace(*make_specular1({}), *scene, {direction(90, 30), direction(270, 30)});
+  const auto paths = traced(*make_specular1({}), *scene, {direction(90, 30), direction(270, 30)});
   EXPECT_TRUE(paths[0].echoes.empty());
   EXPECT_FALSE(paths[1].line_of_sight);
 }
 
 TEST(Specular1, MaterialGivesTheCoefficients) {
   const auto scene = west_wall(20.0, 400.0, 800.0, "glass").build();
-  const auto paths = trace(*make_specular1({}), *scene, {direction(90, 45)});
+  const auto paths = traced(*make_specular1({}), *scene, {direction(90, 45)});
   ASSERT_EQ(paths[0].echoes.size(), 1u);
   const scene::Material& glass = scene->materials()[WallScene().material("glass")];
   EXPECT_EQ(glass.thickness_m, 0.006);
@@ -181,7 +181,7 @@ TEST(Specular1, StreetCanyon) {
   std::vector<Eigen::Vector3d> directions;
   for (std::uint64_t i = 0; i < 400; ++i)
     directions.push_back(direction(random.uniform(0, 360, 0, i), random.uniform(5, 89, 1, i)));
-  const auto paths = trace(*make_specular1({}), *scene, directions);
+  const auto paths = traced(*make_specular1({}), *scene, directions);
   std::size_t reflections = 0, blocked = 0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     blocked += paths[i].line_of_sight ? 0u : 1u;
@@ -190,7 +190,7 @@ TEST(Specular1, StreetCanyon) {
       ++reflections;
       EXPECT_GE(r.excess_m, k > 0 ? paths[i].echoes[k - 1].excess_m : 0.0);
       const scene::Facet& f = scene->facets().facets()[r.facets[0]];
-      const double to_plane_m = f.normal_W.dot(kAntenna) - f.offset_m;
+      const double to_plane_m = f.normal_W.dot(kPathAntenna) - f.offset_m;
       EXPECT_NEAR(r.excess_m, 2.0 * to_plane_m * f.normal_W.dot(directions[i]), 1e-9);
       EXPECT_NEAR((r.arrival_W - directions[i]).cross(f.normal_W).norm(), 0.0, 1e-12);
     }
@@ -203,7 +203,7 @@ TEST(Specular1, FoliageOnEitherLegCounts) {
   const Eigen::Vector3d s = direction(90, 30);
   auto walls = west_wall(20.0);
   walls.crown({-10, 0, 2 + 10 * std::tan(30 * kDegree)}, {2, 2, 2});
-  const auto paths = trace(*make_specular1({}), *walls.build(), {s});
+  const auto paths = traced(*make_specular1({}), *walls.build(), {s});
   ASSERT_EQ(paths[0].echoes.size(), 1u);
   EXPECT_EQ(paths[0].foliage_m, 0.0);
   // The traced leg ends 2 cm in front of the wall, so it passes the crown's centre within 2 cm: the chord is short of 4

@@ -23,7 +23,7 @@ using testing::navigation_text;
 using testing::record;
 using testing::sample_ephemeris;
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 7, 1, 0, 0, 0.0);
+const GpsTime kFileStart = GpsTime::from_calendar(2010, 7, 1, 0, 0, 0.0);
 
 std::string error_of(const std::string& text) {
   const auto file = parse_navigation_file(text, "brdc.10n");
@@ -59,17 +59,17 @@ TEST(FortranNumber, Forms) {
 // What is written with 13 significant digits is read back to half a unit of the last.
 TEST(NavigationFile, BothVersionsGiveEveryFieldBack) {
   for (const bool version3 : {false, true}) {
-    const auto file = parse_navigation_file(navigation_text(kStart, 3, 2, version3), "brdc.10n");
+    const auto file = parse_navigation_file(navigation_text(kFileStart, 3, 2, version3), "brdc.10n");
     ASSERT_TRUE(file.ok()) << file.error().str();
     EXPECT_EQ(file->files.front().version, version3 ? 3.04 : 2.11);
     EXPECT_EQ(file->leap_seconds, 15);
-    const auto klobuchar = file->klobuchar_at(GnssSystem::kGps, kStart);
+    const auto klobuchar = file->klobuchar_at(GnssSystem::kGps, kFileStart);
     ASSERT_TRUE(klobuchar.has_value());
     EXPECT_THAT(klobuchar->alpha, ElementsAre(0.4657e-8, 0.1490e-7, -0.5960e-7, -0.1192e-6));
     EXPECT_THAT(klobuchar->beta, ElementsAre(0.8192e5, 0.8192e5, -0.6554e5, -0.5243e6));
     EXPECT_TRUE(file->warnings.empty());
     ASSERT_EQ(file->kepler.size(), 6u);
-    const KeplerEphemeris want = sample_ephemeris(2, kStart + 7200.0);
+    const KeplerEphemeris want = sample_ephemeris(2, kFileStart + 7200.0);
     const KeplerEphemeris& got = file->kepler[4];
     EXPECT_EQ(got.sv, want.sv);
     EXPECT_EQ(got.toe, want.toe);
@@ -92,7 +92,7 @@ TEST(NavigationFile, BothVersionsGiveEveryFieldBack) {
 }
 
 TEST(NavigationFile, WindowsLineEndsAndMissingLastNewline) {
-  std::string text = navigation_text(kStart, 2, 1, false), dos;
+  std::string text = navigation_text(kFileStart, 2, 1, false), dos;
   for (const char c : text) dos += c == '\n' ? "\r\n" : std::string(1, c);
   dos.resize(dos.size() - 2);
   const auto file = parse_navigation_file(dos, "brdc.10n");
@@ -102,12 +102,12 @@ TEST(NavigationFile, WindowsLineEndsAndMissingLastNewline) {
 }
 
 TEST(NavigationFile, OtherKindsOfAMixedFileAreCounted) {
-  std::string text = replaced(navigation_text(kStart, 2, 1, true), "G: GPS", "M: MIX");
+  std::string text = replaced(navigation_text(kFileStart, 2, 1, true), "G: GPS", "M: MIX");
   for (const char* who : {"S23", "I02", "S24"})
     text += std::string(who) +
             " 2010 07 01 00 15 00-1.0D-04 0.0D+00 0.0D+00\n     1.0D+04 0.0D+00 0.0D+00 0.0D+00\n     1.0D+04\n     "
             "1.0D+04\n";
-  text += record(sample_ephemeris(9, kStart), true);
+  text += record(sample_ephemeris(9, kFileStart), true);
   const auto file = parse_navigation_file(text, "brdc.10p");
   ASSERT_TRUE(file.ok()) << file.error().str();
   EXPECT_EQ(file->kepler.size(), 3u);
@@ -116,7 +116,8 @@ TEST(NavigationFile, OtherKindsOfAMixedFileAreCounted) {
 }
 
 TEST(NavigationFile, GzipIsUnpacked) {
-  const std::string text = navigation_text(kStart, 4, 1, false), path = canyon::testing::temporary_file("test.10n.gz");
+  const std::string text = navigation_text(kFileStart, 4, 1, false),
+                    path = canyon::testing::temporary_file("test.10n.gz");
   gzFile out = gzopen(path.c_str(), "wb");
   ASSERT_NE(out, nullptr);
   gzwrite(out, text.data(), static_cast<unsigned>(text.size()));
@@ -149,7 +150,7 @@ TEST(NavigationFile, HeaderErrorsWordForWord) {
 // The ephemerides are good without the ionosphere's coefficients: whoever needs those will say so.
 TEST(NavigationFile, IonosphereThatCannotBeReadIsAWarning) {
   const auto warnings_of = [](const std::string& head) {
-    const auto file = parse_navigation_file(head + record(sample_ephemeris(1, kStart), head[5] == '3'), "brdc.10n");
+    const auto file = parse_navigation_file(head + record(sample_ephemeris(1, kFileStart), head[5] == '3'), "brdc.10n");
     EXPECT_TRUE(file.ok()) << file.error().str();
     EXPECT_TRUE(file->klobuchar.empty());
     return file->warnings;
@@ -166,7 +167,7 @@ TEST(NavigationFile, IonosphereThatCannotBeReadIsAWarning) {
   const std::string galileo = header_line("GAL    4.5750D+01  1.2891D-01  1.4053D-02", "IONOSPHERIC CORR");
   const std::string head = header(true);
   const auto file = parse_navigation_file(
-      head.substr(0, 81) + galileo + head.substr(81) + record(sample_ephemeris(1, kStart), true), "brdc.10n");
+      head.substr(0, 81) + galileo + head.substr(81) + record(sample_ephemeris(1, kFileStart), true), "brdc.10n");
   ASSERT_TRUE(file.ok()) << file.error().str();
   EXPECT_THAT(file->warnings, ElementsAre());
   EXPECT_EQ(file->klobuchar.size(), 1u);
@@ -175,8 +176,8 @@ TEST(NavigationFile, IonosphereThatCannotBeReadIsAWarning) {
 TEST(NavigationFile, NoUsableRecordIsAnError) {
   EXPECT_EQ(error_of(header(false)),
             "brdc.10n:5: no usable ephemeris, expected broadcast ephemerides of GPS, GLONASS, Galileo, BeiDou or QZSS");
-  const std::string damaged =
-      replaced(header(false) + record(sample_ephemeris(1, kStart), false), " 2.500000000000D-03", " 2.5              ");
+  const std::string damaged = replaced(header(false) + record(sample_ephemeris(1, kFileStart), false),
+                                       " 2.500000000000D-03", " 2.5              ");
   EXPECT_EQ(error_of(replaced(damaged, " 2.5              ", " 1.500000000000D+00")),
             "brdc.10n:13: no usable ephemeris (1 damaged, the first: brdc.10n:8: G01: e = 1.5, expected at least 0 "
             "and less than 1; "
@@ -184,14 +185,14 @@ TEST(NavigationFile, NoUsableRecordIsAnError) {
 }
 
 TEST(NavigationFile, DamagedRecordsAreSkippedWithTheirLine) {
-  const std::string good = record(sample_ephemeris(2, kStart), false), head = header(false);
+  const std::string good = record(sample_ephemeris(2, kFileStart), false), head = header(false);
   const auto warnings_of = [&](const std::string& bad) {
     const auto file = parse_navigation_file(head + bad + good, "brdc.10n");
     EXPECT_TRUE(file.ok());
     EXPECT_EQ(file->kepler.size(), 1u);
     return file->warnings;
   };
-  const std::string one = record(sample_ephemeris(1, kStart), false);
+  const std::string one = record(sample_ephemeris(1, kFileStart), false);
   EXPECT_THAT(warnings_of(without_line(one, 4)),
               ElementsAre("brdc.10n:6: G01: the record has 7 lines, expected 8; skipped"));
   EXPECT_THAT(warnings_of(replaced(one, "5.153610000000D+03", "5.1536l0000000D+03")),
@@ -210,7 +211,7 @@ TEST(NavigationFile, DamagedRecordsAreSkippedWithTheirLine) {
 }
 
 TEST(NavigationFile, TruncatedLastRecordIsAWarning) {
-  std::string text = navigation_text(kStart, 2, 1, false);
+  std::string text = navigation_text(kFileStart, 2, 1, false);
   text.resize(text.size() - 200);
   const auto file = parse_navigation_file(text, "brdc.10n");
   ASSERT_TRUE(file.ok());
@@ -219,7 +220,7 @@ TEST(NavigationFile, TruncatedLastRecordIsAWarning) {
 }
 
 TEST(NavigationFile, ManyWarningsAreSummedUp) {
-  std::string text = navigation_text(kStart, 1, 1, false);
+  std::string text = navigation_text(kFileStart, 1, 1, false);
   for (int k = 0; k < 25; ++k) text += "99 garbage\n";
   const auto file = parse_navigation_file(text, "brdc.10n");
   ASSERT_TRUE(file.ok());
@@ -230,7 +231,7 @@ TEST(NavigationFile, ManyWarningsAreSummedUp) {
 // Random bytes, and a good file with random bytes written into it, must neither crash nor give an orbit that cannot be.
 TEST(NavigationFile, SurvivesGarbage) {
   const RandomStream random(7, "test.garbage");
-  const std::string good = navigation_text(kStart, 6, 2, false);
+  const std::string good = navigation_text(kFileStart, 6, 2, false);
   for (std::uint64_t trial = 0; trial < 300; ++trial) {
     std::string text = trial % 3 == 0 ? header(trial % 2 == 0) : good;
     if (trial % 3 == 0)
@@ -251,9 +252,9 @@ TEST(NavigationFile, SurvivesGarbage) {
 }
 
 TEST(Coverage, NamesTheSpan) {
-  const auto file = parse_navigation_file(navigation_text(kStart, 5, 2, false), "brdc.10n");
+  const auto file = parse_navigation_file(navigation_text(kFileStart, 5, 2, false), "brdc.10n");
   ASSERT_TRUE(file.ok());
-  EXPECT_TRUE(check_coverage(*file, "G", kStart, kStart + 3600.0, "gnss.nav_file").ok());
+  EXPECT_TRUE(check_coverage(*file, "G", kFileStart, kFileStart + 3600.0, "gnss.nav_file").ok());
   const GpsTime other = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
   const auto wrong_day = check_coverage(*file, "G", other, other + 480.0, "gnss.nav_file");
   ASSERT_FALSE(wrong_day.ok());
@@ -262,16 +263,16 @@ TEST(Coverage, NamesTheSpan) {
             "2010-11-17T13:00:00 to "
             "2010-11-17T13:08:00, expected a navigation file of the mission's day, or a mission within it (time.start, "
             "time.limit_s)");
-  const auto runs_over = check_coverage(*file, "G", kStart, kStart + 4 * 3600.0 + 1.0, "gnss.nav_file");
+  const auto runs_over = check_coverage(*file, "G", kFileStart, kFileStart + 4 * 3600.0 + 1.0, "gnss.nav_file");
   EXPECT_FALSE(runs_over.ok());
 }
 
 TEST(Coverage, GapsAndUnhealthySatellites) {
-  auto file = parse_navigation_file(navigation_text(kStart, 4, 1, false), "brdc.10n");
+  auto file = parse_navigation_file(navigation_text(kFileStart, 4, 1, false), "brdc.10n");
   ASSERT_TRUE(file.ok());
   // The fifth satellite comes six hours later, so that there is a gap in between.
-  file->kepler.push_back(sample_ephemeris(5, kStart + 6 * 3600.0));
-  const auto gap = check_coverage(*file, "G", kStart, kStart + 3 * 3600.0, "gnss.nav_file");
+  file->kepler.push_back(sample_ephemeris(5, kFileStart + 6 * 3600.0));
+  const auto gap = check_coverage(*file, "G", kFileStart, kFileStart + 3 * 3600.0, "gnss.nav_file");
   ASSERT_FALSE(gap.ok());
   EXPECT_EQ(
       gap.error().str(),
@@ -279,7 +280,7 @@ TEST(Coverage, GapsAndUnhealthySatellites) {
       "2010-06-30T22:00:00 to 2010-07-01T08:00:00), expected at least 4");
   for (auto& r : file->kepler) r.health = 63;
   EXPECT_EQ(
-      check_coverage(*file, "G", kStart, kStart, "gnss.nav_file").error().str(),
+      check_coverage(*file, "G", kFileStart, kFileStart, "gnss.nav_file").error().str(),
       "brdc.10n: gnss.nav_file: no satellite of G in it is healthy, expected a navigation file of the mission's day");
 }
 

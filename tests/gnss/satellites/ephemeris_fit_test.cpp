@@ -8,17 +8,17 @@
 namespace canyon::gnss {
 namespace {
 
-const GpsTime kToe = GpsTime::from_calendar(2010, 11, 17, 14, 0, 0.0);
+const GpsTime kFittedToe = GpsTime::from_calendar(2010, 11, 17, 14, 0, 0.0);
 
 // A nominal orbit is Keplerian but for its rates: rounding alone is left, 1e-16 of 2.7e7 m amplified by the
 // differences.
 TEST(EphemerisFit, NominalOrbitsAreFollowedToRounding) {
   const auto nominal = make_nominal_gps();
   for (const SatelliteId sv : nominal->satellites()) {
-    const auto fitted = fit_ephemeris(*nominal, sv, kToe);
+    const auto fitted = fit_ephemeris(*nominal, sv, kFittedToe);
     ASSERT_TRUE(fitted.has_value()) << sv.str();
     EXPECT_LT(fitted->max_m, 1e-4) << sv.str();
-    const GpsTime t = kToe + 1234.5;
+    const GpsTime t = kFittedToe + 1234.5;
     const SatelliteState a = *nominal->state(sv, t), b = fitted->ephemeris.at(t);
     EXPECT_LT((a.p_E - b.p_E).norm(), 1e-4);
     EXPECT_LT((a.v_E - b.v_E).norm(), 1e-7);
@@ -28,15 +28,16 @@ TEST(EphemerisFit, NominalOrbitsAreFollowedToRounding) {
 
 TEST(EphemerisFit, RecordsMakeTheSameConstellationAgain) {
   const auto nominal = make_nominal_gps();
-  const NavigationData data = fit_navigation_data(*nominal, nominal->satellites(), kToe - 1800.0, kToe + 5400.0);
+  const NavigationData data =
+      fit_navigation_data(*nominal, nominal->satellites(), kFittedToe - 1800.0, kFittedToe + 5400.0);
   const auto again = make_broadcast(data);
   EXPECT_EQ(again->satellites(), nominal->satellites());
   EXPECT_EQ(data.leap_seconds, 15);
   for (double dt = -1800.0; dt <= 5400.0; dt += 600.0)
     for (const SatelliteId sv : nominal->satellites()) {
-      const auto state = again->state(sv, kToe + dt);
+      const auto state = again->state(sv, kFittedToe + dt);
       ASSERT_TRUE(state.has_value()) << sv.str() << " " << dt;
-      EXPECT_LT((state->p_E - nominal->state(sv, kToe + dt)->p_E).norm(), 1e-4);
+      EXPECT_LT((state->p_E - nominal->state(sv, kFittedToe + dt)->p_E).norm(), 1e-4);
     }
 }
 
@@ -68,7 +69,7 @@ TEST(EphemerisFitReal, BroadcastRecordsAreFoundAgain) {
 TEST(EphemerisFit, NominalOrbitsOfAllSystems) {
   const auto nominal = make_nominal("ECJ");
   for (const SatelliteId sv : nominal->satellites()) {
-    const auto fitted = fit_ephemeris(*nominal, sv, kToe);
+    const auto fitted = fit_ephemeris(*nominal, sv, kFittedToe);
     ASSERT_TRUE(fitted.has_value()) << sv.str();
     EXPECT_LT(fitted->max_m, 1e-3) << sv.str();
     EXPECT_EQ(fitted->ephemeris.geostationary_frame(), sv.system == GnssSystem::kBeidou && sv.prn >= 59);
@@ -82,20 +83,20 @@ TEST(EphemerisFit, StateVectorsOfGlonass) {
   double worst_m = 0.0;
   for (const SatelliteId sv : nominal->satellites())
     for (double s = 0.0; s < 43200.0; s += 2700.0) {
-      const auto fitted = fit_state_vector(*nominal, sv, kToe + s);
+      const auto fitted = fit_state_vector(*nominal, sv, kFittedToe + s);
       ASSERT_TRUE(fitted.has_value()) << sv.str();
       worst_m = std::max(worst_m, fitted->max_m);
-      EXPECT_EQ(fitted->ephemeris.frequency_channel, nominal->state(sv, kToe)->frequency_channel);
+      EXPECT_EQ(fitted->ephemeris.frequency_channel, nominal->state(sv, kFittedToe)->frequency_channel);
     }
   EXPECT_LT(worst_m, 0.01);  // measured 7 mm
 }
 
 TEST(EphemerisFit, WhatCannotBeFitted) {
   const auto nominal = make_nominal_gps();
-  EXPECT_FALSE(fit_ephemeris(*nominal, {GnssSystem::kGlonass, 1}, kToe).has_value());
-  EXPECT_FALSE(fit_state_vector(*nominal, {GnssSystem::kGps, 1}, kToe).has_value());
-  EXPECT_FALSE(fit_state_vector(*nominal, {GnssSystem::kGlonass, 1}, kToe).has_value());
-  EXPECT_FALSE(fit_ephemeris(*nominal, {GnssSystem::kGps, 30}, kToe).has_value());
+  EXPECT_FALSE(fit_ephemeris(*nominal, {GnssSystem::kGlonass, 1}, kFittedToe).has_value());
+  EXPECT_FALSE(fit_state_vector(*nominal, {GnssSystem::kGps, 1}, kFittedToe).has_value());
+  EXPECT_FALSE(fit_state_vector(*nominal, {GnssSystem::kGlonass, 1}, kFittedToe).has_value());
+  EXPECT_FALSE(fit_ephemeris(*nominal, {GnssSystem::kGps, 30}, kFittedToe).has_value());
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 using testing::broadcast_of;
 using testing::sample_ephemeris;
 
-const GpsTime kToe = GpsTime::from_week_sow(1590, 345600.0);
+const GpsTime kKeplerToe = GpsTime::from_week_sow(1590, 345600.0);
 
 Eigen::Vector3d inertial_velocity(const SatelliteState& s) {
   return s.v_E + kGpsEarthRate * Eigen::Vector3d::UnitZ().cross(s.p_E);
@@ -31,12 +31,12 @@ double relativity_s(const SatelliteState& s) {
 // turning of the frame; for the eccentric anomaly 3 (n / (1 - e))^3. Beside it 1 ns of time resolution, and rounding.
 TEST(KeplerEphemeris, VelocityAndClockRateAreDerivatives) {
   for (int prn : {1, 5, 30}) {
-    KeplerEphemeris r = sample_ephemeris(prn, kToe);
+    KeplerEphemeris r = sample_ephemeris(prn, kKeplerToe);
     const double a_m = r.sqrt_a * r.sqrt_a, n = std::sqrt(kGpsMu / (a_m * a_m * a_m));
     for (const double e : {r.e, 0.3, 0.99}) {
       r.e = e;
       for (const double dt_s : {-7200.0, -100.0, 0.0, 3601.0}) {
-        const GpsTime t = kToe + dt_s;
+        const GpsTime t = kKeplerToe + dt_s;
         const SatelliteState before = r.at(t - 0.5), after = r.at(t + 0.5), now = r.at(t);
         const double v = inertial_velocity(now).norm(), radius_m = now.p_E.norm();
         const double w = kGpsEarthRate, gravity = kGpsMu / (radius_m * radius_m);
@@ -51,14 +51,14 @@ TEST(KeplerEphemeris, VelocityAndClockRateAreDerivatives) {
 
 // Without perturbations the orbit is an ellipse: radius from the conic equation, energy conserved in inertial space.
 TEST(KeplerEphemeris, UnperturbedOrbitIsKeplerian) {
-  KeplerEphemeris r = sample_ephemeris(3, kToe);
+  KeplerEphemeris r = sample_ephemeris(3, kKeplerToe);
   r.cuc_rad = r.cus_rad = r.crc_m = r.crs_m = r.cic_rad = r.cis_rad = r.idot_rad_s = r.omega_dot_rad_s =
       r.delta_n_rad_s = 0.0;
   for (const double e : {0.0, 0.02, 0.7, 0.99}) {
     r.e = e;
     const double a_m = r.sqrt_a * r.sqrt_a;
     for (double dt_s = -20000.0; dt_s <= 20000.0; dt_s += 1234.5) {
-      const SatelliteState s = r.at(kToe + dt_s);
+      const SatelliteState s = r.at(kKeplerToe + dt_s);
       const Eigen::Vector3d v_inertial = inertial_velocity(s);
       const double energy = 0.5 * v_inertial.squaredNorm() - kGpsMu / s.p_E.norm();
       // Kinetic and potential energy cancel: eps times the larger of them, a few roundings of E amplified by 1/(1 - e).
@@ -70,8 +70,8 @@ TEST(KeplerEphemeris, UnperturbedOrbitIsKeplerian) {
 }
 
 TEST(KeplerEphemeris, ClockHasRelativityAndGroupDelay) {
-  KeplerEphemeris r = sample_ephemeris(2, kToe);
-  const GpsTime t = kToe + 1000.0;
+  KeplerEphemeris r = sample_ephemeris(2, kKeplerToe);
+  const GpsTime t = kKeplerToe + 1000.0;
   // -2 r.v / c^2 is the same relativistic correction (IS-GPS-200 20.3.3.3.3.1), up to the harmonic terms: 1e-3 of its
   // 20 ns.
   const SatelliteState s = r.at(t);
@@ -82,31 +82,31 @@ TEST(KeplerEphemeris, ClockHasRelativityAndGroupDelay) {
 }
 
 TEST(Broadcast, NearestHealthyRecordWithinItsFitInterval) {
-  KeplerEphemeris early = sample_ephemeris(1, kToe), late = sample_ephemeris(1, kToe + 7200.0),
-                  other = sample_ephemeris(2, kToe);
+  KeplerEphemeris early = sample_ephemeris(1, kKeplerToe), late = sample_ephemeris(1, kKeplerToe + 7200.0),
+                  other = sample_ephemeris(2, kKeplerToe);
   early.af0_s = 1e-3;
   late.af0_s = 2e-3;
   other.health = 1;
   const auto constellation = broadcast_of({late, other, early});
   const SatelliteId g01{GnssSystem::kGps, 1}, g02{GnssSystem::kGps, 2};
   EXPECT_EQ(constellation->satellites(), (std::vector<SatelliteId>{g01, g02}));
-  const auto clock_at = [&](double dt_s) { return constellation->state(g01, kToe + dt_s)->clock_s; };
+  const auto clock_at = [&](double dt_s) { return constellation->state(g01, kKeplerToe + dt_s)->clock_s; };
   EXPECT_NEAR(clock_at(3599.0), 1e-3, 1e-6);
   EXPECT_NEAR(clock_at(3601.0), 2e-3, 1e-6);
-  EXPECT_TRUE(constellation->state(g01, kToe + -7200.0).has_value());
-  EXPECT_FALSE(constellation->state(g01, kToe + -7200.001).has_value());
-  EXPECT_TRUE(constellation->state(g01, kToe + 14400.0).has_value());
-  EXPECT_FALSE(constellation->state(g01, kToe + 14400.001).has_value());
-  EXPECT_FALSE(constellation->state(g02, kToe).has_value());
-  EXPECT_FALSE(constellation->state({GnssSystem::kGps, 3}, kToe).has_value());
+  EXPECT_TRUE(constellation->state(g01, kKeplerToe + -7200.0).has_value());
+  EXPECT_FALSE(constellation->state(g01, kKeplerToe + -7200.001).has_value());
+  EXPECT_TRUE(constellation->state(g01, kKeplerToe + 14400.0).has_value());
+  EXPECT_FALSE(constellation->state(g01, kKeplerToe + 14400.001).has_value());
+  EXPECT_FALSE(constellation->state(g02, kKeplerToe).has_value());
+  EXPECT_FALSE(constellation->state({GnssSystem::kGps, 3}, kKeplerToe).has_value());
 }
 
 TEST(Broadcast, OfTheSameToeTheLastGivenCounts) {
-  KeplerEphemeris first = sample_ephemeris(1, kToe), second = first;
+  KeplerEphemeris first = sample_ephemeris(1, kKeplerToe), second = first;
   second.af0_s = 5e-4;
   const auto constellation = broadcast_of({first, second});
   for (const double dt_s : {-100.0, 0.0, 100.0})
-    EXPECT_NEAR(constellation->state(first.sv, kToe + dt_s)->clock_s, 5e-4, 1e-6) << dt_s;
+    EXPECT_NEAR(constellation->state(first.sv, kKeplerToe + dt_s)->clock_s, 5e-4, 1e-6) << dt_s;
 }
 
 TEST(Broadcast, WeekAndDayBoundaries) {
@@ -121,10 +121,10 @@ TEST(Broadcast, WeekAndDayBoundaries) {
 }
 
 TEST(Transmission, LightTimeAndSagnacRoundTrip) {
-  const KeplerEphemeris r = sample_ephemeris(1, kToe);
+  const KeplerEphemeris r = sample_ephemeris(1, kKeplerToe);
   const auto constellation = broadcast_of({r});
   const Eigen::Vector3d p_E = ecef_from_geodetic({32.35 * kDegree, -90.88 * kDegree, 60.0});
-  const GpsTime t = kToe + 1800.25;
+  const GpsTime t = kKeplerToe + 1800.25;
   const auto signal = transmission_to(*constellation, r.sv, t, p_E);
   ASSERT_TRUE(signal.has_value());
   // Time is kept to 1 ns, in which the range changes by less than 1e-6 m.

@@ -18,16 +18,16 @@ using testing::broadcast_of;
 using testing::sample_ephemeris;
 using testing::sp3_text;
 
-const GpsTime kToe = GpsTime::from_week_sow(1590, 345600.0);
+const GpsTime kErrorToe = GpsTime::from_week_sow(1590, 345600.0);
 
 std::unique_ptr<Constellation> eight_satellites() {
   std::vector<KeplerEphemeris> records;
-  for (int prn = 1; prn <= 8; ++prn) records.push_back(sample_ephemeris(prn, kToe));
+  for (int prn = 1; prn <= 8; ++prn) records.push_back(sample_ephemeris(prn, kErrorToe));
   return broadcast_of(records);
 }
 
 PreciseOrbits precise_of(const Constellation& constellation) {
-  auto orbits = parse_sp3_file(sp3_text(constellation, kToe, 900.0, 4), "twin.sp3");
+  auto orbits = parse_sp3_file(sp3_text(constellation, kErrorToe, 900.0, 4), "twin.sp3");
   EXPECT_TRUE(orbits.ok());
   return *std::move(orbits);
 }

@@ -7,7 +7,7 @@
 namespace canyon::gnss {
 namespace {
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kMarkovStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 // Sample points 3 tau apart are correlated by e^-3 = 0.05, so 2000 of them count as 2000 / (1 + 2 e^-6) for the
 // variance. 5 sigma.
@@ -18,7 +18,7 @@ TEST(GaussMarkov, UnitVarianceAtEveryPhaseBetweenNodes) {
   for (const double phase_s : {0.0, 2.5, 5.0, 9.0}) {
     double sum = 0.0, square = 0.0;
     for (int k = 0; k < kN; ++k) {
-      const double x = process.at(3, kStart + (phase_s + 3.0 * tau_s * k));
+      const double x = process.at(3, kMarkovStart + (phase_s + 3.0 * tau_s * k));
       sum += x;
       square += x * x;
     }
@@ -36,7 +36,7 @@ TEST(GaussMarkov, CorrelationFallsExponentially) {
   for (const double lag_s : {10.0, 40.0, 80.0, 160.0, 33.0}) {
     double sum = 0.0;
     for (int k = 0; k < kN; ++k) {
-      const GpsTime t = kStart + 4.0 * tau_s * k;
+      const GpsTime t = kMarkovStart + 4.0 * tau_s * k;
       sum += process.at(0, t) * process.at(0, t + lag_s);
     }
     const double between_nodes = lag_s == 33.0 ? 0.02 : 0.0;
@@ -47,7 +47,7 @@ TEST(GaussMarkov, CorrelationFallsExponentially) {
 TEST(GaussMarkov, ContinuousAcrossNodesAndIndependentByEntity) {
   const GaussMarkov process(5, "test.gm", 80.0);
   for (int k = 0; k < 50; ++k) {
-    const GpsTime node = kStart + 10.0 * k;
+    const GpsTime node = kMarkovStart + 10.0 * k;
     EXPECT_NEAR(process.at(1, node + -1e-6), process.at(1, node + 1e-6), 1e-5);
     EXPECT_NE(process.at(1, node), process.at(2, node));
   }
@@ -56,9 +56,9 @@ TEST(GaussMarkov, ContinuousAcrossNodesAndIndependentByEntity) {
 
 TEST(GaussMarkov, DoesNotDependOnWhatWasAskedBefore) {
   const GaussMarkov a(5, "test.gm", 80.0), b(5, "test.gm", 80.0);
-  const double value = a.at(1, kStart + 77.0);
-  for (int k = 0; k < 10; ++k) b.at(static_cast<std::uint32_t>(k), kStart + 1000.0 * k);
-  EXPECT_EQ(b.at(1, kStart + 77.0), value);
+  const double value = a.at(1, kMarkovStart + 77.0);
+  for (int k = 0; k < 10; ++k) b.at(static_cast<std::uint32_t>(k), kMarkovStart + 1000.0 * k);
+  EXPECT_EQ(b.at(1, kMarkovStart + 77.0), value);
 }
 
 }  // namespace

@@ -10,14 +10,14 @@
 namespace canyon::gnss {
 namespace {
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kIsotropicStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 class IsotropicSensorTest : public ::testing::Test {
  protected:
   IsotropicSensorTest() { config.model.name = "truth_plus_isotropic"; }
 
   std::unique_ptr<GnssSensor> make(std::uint64_t seed = 1) {
-    auto sensor = make_gnss_sensor(config, seed, kStart, kStart + 60.0, *scene);
+    auto sensor = make_gnss_sensor(config, seed, kIsotropicStart, kIsotropicStart + 60.0, *scene);
     EXPECT_TRUE(sensor.ok()) << sensor.error().str();
     return *std::move(sensor);
   }
@@ -38,7 +38,7 @@ TEST_F(IsotropicSensorTest, ErrorIsIsotropicWithUniformLength) {
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
   double square = 0.0;
   for (int k = 0; k < kN; ++k) {
-    const GnssOutput out = sensor->measure(k, kStart + 0.5 * k, antenna_W, still, at);
+    const GnssOutput out = sensor->measure(k, kIsotropicStart + 0.5 * k, antenna_W, still, at);
     const Eigen::Vector3d e = out.fix.p_A_E - truth_E;
     EXPECT_GE(e.norm(), 0.3 - 1e-8);
     EXPECT_LE(e.norm(), 0.5 + 1e-8);
@@ -57,9 +57,9 @@ TEST_F(IsotropicSensorTest, ErrorIsIsotropicWithUniformLength) {
 }
 
 TEST_F(IsotropicSensorTest, WhatTheFixSays) {
-  const GnssOutput out = make()->measure(4, kStart + 2.0, antenna_W, still, at);
+  const GnssOutput out = make()->measure(4, kIsotropicStart + 2.0, antenna_W, still, at);
   EXPECT_EQ(out.fix.status, FixStatus::kDifferential);
-  EXPECT_EQ(out.fix.t, kStart + 2.0);
+  EXPECT_EQ(out.fix.t, kIsotropicStart + 2.0);
   EXPECT_EQ(out.fix.satellites, 0);
   EXPECT_TRUE(std::isnan(out.fix.dop.gdop));
   EXPECT_TRUE(std::isnan(out.fix.v_A_E.x()));
@@ -71,17 +71,17 @@ TEST_F(IsotropicSensorTest, WhatTheFixSays) {
 
 TEST_F(IsotropicSensorTest, DependsOnSeedAndIndexOnly) {
   const auto a = make(), b = make(), c = make(2);
-  const Eigen::Vector3d p = a->measure(10, kStart + 5.0, antenna_W, still, at).fix.p_A_E;
-  b->measure(3, kStart, antenna_W, still, at);
-  EXPECT_EQ(b->measure(10, kStart + 7.0, antenna_W, still, at).fix.p_A_E, p);
-  EXPECT_NE(c->measure(10, kStart + 5.0, antenna_W, still, at).fix.p_A_E, p);
-  EXPECT_NE(a->measure(11, kStart + 5.5, antenna_W, still, at).fix.p_A_E, p);
+  const Eigen::Vector3d p = a->measure(10, kIsotropicStart + 5.0, antenna_W, still, at).fix.p_A_E;
+  b->measure(3, kIsotropicStart, antenna_W, still, at);
+  EXPECT_EQ(b->measure(10, kIsotropicStart + 7.0, antenna_W, still, at).fix.p_A_E, p);
+  EXPECT_NE(c->measure(10, kIsotropicStart + 5.0, antenna_W, still, at).fix.p_A_E, p);
+  EXPECT_NE(a->measure(11, kIsotropicStart + 5.5, antenna_W, still, at).fix.p_A_E, p);
   EXPECT_EQ(a->counters().epochs, 2);
 }
 
 TEST_F(IsotropicSensorTest, MaximumBelowMinimumIsAnError) {
   testing::set_keys(config, "isotropic_max_m = 0.2");
-  const auto sensor = make_gnss_sensor(config, 1, kStart, kStart, *scene);
+  const auto sensor = make_gnss_sensor(config, 1, kIsotropicStart, kIsotropicStart, *scene);
   ASSERT_FALSE(sensor.ok());
   EXPECT_EQ(
       sensor.error().str(),

@@ -13,10 +13,10 @@ namespace {
 
 using testing::WallScene;
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kLowStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 std::unique_ptr<GnssSensor> make(const GnssConfig& c, const scene::Scene& scene) {
-  auto sensor = make_gnss_sensor(c, 1, kStart, kStart + 3600.0, scene);
+  auto sensor = make_gnss_sensor(c, 1, kLowStart, kLowStart + 3600.0, scene);
   EXPECT_TRUE(sensor.ok()) << sensor.error().str();
   return *std::move(sensor);
 }
@@ -25,7 +25,7 @@ std::unique_ptr<GnssSensor> make(const GnssConfig& c, const scene::Scene& scene)
 std::vector<Eigen::Vector3d> errors(GnssSensor& sensor, const scene::Scene& scene, const Eigen::Vector3d& p_W, int n) {
   std::vector<Eigen::Vector3d> out;
   for (int k = 0; k < n; ++k) {
-    const GnssOutput o = sensor.measure(k, kStart + 0.5 * k, p_W, Eigen::Vector3d::Zero(), scene::SceneAt(scene));
+    const GnssOutput o = sensor.measure(k, kLowStart + 0.5 * k, p_W, Eigen::Vector3d::Zero(), scene::SceneAt(scene));
     if (o.fix.status != FixStatus::kNone)
       out.push_back(scene.frame().R_EW().transpose() * (o.fix.p_A_E - o.truth.p_A_E));
   }
@@ -51,7 +51,7 @@ TEST(WhiteNoiseSensor, HasItsSigmas) {
     EXPECT_NEAR(mean[i], 0.0, 5.0 * sigma[i] / std::sqrt(kN));
     EXPECT_NEAR(square[i], sigma[i] * sigma[i], 5.0 * std::sqrt(2.0 / kN) * sigma[i] * sigma[i]);
   }
-  const GnssOutput one = sensor->measure(7, kStart, {0, 0, 2}, {1, 2, 3}, scene::SceneAt(*scene));
+  const GnssOutput one = sensor->measure(7, kLowStart, {0, 0, 2}, {1, 2, 3}, scene::SceneAt(*scene));
   const Eigen::Matrix3d covariance_W = scene->frame().R_EW().transpose() * one.fix.covariance_E * scene->frame().R_EW();
   EXPECT_NEAR(covariance_W(2, 2), 4.0, 1e-12);
   EXPECT_NEAR(covariance_W(0, 1), 0.0, 1e-12);
@@ -68,7 +68,7 @@ TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
   const auto sensor = make(c, *open);
   for (int k = 0; k < 200; k += 20) {
     const GnssOutput o =
-        sensor->measure(k, kStart + 17.0 * k, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
+        sensor->measure(k, kLowStart + 17.0 * k, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
     const int n = o.fix.satellites;
     ASSERT_GE(n, 4);
     EXPECT_EQ(static_cast<std::size_t>(n), o.truth.satellites.size());
@@ -79,7 +79,7 @@ TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
   constexpr int kN = 4000;
   double square = 0.0, claimed = 0.0;
   for (int k = 0; k < kN; ++k) {
-    const GnssOutput o = sensor->measure(k, kStart, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
+    const GnssOutput o = sensor->measure(k, kLowStart, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
     square += (o.fix.p_A_E - o.truth.p_A_E).squaredNorm() / (3.0 * kN);
     claimed = o.fix.covariance_E(0, 0);
   }
@@ -94,7 +94,7 @@ TEST(SatelliteCountSensor, BlockedSkyIsNoFix) {
   bool none = false;
   for (int k = 0; k < 400 && !none; ++k) {
     const GnssOutput o =
-        sensor->measure(k, kStart + 9.0 * k, {0, 0, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*street));
+        sensor->measure(k, kLowStart + 9.0 * k, {0, 0, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*street));
     int seen = 0;
     for (const auto& s : o.truth.satellites) seen += s.line_of_sight ? 1 : 0;
     if (seen >= 4) continue;
@@ -104,7 +104,7 @@ TEST(SatelliteCountSensor, BlockedSkyIsNoFix) {
   }
   EXPECT_TRUE(none);
   testing::set_keys(c, "count_noise_min_m = 20.0");
-  const auto wrong = make_gnss_sensor(c, 1, kStart, kStart, *street);
+  const auto wrong = make_gnss_sensor(c, 1, kLowStart, kLowStart, *street);
   ASSERT_FALSE(wrong.ok());
   EXPECT_EQ(wrong.error().str(), "gnss.count_noise_max_m: is 10, expected at least gnss.count_noise_min_m = 20");
 }

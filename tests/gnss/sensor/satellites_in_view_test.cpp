@@ -8,7 +8,7 @@
 namespace canyon::gnss {
 namespace {
 
-const GpsTime kStart = GpsTime::from_calendar(2020, 6, 25, 12, 0, 0);
+const GpsTime kViewStart = GpsTime::from_calendar(2020, 6, 25, 12, 0, 0);
 
 /// Counts what the search asks of the sky.
 class Counted final : public Constellation {
@@ -29,7 +29,7 @@ class SatellitesInViewTest : public ::testing::Test {
  protected:
   /// The satellites' names at a time and a place in W: as found by one that goes on, which must be as by a fresh one.
   void look(double t_s, const Eigen::Vector3d& p_W) {
-    const GpsTime t = kStart + t_s;
+    const GpsTime t = kViewStart + t_s;
     const Eigen::Vector3d p_E = frame_.to_E(p_W);
     const Horizon horizon(p_E);
     const auto found = going_on_.at(t, t, p_E, horizon);
@@ -74,7 +74,7 @@ TEST_F(SatellitesInViewTest, AskForAFewOnly) {
   const Horizon horizon(p_E);
   std::size_t seen = 0;
   for (int i = 0; i < 600; ++i) {
-    const GpsTime t = kStart + 0.1 * i;
+    const GpsTime t = kViewStart + 0.1 * i;
     seen += going_on_.at(t, t, p_E, horizon).size();
   }
   const double epochs = 600.0, all = static_cast<double>(sky_->satellites().size());

@@ -9,7 +9,7 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr double kEps = 2.3e-16;
+constexpr double kTableEps = 2.3e-16;
 
 std::string error_of(std::string_view csv) {
   const auto table = parse_beam_table(csv, "my.csv");
@@ -28,7 +28,7 @@ TEST(BeamTable, Vlp16AsItsManualDescribesIt) {
     const Beam& beam = table->beams[j];
     // Even lasers from -15 deg upwards, odd ones from +1 deg, both in steps of 2 deg.
     const double elevation_deg = j % 2 == 0 ? -15.0 + static_cast<double>(j) : static_cast<double>(j);
-    EXPECT_NEAR(beam.elevation_rad, elevation_deg * kDegree, 4 * kEps) << j;
+    EXPECT_NEAR(beam.elevation_rad, elevation_deg * kDegree, 4 * kTableEps) << j;
     EXPECT_EQ(beam.azimuth_offset_rad, 0.0);
     EXPECT_NEAR(beam.firing_s, static_cast<double>(j) * 2.304e-6, 1e-18) << j;
     // The manual's corrections are the beams' common crossing point seen from the spin axis: opposite in sign to the
@@ -45,7 +45,7 @@ TEST(BeamTable, GridHasTheSameElevationsWithoutOffsets) {
   ASSERT_TRUE(grid.ok()) << grid.error().str();
   ASSERT_EQ(grid->beams.size(), 16u);
   for (std::size_t j = 0; j < 16; ++j) {
-    EXPECT_NEAR(grid->beams[j].elevation_rad, (-15.0 + 2.0 * static_cast<double>(j)) * kDegree, 4 * kEps);
+    EXPECT_NEAR(grid->beams[j].elevation_rad, (-15.0 + 2.0 * static_cast<double>(j)) * kDegree, 4 * kTableEps);
     EXPECT_EQ(grid->beams[j].firing_s, 0.0);
     EXPECT_EQ(grid->beams[j].origin_up_m, 0.0);
   }

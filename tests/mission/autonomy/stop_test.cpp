@@ -5,7 +5,7 @@
 namespace canyon::mission {
 namespace {
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kStopStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 NavEstimate standing_at(double x_m, GpsTime t) {
   NavEstimate e;
@@ -31,11 +31,11 @@ TEST(ReferenceAutonomy, StaysUntilItHasLookedAlsoWhenTheEstimateMovesBack) {
   PriorKnowledge prior;
   prior.route = Path({{0.0, 0.0}, {60.0, 0.0}}, config.corner_radius_m);
   prior.waypoint_s_m = {4.0, 60.0};
-  const auto autonomy = make_autonomy(config, prior, kStart);
+  const auto autonomy = make_autonomy(config, prior, kStopStart);
 
   double looked_s = 0.0;
   for (int k = 0; k <= 100; ++k) {
-    const GpsTime t = kStart + 0.1 * k;
+    const GpsTime t = kStopStart + 0.1 * k;
     const double jump_m = k % 20 < 10 ? 0.0 : -0.6;
     const NavEstimate estimate = standing_at(3.9 + jump_m, t);
     const Pose X_WL{Eigen::Quaterniond::Identity(), estimate.X_WB.p + Eigen::Vector3d(0, 0, 1.5)};
@@ -44,7 +44,7 @@ TEST(ReferenceAutonomy, StaysUntilItHasLookedAlsoWhenTheEstimateMovesBack) {
     if (autonomy->next_waypoint() == 0) {
       EXPECT_EQ(command.speed_m_s, 0.0) << "after " << 0.1 * k << " s";
       EXPECT_EQ(autonomy->state(), AutonomyState::kObserving);
-      looked_s = t - kStart;
+      looked_s = t - kStopStart;
     }
   }
   EXPECT_NEAR(looked_s, config.hold_s, 0.1 + 1e-9);

@@ -68,8 +68,10 @@ TEST(ChainStart, GoesBackOverGapsOfTenSecondsAndNoFurtherThanAMinute) {
 }
 
 TEST(Holm, StepsDownAsInHisPaper) {
-  // Holm (1979): with 4 hypotheses the smallest p is held against 0.05 / 4, the next against 0.05 / 3, ...
-  EXPECT_EQ(holm({0.010, 0.013, 0.030, 0.005}, 0.05), (std::vector<bool>{true, true, false, true}));
+  // Holm (1979): with 4 hypotheses the smallest p is held against 0.05 / 4, the next against 0.05 / 3, ... to the first
+  // that is not below: 0.030 is over 0.05 / 2, and so 0.040 counts no more although it is below 0.05.
+  EXPECT_EQ(holm({0.010, 0.040, 0.030, 0.005}, 0.05), (std::vector<bool>{true, false, false, true}));
+  EXPECT_EQ(holm({0.010, 0.013, 0.030, 0.005}, 0.05), (std::vector<bool>{true, true, true, true}));
   EXPECT_EQ(holm({0.020, 0.013, 0.030, 0.020}, 0.05), (std::vector<bool>{false, false, false, false}));
   EXPECT_TRUE(holm({}, 0.05).empty());
 }

@@ -10,7 +10,7 @@
 namespace canyon::study {
 namespace {
 
-const GpsTime kStart = GpsTime::from_week_sow(1900, 126700.0);
+const GpsTime kFiguresStart = GpsTime::from_week_sow(1900, 126700.0);
 const SatelliteId kOne{GnssSystem::kGps, 1}, kTwo{GnssSystem::kGps, 2};
 
 DriveSignal signal(SatelliteId sv, bool in_sight, double cn0_dbhz, double error_m, double rate_m_s = kNaN) {
@@ -32,8 +32,8 @@ TEST(DriveFigures, QuantilesAreLinearBetweenRanksAndTheMissingComeLast) {
 
 TEST(DriveFigures, CountsByHandOfTwoEpochs) {
   std::vector<DriveEpoch> epochs(2);
-  epochs[0] = {kStart, {signal(kOne, true, 50.0, -1.0), signal(kTwo, false, 30.0, 40.0, -2.0)}};
-  epochs[1] = {kStart + 1.0, {signal(kOne, true, 40.0, 3.0), signal(kTwo, false, 40.0, -10.0, 1.0)}};
+  epochs[0] = {kFiguresStart, {signal(kOne, true, 50.0, -1.0), signal(kTwo, false, 30.0, 40.0, -2.0)}};
+  epochs[1] = {kFiguresStart + 1.0, {signal(kOne, true, 40.0, 3.0), signal(kTwo, false, 40.0, -10.0, 1.0)}};
   const DriveFigures f = drive_figures(epochs, {});
   EXPECT_EQ(f.tracked_in_sight, 1.0);
   EXPECT_EQ(f.tracked_hidden, 1.0);
@@ -54,7 +54,7 @@ TEST(DriveFigures, AutocorrelationOfAGaussMarkovProcess) {
   for (std::uint32_t s = 0; s < 60; ++s) {
     double x = draws.normal(s, 0);
     for (std::size_t k = 0; k < epochs.size(); ++k) {
-      epochs[k].t = kStart + static_cast<double>(k);
+      epochs[k].t = kFiguresStart + static_cast<double>(k);
       epochs[k].signals.push_back(signal({GnssSystem::kGps, static_cast<std::uint8_t>(s + 1)}, false, 30.0, 30.0 + x));
       x = rho * x + std::sqrt(1.0 - rho * rho) * draws.normal(s, k + 1);
     }

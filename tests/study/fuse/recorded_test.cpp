@@ -16,7 +16,8 @@ namespace {
 
 using namespace testing;
 
-Fused run_of(const FuseInputs& inputs, const FuseConfig& config, const std::optional<OutagePlan>& outages = {}) {
+Fused recorded_run_of(const FuseInputs& inputs, const FuseConfig& config,
+                      const std::optional<OutagePlan>& outages = {}) {
   const auto plan = plan_fuse(inputs, config, outages);
   EXPECT_TRUE(plan.ok()) << plan.error().str();
   auto run = fuse(inputs, *plan);
@@ -24,7 +25,7 @@ Fused run_of(const FuseInputs& inputs, const FuseConfig& config, const std::opti
   return *std::move(run);
 }
 
-void print(const char* what, const FuseScore& s) {
+void print_score(const char* what, const FuseScore& s) {
   std::printf(
       "%s: 3-D %.4f m, velocity n e u %.1f %.1f %.1f mm/s, roll pitch yaw %.4f %.4f %.4f deg (yaw sigma %.4f), NEES "
       "%.2f\n",
@@ -48,7 +49,7 @@ void expect_outages(const FuseInputs& inputs, const FuseConfig& config, const Pu
   const double horizontal[] = {other.horizontal_30_m, other.horizontal_60_m},
                vertical[] = {other.vertical_30_m, other.vertical_60_m};
   for (int i = 0; i < 2; ++i) {
-    const OutageScore score = outage_score(run_of(inputs, config, plans[i]).windows);
+    const OutageScore score = outage_score(recorded_run_of(inputs, config, plans[i]).windows);
     std::printf("  outages of %.0f s: horizontal %.3f m (public %.3f), vertical %.3f m (%.3f)\n", plans[i].length_s,
                 score.horizontal_rms_of_max_m, horizontal[i], score.vertical_rms_of_max_m, vertical[i]);
     EXPECT_EQ(score.count, counts[i]);
@@ -67,11 +68,11 @@ class Leador : public ::testing::Test {
     // The start is the truth itself, exact to the file's digits, and the filter is told so. Told 0.1 degrees of heading
     // it unlearns that: yaw of the A15 is then 0.0055 deg, of a sigma of 0.0073.
     const FuseConfig config = leador_config(unit, 0.01);
-    score_ = fuse_score(run_of(inputs, config).errors);
-    print(unit.file, score_);
+    score_ = fuse_score(recorded_run_of(inputs, config).errors);
+    print_score(unit.file, score_);
     EXPECT_LE(score_.rms_3d_m, kSame * other.rms_3d_m);
     EXPECT_LE(score_.attitude_rms_rad.z() / kDegree, kSame * other.yaw_deg);
-    print("  heading known to 0.1 deg", fuse_score(run_of(inputs, leador_config(unit, 0.1)).errors));
+    print_score("  heading known to 0.1 deg", fuse_score(recorded_run_of(inputs, leador_config(unit, 0.1)).errors));
     expect_outages(inputs, config, other);
   }
   FuseScore score_;
@@ -119,12 +120,12 @@ TEST(Navego, YawAfterALargeTurnOnBias) {
   CANYON_REAL_DATA(imu, "inertial/navego_synthetic/imu_adis16405_200hz.f32");
   const FuseInputs inputs = navego_inputs(imu, gnss, truth);
   FuseConfig config = config_of(kNavego);
-  const FuseScore s = fuse_score(run_of(inputs, config).errors);
-  print("NaveGo, positions and velocities", s);
+  const FuseScore s = fuse_score(recorded_run_of(inputs, config).errors);
+  print_score("NaveGo, positions and velocities", s);
   EXPECT_LE(s.attitude_rms_rad.z() / kDegree, 0.28);
   config.fusion.measurements = {"position"};
-  const FuseScore alone = fuse_score(run_of(inputs, config).errors);
-  print("NaveGo, positions alone", alone);
+  const FuseScore alone = fuse_score(recorded_run_of(inputs, config).errors);
+  print_score("NaveGo, positions alone", alone);
   EXPECT_LT(alone.rms_3d_m, 1.05 * std::hypot(1.26, 1.33, 1.41));  // the public filter's, well tuned
 }
 
@@ -187,7 +188,7 @@ TEST(FuseDrawsNightly, NavegoInItsBand) {
 /// A drive with a low-cost unit in a car whose engine shakes it; the reference is the fixes that were withheld. Windows
 /// of 15 s every 40 s and 30 s every 50 s from 100 s on: 11 and 9, as many as the public filter's, whose own windows
 /// are not known. The figures of the unit are the public filter's too (MANIFEST.md), not tuned here.
-constexpr const char* kDrive = R"(
+constexpr const char* kRecordedDrive = R"(
 [fusion]
 states = ["biases", "gains"]
 measurements = ["position"]
@@ -218,7 +219,7 @@ from = "in_motion"
 TEST(DriveMemsPpk, OutagesWithAndWithoutTheConstraint) {
   CANYON_REAL_DATA(gnss, "inertial/drive_mems_ppk/gnss_ppk_4hz.csv");
   CANYON_REAL_DATA(imu, "inertial/drive_mems_ppk/imu_raw_100hz.csv");
-  FuseConfig config = config_of(kDrive);
+  FuseConfig config = config_of(kRecordedDrive);
   const auto inputs = read_fuse_inputs({.imu = imu, .gnss = gnss, .odometer = {}, .truth = gnss, .navigation = {}},
                                        config, [](const std::string&) {});
   ASSERT_TRUE(inputs.ok()) << inputs.error().str();
@@ -230,7 +231,7 @@ TEST(DriveMemsPpk, OutagesWithAndWithoutTheConstraint) {
     for (const bool constrained : {false, true}) {
       config.fusion.measurements = {"position"};
       if (constrained) config.fusion.measurements.push_back("non_holonomic");
-      const OutageScore score = outage_score(run_of(*inputs, config, plans[i]).windows);
+      const OutageScore score = outage_score(recorded_run_of(*inputs, config, plans[i]).windows);
       EXPECT_EQ(score.count, counts[i]);
       horizontal_m[constrained ? 1 : 0] = score.horizontal_rms_of_max_m;
     }

@@ -13,7 +13,7 @@ using mission::testing::drive;
 using mission::testing::RecordedRun;
 using mission::testing::short_config;
 
-constexpr const char* kShort = R"(
+constexpr const char* kShortRun = R"(
 base = "vicksburg"
 [time]
 limit_s = 8.0
@@ -31,7 +31,7 @@ observe = "building 273"
 /// of it counts.
 std::string hash_with(int threads, const std::string& directory) {
   set_threads(threads);
-  const auto file = mission::MissionFile::parse(kShort, "short.toml");
+  const auto file = mission::MissionFile::parse(kShortRun, "short.toml");
   const auto comparison = prepare_comparison(*file, plan_runs({"high"}, false));
   std::filesystem::create_directories(directory);
   const auto results = compare(*comparison, directory, false);

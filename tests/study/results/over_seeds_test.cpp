@@ -122,7 +122,7 @@ TEST(OverSeeds, TheTableHasMediansSharesAndDifferences) {
   EXPECT_THAT(open, ::testing::Not(HasSubstr("success")));
 }
 
-constexpr const char* kMission = R"(
+constexpr const char* kSeedsMission = R"(
 base = "vicksburg"
 [time]
 limit_s = 2.0
@@ -138,7 +138,7 @@ p_m = [213.9, 150.0]
 )";
 
 Comparison comparison_of_seed(std::int64_t seed) {
-  auto file = mission::MissionFile::parse(kMission, "my.toml");
+  auto file = mission::MissionFile::parse(kSeedsMission, "my.toml");
   file->set_option("run.seed", ConfigNode::of(seed), "--seed");
   return *prepare_comparison(*file, plan_runs({"low", "high"}, false));
 }

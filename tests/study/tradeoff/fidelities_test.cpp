@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 
 /// On the short drive without a LIDAR, whose scans would be most of the time.
-const std::vector<MeasuredFidelity>& measured() {
+const std::vector<MeasuredFidelity>& measured_fidelities() {
   static const std::vector<MeasuredFidelity> found = [] {
     mission::MissionFile file = testing::short_drive_file();
     file.set_option("lidar.blinded", ConfigNode::of(true), "test");
@@ -31,10 +31,10 @@ const std::vector<MeasuredFidelity>& measured() {
 }
 
 TEST(Fidelities, ThePlannedRunStandsBehindTheFirstAndIsTheSame) {
-  ASSERT_EQ(measured().size(), 5u);  // low, paper, high, modern, and high planned
-  EXPECT_EQ(measured()[0].name, "high");
-  EXPECT_EQ(measured()[1].name, "high_planned");
-  const MeasuredFidelity &full = measured()[0], &planned = measured()[1];
+  ASSERT_EQ(measured_fidelities().size(), 5u);  // low, paper, high, modern, and high planned
+  EXPECT_EQ(measured_fidelities()[0].name, "high");
+  EXPECT_EQ(measured_fidelities()[1].name, "high_planned");
+  const MeasuredFidelity &full = measured_fidelities()[0], &planned = measured_fidelities()[1];
   EXPECT_TRUE(planned.planned);
   EXPECT_FALSE(full.planned);
   // Its bounds are 0.
@@ -45,7 +45,7 @@ TEST(Fidelities, ThePlannedRunStandsBehindTheFirstAndIsTheSame) {
 }
 
 TEST(Fidelities, OutcomesAreThoseOfEverySeed) {
-  for (const MeasuredFidelity& run : measured()) {
+  for (const MeasuredFidelity& run : measured_fidelities()) {
     ASSERT_TRUE(run.outcomes) << run.name;
     const Share& share = run.outcomes->share;
     EXPECT_EQ(share.n, 2) << run.name;
@@ -62,7 +62,7 @@ TEST(Fidelities, OutcomesAreThoseOfEverySeed) {
 
 TEST(Fidelities, AreToldInEveryForm) {
   Tradeoff tradeoff;
-  tradeoff.fidelities = measured();
+  tradeoff.fidelities = measured_fidelities();
   const auto json = tradeoff_json(tradeoff)["fidelities"];
   ASSERT_EQ(json.size(), 5u);
   EXPECT_TRUE(json[1]["planned"].get<bool>());

@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-MeasuredLadder measured(const std::string& key, const std::string& probe, const RecordedDrive& recording) {
+MeasuredLadder recorded_ladder(const std::string& key, const std::string& probe, const RecordedDrive& recording) {
   for (const Ladder& ladder : built_in_ladders().ladder) {
     if (ladder.part != kRecordedPart || ladder.key != key || ladder.probe != probe) continue;
     const auto lists = make_rungs(ladder, with_receiver(testing::short_drive_file(), recording), "high", probe_keys());
@@ -37,7 +37,7 @@ double error_of(const MeasuredLadder& ladder, const std::string& name) {
 }
 
 TEST(RecordedDrive, TheModelThatMadeARecordingExplainsIt) {
-  const MeasuredLadder ranges = measured("gnss.paths", "recorded_pseudorange", testing::made_recording());
+  const MeasuredLadder ranges = recorded_ladder("gnss.paths", "recorded_pseudorange", testing::made_recording());
   // RINEX keeps 1 mm of a pseudorange, so 0.3 mm RMS, and the clock's median as much again; the vehicle moves 2 mm in
   // the millisecond that its clock may be off.
   EXPECT_LT(error_of(ranges, "specular2"), 5e-3);
@@ -47,16 +47,16 @@ TEST(RecordedDrive, TheModelThatMadeARecordingExplainsIt) {
     EXPECT_GT(model.error, error_of(ranges, "specular2")) << model.name;
   }
 
-  const MeasuredLadder strengths = measured("gnss.paths", "recorded_strength", testing::made_recording());
+  const MeasuredLadder strengths = recorded_ladder("gnss.paths", "recorded_strength", testing::made_recording());
   EXPECT_LT(error_of(strengths, "specular2"), 1e-3);  // RINEX keeps 0.001 dB-Hz
   EXPECT_GT(error_of(strengths, "none"), 0.1);
 
-  const MeasuredLadder air = measured("gnss.troposphere", "recorded_pseudorange", testing::made_recording());
+  const MeasuredLadder air = recorded_ladder("gnss.troposphere", "recorded_pseudorange", testing::made_recording());
   EXPECT_GT(error_of(air, "none"), error_of(air, "standard"));  // which made it
 }
 
 TEST(RecordedDrive, ASolverWithoutAClockIsLeftOut) {
-  const MeasuredLadder ladder = measured("gnss.solver", "recorded_fix", testing::made_recording());
+  const MeasuredLadder ladder = recorded_ladder("gnss.solver", "recorded_fix", testing::made_recording());
   ASSERT_EQ(ladder.models.size(), 1u);
   EXPECT_TRUE(std::isfinite(ladder.models.front().error));
   ASSERT_EQ(ladder.left_out.size(), 1u);
