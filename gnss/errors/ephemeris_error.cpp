@@ -18,7 +18,7 @@ Result<std::unique_ptr<EphemerisError>> seeded(const ModelParameters&, const Eph
   return Make(at.seed);
 }
 
-std::unique_ptr<EphemerisError> make_none() {
+std::unique_ptr<EphemerisError> make_no_error() {
   return std::make_unique<NoEphemerisError>();
 }
 
@@ -27,7 +27,7 @@ double nothing_m(const ModelParameters&) {
 }
 
 constexpr ModelRow<MakeEphemerisError> kModels[] = {
-    {"none", {plain<make_none>, nothing_m}, "the broadcast is exact"},
+    {"none", {plain<make_no_error>, nothing_m}, "the broadcast is exact"},
     {"gauss_markov",
      {make_gauss_markov, largest_gauss_markov_m},
      "per satellite, correlated over ephemeris_tau_s, ephemeris_sigma_m RMS",

@@ -26,12 +26,12 @@ class NoMultipath final : public MultipathRule {
   double threshold_dbhz_, reach_m_;
 };
 
-std::unique_ptr<MultipathRule> make_none(const MultipathParameters& p) {
+std::unique_ptr<MultipathRule> make_no_rule(const MultipathParameters& p) {
   return std::make_unique<NoMultipath>(p);
 }
 
 constexpr ModelRow<MakeMultipathRule> kRules[] = {
-    {"none", without_keys<make_none>, "reflections are ignored; blocked satellites are not tracked"},
+    {"none", without_keys<make_no_rule>, "reflections are ignored; blocked satellites are not tracked"},
     {"paper_first_return", without_keys<make_paper_first_return>,
      "the paper's: the first reflected range if it comes within the cut-off"},
     {"correlator", without_keys<make_correlator>,

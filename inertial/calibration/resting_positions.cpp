@@ -9,8 +9,8 @@
 namespace canyon::inertial {
 namespace {
 
-constexpr double kWindow_s = 0.5;
-constexpr double kQuietFactor = 3.0;
+constexpr double kRestWindow_s = 0.5;
+constexpr double kRestingFactor = 3.0;
 
 /// Mean of the three channels from `first` over [begin, end).
 Eigen::Vector3d mean(const ImuLog& log, std::size_t first, std::size_t begin, std::size_t end) {
@@ -38,7 +38,7 @@ std::vector<bool> quiet_windows(const ImuLog& log, std::size_t first, std::size_
   }
   std::vector<double> sorted = spreads;
   std::sort(sorted.begin(), sorted.end());
-  const double limit = kQuietFactor * sorted[sorted.size() / 10];
+  const double limit = kRestingFactor * sorted[sorted.size() / 10];
   std::vector<bool> quiet;
   for (const double s : spreads) quiet.push_back(s <= limit);
   return quiet;
@@ -49,7 +49,7 @@ std::vector<bool> quiet_windows(const ImuLog& log, std::size_t first, std::size_
 std::vector<RestingPosition> resting_positions(const ImuLog& log, double shortest_s) {
   for (const auto& channel : log.channels) CANYON_CHECK(channel.size() == log.size(), "a channel is missing");
   const double interval_s = (log.t_s.back() - log.t_s.front()) / static_cast<double>(log.size() - 1);
-  const auto length = std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(kWindow_s / interval_s)));
+  const auto length = std::max<std::size_t>(4, static_cast<std::size_t>(std::lround(kRestWindow_s / interval_s)));
   std::vector<RestingPosition> out;
   if (log.size() < length) return out;
   const std::vector<bool> gyro = quiet_windows(log, 0, length), accel = quiet_windows(log, 3, length);

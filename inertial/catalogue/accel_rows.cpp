@@ -5,7 +5,7 @@
 namespace canyon::inertial {
 namespace {
 
-constexpr double kSqrtHour = 60.0;  // sqrt(s)
+constexpr double kRootHour = 60.0;  // sqrt(s)
 constexpr double kG = kStandardGravity;
 
 constexpr AccelRow kAccelRows[] = {
@@ -13,7 +13,7 @@ constexpr AccelRow kAccelRows[] = {
      "vrw_source",
      &AccelSheet::vrw_m_s_per_sqrt_hr,
      {0, 1e3},
-     1.0 / kSqrtHour,
+     1.0 / kRootHour,
      &TriadFigures::white_per_sqrt_hz,
      AccelRow::kRequired,
      "velocity random walk"},
@@ -93,7 +93,7 @@ constexpr AccelRow kAccelRows[] = {
      "rate_random_walk_source",
      &AccelSheet::rate_random_walk_mg_per_sqrt_hr,
      {0, 1e6},
-     kMilliG / kSqrtHour,
+     kMilliG / kRootHour,
      &TriadFigures::rate_random_walk,
      AccelRow::kOptional,
      "rate random walk K"},

@@ -12,7 +12,7 @@ class Shadows final : public DiffractionModel {
   bool bends() const override { return false; }
 };
 
-std::unique_ptr<DiffractionModel> make_none(const PathParameters&) {
+std::unique_ptr<DiffractionModel> make_sharp_shadows(const PathParameters&) {
   return std::make_unique<Shadows>();
 }
 
@@ -21,7 +21,7 @@ std::vector<Need> no_needs(const PathQuestion&) {
 }
 
 constexpr ModelRow<MakeDiffractionModel> kModels[] = {
-    {"none", {without_keys<make_none>, no_needs}, "shadows are sharp"},
+    {"none", {without_keys<make_sharp_shadows>, no_needs}, "shadows are sharp"},
     {"knife_edge", {without_keys<make_knife_edge>, diffraction_needs}, "ITU-R P.526 knife edges at roofs and corners"},
     {"double_knife_edge",
      {without_keys<make_double_knife_edge>, diffraction_needs},
