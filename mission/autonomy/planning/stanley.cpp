@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/autonomy/planning/tracker.h"
 
