@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "canyon/core/messages.h"
 #include "canyon/core/result.h"
 #include "canyon/core/units.h"
 
