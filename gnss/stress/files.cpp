@@ -164,12 +164,17 @@ StressFigure antennas() {
   };
   const std::string receiver = "TRM29659.00     NONE",
                     satellite = "BLOCK IIR-M         G07                 G048      2008-012A ";
-  const std::string text = labelled("     1.4            M", "ANTEX VERSION / SYST") + labelled("", "END OF HEADER") +
-                           antenna(receiver, 90.0, 5.0, true, "") +
-                           antenna(satellite, 14.0, 1.0, false,
-                                   labelled(words_of(kStart, "%13.7f"), "VALID FROM") +
-                                       labelled(words_of(kStart + 86400.0 * 9, "%13.7f"), "VALID UNTIL"));
-  const auto found = parse_antex_file(text, "made.atx");
+  const auto file = [&](const char* version) {
+    return labelled(printed("%8s            M", version), "ANTEX VERSION / SYST") + labelled("", "END OF HEADER") +
+           antenna(receiver, 90.0, 5.0, true, "") +
+           antenna(satellite, 14.0, 1.0, false,
+                   labelled(words_of(kStart, "%13.7f"), "VALID FROM") +
+                       labelled(words_of(kStart + 86400.0 * 9, "%13.7f"), "VALID UNTIL"));
+  };
+  for (const char* version : {"1.2", "1.5", "2.0", "14.0", "-1.4"})
+    if (parse_antex_file(file(version), "made.atx")) return {kInfinity, 1.0};
+  if (!parse_antex_file(file("1.3"), "made.atx")) return {kInfinity, 1.0};
+  const auto found = parse_antex_file(file("1.4"), "made.atx");
   if (!found || found->antennas.size() != 2 || !found->warnings.empty()) return {kInfinity, 1.0};
   Worst worst;
   const Antenna *ground = found->receiver("TRM29659.00"), *space = found->satellite(kG7, kStart + 86400.0);

@@ -270,6 +270,37 @@ StressFigure tables(const std::string& scale) {
   return out;
 }
 
+/// Maps of the ionosphere, whose epochs are UTC, an hour apart across each border: to the nanosecond.
+StressFigure ionosphere_maps() {
+  StressFigure out;
+  for (const GpsTime t : seconds_around()) {
+    std::string text =
+        padded("     1.0            IONOSPHERE MAPS", "IONEX VERSION / TYPE") + padded("     2", "MAP DIMENSION") +
+        padded("  6371.0", "BASE RADIUS") + padded("   450.0 450.0   0.0", "HGT1 / HGT2 / DHGT") +
+        padded("    10.0 -10.0 -20.0", "LAT1 / LAT2 / DLAT") + padded("  -180.0 180.0 180.0", "LON1 / LON2 / DLON") +
+        padded("    -1", "EXPONENT") + padded("", "END OF HEADER");
+    std::vector<GpsTime> times;
+    for (const GpsTime at : {t, t + 3600.0}) {
+      if (GpsTime{at.ns + kNsPerSecond}.leap_seconds() > at.leap_seconds()) continue;  // second 60: no label
+      times.push_back(at);
+      const CalendarTime c = calendar(GpsTime{at.ns - at.leap_seconds() * kNsPerSecond});
+      const std::string number = printed("%6d", static_cast<int>(times.size()));
+      text += padded(number, "START OF TEC MAP") +
+              padded(printed("%6d%6d%6d%6d%6d%6.0f", c.year, c.month, c.day, c.hour, c.minute, c.second),
+                     "EPOCH OF CURRENT MAP");
+      for (const double lat_deg : {10.0, -10.0})
+        text += padded(printed("  %6.1f%6.1f%6.1f%6.1f%6.1f", lat_deg, -180.0, 180.0, 180.0, 450.0),
+                       "LAT/LON1/LON2/DLON/H") +
+                "  100  100  100\n";
+      text += padded(number, "END OF TEC MAP");
+    }
+    const auto read = parse_ionex_file(text + padded("", "END OF FILE"), "made.ionex");
+    if (!read.ok() || read->maps.size() != times.size()) return {kNone, 0.0};
+    for (std::size_t k = 0; k < times.size(); ++k) take_worst(out, apart_s(read->maps[k].t.ns, times[k].ns));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<StressCase> time_border_cases() {
@@ -303,9 +334,9 @@ std::vector<StressCase> time_border_cases() {
   rows.add("time_borders/almanac_weeks", almanac_weeks);
   rows.of({StressGroup::kLong, "orbit and clock tables at the borders of weeks, years and leap seconds",
            "a time scale taken for another; fields that read 60", "the same nanosecond", "s"});
-  rows.add("time_borders/tables_in_gps_time", [] { return tables("GPS"); }).add("time_borders/tables_in_utc", [] {
-    return tables("UTC");
-  });
+  rows.add("time_borders/tables_in_gps_time", [] { return tables("GPS"); })
+      .add("time_borders/tables_in_utc", [] { return tables("UTC"); })
+      .add("time_borders/ionosphere_maps", ionosphere_maps);
   return rows.take();
 }
 

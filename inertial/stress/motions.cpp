@@ -184,6 +184,50 @@ StressFigure recorded(const std::string& ending) {
   return worst.figure();
 }
 
+/// Instants over the ends of weeks that counts of 10, 11 and 13 bits forget, of years and of leap seconds, with the
+/// nanoseconds beside them, through a file and back: exact.
+StressFigure over_borders(const std::string& ending) {
+  const Folder folder;
+  const std::string name = folder.file("poses." + ending);
+  StressFigure out;
+  std::vector<GpsTime> borders;
+  for (const int week : {1, 1024, 2048, 8192}) borders.push_back(GpsTime::from_week_sow(week, 0.0));
+  for (const int year : {1999, 2000, 2017, 2100}) borders.push_back(GpsTime::from_calendar(year, 1, 1, 0, 0, 0.0));
+  for (const GpsTime last :
+       {GpsTime::from_calendar(2012, 7, 1, 0, 0, 16.0), GpsTime::from_calendar(2016, 2, 29, 0, 0, 0.0)})
+    borders.push_back(last);
+  for (const GpsTime border : borders) {
+    Trajectory poses;
+    NavigationFile navigation;
+    std::string csv = "gps_week,sow,x_m,y_m,z_m,qw,qx,qy,qz\n";
+    std::vector<GpsTime> times;
+    for (const std::int64_t ns : {-1'000'000'000LL, -1LL, 0LL, 1LL, 999'999'999LL}) {
+      const GpsTime t{border.ns + ns};
+      times.push_back(t);
+      poses.append({t, Pose{}});
+      navigation.records.push_back({t, {Eigen::Quaterniond::Identity(), ecef_from_geodetic({0.5, 0.5, 0.0})}});
+      char text[64];
+      std::snprintf(text, sizeof text, "%d,%lld.%09lld,0,0,0,1,0,0,0\n", t.week(),
+                    static_cast<long long>(t.sow_ns() / kNsPerSecond),
+                    static_cast<long long>(t.sow_ns() % kNsPerSecond));
+      csv += text;
+    }
+    std::vector<GpsTime> found;
+    const auto take = [&](const Result<Trajectory>& read) {
+      if (read.ok())
+        for (const StampedPose& pose : read->poses()) found.push_back(pose.t);
+    };
+    if (ending == "tum" && write_tum(name, poses).ok()) take(read_tum(name));
+    if (ending == "csv") std::ofstream(name) << csv, take(read_csv_trajectory(name));
+    if (ending == "nav" && write_navigation_file(name, navigation).ok()) {
+      if (const auto read = read_navigation_file(name); read.ok())
+        for (const NavigationRecord& record : read->records) found.push_back(record.t);
+    }
+    out.figure += found == times ? 0.0 : 1.0;
+  }
+  return out;
+}
+
 /// Files that cannot be joined to a motion: each is refused, with the line where one is wrong.
 StressFigure refused_files() {
   const Folder folder;
@@ -225,6 +269,11 @@ std::vector<StressCase> motion_cases() {
            "the poses again, to the decimals of the format", "of the bound"});
   for (const char* ending : {"tum", "kitti", "csv", "nav"})
     rows.add(std::string("imu/recorded_") + ending, [ending] { return recorded(ending); });
+  rows.of({StressGroup::kLong, "a recorded path over the ends of weeks, years and leap seconds",
+           "a week's last nanosecond that is rounded up to 604800 s, or seconds since 1980 through a double",
+           "the same nanoseconds: exact", "files"});
+  for (const char* ending : {"tum", "csv", "nav"})
+    rows.add(std::string("imu/borders_in_") + ending, [ending] { return over_borders(ending); });
   rows.of({StressGroup::kData, "a recorded path that is none", "the complaint of another reader, about another line",
            "refused, with the line that is wrong", "let through"});
   rows.add("imu/recorded_wrong", refused_files);

@@ -7,6 +7,7 @@
 /// The cases of this room, a file for each subject.
 namespace canyon::mission {
 
+std::vector<StressCase> autonomy_cases();
 std::vector<StressCase> boundary_cases();
 std::vector<StressCase> drive_cases();
 std::vector<StressCase> localizer_cases();

@@ -1,5 +1,6 @@
 #include "canyon/scene/city/traffic.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "canyon/core/stress_rows.h"
@@ -52,6 +53,33 @@ StressFigure standing() {
   return worst.figure();
 }
 
+/// The room that is told to be swept by a thing holds every corner of it at any time, along each leg, of a single point
+/// too: within the radius of one of the legs, below its top. A figure counts corners outside.
+StressFigure swept_rooms() {
+  int outside = 0;
+  for (const std::vector<double>& way :
+       {std::vector<double>{3, 4}, {0, 0, 40, 0, 40, 30}, {5, 6, 5, 6, 5, 6}, {-20, 7, 20, 7}}) {
+    const auto traffic = traffic_of(way, 8.0, 1.0);
+    const std::vector<scene::SweptRoom> rooms = traffic.swept();
+    outside += rooms.size() == std::max<std::size_t>(1, way.size() / 2 - 1) ? 0 : 1;
+    for (double t_s = 0.0; t_s < 12.0; t_s += 0.31) {
+      const scene::Instance thing = traffic.at(t_s)[0];
+      for (const Eigen::Vector3f& corner : thing.shape->mesh().vertices) {
+        const Eigen::Vector3d p = thing.X_WS * corner.cast<double>();
+        bool held = false;
+        for (const scene::SweptRoom& room : rooms) {
+          const Eigen::Vector2d leg = room.to_W - room.from_W, to = p.head<2>() - room.from_W;
+          const double along = leg.squaredNorm() > 0.0 ? std::clamp(leg.dot(to) / leg.squaredNorm(), 0.0, 1.0) : 0.0;
+          held |= (to - along * leg).norm() <= room.radius_m && p.z() <= room.top_m &&
+                  room.around().contains(Eigen::Vector2d(p.head<2>()));
+        }
+        outside += held ? 0 : 1;
+      }
+    }
+  }
+  return {1.0 * outside, 0.0};
+}
+
 }  // namespace
 
 std::vector<StressCase> traffic_cases() {
@@ -63,6 +91,10 @@ std::vector<StressCase> traffic_cases() {
   rows.of(way).add("traffic/from_before_its_start_to_1e300_s", [] { return ways(0.0); });
   rows.of(way).add("traffic/start_after_1e6_s", [] { return ways(1e6); });
   rows.of(way).add("traffic/that_stands", standing);
+  rows.of({StressGroup::kGeometry, "the room that moving things ever take",
+           "a leg that is left out, or one after the last", "every corner of theirs within it, at all times",
+           "corners"});
+  rows.add("traffic/swept_rooms", swept_rooms);
   return rows.take();
 }
 

@@ -13,5 +13,6 @@ std::vector<StressCase> surface_cases();
 std::vector<StressCase> ground_cases();
 std::vector<StressCase> crown_cases();
 std::vector<StressCase> index_cases();
+std::vector<StressCase> street_cases();
 
 }  // namespace canyon::scene

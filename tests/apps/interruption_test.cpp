@@ -148,28 +148,86 @@ TEST_F(Interruption, PlanTradeoffAndStressAtAnyMoment) {
   }
 }
 
-// Twenty moments that nobody has chosen.
-TEST_F(Interruption, EveryLongVerbAtRandomMomentsNightly) {
-  const std::vector<std::vector<std::string>> verbs{
-      {"compare", "--out", "given_out", "--force"},
-      {"run", "mission.toml", "--out", "given_out", "--force"},
-      {"plan", "mission.toml", "--write", "given.plan", "--force", "--verify", "100000"},
-      {"tradeoff", "mission.toml", "--out", "given_out", "--force"},
-      {"stress", "--long"},
-      {"stress", "mission.toml"},
-      {"reproduce", "--draws", "1000", "--out", "given_out", "--force"},
-      {"scene", "make", "city", "--out", "given_city.json", "--force"},
-      {"gnss", "simulate", "--at", "32.3,-90.9,50", "--duration", "100000", "--rinex-obs", "given.rnx", "--force"},
-      {"gnss", "map", "--out", "given_map", "--force"},
-      {"imu", "simulate", "--path", "circle", "--duration", "100000", "--out", "given_log.csv", "--force"},
-      {"lidar", "scan", "--at", "213.9,30,0,90", "--scans", "1000000", "--beams", "hdl32e", "--out", "given_scans",
-       "--force"}};
-  const RandomStream stream(15, "test.interruption");
-  for (std::size_t verb = 0; verb < verbs.size(); ++verb)
-    for (std::uint64_t k = 0; k < 20; ++k)
-      expect_clean_end(verbs[verb], stream.uniform(0.0, 8.0, static_cast<std::uint32_t>(verb), k),
-                       k % 2 == 0 ? SIGINT : SIGTERM);
+/// A verb at its work, and what it needs beforehand.
+struct LongVerb {
+  const char* name;
+  std::vector<std::string> words;
+  std::vector<std::string> before;  ///< calls of canyon
+};
+
+const LongVerb kLongVerbs[] = {
+    {"compare", {"compare", "--out", "given_out", "--force"}, {}},
+    {"compare_why", {"compare", "mission.toml", "--why", "--seeds", "100", "--out", "given_out", "--force"}, {}},
+    {"compare_open_loop",
+     {"compare", "mission.toml", "--open-loop", "--seeds", "100", "--out", "given_out", "--force"},
+     {}},
+    {"run", {"run", "mission.toml", "--out", "given_out", "--force"}, {}},
+    {"plan", {"plan", "mission.toml", "--write", "given.plan", "--force", "--verify", "100000"}, {}},
+    {"tradeoff", {"tradeoff", "mission.toml", "--out", "given_out", "--force"}, {}},
+    {"stress_cases", {"stress", "--long"}, {}},
+    {"stress_mission", {"stress", "mission.toml"}, {}},
+    {"reproduce", {"reproduce", "--draws", "1000", "--out", "given_out", "--force"}, {}},
+    {"report", {"report", "given_out"}, {"compare mission.toml --fidelities low,high --no-2x2 --out given_out"}},
+    {"scene_make", {"scene", "make", "city", "--out", "given_city.json", "--force"}, {}},
+    {"scene_info", {"scene", "info", "given_city.json"}, {"scene make city --out given_city.json"}},
+    {"gnss_simulate",
+     {"gnss", "simulate", "--at", "32.3,-90.9,50", "--duration", "100000", "--rinex-obs", "given.rnx", "--force"},
+     {}},
+    {"gnss_solve",
+     {"gnss", "solve", "--obs", "given.rnx", "--nav", "given.nav", "--out", "given.csv", "--force"},
+     {"gnss simulate --at 32.3,-90.9,50 --duration 6000 --rinex-obs given.rnx --rinex-nav given.nav"}},
+    {"gnss_map", {"gnss", "map", "--out", "given_map", "--force"}, {}},
+    {"gnss_sky",
+     {"gnss", "sky", "--scene", "vicksburg", "--xy", "120,-40", "--duration", "86400", "--step", "1", "--out",
+      "given_sky", "--force"},
+     {}},
+    {"imu_simulate",
+     {"imu", "simulate", "--path", "circle", "--duration", "100000", "--out", "given_log", "--force"},
+     {}},
+    {"imu_allan",
+     {"imu", "allan", "given_log/imu.csv"},
+     {"imu simulate --at 45,7,200 --duration 7200 --out given_log"}},
+    {"imu_fit",
+     {"imu", "fit", "given_log/imu.csv", "--static"},
+     {"imu simulate --at 45,7,200 --duration 7200 --out given_log"}},
+    {"imu_dead_reckon",
+     {"imu", "dead-reckon", "--imu", "given_log/imu.csv", "--truth", "given_log/truth.nav", "--out", "given_drift",
+      "--force"},
+     {"imu simulate --at 45,7,200 --duration 7200 --out given_log"}},
+    {"fuse",
+     {"fuse", "--results", "given_out", "--run", "high", "--smoother", "graph", "--out", "given_fused", "--force"},
+     {"run vicksburg --fidelity high --set run.record_filter_input=true --set registration.method=none --out "
+      "given_out"}},
+    {"lidar_scan",
+     {"lidar", "scan", "--at", "213.9,30,0,90", "--scans", "1000000", "--beams", "hdl32e", "--out", "given_scans",
+      "--force"},
+     {}},
+    {"lidar_error_budget",
+     {"lidar", "error-budget", "mission.toml", "--fidelity", "high", "--seeds", "100", "--out", "given_budget",
+      "--force"},
+     {}},
+};
+
+class InterruptionNightly : public Interruption, public ::testing::WithParamInterface<LongVerb> {};
+
+// Twenty moments that nobody has chosen, within what the verb takes, or its first eight seconds.
+TEST_P(InterruptionNightly, AtRandomMoments) {
+  const LongVerb& verb = GetParam();
+  for (const std::string& words : verb.before) ASSERT_EQ(canyon(words), 0) << words << ": " << read("stderr");
+  const auto started = Clock::now();
+  const Ended whole = interrupted(verb.words, 8.0);
+  ASSERT_TRUE(whole.status == 0 || whole.status == 130) << whole.status << ": " << read("stderr");
+  const double longest_s = std::min(8.0, std::chrono::duration<double>(Clock::now() - started).count());
+  const RandomStream stream(15, std::string("test.interruption.") + verb.name);
+  int interrupted_ones = 0;
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    expect_clean_end(verb.words, stream.uniform(0.0, longest_s, 0, k), k % 2 == 0 ? SIGINT : SIGTERM);
+    interrupted_ones += read("stderr").rfind("interrupted: ", 0) == 0 ? 1 : 0;
+  }
+  EXPECT_GE(interrupted_ones, 10) << "most end before they are asked to";
 }
+INSTANTIATE_TEST_SUITE_P(EveryLongVerb, InterruptionNightly, ::testing::ValuesIn(kLongVerbs),
+                         [](const auto& info) { return std::string(info.param.name); });
 
 // 2026-11-22: the reading of a pipe that nobody writes to could not be interrupted.
 TEST_F(Interruption, WhatWaitsForAPipeEnds) {

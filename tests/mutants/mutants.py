@@ -10,12 +10,14 @@ A fault is a wrong sign, factor, index, order of subtraction, comparison, consta
 that is not there. It is drawn from all lines of the numerical folders that could have one, headers too, every line alike, and
 then one of the faults that the line could have; the only other rule is that the list has faults in 15 files at least.
 
-A row that has been proved to change nothing says so, `equivalent = "why"`, and stands beside the count: the next draw has taken
-its place. One that survives says which case is missing, `missing = "case"`. Both are kept when the same seed is drawn again.
+A row that has been proved to change nothing says so, `equivalent = "why"`, and so does one that the compiler refuses,
+`refused = "why"`; both stand beside the count: the next draw has taken their place. One that survives says which case is
+missing, `missing = "case"`. All are kept when the same seed is drawn again.
 
-`try` begins with an empty folder and the tree as it is, which must hold. Then it prints a line for each fault: killed, and by
-what (a case that failed, a crash, a hang: ten times as long as the tree as it is, another exit status), survived, or does not
-compile. It ends with status 1 if fewer than --least are killed.
+`try` brings a copy of the tree up to date, file by file, and begins with it as it is, which must hold; so a second call compiles
+nothing anew, and a fault costs its own file, a link and the suite. A fault in a header compiles whatever includes it. It prints a
+line for each fault: killed, and by what (a case that failed, a crash, a hang: ten times as long as the tree as it is, another exit
+status), survived, or does not compile. It ends with status 1 if fewer than --least are killed.
 """
 import argparse
 import json
@@ -37,6 +39,7 @@ FLOORS = ["core", "scene", "gnss", "inertial", "lidar", "fusion", "mission"]
 NOT_NUMERICAL = ["core/config", "core/files", "core/output", "core/process", "core/printable_text", "core/tables", "scene/importers", "gnss/rinex",
                  "gnss/nmea", "gnss/tables", "inertial/catalogue", "inertial/log", "lidar/files", "mission/config", "mission/recorder"] + [floor + "/stress" for floor in FLOORS]
 LEAST_FILES = 15
+REMARKS = ("equivalent", "refused", "missing")
 MEMORY_BYTES = 8 << 30
 
 # (what it is, what is looked for, what takes its place)
@@ -95,8 +98,12 @@ def spread(lines, count):
     return taken, rest
 
 
+def counts(mutant):
+    return "equivalent" not in mutant and "refused" not in mutant
+
+
 def draw(seed, count, known):
-    """`count` faults that count, and the equivalent ones of `known` that are drawn on the way, as rows of the list."""
+    """`count` faults that count, and those of `known` that do not and are drawn on the way, as rows of the list."""
     generator = random.Random(seed)
     by_line = {}
     for name in sources():
@@ -111,11 +118,11 @@ def draw(seed, count, known):
         number, kind, before, after = chosen[line]
         out = {"file": line[0], "line": number, "kind": kind, "before": before.strip(), "after": after.strip()}
         old = remarks.get((out["file"], out["before"], out["after"]), {})
-        return out | {key: old[key] for key in ("equivalent", "missing") if key in old}
+        return out | {key: old[key] for key in REMARKS if key in old}
 
     taken, rest = spread(lines, count)
     rows = [row(line) for line in taken]
-    while sum("equivalent" not in each for each in rows) < count and rest:
+    while sum(counts(each) for each in rows) < count and rest:
         rows.append(row(rest.pop(0)))
     return rows, len(lines)
 
@@ -187,15 +194,27 @@ def attempt(mutant, work, jobs, timeout_s):
         (work / mutant["file"]).write_text(original, encoding="utf-8")
 
 
+def files_of(root):
+    """Of a tree, without what builds and runs have made at its top; study/results is source."""
+    return {path.relative_to(root) for top in sorted(root.iterdir()) if top.name not in ("build", ".git", "results")
+            for path in ([top] if not top.is_dir() else top.rglob("*")) if path.is_file()}
+
+
 def copy_of_tree(work, jobs):
-    """The tree as it is, in an empty folder and with times of today: nothing of a try before it is taken for up to date."""
-    shutil.rmtree(work, ignore_errors=True)
-
-    def made_here(folder, names):  # by builds and runs, at the top; study/results is source
-        return [name for name in names if pathlib.Path(folder) == ROOT and name in ("build", ".git", "results")]
-
-    shutil.copytree(ROOT, work, symlinks=True, copy_function=shutil.copy, ignore=made_here)
-    subprocess.run(["cmake", "--preset", "release", "-DCANYON_TESTS=OFF"], cwd=work, check=True, stdout=subprocess.DEVNULL)
+    """The tree as it is. What differs there, as of a try before that was ended, gets a time of today; the rest keeps its own."""
+    work.mkdir(parents=True, exist_ok=True)
+    wanted = files_of(ROOT)
+    for name in files_of(work) - wanted:
+        (work / name).unlink()
+    for name in wanted:
+        to = work / name
+        if not to.exists() or to.read_bytes() != (ROOT / name).read_bytes():
+            to.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, to)
+    # File by file and not eight as one, and linked by what is quick, where it is there.
+    linker = [f"-DCMAKE_{what}_LINKER_FLAGS=-fuse-ld=lld" for what in ("EXE", "MODULE") if shutil.which("ld.lld")]
+    subprocess.run(["cmake", "--preset", "release", "-DCANYON_TESTS=OFF", "-DCANYON_PRECOMPILED_HEADERS=OFF"] + linker, cwd=work, check=True,
+                   stdout=subprocess.DEVNULL)
     built = build(work, jobs)
     if built.returncode != 0:
         sys.exit("the tree as it is does not build:\n" + built.stdout[-2000:])
@@ -212,7 +231,7 @@ def try_all(options):
     only = {int(each) for each in options.only.split(",")} if options.only else None
     killed = tried = 0
     for number, mutant in enumerate(read_list(options.list), 1):
-        if (only and number not in only) or "equivalent" in mutant:
+        if (only and number not in only) or not counts(mutant):
             continue
         verdict, by = attempt(mutant, work, options.jobs, timeout_s)
         tried += 1
@@ -228,7 +247,7 @@ def check(path):
     lost = [mutant for mutant in rows if not (ROOT / mutant["file"]).exists() or place_of(mutant, ROOT) is None]
     for mutant in lost:
         print(f"{mutant['file']}:{mutant['line']}: {mutant['before']!r} is no more: draw again")
-    counted = [mutant for mutant in rows if "equivalent" not in mutant]
+    counted = [mutant for mutant in rows if counts(mutant)]
     if len(counted) < 30 or len({mutant["file"] for mutant in counted}) < LEAST_FILES:
         print(f"{path}: {len(counted)} faults in {len({mutant['file'] for mutant in counted})} files, of 30 in {LEAST_FILES}")
         return 1

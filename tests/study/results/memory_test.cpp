@@ -3,10 +3,12 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
+#include "canyon/mission/motion/vehicle.h"
 #include "canyon/mission/recorder/run_files.h"
 #include "canyon/mission/run.h"
 #include "canyon/study/results/run_statistics.h"
@@ -22,20 +24,40 @@ double resident_mb() {
   return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
-/// Resident memory at every simulated ten minutes.
+double folder_mb(const std::filesystem::path& folder) {
+  double bytes = 0.0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) bytes += static_cast<double>(entry.file_size());
+  return bytes / 1048576.0;
+}
+
+/// Resident memory and what is written, at every simulated ten minutes; and whether each step of the vehicle has come
+/// when it is due.
 class MemoryLog final : public mission::Recorder {
  public:
+  explicit MemoryLog(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  Status node(const TapeNode& node) override {
+    if (nodes_ == 0) first_node_ = node.motion.t;
+    off_time += node.motion.t.ns - first_node_.ns != nodes_ * mission::Vehicle::kStep_ns ? 1 : 0;
+    ++nodes_;
+    return Ok{};
+  }
   Status epoch(const mission::NavRow& row) override {
     if (first_.ns == 0) first_ = row.t;
     if (row.t - first_ < 600.0 * static_cast<double>(mb.size())) return Ok{};
     mb.push_back(resident_mb());
-    if (mb.size() % 6 == 1) std::printf("  %2zu h: %.2f MB\n", mb.size() / 6, mb.back());
+    written_mb.push_back(folder_mb(folder_));
+    if (mb.size() % 6 == 1)
+      std::printf("  %2zu h: %.2f MB, written %.2f MB\n", mb.size() / 6, mb.back(), written_mb.back());
     return Ok{};
   }
-  std::vector<double> mb;
+  std::vector<double> mb, written_mb;
+  int off_time = 0;
 
  private:
-  GpsTime first_;
+  std::filesystem::path folder_;
+  std::int64_t nodes_ = 0;
+  GpsTime first_, first_node_;
 };
 
 /// MB per hour, by least squares.
@@ -93,7 +115,7 @@ TEST(MemoryNightly, ADayIsDrivenInBoundedMemory) {
     const auto files = mission::RunFiles::create(folder.path().string(), fidelity, *config, *prepared, nullptr);
     ASSERT_TRUE(files.ok()) << files.error().str();
     RunStatistics statistics(prepared->scene->frame(), folder.path().string());
-    MemoryLog log;
+    MemoryLog log(folder.path());
     mission::Recorders all({files->get(), &statistics, &log});
     const auto record =
         mission::run_mission(*config, *prepared, nullptr, {.tape = nullptr, .recorder = &all, .autonomy = nullptr});
@@ -103,6 +125,13 @@ TEST(MemoryNightly, ADayIsDrivenInBoundedMemory) {
     const double slope = slope_mb_h(std::span(log.mb).subspan(log.mb.size() / 2));
     std::printf("  %s: %.3f MB an hour over the last half\n", fidelity, slope);
     EXPECT_LE(slope, 1.0) << fidelity;
+    EXPECT_EQ(log.off_time, 0) << "steps of the vehicle at other times than k * 10 ms, " << fidelity;
+    // A row is as long as its numbers: times, places and counts gain a digit or two in a day, of some twenty a column.
+    const std::span<const double> written(log.written_mb);
+    const std::size_t half = written.size() / 2, quarter = written.size() / 4;
+    const double early = slope_mb_h(written.subspan(quarter, half - quarter)), late = slope_mb_h(written.subspan(half));
+    std::printf("  %s: files grow by %.2f MB an hour, then by %.2f\n", fidelity, early, late);
+    EXPECT_LE(late, 1.1 * early) << fidelity;
   }
 }
 
