@@ -15,8 +15,8 @@ A row that has been proved to change nothing says so, `equivalent = "why"`, and 
 missing, `missing = "case"`. All are kept when the same seed is drawn again.
 
 `try` brings a copy of the tree up to date, file by file, and begins with it as it is, which must hold; so a second call compiles
-nothing anew, and a fault costs its own file, a link and the suite. A fault in a header compiles whatever includes it. It prints a
-line for each fault: killed, and by what (a case that failed, a crash, a hang: ten times as long as the tree as it is, another exit
+nothing anew, and a fault costs its own file, a link and the suite, of which the cases of the file's own floor come first. A fault in
+a header compiles whatever includes it. It prints a line for each fault: killed, and by what (a case that failed, a crash, a hang: ten times as long as the tree as it is, another exit
 status), survived, or does not compile. It ends with status 1 if fewer than --least are killed.
 """
 import argparse
@@ -158,11 +158,11 @@ def limits():
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
 
 
-def run_suite(work, jobs, timeout_s):
-    """(what became of the short suite, which cases or what else), "held" if nothing."""
+def run_cases(work, names, jobs, timeout_s):
+    """(what became of these cases, or of all short ones, which cases or what else), "held" if nothing."""
     try:
-        ran = subprocess.run([work / "build/release/bin/canyon", "stress", "--json", "--threads", str(jobs)], capture_output=True,
-                             text=True, timeout=timeout_s, check=False, preexec_fn=limits)
+        ran = subprocess.run([work / "build/release/bin/canyon", "stress", *names, "--json", "--threads", str(jobs)],
+                             capture_output=True, text=True, timeout=timeout_s, check=False, preexec_fn=limits)
     except subprocess.TimeoutExpired:
         return "hang", [f"no end after {timeout_s:.0f} s"]
     if ran.returncode < 0:
@@ -177,18 +177,36 @@ def run_suite(work, jobs, timeout_s):
     return ("held", []) if ran.returncode == 0 else ("other exit", [f"exit status {ran.returncode}"])
 
 
+def cases_by_floor(work):
+    """Names of the short cases of each floor, by what stands before their "/" in its room stress/."""
+    ran = subprocess.run([work / "build/release/bin/canyon", "stress", "--json"], capture_output=True, text=True, check=True)
+    names = [case["name"] for case in json.loads(ran.stdout)["cases"]]
+    out = {}
+    for floor in FLOORS:
+        texts = [path.read_text(encoding="utf-8") for path in (ROOT / floor / "stress").glob("*.cpp")]
+        subjects = {found for text in texts for found in re.findall(r'"([a-z_0-9]+)/', text)}
+        out[floor] = [name for name in names if name.split("/")[0] in subjects]
+    return out
+
+
+def run_suite(work, own, jobs, timeout_s):
+    """The whole short suite, `own` cases first: what they notice needs no others."""
+    what, by = run_cases(work, own, jobs, timeout_s) if own else ("held", [])
+    return (what, by) if what != "held" else run_cases(work, [], jobs, timeout_s)
+
+
 def build(work, jobs):
     return subprocess.run(["ninja", "-C", work / "build/release", f"-j{jobs}", "canyon"], capture_output=True, text=True, check=False)
 
 
-def attempt(mutant, work, jobs, timeout_s):
+def attempt(mutant, work, own, jobs, timeout_s):
     """(verdict, by what) of one fault in the copy of the tree."""
     original = (ROOT / mutant["file"]).read_text(encoding="utf-8")
     apply(mutant, work)
     try:
         if build(work, jobs).returncode != 0:
             return "does not compile", []
-        what, by = run_suite(work, jobs, timeout_s)
+        what, by = run_suite(work, own, jobs, timeout_s)
         return ("survived", []) if what == "held" else ("killed", [what] + by)
     finally:
         (work / mutant["file"]).write_text(original, encoding="utf-8")
@@ -224,16 +242,17 @@ def try_all(options):
     work = pathlib.Path(options.work).resolve()
     copy_of_tree(work, options.jobs)
     started = time.monotonic()
-    what, by = run_suite(work, options.jobs, 1800.0)
+    what, by = run_cases(work, [], options.jobs, 1800.0)
     timeout_s = max(60.0, 10.0 * (time.monotonic() - started))
     if what != "held":
         sys.exit(f"the tree as it is: {what}: {', '.join(by)}")
+    own = cases_by_floor(work)
     only = {int(each) for each in options.only.split(",")} if options.only else None
     killed = tried = 0
     for number, mutant in enumerate(read_list(options.list), 1):
         if (only and number not in only) or not counts(mutant):
             continue
-        verdict, by = attempt(mutant, work, options.jobs, timeout_s)
+        verdict, by = attempt(mutant, work, own[mutant["file"].split("/")[0]], options.jobs, timeout_s)
         tried += 1
         killed += verdict == "killed"
         why = f"   [{by[0]}: {len(by) - 1}, {by[1] if len(by) > 1 else ''}]" if by else ""
