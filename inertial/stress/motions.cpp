@@ -218,7 +218,10 @@ StressFigure over_borders(const std::string& ending) {
         for (const StampedPose& pose : read->poses()) found.push_back(pose.t);
     };
     if (ending == "tum" && write_tum(name, poses).ok()) take(read_tum(name));
-    if (ending == "csv") std::ofstream(name) << csv, take(read_csv_trajectory(name));
+    if (ending == "csv") {
+      std::ofstream(name) << csv;
+      take(read_csv_trajectory(name));
+    }
     if (ending == "nav" && write_navigation_file(name, navigation).ok()) {
       if (const auto read = read_navigation_file(name); read.ok())
         for (const NavigationRecord& record : read->records) found.push_back(record.t);
