@@ -227,7 +227,7 @@ TEST_P(InterruptionNightly, AtRandomMoments) {
   EXPECT_GE(interrupted_ones, 10) << "most end before they are asked to";
 }
 INSTANTIATE_TEST_SUITE_P(EveryLongVerb, InterruptionNightly, ::testing::ValuesIn(kLongVerbs),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& verb) { return std::string(verb.param.name); });
 
 // 2026-11-22: the reading of a pipe that nobody writes to could not be interrupted.
 TEST_F(Interruption, WhatWaitsForAPipeEnds) {
