@@ -16,7 +16,7 @@ missing, `missing = "case"`. All are kept when the same seed is drawn again.
 
 `try` brings a copy of the tree up to date, file by file, and begins with it as it is, which must hold; so a second call compiles
 nothing anew, and a fault costs its own file, a link and the suite, of which the cases of the file's own floor come first. A fault in
-a header compiles whatever includes it. It prints a line for each fault: killed, and by what (a case that failed, a crash, a hang: ten times as long as the tree as it is, another exit
+a header compiles whatever includes it. It prints a line for each fault: killed, and by what (a case that failed, a crash, a hang: ten times the CPU time of the tree as it is, another exit
 status), survived, or does not compile. It ends with status 1 if fewer than --least are killed.
 """
 import argparse
@@ -29,7 +29,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -154,17 +153,21 @@ def apply(mutant, root):
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
-def limits():
+def limits(cpu_s):
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY_BYTES, MEMORY_BYTES))
+    resource.setrlimit(resource.RLIMIT_CPU, (int(cpu_s), int(cpu_s) + 5))
 
 
-def run_cases(work, names, jobs, timeout_s):
-    """(what became of these cases, or of all short ones, which cases or what else), "held" if nothing."""
+def run_cases(work, names, jobs, cpu_s):
+    """(what became of these cases, or of all short ones, which cases or what else), "held" if nothing. A hang is told by CPU time,
+    which other work on the machine does not change; what waits for nothing ends after an hour."""
     try:
         ran = subprocess.run([work / "build/release/bin/canyon", "stress", *names, "--json", "--threads", str(jobs)],
-                             capture_output=True, text=True, timeout=timeout_s, check=False, preexec_fn=limits)
+                             capture_output=True, text=True, timeout=3600.0, check=False, preexec_fn=lambda: limits(cpu_s))
     except subprocess.TimeoutExpired:
-        return "hang", [f"no end after {timeout_s:.0f} s"]
+        return "hang", ["no end after an hour"]
+    if ran.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return "hang", [f"no end after {cpu_s:.0f} s of CPU time"]
     if ran.returncode < 0:
         return "crash", [signal.Signals(-ran.returncode).name]
     try:
@@ -189,24 +192,29 @@ def cases_by_floor(work):
     return out
 
 
-def run_suite(work, own, jobs, timeout_s):
+def run_suite(work, own, jobs, cpu_s):
     """The whole short suite, `own` cases first: what they notice needs no others."""
-    what, by = run_cases(work, own, jobs, timeout_s) if own else ("held", [])
-    return (what, by) if what != "held" else run_cases(work, [], jobs, timeout_s)
+    what, by = run_cases(work, own, jobs, cpu_s) if own else ("held", [])
+    return (what, by) if what != "held" else run_cases(work, [], jobs, cpu_s)
+
+
+def cpu_of_children_s():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def build(work, jobs):
     return subprocess.run(["ninja", "-C", work / "build/release", f"-j{jobs}", "canyon"], capture_output=True, text=True, check=False)
 
 
-def attempt(mutant, work, own, jobs, timeout_s):
+def attempt(mutant, work, own, jobs, cpu_s):
     """(verdict, by what) of one fault in the copy of the tree."""
     original = (ROOT / mutant["file"]).read_text(encoding="utf-8")
     apply(mutant, work)
     try:
         if build(work, jobs).returncode != 0:
             return "does not compile", []
-        what, by = run_suite(work, own, jobs, timeout_s)
+        what, by = run_suite(work, own, jobs, cpu_s)
         return ("survived", []) if what == "held" else ("killed", [what] + by)
     finally:
         (work / mutant["file"]).write_text(original, encoding="utf-8")
@@ -241,9 +249,9 @@ def copy_of_tree(work, jobs):
 def try_all(options):
     work = pathlib.Path(options.work).resolve()
     copy_of_tree(work, options.jobs)
-    started = time.monotonic()
-    what, by = run_cases(work, [], options.jobs, 1800.0)
-    timeout_s = max(60.0, 10.0 * (time.monotonic() - started))
+    before_s = cpu_of_children_s()
+    what, by = run_cases(work, [], options.jobs, 3600.0)
+    cpu_s = max(60.0, 10.0 * (cpu_of_children_s() - before_s))
     if what != "held":
         sys.exit(f"the tree as it is: {what}: {', '.join(by)}")
     own = cases_by_floor(work)
@@ -252,7 +260,7 @@ def try_all(options):
     for number, mutant in enumerate(read_list(options.list), 1):
         if (only and number not in only) or not counts(mutant):
             continue
-        verdict, by = attempt(mutant, work, own[mutant["file"].split("/")[0]], options.jobs, timeout_s)
+        verdict, by = attempt(mutant, work, own[mutant["file"].split("/")[0]], options.jobs, cpu_s)
         tried += 1
         killed += verdict == "killed"
         why = f"   [{by[0]}: {len(by) - 1}, {by[1] if len(by) > 1 else ''}]" if by else ""
