@@ -16,8 +16,9 @@ missing, `missing = "case"`. All are kept when the same seed is drawn again.
 
 `try` brings a copy of the tree up to date, file by file, and begins with it as it is, which must hold; so a second call compiles
 nothing anew, and a fault costs its own file, a link and the suite, of which the cases of the file's own floor come first. A fault in
-a header compiles whatever includes it. It prints a line for each fault: killed, and by what (a case that failed, a crash, a hang: ten times the CPU time of the tree as it is, another exit
-status), survived, or does not compile. It ends with status 1 if fewer than --least are killed.
+a header compiles whatever includes it. It prints a line for each fault: killed, and by what (a case that failed, a crash, a hang: ten
+times the CPU time of the tree as it is, another exit status), survived, or does not compile. It ends with status 1 if fewer than
+--least are killed.
 """
 import argparse
 import json
