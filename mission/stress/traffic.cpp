@@ -54,7 +54,8 @@ StressFigure standing() {
 }
 
 /// The room that is told to be swept by a thing holds every corner of it at any time, along each leg, of a single point
-/// too: within the radius of one of the legs, below its top. A figure counts corners outside.
+/// too: within the radius of one of the legs, below its top, and each room is of the leg's two ends. A figure
+/// counts corners outside and other ends.
 StressFigure swept_rooms() {
   int outside = 0;
   for (const std::vector<double>& way :
@@ -62,6 +63,13 @@ StressFigure swept_rooms() {
     const auto traffic = traffic_of(way, 8.0, 1.0);
     const std::vector<scene::SweptRoom> rooms = traffic.swept();
     outside += rooms.size() == std::max<std::size_t>(1, way.size() / 2 - 1) ? 0 : 1;
+    for (std::size_t k = 0; k < rooms.size(); ++k) {
+      const std::size_t next = std::min(k + 1, way.size() / 2 - 1);
+      outside += rooms[k].from_W == Eigen::Vector2d(way[2 * k], way[2 * k + 1]) &&
+                         rooms[k].to_W == Eigen::Vector2d(way[2 * next], way[2 * next + 1])
+                     ? 0
+                     : 1;
+    }
     for (double t_s = 0.0; t_s < 12.0; t_s += 0.31) {
       const scene::Instance thing = traffic.at(t_s)[0];
       for (const Eigen::Vector3f& corner : thing.shape->mesh().vertices) {

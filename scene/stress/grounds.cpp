@@ -1,6 +1,7 @@
 // Terrain at its borders, with holes and without steps.
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "canyon/core/output/printed.h"
 #include "canyon/core/stress_rows.h"
@@ -157,6 +158,45 @@ StressFigure ground_without_cracks(double cell_m, double extent_m) {
   return out;
 }
 
+/// The cells of a plan over ground with a bump of `rise_m` and nothing near it, or a house: they are as many as it
+/// says, lie side by side without overlap, none of them wholly beyond the rectangle, cover every square of it, and
+/// differ from whom they touch by two at most. A figure counts.
+StressFigure cells_fit(double rise_m) {
+  GroundDetail detail;
+  detail.add({-700.0, -600.0}, {-690.0, -590.0});
+  GroundWish wish;
+  wish.low = {-1000.0, -900.0}, wish.high = {1003.0, 1100.0};
+  const GroundHeight bump = [=](const Eigen::Vector2d& p) {
+    return std::optional(rise_m * std::exp(-(p - Eigen::Vector2d(500.0, 400.0)).squaredNorm() / 900.0));
+  };
+  const GroundPlan plan(wish, detail, bump, 1e6);
+  const std::vector<GroundPlan::Cell> cells = plan.list();
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> size_at;
+  int wrong = plan.cells() == static_cast<double>(cells.size()) ? 0 : 1;
+  for (const GroundPlan::Cell& cell : cells) {
+    wrong += plan.x(cell.column) < wish.high.x() && plan.y(cell.row) < wish.high.y() ? 0 : 1;
+    for (std::int32_t i = 0; i < cell.size; ++i)
+      for (std::int32_t j = 0; j < cell.size; ++j)
+        wrong += size_at.emplace(std::pair{cell.column + i, cell.row + j}, cell.size).second ? 0 : 1;
+  }
+  const std::int32_t columns = static_cast<std::int32_t>(std::ceil(2003.0 / wish.cell_m)),
+                     rows = static_cast<std::int32_t>(std::ceil(2000.0 / wish.cell_m));
+  for (std::int32_t column = 0; column < columns; ++column)
+    for (std::int32_t row = 0; row < rows; ++row) {
+      const auto here = size_at.find({column, row});
+      if (here == size_at.end()) {
+        ++wrong;
+        continue;
+      }
+      for (const auto& beside : {std::pair{column + 1, row}, {column, row + 1}}) {
+        const auto there = size_at.find(beside);
+        if (there == size_at.end()) continue;
+        wrong += here->second <= 2 * there->second && there->second <= 2 * here->second ? 0 : 1;
+      }
+    }
+  return {1.0 * wrong, 0.0};
+}
+
 /// Heights known at one place, or nowhere: the one height everywhere, or told to be unknown. A figure counts.
 StressFigure hardly_known() {
   StressFigure out;
@@ -240,6 +280,11 @@ std::vector<StressCase> ground_cases() {
            "ground everywhere; a plane's height to 16 eps", "m"});
   rows.add("grounds/without_cracks_1_km", [] { return ground_without_cracks(5.0, 1000.0); })
       .add("grounds/without_cracks_60_km", [] { return ground_without_cracks(40.0, 60000.0); });
+  rows.of({StressGroup::kGeometry, "cells of a ground that is hardly level",
+           "a cell that is counted or left out twice, or ends beside four",
+           "side by side without overlap, as many as is said, of at most twice their neighbours' size", "wrong"});
+  for (const double rise_m : {0.0, 3.0, 30.0, 1000.0})
+    rows.add("grounds/cells_around_a_bump_of_" + stress::text(rise_m) + "_m", [rise_m] { return cells_fit(rise_m); });
   rows.of({StressGroup::kData, "ground whose height is hardly known", "means of nothing",
            "the one height everywhere, or unknown", "wrong"});
   rows.add("grounds/known_at_one_place", hardly_known);

@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 /// Ground that rises by `slope` both ways, 200 m square, with four blocks of 70 m around a crossing of streets 30 m
-/// wide, and 15 m of ground around them. One of the blocks is a yard with a house in its middle: walls all around it.
+/// wide, and 15 m of ground around them. One of the blocks is a yard with two houses in it: walls all around.
 /// Over the arm to the east lies a level slab, `slab_m` above the highest ground under it.
 SceneParts crossing(double slope, double slab_m) {
   SceneParts parts = made::nothing();
@@ -42,8 +42,9 @@ SceneParts crossing(double slope, double slab_m) {
     mesh.begin_object("block " + std::to_string(parts.objects.size()), ObjectKind::kWall);
     walls(middle, 35.0, middle.x() < 0.0 || middle.y() < 0.0);
   }
-  mesh.begin_object("house in the yard", ObjectKind::kBuilding);
-  walls({50.0, 50.0}, 12.0, true);
+  mesh.begin_object("houses in the yard", ObjectKind::kBuilding);
+  walls({36.0, 50.0}, 8.0, true);
+  walls({64.0, 50.0}, 8.0, true);
   mesh.begin_object("slab", ObjectKind::kOther);
   const double z = std::max({ground_m(60, -15), ground_m(70, -15), ground_m(70, 15), ground_m(60, 15)}) + slab_m;
   mesh.quad({60, -15, z}, {70, -15, z}, {70, 15, z}, {60, 15, z}, brick);
