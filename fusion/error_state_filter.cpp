@@ -62,6 +62,13 @@ Measurement::Square times_transposed(const Measurement::Rows& HP, const Measurem
   return 0.5 * (out + out.transpose());
 }
 
+/// Room of this thread's own for the covariance while it is changed, so that no correction asks for memory.
+ErrorMatrix& copied(const ErrorMatrix& P) {
+  thread_local ErrorMatrix room;
+  room = P;
+  return room;
+}
+
 /// What rounding may take off an eigenvalue of H P H': an epsilon of each of the n x n terms of an element, and of the
 /// elements of a row.
 double rounding_of_HPHt(const Measurement::Rows& H, const ErrorMatrix& P) {
@@ -215,7 +222,7 @@ void ErrorStateFilter::update(const AidingMessage& message) {
 
 void ErrorStateFilter::renew(std::span<const Renewal> states) {
   if (states.empty()) return;
-  ErrorMatrix P = estimator_->covariance();
+  ErrorMatrix& P = copied(estimator_->covariance());
   for (const auto [state, kept] : states) {
     P.row(state) *= kept;
     P.col(state) *= kept;
@@ -272,8 +279,11 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   const double by_stamp_s = fix.t - state_.nav.t, age_s = by_stamp_s + (offset < 0 ? 0.0 : value(offset));
   CANYON_CHECK(std::min(std::abs(by_stamp_s), std::abs(age_s)) <= kMaxFixAge_s, "GNSS fix at ", fix.t.iso(), " is ",
                age_s, " s away from the last IMU sample");
+  const AidingMessage message(fix);
   for (Aid& aid : aids_) {
-    auto m = aid.model->received(view(), fix, 0);
+    aid.model->parts(view(), message);
+    renew(aid.model->renewed());
+    auto m = aid.model->received(view(), message, 0);
     if (!m) continue;
     const bool of_position = aid.name == kPositionModel;
     CANYON_CHECK(m->R.llt().info() == Eigen::Success, "covariance of the GNSS fix at ", fix.t.iso(),
@@ -323,7 +333,7 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
     m.R *= decision.noise_scale;
     if (decision.loosening != 1.0) {
       // What is off is what is measured, and not by what else is off with it as a rule.
-      ErrorMatrix P = estimator_->covariance();
+      ErrorMatrix& P = copied(estimator_->covariance());
       const double per_state = m.H.middleCols<3>(m.about).squaredNorm() / n;
       P.diagonal().segment<3>(m.about).array() +=
           (decision.loosening - 1.0) * (predicted + m.R).diagonal().maxCoeff() / per_state;

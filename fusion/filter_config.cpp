@@ -24,9 +24,16 @@ FilterParts vehicle() {
           .acceptance = "innovation_adaptive"};
 }
 
+FilterParts tight() {
+  return {.states = {"biases", "gains", "mounting", "wheel_scale", "receiver_clock", "range_errors"},
+          .measurements = {"ranges", "non_holonomic", "standstill", "odometer"},
+          .acceptance = "student_t"};
+}
+
 constexpr ModelRow<FilterParts (*)()> kSets[] = {
     {"naive", naive, "takes each fix as independent of the last one and as good as it says"},
     {"vehicle", vehicle, "knows that wheels roll, that fixes err for seconds, and what their Doppler shifts say"},
+    {"tight", tight, "as vehicle, of each satellite's pseudorange and its rate in place of fixes"},
 };
 
 void add_missing(std::vector<std::string>& names, const char* name) {

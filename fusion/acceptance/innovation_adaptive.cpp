@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/fusion/acceptance/acceptance.h"
+#include "canyon/fusion/acceptance/lost_way.h"
 
 namespace canyon::fusion {
 namespace {
@@ -18,10 +18,17 @@ void visit(FieldVisitor& f, InnovationAdaptiveParameters& p) {
 /// noise is a lower bound.
 class InnovationAdaptive final : public Copied<Acceptance, InnovationAdaptive> {
  public:
-  explicit InnovationAdaptive(const InnovationAdaptiveParameters& p) : p_(p) {}
-  void start() override { weight_ = sum_ = 0.0; }
+  InnovationAdaptive(const InnovationAdaptiveParameters& p, const LostWayParameters& lost) : p_(p), lost_(lost) {}
+  void start() override {
+    weight_ = sum_ = 0.0;
+    lost_.start();
+  }
 
   Decision decide(const Innovation& i) override {
+    if (lost_.found(i)) {
+      weight_ = sum_ = 0.0;
+      return LostWay::recovery(i);
+    }
     const double kept = weight_ > 0.0 ? std::exp(-std::max(i.t - last_, 0.0) / p_.adaptive_tau_s) : 0.0;
     last_ = i.t;
     double excess = 0.0;
@@ -35,6 +42,7 @@ class InnovationAdaptive final : public Copied<Acceptance, InnovationAdaptive> {
 
  private:
   InnovationAdaptiveParameters p_;
+  LostWay lost_;
   GpsTime last_;
   double weight_ = 0.0, sum_ = 0.0;
 };
@@ -42,11 +50,12 @@ class InnovationAdaptive final : public Copied<Acceptance, InnovationAdaptive> {
 }  // namespace
 
 std::unique_ptr<Acceptance> make_innovation_adaptive(const ModelParameters& own) {
-  return std::make_unique<InnovationAdaptive>(own.get<InnovationAdaptiveParameters>());
+  return std::make_unique<InnovationAdaptive>(own.get<InnovationAdaptiveParameters>(), own.get<LostWayParameters>());
 }
 
 void innovation_adaptive_parameters(ModelParameters& section) {
   section.add<InnovationAdaptiveParameters>();
+  lost_way_parameters(section);
 }
 
 }  // namespace canyon::fusion

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "canyon/fusion/acceptance/acceptance.h"
+#include "canyon/fusion/acceptance/lost_way.h"
 
 namespace canyon::fusion {
 namespace {
@@ -17,24 +17,28 @@ void visit(FieldVisitor& f, StudentTParameters& p) {
 /// who iterate it; this is its first step). What is nearer than expected is not taken for better.
 class StudentT final : public Copied<Acceptance, StudentT> {
  public:
-  explicit StudentT(const StudentTParameters& p) : p_(p) {}
+  StudentT(const StudentTParameters& p, const LostWayParameters& lost) : p_(p), lost_(lost) {}
+  void start() override { lost_.start(); }
   Decision decide(const Innovation& i) override {
+    if (lost_.found(i)) return LostWay::recovery(i);
     const double dof = static_cast<double>(i.residual.size());
     return {.noise_scale = std::max(1.0, (p_.student_t_dof + i.nis) / (p_.student_t_dof + dof))};
   }
 
  private:
   StudentTParameters p_;
+  LostWay lost_;
 };
 
 }  // namespace
 
 std::unique_ptr<Acceptance> make_student_t(const ModelParameters& own) {
-  return std::make_unique<StudentT>(own.get<StudentTParameters>());
+  return std::make_unique<StudentT>(own.get<StudentTParameters>(), own.get<LostWayParameters>());
 }
 
 void student_t_parameters(ModelParameters& section) {
   section.add<StudentTParameters>();
+  lost_way_parameters(section);
 }
 
 }  // namespace canyon::fusion

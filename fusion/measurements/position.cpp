@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
 
 #include "canyon/fusion/measurements/body_motion.h"
 #include "canyon/fusion/measurements/fix_age.h"
+#include "canyon/fusion/states/fix_error.h"
 
 namespace canyon::fusion {
 namespace {
@@ -34,8 +38,26 @@ FixCovariance kind_of(const std::string& name) {
 /// lasts where the states have one.
 class Position final : public Copied<MeasurementModel, Position> {
  public:
-  Position(const PositionParameters& p, const ErrorState& state)
-      : p_(p), kind_(kind_of(p.fix_covariance)), age_(state), fix_error_(state.offset("fix_error")) {}
+  Position(const PositionParameters& p, const FixErrorParameters& lasting, const ErrorState& state)
+      : p_(p),
+        kind_(kind_of(p.fix_covariance)),
+        lasting_(lasting),
+        age_(state),
+        fix_error_(state.offset("fix_error")) {}
+
+  void start() override {
+    last_ = {};
+    renewed_.clear();
+  }
+
+  int parts(const FilterView& filter, const AidingMessage& message) override {
+    renewed_.clear();
+    const GnssFix* fix = std::get_if<GnssFix>(&message);
+    if (fix != nullptr && fix->status != FixStatus::kNone && fix_error_ >= 0) renew(filter, *fix);
+    return 1;
+  }
+
+  std::span<const Renewal> renewed() const override { return renewed_; }
 
   std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message, int) override {
     const GnssFix* fix = std::get_if<GnssFix>(&message);
@@ -51,13 +73,23 @@ class Position final : public Copied<MeasurementModel, Position> {
     m.R = covariance(*fix);
     m.R.diagonal() = m.R.diagonal().cwiseMax(p_.fix_sigma_floor_m * p_.fix_sigma_floor_m);  // still positive definite
     if (fix_error_ >= 0) {
-      m.residual -= filter.state.values(fix_error_, 3);
-      m.H.middleCols<3>(fix_error_).setIdentity();
+      const Eigen::Matrix3d share = lasting_.share(fix->covariance_E);
+      m.residual -= share * filter.state.values(fix_error_, 3);
+      m.H.middleCols<3>(fix_error_) = share;
     }
     return m;
   }
 
  private:
+  /// The antenna's way since the last fix has changed the echoes.
+  void renew(const FilterView& filter, const GnssFix& fix) {
+    const double way_m = last_ ? std::abs(fix.t - *last_) * antenna_velocity(filter).v_E.norm() : 0.0;
+    last_ = fix.t;
+    const double kept = std::exp(-way_m / lasting_.fix_error_way_m);
+    if (kept > kStill) return;
+    for (int i = 0; i < 3; ++i) renewed_.push_back({fix_error_ + i, kept});
+  }
+
   Eigen::Matrix3d covariance(const GnssFix& fix) const {
     const double variance = p_.fix_sigma_m * p_.fix_sigma_m;
     switch (kind_) {
@@ -79,16 +111,21 @@ class Position final : public Copied<MeasurementModel, Position> {
     return 0.5 * (fix.covariance_E + fix.covariance_E.transpose());
   }
 
+  static constexpr double kStill = 1.0 - 1e-6;  ///< what is kept of an error that a way has not changed
+
   PositionParameters p_;
   FixCovariance kind_;
+  FixErrorParameters lasting_;
   FixAge age_;
   int fix_error_;
+  std::optional<GpsTime> last_;
+  std::vector<Renewal> renewed_;
 };
 
 }  // namespace
 
 std::unique_ptr<MeasurementModel> make_position(const ModelParameters& own, const MeasurementSetup& at) {
-  return std::make_unique<Position>(own.get<PositionParameters>(), at.state);
+  return std::make_unique<Position>(own.get<PositionParameters>(), own.get<FixErrorParameters>(), at.state);
 }
 
 void position_parameters(ModelParameters& section) {

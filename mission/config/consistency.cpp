@@ -56,6 +56,10 @@ Status check_measurements(const MissionConfig& config) {
     return Error{.key = config.fusion.map_aiding ? "fusion.map_aiding" : "fusion.measurements",
                  .what = "the filter measures with registered scans, and none is registered",
                  .expected = "a registration.method"};
+  if (fusion::measures_with(config.fusion, "ranges") && config.gnss.model.name != "pseudorange")
+    return Error{.key = config.fusion.measurements.empty() ? "fusion.filter" : "fusion.measurements",
+                 .what = "the filter measures with ranges, and gnss.model \"" + config.gnss.model.name + "\" has none",
+                 .expected = "gnss.model = \"pseudorange\""};
   for (const char* name : {"heading", "map_pose"}) {
     if (!fusion::measures_with(config.fusion, name)) continue;
     return Error{.key = "fusion.measurements",

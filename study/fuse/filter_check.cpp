@@ -39,19 +39,20 @@ bool has_sensor(const FuseInputs& in, const std::string& name) {
   return true;
 }
 
-Error without_sensor(const FuseInputs& in, const FuseConfig& config, const std::string& name) {
+Error without_sensor(const FuseInputs& in, const FuseConfig& config, const std::string& name,
+                     const char* key = kMeasurements) {
   const bool of_run = !in.of_run.empty();
   if (name == "velocity")
-    return at_key(config, kMeasurements, "\"velocity\", but " + in.gnss_path + " has no velocity with a sigma",
+    return at_key(config, key, "\"velocity\", but " + in.gnss_path + " has no velocity with a sigma",
                   of_run ? "a run whose receiver gives one"
                          : "columns vn,ve,vu,sd_vn,sd_ve,sd_vu, or gnss.velocity_sigma_enu_m_s");
   if (name == "ranges" && !of_run)
-    return at_key(config, kMeasurements, "\"ranges\", but " + in.gnss_path + " holds positions",
+    return at_key(config, key, "\"ranges\", but " + in.gnss_path + " holds positions",
                   "RINEX observations, and --nav FILE");
   if (of_run)
-    return at_key(config, kMeasurements, quoted(name) + ", of which the run " + quoted(in.of_run) + " has no record",
+    return at_key(config, key, quoted(name) + ", of which the run " + quoted(in.of_run) + " has no record",
                   "a run whose own filter measures with it");
-  return at_key(config, kMeasurements, quoted(name) + " without a log of one",
+  return at_key(config, key, quoted(name) + " without a log of one",
                 name == "odometer" ? "--odometer FILE" : "--results of a run whose filter measures with it");
 }
 
@@ -68,6 +69,9 @@ Status check_fuse_filter(const FuseInputs& in, const FuseConfig& config) {
       return at_key(config, kMeasurements, quoted(name) + ", for which canyon fuse has no messages", fed_rows());
     if (!has_sensor(in, name)) return without_sensor(in, config, name);
   }
+  // What a set measures with is left out where there is none, but not its only word of the place.
+  if (fusion::measures_with(config.fusion, "ranges") && !has_sensor(in, "ranges"))
+    return without_sensor(in, config, "ranges", "fusion.filter");
   return Ok{};
 }
 

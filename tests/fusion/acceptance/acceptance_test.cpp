@@ -1,6 +1,8 @@
 #include "canyon/fusion/acceptance/acceptance.h"
 
 #include <cmath>
+#include <functional>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +93,44 @@ TEST(Acceptance, AdaptiveNoiseIsWhatTheInnovationsSay) {
   // What the prediction explains is not the measurement's.
   const auto unsure = made("innovation_adaptive");
   EXPECT_EQ(decide(*unsure, 0.0, 10.0, 100.0).noise_scale, 1.0);
+}
+
+/// Decisions on fixes twice a second that are `off` beside the filter and noisy as they say (1 m per axis): the first
+/// that takes the filter for lost, s; -1 if none does in a minute.
+double lost_after_s(const char* row, const std::string& keys, const std::function<Eigen::Vector3d(double t_s)>& off) {
+  const auto model = made(row, keys.c_str());
+  const RandomStream stream(6, "test.lost");
+  for (int k = 0; k <= 120; ++k) {
+    const double t_s = 0.5 * k;
+    const Measurement::Vector residual = off(t_s) + stream.normal3(static_cast<std::uint64_t>(k));
+    const Measurement::Square R = Measurement::Square::Identity(3, 3);
+    const Decision d = model->decide(
+        {.t = kStart + t_s, .residual = residual, .R = R, .predicted = 0.1 * R, .nis = residual.squaredNorm() / 1.1});
+    EXPECT_TRUE(d.accepted);
+    if (d.loosening > 1.0) return t_s;
+  }
+  return -1.0;
+}
+
+// 2026-11-25: after an hour of bad fixes the rows that weigh fixes took minutes to believe the good ones.
+TEST(Acceptance, FixesThatAreSteadilyBesideItSayThatTheFilterIsLost) {
+  const std::string keys = "lost_after_s = 5";
+  const Eigen::Vector3d beside(40.0, -30.0, 5.0);
+  const auto constant = [&](double) { return beside; };
+  for (const char* row : {"huber", "student_t", "innovation_adaptive"}) {
+    EXPECT_EQ(lost_after_s(row, keys, constant), 5.0) << row;
+    EXPECT_EQ(lost_after_s(row, "", constant), -1.0) << row;  // off by default
+    // Fixes that wander, as along a street: 1 m/s.
+    EXPECT_EQ(lost_after_s(row, keys, [&](double t) { return (1.0 + t / 50.0) * beside; }), -1.0) << row;
+    // Their noise alone, and what is beside it by two sigma.
+    EXPECT_EQ(lost_after_s(row, keys, [](double) { return Eigen::Vector3d(0.0, 0.0, 0.0); }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double) { return Eigen::Vector3d(2.0, 0.0, 0.0); }), -1.0) << row;
+    // Bad until the twentieth second, then steady.
+    EXPECT_NEAR(
+        lost_after_s(row, keys, [&](double t) { return t < 20.0 ? Eigen::Vector3d((30.0 - t) * beside) : beside; }),
+        25.0, 0.5)
+        << row;
+  }
 }
 
 TEST(Acceptance, FuzzyRulesRaiseTheNoiseWithTheInnovations) {

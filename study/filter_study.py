@@ -1,0 +1,324 @@
+#!/usr/bin/env python3
+"""Filters beside one another on the same fixes, and beside an oracle that is told how far each fix is off.
+
+    study/filter_study.py --route vicksburg --seeds 1-10 --filters naive,vehicle,tight --oracle
+    study/filter_study.py --route city7 --seeds 101-103 --set 'loose=filter = "vehicle"; fix_error_scale = 3'
+    study/filter_study.py --route city7 --seeds 101-103 --fixes
+
+Each seed is driven once in an open loop, by truth, with everything that any of the filters measures with; `canyon fuse` then gives each
+filter that record. So all of them meet the same motion, fixes, ranges, ticks and noise. The rear axle slips and the unit is mounted
+askew. The channel and the receiver are spelled out below and owe nothing to what a fidelity is: with `--channel` another file's.
+
+vicksburg is the built-in route, which is reported. The routes in other cities at other hours are there to choose by.
+
+The oracle is the filter `vehicle` without `fix_error`, with accept_all, on fixes whose covariance is, epoch by epoch, the mean of e e' over
+the other seeds and the second around, times `--oracle-scale` for what the errors of one fix and the next have in common.
+"""
+import argparse
+import csv
+import json
+import math
+import os
+import pathlib
+import random
+import statistics
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+# What `high` was when the figures of docs/fusion.md were measured: a good differential receiver of 2010, walls and edges.
+CHANNEL = """
+[fidelity.recorded.gnss]
+model = "pseudorange"
+mode = "dgps"
+ephemeris_error = "orbit_clock_2010"
+paths = "specular2"
+diffraction = "double_knife_edge"
+multipath_rule = "correlator"
+correlator_spacing_chips = 0.1
+front_end_mhz = 16.0
+code_loop_hz = 0.25
+tracking_threshold_dbhz = 28.0
+antenna = "survey"
+weighting = "elevation_cn0"
+raim = "greedy"
+raim_false_alarm = 1e-3
+max_gdop = 30.0
+"""
+
+COMMON = """
+[registration]
+method = "none"
+[vehicle]
+sideslip_deg_per_m_s2 = 0.6
+{vehicle}
+[imu]
+mounting_error_deg = 0.5
+[success]
+waypoint_radius_m = {radius}
+[run]
+record_filter_input = true
+{run}
+[fidelity.recorded]
+base = "low"
+[fidelity.recorded.imu]
+errors = "datasheet"
+[fidelity.recorded.run]
+initial_attitude_error_deg = [0.1, 0.1, 1.0]
+[fidelity.recorded.fusion]
+states = ["biases", "gains", "mounting", "wheel_scale", "receiver_clock"]
+measurements = ["position", "velocity", "non_holonomic", "standstill", "odometer", "ranges"]
+acceptance = "innovation_adaptive"
+"""
+
+ROUTES = {"vicksburg": None,
+          "city7": {"seed": 7, "start": "2010-11-17T04:30:00"},
+          "city8": {"seed": 8, "start": "2010-11-19T09:10:00"},
+          "city9": {"seed": 9, "start": "2010-11-21T19:40:00"}}
+
+FILTERS = {"naive": 'filter = "naive"', "vehicle": 'filter = "vehicle"', "tight": 'filter = "tight"'}
+ORACLE = 'filter = "vehicle"\nstates = ["biases", "gains", "mounting", "wheel_scale"]\nacceptance = "accept_all"'
+
+
+def call(arguments, log):
+    with open(log, "w") as out:
+        done = subprocess.run(arguments, stdout=out, stderr=subprocess.STDOUT)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, arguments))}: exit status {done.returncode}\n{pathlib.Path(log).read_text()[-2000:]}")
+
+
+def route_of(city, streets, attempt):
+    """A way of about a kilometre from the middle of one street to that of another, by numbers that depend on the city alone."""
+    draw = random.Random(1000 * attempt + city["seed"])
+    edges = [(e["a"], e["b"]) for e in streets if math.dist(e["a"], e["b"]) > 60.0]
+    middle = lambda e: [(e[0][0] + e[1][0]) / 2, (e[0][1] + e[1][1]) / 2]
+    first = draw.choice(edges)
+    points, at, length = [], middle(first), 0.0
+    while length < 800.0:
+        to = middle(draw.choice(edges))
+        if not 120.0 < math.dist(at, to) < 350.0:
+            continue
+        length += math.dist(at, to)
+        points.append(to)
+        at = to
+    (ax, ay), (bx, by) = sorted(first, key=lambda end: -math.dist(end, points[0]))
+    heading = math.degrees(math.atan2(bx - ax, by - ay))
+    return middle(first), heading, points
+
+
+def streets_of(arguments, work, place):
+    """A run of nearly nothing from some place that is outside of buildings tells the streets."""
+    draw = random.Random(1)
+    for _ in range(200):
+        x, y = draw.uniform(-300, 300), draw.uniform(-300, 300)
+        probe, folder = work / "probe.toml", work / "probe"
+        probe.write_text(place.replace("[time]", '[registration]\nmethod = "none"\n[time]\nlimit_s = 0.5') +
+                         f'[vehicle]\nstart_m = [{x}, {y}]\n[[autonomy.waypoint]]\nname = "1"\np_m = [{x + 3}, {y}]\n')
+        done = subprocess.run([arguments.canyon, "run", probe, "--fidelity", "low", "--out", folder, "--force"], capture_output=True)
+        if done.returncode == 0:
+            return json.loads((folder / "scene.json").read_text())
+    sys.exit("no place outside of buildings found")
+
+
+def mission(arguments, work, attempt):
+    city = ROUTES[arguments.route]
+    channel = arguments.channel.read_text() if arguments.channel else CHANNEL
+    if city is None:
+        return 'base = "vicksburg"\n' + COMMON.format(vehicle="", run="", radius=3) + channel
+    place = (f'[scene]\nseed = {city["seed"]}\nlat_deg = 32.35\nlon_deg = -90.88\n[time]\nstart = "{city["start"]}"\n')
+    scene = work / f"{arguments.route}.scene.json"
+    if not scene.exists():
+        scene.write_text(json.dumps(streets_of(arguments, work, place)))
+    start, heading, points = route_of(city, json.loads(scene.read_text())["streets"], attempt)
+    text = place + COMMON.format(vehicle=f"start_m = [{start[0]:.3f}, {start[1]:.3f}]\nstart_heading_deg = {heading:.3f}",
+                                 run=f'name = "{arguments.route}"', radius=60) + channel
+    for i, p in enumerate(points):
+        text += f'[[autonomy.waypoint]]\nname = "{i + 1}"\np_m = [{p[0]:.3f}, {p[1]:.3f}]\n'
+    return text
+
+
+def record(arguments, work, seed):
+    """The folder of a run; of a route's attempts the first one that can be driven."""
+    folder, file = work / f"{arguments.route}-{seed}", work / f"{arguments.route}.toml"
+    if folder.exists():
+        return folder
+    log = work / f"{folder.name}.log"
+    for attempt in range(1 if ROUTES[arguments.route] is None or file.exists() else 30):
+        if not file.exists() or attempt > 0 or ROUTES[arguments.route] is None:
+            file.write_text(mission(arguments, work, attempt))
+        with open(log, "w") as out:
+            done = subprocess.run([arguments.canyon, "compare", file, "--open-loop", "--seed", str(seed), "--fidelities", "recorded",
+                                   "--no-2x2", "--threads", str(arguments.threads), "--out", folder], stdout=out, stderr=subprocess.STDOUT)
+        if done.returncode == 0:
+            return folder
+    file.unlink()
+    sys.exit(f"{log}: {log.read_text()[-1000:]}")
+
+
+def fuse(arguments, folder, name, keys):
+    config = folder.parent / f"{name}.fuse.toml"
+    config.write_text("[fusion]\n" + keys.replace("; ", "\n") + "\n")
+    out = folder.parent / f"fused-{folder.name}-{name}"
+    call([arguments.canyon, "fuse", "--results", folder, "--run", "recorded", "--config", config, "--out", out, "--force"],
+         folder.parent / f"{out.name}.log")
+    summary = json.loads((out / "summary.json").read_text())
+    with open(out / "errors.csv") as file:
+        rows = [[float(r[k]) for k in ("error_e_m", "error_n_m", "error_u_m", "sigma_e_m", "sigma_n_m", "sigma_u_m")]
+                for r in csv.DictReader(file) if r["scored"] == "1"]
+    largest = max(math.hypot(*r[:3]) for r in rows)
+    ratio = [[(r[i] / r[3 + i]) ** 2 for r in rows] for i in range(3)]
+    return {"rms": summary["rms_3d_m"], "e": summary["rms_e_m"], "n": summary["rms_n_m"], "u": summary["rms_u_m"], "max": largest,
+            "h": math.hypot(summary["rms_e_m"], summary["rms_n_m"]),
+            "mean": [statistics.fmean(r) for r in ratio], "median": [statistics.median(r) for r in ratio],
+            "within": horizontal_shares(summary)}
+
+
+def horizontal_shares(summary):
+    """Of epochs within the 50, 95 and 99.7 % ellipses, %."""
+    for block in summary["evidence"]["blocks"]:
+        if block["name"] == "position":
+            return [100.0 * block[k] for k in ("within_50", "within_95", "within_997")]
+    return [math.nan] * 3
+
+
+def table_rows(path):
+    with open(path) as file:
+        return list(csv.DictReader(file))
+
+
+def fix_errors(folder):
+    """By time since the start, ns: error east, north, up."""
+    out = {}
+    for r in table_rows(folder / "epochs" / "recorded_gnss.csv"):
+        if r["status"] != "none":
+            out[round(float(r["t_s"]) * 1e9)] = [float(r[k]) for k in ("error_e_m", "error_n_m", "error_u_m")]
+    return out
+
+
+def told_truly(arguments, folder, others, origin):
+    """A copy of the record whose fixes state the covariance that the errors of the other seeds show."""
+    copy = folder.parent / f"{folder.name}-told"
+    (copy / "epochs").mkdir(parents=True, exist_ok=True)
+    for path in list(folder.iterdir()) + list((folder / "epochs").iterdir()):
+        to = copy / path.relative_to(folder)
+        if path.is_file() and not to.exists() and path.name != "recorded_fixes.csv":
+            os.link(path, to)
+    lat, lon = math.radians(origin["lat_deg"]), math.radians(origin["lon_deg"])
+    R = [[-math.sin(lon), -math.sin(lat) * math.cos(lon), math.cos(lat) * math.cos(lon)],
+         [math.cos(lon), -math.sin(lat) * math.sin(lon), math.cos(lat) * math.sin(lon)],
+         [0.0, math.cos(lat), math.sin(lat)]]  # E from east, north, up
+    errors = [fix_errors(o) for o in others]
+    rows = table_rows(folder / "epochs" / "recorded_fixes.csv")
+    for row in rows:
+        if row["status"] == "none":
+            continue
+        t = int(row["t_ns"])
+        near = [e[k] for e in errors for k in e if abs(k - t) <= 1.01e9]
+        if not near:
+            continue
+        C = [[arguments.oracle_scale * sum(e[i] * e[j] for e in near) / len(near) + (1e-4 if i == j else 0.0) for j in range(3)]
+             for i in range(3)]
+        RC = [[sum(R[i][k] * C[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+        E = [[sum(RC[i][k] * R[j][k] for k in range(3)) for j in range(3)] for i in range(3)]
+        for name, (i, j) in {"xx": (0, 0), "xy": (0, 1), "xz": (0, 2), "yy": (1, 1), "yz": (1, 2), "zz": (2, 2)}.items():
+            row[name + "_m2"] = repr(E[i][j])
+    with open(copy / "epochs" / "recorded_fixes.csv", "w", newline="") as file:
+        out = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
+        out.writeheader()
+        out.writerows(rows)
+    return copy
+
+
+def describe_fixes(folders):
+    """How large the errors of fixes are beside what they state, and over which way and time they change."""
+    bins, lagged, rest = {}, {}, {}
+    for folder in folders:
+        fixes = []
+        for r in table_rows(folder / "epochs" / "recorded_gnss.csv"):
+            if r["status"] == "none":
+                continue
+            f = {k: float(r[k]) for k in r if k.endswith("_m") or k == "t_s"}
+            fixes.append((f["t_s"], (f["true_x_m"], f["true_y_m"]), [f[f"error_{a}_m"] for a in "enu"], [f[f"sigma_{a}_m"] for a in "enu"]))
+        for _, _, error, sigma in fixes:
+            for axis in range(3):
+                key = ("up" if axis == 2 else "across", round(2 * math.log2(sigma[axis])) / 2)
+                bins.setdefault(key, []).append(error[axis])
+        z = [[e / s for e, s in zip(f[2], f[3])] for f in fixes]
+        way = [0.0]
+        for a, b in zip(fixes, fixes[1:]):
+            way.append(way[-1] + math.dist(a[1], b[1]))
+        for i in range(len(fixes)):
+            for j in range(i + 1, min(i + 240, len(fixes))):
+                moved, passed = way[j] - way[i], fixes[j][0] - fixes[i][0]
+                product = [math.copysign(min(abs(z[i][k]), 5.0), z[i][k]) * math.copysign(min(abs(z[j][k]), 5.0), z[j][k]) for k in range(3)]
+                if moved < 0.5:
+                    rest.setdefault(round(passed), []).append(product)
+                elif moved < 300.0:
+                    lagged.setdefault(round(2 * math.log2(moved)) / 2, []).append(product)
+        for k in range(3):
+            own = [math.copysign(min(abs(x[k]), 5.0), x[k]) ** 2 for x in z]
+            lagged.setdefault("own", []).extend([[own[i] if k == j else math.nan for j in range(3)] for i in range(len(own))])
+    print("axis    stated, m   fixes   RMS, m   median |error|, m   RMS / stated")
+    for (axis, power), errors in sorted(bins.items()):
+        rms = math.sqrt(statistics.fmean(e * e for e in errors))
+        print(f"{axis:7} {2**power:8.2f} {len(errors):8} {rms:8.2f} {statistics.median(map(abs, errors)):12.2f} {rms / 2**power:18.2f}")
+    own = [statistics.fmean(x[k] for x in lagged["own"] if not math.isnan(x[k])) for k in range(3)]
+    print("way, m: correlation east, north, up of errors in units of what is stated, up to 5")
+    for key in sorted(k for k in lagged if k != "own"):
+        print(f"{2**key:8.1f} " + " ".join(f"{statistics.fmean(p[k] for p in lagged[key]) / own[k]:6.2f}" for k in range(3)), len(lagged[key]))
+    print("at rest, s:")
+    for key in sorted(rest):
+        if key in (1, 2, 4, 8, 12, 16, 24):
+            print(f"{key:8} " + " ".join(f"{statistics.fmean(p[k] for p in rest[key]) / own[k]:6.2f}" for k in range(3)), len(rest[key]))
+
+
+def seeds_of(text):
+    first, _, last = text.partition("-")
+    return list(range(int(first), int(last or first) + 1))
+
+
+def print_table(results):
+    median = statistics.median
+    print("| filter | seeds | 3-D RMS, m (range) | horizontal | east, north, up | largest | coverage, % | (e/sigma)² mean | median |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for name, runs in results.items():
+        of = lambda key: median(r[key] for r in runs)
+        within = " / ".join(f"{statistics.fmean(r['within'][i] for r in runs):.0f}" for i in range(3))
+        three = lambda key, d=1: ", ".join(f"{median(r[key][i] for r in runs):.{d}f}" for i in range(3))
+        print(f"| {name} | {len(runs)} | {of('rms'):.2f} ({min(r['rms'] for r in runs):.2f} to {max(r['rms'] for r in runs):.2f}) | {of('h'):.2f} | "
+              f"{of('e'):.2f}, {of('n'):.2f}, {of('u'):.2f} | {of('max'):.1f} | {within} | {three('mean')} | {three('median')} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--canyon", type=pathlib.Path, default=HERE.parent / "build/release/bin/canyon")
+    parser.add_argument("--work", type=pathlib.Path, default=HERE.parent / "build/filter_study", help="what is recorded is kept here")
+    parser.add_argument("--route", choices=ROUTES, default="vicksburg")
+    parser.add_argument("--channel", type=pathlib.Path, help="TOML with [fidelity.recorded.gnss], in place of the one written here")
+    parser.add_argument("--seeds", type=seeds_of, default=seeds_of("1-3"))
+    parser.add_argument("--filters", default="", help="of naive, vehicle, tight")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=KEYS", help="a filter of these keys of [fusion], parted by '; '")
+    parser.add_argument("--oracle", action="store_true")
+    parser.add_argument("--oracle-scale", type=float, default=3.0)
+    parser.add_argument("--fixes", action="store_true", help="what the fixes' errors are like")
+    parser.add_argument("--threads", type=int, default=1)
+    arguments = parser.parse_args()
+    filters = {name: FILTERS[name] for name in arguments.filters.split(",") if name}
+    filters |= dict(one.split("=", 1) for one in arguments.set)
+    work = arguments.work
+    work.mkdir(parents=True, exist_ok=True)
+    folders = {seed: record(arguments, work, seed) for seed in arguments.seeds}
+    if arguments.fixes:
+        describe_fixes(list(folders.values()))
+    results = {name: [fuse(arguments, folder, name, keys) for folder in folders.values()] for name, keys in filters.items()}
+    if arguments.oracle:
+        origin = json.loads((next(iter(folders.values())) / "summary.json").read_text())["scene"]["origin"]
+        told = [told_truly(arguments, folder, [f for s, f in folders.items() if s != seed], origin) for seed, folder in folders.items()]
+        results["oracle"] = [fuse(arguments, folder, "oracle", ORACLE) for folder in told]
+    if results:
+        print_table(results)
+
+
+if __name__ == "__main__":
+    main()
