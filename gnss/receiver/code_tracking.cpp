@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 
 #include "canyon/core/check.h"
 #include "canyon/core/units.h"
@@ -21,6 +22,13 @@ Complex averaged(double f_hz, double loop_hz, double integration_s) {
   if (f_hz == 0.0) return 1.0;
   const double x = kPi * f_hz * integration_s;
   return std::sin(x) / x / Complex(1.0, 2.0 * kPi * f_hz / (4.0 * loop_hz));
+}
+
+/// Real part of a phasor that turns at `f_hz`, averaged by a loop; `integrated` is what predetection integration
+/// leaves.
+double averaged_part(const Complex& phasor, double f_hz, double loop_hz, double integrated) {
+  const double lag = 2.0 * kPi * f_hz / (4.0 * loop_hz);
+  return integrated * (phasor.real() + phasor.imag() * lag) / (1.0 + lag * lag);
 }
 
 }  // namespace
@@ -80,11 +88,12 @@ CodeTracking::Composite CodeTracking::composite(std::span<const EchoSignal> sign
   c.pair_code.resize(n * n);
   c.pair_power.resize(n * n);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t j = 0; j <= i; ++j) {  // the other half is the same: a pair the other way round turns backwards
       const Complex pair = phasors[i] * std::conj(phasors[j]);
-      const double f_hz = c.doppler_hz[i] - c.doppler_hz[j];
-      c.pair_code[i * n + j] = (pair * averaged(f_hz, design_.code_loop_hz, design_.integration_s)).real();
-      c.pair_power[i * n + j] = (pair * averaged(f_hz, kPowerLoopHz, design_.integration_s)).real();
+      const double f_hz = c.doppler_hz[i] - c.doppler_hz[j], x = kPi * f_hz * design_.integration_s;
+      const double integrated = x == 0.0 ? 1.0 : std::sin(x) / x;
+      c.pair_code[i * n + j] = c.pair_code[j * n + i] = averaged_part(pair, f_hz, design_.code_loop_hz, integrated);
+      c.pair_power[i * n + j] = c.pair_power[j * n + i] = averaged_part(pair, f_hz, kPowerLoopHz, integrated);
     }
   }
   return c;
@@ -164,6 +173,43 @@ std::optional<double> CodeTracking::stable_zero(const Composite& c) const {
   std::vector<double> points;
   scan_points(c, points);
   std::optional<double> best;
+  const auto keep_nearest = [&](double root) {
+    if (!best || std::abs(root) < std::abs(*best)) best = root;
+  };
+  // From the reference outwards, to where no root that is left can be nearer to it: a few points of a hundred, in most
+  // cases. Roots lie between neighbours, where no point is exactly a zero.
+  const auto outwards = [&] {
+    if (points.size() < 2) return false;
+    auto high = static_cast<std::size_t>(std::lower_bound(points.begin(), points.end(), 0.0) - points.begin());
+    high = std::clamp<std::size_t>(high, 1, points.size() - 1);
+    std::size_t low = high - 1;
+    double low_value = discriminator(c, points[low]), high_value = discriminator(c, points[high]);
+    const auto look_between = [&](std::size_t at, double value, double next_value) {
+      if (value < 0.0 && next_value > 0.0) keep_nearest(refine(c, points[at], value, points[at + 1], next_value));
+    };
+    look_between(low, low_value, high_value);
+    while (low_value != 0.0 && high_value != 0.0) {
+      constexpr double kNone = std::numeric_limits<double>::infinity();
+      const double below = low > 0 ? std::abs(points[low]) : kNone;
+      const double above = high + 1 < points.size() ? std::abs(points[high]) : kNone;
+      const double least = std::min(below, above);
+      if (least == kNone || (best && std::abs(*best) < least)) return true;
+      if (below <= above) {
+        const double value = discriminator(c, points[low - 1]);
+        look_between(low - 1, value, low_value);
+        --low;
+        low_value = value;
+      } else {
+        const double value = discriminator(c, points[high + 1]);
+        look_between(high, high_value, value);
+        ++high;
+        high_value = value;
+      }
+    }
+    return false;
+  };
+  if (outwards()) return best;
+  best.reset();
   double negative_at = 0.0, negative_value = 0.0;  // last point with a value below zero
   double zero_from = 0.0, zero_to = 0.0;           // zeros since then
   bool armed = false, zeros = false;
@@ -179,8 +225,7 @@ std::optional<double> CodeTracking::stable_zero(const Composite& c) const {
       zeros = true;
       zero_to = t;
     } else if (armed && value > 0.0) {
-      const double root = zeros ? 0.5 * (zero_from + zero_to) : refine(c, negative_at, negative_value, t, value);
-      if (!best || std::abs(root) < std::abs(*best)) best = root;
+      keep_nearest(zeros ? 0.5 * (zero_from + zero_to) : refine(c, negative_at, negative_value, t, value));
       armed = zeros = false;
     }
   }

@@ -45,7 +45,12 @@ ReceivedSignal receive(const SignalPath& path, const LinkBudget& link, const Eig
   r.cn0_dbhz = link.cn0_zenith_dbhz - link.foliage_db(path.foliage_m) + gain_db;
   const double turns = path.excess_m / wavelength_m;
   // A longer way delays the phase.
-  r.phase_rad = std::arg(std::norm(right) >= std::norm(left) ? right : left) - 2.0 * kPi * (turns - std::floor(turns));
+  // The hands of many scatterers fade apart, and the phase must not jump as one passes the other: both count, each as
+  // it is strong.
+  const std::complex<double> phasor = path.spread > 0.0 ? std::abs(right) * right + std::abs(left) * left
+                                      : std::norm(right) >= std::norm(left) ? right
+                                                                            : left;
+  r.phase_rad = std::arg(phasor) - 2.0 * kPi * (turns - std::floor(turns));
   r.doppler_hz = v_A_W.dot(path.arrival_W - to_satellite_W) / wavelength_m;
   return r;
 }

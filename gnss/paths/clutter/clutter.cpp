@@ -23,7 +23,7 @@ std::vector<Need> no_clutter_needs(const PathQuestion&) {
 constexpr ModelRow<MakeClutterModel> kClutterRows[] = {
     {"none", {without_keys<make_no_clutter>, no_clutter_needs}, "nothing stands in the street but what the scene has"},
     {"street",
-     {make_street_clutter},
+     {make_street_clutter, clutter_needs},
      "what the scene lacks: shading in two states (ITU-R P.681), scatterers fixed to the ground, traffic",
      street_clutter_parameters},
 };

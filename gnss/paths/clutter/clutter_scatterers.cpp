@@ -34,7 +34,10 @@ void ClutterScatterers::near(const scene::Scene& scene, const Eigen::Vector3d& p
   for (int x = cell(p_W.x() - radius_m); x <= cell(p_W.x() + radius_m); ++x) {
     for (int y = cell(p_W.y() - radius_m); y <= cell(p_W.y() + radius_m); ++y) {
       auto at = made_.find({x, y});
-      if (at == made_.end()) at = made_.emplace(std::pair(x, y), make(scene, x, y)).first;
+      if (at == made_.end()) {
+        at = made_.emplace(std::pair(x, y), make(scene, x, y)).first;
+        at->second.number = static_cast<std::uint32_t>(made_.size() - 1);
+      }
       if ((at->second.p_W - p_W).head<2>().squaredNorm() < radius_m * radius_m) out.push_back(at->second);
     }
   }

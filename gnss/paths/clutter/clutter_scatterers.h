@@ -16,7 +16,8 @@ namespace canyon::gnss {
 
 /// A point of the street that sends signals on: a pole, a sign, a parked car.
 struct ClutterScatterer {
-  std::uint64_t id = 0;  ///< of its cell
+  std::uint64_t id = 0;      ///< of its cell
+  std::uint32_t number = 0;  ///< in the order in which they were first met, of the same scene
   Eigen::Vector3d p_W;
   std::complex<double> co, cross;  ///< complex normal, variance 1: what it sends into either hand
 };

@@ -9,6 +9,7 @@
 #include "canyon/gnss/paths/clutter/street_number.h"
 #include "canyon/gnss/paths/clutter/street_shading.h"
 #include "canyon/gnss/paths/scatter/delay_bins.h"
+#include "canyon/gnss/paths/sight/point_sight.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
@@ -46,46 +47,10 @@ void visit(FieldVisitor& f, StreetClutterParameters& c) {
 
 /// A scatterer that is seen from the antenna, and the field that it would send on if it is lit.
 struct Seen {
+  std::uint32_t number;
   Eigen::Vector3d p_W, to_W;  ///< unit, from the antenna
   double r_m;
   std::complex<double> co, cross;  ///< variance over streets: half of its share of the multipath's power
-};
-
-/// What is seen from places on a lattice of 2 m, between them in shares that change evenly: as the antenna moves no
-/// scatterer comes or goes at once.
-class SoftSight {
- public:
-  SoftSight(const Eigen::Vector3d& p_W, const scene::SceneAt& scene) : scene_(scene) {
-    const Eigen::Vector3d low_W = (p_W / kCell_m).array().floor() * kCell_m;
-    const Eigen::Vector3d f = (p_W - low_W) / kCell_m;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-      Eigen::Vector3d node_W = low_W;
-      double weight = 1.0;
-      for (int k = 0; k < 3; ++k) {
-        const bool upper = (corner >> k & 1U) != 0;
-        node_W[k] += upper ? kCell_m : 0.0;
-        weight *= upper ? f[k] : 1.0 - f[k];
-      }
-      nodes_[corner] = {node_W, weight};
-    }
-  }
-  /// 0 to 1.
-  double share(const Eigen::Vector3d& q_W, GnssCounters& counters) const {
-    double seen = 0.0;
-    for (const auto& [node_W, weight] : nodes_) {
-      const Eigen::Vector3d way_W = q_W - node_W;
-      const double r_m = way_W.norm();
-      if (weight == 0.0 || r_m < 1e-3) continue;
-      ++counters.occlusion_rays;
-      if (!scene_.blocked_towards(node_W, way_W / r_m, r_m)) seen += weight;
-    }
-    return seen;
-  }
-
- private:
-  static constexpr double kCell_m = 2.0;
-  const scene::SceneAt& scene_;
-  std::array<std::pair<Eigen::Vector3d, double>, 8> nodes_;
 };
 
 /// What a street has beside the scene. Two parts:
@@ -97,12 +62,12 @@ class SoftSight {
 ///   follows the radar equation, 1 / (r^2 + b^2) with b^2 = cell / (2 pi), fading out over the last fifth of the reach;
 ///   together, all in sight, they have the power that the table gives for multipath: each that the satellite lights
 ///   as in the good state, each in the shadow as in the bad one, where light comes to it off what stands across the
-///   street, later by that way; where nothing stands there it is dark. A scatterer counts as far as it is seen
-///   (SoftSight). So delays and Doppler come from geometry, where Lehner & Steingass (2005) draw them. In the open the
-///   sum is complex normal: Rayleigh by itself, Rician with what else arrives.
+///   street, later by that way; where nothing stands there it is dark. A scatterer counts as far as it is seen, and
+///   lit, by shares that change evenly (PointSight). So delays and Doppler come from geometry, where Lehner & Steingass
+///   (2005) draw them. In the open the sum is complex normal: Rayleigh by itself, Rician with what else arrives.
 ///
-/// Everything is a function of place, direction and, for the moving share, seed and time. Not shaded: scatterers, which
-/// stand among the clutter themselves.
+/// A scene without a house is no street, and has neither. Everything is a function of place, direction and, for the
+/// moving share, seed and time. Not shaded: scatterers, which stand among the clutter themselves.
 class StreetClutter final : public ClutterModel {
  public:
   StreetClutter(const StreetClutterParameters& own, const PathParameters& p)
@@ -112,19 +77,20 @@ class StreetClutter final : public ClutterModel {
                  static_cast<std::uint64_t>(own.street), p.seed),
         scatterers_(own.cell_m, static_cast<std::uint64_t>(own.street)),
         passing_(p.seed, "gnss.clutter.traffic"),
-        weakest_(std::pow(10.0, p.weakest_db / 20.0)),
-        weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)) {}
+        weakest_(std::pow(10.0, std::min(p.weakest_db, p.weakest_nlos_db) / 20.0)) {}
 
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
+    if (scene.scene().facets().facets().empty()) return;
+    const SightPool::Loan sight = sights_.borrow(scene.scene());
     thread_local std::vector<Seen> seen;
-    look(p_A_W, waves.t(), scene, counters, seen);
+    look(p_A_W, waves.t(), scene, *sight, counters, seen);
     DelayBins bins;
     for (std::size_t k = 0; k < out.size(); ++k) {
       shade(p_A_W, waves.direction_W(k), waves.t(), out[k]);
-      bins.clear();
-      gather(seen, waves, k, scene, counters, bins);
-      bins.append(0.5 * (out[k].line_of_sight ? weakest_ : weakest_nlos_), SignalPath::kClutter, out[k].echoes);
+      bins.clear(waves.wavelength_m(k));
+      gather(seen, waves, k, scene, *sight, counters, bins);
+      bins.append(0.5 * weakest_, SignalPath::kClutter, out[k].echoes);
     }
   }
 
@@ -143,12 +109,12 @@ class StreetClutter final : public ClutterModel {
     }
   }
 
-  void look(const Eigen::Vector3d& p_W, GpsTime t, const scene::SceneAt& scene, GnssCounters& counters,
-            std::vector<Seen>& seen) const {
+  void look(const Eigen::Vector3d& p_W, GpsTime t, const scene::SceneAt& scene, PointSight& sight,
+            GnssCounters& counters, std::vector<Seen>& seen) const {
     thread_local std::vector<ClutterScatterer> near;
     scatterers_.near(scene.scene(), p_W, own_.reach_m, near);
     seen.clear();
-    const SoftSight sight(p_W, scene);
+    const PointSight::From from = sight.from(p_W);
     const double blunt_m2 = own_.cell_m * own_.cell_m / (2.0 * kPi);
     double whole = 0.0;
     for (const ClutterScatterer& one : near) {
@@ -157,11 +123,11 @@ class StreetClutter final : public ClutterModel {
       const double power = fade * fade / (r_m * r_m + blunt_m2);
       whole += power;
       if (r_m < 1e-3) continue;
-      const double share = sight.share(one.p_W, counters);
+      const double share = from.share(one.number, one.p_W, counters);
       if (share == 0.0) continue;
       const double amplitude = share * std::sqrt(0.5 * power);
-      seen.push_back(
-          {one.p_W, way_W / r_m, r_m, amplitude * now(one.co, one.id, 0, t), amplitude * now(one.cross, one.id, 1, t)});
+      seen.push_back({one.number, one.p_W, way_W / r_m, r_m, amplitude * now(one.co, one.id, 0, t),
+                      amplitude * now(one.cross, one.id, 1, t)});
     }
     const double scale = whole > 0.0 ? 1.0 / std::sqrt(whole) : 0.0;
     for (Seen& one : seen) {
@@ -184,36 +150,44 @@ class StreetClutter final : public ClutterModel {
   }
 
   void gather(const std::vector<Seen>& seen, const PlaneWaves& waves, std::size_t k, const scene::SceneAt& scene,
-              GnssCounters& counters, DelayBins& bins) const {
+              PointSight& sight, GnssCounters& counters, DelayBins& bins) const {
     const Eigen::Vector3d& s = waves.direction_W(k);
-    const double elevation_rad = std::asin(std::clamp(s.z(), -1.0, 1.0));
+    const PointSight::Towards towards = sight.towards(s);
+    const double elevation_rad = std::asin(std::clamp(s.z(), -1.0, 1.0)), level = s.head<2>().norm();
     const double extra = std::pow(10.0, own_.echo_db / 20.0);
     const double lit = extra * std::sqrt(law_.multipath_power(false, elevation_rad));
     const double unlit = extra * std::sqrt(law_.multipath_power(true, elevation_rad));
     for (const Seen& one : seen) {
-      ++counters.occlusion_rays;
-      double scale = lit, detour_m = 0.0;
-      if (scene.blocked_towards(one.p_W, s)) {
-        ++counters.occlusion_rays;
-        scale = unlit;
-        detour_m = across_m(one.p_W, s, scene);
-        if (!std::isfinite(detour_m)) continue;
+      const double straight_m = one.r_m * (1.0 - one.to_W.dot(s));
+      const auto send = [&](double scale, double detour_m) {
+        const double power = scale * scale * (std::norm(one.co) + std::norm(one.cross));
+        bins.add({scale * one.co, scale * one.cross}, straight_m + detour_m, one.to_W, power * power);
+      };
+      double in_light = 0.0;
+      for (const auto& corner : towards.corners()) {
+        if (corner.weight == 0.0) continue;
+        if (towards.lit(corner, one.number, one.p_W, counters)) {
+          in_light += corner.weight;
+          continue;
+        }
+        const float level_m = corner.node->number(one.number, [&] {
+          ++counters.occlusion_rays;
+          return across_m(one.p_W, corner.s_W, scene.scene());
+        });
+        if (std::isfinite(level_m)) send(corner.weight * unlit, 2.0 * level * static_cast<double>(level_m));
       }
-      const double co = std::abs(one.co), cross = std::abs(one.cross), power = co * co + cross * cross;
-      bins.add({scale * co, scale * cross, std::arg(one.co), std::arg(one.cross)},
-               one.r_m * (1.0 - one.to_W.dot(s)) + detour_m, one.to_W, power * power, waves.wavelength_m(k));
+      if (in_light > 0.0) send(in_light * lit, 0.0);
     }
   }
 
-  /// How much later light comes to a place in the shadow from what stands across the street from it: off a wall
-  /// horizontally behind it, as the satellite sees it, at distance w, 2 w cos(elevation). Infinite if nothing stands
-  /// there within 100 m (assumed).
-  double across_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& s_W, const scene::SceneAt& scene) const {
+  /// How far behind a place in the shadow, as the satellite sees it, a wall stands across the street: light comes to it
+  /// from there 2 w cos(elevation) later. Infinite if nothing stands there within 100 m (assumed).
+  static float across_m(const Eigen::Vector3d& p_W, const Eigen::Vector3d& s_W, const scene::Scene& scene) {
     const double level = s_W.head<2>().norm();
-    if (level < 1e-6) return 0.0;
+    if (level < 1e-6) return 0.0F;
     const Eigen::Vector3f away_W(static_cast<float>(-s_W.x() / level), static_cast<float>(-s_W.y() / level), 0.0F);
-    const scene::Hit hit = scene.trace({p_W, away_W, kAcross_m});
-    return hit.hit() ? 2.0 * level * static_cast<double>(hit.range_m) : std::numeric_limits<double>::infinity();
+    const scene::Hit hit = scene::SceneAt(scene).trace({p_W, away_W, kAcross_m});
+    return hit.hit() ? hit.range_m : std::numeric_limits<float>::infinity();
   }
 
   StreetClutterParameters own_;
@@ -221,7 +195,8 @@ class StreetClutter final : public ClutterModel {
   StreetShading shading_;
   ClutterScatterers scatterers_;
   LatticeNoise passing_;
-  double weakest_, weakest_nlos_;
+  mutable SightPool sights_;
+  double weakest_;
 };
 
 }  // namespace

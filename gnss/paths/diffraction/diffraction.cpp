@@ -27,7 +27,7 @@ constexpr ModelRow<MakeDiffractionModel> kModels[] = {
      {without_keys<make_double_knife_edge>, diffraction_needs},
      "also over two edges after each other"},
     {"wedge",
-     {without_keys<make_wedge>, nullptr},
+     {without_keys<make_wedge>, wedge_needs},
      "uniform theory of diffraction: wedges of their material, finite edges"},
 };
 

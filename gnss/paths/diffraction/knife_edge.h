@@ -20,6 +20,8 @@ double knife_edge_nu(double detour_m, double wavelength_m);
 inline constexpr double kDeepestLitNu = 3.0;
 /// Beyond this nu a field in the shadow is weaker than `weakest_db` (at most 30: 43 dB), and a lit one undisturbed.
 double largest_knife_edge_nu(double weakest_db);
+/// A lossy wedge is at most this much stronger than a thin screen, which these reaches are made for.
+inline constexpr double kOverScreen_db = 6.0;
 /// The detour of that nu: longer ways over an edge are not looked at, m.
 double largest_detour_m(double largest_nu, double wavelength_m);
 

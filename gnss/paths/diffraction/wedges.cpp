@@ -16,9 +16,6 @@
 namespace canyon::gnss {
 namespace {
 
-// A lossy wedge is at most this much stronger than a thin screen, which the reach of the search is made for.
-constexpr double kOverScreen_db = 6.0;
-
 /// Where a plane wave from s meets the line of an edge on its way to p.
 struct WedgeMeeting {
   double at_m;        ///< from the edge's first end; outside of it where the law of diffraction leads beyond

@@ -29,6 +29,8 @@ struct PathQuestion {
 inline constexpr const char* kOcclusion = "occlusion rays";
 inline constexpr const char* kFoliage = "foliage on straight ways";
 inline constexpr const char* kDiffraction = "diffraction at edges";
+inline constexpr const char* kScattering = "scattering off walls";
+inline constexpr const char* kClutter = "clutter of the street";
 inline constexpr const char* kReflections[] = {"reflection off one wall", "reflection off two walls",
                                                "reflection off three walls"};
 
@@ -38,5 +40,11 @@ std::vector<Need> specular_needs(int order, const PathQuestion& question);
 Need reflection_need(int order, const PathQuestion& question);
 /// Diffraction around one edge or two (diffraction.h): both begin with an edge beside the straight way.
 std::vector<Need> diffraction_needs(const PathQuestion& question);
+/// The same by wedges, which reach farther: a lossy wedge may be stronger than a screen (kOverScreen_db).
+std::vector<Need> wedge_needs(const PathQuestion& question);
+/// Scattering by upright walls, of which an open field has none.
+std::vector<Need> scatter_needs(const PathQuestion& question);
+/// What a street has and the scene lacks, of which a place without houses has nothing.
+std::vector<Need> clutter_needs(const PathQuestion& question);
 
 }  // namespace canyon::gnss

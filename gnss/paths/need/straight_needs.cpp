@@ -50,6 +50,28 @@ Need foliage_need(const PathQuestion& q) {
   return need;
 }
 
+/// `beside_m(edge's middle from the antenna's, half its length)`: a wave bends there only if its straight way passes
+/// that near to the edge.
+template <class Beside>
+Need edges_need(const PathQuestion& q, const Beside& beside_m) {
+  Need need{.effect = kDiffraction};
+  const auto& edges = q.scene.edges().edges();
+  const Ball antenna = q.antenna();
+  for (const scene::Edge& edge : edges) {
+    const Eigen::Vector3d middle_W = 0.5 * (edge.a_W + edge.b_W);
+    const double half_m = 0.5 * (edge.b_W - edge.a_W).norm();
+    const auto seen =
+        q.sky.through(antenna, {middle_W, half_m + beside_m((middle_W - antenna.center_W).norm(), half_m)});
+    if (!seen) continue;
+    need.reason = text("an edge at x %.0f, y %.0f may bend the wave of %s", middle_W.x(), middle_W.y(),
+                       q.sky.directions[*seen].sv.str().c_str());
+    return need;
+  }
+  need.verdict = Verdict::kNotNeeded;
+  need.reason = edges.empty() ? "there are no edges" : "no edge comes near the way to any satellite";
+  return need;
+}
+
 }  // namespace
 
 Ball PathQuestion::antenna() const {
@@ -72,24 +94,22 @@ std::vector<Need> specular_needs(int order, const PathQuestion& question) {
 }
 
 std::vector<Need> diffraction_needs(const PathQuestion& q) {
-  Need need{.effect = kDiffraction};
-  const auto& edges = q.scene.edges().edges();
   const double reach_m = largest_detour_m(largest_knife_edge_nu(q.limits.weakest_nlos_db), kLongestWave_m);
-  const Ball antenna = q.antenna();
-  for (const scene::Edge& edge : edges) {
-    const Eigen::Vector3d middle_W = 0.5 * (edge.a_W + edge.b_W);
-    const double half_m = 0.5 * (edge.b_W - edge.a_W).norm();
-    // off^2 = detour x (way + forward) <= 2 detour x way, for the point of the edge at the end of `way`.
-    const double way_m = (middle_W - antenna.center_W).norm() + half_m + antenna.radius_m;
-    const auto seen = q.sky.through(antenna, {middle_W, half_m + std::sqrt(2.0 * reach_m * way_m)});
-    if (!seen) continue;
-    need.reason = text("an edge at x %.0f, y %.0f may bend the wave of %s", middle_W.x(), middle_W.y(),
-                       q.sky.directions[*seen].sv.str().c_str());
-    return {need};
-  }
-  need.verdict = Verdict::kNotNeeded;
-  need.reason = edges.empty() ? "there are no edges" : "no edge comes near the way to any satellite";
-  return {need};
+  const double antenna_m = q.antenna().radius_m;
+  // off^2 = detour x (way + forward) <= 2 detour x way, for the point of the edge at the end of `way`.
+  return {edges_need(
+      q, [&](double middle_m, double half_m) { return std::sqrt(2.0 * reach_m * (middle_m + half_m + antenna_m)); })};
+}
+
+std::vector<Need> wedge_needs(const PathQuestion& q) {
+  const double weakest_db = std::min(q.limits.weakest_db, q.limits.weakest_nlos_db) - kOverScreen_db;
+  const double reach_m = largest_detour_m(largest_knife_edge_nu(weakest_db), kLongestWave_m);
+  const double antenna_m = q.antenna().radius_m;
+  // An end of an edge may act where the law of diffraction leads beyond it: as far as the search looks (edges_near.h).
+  return {edges_need(q, [&](double middle_m, double half_m) {
+    const double near_m = std::max(middle_m - half_m - antenna_m, 0.1);
+    return 1.1 * (middle_m + antenna_m) * std::sqrt(2.0 * reach_m / near_m);
+  })};
 }
 
 }  // namespace canyon::gnss

@@ -29,27 +29,35 @@ class DelayBins {
     double co_power = 0.0, cross_power = 0.0;          ///< of each phasor by itself
     Eigen::Vector3d by_power_W = Eigen::Vector3d::Zero();
   };
-  /// Of one scatterer, both hands, without the phase of its way.
+  /// Of one scatterer, either hand, without the phase of its way.
   struct Phasor {
-    double co, cross, co_rad, cross_rad;
+    std::complex<double> co, cross;
   };
 
-  void clear() { bins_.fill({}); }
+  /// Empties them for a signal of that carrier.
+  void clear(double wavelength_m) {
+    bins_.fill({});
+    per_m_ = -2.0 * kPi / wavelength_m;
+    a_bin_later_ = std::polar(1.0, -per_m_ * kWidth_m);
+  }
   /// What is later than the last bin is left out. `weight`: of the direction in the bin's.
-  void add(const Phasor& a, double excess_m, const Eigen::Vector3d& from_W, double weight, double wavelength_m) {
+  void add(const Phasor& a, double excess_m, const Eigen::Vector3d& from_W, double weight) {
     const double place = excess_m / kWidth_m;
     const auto first = static_cast<std::size_t>(place);
     if (first + 1 >= kBins) return;
     const double later = place - static_cast<double>(first);
+    const double power = std::norm(a.co), cross_power = std::norm(a.cross);
+    std::complex<double> turn = std::polar(1.0, per_m_ * (excess_m - static_cast<double>(first) * kWidth_m));
     for (const auto& [i, share] : {std::pair{first, 1.0 - later}, std::pair{first + 1, later}}) {
-      const double turn_rad = -2.0 * kPi * (excess_m - static_cast<double>(i) * kWidth_m) / wavelength_m;
-      bins_[i].co += std::polar(share * a.co, a.co_rad + turn_rad);
-      bins_[i].cross += std::polar(share * a.cross, a.cross_rad + turn_rad);
-      bins_[i].from_W += share * share * weight * from_W;
-      const double co2 = share * share * a.co * a.co, cross2 = share * share * a.cross * a.cross;
-      bins_[i].co_power += co2;
-      bins_[i].cross_power += cross2;
-      bins_[i].by_power_W += (co2 + cross2) * from_W;
+      const double share2 = share * share;
+      Bin& bin = bins_[i];
+      bin.co += turned(share * turn, a.co);
+      bin.cross += turned(share * turn, a.cross);
+      bin.from_W += share2 * weight * from_W;
+      bin.co_power += share2 * power;
+      bin.cross_power += share2 * cross_power;
+      bin.by_power_W += share2 * (power + cross_power) * from_W;
+      turn = turned(turn, a_bin_later_);
     }
   }
   const std::array<Bin, kBins>& bins() const { return bins_; }
@@ -79,7 +87,14 @@ class DelayBins {
   }
 
  private:
+  /// Their product; without the detour that C++ makes for infinite numbers.
+  static std::complex<double> turned(const std::complex<double>& a, const std::complex<double>& b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+  }
+
   std::array<Bin, kBins> bins_;
+  double per_m_ = 0.0;  ///< phase, rad
+  std::complex<double> a_bin_later_;
 };
 
 }  // namespace canyon::gnss

@@ -10,6 +10,7 @@
 #include "canyon/gnss/paths/scatter/directive_lobe.h"
 #include "canyon/gnss/paths/scatter/facade_tiles.h"
 #include "canyon/gnss/paths/scatter/scatter.h"
+#include "canyon/gnss/paths/sight/point_sight.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
@@ -56,17 +57,16 @@ class ReturnTable {
 ///
 ///   |E|^2 = S^2 G^2 A cos(incidence) lobe(psi) / (integral of the lobe x (r^2 + A / (2 pi))),
 ///
-/// the last term because a tile nearby is no point. Both ways are tested for obstacles at the tile's middle. Fields
-/// fade out towards the reach (its last fifth), and over 6 dB above a tenth of the weakest field that matters, so that
-/// nothing but a shadow's border starts or ends at once, and that by one tile. Foliage is not looked at.
+/// the last term because a tile nearby is no point. Both ways are tested for obstacles at the tile's middle, as a share
+/// of the field that changes evenly with place and direction (PointSight): a tile of 8 m comes out of a shadow by and
+/// by. Fields fade out towards the reach (its last fifth), and over 6 dB above a tenth of the weakest field that
+/// matters, so that nothing starts or ends at once. Foliage and what moves are not looked at.
 class DirectiveScatter final : public ScatterModel {
  public:
   DirectiveScatter(const DirectiveParameters& own, const PathParameters& p)
       : own_(own),
-        p_(p),
         lobe_{static_cast<int>(own.lobe)},
-        weakest_(std::pow(10.0, p.weakest_db / 20.0)),
-        weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)) {
+        weakest_(std::pow(10.0, std::min(p.weakest_db, p.weakest_nlos_db) / 20.0)) {
     for (std::size_t i = 0; i < lobe_sr_.size(); ++i)
       lobe_sr_[i] = lobe_.integral_sr(static_cast<double>(i) / static_cast<double>(lobe_sr_.size() - 1));
   }
@@ -77,27 +77,30 @@ class DirectiveScatter final : public ScatterModel {
              std::span<SignalPaths> out, GnssCounters& counters) const override {
     if (waves.empty() || own_.coefficient == 0.0) return;
     const FacadeTiles& tiles = tiles_of(scene.scene());
+    const SightPool::Loan sight = sights_.borrow(scene.scene());
     thread_local std::vector<Seen> seen;
-    look(tiles, p_A_W, scene, counters, seen);
+    look(tiles, p_A_W, *sight, counters, seen);
     DelayBins bins;
     for (std::size_t k = 0; k < out.size(); ++k) {
-      bins.clear();
-      gather(seen, waves, k, scene, out[k], counters, bins);
-      bins.append(0.5 * (out[k].line_of_sight ? weakest_ : weakest_nlos_), SignalPath::kScattered, out[k].echoes);
+      bins.clear(waves.wavelength_m(k));
+      gather(seen, waves, k, scene, *sight, counters, bins);
+      bins.append(0.5 * weakest_, SignalPath::kScattered, out[k].echoes);
     }
   }
 
  private:
   /// A tile that is seen from the antenna.
   struct Seen {
+    std::uint32_t id;
     const FacadeTile* tile;
     Eigen::Vector3d to_W;  ///< unit, from the antenna
-    double r_m, fade;
+    double r_m, fade;      ///< 0 to 1, of the field
   };
 
-  void look(const FacadeTiles& tiles, const Eigen::Vector3d& p_W, const scene::SceneAt& scene, GnssCounters& counters,
+  void look(const FacadeTiles& tiles, const Eigen::Vector3d& p_W, PointSight& sight, GnssCounters& counters,
             std::vector<Seen>& seen) const {
     seen.clear();
+    const PointSight::From from = sight.from(p_W);
     thread_local std::vector<std::uint32_t> near;
     tiles.near(p_W, own_.reach_m, near);
     for (const std::uint32_t i : near) {
@@ -106,17 +109,16 @@ class DirectiveScatter final : public ScatterModel {
       if (way_W.dot(tile.normal_W) >= 0.0) continue;
       const double r_m = way_W.norm(), fade = std::min(5.0 * (1.0 - r_m / own_.reach_m), 1.0);
       if (fade <= 0.0 || r_m < 1e-3) continue;
-      ++counters.occlusion_rays;
-      const Eigen::Vector3d to_W = way_W / r_m;
-      if (!scene.blocked_towards(p_W, to_W, r_m)) seen.push_back({&tile, to_W, r_m, fade});
+      const double share = from.share(i, tile.center_W, counters);
+      if (share > 0.0) seen.push_back({i, &tile, way_W / r_m, r_m, fade * share});
     }
   }
 
   void gather(const std::vector<Seen>& seen, const PlaneWaves& waves, std::size_t k, const scene::SceneAt& scene,
-              const SignalPaths& paths, GnssCounters& counters, DelayBins& bins) const {
+              PointSight& sight, GnssCounters& counters, DelayBins& bins) const {
     const Eigen::Vector3d& s = waves.direction_W(k);
-    const double wavelength_m = waves.wavelength_m(k);
-    const double faint = 0.1 * (paths.line_of_sight ? weakest_ : weakest_nlos_);
+    const PointSight::Towards towards = sight.towards(s);
+    const double faint = 0.1 * weakest_;
     const ReturnTable* table = nullptr;  // of the tile before, mostly the same wall's
     std::uint16_t of_table = 0;
     for (const Seen& one : seen) {
@@ -128,22 +130,25 @@ class DirectiveScatter final : public ScatterModel {
       const double cosine = tile.normal_W.dot(s);
       if (cosine <= 0.0) continue;
       const double excess_m = one.r_m * (1.0 - one.to_W.dot(s));
-      if (paths.line_of_sight && excess_m > p_.cutoff_m) continue;
       // The mirror's direction is 2 (n.s) n - s; the tile scatters towards -to.
       const double cos_psi = one.to_W.dot(s) - 2.0 * cosine * tile.normal_W.dot(one.to_W);
-      const double at = cosine * static_cast<double>(lobe_sr_.size() - 1);
-      const double integral_sr = lobe_sr_[static_cast<std::size_t>(at + 0.5)];
       const double power = scattered_share() * table->at(cosine) * tile.area_m2 * cosine * lobe_.at(cos_psi) /
-                           (integral_sr * (one.r_m * one.r_m + tile.area_m2 / (2.0 * kPi)));
+                           (lobe_sr(cosine) * (one.r_m * one.r_m + tile.area_m2 / (2.0 * kPi)));
       const double amplitude = std::sqrt(power);
       const double kept = one.fade * std::clamp(amplitude / faint - 1.0, 0.0, 1.0);
       if (kept == 0.0) continue;
-      ++counters.occlusion_rays;
-      if (scene.blocked_towards(tile.center_W, s)) continue;
+      const double lit = towards.share(one.id, tile.center_W, counters);
+      if (lit == 0.0) continue;
       // Half of the power to each hand: an assumption.
-      const double a = kept * amplitude * std::sqrt(0.5);
-      bins.add({a, a, tile.phase_rad, tile.cross_phase_rad}, excess_m, one.to_W, a * a, wavelength_m);
+      const double a = lit * kept * amplitude * std::sqrt(0.5);
+      bins.add({a * tile.phase, a * tile.cross_phase}, excess_m, one.to_W, a * a);
     }
+  }
+
+  double lobe_sr(double cosine) const {
+    const double x = cosine * static_cast<double>(lobe_sr_.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), lobe_sr_.size() - 2);
+    return lobe_sr_[i] + (x - static_cast<double>(i)) * (lobe_sr_[i + 1] - lobe_sr_[i]);
   }
 
   /// Of the scene, made when it is first met; a sensor serves one.
@@ -170,10 +175,10 @@ class DirectiveScatter final : public ScatterModel {
   }
 
   DirectiveParameters own_;
-  PathParameters p_;
   DirectiveLobe lobe_;
-  double weakest_, weakest_nlos_;
+  double weakest_;
   std::array<double, 257> lobe_sr_;
+  mutable SightPool sights_;
   mutable std::mutex mutex_;
   mutable const scene::Scene* scene_ = nullptr;
   mutable std::unique_ptr<FacadeTiles> tiles_;

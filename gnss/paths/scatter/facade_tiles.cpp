@@ -38,8 +38,8 @@ FacadeTiles::FacadeTiles(const scene::Scene& scene, double tile_m) {
         cells_[{cell_of(center_W.x()), cell_of(center_W.y())}].push_back(static_cast<std::uint32_t>(tiles_.size()));
         tiles_.push_back({center_W + (kBeforeWall_m + f.flatness_m) * f.normal_W, f.normal_W,
                           u.norm() * v.norm() / (across * up), f.material,
-                          static_cast<float>(2.0 * kPi * phases.uniform(id, tile)),
-                          static_cast<float>(2.0 * kPi * phases.uniform(id, tile + 1))});
+                          std::polar(1.0, 2.0 * kPi * phases.uniform(id, tile)),
+                          std::polar(1.0, 2.0 * kPi * phases.uniform(id, tile + 1))});
       }
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -15,7 +16,7 @@ struct FacadeTile {
   Eigen::Vector3d center_W, normal_W;
   double area_m2;
   std::uint16_t material;
-  float phase_rad, cross_phase_rad;  ///< of what it scatters into either hand: fixed to the place
+  std::complex<double> phase, cross_phase;  ///< of what it scatters into either hand, |1|: fixed to the place
 };
 
 /// Upright facets (normals within 30 degrees of level) of a scene, cut into near-square tiles of at most `tile_m`.

@@ -23,7 +23,7 @@ std::vector<Need> no_scatter_needs(const PathQuestion&) {
 constexpr ModelRow<MakeScatterModel> kScatterRows[] = {
     {"none", {without_keys<make_no_scatter>, no_scatter_needs}, "walls are mirrors"},
     {"directive",
-     {make_directive_scatter},
+     {make_directive_scatter, scatter_needs},
      "effective roughness with a lobe about the mirror's direction, in tiles",
      directive_scatter_parameters},
 };

@@ -107,7 +107,8 @@ struct Asked {
   }
   Verdict verdict(const std::string& effect) const {
     std::vector<Need> needs = specular_needs(2, question());
-    for (Need& need : diffraction_needs(question())) needs.push_back(need);
+    for (const auto ask : {diffraction_needs, scatter_needs, clutter_needs})
+      for (Need& need : ask(question())) needs.push_back(need);
     for (const Need& need : needs)
       if (need.effect == effect) return need.verdict;
     ADD_FAILURE() << effect;
@@ -147,8 +148,16 @@ struct Placement {
 
 TEST(PathNeeds, AnOpenFieldNeedsNone) {
   const Asked asked(Field{}, corridor({0, 0}));
-  for (const char* effect : {kOcclusion, kFoliage, kReflections[0], kReflections[1], kDiffraction})
+  for (const char* effect :
+       {kOcclusion, kFoliage, kReflections[0], kReflections[1], kDiffraction, kScattering, kClutter})
     EXPECT_EQ(asked.verdict(effect), Verdict::kNotNeeded) << effect;
+  EXPECT_EQ(wedge_needs(asked.question())[0].verdict, Verdict::kNotNeeded);
+}
+
+TEST(PathNeeds, AHouseMakesAStreetThatScattersAndHasClutter) {
+  const Asked asked(Field().box({100.0, 100.0}, {110.0, 110.0}, 5.0), corridor({0, 0}));
+  EXPECT_EQ(asked.verdict(kScattering), Verdict::kUndecidable);
+  EXPECT_EQ(asked.verdict(kClutter), Verdict::kUndecidable);
 }
 
 TEST(PathNeeds, AReflectorBesideTheCorridorFlipsTheVerdict) {
@@ -290,7 +299,7 @@ TEST(PathNeeds, WaysOverThreeWallsThatReflectTooLittleAreNotFound) {
 
 // Fields with a few houses: wherever the antenna is in the piece and whichever satellite is looked at, the search in
 // full and without what is not needed give the same, to the bit.
-TEST(PathNeeds, WhatIsNotNeededIsNeverFound) {
+void what_is_not_needed_is_never_found(const char* diffraction, StatePathNeeds* edges_need) {
   const RandomStream stream(11, "test.fields");
   int left_out = 0, found = 0;
   for (std::uint64_t k = 0; k < 60; ++k) {
@@ -303,14 +312,14 @@ TEST(PathNeeds, WhatIsNotNeededIsNeverFound) {
     field.crown({stream.uniform(-40, 40, 60, k), stream.uniform(-40, 40, 61, k), 5.0}, 3.0);
     const Asked asked(field, corridor({stream.uniform(-50, 50, 62, k), stream.uniform(-50, 50, 63, k)}));
     std::vector<Need> needs = specular_needs(2, asked.question());
-    for (Need& need : diffraction_needs(asked.question())) needs.push_back(need);
+    for (Need& need : edges_need(asked.question())) needs.push_back(need);
     PathParameters full, less;
     less.leave_out = omissions_of(needs);
     if (less.leave_out == PathOmissions{}) continue;
     ++left_out;
     PropagationConfig config;
     config.paths.name = "specular2";
-    config.diffraction.name = "double_knife_edge";
+    config.diffraction.name = diffraction;
     const auto in_full = *make_propagation(config, full), reduced = *make_propagation(config, less);
     const scene::SceneAt scene(*asked.scene);
     std::vector<Eigen::Vector3d> satellites;
@@ -335,6 +344,14 @@ TEST(PathNeeds, WhatIsNotNeededIsNeverFound) {
   }
   EXPECT_GT(left_out, 20) << "fields of which nothing can be said show nothing";
   EXPECT_GT(found, 0) << "nor do fields in which nothing is found";
+}
+
+TEST(PathNeeds, WhatIsNotNeededIsNeverFound) {
+  what_is_not_needed_is_never_found("double_knife_edge", diffraction_needs);
+}
+
+TEST(PathNeeds, WhatWedgesDoNotNeedIsNeverFound) {
+  what_is_not_needed_is_never_found("wedge", wedge_needs);
 }
 
 }  // namespace

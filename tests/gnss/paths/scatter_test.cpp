@@ -170,7 +170,7 @@ TEST(Scatter, TilesArePlacesNotRuns) {
   ASSERT_EQ(one.tiles().size(), two.tiles().size());
   for (std::size_t i = 0; i < one.tiles().size(); ++i) {
     area_m2 += one.tiles()[i].area_m2;
-    EXPECT_EQ(one.tiles()[i].phase_rad, two.tiles()[i].phase_rad);
+    EXPECT_EQ(one.tiles()[i].phase, two.tiles()[i].phase);
     EXPECT_LE(std::abs(one.tiles()[i].normal_W.z()), 0.5);
   }
   EXPECT_NEAR(area_m2, 2.0 * 18.0 * (20.0 + 40.0), 1e-6);  // the four walls, no roof
