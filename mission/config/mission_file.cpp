@@ -166,12 +166,13 @@ Status MissionFile::check_user_fidelities() const {
 Result<std::vector<std::string>> MissionFile::ancestry(const std::string& fidelity) const {
   const auto known = fidelities();
   std::vector<std::string> names{fidelity};
-  while (builtin_fidelities_.find("fidelity." + names.front()) == nullptr) {
+  for (;;) {
     const std::string key = "fidelity." + names.front() + ".base";
     const ConfigNode* node = nullptr;
-    for (const ConfigNode* tree : {&base_, &user_})
+    for (const ConfigNode* tree : {&builtin_fidelities_, &base_, &user_})
       if (const ConfigNode* found = tree->find(key)) node = found;
     if (node == nullptr) {
+      if (builtin_fidelities_.find("fidelity." + names.front()) != nullptr) return names;
       names.insert(names.begin(), kDefaultFidelityBase);
       continue;
     }
@@ -182,7 +183,6 @@ Result<std::vector<std::string>> MissionFile::ancestry(const std::string& fideli
       return node->error(key, "\"" + *name + "\" is based on this fidelity in turn", "another one");
     names.insert(names.begin(), *name);
   }
-  return names;
 }
 
 void MissionFile::set_option(const std::string& key, ConfigNode value, const std::string& option) {

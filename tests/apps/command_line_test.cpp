@@ -160,7 +160,8 @@ TEST_F(CommandLineTest, Mistakes) {
   write("torn.toml", "[gnss\n");
   expect_mistake("run torn.toml --out out", "torn.toml:1: ");
   expect_mistake("run mission.toml --fidelity highest --out out",
-                 "--fidelity: \"highest\" is unknown, expected one of high, low, modern, paper; nearest is \"high\"\n");
+                 "--fidelity: \"highest\" is unknown, expected one of high, high_aided, low, modern, paper; nearest is "
+                 "\"high\"\n");
   expect_mistake("run mission.toml --start yesterday --out out", "--start: time.start: ");
   expect_mistake("run mission.toml --nav nothing.10n --out out", "nothing.10n");
   expect_mistake(

@@ -96,11 +96,11 @@ TEST(Couplings, WithAbsorbingFacetsReflectionsAndMultipathVanish) {
     return std::pair{reflections, multipath};
   };
   const auto [reflections, multipath] =
-      reflections_and_multipath(drive(short_config("high", "high", "[time]\nlimit_s = 20.0")));
+      reflections_and_multipath(drive(short_config("high", "high", "[time]\nlimit_s = 20.0", kSnapshot)));
   EXPECT_GT(reflections, 0);
   EXPECT_GT(multipath, 0);
   const auto [none, zero] = reflections_and_multipath(
-      drive(short_config("high", "high", "[time]\nlimit_s = 20.0\n[scene]\nabsorbing = true")));
+      drive(short_config("high", "high", "[time]\nlimit_s = 20.0\n[scene]\nabsorbing = true", kSnapshot)));
   EXPECT_EQ(none, 0);
   EXPECT_EQ(zero, 0);
 }
@@ -160,8 +160,8 @@ TEST(Couplings, ALidarBlindedWhileDrivingStopsTheVehicle) {
 }
 
 TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
-  const RecordedRun city = drive(short_config("high", "high"));
-  const RecordedRun emptied = drive(short_config("high", "high", "[scene]\nempty = true"));
+  const RecordedRun city = drive(short_config("high", "high", "", kSnapshot));
+  const RecordedRun emptied = drive(short_config("high", "high", "[scene]\nempty = true", kSnapshot));
   const study::RunSummary in_city = summary_of(city), alone = summary_of(emptied);
   EXPECT_GT(in_city.nlos_share, 0.0);
   EXPECT_EQ(alone.nlos_share, 0.0);
@@ -171,7 +171,8 @@ TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
   // Open sky: the same receiver in the city that simply sees everything above the mask. The noise is the same, so the
   // errors of each fix are, but for where the vehicle stood: the atmosphere's residual, some centimetres over the 5 km
   // to the base station, changes by 1e-4 m over the 10 m that the two drives may be apart, times a DOP below 10.
-  const RecordedRun open_sky = drive(short_config("high", "high", "[gnss]\npaths = \"none\"\ndiffraction = \"none\""));
+  const RecordedRun open_sky =
+      drive(short_config("high", "high", "[gnss]\npaths = \"none\"\ndiffraction = \"none\"", kSnapshot));
   const std::size_t epochs = std::min(emptied.gnss_rows.size(), open_sky.gnss_rows.size());
   ASSERT_GT(epochs, 30U);
   for (std::size_t i = 0; i < epochs; ++i) {

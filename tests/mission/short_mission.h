@@ -32,9 +32,20 @@ p_m = [213.9, 150.0]
 observe = "building 273"
 )";
 
-/// The short mission with more TOML laid over it.
-inline MissionConfig short_config(const std::string& gnss, const std::string& imu, const std::string& extra = "") {
-  auto file = MissionFile::parse(kShortMission, "short.toml");
+/// What `high` was until 2026-11-25: GPS alone, each epoch solved by itself, among mirrors and thin screens. What acts
+/// on ranges is seen in the fix at once, and what is taken away is gone.
+inline constexpr const char* kSnapshot = R"(
+[gnss]
+receiver = "snapshot_gps"
+diffraction = "double_knife_edge"
+scatter = "none"
+clutter = "none"
+)";
+
+/// The short mission with more TOML laid over it; `receiver` as kSnapshot.
+inline MissionConfig short_config(const std::string& gnss, const std::string& imu, const std::string& extra = "",
+                                  const std::string& receiver = "") {
+  auto file = MissionFile::parse(kShortMission + receiver, "short.toml");
   EXPECT_TRUE(file.ok()) << (file.ok() ? "" : file.error().str());
   auto config = gnss == imu ? file->resolve(gnss) : file->resolve_mixed(gnss, imu);
   EXPECT_TRUE(config.ok()) << (config.ok() ? "" : config.error().str());

@@ -67,7 +67,7 @@ TEST(MissionFile, AFidelityOfOnesOwn) {
   const MissionFile file = parse("base = \"vicksburg\"\n[fidelity.mine.gnss]\nmode = \"single\"\n");
   EXPECT_EQ(file.resolve("mine")->gnss.mode.name, "single");
   EXPECT_EQ(file.resolve("nobody").error().str(),
-            "my.toml: fidelity.nobody: unknown fidelity, expected one of high, low, modern, paper, mine");
+            "my.toml: fidelity.nobody: unknown fidelity, expected one of high, high_aided, low, modern, paper, mine");
 }
 
 /// Keys whose values differ between two fidelities.
@@ -94,7 +94,8 @@ TEST(MissionFile, AFidelityIsLaidOverItsBase) {
 
 TEST(MissionFileMessages, BaseOfAFidelity) {
   EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.mine]\nbase = \"hihg\"\n"),
-            "my.toml:3: fidelity.mine.base: string \"hihg\" is not a fidelity, expected one of high, low, modern, "
+            "my.toml:3: fidelity.mine.base: string \"hihg\" is not a fidelity, expected one of high, high_aided, low, "
+            "modern, "
             "paper, mine");
   EXPECT_EQ(message("base = \"vicksburg\"\n[fidelity.a]\nbase = \"b\"\n[fidelity.b]\nbase = \"a\"\n"),
             "my.toml:5: fidelity.b.base: \"a\" is based on this fidelity in turn, expected another one");
@@ -339,8 +340,9 @@ TEST(MissionFileMessages, FidelitiesThatAreAskedFor) {
   EXPECT_EQ(told({"high", "low", "mine"}), "no mistake");
   EXPECT_EQ(told({"low", "high", "low"}), "--fidelities: \"low\" given twice, expected each fidelity once");
   EXPECT_EQ(told({"hihg"}),
-            "--fidelities: \"hihg\" is unknown, expected one of high, low, modern, paper, mine; nearest is \"high\"");
-  EXPECT_EQ(told({""}), "--fidelities: \"\" is unknown, expected one of high, low, modern, paper, mine");
+            "--fidelities: \"hihg\" is unknown, expected one of high, high_aided, low, modern, paper, mine; nearest is "
+            "\"high\"");
+  EXPECT_EQ(told({""}), "--fidelities: \"\" is unknown, expected one of high, high_aided, low, modern, paper, mine");
 }
 
 TEST(MissionFileMessages, AnInheritedWaypointInAnotherCity) {

@@ -19,12 +19,65 @@ MissionConfig with(const std::string& gnss, const std::string& fidelity) {
   return *config;
 }
 
-// To the bit: every key is the same, but the name.
-TEST(MissionReceivers, SnapshotGpsIsTheReceiverOfHigh) {
-  MissionConfig named = with("[gnss]\nreceiver = \"snapshot_gps\"\n", "high");
+std::string keys_of(gnss::GnssConfig config) {
+  return fields_as_json([&config](FieldVisitor& f) { visit(f, config); });
+}
+
+// One that a builder of robots would have bought in 2010, in the street as it was measured.
+TEST(MissionReceivers, HighHasTheDgps2010InTheStreetAsMeasured) {
+  const MissionConfig c = with("", "high");
+  EXPECT_EQ(c.gnss.receiver, "dgps_2010");
+  EXPECT_EQ(c.gnss.satellites.systems, "GR");
+  EXPECT_EQ(c.gnss.propagation.diffraction.name, "wedge");
+  EXPECT_EQ(c.gnss.propagation.scatter.name, "directive");
+  EXPECT_EQ(c.gnss.propagation.clutter.name, "street");
+  EXPECT_EQ(c.fusion.filter, "naive");
+}
+
+TEST(MissionReceivers, ModernHasTheChannelOfHigh) {
+  const MissionConfig high = with("", "high"), modern = with("", "modern");
+  EXPECT_EQ(modern.gnss.propagation.paths.name, high.gnss.propagation.paths.name);
+  EXPECT_EQ(modern.gnss.propagation.diffraction.name, high.gnss.propagation.diffraction.name);
+  EXPECT_EQ(modern.gnss.propagation.scatter.name, high.gnss.propagation.scatter.name);
+  EXPECT_EQ(modern.gnss.propagation.clutter.name, high.gnss.propagation.clutter.name);
+}
+
+TEST(MissionReceivers, HighAidedIsHighButForItsFilter) {
+  MissionConfig aided = with("[fidelity.high.gnss]\nmask_deg = 12.5\n", "high_aided");
+  EXPECT_EQ(aided.fusion.filter, "vehicle");
+  aided.fusion.filter = "naive";
+  EXPECT_EQ(keys_of(aided), keys_of(with("[fidelity.high.gnss]\nmask_deg = 12.5\n", "high")));
+}
+
+// What `high` was until 2026-11-25, by its keys then: every key is the same, but the receiver's name.
+TEST(MissionReceivers, TheFormerHighIsReachable) {
+  const MissionConfig former = with(R"([fidelity.former]
+base = "low"
+[fidelity.former.gnss]
+model = "pseudorange"
+mode = "dgps"
+ephemeris_error = "orbit_clock_2010"
+paths = "specular2"
+diffraction = "double_knife_edge"
+multipath_rule = "correlator"
+correlator_spacing_chips = 0.1
+front_end_mhz = 16.0
+code_loop_hz = 0.25
+tracking_threshold_dbhz = 28.0
+antenna = "survey"
+weighting = "elevation_cn0"
+raim = "greedy"
+raim_false_alarm = 1e-3
+max_gdop = 30.0
+)",
+                                    "former");
+  MissionConfig named = with(
+      "[gnss]\nreceiver = \"snapshot_gps\"\ndiffraction = \"double_knife_edge\"\nscatter = \"none\"\n"
+      "clutter = \"none\"\n",
+      "high");
   EXPECT_EQ(named.gnss.receiver, "snapshot_gps");
   named.gnss.receiver.clear();
-  EXPECT_EQ(keys_of(named), keys_of(with("", "high")));
+  EXPECT_EQ(keys_of(named.gnss), keys_of(former.gnss));
 }
 
 TEST(MissionReceivers, SingleKeysOverride) {

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
+#include "canyon/gnss/paths/need/path_question.h"
+#include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/mission/route_tape.h"
 #include "canyon/study/plan/follow.h"
 #include "canyon/study/plan/plan_file.h"
@@ -76,6 +78,24 @@ TEST(Plan, AnOpenFieldTracesNoRayAndIndexesNothing) {
   for (std::size_t i = 0; i < full.nav.size(); ++i)
     EXPECT_EQ(full.nav[i].estimate.X_WB.p, less.nav[i].estimate.X_WB.p) << i;
   EXPECT_THAT(less.warnings, ::testing::Not(::testing::Contains(::testing::HasSubstr("corridor"))));
+}
+
+// Wedges, scattering walls and clutter too have nothing to act with there; what a filter in the receiver makes of
+// ranges cannot be said, so that these stay.
+TEST(Plan, AnOpenFieldNeedsNothingOfTheStreetAsMeasured) {
+  const Planned planned("high", kEmpty, kDriving, false, {}, "");
+  ASSERT_EQ(planned.config.gnss.propagation.clutter.name, "street");
+  for (const char* effect : {gnss::kDiffraction, gnss::kScattering, gnss::kClutter})
+    EXPECT_EQ(planned.verdict(effect), Verdict::kNotNeeded) << effect;
+  EXPECT_EQ(planned.verdict(gnss::kIonosphere), Verdict::kUndecidable);
+  const RecordedRun full = planned.drive(false), less = planned.drive(true);
+  EXPECT_EQ(less.counters.at("gnss_occlusion_rays"), 0);
+  ASSERT_EQ(full.nav.size(), less.nav.size());
+  for (std::size_t i = 0; i < full.nav.size(); ++i)
+    EXPECT_EQ(full.nav[i].estimate.X_WB.p, less.nav[i].estimate.X_WB.p) << i;
+  const Planned city("high", "[time]\nlimit_s = 2.0\n", kDriving, false, {}, "");
+  for (const char* effect : {gnss::kScattering, gnss::kClutter})
+    EXPECT_EQ(city.verdict(effect), Verdict::kUndecidable) << effect;
 }
 
 TEST(Plan, InAnOpenLoopNobodyReadsWhatTheAutonomySees) {

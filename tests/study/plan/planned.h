@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,14 @@
 
 namespace canyon::study::testing {
 
-/// A mission that has been prepared, and a plan for it.
+/// A mission that has been prepared, and a plan for it. "high" here with a receiver whose bounds are known (kSnapshot),
+/// unless `receiver` says another.
 struct Planned {
   Planned(const std::string& fidelity, const std::string& extra, const std::vector<Output>& outputs,
-          bool open_loop = false, const FigureValues& tolerances = {})
-      : config(mission::testing::short_config(fidelity, fidelity, extra)),
+          bool open_loop = false, const FigureValues& tolerances = {},
+          const std::optional<std::string>& receiver = std::nullopt)
+      : config(mission::testing::short_config(
+            fidelity, fidelity, extra, receiver.value_or(fidelity == "high" ? mission::testing::kSnapshot : ""))),
         mission(*mission::prepare(config, mission::testing::scenes())),
         plan(*make_plan(config, mission,
                         {.fidelity = fidelity, .outputs = outputs, .open_loop = open_loop, .tolerances = tolerances})) {

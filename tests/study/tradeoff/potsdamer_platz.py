@@ -88,11 +88,19 @@ tracking_threshold_dbhz = 25.0
 correlator_spacing_chips = 0.5
 front_end_mhz = 4.0
 cn0_zenith_dbhz = 49.0
+scatter = "none"
+clutter = "none"
 """)
-    city = (out / "city.toml").read_text()
-    (out / "street.toml").write_text(
-        city.replace("tracking_threshold_dbhz = 25.0", "tracking_threshold_dbhz = 21.0")
-        + 'diffraction = "wedge"\nscatter = "directive"\nclutter = "street"\n')
+    (out / "street.toml").write_text(f"""[scene]
+file = "buildings.geojson"
+undulation_m = {UNDULATION_M}
+
+# The catalogue's u-blox of that time, with two figures that the log tells: its gain (above), and the weakest signal that it logs.
+[gnss]
+receiver = "m8"
+tracking_threshold_dbhz = 21.0
+cn0_zenith_dbhz = 49.0
+""")
 
 
 if __name__ == "__main__":
