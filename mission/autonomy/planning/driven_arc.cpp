@@ -30,7 +30,9 @@ double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const
 }
 
 DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
-                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle) {
+                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle,
+                           const WorthDriving& worth) {
+  constexpr int kAskedEvery = 4;  // steps
   DrivenArc arc;
   if (line.empty()) return arc;
   MovingBody body = from;
@@ -52,6 +54,7 @@ DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double 
     arc.free_m = i * DrivenArc::kStep_m;
     arc.closeness_m2 += DrivenArc::kStep_m * std::max(0.0, clearances.comfort_m - clearance);
     arc.curvature_1_m.push_back(static_cast<float>(kappa));
+    if (worth && i % kAskedEvery == 0 && !worth(arc)) return arc;
   }
   arc.ends_free = true;
   return arc;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "canyon/mission/autonomy/perception/blocked_cells.h"
@@ -33,10 +34,15 @@ struct Clearances {
 /// Steering once the vehicle has been asked for a curvature for a while.
 double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const KnownVehicle& vehicle);
 
+/// Whether an arc that has been driven so far is still worth driving on.
+using WorthDriving = std::function<bool(const DrivenArc& so_far)>;
+
 /// Over `length_m`, the first pose being the body's own. A body that already stands nearer to something than the least
-/// clearance may go on where it does not come nearer.
+/// clearance may go on where it does not come nearer. `worth` (may be empty) is asked every now and then; once it says
+/// no, the arc ends there and does not end free.
 DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
-                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle);
+                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle,
+                           const WorthDriving& worth = {});
 
 /// How far the body may go along an arc of constant curvature, in reverse if `distance_m` is negative; at most that.
 double free_along(const PlanPose& from, double curvature_1_m, double distance_m, const Clearances& clearances,

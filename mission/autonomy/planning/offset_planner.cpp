@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "canyon/mission/autonomy/planning/local_planner.h"
 
@@ -42,80 +44,123 @@ constexpr double kOffsetStep_m = 0.5;
 constexpr std::array<double, 3> kBlend_m{1.5, 3.0, 6.0};
 constexpr double kBeyond_m = 6.0;  // of a line after the horizon, for the tracker to look at
 
-/// Lines that go sideways from where the vehicle is to an offset from the lane's middle.
+/// Lines that go sideways from where the vehicle is to an offset from the lane's middle. Driven in thought are those
+/// that may still be the cheapest: the cheap ones first, each as long as what it has cost so far is less than the best.
 class OffsetPlanner final : public LocalPlanner {
  public:
-  explicit OffsetPlanner(const OffsetPlannerParameters& p) : p_(p) {}
+  explicit OffsetPlanner(const OffsetPlannerParameters& p) : p_(p) {
+    const int points = static_cast<int>((p_.horizon_m + kBeyond_m) / PlanLine::kSpacing_m);
+    for (int i = 0; i <= points; ++i) {
+      ahead_m_.push_back(i * PlanLine::kSpacing_m);
+      for (std::size_t b = 0; b < kBlend_m.size(); ++b) left_[b].push_back(std::exp(-ahead_m_.back() / kBlend_m[b]));
+    }
+    const int steps = static_cast<int>(std::floor(p_.max_offset_m / kOffsetStep_m));
+    for (int k = -steps; k <= steps; ++k)
+      for (std::size_t b = 0; b < kBlend_m.size(); ++b) candidates_.push_back({k * kOffsetStep_m, b, 0.0});
+  }
 
   Clearances clearances() const override {
     return {.least_m = p_.clearance_m, .comfort_m = std::max(p_.clearance_m, p_.comfort_clearance_m)};
   }
 
   LocalPlan plan(const PlanTask& task) override {
-    const int steps = static_cast<int>(std::floor(p_.max_offset_m / kOffsetStep_m));
     const double here = task.route.offset(task.body.pose.p_m + task.from_O_to_W, task.s_m) - task.lane_m;
-    const std::vector<double> route_turning = curvature_ahead(task);
+    lay_out(task);
+    for (Candidate& c : candidates_)
+      c.beside_cost = p_.offset_cost_1_m * (std::abs(c.offset_m) + p_.change_share * std::abs(c.offset_m - chosen_m_));
+    std::vector<std::size_t> order(candidates_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return candidates_[a].beside_cost < candidates_[b].beside_cost;
+    });
     LocalPlan best;
     double best_cost = 1e300;
-    for (int k = -steps; k <= steps; ++k) {
-      for (const double blend_m : kBlend_m) {
-        LocalPlan candidate{.line = line(task, here, k * kOffsetStep_m, blend_m),
-                            .arc = {},
-                            .offset_m = k * kOffsetStep_m,
-                            .horizon_m = p_.horizon_m};
-        candidate.arc = drive_in_thought(candidate.line, task.body, p_.horizon_m, clearances(), task.tracker,
-                                         task.blocked, task.vehicle);
-        const double its = cost(candidate, route_turning);
-        if (its >= best_cost) continue;
-        best_cost = its;
-        best = std::move(candidate);
-      }
+    std::size_t best_index = candidates_.size();
+    for (const std::size_t i : order) {
+      const Candidate& c = candidates_[i];
+      if (c.beside_cost > best_cost) break;
+      LocalPlan its{.line = line(task.lane_m + c.offset_m, here - c.offset_m, c.blend),
+                    .arc = {},
+                    .offset_m = c.offset_m,
+                    .horizon_m = p_.horizon_m};
+      Turning turning(turning_1_m_);
+      its.arc = drive_in_thought(
+          its.line, task.body, p_.horizon_m, clearances(), task.tracker, task.blocked, task.vehicle,
+          [&](const DrivenArc& arc) { return cost(0.0, arc, turning.of(arc), c.beside_cost) <= best_cost; });
+      const double blocked_m = p_.horizon_m - std::min(p_.horizon_m, its.arc.free_m);
+      const double its_cost = cost(blocked_m, its.arc, turning.of(its.arc), c.beside_cost);
+      if (its_cost > best_cost || (its_cost == best_cost && i > best_index)) continue;
+      best_cost = its_cost;
+      best_index = i;
+      best = std::move(its);
     }
     chosen_m_ = best.offset_m;
     return best;
   }
 
  private:
-  PlanLine line(const PlanTask& task, double from_m, double to_m, double blend_m) const {
-    PlanLine out;
-    const int points = static_cast<int>((p_.horizon_m + kBeyond_m) / PlanLine::kSpacing_m);
-    out.points_O.reserve(static_cast<std::size_t>(points) + 1);
-    for (int i = 0; i <= points; ++i) {
-      const double x = i * PlanLine::kSpacing_m, s = task.s_m + x;
-      const double d = task.lane_m + to_m + (from_m - to_m) * std::exp(-x / blend_m);
+  struct Candidate {
+    double offset_m;
+    std::size_t blend;
+    double beside_cost;
+  };
+
+  /// Integral of the square of what an arc turns more than the route, taken further as the arc grows.
+  class Turning {
+   public:
+    explicit Turning(const std::vector<double>& route_1_m) : route_(route_1_m) {}
+    double of(const DrivenArc& arc) {
+      for (; done_ < arc.curvature_1_m.size() && done_ < route_.size(); ++done_) {
+        const double more = static_cast<double>(arc.curvature_1_m[done_]) - route_[done_];
+        sum_ += DrivenArc::kStep_m * more * more;
+      }
+      return sum_;
+    }
+
+   private:
+    const std::vector<double>& route_;
+    std::size_t done_ = 0;
+    double sum_ = 0.0;
+  };
+
+  /// The route ahead: places in O, directions to its left, and how it turns at every step of an arc.
+  void lay_out(const PlanTask& task) {
+    route_O_.clear();
+    left_O_.clear();
+    for (const double x : ahead_m_) {
+      const double s = task.s_m + x;
       const Eigen::Vector2d u = task.route.direction(s);
       // After the route's end it goes straight on, so that the tracker has something to look at.
       const Eigen::Vector2d beyond = std::max(0.0, s - task.route.length_m()) * u;
-      out.points_O.emplace_back(task.route.at(s) + beyond + d * Eigen::Vector2d(-u.y(), u.x()) - task.from_O_to_W);
+      route_O_.emplace_back(task.route.at(s) + beyond - task.from_O_to_W);
+      left_O_.emplace_back(-u.y(), u.x());
     }
-    return out;
-  }
-
-  /// Of the route ahead, at every step of an arc.
-  std::vector<double> curvature_ahead(const PlanTask& task) const {
-    std::vector<double> out;
+    turning_1_m_.clear();
     for (double x = 0.5 * DrivenArc::kStep_m; x < p_.horizon_m + DrivenArc::kStep_m; x += DrivenArc::kStep_m)
-      out.push_back(task.route.curvature(task.s_m + x));
+      turning_1_m_.push_back(task.route.curvature(task.s_m + x));
+  }
+
+  /// To `to_m` beside the route, from `from_m` further off.
+  PlanLine line(double to_m, double from_m, std::size_t blend) const {
+    PlanLine out;
+    out.points_O.reserve(route_O_.size());
+    for (std::size_t i = 0; i < route_O_.size(); ++i)
+      out.points_O.emplace_back(route_O_[i] + (to_m + from_m * left_[blend][i]) * left_O_[i]);
     return out;
   }
 
-  /// Integral of the square of what an arc turns more than the route.
-  static double turning_1_m(const DrivenArc& arc, const std::vector<double>& route_1_m) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < arc.curvature_1_m.size() && i < route_1_m.size(); ++i) {
-      const double more = static_cast<double>(arc.curvature_1_m[i]) - route_1_m[i];
-      sum += DrivenArc::kStep_m * more * more;
-    }
-    return sum;
-  }
-
-  double cost(const LocalPlan& plan, const std::vector<double>& route_1_m) const {
-    return p_.blocked_cost_1_m * (p_.horizon_m - std::min(p_.horizon_m, plan.arc.free_m)) +
-           p_.closeness_cost_1_m2 * plan.arc.closeness_m2 + p_.turning_cost_m * turning_1_m(plan.arc, route_1_m) +
-           p_.offset_cost_1_m * (std::abs(plan.offset_m) + p_.change_share * std::abs(plan.offset_m - chosen_m_));
+  /// Grows with every part of it: what an arc has cost so far is no more than what it will cost.
+  double cost(double blocked_m, const DrivenArc& arc, double turning, double beside_cost) const {
+    return p_.blocked_cost_1_m * blocked_m + p_.closeness_cost_1_m2 * arc.closeness_m2 + p_.turning_cost_m * turning +
+           beside_cost;
   }
 
   OffsetPlannerParameters p_;
+  std::vector<Candidate> candidates_;
+  std::vector<double> ahead_m_;                            ///< of the vehicle, of each point of a line
+  std::array<std::vector<double>, kBlend_m.size()> left_;  ///< of a way to an offset, there
+  std::vector<Eigen::Vector2d> route_O_, left_O_;
+  std::vector<double> turning_1_m_;
   double chosen_m_ = 0.0;
 };
 
