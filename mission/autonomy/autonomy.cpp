@@ -10,11 +10,11 @@ namespace canyon::mission {
 namespace {
 
 constexpr ModelRow<MakeAutonomy> kAutonomies[] = {
+    {"reference", make_reference, "in exchangeable parts: drives its own body along arcs it can drive, by what it sees",
+     parameters_of<ReferenceParameters>},
     {"reference_2012", make_reference_2012,
      "the one of up to 2026-11: points of its rear axle in a grid of heights in W, beside the street by choice",
      parameters_of<Reference2012Parameters>},
-    {"reference", make_reference, "in exchangeable parts: drives its own body along arcs it can drive, by what it sees",
-     parameters_of<ReferenceParameters>},
     {"route_follower",
      [](const ModelParameters&, const AutonomyConfig& config, const PriorKnowledge& prior, GpsTime start) {
        return make_route_follower(config, prior, start);

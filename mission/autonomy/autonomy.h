@@ -39,7 +39,7 @@ ModelTable<MakeAutonomy> autonomy_models();
 
 /// [autonomy] of a mission file.
 struct AutonomyConfig {
-  ModelChoice<autonomy_models> model{"reference_2012"};
+  ModelChoice<autonomy_models> model{"reference"};
   MapPose map = MapPose::kPrior;
   double rate_hz = 100.0;  ///< commands per second
   double cruise_m_s = 5.0;

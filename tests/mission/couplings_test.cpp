@@ -31,8 +31,10 @@ TEST(Couplings, WithTruthAsPoseTheMissionSucceeds) {
 }
 
 TEST(Couplings, WithFixesWithheldTheEstimateDriftsAndTheVehicleLeavesItsPath) {
-  const MissionConfig with_fixes = short_config("low", "high");
-  const MissionConfig without = short_config("low", "high", "[run]\nwithhold_fixes_after_s = 0.0");
+  // One that goes by its estimate alone: the other stays in the street that it sees.
+  const std::string driver = "[autonomy]\nmodel = \"reference_2012\"\n";
+  const MissionConfig with_fixes = short_config("low", "high", driver);
+  const MissionConfig without = short_config("low", "high", driver + "[run]\nwithhold_fixes_after_s = 0.0");
   const RecordedRun aided = drive(with_fixes), coasting = drive(without);
   EXPECT_EQ(aided.outcome, Outcome::kSuccess) << (aided.failure ? aided.failure->detail : "");
   EXPECT_NE(coasting.outcome, Outcome::kSuccess);

@@ -230,11 +230,11 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
             "my.toml:5: autonomy.corner_radius_m: the vehicle's tightest turn has a radius of 2.88 m, turns of 2.00 m "
             "are planned, expected autonomy.corner_radius_m of vehicle.wheelbase_m / tan(vehicle.max_steering_deg) or "
             "more");
-  EXPECT_EQ(told("[autonomy]\nclearance_m = 0.5\n"),
-            "my.toml:5: autonomy.clearance_m: a vehicle 1.5 m wide does not pass an obstacle 0.5 m beside its axis, "
+  EXPECT_EQ(told("[autonomy]\nmodel = \"reference_2012\"\nclearance_m = 0.5\n"),
+            "my.toml:6: autonomy.clearance_m: a vehicle 1.5 m wide does not pass an obstacle 0.5 m beside its axis, "
             "expected autonomy.clearance_m of half vehicle.width_m or more");
-  EXPECT_EQ(told("[autonomy.choice]\nhorizon_m = 30.0\n"),
-            "my.toml:5: autonomy.choice.horizon_m: paths are checked 30 m ahead, the grid reaches 25 m, expected "
+  EXPECT_EQ(told("[autonomy]\nmodel = \"reference_2012\"\n[autonomy.choice]\nhorizon_m = 30.0\n"),
+            "my.toml:7: autonomy.choice.horizon_m: paths are checked 30 m ahead, the grid reaches 25 m, expected "
             "autonomy.choice.horizon_m not above autonomy.grid.half_size_m");
   EXPECT_EQ(
       told("[lidar]\nrate_hz = 1.0\n"),
