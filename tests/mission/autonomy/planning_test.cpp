@@ -183,5 +183,81 @@ TEST(OffsetPlanner, GoesBackToTheLaneOnceItIsFree) {
   }
 }
 
+TEST(OffsetPlanner, PlansFromWhereItIsToTheLanesMiddleWhereAllIsFree) {
+  const Path route({{0.0, 0.0}, {200.0, 0.0}}, 6.5);
+  const auto steers = tracker("pure_pursuit");
+  const KnownVehicle vehicle;
+  const auto planner = model_row(local_planners(), "offsets").make(kDefaults.planner.model.own);
+  const BlockedCells nothing;
+  for (double y = -3.0; y <= 3.0; y += 0.5) {
+    const LocalPlan plan = planner->plan(
+        {route, 10.0, Eigen::Vector2d::Zero(), 0.0, {{{10.0, y}, 0.0}, 3.0, 0.0}, nothing, *steers, vehicle});
+    EXPECT_TRUE(plan.arc.ends_free) << y;
+    EXPECT_NEAR((plan.line.points_O.front() - Eigen::Vector2d(10.0, y)).norm(), 0.0, 1e-12) << y;
+    EXPECT_EQ(plan.offset_m, 0.0) << y << ": where all is free the lane's middle is cheapest";
+  }
+}
+
+/// Cells of a wall of a length, 0.2 m apart.
+void add_wall(std::vector<Eigen::Vector2d>& cells, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const int n = std::max(1, static_cast<int>((to - from).norm() / 0.2));
+  for (int i = 0; i <= n; ++i) cells.push_back(from + (to - from) * i / n);
+}
+
+/// The body along an arc as planned, and the least that it keeps from any cell.
+double least_clearance_m(const LocalPlan& plan, PlanPose at, const BlockedCells& blocked, const KnownVehicle& vehicle) {
+  double least = blocked.clearance_m(at, vehicle, 2.0);
+  for (const float kappa : plan.arc.curvature_1_m) {
+    at = at.along(static_cast<double>(kappa), DrivenArc::kStep_m);
+    least = std::min(least, blocked.clearance_m(at, vehicle, 2.0));
+  }
+  return least;
+}
+
+// Two walls across the street, the gaps at opposite sides and 11 m apart: no line to one offset passes both.
+TEST(HybridAStar, FindsTheWayThroughASlalomThatOffsetsDoNot) {
+  const Path route({{0.0, 0.0}, {200.0, 0.0}}, 6.5);
+  const auto steers = tracker("pure_pursuit");
+  const KnownVehicle vehicle;
+  std::vector<Eigen::Vector2d> cells;
+  add_wall(cells, {19.0, -6.0}, {19.0, 0.6});
+  add_wall(cells, {30.0, -0.6}, {30.0, 6.0});
+  add_wall(cells, {0.0, 6.0}, {60.0, 6.0});
+  add_wall(cells, {0.0, -6.0}, {60.0, -6.0});
+  const BlockedCells blocked({10.0, 0.0}, cells);
+  const PlanTask task{route,   10.0,   Eigen::Vector2d::Zero(), 0.0, {{{10.0, 0.0}, 0.0}, 1.0, 0.0}, blocked,
+                      *steers, vehicle};
+  const auto offsets = model_row(local_planners(), "offsets").make(kDefaults.planner.model.own);
+  EXPECT_FALSE(offsets->plan(task).arc.ends_free);
+  const auto search = model_row(local_planners(), "hybrid_a_star").make(kDefaults.planner.model.own);
+  const LocalPlan plan = search->plan(task);
+  EXPECT_TRUE(plan.arc.ends_free);
+  EXPECT_GE(least_clearance_m(plan, task.body.pose, blocked, vehicle), search->clearances().least_m);
+}
+
+TEST(HybridAStar, KeepsToTheLaneWhereNothingStandsAndGoesBackToIt) {
+  const Path route({{0.0, 0.0}, {200.0, 0.0}}, 6.5);
+  const auto steers = tracker("pure_pursuit");
+  for (const double speed_m_s : {1.0, 3.0, 5.0}) {
+    const auto planner = model_row(local_planners(), "hybrid_a_star").make(kDefaults.planner.model.own);
+    EXPECT_LE(way_back_m(*planner, route, {{{30.0, 3.0}, 0.0}, speed_m_s, 0.0}, 0.0, *steers), 30.0) << speed_m_s;
+  }
+}
+
+TEST(HybridAStar, HaltsBeforeAWallAcrossTheStreet) {
+  const Path route({{0.0, 0.0}, {200.0, 0.0}}, 6.5);
+  const auto steers = tracker("pure_pursuit");
+  const KnownVehicle vehicle;
+  std::vector<Eigen::Vector2d> cells;
+  add_wall(cells, {22.0, -9.0}, {22.0, 9.0});
+  const BlockedCells blocked({10.0, 0.0}, cells);
+  const auto planner = model_row(local_planners(), "hybrid_a_star").make(kDefaults.planner.model.own);
+  const LocalPlan plan = planner->plan(
+      {route, 10.0, Eigen::Vector2d::Zero(), 0.0, {{{10.0, 0.0}, 0.0}, 3.0, 0.0}, blocked, *steers, vehicle});
+  EXPECT_FALSE(plan.arc.ends_free);
+  EXPECT_GT(plan.arc.free_m, 4.0);
+  EXPECT_GE(least_clearance_m(plan, {{10.0, 0.0}, 0.0}, blocked, vehicle), planner->clearances().least_m);
+}
+
 }  // namespace
 }  // namespace canyon::mission
