@@ -13,7 +13,12 @@ Status MissionRun::hand_on(const Reading& reading, const char* counter, Status (
 
 Status MissionRun::take_odometer(const Due& due) {
   const auto reading = clock_.charge(Part::kImu, [&] { return aiding_.count(due.k - 1, motion_, due.t); });
-  return hand_on(reading, "odometer_samples", &Recorder::odometer);
+  CANYON_TRY_STATUS(hand_on(reading, "odometer_samples", &Recorder::odometer));
+  if (omissions_.autonomy) return Ok{};
+  return localizer_.once_at(due.t, [this, sample = reading.message]() -> Status {
+    clock_.charge(Part::kAutonomy, [&] { ask([&] { autonomy_->count(sample); }); });
+    return Ok{};
+  });
 }
 
 Status MissionRun::take_barometer(const Due& due) {

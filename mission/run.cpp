@@ -183,6 +183,10 @@ bool MissionRun::score() {
   }
   const TapeNode& node = source_->now();
   const AutonomyState state = answers_.state;
+  if (state == AutonomyState::kLost) {
+    scorer_.lost(node.motion, with_correction(estimate(node.motion.t)).X_WB.p);
+    return false;
+  }
   const bool on_purpose = state == AutonomyState::kObserving || state == AutonomyState::kDone;
   const bool go_on = clock_.charge(
       Part::kScoring, [&] { return scorer_.step(node.motion, node.speed_m_s, source_->on_terrain(), on_purpose); });

@@ -64,6 +64,8 @@ const char* name(AutonomyState state) {
       return "blind";
     case AutonomyState::kDone:
       return "done";
+    case AutonomyState::kLost:
+      return "lost";
   }
   return "unknown";
 }

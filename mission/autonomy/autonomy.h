@@ -53,7 +53,8 @@ struct AutonomyConfig {
 };
 void visit(FieldVisitor& f, AutonomyConfig& c);
 
-enum class AutonomyState { kDriving, kObserving, kBlocked, kBlind, kDone };
+/// kLost: it no longer believes its estimate and stands, for good.
+enum class AutonomyState { kDriving, kObserving, kBlocked, kBlind, kDone, kLost };
 const char* name(AutonomyState state);
 
 /// What is known before the start: streets and waypoints, no obstacles, and the vehicle itself.
@@ -72,6 +73,8 @@ class Autonomy {
   virtual ~Autonomy() = default;
   /// A deskewed scan in L at its stamp, placed by the estimate at that stamp.
   virtual void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) = 0;
+  /// What the wheel counted, where the run has an odometer.
+  virtual void count(const OdometerSample&) {}
   virtual bool looks() const { return true; }  ///< false: nothing it sees changes what it does
   virtual std::optional<KeptReturns> keeps() const { return std::nullopt; }  ///< none: whatever it is shown
   virtual DriveCommand drive(const NavEstimate& estimate) = 0;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace canyon::mission {
 
 /// What an autonomy keeps of the scans that it is shown: returns between two heights over the ground plane of the
@@ -10,5 +12,13 @@ struct KeptReturns {
   double half_size_m = 0.0;
   int enough = 0;
 };
+
+/// What keeps whatever either does.
+inline KeptReturns both(const KeptReturns& a, const KeptReturns& b) {
+  return {.low_m = std::min(a.low_m, b.low_m),
+          .high_m = std::max(a.high_m, b.high_m),
+          .half_size_m = std::max(a.half_size_m, b.half_size_m),
+          .enough = std::max(a.enough, b.enough)};
+}
 
 }  // namespace canyon::mission

@@ -30,9 +30,13 @@ class Reference final : public Autonomy {
         planner_(part(own.planner.model)),
         tracker_(part(own.tracker.model, vehicle_)),
         speed_(part(own.speed.model)),
-        recovery_(part(own.recovery.model)) {}
+        recovery_(part(own.recovery.model)),
+        self_check_(model_row(self_checks(), own.self_check.model.name).make.make(own.self_check.model.own)) {}
+
+  void count(const OdometerSample& sample) override { self_check_->count(sample); }
 
   void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
+    self_check_->see(scan, X_WL, estimate);
     const PlanPose body = frame_.at(estimate);
     const Pose X_OB{estimate.X_WB.R, {body.p_m.x(), body.p_m.y(), 0.0}};
     const Pose X_OL{X_WL.R, X_WL.p - estimate.X_WB.p + X_OB.p};
@@ -41,7 +45,11 @@ class Reference final : public Autonomy {
     last_seen_ = scan.t;
   }
 
-  std::optional<KeptReturns> keeps() const override { return perception_->keeps(); }
+  std::optional<KeptReturns> keeps() const override {
+    KeptReturns keeps = perception_->keeps();
+    if (const auto more = self_check_->keeps()) keeps = both(keeps, *more);
+    return keeps;
+  }
 
   DriveCommand drive(const NavEstimate& estimate) override {
     const bool stands = driver_.update(estimate);
@@ -88,6 +96,10 @@ class Reference final : public Autonomy {
 
   DriveCommand decide(GpsTime t, bool stands) {
     DriveCommand command;
+    if (self_check_->trust() == Trust::kLost) {
+      state_ = AutonomyState::kLost;
+      return command;
+    }
     if (stands) {
       state_ = driver_.done() ? AutonomyState::kDone : AutonomyState::kObserving;
       return command;
@@ -122,6 +134,8 @@ class Reference final : public Autonomy {
                                              .step_m = DrivenArc::kStep_m,
                                              .braking_m_s2 = config_.braking_m_s2,
                                              .lateral_m_s2 = config_.lateral_m_s2});
+    if (self_check_->trust() == Trust::kDoubtful)
+      command.speed_m_s = std::min(command.speed_m_s, self_check_->speed_limit_m_s());
     return command;
   }
 
@@ -137,6 +151,7 @@ class Reference final : public Autonomy {
   std::unique_ptr<Tracker> tracker_;
   std::unique_ptr<SpeedRule> speed_;
   std::unique_ptr<Recovery> recovery_;
+  std::unique_ptr<SelfCheck> self_check_;
   LocalPlan plan_;
   double planned_at_m_ = 0.0, seen_m_ = 0.0, steering_rad_ = 0.0;
   AutonomyState state_ = AutonomyState::kBlind;
@@ -151,6 +166,13 @@ void visit(FieldVisitor& f, ReferenceParameters& c) {
   f.group("tracker", c.tracker, "reference: how it steers along that");
   f.group("speed", c.speed, "reference: how fast");
   f.group("recovery", c.recovery, "reference: what it does where no way is free");
+  f.group("self_check", c.self_check, "reference: whether it believes its estimate");
+}
+
+bool counts_wheel(const AutonomyConfig& config) {
+  if (config.model.name != "reference") return false;
+  const auto& own = config.model.own.get<ReferenceParameters>();
+  return model_row(self_checks(), own.self_check.model.name).make.counts;
 }
 
 std::unique_ptr<Autonomy> make_reference(const ModelParameters& own, const AutonomyConfig& config,

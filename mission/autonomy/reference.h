@@ -9,6 +9,7 @@
 #include "canyon/mission/autonomy/planning/recovery.h"
 #include "canyon/mission/autonomy/planning/speed_rule.h"
 #include "canyon/mission/autonomy/planning/tracker.h"
+#include "canyon/mission/autonomy/self_check/self_check.h"
 
 namespace canyon::mission {
 
@@ -31,13 +32,18 @@ struct ReferenceParameters {
   PartChoice<trackers> tracker{ModelChoice<trackers>("pure_pursuit")};
   PartChoice<speed_rules> speed{ModelChoice<speed_rules>("stopping_distance")};
   PartChoice<recoveries> recovery{ModelChoice<recoveries>("back_up")};
+  PartChoice<self_checks> self_check{ModelChoice<self_checks>("none")};
 };
 void visit(FieldVisitor& f, ReferenceParameters& c);
 
+/// Whether it is a reference autonomy with a part that wants an odometer.
+bool counts_wheel(const AutonomyConfig& config);
+
 /// The reference autonomy, in parts that can be exchanged one by one: perception of what blocks the way, where the lane
 /// is, a plan that is driven in thought with the vehicle's own body and limits, a tracker, a speed from which it halts
-/// within what it sees, and what it does where nothing is free. What it sees it remembers in a local frame that fixes
-/// do not move (perception/local_frame.h); route and waypoints it knows in W, by the estimate.
+/// within what it sees, what it does where nothing is free, and whether it still believes its estimate. What it sees it
+/// remembers in a local frame that fixes do not move (perception/local_frame.h); route and waypoints it knows in W, by
+/// the estimate.
 std::unique_ptr<Autonomy> make_reference(const ModelParameters& own, const AutonomyConfig& config,
                                          const PriorKnowledge& prior, GpsTime start);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "canyon/inertial/imu_model.h"
+#include "canyon/mission/autonomy/reference.h"
 
 namespace canyon::mission {
 
@@ -50,7 +51,8 @@ void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("vehicle", c.vehicle, "the ground vehicle");
   f.group("gnss", c.gnss, "the GNSS receiver and its errors");
   f.group("imu", c.imu, "the inertial sensor and its errors");
-  f.group("odometer", c.odometer, "the wheel's encoder, where the filter measures with one");
+  f.group("odometer", c.odometer,
+          "the wheel's encoder, where the filter measures with one or the autonomy checks itself by it");
   f.group("barometer", c.barometer, "static pressure at the IMU, where the filter measures with it");
   f.group("magnetometer", c.magnetometer, "the Earth's field along the IMU's axes, where the filter measures with it");
   f.group("lidar", c.lidar, "the LIDAR");
@@ -69,7 +71,9 @@ AidingSensors sensors_for(const std::vector<std::string>& measurements) {
 }
 
 AidingSensors aiding_sensors(const MissionConfig& config) {
-  return sensors_for(fusion::filter_parts(config.fusion).measurements);
+  AidingSensors sensors = sensors_for(fusion::filter_parts(config.fusion).measurements);
+  sensors.odometer = sensors.odometer || counts_wheel(config.autonomy);
+  return sensors;
 }
 
 bool takes_registered_poses(const MissionConfig& config) {

@@ -11,6 +11,8 @@ constexpr ModelRow<Outcome> kOutcomes[] = {
      "the autonomy gives a command that is not finite, throws, or takes longer than `[autonomy] call_limit_s` for one "
      "call; `detail` says which. It is what is under test, so this is a result like the others, and the exit status is "
      "0"},
+    {"lost", Outcome::kLost,
+     "the autonomy says that it no longer believes its estimate, and stands; `detail` says how far off that truly was"},
     {"timeout", Outcome::kTimeout, "`[success] limit_factor` times the nominal time is over"},
     {"stopped", Outcome::kStopped,
      "`[time] limit_s` is over, and it is shorter than that: neither success nor failure"},

@@ -13,6 +13,7 @@ enum class Outcome : std::uint8_t {
   kLeftScene,
   kStuck,
   kAutonomyFault,
+  kLost,
   kTimeout,
   kStopped,
   kMissedWaypoint,

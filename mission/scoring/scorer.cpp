@@ -120,6 +120,11 @@ void Scorer::autonomy_fault(const KinematicState& truth, std::string how) {
   fail(Outcome::kAutonomyFault, truth, std::move(how));
 }
 
+void Scorer::lost(const KinematicState& truth, const Eigen::Vector3d& believed_W) {
+  const double off_m = (believed_W - truth.X_WB.p).head<2>().norm();
+  fail(Outcome::kLost, truth, "it said so, and was " + number(off_m, "m") + " from where it took itself to be");
+}
+
 void Scorer::finish(const KinematicState& truth, bool done) {
   if (failure_) return;
   if (!done) {

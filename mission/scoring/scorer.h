@@ -43,6 +43,8 @@ class Scorer {
   bool step(const KinematicState& truth, double speed_m_s, bool on_terrain, bool observing);
   /// The autonomy itself failed: how is said in the detail.
   void autonomy_fault(const KinematicState& truth, std::string how);
+  /// The autonomy says that it is lost, having taken itself to be at `believed_W`.
+  void lost(const KinematicState& truth, const Eigen::Vector3d& believed_W);
   /// To be called once at the end: decides what is still open. `done` = the autonomy believes it has finished.
   void finish(const KinematicState& truth, bool done);
 
