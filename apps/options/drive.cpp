@@ -27,7 +27,7 @@ namespace canyon::apps {
 namespace {
 
 constexpr const char* kMakePlan = "make";
-constexpr std::int64_t kWhyDraws = 10;
+constexpr std::int64_t kWhyDraws = 12;
 
 void print_json(const study::Results& results, const std::vector<study::Explanation>& explanations,
                 const std::string& directory, const std::string& hash) {
@@ -94,7 +94,7 @@ void declare_why_options(Arguments& arguments, WhyOptions& options) {
       "--why", options.why,
       "for each run that fails (of the first seed): its chain of events, and replays without each source of error, "
       "beside replays with other noise alone: which source's removal rescues the mission");
-  arguments.option("--why-draws", options.draws, "replays with and without each source; without it 10")
+  arguments.option("--why-draws", options.draws, "replays with and without each source; without it 12")
       .within(std::int64_t{6}, std::int64_t{10'000});
 }
 

@@ -61,8 +61,10 @@ RemovalOutcome compare_replays(const ModelRow<Removal>& row, const std::vector<b
   return out;
 }
 
+/// Two looks are taken at most (explain_failures), so each has half of the 5 %.
+constexpr double kLevel = 0.05 / 2;
+
 void judge(Explanation& explanation) {
-  constexpr double kLevel = 0.05;
   std::vector<double> p;
   for (const RemovalOutcome& outcome : explanation.outcomes) p.push_back(outcome.p);
   const std::vector<bool> significant = holm(p, kLevel);
@@ -75,6 +77,52 @@ void judge(Explanation& explanation) {
     if (cause == nullptr || rank(outcome) < rank(*cause)) cause = &outcome;
   }
   if (cause != nullptr) explanation.cause = cause->removal;
+}
+
+/// One failed run and what is known of it.
+struct Failed {
+  std::size_t run;  ///< of the comparison
+  Explanation explanation;
+};
+
+/// Drives the replays of each from its from_s on, and judges.
+Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress& progress) {
+  const auto rows = removals();
+  const auto draws = static_cast<std::size_t>(failed.front().explanation.draws);
+  const std::size_t each = (rows.size() + 1) * draws;
+  std::vector<std::optional<Error>> errors(failed.size() * each);
+  std::vector<char> success(errors.size(), 0);  // by run, arm and draw
+  parallel_for(errors.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Failed& of = failed[i / each];
+      const std::size_t arm = i % each / draws;
+      const Removal* removal = arm == 0 ? nullptr : &rows[arm - 1].make;
+      auto result = replay(comparison, of.run, removal, of.explanation.from_s, static_cast<int>(i % draws), progress);
+      if (result)
+        success[i] = *result ? 1 : 0;
+      else
+        errors[i] = result.error();
+    }
+  });
+  for (const auto& error : errors)
+    if (error) return *error;
+  for (std::size_t k = 0; k < failed.size(); ++k) {
+    const auto arm = [&](std::size_t a) {
+      const auto from = success.begin() + static_cast<std::ptrdiff_t>(k * each + a * draws);
+      return std::vector<bool>(from, from + static_cast<std::ptrdiff_t>(draws));
+    };
+    Explanation& explanation = failed[k].explanation;
+    const std::vector<bool> as_it_was = arm(0);
+    explanation.successes_as_it_was = static_cast<int>(std::count(as_it_was.begin(), as_it_was.end(), true));
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      explanation.outcomes.push_back(compare_replays(rows[r], as_it_was, arm(r + 1)));
+    judge(explanation);
+  }
+  return Ok{};
+}
+
+bool names_one_error(const Explanation& e) {
+  return e.cause != nullptr && e.cause->make.breadth == Breadth::kOneError;
 }
 
 }  // namespace
@@ -93,65 +141,60 @@ std::vector<bool> holm(const std::vector<double>& p, double level) {
 
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
                                                   bool show_progress) {
-  std::vector<Explanation> explanations;
-  std::vector<std::size_t> runs;
-  double replays_s = 0.0;
-  const auto rows = removals();
-  const std::size_t arms = rows.size() + 1, each = arms * static_cast<std::size_t>(draws);
+  std::vector<Failed> failed;
+  const auto each = (removals().size() + 1) * static_cast<std::size_t>(draws);
+  const auto replays_s = [&](const std::vector<Failed>& of) {
+    double sum_s = 0.0;
+    for (const Failed& f : of)
+      sum_s += static_cast<double>(each) *
+               std::min(comparison.missions[f.run].nominal_s, comparison.missions[f.run].time_limit_s);
+    return sum_s;
+  };
   for (std::size_t i = 0; i < results.records.size(); ++i) {
     if (!results.records[i].failure) continue;
-    runs.push_back(i);
-    replays_s +=
-        static_cast<double>(each + 1) * std::min(comparison.missions[i].nominal_s, comparison.missions[i].time_limit_s);
     Explanation explanation;
     explanation.run = comparison.plan[i].name;
     explanation.seed = comparison.configs[i].run.seed;
     explanation.failure = *results.records[i].failure;
     explanation.draws = draws;
-    explanations.push_back(std::move(explanation));
+    failed.push_back({i, std::move(explanation)});
   }
-  if (runs.empty()) return explanations;
-  Progress progress("driving " + std::to_string(runs.size() * each) + " replays of what failed", replays_s,
+  if (failed.empty()) return std::vector<Explanation>();
+  Progress progress("driving " + std::to_string(failed.size() * each) + " replays of what failed", replays_s(failed),
                     show_progress);
-
-  std::vector<std::optional<Error>> errors(runs.size() * each);
-  parallel_for(runs.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      RunEvents events;
-      auto record = drive(comparison, runs[k], comparison.configs[runs[k]], &events, nullptr, progress);
-      if (!record) errors[k] = record.error();
-      explanations[k].events = events.events();
-      explanations[k].from_s = chain_start_s(explanations[k].events, explanations[k].failure.t_s);
-    }
-  });
-  std::vector<char> success(errors.size(), 0);  // by run, arm and draw
-  parallel_for(errors.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t k = i / each, arm = i % each / static_cast<std::size_t>(draws);
-      const Removal* removal = arm == 0 ? nullptr : &rows[arm - 1].make;
-      auto result = replay(comparison, runs[k], removal, explanations[k].from_s,
-                           static_cast<int>(i % static_cast<std::size_t>(draws)), progress);
-      if (result)
-        success[i] = *result ? 1 : 0;
-      else
-        errors[i] = result.error();
-    }
-  });
-  for (const auto& error : errors)
-    if (error) return *error;
-
-  for (std::size_t k = 0; k < runs.size(); ++k) {
-    const auto arm = [&](std::size_t a) {
-      const auto from = success.begin() + static_cast<std::ptrdiff_t>(k * each + a * static_cast<std::size_t>(draws));
-      return std::vector<bool>(from, from + draws);
-    };
-    Explanation& explanation = explanations[k];
-    const std::vector<bool> as_it_was = arm(0);
-    explanation.successes_as_it_was = static_cast<int>(std::count(as_it_was.begin(), as_it_was.end(), true));
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      explanation.outcomes.push_back(compare_replays(rows[r], as_it_was, arm(r + 1)));
-    judge(explanation);
+  for (auto& [run, explanation] : failed) {
+    RunEvents events;
+    CANYON_TRY_STATUS(drive(comparison, run, comparison.configs[run], &events, nullptr, progress));
+    explanation.events = events.events();
+    explanation.from_s = chain_start_s(explanation.events, explanation.failure.t_s);
   }
+  CANYON_TRY_STATUS(look(comparison, failed, progress));
+
+  // Where no one error is to blame from there on, it may have been at work before, as a drift is.
+  std::vector<Failed> again;
+  std::vector<std::size_t> of;
+  for (std::size_t k = 0; k < failed.size(); ++k) {
+    if (names_one_error(failed[k].explanation) || failed[k].explanation.from_s <= 0.0) continue;
+    again.push_back(failed[k]);
+    Explanation& explanation = again.back().explanation;
+    explanation.from_s = 0.0;
+    explanation.outcomes.clear();
+    explanation.cause = nullptr;
+    of.push_back(k);
+  }
+  if (!again.empty()) {
+    Progress more("driving " + std::to_string(again.size() * each) + " of them from the start", replays_s(again),
+                  show_progress);
+    CANYON_TRY_STATUS(look(comparison, again, more));
+  }
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    Explanation &first = failed[of[i]].explanation, &second = again[i].explanation;
+    const bool narrower =
+        second.cause != nullptr && first.cause != nullptr && second.cause->make.breadth < first.cause->make.breadth;
+    if (first.cause == nullptr || narrower) first = std::move(second);
+  }
+  std::vector<Explanation> explanations;
+  for (Failed& f : failed) explanations.push_back(std::move(f.explanation));
   return explanations;
 }
 

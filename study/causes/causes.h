@@ -21,7 +21,7 @@ struct RemovalOutcome {
   PairedCounts pairs;    ///< a: as it was, b: without; the same redraws in both
   Interval difference;   ///< of the shares of success, 95 %
   double p = 1.0;        ///< one-sided, exact: as many rescues or more, were rescues and harms as likely
-  bool rescues = false;  ///< p within 5 % over all removals (Holm), and the interval excludes 0
+  bool rescues = false;  ///< p within 2.5 % over all removals (Holm), and the interval excludes 0
 };
 
 /// Why one run failed.
@@ -41,7 +41,10 @@ struct Explanation {
 /// of events (chain_start_s) drawn anew, and as often, on the same draws, without each source of removals(). A source
 /// is the cause if its removal rescues the mission more often than the redraws alone: the paired exact test of McNemar,
 /// Holm's correction over all removals (S. Holm, Scand. J. Stat. 6 (1979) 65). Closed loops are chaotic: without the
-/// paired redraws, any perturbation might rescue. Explained are the runs in `results`, of the comparison's own seed.
+/// paired redraws, any perturbation might rescue. Where no one error is named from the chain's beginning on, a second
+/// look takes sources away from the start on, for what had been at work before, as a drift has; each look has 2.5 %, so
+/// that where nothing helps something is named in 5 % at most. Explained are the runs in `results`, of the comparison's
+/// own seed.
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
                                                   bool show_progress);
 

@@ -42,19 +42,20 @@ std::string words(const Event& event) {
 }  // namespace
 
 std::string verdict(const Explanation& e) {
-  const std::string again = "with other noise from " + seconds(e.from_s) + " on it succeeds " +
-                            out_of(e.successes_as_it_was, e.draws) + " times";
+  const std::string as_it_was = "with nothing but the noise changed from " + seconds(e.from_s) + " on, in " +
+                                out_of(e.successes_as_it_was, e.draws);
   if (e.cause != nullptr) {
     for (const RemovalOutcome& outcome : e.outcomes) {
       if (outcome.removal != e.cause) continue;
-      return std::string("cause: ") + e.cause->make.cause + "; without them (" + e.cause->doc + ") it succeeds " +
-             out_of(outcome.successes, e.draws) + " times, " + again;
+      return std::string("because of ") + e.cause->make.cause + ". Driven again without that (" + e.cause->doc +
+             ") it succeeds in " + out_of(outcome.successes, e.draws) + " repeats, " + as_it_was;
     }
   }
   const RemovalOutcome& navigation = e.outcomes.back();  // the widest is the last row
   if (!navigation.rescues && navigation.successes == 0)
-    return "not navigation: even with the true pose it never succeeds; " + again;
-  return "cause undetermined: no removal rescues it more often than other noise does; " + again;
+    return "navigation is not to blame. Told its true position it succeeds in none of " + std::to_string(e.draws) +
+           " repeats, " + as_it_was;
+  return "undetermined. Nothing that was taken away helps more often than other noise does; it succeeds, " + as_it_was;
 }
 
 std::vector<std::string> chain(const Explanation& e) {

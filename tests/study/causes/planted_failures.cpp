@@ -1,0 +1,180 @@
+#include "canyon/tests/study/causes/planted_failures.h"
+
+namespace canyon::study::testing {
+namespace {
+
+// Whoever drives follows the middle of the street by its estimate alone, so that a drive costs hardly any time.
+constexpr const char* kDrive = R"(
+base = "vicksburg"
+[vehicle]
+start_m = [213.9, 30.0]
+start_heading_deg = 0.0
+[registration]
+method = "none"
+[autonomy]
+model = "route_follower"
+[[autonomy.waypoint]]
+name = "half way"
+p_m = [213.9, 80.0]
+[[autonomy.waypoint]]
+name = "goal"
+p_m = [213.9, 140.0]
+[success]
+waypoint_radius_m = 2.0
+)";
+
+constexpr const char* kPerfectFixes = R"(
+gnss.model = "truth_plus_white"
+gnss.white_sigma_m = 0.05
+gnss.white_sigma_up_m = 0.05
+)";
+constexpr const char* kPerfectUnit = R"(
+imu.errors = "none"
+)";
+constexpr const char* kAligned = R"(
+run.initial_attitude_error_deg = [0.0, 0.0, 0.0]
+)";
+// A differential receiver in a street, its ranges perfect but for what the street does.
+constexpr const char* kReceiver = R"(
+gnss.model = "pseudorange"
+gnss.mode = "dgps"
+gnss.paths = "specular2"
+gnss.diffraction = "double_knife_edge"
+gnss.multipath_rule = "correlator"
+gnss.raim = "none"
+)";
+// The same under a sky that nothing is built into.
+constexpr const char* kOpenSky = R"(
+gnss.model = "pseudorange"
+gnss.mode = "dgps"
+gnss.paths = "none"
+gnss.multipath_rule = "none"
+)";
+// Things that stand in the lane, all across the street.
+constexpr const char* kBarrier = R"(
+scene.moving = [
+  {name = "barrier 1", path_m = [210.4, 100.0, 210.4, 101.0], start_s = 1e5},
+  {name = "barrier 2", path_m = [213.9, 100.0, 213.9, 101.0], start_s = 1e5},
+  {name = "barrier 3", path_m = [217.4, 100.0, 217.4, 101.0], start_s = 1e5},
+]
+)";
+// An autonomy that looks, with a LIDAR that is cheap to simulate.
+constexpr const char* kLooks = R"(
+autonomy.model = "reference"
+lidar.azimuth_steps = 600
+lidar.rate_hz = 5.0
+)";
+
+}  // namespace
+
+const std::vector<Plant>& plants() {
+  using Kind = Plant::Kind;
+  static const std::vector<Plant> all{
+      // One source, with a switch of its own.
+      {"a cheap inertial unit, no fixes",
+       {"imu"},
+       Kind::kOwnSwitch,
+       {kPerfectFixes, kAligned, "imu.sensor = \"mpu6050\"\nrun.withhold_fixes_after_s = 0.0\n"}},
+      {"another, no fixes",
+       {"imu"},
+       Kind::kOwnSwitch,
+       {kPerfectFixes, kAligned, "imu.sensor = \"phidget_3_3_3\"\nrun.withhold_fixes_after_s = 0.0\n"}},
+      {"a crooked start, no fixes",
+       {"alignment"},
+       Kind::kOwnSwitch,
+       {kPerfectFixes, kPerfectUnit,
+        "run.initial_attitude_error_deg = [0.0, 0.0, 12.0]\nrun.withhold_fixes_after_s = 0.0\n"}},
+      {"a tilted start, no fixes",
+       {"alignment"},
+       Kind::kOwnSwitch,
+       {kPerfectFixes, kPerfectUnit,
+        "run.initial_attitude_error_deg = [1.5, 1.5, 0.0]\nrun.withhold_fixes_after_s = 0.0\n"}},
+      {"reflected signals, half-chip correlator",
+       {"reflections_healed", "reflections_dropped"},
+       Kind::kOwnSwitch,
+       {kReceiver, kPerfectUnit, kAligned, "gnss.multipath_scale = 3.0\ngnss.thermal_noise_scale = 0.1\n"}},
+      {"hidden signals that a sensitive receiver holds",
+       {"reflections_healed", "reflections_dropped"},
+       Kind::kOwnSwitch,
+       {kReceiver, kPerfectUnit, kAligned, "gnss.tracking_threshold_dbhz = 10.0\ngnss.thermal_noise_scale = 0.1\n"}},
+      {"blocked satellites, noisy ranges",
+       {"blockage"},
+       Kind::kOwnSwitch,
+       {kReceiver, kPerfectUnit, kAligned,
+        "gnss.multipath_scale = 0.0\ngnss.hidden_signals = \"dropped\"\ngnss.thermal_noise_scale = 4.0\n"
+        "gnss.max_gdop = 1000.0\n"}},
+      {"heights that jump, an autonomy that remembers heights",
+       {"height"},
+       Kind::kOwnSwitch,
+       {kPerfectUnit, kAligned, kLooks,
+        "autonomy.model = \"reference_2012\"\ngnss.model = \"truth_plus_white\"\ngnss.white_sigma_m = 0.05\n"
+        "gnss.white_sigma_up_m = 6.0\nsuccess.stuck_after_s = 20.0\n"}},
+      // One source without a switch: of the pose as a whole it can be said.
+      {"white fixes of metres",
+       {"navigation"},
+       Kind::kNoSwitch,
+       {kPerfectUnit, kAligned, "gnss.model = \"truth_plus_white\"\ngnss.white_sigma_m = 12.0\n"}},
+      {"an ionosphere that nobody corrects",
+       {"navigation"},
+       Kind::kNoSwitch,
+       {kOpenSky, kPerfectUnit, kAligned, "gnss.mode = \"single_uncorrected\"\ngnss.vtec_tecu = 300.0\n"}},
+      {"satellites that are not where they say",
+       {"navigation"},
+       Kind::kNoSwitch,
+       {kOpenSky, kPerfectUnit, kAligned, "gnss.mode = \"single\"\ngnss.ephemeris_sigma_m = 15.0\n"}},
+      {"a base station that is wrong",
+       {"navigation"},
+       Kind::kNoSwitch,
+       {kOpenSky, kPerfectUnit, kAligned, "gnss.base_error_scale = 30.0\n"}},
+      {"a loop that is all noise",
+       {"navigation"},
+       Kind::kNoSwitch,
+       {kOpenSky, kPerfectUnit, kAligned, "gnss.thermal_noise_scale = 20.0\n"}},
+      // Two together.
+      {"blocked satellites and a cheap unit: both are needed",
+       {"blockage", "imu"},
+       Kind::kTwoTogether,
+       {kReceiver, kAligned,
+        "imu.sensor = \"mpu6050\"\ngnss.multipath_scale = 0.0\ngnss.hidden_signals = \"dropped\"\n"
+        "gnss.fewest_satellites = 9\n"}},
+      {"a crooked start and a cheap unit: either is enough",
+       {"navigation"},
+       Kind::kTwoTogether,
+       {kPerfectFixes,
+        "imu.sensor = \"mpu6050\"\nrun.initial_attitude_error_deg = [2.0, 2.0, 10.0]\n"
+        "run.withhold_fixes_after_s = 0.0\n"}},
+      {"blocked satellites and reflections: either is enough",
+       {"buildings"},
+       Kind::kTwoTogether,
+       {kReceiver, kPerfectUnit, kAligned,
+        "gnss.multipath_scale = 3.0\ngnss.thermal_noise_scale = 4.0\ngnss.max_gdop = 1000.0\n"}},
+      // None: the true pose would not have helped.
+      {"a street that is barred", {}, Kind::kNone, {kPerfectFixes, kPerfectUnit, kAligned, kBarrier}},
+      {"a street that is barred, and fixes of a metre",
+       {},
+       Kind::kNone,
+       {kPerfectUnit, kAligned, kBarrier, "gnss.model = \"truth_plus_white\"\ngnss.white_sigma_m = 1.0\n"}},
+      {"a LIDAR that sees nothing",
+       {},
+       Kind::kNone,
+       {kPerfectFixes, kPerfectUnit, kAligned, kLooks, "lidar.blinded = true\nsuccess.stuck_after_s = 10.0\n"}},
+      {"a car that drives into it",
+       {},
+       Kind::kNone,
+       {kPerfectFixes, kPerfectUnit, kAligned,
+        "scene.moving = [{name = \"car\", path_m = [213.9, 190.0, 213.9, 30.0], speed_m_s = 4.0}]\n"}},
+  };
+  return all;
+}
+
+Result<Comparison> planted(const Plant& plant, std::int64_t seed) {
+  CANYON_TRY(auto file, mission::MissionFile::parse(kDrive, "drive.toml"));
+  for (const char* toml : plant.toml) {
+    CANYON_TRY(const auto over, ConfigNode::parse(toml, plant.name));
+    file.lay_over(over);
+  }
+  file.set_option("run.seed", ConfigNode::of(seed), "test");
+  return prepare_comparison(file, plan_runs({"low"}, false));
+}
+
+}  // namespace canyon::study::testing
