@@ -72,37 +72,40 @@ std::string success_sentence(const Run& run, const Mission& mission) {
 
 std::string failure_sentence(const Run& run, const Mission& mission) {
   const std::string& kind = run.failure ? run.failure->kind : run.outcome;
-  std::string text = (kind == "stopped" ? " " : " failed: it ") + outcome_words(kind);
+  std::string text = (kind == "stopped" ? " " : " failed: it ");
+  text += run.failure ? failure_words(*run.failure) : outcome_words(kind);
+  std::string where;
   if (run.failure) {
     const Failure& f = *run.failure;
     if (std::isfinite(f.t_s)) text += " after " + show_quantity(f.t_s, "s", 4);
-    if (std::isfinite(f.x_m) && std::isfinite(f.y_m)) {
-      text += ", " + show_quantity(f.x_m, "m", 4) + " east and " + show_quantity(f.y_m, "m", 4) +
-              " north of the scene\xE2\x80\x99s origin";
-    }
     if (run.nav) {
       if (const auto row = row_at(*run.nav, f.t_s)) {
         const EpochTable& nav = *run.nav;
         const double heading_for = nav["waypoint"][*row];
         if (std::isfinite(heading_for)) text += ", on its way to " + waypoint_name(heading_for, mission);
         if (const double error_m = error_norm_m(nav, *row); std::isfinite(error_m)) {
-          text += ", when its own position was wrong by " + show_quantity(error_m, "m") + " (east " +
-                  signed_number(nav["error_e_m"][*row]) + ", north " + signed_number(nav["error_n_m"][*row]) + ", up " +
-                  show_quantity(nav["error_u_m"][*row], "m") + ")";
+          where = " It took itself to be " + show_quantity(error_m, "m") + " from where it truly was (" +
+                  signed_number(nav["error_e_m"][*row]) + " m east, " + signed_number(nav["error_n_m"][*row]) +
+                  " m north, " + signed_number(nav["error_u_m"][*row]) + " m up).";
         }
       }
     }
   }
   if (const std::string reached = waypoints_reached(run, mission); !reached.empty())
     text += "; it had reached " + reached;
-  return text + ".";
+  return text + "." + where;
 }
 
 /// The circumstances: what the simulator said, and the reception before.
 std::string circumstances(const Run& run) {
   if (!run.failure) return {};
-  std::string text = run.failure->detail;
+  const Failure& f = *run.failure;
+  std::string text = f.detail;
   if (!text.empty()) text = capitalised(text) + (text.back() == '.' ? "" : ".");
+  if (std::isfinite(f.x_m) && std::isfinite(f.y_m)) {
+    text += (text.empty() ? "" : " ") + std::string("Where: ") + show_quantity(f.x_m, "m", 4) + " east and " +
+            show_quantity(f.y_m, "m", 4) + " north of the scene\xE2\x80\x99s origin.";
+  }
   if (!run.gnss_epochs || !std::isfinite(run.failure->t_s)) return text;
   const double before_s = std::min(kBeforeFailure_s, run.failure->t_s);
   const Reception r = reception(*run.gnss_epochs, run.failure->t_s - before_s, run.failure->t_s);
@@ -214,9 +217,9 @@ std::string verdict_section(const Results& results) {
     body += "<li class=\"verdict keep " + run_class(i) + (run.is_pure() ? "" : " mixed") +
             "\"><p><span class=\"mark-of " + (run.succeeded() ? "good\">\xE2\x9C\x93" : "bad\">\xE2\x9C\x95") +
             "</span> <strong>" + escape_html(run.fidelity) + "</strong>" + escape_html(sentence) + "</p>";
+    if (run.why) body += why_of(*run.why);
     if (const std::string more = circumstances(run); !more.empty())
       body += "<p class=\"more\">" + escape_html(more) + "</p>";
-    if (run.why) body += why_of(*run.why);
     body += "</li>\n";
   }
   return section("verdict", "Verdict", {}, body + "</ul>\n");
