@@ -9,6 +9,7 @@
 #include "canyon/core/check.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/units.h"
+#include "canyon/scene/tracing/nearest_surfaces.h"
 
 namespace canyon::lidar {
 namespace {
@@ -30,19 +31,20 @@ bool is_level_ground_or_roof(const scene::Scene& scene, std::uint32_t triangle) 
   return std::abs(normal.z()) >= kLevel * normal.norm();
 }
 
-Sums measure(std::span<MapPoint> points, const scene::SceneAt& scene, double cap_m) {
+Sums measure(std::span<MapPoint> points, std::span<const scene::NearestSurface> surfaces, const scene::Scene& scene,
+             double cap_m) {
   Sums sums;
-  for (MapPoint& point : points) {
-    const Eigen::Vector3d p_W = point.p_W.cast<double>();
-    const scene::NearestSurface nearest = scene.nearest(p_W, cap_m);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    MapPoint& point = points[i];
+    const scene::NearestSurface& nearest = surfaces[i];
     const bool found = nearest.triangle != scene::Hit::kMiss && nearest.distance_m < cap_m;
     const double distance_m = found ? nearest.distance_m : cap_m;
     point.error_m = static_cast<float>(distance_m);
     sums.squared += distance_m * distance_m;
     if (!found) {
       ++sums.capped;
-    } else if (is_level_ground_or_roof(scene.scene(), nearest.triangle)) {
-      const double up_m = p_W.z() - nearest.point_W.z();
+    } else if (is_level_ground_or_roof(scene, nearest.triangle)) {
+      const double up_m = static_cast<double>(point.p_W.z()) - nearest.point_W.z();
       sums.up += up_m;
       sums.up_squared += up_m * up_m;
       ++sums.up_points;
@@ -58,9 +60,14 @@ MapQuality evaluate_map(std::span<MapPoint> points, const scene::SceneAt& scene,
   MapQuality quality;
   quality.points = static_cast<std::int64_t>(points.size());
   if (points.empty()) return quality;
+  std::vector<Eigen::Vector3f> places;
+  places.reserve(points.size());
+  for (const MapPoint& point : points) places.push_back(point.p_W);
+  const auto surfaces = scene::nearest_surfaces(scene.scene(), places, cap_m);
   std::vector<Sums> chunks((points.size() + kChunk - 1) / kChunk);
   parallel_for(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    chunks[begin / kChunk] = measure(points.subspan(begin, end - begin), scene, cap_m);
+    chunks[begin / kChunk] = measure(points.subspan(begin, end - begin), std::span(surfaces).subspan(begin, end - begin),
+                                     scene.scene(), cap_m);
   });
   Sums total;
   for (const Sums& s : chunks) {

@@ -7,6 +7,7 @@
 #include "canyon/core/check.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/lidar/map_quality/signed_distance.h"
+#include "canyon/scene/tracing/nearest_surfaces.h"
 
 namespace canyon::lidar {
 namespace {
@@ -42,9 +43,11 @@ struct ErrorSums {
 
 std::vector<WallPoint> offsets(std::span<const Eigen::Vector3f> map_W, const scene::Scene& scene, double cap_m) {
   const SignedDistance surfaces(scene);
+  const std::vector<scene::NearestSurface> nearest = scene::nearest_surfaces(scene, map_W, cap_m);
   std::vector<WallPoint> out(map_W.size());
   parallel_for(map_W.size(), kReportChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) out[i] = {map_W[i], surfaces.at(map_W[i].cast<double>(), cap_m)};
+    for (std::size_t i = begin; i < end; ++i)
+      out[i] = {map_W[i], surfaces.at(map_W[i].cast<double>(), cap_m, nearest[i])};
   });
   return out;
 }

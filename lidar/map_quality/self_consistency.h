@@ -17,7 +17,7 @@ struct SelfConsistency {
 };
 inline constexpr std::size_t kFewestNeighbours = 5;
 
-/// radius_m > 0. Same bits for any number of threads.
+/// 0 < radius_m <= the map's cells. Same bits for any number of threads.
 SelfConsistency self_consistency(const PointGrid& map, double radius_m);
 
 }  // namespace canyon::lidar

@@ -99,8 +99,11 @@ Eigen::Vector3d SignedDistance::pseudo_normal(const Eigen::Vector3d& nearest_W, 
 
 SurfaceOffset SignedDistance::at(const Eigen::Vector3d& p_W, double cap_m) const {
   CANYON_CHECK(p_W.allFinite() && cap_m > 0, "p = ", p_W.transpose(), ", cap_m = ", cap_m);
+  return at(p_W, cap_m, scene_.nearest(p_W, cap_m));
+}
+
+SurfaceOffset SignedDistance::at(const Eigen::Vector3d& p_W, double cap_m, const scene::NearestSurface& nearest) const {
   SurfaceOffset out;
-  const scene::NearestSurface nearest = scene_.nearest(p_W, cap_m);
   if (nearest.triangle == scene::Hit::kMiss || nearest.distance_m >= cap_m) return out;
   out.found = true;
   out.triangle = nearest.triangle;

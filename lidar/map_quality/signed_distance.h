@@ -37,6 +37,8 @@ class SignedDistance {
 
   /// p must be finite, cap_m > 0.
   SurfaceOffset at(const Eigen::Vector3d& p_W, double cap_m) const;
+  /// The same where the nearest surface within cap_m is known.
+  SurfaceOffset at(const Eigen::Vector3d& p_W, double cap_m, const scene::NearestSurface& nearest) const;
 
  private:
   struct Corners;

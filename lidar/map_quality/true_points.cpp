@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/core/random/random.h"
 #include "canyon/scene/surfaces/triangle.h"
@@ -42,6 +43,7 @@ LidarConfig faultless(LidarConfig config) {
 }
 
 constexpr double kReach_m = 1.0, kBlock_m = 8.0, kPointsPerM2 = 16.0;
+constexpr std::size_t kTrianglesAtOnce = 4096;
 
 /// Whether a box comes near a map point, judged by blocks that hold some.
 bool comes_near(const Eigen::AlignedBox3d& box, const std::unordered_set<CubeKey, CubeHash>& blocks) {
@@ -52,6 +54,28 @@ bool comes_near(const Eigen::AlignedBox3d& box, const std::unordered_set<CubeKey
       for (std::int64_t z = low[2]; z <= high[2]; ++z)
         if (blocks.contains({x, y, z})) return true;
   return false;
+}
+
+/// Random points of a triangle that lie near the map.
+void add_points(std::uint32_t t, const scene::Scene& scene, const std::unordered_set<CubeKey, CubeHash>& blocks,
+                const PointGrid& map, std::vector<Eigen::Vector3f>& out) {
+  const RandomStream stream(1, "lidar.map_quality.surfaces");
+  const auto triangle = scene::Triangle::of(scene.mesh(), t);
+  Eigen::AlignedBox3d box(triangle.a);
+  box.extend(triangle.b).extend(triangle.c);
+  if (!comes_near(box, blocks)) return;
+  // As many as its area asks for in the mean, the last by chance.
+  const double wanted = 0.5 * triangle.area_normal().norm() * kPointsPerM2;
+  const auto count = static_cast<std::uint64_t>(wanted + stream.uniform(t, 0, 2));
+  for (std::uint64_t i = 1; i <= count; ++i) {
+    double u = stream.uniform(t, i, 0), v = stream.uniform(t, i, 1);
+    if (u + v > 1.0) {
+      u = 1.0 - u;
+      v = 1.0 - v;
+    }
+    const Eigen::Vector3d p = triangle.a + u * (triangle.b - triangle.a) + v * (triangle.c - triangle.a);
+    if (map.comes_within(p, kReach_m)) out.push_back(p.cast<float>());
+  }
 }
 
 }  // namespace
@@ -86,27 +110,15 @@ Result<TruePoints> beams_met(const ScanDrive& drive, double step_m, double reach
 std::vector<Eigen::Vector3f> surfaces_near(const PointGrid& map, const scene::Scene& scene) {
   std::unordered_set<CubeKey, CubeHash> blocks;
   for (const Eigen::Vector3f& p : map.points()) blocks.insert(cube_of(p.cast<double>(), kBlock_m));
-  const RandomStream stream(1, "lidar.map_quality.surfaces");
+  const PointGrid near_map(map.points(), kReach_m);
+  const std::size_t triangles = scene.mesh().triangles.size();
+  std::vector<std::vector<Eigen::Vector3f>> chunks((triangles + kTrianglesAtOnce - 1) / kTrianglesAtOnce);
+  parallel_for(triangles, kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      add_points(static_cast<std::uint32_t>(t), scene, blocks, near_map, chunks[begin / kTrianglesAtOnce]);
+  });
   std::vector<Eigen::Vector3f> out;
-  const auto triangles = static_cast<std::uint32_t>(scene.mesh().triangles.size());
-  for (std::uint32_t t = 0; t < triangles; ++t) {
-    const auto triangle = scene::Triangle::of(scene.mesh(), t);
-    Eigen::AlignedBox3d box(triangle.a);
-    box.extend(triangle.b).extend(triangle.c);
-    if (!comes_near(box, blocks)) continue;
-    // As many as its area asks for in the mean, the last by chance.
-    const double wanted = 0.5 * triangle.area_normal().norm() * kPointsPerM2;
-    const auto count = static_cast<std::uint64_t>(wanted + stream.uniform(t, 0, 2));
-    for (std::uint64_t i = 1; i <= count; ++i) {
-      double u = stream.uniform(t, i, 0), v = stream.uniform(t, i, 1);
-      if (u + v > 1.0) {
-        u = 1.0 - u;
-        v = 1.0 - v;
-      }
-      const Eigen::Vector3d p = triangle.a + u * (triangle.b - triangle.a) + v * (triangle.c - triangle.a);
-      if (map.nearest_m(p, kReach_m) < kReach_m) out.push_back(p.cast<float>());
-    }
-  }
+  for (const auto& chunk : chunks) out.insert(out.end(), chunk.begin(), chunk.end());
   return out;
 }
 

@@ -37,9 +37,14 @@ VoxelIndex::VoxelIndex(double leaf_m, std::size_t expected_voxels)
 }
 
 std::optional<VoxelCoordinates> VoxelIndex::coordinates(const Eigen::Vector3f& p) const {
-  const Eigen::Array3d scaled = (p.cast<double>() / leaf_m_).array().floor();
-  if (!(scaled.abs() < kHalf).all()) return std::nullopt;  // so also for NaN
-  return VoxelCoordinates(scaled.cast<int>().matrix());
+  VoxelCoordinates voxel;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const double scaled = static_cast<double>(p[a]) / leaf_m_;
+    if (!(scaled >= 1 - kHalf && scaled < kHalf)) return std::nullopt;  // so also for NaN
+    const int towards_zero = static_cast<int>(scaled);
+    voxel[a] = towards_zero - (scaled < towards_zero ? 1 : 0);
+  }
+  return voxel;
 }
 
 std::size_t VoxelIndex::slot_of(std::uint64_t key) const {

@@ -21,7 +21,7 @@ constexpr std::int64_t kFewestPoints = 50;  // in the source, the target, and ma
 constexpr double kSettled_m = 2e-4;
 constexpr double kSettled_rad = 2e-5;
 // Matches that change to and fro keep a solution moving by so much more; the last step then counts as an error.
-constexpr double kNearly = 15.0;
+constexpr double kNearly = 50.0;
 constexpr double kBlock_leaves = 16.0;       // normals correlate over about as much
 constexpr std::size_t kCoarsePoints = 1000;  // of which the coarse rounds make do
 constexpr double kShrinking = 0.6;           // of the reach, from round to round
@@ -45,7 +45,8 @@ constexpr double kNoPull_rad = 3e-3;
 constexpr double kWellMatched = 0.9;  // of the points; fewer may be out of reach because the prior holds them there
 // Normals of neighbours err together (they share points), so that what they feign as curvature counts twice.
 constexpr double kTiltsAlike = 2.0;
-constexpr double kWidest_m = 0.5 / 3.0;  // a direction with more sigma is open
+// A direction with more sigma is open: who says that it is closed says 0.2 m, or as much at the cloud's radius (3 sigma).
+constexpr double kWidest_m = 0.2 / 3.0;
 constexpr double kProbability = 1e-3;
 
 double rms_radius(const PreparedCloud& cloud) {
@@ -240,7 +241,6 @@ std::vector<Aligner::Candidate> Aligner::coarse() {
 }
 
 void Aligner::refine(Candidate& at) {
-  at.matches.clear();
   descend({1, own_.max_correspondence_m, own_.max_iterations, kSettled_m, kSettled_rad}, at);
 }
 

@@ -24,7 +24,7 @@ class Aligner {
     double missed = 1.0;  ///< as NormalEquations::missed
     bool settled = false;
     Vector6d last_step = Vector6d::Zero();  ///< where it settled with a step that still tells
-    std::vector<std::uint32_t> matches;
+    std::vector<LastMatch> matches;
     NormalEquations equations;
   };
   /// Rounds on every stride-th point, with a reach that shrinks from `reach_m` to the last one.

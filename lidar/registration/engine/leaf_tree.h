@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -33,13 +34,42 @@ class LeafTree {
   /// The point nearest to `query` and closer than sqrt(squared_limit); kNone where there is none. The query must be
   /// finite.
   Nearest nearest(const Eigen::Vector3f& query, float squared_limit) const;
+  /// The same, beginning with the point at place `first` (kNone: with none). Also how far all other points are at
+  /// least, squared: of points nearby that leaves no other the nearest as long as they are not farther off than half of
+  /// what the second is beyond the first.
+  struct NearestOfTwo : Nearest {
+    float others_squared_m = std::numeric_limits<float>::infinity();
+  };
+  NearestOfTwo nearest_from(const Eigen::Vector3f& query, float squared_limit, std::uint32_t first) const;
   /// The up to out.size() nearest, closer than sqrt(squared_limit), nearest first (equal distances: lower place first);
   /// returns how many.
   std::size_t nearest(const Eigen::Vector3f& query, float squared_limit, std::span<Nearest> out) const;
 
+  /// The same of all points of a leaf at once, each among its own neighbours: of the point at place begin + i the first
+  /// count[i] of nearest[i]. Neighbours look at the same leaves, so one search serves them.
+  static constexpr std::uint32_t kBucket = 8;  ///< most points in a leaf
+  template <std::size_t kMost>
+  struct OfLeaf {
+    std::uint32_t begin = 0, end = 0;
+    std::array<std::size_t, kBucket> count{};
+    std::array<std::array<Nearest, kMost>, kBucket> nearest;
+  };
+  std::uint32_t leaves() const { return size() == 0 ? 0 : leaves_; }
+  template <std::size_t kMost>
+  void nearest_of_leaf(std::uint32_t leaf, float squared_limit, OfLeaf<kMost>& out) const {
+    out.begin = leaf_begin_[leaf];
+    out.end = leaf_begin_[leaf + 1];
+    out.count.fill(0);
+    nearest_of_leaf(leaf, squared_limit, kMost, out.count.data(), out.nearest[0].data());
+  }
+
  private:
+  void nearest_of_leaf(std::uint32_t leaf, float squared_limit, std::size_t most, std::size_t* count,
+                       Nearest* nearest) const;
+  template <class Take, class Left>
+  void visit(const float* query, const float& limit, const Take& take, const Left& left) const;
   template <class Take>
-  void visit(const float* query, const float& limit, const Take& take) const;
+  void visit_box(const float* low, const float* high, const float* middle, const float& limit, const Take& take) const;
 
   std::vector<float> x_, y_, z_;  // a leaf's length longer than there are points
   std::vector<std::uint32_t> order_;

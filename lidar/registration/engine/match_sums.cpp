@@ -91,10 +91,17 @@ struct Match {
     return information.nn * dn * dn + 2.0 * information.nm * dn * dm + information.mm * dm * dm;
   }
   double across_trace() const { return information.nn + 2.0 * information.nm * n.dot(m) + information.mm; }
+  /// As two squares: nn (jn + r jm)^2 + (mm - r nm) jm^2, r = nm / nn.
   void add_across(Upper& sum, double w) const {
-    if (information.nn != 0) add_outer(sum, w * information.nn, jn);
-    if (information.mm != 0) add_outer(sum, w * information.mm, jm);
-    if (information.nm != 0) add_mixed(sum, w * information.nm, jn, jm);
+    if (information.nn == 0) {
+      if (information.mm != 0) add_outer(sum, w * information.mm, jm);
+      return;
+    }
+    const double r = information.nm / information.nn, rest = information.mm - r * information.nm;
+    double both[6];
+    for (int a = 0; a < 6; ++a) both[a] = jn[a] + r * jm[a];
+    add_outer(sum, w * information.nn, both);
+    if (rest != 0) add_outer(sum, w * rest, jm);
   }
 };
 
@@ -107,20 +114,19 @@ struct Part {
 };
 
 void sum_part(const Matching& matching, const Pose& X_TS, std::size_t stride, std::size_t begin, std::size_t end,
-              std::vector<std::uint32_t>& last, Part& part) {
+              std::vector<LastMatch>& last, Part& part) {
   const Eigen::Matrix3d R = X_TS.R.toRotationMatrix(), R_ST = R.transpose();
   const auto squared_reach = static_cast<float>(matching.reach_m * matching.reach_m);
   const double across_scale = kAcrossScale / (matching.width_m * matching.width_m);
   for (std::size_t k = begin; k < end; ++k) {
     const std::size_t i = k * stride;
     const Eigen::Vector3d place = R * matching.source->points[i].cast<double>() + X_TS.p;
-    const auto found = matching.target->find(place.cast<float>(), squared_reach, last[k]);
-    last[k] = found.at;
-    if (found.at == LeafTree::kNone) {
+    matching.target->find(place.cast<float>(), squared_reach, last[k]);
+    if (last[k].matched == LeafTree::kNone) {
       part.missed += 1.0;
       continue;
     }
-    const Match match(matching, R_ST, place, i, found.at);
+    const Match match(matching, R_ST, place, i, last[k].matched);
     const double cost = match.information.along * match.d.squaredNorm() + match.across_cost();
     const double u = across_scale * cost;
     const double w = matching.kernel(u);
@@ -140,9 +146,9 @@ void sum_part(const Matching& matching, const Pose& X_TS, std::size_t stride, st
 }  // namespace
 
 NormalEquations normal_equations(const Matching& matching, const Pose& X_TS, std::size_t stride,
-                                 std::vector<std::uint32_t>& last) {
+                                 std::vector<LastMatch>& last) {
   const std::size_t n = (matching.source->points.size() + stride - 1) / stride;
-  if (last.size() != n) last.assign(n, LeafTree::kNone);
+  if (last.size() != n) last.assign(n, LastMatch{});
   std::vector<Part> parts((n + kChunk - 1) / kChunk);
   const auto sum = [&](std::size_t begin, std::size_t end) {
     sum_part(matching, X_TS, stride, begin, end, last, parts[begin / kChunk]);
@@ -175,13 +181,13 @@ NormalEquations normal_equations(const Matching& matching, const Pose& X_TS, std
 }
 
 std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS,
-                                    std::span<const std::uint32_t> matches) {
+                                    std::span<const LastMatch> matches) {
   const Eigen::Matrix3d R = X_TS.R.toRotationMatrix(), R_ST = R.transpose();
   const double across_scale = kAcrossScale / (matching.width_m * matching.width_m);
   std::vector<double> missed(matches.size(), -1.0);
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (matches[i] == LeafTree::kNone) continue;
-    const Match match(matching, R_ST, R * matching.source->points[i].cast<double>() + X_TS.p, i, matches[i]);
+    if (matches[i].matched == LeafTree::kNone) continue;
+    const Match match(matching, R_ST, R * matching.source->points[i].cast<double>() + X_TS.p, i, matches[i].matched);
     missed[i] = std::min(1.0, across_scale * match.across_cost());
   }
   return missed;
@@ -203,7 +209,7 @@ double evidence_against(std::span<const double> a, std::span<const double> b, co
   return squares > 0 ? sum / std::sqrt(squares) : 0.0;
 }
 
-CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::span<const std::uint32_t> matches,
+CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
                                double block_m) {
   const Eigen::Matrix3d R = X_TS.R.toRotationMatrix(), R_ST = R.transpose();
   const double across_scale = kAcrossScale / (matching.width_m * matching.width_m);
@@ -214,12 +220,12 @@ CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::
   std::vector<Isotropic> block_along;
   VoxelIndex blocks(block_m);
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (matches[i] == LeafTree::kNone) continue;
-    const Match match(matching, R_ST, R * matching.source->points[i].cast<double>() + X_TS.p, i, matches[i]);
+    if (matches[i].matched == LeafTree::kNone) continue;
+    const Match match(matching, R_ST, R * matching.source->points[i].cast<double>() + X_TS.p, i, matches[i].matched);
     const double cost = match.information.along * match.d.squaredNorm() + match.across_cost();
     const double w = matching.kernel(across_scale * cost);
     const double trace = w * match.across_trace();
-    const double tilt = 0.25 * (matching.source->tilt_variance[i] + matching.target->tilt_variance(matches[i]));
+    const double tilt = 0.25 * (matching.source->tilt_variance[i] + matching.target->tilt_variance(matches[i].matched));
     Upper one{};
     match.add_across(one, w);
     for (std::size_t k = 0; k < one.size(); ++k) across[k] += one[k], tilted[k] += tilt * one[k];

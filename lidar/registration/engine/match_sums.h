@@ -35,13 +35,13 @@ struct Matching {
 };
 
 /// Matches every `stride`-th point and sums in chunks of a fixed length, in order: the same bits for any number of
-/// threads. `last` holds the last match of each such point; kNone at first.
+/// threads. `last` holds the last match of each such point; none at first.
 NormalEquations normal_equations(const Matching& matching, const Pose& X_TS, std::size_t stride,
-                                 std::vector<std::uint32_t>& last);
+                                 std::vector<LastMatch>& last);
 
 /// What a pose leaves unexplained of every point: min(1, across^2 / width^2); below 0: the point has no match, which
 /// tells as little as a target that is sparse there.
-std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, std::span<const std::uint32_t> matches);
+std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches);
 
 /// By how many of its sigma pose b leaves more unexplained than a, over the points that both match, with cubes of edge
 /// `block_m` of the source as independent witnesses; 0 where they tell nothing.
@@ -49,7 +49,7 @@ double evidence_against(std::span<const double> a, std::span<const double> b, co
                         double block_m);
 
 /// The sums that the covariance is made of, of the matches of a round over all points.
-CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::span<const std::uint32_t> matches,
+CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
                                double block_m);
 
 }  // namespace canyon::lidar

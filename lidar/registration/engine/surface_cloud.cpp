@@ -17,7 +17,7 @@ constexpr std::size_t kNeighbours = 12;
 constexpr std::size_t kFewestNeighbours = 6;  // fewer say too little about a plane
 constexpr double kReach_leaves = 8.0;         // neighbours farther away belong to another surface
 constexpr double kNarrowest = 0.1;            // as in prepared_cloud.cpp: a ring by itself lies in many planes
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kChunk = 64;  // leaves
 
 /// Takes the order of the tree for points; other columns are resized.
 void put_in_order(PreparedCloud& cloud) {
@@ -29,9 +29,8 @@ void put_in_order(PreparedCloud& cloud) {
 }
 
 /// The plane through the neighbours of point i, if they form one.
-void fit_plane(PreparedCloud& cloud, std::size_t i, float squared_reach) {
-  std::array<LeafTree::Nearest, kNeighbours> found;
-  const std::size_t count = cloud.tree->nearest(cloud.points[i], squared_reach, found);
+void fit_plane(PreparedCloud& cloud, std::size_t i, std::span<const LeafTree::Nearest> found) {
+  const std::size_t count = found.size();
   if (count < kFewestNeighbours) return;
   // About the point itself, so that nothing cancels.
   double sx = 0, sy = 0, sz = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
@@ -72,8 +71,13 @@ std::shared_ptr<const PreparedCloud> prepare_surfaces(std::span<const Eigen::Vec
   cloud->normals.assign(cloud->points.size(), Eigen::Vector3f::Zero());
   cloud->tilt_variance.assign(cloud->points.size(), 0.0f);
   const auto reach_m = static_cast<float>(kReach_leaves * leaf_m);
-  parallel_for(cloud->points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) fit_plane(*cloud, i, reach_m * reach_m);
+  parallel_for(cloud->tree->leaves(), kChunk, [&](std::size_t begin, std::size_t end) {
+    LeafTree::OfLeaf<kNeighbours> of;
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      cloud->tree->nearest_of_leaf(static_cast<std::uint32_t>(leaf), reach_m * reach_m, of);
+      for (std::uint32_t i = of.begin; i < of.end; ++i)
+        fit_plane(*cloud, i, std::span(of.nearest[i - of.begin]).first(of.count[i - of.begin]));
+    }
   });
   return cloud;
 }

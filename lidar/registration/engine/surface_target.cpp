@@ -1,6 +1,7 @@
 #include "canyon/lidar/registration/engine/surface_target.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Eigenvalues>
 
@@ -10,22 +11,32 @@ namespace canyon::lidar {
 namespace {
 
 constexpr double kFlat = 1.0 - kSurfaceThickness;
+constexpr float kRounding = 1.0F - 1e-5F;  // of distances in single precision, with room
 
 class PointTarget final : public SurfaceTarget {
  public:
   explicit PointTarget(std::shared_ptr<const PreparedCloud> cloud) : cloud_(std::move(cloud)) {
     columns(cloud_->points, cloud_->normals, cloud_->tilt_variance);
   }
-  LeafTree::Nearest find(const Eigen::Vector3f& place, float squared_limit, std::uint32_t last) const override {
-    if (last == LeafTree::kNone) return cloud_->tree->nearest(place, squared_limit);
-    const float there = (cloud_->points[last] - place).squaredNorm();
-    const auto found = cloud_->tree->nearest(place, std::min(there, squared_limit));
-    if (found.at != LeafTree::kNone || !(there < squared_limit)) return found;
-    return {there, last};
+  void find(const Eigen::Vector3f& place, float squared_limit, LastMatch& last) const override {
+    if (still_the_nearest(place, squared_limit, last)) return;
+    const auto found = cloud_->tree->nearest_from(place, squared_limit, last.at);
+    last = {found.at, found.at, std::sqrt(found.others_squared_m), place};
   }
   double flat(std::size_t at) const override { return cloud_->normals[at].isZero(0.0f) ? 0.0 : kFlat; }
 
  private:
+  bool still_the_nearest(const Eigen::Vector3f& place, float squared_limit, LastMatch& last) const {
+    // The others have come nearer by the way since then at most.
+    const float others_m = kRounding * last.others_m - (place - last.place).norm();
+    if (!(others_m > 0.0F)) return false;
+    if (last.at == LeafTree::kNone) return others_m * others_m >= squared_limit;
+    const float there = (cloud_->points[last.at] - place).squaredNorm();
+    if (!(there < others_m * others_m)) return false;
+    last.matched = there < squared_limit ? last.at : LeafTree::kNone;
+    return true;
+  }
+
   std::shared_ptr<const PreparedCloud> cloud_;
 };
 
@@ -63,10 +74,11 @@ class VoxelTarget final : public SurfaceTarget {
     }
     columns(points_, normals_, tilt_);
   }
-  LeafTree::Nearest find(const Eigen::Vector3f& place, float squared_limit, std::uint32_t) const override {
+  void find(const Eigen::Vector3f& place, float squared_limit, LastMatch& last) const override {
     LeafTree::Nearest best{squared_limit, LeafTree::kNone};
+    last.matched = LeafTree::kNone;
     const auto voxel = voxels_.coordinates(place);
-    if (!voxel) return best;
+    if (!voxel) return;
     static const VoxelCoordinates kBeside[] = {{0, 0, 0},  {1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
                                                {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     for (const VoxelCoordinates& beside : kBeside) {
@@ -75,7 +87,7 @@ class VoxelTarget final : public SurfaceTarget {
       const float there = (points_[number] - place).squaredNorm();
       if (there < best.squared_m) best = {there, number};
     }
-    return best;
+    last.matched = best.at;
   }
   double flat(std::size_t at) const override { return flat_[at]; }
 

@@ -9,13 +9,21 @@
 
 namespace canyon::lidar {
 
+/// What the search for a point's element leaves behind for the next one, a little way on.
+struct LastMatch {
+  std::uint32_t matched = LeafTree::kNone;  ///< what was found, in reach
+  std::uint32_t at = LeafTree::kNone;       ///< the nearest, in reach or not
+  float others_m = 0.0F;                    ///< from `place` all other elements are at least so far
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();
+};
+
 /// What a source is matched to: surface elements, and how the one for a place is found.
 class SurfaceTarget {
  public:
   virtual ~SurfaceTarget() = default;
-  /// The element of a place, closer than sqrt(squared_limit). `last`: the one found for a place nearby, or kNone; it
-  /// makes the search shorter and no other.
-  virtual LeafTree::Nearest find(const Eigen::Vector3f& place, float squared_limit, std::uint32_t last) const = 0;
+  /// Finds the element of a place, closer than sqrt(squared_limit), or kNone: last.matched. What `last` holds of a place
+  /// nearby makes the search shorter or needless, and its result no other.
+  virtual void find(const Eigen::Vector3f& place, float squared_limit, LastMatch& last) const = 0;
 
   std::size_t size() const { return points_->size(); }
   const Eigen::Vector3f& point(std::size_t at) const { return (*points_)[at]; }
