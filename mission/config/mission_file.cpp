@@ -8,6 +8,7 @@
 #include "canyon/core/process/embedded.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/sensor/receiver_catalogue.h"
+#include "canyon/mission/config/vehicle_catalogue.h"
 
 namespace canyon::mission {
 
@@ -99,6 +100,12 @@ const ConfigNode* node_at(const ConfigNode& tree, const std::string& key) {
   const std::size_t item = std::stoul(key.substr(bracket + 1));
   if (node == nullptr || item == 0 || node->array() == nullptr || item > node->array()->size()) return node;
   return &(*node->array())[item - 1];
+}
+
+/// Lays `over`, a mission's layer, on `tree`, with the figures of the vehicle and the receiver that it names below it.
+Status lay_with_presets(ConfigNode& tree, const ConfigNode& over) {
+  CANYON_TRY_STATUS(lay_vehicle_below(tree, over));
+  return gnss::lay_with_receiver(tree, over);
 }
 
 bool is_of_a_place(const std::string& key) {
@@ -230,16 +237,15 @@ Result<ConfigNode> MissionFile::resolved_tree(const std::string& fidelity) const
   tree.value_ = ConfigNode::Table{};
   const auto lay_fidelity = [&](const ConfigNode& from) -> Status {
     for (const std::string& name : lineage)
-      if (const ConfigNode* over = from.find("fidelity." + name))
-        CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, *over));
+      if (const ConfigNode* over = from.find("fidelity." + name)) CANYON_TRY_STATUS(lay_with_presets(tree, *over));
     return Ok{};
   };
-  CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, base_));
+  CANYON_TRY_STATUS(lay_with_presets(tree, base_));
   CANYON_TRY_STATUS(lay_fidelity(base_));
   CANYON_TRY_STATUS(lay_fidelity(builtin_fidelities_));
-  CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, user_));
+  CANYON_TRY_STATUS(lay_with_presets(tree, user_));
   CANYON_TRY_STATUS(lay_fidelity(user_));
-  CANYON_TRY_STATUS(gnss::lay_with_receiver(tree, options_));
+  CANYON_TRY_STATUS(lay_with_presets(tree, options_));
   tree.erase("fidelity");
   tree.erase("base");
   return tree;

@@ -7,6 +7,7 @@
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/boundaries.h"
+#include "canyon/mission/motion/plan/kinematic_bicycle.h"
 #include "canyon/mission/motion/side_slip.h"
 #include "canyon/mission/motion/sprung_mass.h"
 #include "canyon/mission/stress/subjects.h"
@@ -166,7 +167,7 @@ StressFigure slip_law(double compliance_rad_s2_m) {
 StressFigure wildest_slip() {
   VehicleConfig config;
   config.roughness = "none";
-  config.sideslip_deg_per_m_s2 = 2.0;
+  config.model.own.get<KinematicBicycleParameters>().sideslip_deg_per_m_s2 = 2.0;
   config.max_speed_m_s = 30.0;
   config.max_acceleration_m_s2 = config.max_deceleration_m_s2 = 10.0;
   config.max_steering_deg = 60.0;

@@ -4,6 +4,7 @@
 
 #include "canyon/core/motion/true_motion.h"
 #include "canyon/core/units.h"
+#include "canyon/mission/motion/plan/kinematic_bicycle.h"
 #include "canyon/scene/city/city.h"
 
 namespace canyon::mission {
@@ -172,7 +173,7 @@ DriveCommand winding(int k) {
 // given. Sums of terms below 40 m/s^2 and m/s, some ten roundings each: 1e-13.
 TEST_F(VehicleTest, SlipsByItsLateralAcceleration) {
   VehicleConfig config;
-  config.sideslip_deg_per_m_s2 = 0.5;
+  config.model.own.get<KinematicBicycleParameters>().sideslip_deg_per_m_s2 = 0.5;
   Vehicle vehicle = make(config);
   double most = 0.0;
   for (int k = 1; k <= 6000; ++k) {
@@ -194,7 +195,7 @@ TEST_F(VehicleTest, SlipsByItsLateralAcceleration) {
 // be off by h^2/12 of its changes, 1e-6 m.
 TEST_F(VehicleTest, PlacesAreIntegralsOfVelocitiesWithSlip) {
   VehicleConfig config;
-  config.sideslip_deg_per_m_s2 = 0.5;
+  config.model.own.get<KinematicBicycleParameters>().sideslip_deg_per_m_s2 = 0.5;
   Vehicle vehicle = make(config);
   KinematicState a = vehicle.state();
   constexpr double h = 0.01;
@@ -214,7 +215,7 @@ TEST_F(VehicleTest, PlacesAreIntegralsOfVelocitiesWithSlip) {
 TEST_F(VehicleTest, SteadyCircleHasTheSideslipOfLinearTyres) {
   VehicleConfig config, stiff;
   config.roughness = stiff.roughness = "none";
-  config.sideslip_deg_per_m_s2 = 0.5;
+  config.model.own.get<KinematicBicycleParameters>().sideslip_deg_per_m_s2 = 0.5;
   Vehicle vehicle = make(config), kinematic = make(stiff);
   constexpr double kSpeed_m_s = 5.0, kCurvature_1_m = 0.1;
   for (int k = 1; k <= 2000; ++k) {
@@ -246,7 +247,7 @@ TEST_F(VehicleTest, SteadyCircleHasTheSideslipOfLinearTyres) {
 // Its speed, and what it has driven, are along its axis: what a wheel turns.
 TEST_F(VehicleTest, SlipDoesNotTurnItsWheels) {
   VehicleConfig config, stiff;
-  config.sideslip_deg_per_m_s2 = 2.0;
+  config.model.own.get<KinematicBicycleParameters>().sideslip_deg_per_m_s2 = 2.0;
   Vehicle vehicle = make(config), kinematic = make(stiff);
   for (int k = 1; k <= 3000; ++k) {
     vehicle.advance(winding(k));
