@@ -251,7 +251,10 @@ TEST(PlanModels, VelocitiesAreDerivativesOfPlaces) {
         const double h = kStep_s;
         const Eigen::Vector2d off =
             b.p_W - a.p_W - 0.5 * h * (velocity(a) + velocity(b)) - h * h / 12.0 * (acceleration(a) - acceleration(b));
-        ASSERT_LT(off.norm(), 2e-8) << row.name << " step " << k;
+        // What begins at a node, as a limit on the sides' speeds, the state before does not know of yet.
+        const double begins_m_s2 =
+            row.name == std::string("skid_steer") ? std::abs(a.across_change_m_s2 - b.across_change_m_s2) : 0.0;
+        ASSERT_LT(off.norm(), 2e-8 + h * h / 12.0 * 1.01 * begins_m_s2) << row.name << " step " << k;
         off_yaw.push_back(std::remainder(b.yaw_rad - a.yaw_rad - 0.5 * h * (a.turn_rad_s + b.turn_rad_s), 2.0 * kPi));
       }
       most_change = std::max(most_change, std::abs(b.turn_change_rad_s2));
