@@ -28,8 +28,9 @@ NavEstimate MissionRun::estimate(GpsTime t) const {
   return estimate;
 }
 
-NavEstimate MissionRun::with_correction(NavEstimate estimate) const {
+NavEstimate MissionRun::as_told(NavEstimate estimate) const {
   if (config_.autonomy.map == MapPose::kRegistered) estimate.X_WB = mapper_.correction() * estimate.X_WB;
+  told_errors_.lay_over(estimate);
   return estimate;
 }
 
@@ -140,6 +141,7 @@ Status MissionRun::take_scan(const Due& due) {
   clock_.charge(Part::kLidar, [&] { fire(due, output); });
   CANYON_TRY_STATUS(boundaries_.check(output));
   ++record_.counters["lidar_scans"];
+  if (!open_loop_) clock_.charge(Part::kScoring, [&] { scorer_.scan(due.t, output.truth); });
   return localizer_.once_at(due.t, [this, scan = std::move(output.scan)] { return use_scan(scan); });
 }
 
@@ -235,7 +237,7 @@ Status MissionRun::use_scan(const LidarScan& scan) {
   if (!omissions_.keyframes && !deskewed.points.empty()) CANYON_TRY_STATUS(map_scan(deskewed, now));
 
   if (omissions_.autonomy) return Ok{};
-  const NavEstimate seen = with_correction(estimate(scan.t));
+  const NavEstimate seen = as_told(estimate(scan.t));
   clock_.charge(Part::kAutonomy, [&] { ask([&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); }); });
   return Ok{};
 }
@@ -269,7 +271,7 @@ void MissionRun::abandon_autonomy() {
 
 Status MissionRun::ask_autonomy(const Due& due) {
   if (omissions_.autonomy) return Ok{};
-  const NavEstimate seen = with_correction(estimate(due.t));
+  const NavEstimate seen = as_told(estimate(due.t));
   DriveCommand command = command_;
   clock_.charge(Part::kAutonomy, [&] { ask([&] { command = autonomy_->drive(seen); }); });
   if (autonomy_lost_) return Ok{};

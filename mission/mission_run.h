@@ -21,6 +21,7 @@
 #include "canyon/mission/motion/schedule.h"
 #include "canyon/mission/run.h"
 #include "canyon/mission/scored_maps.h"
+#include "canyon/mission/told_errors.h"
 
 namespace canyon::mission {
 
@@ -105,7 +106,8 @@ class MissionRun {
   KinematicState truth_at(GpsTime t) const { return motion_.at(t); }
   /// What is handed on as the estimate at t.
   NavEstimate estimate(GpsTime t) const;
-  NavEstimate with_correction(NavEstimate estimate) const;
+  /// What the autonomy is told of it.
+  NavEstimate as_told(NavEstimate estimate) const;
 
   const MissionConfig config_;
   const PreparedMission& mission_;
@@ -126,6 +128,7 @@ class MissionRun {
   Mapper mapper_;
   const Omissions omissions_;
   CorridorGuard corridor_;
+  const ToldErrorDraws told_errors_;
   std::unique_ptr<Autonomy> autonomy_;
   CallWatch watch_;
   /// What it said of itself after the last call.

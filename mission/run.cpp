@@ -79,6 +79,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       mapper_(config.registration, std::move(parts.registration), lidar::sensor_in_body(config.lidar)),
       omissions_(std::move(parts.omissions)),
       corridor_(omissions_.corridor, omissions_.corridor_until_s),
+      told_errors_(config.run.told, static_cast<std::uint64_t>(config.run.seed), mission.start),
       autonomy_(std::move(parts.autonomy)),
       watch_(config.autonomy.call_limit_s),
       scorer_(config, mission, scene_),
@@ -188,8 +189,10 @@ bool MissionRun::score() {
     return false;
   }
   const bool on_purpose = state == AutonomyState::kObserving || state == AutonomyState::kDone;
-  const bool go_on = clock_.charge(
-      Part::kScoring, [&] { return scorer_.step(node.motion, node.speed_m_s, source_->on_terrain(), on_purpose); });
+  const bool go_on = clock_.charge(Part::kScoring, [&] {
+    scorer_.follow(node.motion, node.speed_m_s, command_, state, answers_.next_waypoint);
+    return scorer_.step(node.motion, node.speed_m_s, source_->on_terrain(), on_purpose);
+  });
   return go_on && state != AutonomyState::kDone;
 }
 
@@ -199,6 +202,7 @@ Result<RunRecord> MissionRun::finish() {
     record_.outcome = scorer_.outcome();
     record_.failure = scorer_.failure();
     record_.waypoints = scorer_.waypoints();
+    record_.encounters = scorer_.encounters();
   }
   while (!fixes_.empty()) CANYON_TRY_STATUS(record_fix());  // the filter did not come there any more
   record_.simulated_s = elapsed_s();

@@ -8,6 +8,7 @@
 #include "canyon/core/units.h"
 #include "canyon/lidar/registration/registration.h"
 #include "canyon/mission/autonomy/reference_2012.h"
+#include "canyon/mission/motion/plan/dynamic_bicycle.h"
 
 namespace canyon::mission {
 
@@ -44,9 +45,30 @@ Status check_body(const VehicleConfig& vehicle) {
   CANYON_TRY_STATUS(check_limit({"vehicle.wheelbase_m", vehicle.wheelbase_m, "vehicle.length_m", vehicle.length_m,
                                  "a wheelbase of " + number_text(vehicle.wheelbase_m) + " m under a body of " +
                                      number_text(vehicle.length_m) + " m"}));
-  return check_limit(
+  CANYON_TRY_STATUS(check_limit(
       {"vehicle.track_m", vehicle.track_m, "vehicle.width_m", vehicle.width_m,
-       "a track of " + number_text(vehicle.track_m) + " m under a body " + number_text(vehicle.width_m) + " m wide"});
+       "a track of " + number_text(vehicle.track_m) + " m under a body " + number_text(vehicle.width_m) + " m wide"}));
+  return check_limit({"vehicle.ground_clearance_m", vehicle.ground_clearance_m, "vehicle.height_m", vehicle.height_m,
+                      "a body " + number_text(vehicle.height_m) + " m high that begins " +
+                          number_text(vehicle.ground_clearance_m) + " m above the ground"});
+}
+
+/// What is asked of tyres, against what they hold.
+Status check_grip(const AutonomyConfig& autonomy, const VehicleConfig& vehicle) {
+  if (vehicle.model.name != "dynamic_bicycle") return Ok{};
+  constexpr double kGravity_m_s2 = 9.80665;
+  const double friction = vehicle.model.own.get<DynamicBicycleParameters>().tyre_friction;
+  const double holds_m_s2 = kGravity_m_s2 * friction;
+  const auto check = [&](const char* key, double asked_m_s2, const std::string& what) -> Status {
+    if (asked_m_s2 <= holds_m_s2) return Ok{};
+    char holds[48];
+    std::snprintf(holds, sizeof holds, "%.1f m/s^2", holds_m_s2);
+    return Error{.key = std::string(key) + ", vehicle.tyre_friction",
+                 .what = what + number_text(asked_m_s2) + " m/s^2, its tyres hold " + holds,
+                 .expected = std::string(key) + " not above vehicle.tyre_friction times gravity"};
+  };
+  CANYON_TRY_STATUS(check("vehicle.max_deceleration_m_s2", vehicle.max_deceleration_m_s2, "the vehicle brakes with "));
+  return check("autonomy.lateral_m_s2", autonomy.lateral_m_s2, "the autonomy plans turns with ");
 }
 
 /// What the filter measures with must be there.
@@ -124,6 +146,7 @@ Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
 Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
   CANYON_TRY_STATUS(check_body(config.vehicle));
+  CANYON_TRY_STATUS(check_grip(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_measurements(config));
   return check_seeing(config.autonomy, config.lidar.rate_hz);

@@ -20,6 +20,11 @@ void visit(FieldVisitor& f, SuccessConfig& c) {
   f.number("camera_height_m", c.camera_height_m, {0, 10}, "of the camera above B");
   f.number("limit_factor", c.limit_factor, {1, 100}, "time limit as a multiple of the nominal time");
   f.number("stuck_after_s", c.stuck_after_s, {5, 1e4}, "standing still this long without observing ends the run");
+  f.number("camera_px_per_rad", c.camera_px_per_rad, {10, 1e5}, "of the camera, in the middle of its picture");
+  visit_choice(f, "collision", c.collision, "what of the body is held against the scene");
+  f.number("near_miss_m", c.near_miss_m, {0, 3}, "something that comes nearer to the true body is a near miss");
+  f.number("phantom_free_m", c.phantom_free_m, {0.5, 50},
+           "an autonomy that finds no way with so much truly free ahead of the body has seen a phantom");
 }
 
 void visit(FieldVisitor& f, RunConfig& c) {
@@ -39,6 +44,13 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.flag("truth_as_guess", c.truth_as_guess,
          "registration begins from the true motion since the last keyframe, not from the filter's");
   f.number("estimate_up_offset_m", c.estimate_up_offset_m, {-100, 100}, "added to the height of the estimate");
+  f.number("told_step_m", c.told.step_m, {0, 1000},
+           "the autonomy is told a place that is so far off, first after told_step_every_s");
+  f.number("told_step_every_s", c.told.step_every_s, {0.1, 1e5}, "after so long in another direction");
+  f.number("told_drift_m_s", c.told.drift_m_s, {0, 100},
+           "the place that the autonomy is told moves off at this speed, in one direction");
+  f.number("told_heading_deg", c.told.heading_deg, {-180, 180},
+           "the autonomy is told a heading that is so far off, clockwise");
   f.optional_number("withhold_fixes_after_s", c.withhold_fixes_after_s, -1, {0, 1e5},
                     "no fix reaches the filter from then on; -1 = never");
   f.optional_number("withhold_scans_after_s", c.withhold_scans_after_s, -1, {0, 1e5},

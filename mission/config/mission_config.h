@@ -16,6 +16,7 @@
 #include "canyon/lidar/lidar_config.h"
 #include "canyon/lidar/registration/registration.h"
 #include "canyon/mission/autonomy/autonomy.h"
+#include "canyon/mission/collision/collision.h"
 #include "canyon/mission/motion/vehicle_config.h"
 #include "canyon/scene/scene_source.h"
 
@@ -37,8 +38,21 @@ struct SuccessConfig {
   double camera_height_m = 1.5;  ///< above B
   double limit_factor = 1.5;     ///< time limit as a multiple of the nominal time
   double stuck_after_s = 90.0;   ///< standing still this long without observing ends the run
+  double camera_px_per_rad = 1000.0;
+  double near_miss_m = 0.3;     ///< what comes nearer to the true body is a near miss
+  double phantom_free_m = 5.0;  ///< who finds no way with so much truly free ahead has seen a phantom
+  ModelChoice<collision_checks> collision{"lines"};
 };
 void visit(FieldVisitor& f, SuccessConfig& c);
+
+/// Errors that are laid over the pose which the autonomy is told; filter, map and what is recorded know nothing of
+/// them.
+struct ToldErrors {
+  double step_m = 0.0;  ///< its place is so far off, in a direction of its own after every step_every_s
+  double step_every_s = 20.0;
+  double drift_m_s = 0.0;  ///< its place moves off at this speed, in one direction
+  double heading_deg = 0.0;
+};
 
 /// [run]
 struct RunConfig {
@@ -56,6 +70,7 @@ struct RunConfig {
   bool truth_as_pose = false;                    ///< hands the true pose on; what is recorded stays the filter's
   bool truth_as_guess = false;                   ///< alignments begin from the true motion between keyframes
   double estimate_up_offset_m = 0.0;             ///< added to the estimate's height
+  ToldErrors told;                               ///< of the pose, as the autonomy is told it
   std::optional<double> withhold_fixes_after_s;  ///< no fix reaches the filter from then on
   std::optional<double> withhold_scans_after_s;  ///< no scan reaches map and autonomy from then on
 };

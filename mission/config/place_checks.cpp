@@ -6,6 +6,9 @@
 
 #include "canyon/core/config/text.h"
 #include "canyon/mission/autonomy/facade.h"
+#include "canyon/mission/collision/collision.h"
+#include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/motion/vehicle.h"
 
 namespace canyon::mission {
 
@@ -130,6 +133,19 @@ Status check_sight(const MissionConfig& config, const PriorKnowledge& prior, con
     }
   }
   return Ok{};
+}
+
+Status check_start_is_free(const MissionConfig& config, const PreparedMission& mission) {
+  scene::SceneAt at(*mission.scene);
+  if (!mission.traffic.empty()) at.set_instances(mission.traffic.at(0.0));
+  const Vehicle vehicle(config.vehicle, *mission.scene, static_cast<std::uint64_t>(config.run.seed), mission.start);
+  const auto check = model_row(collision_checks(), config.success.collision.name)
+                         .make(config.success.collision.own, config.vehicle, at);
+  const auto touched = check->touched(vehicle.state());
+  if (!touched) return Ok{};
+  return Error{.key = "vehicle.start_m",
+               .what = place(config.vehicle.start_m) + ": the body touches " + at.object(*touched).name + " there",
+               .expected = "a place where it stands free"};
 }
 
 }  // namespace canyon::mission

@@ -7,6 +7,8 @@
 
 namespace canyon::mission {
 
+struct PreparedMission;
+
 /// What a mission asks of places, checked before it is driven, each as soon as what it needs is there. Errors name the
 /// keys; MissionFile::locate adds file and line.
 
@@ -22,5 +24,8 @@ Status check_ground(const MissionConfig& config, const scene::Scene& scene);
 /// Where the route stops for a building, success.facade_share of the facade is in sight of a camera camera_height_m
 /// above the ground, past all that stands still.
 Status check_sight(const MissionConfig& config, const PriorKnowledge& prior, const scene::Scene& scene);
+
+/// That the vehicle touches nothing where it starts, by the check that scores it; things move as they do at the start.
+Status check_start_is_free(const MissionConfig& config, const PreparedMission& mission);
 
 }  // namespace canyon::mission

@@ -34,6 +34,7 @@ struct RunRecord {
   std::optional<Outcome> outcome;  ///< none in an open loop
   std::optional<Failure> failure;
   std::vector<WaypointScore> waypoints;
+  Encounters::Numbers encounters;  ///< nothing in an open loop
 
   Pose initial_X_WB;  ///< what the filter started from
   Eigen::Vector3d initial_v_WB_W = Eigen::Vector3d::Zero();

@@ -4,13 +4,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "canyon/core/units.h"
 #include "canyon/mission/autonomy/facade.h"
 
 namespace canyon::mission {
 
 namespace {
-
-constexpr double kCollisionStep = 0.1;  // m of travel between collision checks
 
 std::string number(double value, const char* unit) {
   char text[48];
@@ -22,14 +21,15 @@ std::string number(double value, const char* unit) {
 
 Scorer::Scorer(const MissionConfig& config, const PreparedMission& mission, const scene::SceneAt& scene)
     : config_(config.success),
-      vehicle_(config.vehicle),
       places_(config.autonomy.waypoints),
       scene_(scene),
       start_(mission.start),
       time_limit_s_(mission.time_limit_s),
       stopped_on_purpose_(config.time.limit_s > 0.0 &&
                           config.time.limit_s < config.success.limit_factor * mission.nominal_s),
-      last_checked_(Eigen::Vector2d::Constant(1e9)),
+      collision_(
+          model_row(collision_checks(), config_.collision.name).make(config_.collision.own, config.vehicle, scene)),
+      encounters_(config_, config.vehicle, scene),
       last_t_(mission.start) {
   for (const Waypoint& place : places_) {
     waypoints_.push_back({.name = place.name, .mission = place.is_mission()});
@@ -45,28 +45,29 @@ void Scorer::fail(Outcome kind, const KinematicState& truth, std::string detail)
   failure_ = Failure{kind, truth.t - start_, truth.X_WB.p, std::move(detail)};
 }
 
-std::string Scorer::collides(const KinematicState& truth) const {
-  // Segments through the body at two heights: outline, and lines along it at most 0.4 m apart, so that no pole fits
-  // between.
-  const double rear = -0.5 * (vehicle_.length_m - vehicle_.wheelbase_m), front = rear + vehicle_.length_m;
-  const double half = 0.5 * vehicle_.width_m;
-  const int lines = std::max(2, static_cast<int>(std::ceil(vehicle_.width_m / 0.4)) + 1);
-  for (const double z : {0.35 * vehicle_.height_m, 0.8 * vehicle_.height_m}) {
-    const auto touched = [&](double x0, double y0, double x1, double y1) -> std::string {
-      const Eigen::Vector3d a = truth.X_WB * Eigen::Vector3d(x0, y0, z), b = truth.X_WB * Eigen::Vector3d(x1, y1, z);
-      const Eigen::Vector3d d = b - a;
-      const scene::Hit hit = scene_.trace({a, d.normalized().cast<float>(), static_cast<float>(d.norm())});
-      if (!hit.hit()) return {};
-      return scene_.object(scene_.surface(hit.triangle).object).name;
-    };
-    for (int i = 0; i < lines; ++i) {
-      const double y = -half + 2.0 * half * i / (lines - 1);
-      if (auto name = touched(rear, y, front, y); !name.empty()) return name;
-    }
-    for (const double x : {rear, front})
-      if (auto name = touched(x, -half, x, half); !name.empty()) return name;
+void Scorer::observe(const Eigen::Vector3d& camera_W, const std::vector<Eigen::Vector3d>& facade_W,
+                     WaypointScore& score) const {
+  const double share = visible_share(scene_, camera_W, facade_W);
+  const bool first = std::isnan(score.facade_range_m);
+  if (!first && share <= score.facade_seen_share) return;
+  score.facade_seen_share = std::max(score.facade_seen_share, share);
+  const Eigen::Vector3d middle = 0.5 * (facade_W.front() + facade_W.back()), sight = camera_W - middle;
+  const Eigen::Vector3d along = facade_W[1] - facade_W[0];  // of the grid's lowest row, level
+  const Eigen::Vector3d normal = along.cross(Eigen::Vector3d::UnitZ()).normalized();
+  const double cosine = std::min(1.0, std::abs(normal.dot(sight)) / sight.norm());
+  score.facade_range_m = sight.norm();
+  score.facade_obliquity_deg = std::acos(cosine) / kDegree;
+  score.facade_px_per_m = config_.camera_px_per_rad * cosine / sight.norm();
+}
+
+void Scorer::follow(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state,
+                    int next_waypoint) {
+  encounters_.look(truth, speed_m_s, command, state);
+  for (std::size_t i = 0; i < waypoints_.size() && static_cast<int>(i) < next_waypoint; ++i) {
+    if (waypoints_[i].believed) continue;
+    waypoints_[i].believed = true;
+    waypoints_[i].believed_at_m = (truth.X_WB.p.head<2>() - places_[i].p_m).norm();
   }
-  return {};
 }
 
 bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain, bool observing) {
@@ -89,8 +90,7 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
       continue;
     }
     if (halt_s_[i] == 0.0 && !facades_[i].empty()) {
-      const Eigen::Vector3d camera = truth.X_WB * Eigen::Vector3d(0, 0, config_.camera_height_m);
-      score.facade_seen_share = std::max(score.facade_seen_share, visible_share(scene_, camera, facades_[i]));
+      observe(truth.X_WB * Eigen::Vector3d(0, 0, config_.camera_height_m), facades_[i], score);
     }
     halt_s_[i] += dt;
     score.stopped_s = std::max(score.stopped_s, halt_s_[i]);
@@ -101,12 +101,10 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
     fail(Outcome::kLeftScene, truth, "a wheel left the terrain");
     return false;
   }
-  if ((p - last_checked_).norm() >= kCollisionStep) {
-    last_checked_ = p;
-    if (const std::string object = collides(truth); !object.empty()) {
-      fail(Outcome::kCollision, truth, "hit " + object);
-      return false;
-    }
+  if (const auto object = collision_->touched(truth)) {
+    fail(Outcome::kCollision, truth, "hit " + scene_.object(*object).name);
+    failure_->seen = sightings_.of(*object, truth.t);
+    return false;
   }
   standing_s_ = standing && !observing ? standing_s_ + dt : 0.0;
   if (standing_s_ > config_.stuck_after_s) {

@@ -7,7 +7,9 @@
 #include "canyon/core/truth.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/motion/vehicle.h"
+#include "canyon/mission/scoring/encounters.h"
 #include "canyon/mission/scoring/outcome.h"
+#include "canyon/mission/scoring/sightings.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::mission {
@@ -18,6 +20,7 @@ struct Failure {
   double t_s = 0.0;
   Eigen::Vector3d p_W = Eigen::Vector3d::Zero();
   std::string detail;
+  std::optional<Sighting> seen{};  ///< of what was hit; none: no scan ever showed it, or nothing was hit
 };
 
 /// What truth says of one waypoint.
@@ -28,6 +31,11 @@ struct WaypointScore {
   double closest_m = 1e300;
   double stopped_s = 0.0;          ///< longest halt within the radius
   double facade_seen_share = 0.0;  ///< best during a halt within the radius
+  /// Then: way from the camera to the facade's middle, angle between it and the facade's normal, and how finely the
+  /// camera sees the facade along its width.
+  double facade_range_m = kNaN, facade_obliquity_deg = kNaN, facade_px_per_m = kNaN;
+  bool believed = false;        ///< the autonomy took it for reached
+  double believed_at_m = kNaN;  ///< and the vehicle was so far from it
 };
 
 /// Scores a mission on truth while it runs. It is a success if the autonomy finished it in time without a failure on
@@ -41,6 +49,11 @@ class Scorer {
   /// One true step; `observing` (the autonomy stands on purpose) excuses standing still.
   /// Returns false once the run has to end: collision, stuck, off the terrain, out of time.
   bool step(const KinematicState& truth, double speed_m_s, bool on_terrain, bool observing);
+  /// What the autonomy takes for the next waypoint, 0-based, and what it does, at every step.
+  void follow(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state,
+              int next_waypoint);
+  /// What a scan's returns were off.
+  void scan(GpsTime t, const std::vector<LidarPointTruth>& returns) { sightings_.scan(t, returns); }
   /// The autonomy itself failed: how is said in the detail.
   void autonomy_fault(const KinematicState& truth, std::string how);
   /// The autonomy says that it is lost, having taken itself to be at `believed_W`.
@@ -50,15 +63,16 @@ class Scorer {
 
   const std::optional<Failure>& failure() const { return failure_; }
   const std::vector<WaypointScore>& waypoints() const { return waypoints_; }
+  const Encounters::Numbers& encounters() const { return encounters_.numbers(); }
   Outcome outcome() const { return failure_ ? failure_->kind : Outcome::kSuccess; }
 
  private:
   void fail(Outcome kind, const KinematicState& truth, std::string detail);
-  /// Name of what the body touches; empty if nothing.
-  std::string collides(const KinematicState& truth) const;
+  /// How well a facade is seen, if that is better than before.
+  void observe(const Eigen::Vector3d& camera_W, const std::vector<Eigen::Vector3d>& facade_W,
+               WaypointScore& score) const;
 
   SuccessConfig config_;
-  VehicleConfig vehicle_;
   std::vector<Waypoint> places_;
   const scene::SceneAt& scene_;
   GpsTime start_;
@@ -68,7 +82,9 @@ class Scorer {
   std::vector<std::vector<Eigen::Vector3d>> facades_;
   std::vector<double> halt_s_;
   std::optional<Failure> failure_;
-  Eigen::Vector2d last_checked_;
+  std::unique_ptr<CollisionCheck> collision_;
+  Encounters encounters_;
+  Sightings sightings_;
   GpsTime last_t_;
   double standing_s_ = 0.0;
 };

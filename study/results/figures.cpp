@@ -22,6 +22,24 @@ double planned(const Run& r, bool mission_only) {
   return if_driven(r, count);
 }
 
+/// The least or the most over mission waypoints that were looked at; NaN if none was.
+double over_views(const Run& r, double mission::WaypointScore::*value, double sign) {
+  double most = kNaN;
+  for (const auto& waypoint : r.waypoints) {
+    const double one = sign * waypoint.*value;
+    if (waypoint.mission && !std::isnan(waypoint.facade_range_m) && !(one <= most)) most = one;
+  }
+  return sign * most;
+}
+
+const mission::Sighting* sighting(const Run& r) {
+  return r.failure && r.failure->seen ? &*r.failure->seen : nullptr;
+}
+
+bool hit(const Run& r) {
+  return r.failure && r.failure->kind == mission::Outcome::kCollision;
+}
+
 double optional_count(const std::optional<int>& count) {
   return count ? *count : kNaN;
 }
@@ -49,12 +67,17 @@ constexpr Figure capped(Figure figure) {
   figure.cap = lidar::kMapErrorCap_m;
   return figure;
 }
+constexpr Figure far_capped(Figure figure) {
+  figure.cap = mission::Encounters::kFar_m;
+  return figure;
+}
 constexpr Figure timing(Figure figure) {
   figure.timing = true;
   return figure;
 }
 
 static_assert(lidar::kMapErrorCap_m == 5.0, "the words below say 5 m");
+static_assert(mission::Encounters::kFar_m == 3.0, "the words below say 3 m");
 
 constexpr const char *kMission = "Mission", *kPosition = "Position error", *kAttitude = "Attitude error",
                      *kSky = "Satellites", *kMap = "Registration and map", *kCost = "Cost";
@@ -69,6 +92,37 @@ constexpr auto kFigures = std::to_array<Figure>({
      "on truth within [success] waypoint_radius_m, with a stop of [success] stop_s", "mission_waypoints_planned"},
     {kMission, "waypoints_planned", "", "waypoints", kNeither, kCount, 0, [](const Run& r) { return planned(r, false); }},
     {kMission, "mission_waypoints_planned", "", "mission waypoints", kNeither, kCount, 0, [](const Run& r) { return planned(r, true); }},
+    {kMission, "waypoints_believed_only", "", "waypoints believed reached, but not", kLower, kCount, 0,
+     [](const Run& r) { return if_driven(r, r.believed_not_reached); },
+     "the autonomy went on to the next; summary.json says how far off it was"},
+    {kMission, "facade_px_per_m_min", "1/m", "sharpness of the worst view of a facade", kHigher, kQuantity, 1,
+     [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_px_per_m, -1.0); },
+     "pixels along a metre of its width, by range and obliquity, of a camera of [success] camera_px_per_rad"},
+    {kMission, "facade_range_max_m", "m", "longest range to a facade looked at", kLower, kQuantity, 1,
+     [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_range_m, 1.0); }},
+    {kMission, "facade_obliquity_max_deg", "deg", "most oblique view of a facade", kLower, kQuantity, 1,
+     [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_obliquity_deg, 1.0); }, "from its normal"},
+    {kMission, "facade_seen_share_min", "%", "facade in sight, least", kHigher, kShare, 1,
+     [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_seen_share, -1.0); }, "the rest is hidden"},
+    far_capped({kMission, "clearance_min_m", "m", "least distance to a thing", kHigher, kQuantity, 2,
+     [](const Run& r) { return if_driven(r, r.encounters.clearance_min_m); },
+     "of the true body to anything but the ground; 3 m stands for 3 m or more, 0 for touching"}),
+    {kMission, "near_misses", "", "near misses", kLower, kCount, 0, [](const Run& r) { return if_driven(r, r.encounters.near_misses); },
+     "times that a thing was nearer than [success] near_miss_m to the true body, without being touched"},
+    {kMission, "phantoms_per_km", "1/km", "phantoms", kLower, kQuantity, 2,
+     [](const Run& r) { return if_driven(r, r.per_km(r.encounters.phantoms)); },
+     "times that the autonomy found no way with [success] phantom_free_m ahead of the true body free; one that it only steers around does not show here"},
+    {kMission, "missed_obstacles_per_km", "1/km", "missed obstacles", kLower, kQuantity, 2,
+     [](const Run& r) { return if_driven(r, r.per_km(r.encounters.missed_obstacles)); },
+     "times that a thing lay on the arc truly driven, nearer than full braking stops, and no less speed was asked for"},
+    {kMission, "hit_in_scans_s", "s", "what was hit stood in the scans for", kNeither, kQuantity, 1,
+     [](const Run& r) { const auto* seen = sighting(r); return seen != nullptr ? seen->stood_s : hit(r) ? 0.0 : kNaN; },
+     "without a gap of 0.5 s, up to the last scan that showed it; 0 where none did; null without a collision"},
+    {kMission, "hit_last_range_m", "m", "its distance in the last of them", kNeither, kQuantity, 1,
+     [](const Run& r) { const auto* seen = sighting(r); return seen != nullptr ? seen->range_m : kNaN; },
+     "of its nearest return, from the LIDAR"},
+    {kMission, "hit_last_seen_s", "s", "and how long before that was", kNeither, kQuantity, 2,
+     [](const Run& r) { const auto* seen = sighting(r); return seen != nullptr ? seen->ago_s : kNaN; }},
     {kMission, "duration_s", "s", "duration", kNeither, kQuantity, 1, [](const Run& r) { return r.duration_s; }},
     {kMission, "distance_m", "m", "distance driven", kNeither, kQuantity, 0, [](const Run& r) { return r.distance_m; }},
 

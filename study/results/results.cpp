@@ -167,6 +167,18 @@ Json run_json(const RunSummary& s) {
                       {"y_m", s.failure->p_W.y()},
                       {"detail", s.failure->detail}};
   write_figures(s, false, out);
+  if (s.failure && s.failure->seen)
+    out["failure"]["seen"] = {{"last_range_m", s.failure->seen->range_m},
+                              {"in_scans_s", s.failure->seen->stood_s},
+                              {"last_seen_s", s.failure->seen->ago_s}};
+  out["waypoints"] = Json::array();
+  for (const mission::WaypointScore& waypoint : s.waypoints)
+    out["waypoints"].push_back({{"name", waypoint.name},
+                                {"verdict", waypoint.reached    ? "reached"
+                                            : waypoint.believed ? "believed"
+                                                                : "missed"},
+                                {"closest_m", number(waypoint.closest_m)},
+                                {"believed_at_m", number(waypoint.believed_at_m)}});
   out["mission_waypoints"] = Json::array();
   for (const mission::WaypointScore& waypoint : s.waypoints) {
     if (!waypoint.mission) continue;
@@ -174,7 +186,10 @@ Json run_json(const RunSummary& s) {
                                         {"reached", waypoint.reached},
                                         {"closest_m", waypoint.closest_m},
                                         {"stopped_s", waypoint.stopped_s},
-                                        {"facade_seen_share", waypoint.facade_seen_share}});
+                                        {"facade_seen_share", waypoint.facade_seen_share},
+                                        {"facade_range_m", number(waypoint.facade_range_m)},
+                                        {"facade_obliquity_deg", number(waypoint.facade_obliquity_deg)},
+                                        {"facade_px_per_m", number(waypoint.facade_px_per_m)}});
   }
   out["verdict"] = s.verdict;
   if (s.evidence) out["evidence"] = evidence_json(*s.evidence);

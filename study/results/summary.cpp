@@ -51,7 +51,9 @@ Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatisti
   for (const mission::WaypointScore& waypoint : record.waypoints) {
     out.waypoints_reached += waypoint.reached ? 1 : 0;
     out.mission_waypoints_reached += waypoint.reached && waypoint.mission ? 1 : 0;
+    out.believed_not_reached += waypoint.believed && !waypoint.reached ? 1 : 0;
   }
+  out.encounters = record.encounters;
   out.duration_s = record.simulated_s;
   out.distance_m = record.distance_m;
   CANYON_TRY_STATUS(statistics.fill(out, record.registers()));

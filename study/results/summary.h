@@ -23,6 +23,8 @@ struct RunSummary {
   std::optional<mission::Failure> failure;
   std::vector<mission::WaypointScore> waypoints;
   int waypoints_reached = 0, mission_waypoints_reached = 0;
+  int believed_not_reached = 0;  ///< waypoints that the autonomy took for reached
+  mission::Encounters::Numbers encounters;
   double duration_s = 0, distance_m = 0;
 
   ErrorStatistics position_m, east_m, north_m, up_m;
@@ -46,6 +48,8 @@ struct RunSummary {
   std::map<std::string, std::int64_t> counters;
   double wall_s = 0, cpu_s = 0;
   std::vector<std::pair<std::string, double>> cpu_parts_s;
+  /// Per kilometre of the way; NaN without one.
+  double per_km(int count) const { return distance_m > 0 ? 1000.0 * count / distance_m : kNaN; }
   double cpu_per_simulated_s() const { return duration_s > 0 ? cpu_s / duration_s : kNaN; }
   double real_time_factor() const { return wall_s > 0 ? duration_s / wall_s : kNaN; }
 };

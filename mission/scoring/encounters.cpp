@@ -1,0 +1,83 @@
+#include "canyon/mission/scoring/encounters.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "canyon/mission/collision/body_box.h"
+
+namespace canyon::mission {
+namespace {
+
+constexpr double kEvery_m = 0.2, kEvery_s = 0.2;
+constexpr double kAhead_m = 0.5;       // between the boxes that are laid along an arc
+constexpr double kSlow_m_s = 0.5;      // slower than this nothing is missed
+constexpr double kSlowing_m_s = 0.05;  // a command that is less than the speed by this slows down
+constexpr double kTimesApart_s = 1.0;
+
+}  // namespace
+
+Encounters::Encounters(const SuccessConfig& config, const VehicleConfig& vehicle, const scene::SceneAt& scene)
+    : near_miss_m_(config.near_miss_m),
+      phantom_free_m_(config.phantom_free_m),
+      vehicle_(vehicle),
+      scene_(scene),
+      near_(scene) {}
+
+bool Encounters::Times::begins(bool holds, GpsTime t) {
+  if (!holds) return false;
+  const bool anew = !ever_ || t - last_ > kTimesApart_s;
+  ever_ = true;
+  last_ = t;
+  return anew;
+}
+
+bool Encounters::is_thing(const NearTriangle& triangle) const {
+  return scene_.object(scene_.surface(triangle.index).object).kind != scene::ObjectKind::kTerrain;
+}
+
+double Encounters::clearance_m(const Pose& X_WB) {
+  const OrientedBox body = body_box(vehicle_, X_WB);
+  double least_m = kFar_m;
+  for (const NearTriangle& triangle : near_.near(body.X_WC.p, body.radius_m() + kFar_m))
+    if (is_thing(triangle)) least_m = std::min(least_m, distance_m(body, triangle.corners));
+  return least_m;
+}
+
+bool Encounters::meets(const Pose& X_WB, double curvature_1_m, double way_m) {
+  const OrientedBox body = body_box(vehicle_, X_WB);
+  std::vector<NearTriangle> things = near_.near(body.X_WC.p, body.radius_m() + way_m);
+  std::erase_if(things, [this](const NearTriangle& triangle) { return !is_thing(triangle); });
+  for (double s = 0.0; s <= way_m && !things.empty(); s += kAhead_m) {
+    const PlanPose there = PlanPose{}.along(curvature_1_m, s);
+    const Pose X_BB{Eigen::Quaterniond(Eigen::AngleAxisd(there.yaw_rad, Eigen::Vector3d::UnitZ())),
+                    {there.p_m.x(), there.p_m.y(), 0.0}};
+    const OrientedBox ahead = body_box(vehicle_, X_WB * X_BB);
+    for (const NearTriangle& triangle : things)
+      if (touch(ahead, triangle.corners)) return true;
+  }
+  return false;
+}
+
+void Encounters::look(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state) {
+  const Eigen::Vector2d p = truth.X_WB.p.head<2>();
+  if (looked_ && truth.t - looked_at_ < kEvery_s && (p - looked_from_).norm() < kEvery_m) return;
+  looked_ = true;
+  looked_at_ = truth.t;
+  looked_from_ = p;
+  const double clear_m = clearance_m(truth.X_WB);
+  numbers_.clearance_min_m =
+      std::isnan(numbers_.clearance_min_m) ? clear_m : std::min(numbers_.clearance_min_m, clear_m);
+  const bool near = clear_m > 0.0 && clear_m < near_miss_m_;
+  numbers_.near_misses += near_miss_.begins(near, truth.t) ? 1 : 0;
+
+  const bool finds_no_way = state == AutonomyState::kBlocked && command.speed_m_s <= 0.0;
+  const bool phantom = finds_no_way && !meets(truth.X_WB, 0.0, phantom_free_m_);
+  numbers_.phantoms += phantom_.begins(phantom, truth.t) ? 1 : 0;
+
+  const bool goes_on = speed_m_s > kSlow_m_s && command.speed_m_s > speed_m_s - kSlowing_m_s;
+  const double stop_m = 0.5 * speed_m_s * speed_m_s / vehicle_.max_deceleration_m_s2;
+  const bool misses = goes_on && meets(truth.X_WB, truth.w_WB_B.z() / speed_m_s, stop_m);
+  numbers_.missed_obstacles += missed_.begins(misses, truth.t) ? 1 : 0;
+}
+
+}  // namespace canyon::mission

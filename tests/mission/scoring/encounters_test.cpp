@@ -1,0 +1,96 @@
+#include "canyon/mission/scoring/encounters.h"
+
+#include <gtest/gtest.h>
+
+#include "canyon/mission/scoring/sightings.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/surfaces/material.h"
+
+namespace canyon::mission {
+namespace {
+
+/// A lane along x with a post of 20 cm at x = 20 m, so far beside the axis.
+struct Lane {
+  explicit Lane(double post_y_m) {
+    scene::SceneParts parts;
+    parts.materials = scene::builtin_materials();
+    scene::MeshBuilder mesh(parts);
+    mesh.begin_object("ground", scene::ObjectKind::kTerrain);
+    mesh.quad({-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}, 0);
+    mesh.begin_object("post", scene::ObjectKind::kPole);
+    mesh.box({20, post_y_m, 1}, Eigen::Matrix3d::Identity(), {0.1, 0.1, 1}, 0);
+    scene = std::make_unique<scene::Scene>(std::move(parts));
+    at = std::make_unique<scene::SceneAt>(*scene);
+  }
+  std::unique_ptr<scene::Scene> scene;
+  std::unique_ptr<scene::SceneAt> at;
+};
+
+KinematicState state_at(double x_m, double t_s) {
+  KinematicState state;
+  state.t = GpsTime{static_cast<std::int64_t>(t_s * 1e9)};
+  state.X_WB.p = {x_m, 0.0, 0.0};
+  return state;
+}
+
+/// Along the lane at 5 m/s to x = `to_m` while `command` is asked for.
+Encounters::Numbers drive(const Lane& lane, double to_m, const DriveCommand& command, AutonomyState state) {
+  Encounters encounters(SuccessConfig{}, VehicleConfig{}, *lane.at);
+  for (double t_s = 0.0; 5.0 * t_s < to_m; t_s += 0.01) encounters.look(state_at(5.0 * t_s, t_s), 5.0, command, state);
+  return encounters.numbers();
+}
+
+// Half of the body is 0.75 m wide: a post with its face at 0.9 m is passed at 0.15 m.
+TEST(Encounters, ANearMissIsCountedOnceAndTheClearanceIsTheSurfaces) {
+  const auto near = drive(Lane(1.0), 30.0, {5.0, 0.0}, AutonomyState::kDriving);
+  EXPECT_NEAR(near.clearance_min_m, 0.15, 1e-6);
+  EXPECT_EQ(near.near_misses, 1);
+  EXPECT_EQ(near.missed_obstacles, 0) << "it lies beside the way";
+  const auto far = drive(Lane(2.0), 30.0, {5.0, 0.0}, AutonomyState::kDriving);
+  EXPECT_NEAR(far.clearance_min_m, 1.15, 1e-6);
+  EXPECT_EQ(far.near_misses, 0);
+  EXPECT_EQ(drive(Lane(9.0), 30.0, {5.0, 0.0}, AutonomyState::kDriving).clearance_min_m, Encounters::kFar_m);
+}
+
+// From 5 m/s it stops within 4.2 m: who asks for no less speed nearer than that has missed the post.
+TEST(Encounters, WhoDoesNotSlowDownBeforeAThingHasMissedIt) {
+  const double front_m = 2.2, face_m = 19.9;
+  const double just_m = face_m - front_m - 25.0 / 6.0;
+  EXPECT_EQ(drive(Lane(0.0), just_m - 0.6, {5.0, 0.0}, AutonomyState::kDriving).missed_obstacles, 0);
+  EXPECT_EQ(drive(Lane(0.0), just_m + 1.2, {5.0, 0.0}, AutonomyState::kDriving).missed_obstacles, 1);
+  EXPECT_EQ(drive(Lane(0.0), just_m + 1.2, {0.0, 0.0}, AutonomyState::kDriving).missed_obstacles, 0) << "it brakes";
+}
+
+// It says that it finds no way: before a post it is right, before nothing it is not.
+TEST(Encounters, NoWayWithAFreeLaneIsAPhantom) {
+  EXPECT_EQ(drive(Lane(9.0), 10.0, {0.0, 0.0}, AutonomyState::kBlocked).phantoms, 1);
+  EXPECT_EQ(drive(Lane(9.0), 10.0, {0.0, 0.0}, AutonomyState::kObserving).phantoms, 0);
+  const Lane blocked(0.0);
+  Encounters encounters(SuccessConfig{}, VehicleConfig{}, *blocked.at);
+  for (double t_s = 0.0; t_s < 5.0; t_s += 0.01)
+    encounters.look(state_at(15.0, t_s), 0.0, {0.0, 0.0}, AutonomyState::kBlocked);
+  EXPECT_EQ(encounters.numbers().phantoms, 0);
+}
+
+TEST(Sightings, TellWhatTheLastScanShowedAndSinceWhen) {
+  Sightings sightings;
+  const auto scan = [&](double t_s, std::vector<std::pair<std::uint32_t, float>> returns) {
+    std::vector<LidarPointTruth> truth;
+    for (const auto& [object, range] : returns) truth.push_back({range, 1.0f, 0, object});
+    sightings.scan(GpsTime{static_cast<std::int64_t>(t_s * 1e9)}, truth);
+  };
+  scan(1.0, {{7, 12.0f}, {7, 11.5f}, {3, 2.0f}});
+  scan(1.1, {{7, 11.0f}});
+  scan(1.8, {{7, 8.0f}});  // a gap of 0.7 s: seen anew
+  scan(1.9, {{7, 7.5f}, {7, 7.7f}});
+  scan(2.0, {{3, 1.0f}});
+  const auto seen = sightings.of(7, GpsTime{2'050'000'000});
+  ASSERT_TRUE(seen.has_value());
+  EXPECT_FLOAT_EQ(seen->range_m, 7.5f);
+  EXPECT_NEAR(seen->stood_s, 0.1, 1e-9);
+  EXPECT_NEAR(seen->ago_s, 0.15, 1e-9);
+  EXPECT_FALSE(sightings.of(8, GpsTime{2'050'000'000}));
+}
+
+}  // namespace
+}  // namespace canyon::mission
