@@ -94,6 +94,7 @@ int parse_and_run(int argc, char** argv) {
                            tradeoff_verb(),
                            stress_verb(),
                            reproduce_verb(),
+                           tolerance_verb(),
                            report_verb(),
                            keys_verb(),
                            gnss_sky_verb(),

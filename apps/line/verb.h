@@ -27,6 +27,7 @@ Verb tradeoff_verb();
 Verb run_verb();
 Verb plan_verb();
 Verb reproduce_verb();
+Verb tolerance_verb();
 Verb stress_verb();
 Verb report_verb();
 Verb keys_verb();

@@ -62,7 +62,9 @@ void Scorer::observe(const Eigen::Vector3d& camera_W, const std::vector<Eigen::V
 
 void Scorer::follow(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state,
                     int next_waypoint) {
-  encounters_.look(truth, speed_m_s, command, state);
+  constexpr double kFirstPlan_s = 0.5;  // before it has seen anything it finds no way, and is right
+  const bool has_seen = first_scan_ && truth.t - *first_scan_ > kFirstPlan_s;
+  encounters_.look(truth, speed_m_s, command, has_seen ? state : AutonomyState::kBlind);
   for (std::size_t i = 0; i < waypoints_.size() && static_cast<int>(i) < next_waypoint; ++i) {
     if (waypoints_[i].believed) continue;
     waypoints_[i].believed = true;

@@ -53,7 +53,10 @@ class Scorer {
   void follow(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state,
               int next_waypoint);
   /// What a scan's returns were off.
-  void scan(GpsTime t, const std::vector<LidarPointTruth>& returns) { sightings_.scan(t, returns); }
+  void scan(GpsTime t, const std::vector<LidarPointTruth>& returns) {
+    if (!first_scan_) first_scan_ = t;
+    sightings_.scan(t, returns);
+  }
   /// The autonomy itself failed: how is said in the detail.
   void autonomy_fault(const KinematicState& truth, std::string how);
   /// The autonomy says that it is lost, having taken itself to be at `believed_W`.
@@ -85,6 +88,7 @@ class Scorer {
   std::unique_ptr<CollisionCheck> collision_;
   Encounters encounters_;
   Sightings sightings_;
+  std::optional<GpsTime> first_scan_;
   GpsTime last_t_;
   double standing_s_ = 0.0;
 };

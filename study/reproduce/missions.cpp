@@ -1,7 +1,9 @@
 // Figures 8 to 10: the mission, at the fidelities that the paper drove, and what they do to algorithms.
 #include <cmath>
 
+#include "canyon/core/process/parallel.h"
 #include "canyon/mission/run.h"
+#include "canyon/study/reproduce/detection.h"
 #include "canyon/study/reproduce/draws.h"
 #include "canyon/study/reproduce/parts.h"
 #include "canyon/study/results/over_seeds.h"
@@ -79,6 +81,42 @@ PaperRow success_row(const Results& closed) {
   return row;
 }
 
+/// What fidelities do to detection and planning, by seeds from the mission's own on.
+Result<std::vector<PaperRow>> seen_and_planned_rows(const Comparison& open, std::int64_t seeds) {
+  struct Column {
+    const char *what, *unit;
+    double SeenAndPlanned::*value;
+  };
+  constexpr Column kColumns[] = {
+      {"obstacle detection: directions with a phantom", "", &SeenAndPlanned::phantom_share},
+      {"obstacle detection: things missed, of those that stand there", "", &SeenAndPlanned::missed_share},
+      {"obstacle detection: range to the first thing, RMS error", "m", &SeenAndPlanned::range_rms_m},
+      {"planning: steering asked for, RMS off that with the true pose", "deg", &SeenAndPlanned::steering_rms_deg},
+      {"planning: speed asked for, RMS off that with the true pose", "m/s", &SeenAndPlanned::speed_rms_m_s}};
+  const std::size_t runs = kFidelities.size(), n = static_cast<std::size_t>(seeds);
+  std::vector<std::optional<Result<SeenAndPlanned>>> found(runs * n);
+  parallel_for(runs * n, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      mission::MissionConfig config = open.configs[i / n];
+      config.run.seed += static_cast<std::int64_t>(i % n);
+      found[i] = seen_and_planned(config, open.missions[i / n], *open.tape);
+    }
+  });
+  for (const auto& one : found)
+    if (!*one) return one->error();
+  std::vector<PaperRow> rows;
+  for (const Column& column : kColumns) {
+    PaperRow row{.what = column.what, .unit = column.unit, .ours = {}};
+    for (std::size_t run = 0; run < runs; ++run) {
+      std::vector<double> values;
+      for (std::size_t k = 0; k < n; ++k) values.push_back((**found[run * n + k]).*column.value);
+      row.ours.push_back(over_draws(kFidelities[run], values));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 /// The open loop's first seed again, with its places.
 Status add_tracks(const Comparison& open, PaperPart& part) {
   for (std::size_t i = 0; i < kFidelities.size(); ++i) {
@@ -124,15 +162,17 @@ Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, s
                figure_row(driven_open, "height error of the output, RMS", "m", "position_error_up_rms_m")},
       .curves = {}};
   CANYON_TRY_STATUS(add_tracks(open, mission));
+  CANYON_TRY(auto seen_rows, seen_and_planned_rows(open, seeds));
 
   PaperPart algorithms{
       .name = "algorithms",
       .title = "Named as future work: what the models do to the output of algorithms",
       .paper_says = "Work is underway to test the models by their impact on the output of specific algorithms.",
       .made =
-          "On the same route, open loop, over seeds: localization, registration of scans, and the map made of "
-          "them.",
-      .difference = {"Obstacle detection and planning are not measured here."},
+          "On the same route, open loop, over seeds: localization, registration of scans, the map made of them, what "
+          "blocks the way in a grid that lies where the pose puts it, and what the autonomy asks for, against the same "
+          "scans with the true pose.",
+      .difference = {"Each number is the median over seeds, with the least and the most."},
       .x_label = "",
       .rows = {figure_row(driven_open, "localization: position error, RMS", "m", "position_error_rms_m"),
                figure_row(driven_open, "localization: yaw error, RMS", "deg", "attitude_error_yaw_rms_deg"),
@@ -140,6 +180,7 @@ Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, s
                figure_row(driven_open, "registration: error after it, RMS", "m", "registration_error_rms_m"),
                figure_row(driven_open, "map: error, RMS", "m", "map_error_rms_m")},
       .curves = {}};
+  for (PaperRow& row : seen_rows) algorithms.rows.push_back(std::move(row));
   return std::vector<PaperPart>{std::move(mission), std::move(algorithms)};
 }
 

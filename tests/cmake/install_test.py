@@ -68,6 +68,20 @@ class Install(unittest.TestCase):
         for heavy in ("libpcl", "libembree", "libassimp", "libproj", "libceres", "libxml2", "libtiff"):
             self.assertNotIn(heavy, libraries)
 
+    def test_an_autonomy_of_ones_own_drives_a_mission(self):
+        """docs/own_autonomy.md: its program is the example's, builds against what is installed, and reaches its goal."""
+        source = self.top / "own"
+        shutil.copytree(SOURCE / "examples" / "own_autonomy", source)
+        program = (source / "own_autonomy.cpp").read_text(encoding="utf-8")
+        self.assertLessEqual(len(program.splitlines()), 60)
+        page = (SOURCE / "docs" / "own_autonomy.md").read_text(encoding="utf-8")
+        self.assertIn("```cpp\n" + program + "```", page)
+        self.assertIn("```cmake\n" + (source / "CMakeLists.txt").read_text(encoding="utf-8") + "```", page)
+        self.assertIn("```toml\n" + (source / "street.toml").read_text(encoding="utf-8") + "```", page)
+        run("cmake", "-S", source, "-B", source / "build", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run("cmake", "--build", source / "build")
+        self.assertRegex(run(source / "build" / "own_autonomy", source / "street.toml"), r"^success after 1[0-9]{2} m\n$")
+
     def test_an_unknown_component_is_named(self):
         done = self.example(package="canyon REQUIRED COMPONENTS gnss sonar")
         self.assertNotEqual(done.returncode, 0)
