@@ -185,7 +185,7 @@ bool MissionRun::score() {
   const TapeNode& node = source_->now();
   const AutonomyState state = answers_.state;
   if (state == AutonomyState::kLost) {
-    scorer_.lost(node.motion, with_correction(estimate(node.motion.t)).X_WB.p);
+    scorer_.lost(node.motion, as_told(estimate(node.motion.t)).X_WB.p);
     return false;
   }
   const bool on_purpose = state == AutonomyState::kObserving || state == AutonomyState::kDone;

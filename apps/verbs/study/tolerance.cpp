@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/apps/line/usage_errors.h"
 #include "canyon/apps/options/mission_options.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
@@ -20,14 +21,14 @@ namespace {
 struct Options {
   MissionOptions mission;
   std::string fidelity = "low", error = "step_m";
-  std::vector<std::string> sizes;
+  std::string sizes;
   std::int64_t seeds = 20;
 };
 
 Result<std::vector<double>> sizes_of(const Options& options) {
   if (options.sizes.empty()) return study::usual_sizes(options.error);
   std::vector<double> sizes;
-  for (const std::string& word : options.sizes) {
+  for (const std::string& word : split_list(options.sizes)) {
     double size = 0.0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), size);
     if (error != std::errc() || end != word.data() + word.size() || !(size >= 0.0 && size <= 1000.0))

@@ -53,7 +53,9 @@ TEST(OwnMissionsNightly, EachIsDrivenLowAndHigh) {
       std::printf("  %-26s %-4s %s%s%s; %.0f m in %.0f s, position %.2f m rms\n", name, fidelity,
                   mission::name(*run.outcome), run.failure ? ": " : "", run.failure ? run.failure->detail.c_str() : "",
                   run.distance_m, run.duration_s, run.position_m.rms);
-      if (std::string(fidelity) == "low") EXPECT_EQ(run.outcome, Outcome::kSuccess) << name;
+      if (std::string(fidelity) == "low") {
+        EXPECT_EQ(run.outcome, Outcome::kSuccess) << name;
+      }
     }
 }
 

@@ -166,7 +166,9 @@ TEST(Tyres, FialaIsTheBrushsCubic) {
     for (TyreLaw* law : {linear_tyre, fiala_tyre}) {
       constexpr double h = 1e-6;  // differences: h^2 of the third derivative, and rounding of 1e-16 / h
       const double slope = (law(slip + h, c, m).share - law(slip - h, c, m).share) / (2.0 * h);
-      if (std::abs(std::abs(law(slip, c, m).share) - m) > 1e-4) EXPECT_NEAR(law(slip, c, m).slope, slope, 1e-4);
+      if (std::abs(std::abs(law(slip, c, m).share) - m) > 1e-4) {
+        EXPECT_NEAR(law(slip, c, m).slope, slope, 1e-4);
+      }
     }
   }
 }
@@ -262,7 +264,9 @@ TEST(PlanModels, VelocitiesAreDerivativesOfPlaces) {
     }
     // A rate of third degree: h^2 / 12 of what its derivative changes by within a step, at most twice its largest.
     for (const double off : off_yaw) ASSERT_LE(std::abs(off), kStep_s * kStep_s / 6.0 * most_change) << row.name;
-    if (model->slips()) EXPECT_GT(most_across, 0.01) << row.name;
+    if (model->slips()) {
+      EXPECT_GT(most_across, 0.01) << row.name;
+    }
   }
 }
 
