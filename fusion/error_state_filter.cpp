@@ -1,6 +1,7 @@
 #include "canyon/fusion/error_state_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -100,6 +101,12 @@ void count_rounding(Measurement& m, const Measurement::Rows& HP, const Measureme
     constexpr double kRounded = 1.0 + 1e-6;
     if (least > kRounded * predicted(i, i)) m.R(i, i) += least + predicted.row(i).cwiseAbs().sum();
   }
+}
+
+/// Where the states are that hold what lasts of the error of what is measured; -1 if none do.
+int lasting_error(const ErrorState& state, const Measurement& m) {
+  const int lasting = state.offset("fix_error");
+  return lasting < 0 || m.H.middleCols<3>(lasting).isZero(0.0) ? -1 : lasting;
 }
 
 }  // namespace
@@ -332,6 +339,11 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
   if (decision.noise_scale != 1.0 || decision.loosening != 1.0) {
     m.R *= decision.noise_scale;
     if (decision.loosening != 1.0) {
+      if (const int lasting = lasting_error(state_, m); lasting >= 0) {
+        // It has been estimated from a place that is given up.
+        m.residual += m.H.middleCols<3>(lasting) * state_.values(lasting, 3);
+        renew(std::array{Renewal{lasting, 0.0}, Renewal{lasting + 1, 0.0}, Renewal{lasting + 2, 0.0}});
+      }
       // What is off is what is measured, and not by what else is off with it as a rule.
       ErrorMatrix& P = copied(estimator_->covariance());
       const double per_state = m.H.middleCols<3>(m.about).squaredNorm() / n;

@@ -149,11 +149,12 @@ def record(arguments, work, seed):
             file.write_text(mission(arguments, work, attempt))
         with open(log, "w") as out:
             done = subprocess.run([arguments.canyon, "compare", file, "--open-loop", "--seed", str(seed), "--fidelities", "recorded",
-                                   "--no-2x2", "--threads", str(arguments.threads), "--out", folder], stdout=out, stderr=subprocess.STDOUT)
+                                   "--no-2x2", "--plan", "--for", "position", "--threads", str(arguments.threads), "--out",
+                                   folder], stdout=out, stderr=subprocess.STDOUT)
         if done.returncode == 0:
             return folder
     file.unlink()
-    sys.exit(f"{log}: {log.read_text()[-1000:]}")
+    sys.exit(f"exit status {done.returncode}, {log}: {log.read_text()[-1000:]}")
 
 
 def fuse(arguments, folder, name, keys):

@@ -29,8 +29,8 @@ class LostWay {
 
  private:
   static constexpr int kMost = 32, kFewest = 5;
-  /// Of scatters this large or larger one in a thousand is of fixes that are as good as they say.
-  static constexpr double kScattered = 1e-3;
+  /// Of fixes that are as good as they say one in ten such stretches scatters more; that costs one more fix.
+  static constexpr double kScattered = 0.1;
 
   struct Entry {
     GpsTime t;

