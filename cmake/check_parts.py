@@ -25,8 +25,8 @@ TRIANGLE = "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n"
 
 # Option, the part's library, files, a call that needs the part, and what must be said.
 PARTS = [
-    ("CANYON_WITH_PCL", "pcl", {"m.toml": 'base = "vicksburg"\n[time]\nlimit_s = 1.0\n'}, "run m.toml --fidelity high --out out",
-     '"pcl_shell_gicp" was not compiled in, expected a build with CANYON_WITH_PCL=ON'),
+    ("CANYON_WITH_PCL", "pcl", {"m.toml": 'base = "vicksburg"\n[time]\nlimit_s = 1.0\n[registration]\nmethod = "pcl_gicp"\n'}, "run m.toml --fidelity high --out out",
+     '"pcl_gicp" was not compiled in, expected a build with CANYON_WITH_PCL=ON'),
     ("CANYON_WITH_CERES", "ceres", {}, "imu fit log.csv --out unit.toml", "CANYON_WITH_CERES=ON"),
     ("CANYON_WITH_ASSIMP", "assimp", {"s.glb": "glTF"}, "scene info s.glb",
      "this canyon was built without glTF, expected a build with CANYON_WITH_ASSIMP=ON"),
@@ -35,7 +35,7 @@ PARTS = [
 ]
 # Calls that need none of them.
 STILL = [({"t.obj": TRIANGLE}, "scene info t.obj"),
-         ({"n.toml": 'base = "vicksburg"\n[time]\nlimit_s = 1.0\n[registration]\nmethod = "none"\n'}, "run n.toml --fidelity high --out still")]
+         ({"n.toml": 'base = "vicksburg"\n[time]\nlimit_s = 1.0\n'}, "run n.toml --fidelity high --out still")]
 
 
 class Failure(Exception):

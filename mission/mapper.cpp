@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "canyon/core/math/chi_square.h"
 #include "canyon/core/units.h"
 
 namespace canyon::mission {
@@ -30,6 +32,14 @@ lidar::PosePrior together(const lidar::PosePrior& x, const lidar::PosePrior& y) 
   const Matrix6d left = Matrix6d::Identity() - K;
   const Matrix6d P = left * x.covariance * left.transpose() + K * y.covariance * K.transpose();
   return {x.X_TS * Pose::exp(K * xi), 0.5 * (P + P.transpose())};
+}
+
+/// Whether the two lie within the 99.9 % bound of their difference.
+bool agree(const lidar::PosePrior& x, const lidar::PosePrior& y) {
+  constexpr double kProbability = 1e-3;
+  const Vector6d xi = (x.X_TS.inverse() * y.X_TS).log();
+  const Matrix6d P = x.covariance + y.covariance;
+  return xi.dot(P.ldlt().solve(xi)) < chi_square_threshold(kProbability, 6.0);
 }
 
 Matrix6d diagonal(double rotation_rad, double translation_m) {
@@ -97,16 +107,21 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
   counters_.iterations += result.iterations;
   counters_.correspondences += result.correspondences;
   counters_.pcl_objects += result.pcl_objects;
-  if (result.status != lidar::RegistrationStatus::kConverged) return predicted;
   const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
+  const auto surfaces = result.surfaces.value_or(lidar::RegistrationResult::Surfaces{result.X_TS, result.covariance});
+  const lidar::PosePrior alone{surfaces.X_TS, surfaces.covariance + floor};
+  // Whether it contradicts what was predicted is judged with all that is known of its errors.
+  if (result.status == lidar::RegistrationStatus::kBeyondPrior && agree(alone, predicted))
+    keyframe.status = lidar::RegistrationStatus::kConverged;
+  if (keyframe.status != lidar::RegistrationStatus::kConverged) return predicted;
   if (result.surfaces) keyframe.open = static_cast<int>(result.open.size());
-  const auto alone = result.surfaces.value_or(lidar::RegistrationResult::Surfaces{result.X_TS, result.covariance});
   const Pose X_LB = X_BL_.inverse();
   keyframe.aligned = RelativePose{.source = keyframe.t,
                                   .target = last_.t,
                                   .X_TS = X_BL_ * alone.X_TS * X_LB,
-                                  .covariance = moved(alone.covariance + floor, X_LB)};
-  return {result.X_TS, result.covariance + floor};
+                                  .covariance = moved(alone.covariance, X_LB)};
+  // Those who know the surfaces alone leave it to the mapper, who knows their floor, to weigh them with the prediction.
+  return result.surfaces ? together(predicted, alone) : alone;
 }
 
 void Mapper::fuse(const lidar::PosePrior& moved_by, const Matrix6d& prior_covariance, Keyframe& keyframe) const {

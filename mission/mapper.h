@@ -33,13 +33,14 @@ struct Keyframe {
 ///
 /// Registration alone would drift, the prior alone jumps with the fixes. An alignment begins from the motion since the
 /// keyframe before as the filter has predicted it; methods that take a covariance (Registration::align_with_prior)
-/// weigh that motion, with a floor, with the surfaces. Each keyframe's pose Z from registration has the covariance of
-/// the keyframe before it, plus that of the alignment, plus a floor; the prior Y has the filter's
-/// covariance, enlarged by prior_correlation_s / (time since the last keyframe), because the filter's error hardly
-/// changes between keyframes and must not count as new knowledge each time. With xi = log(Z^-1 Y) the fused pose is
-/// Z Exp(K xi), K = P_Z (P_Z + P_Y)^-1. Where registration does not converge, the predicted motion carries on from the
-/// keyframe before, with its own covariance, and is weighed with the filter's pose likewise: nothing jumps onto the
-/// prior.
+/// search as far as that reaches and say what the surfaces alone would have; this, with the floor of an alignment, is
+/// weighed with that motion here, and contradicts it only beyond the 99.9 % bound of both together. Each keyframe's
+/// pose Z from registration has the covariance of the keyframe before it, plus that of the alignment, plus a floor; the
+/// prior Y has the filter's covariance, enlarged by prior_correlation_s / (time since the last keyframe), because the
+/// filter's error hardly changes between keyframes and must not count as new knowledge each time. With xi = log(Z^-1 Y)
+/// the fused pose is Z Exp(K xi), K = P_Z (P_Z + P_Y)^-1. Where registration does not converge, the predicted motion
+/// carries on from the keyframe before, with its own covariance, and is weighed with the filter's pose likewise:
+/// nothing jumps onto the prior.
 ///
 /// Where the three constants of [registration] come from. alignment_floor_m and _deg: the covariance of an alignment
 /// knows its residuals, not what biases it (correspondences, the sensor: Brossard, Bonnabel and Barrau 2020, "A new

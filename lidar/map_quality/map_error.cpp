@@ -66,8 +66,8 @@ MapQuality evaluate_map(std::span<MapPoint> points, const scene::SceneAt& scene,
   const auto surfaces = scene::nearest_surfaces(scene.scene(), places, cap_m);
   std::vector<Sums> chunks((points.size() + kChunk - 1) / kChunk);
   parallel_for(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    chunks[begin / kChunk] = measure(points.subspan(begin, end - begin), std::span(surfaces).subspan(begin, end - begin),
-                                     scene.scene(), cap_m);
+    chunks[begin / kChunk] = measure(points.subspan(begin, end - begin),
+                                     std::span(surfaces).subspan(begin, end - begin), scene.scene(), cap_m);
   });
   Sums total;
   for (const Sums& s : chunks) {

@@ -127,7 +127,8 @@ std::vector<std::span<const Eigen::Vector3f>> PointGrid::around(std::size_t cell
   for (std::int64_t x = low.x(); x <= high.x(); ++x)
     for (std::int64_t y = low.y(); y <= high.y(); ++y)
       for (std::int64_t z = low.z(); z <= high.z(); ++z)
-        if (const Cell* near = find({x, y, z})) out.push_back(points_of(static_cast<std::size_t>(near - cells_.data())));
+        if (const Cell* near = find({x, y, z}))
+          out.push_back(points_of(static_cast<std::size_t>(near - cells_.data())));
   return out;
 }
 

@@ -37,7 +37,7 @@ void visit(FieldVisitor& f, MatchingParameters& c);
 
 /// [registration] of a mission file.
 struct RegistrationConfig {
-  ModelChoice<registration_methods> method{"pcl_shell_gicp"};
+  ModelChoice<registration_methods> method{"gicp"};
   std::int64_t submap_keyframes = 10;  ///< keyframes that form the target
   double keyframe_distance_m = 2.0;
   double keyframe_angle_deg = 10.0;

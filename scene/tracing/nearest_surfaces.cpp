@@ -71,8 +71,7 @@ class TriangleTree {
         for (std::uint32_t i = node.begin; i < node.end; ++i) take(members_[i].triangle);
         continue;
       }
-      const bool first_nearer =
-          nodes_[k + 1].box.squared_distance(p) <= nodes_[node.second].box.squared_distance(p);
+      const bool first_nearer = nodes_[k + 1].box.squared_distance(p) <= nodes_[node.second].box.squared_distance(p);
       waiting[count++] = first_nearer ? node.second : k + 1;
       waiting[count++] = first_nearer ? k + 1 : node.second;
     }

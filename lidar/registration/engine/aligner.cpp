@@ -45,7 +45,8 @@ constexpr double kNoPull_rad = 3e-3;
 constexpr double kWellMatched = 0.9;  // of the points; fewer may be out of reach because the prior holds them there
 // Normals of neighbours err together (they share points), so that what they feign as curvature counts twice.
 constexpr double kTiltsAlike = 2.0;
-// A direction with more sigma is open: who says that it is closed says 0.2 m, or as much at the cloud's radius (3 sigma).
+// A direction with more sigma is open: who says that it is closed says 0.2 m, or as much at the cloud's radius (3
+// sigma).
 constexpr double kWidest_m = 0.2 / 3.0;
 constexpr double kProbability = 1e-3;
 
@@ -132,6 +133,7 @@ void Aligner::descend(const Stage& stage, Candidate& at) {
   at.settled = false;
   at.last_step.setZero();
   for (std::int64_t round = 0; round < stage.rounds; ++round) {
+    at.sums.reset();
     at.equations = normal_equations(matching_at(reach_m), at.X, stage.stride, at.matches);
     ++rounds_;
     matched_ += at.equations.matched;
@@ -244,13 +246,20 @@ void Aligner::refine(Candidate& at) {
   descend({1, own_.max_correspondence_m, own_.max_iterations, kSettled_m, kSettled_rad}, at);
 }
 
+/// Of where `at` is; made once for each place.
+const CovarianceSums& Aligner::sums_at(Candidate& at) const {
+  if (!at.sums) {
+    at.sums = covariance_sums(matching_at(own_.max_correspondence_m), at.X, at.matches, kBlock_leaves * own_.leaf_m);
+    at.sums->N *= kTiltsAlike;
+  }
+  return *at.sums;
+}
+
 /// Finds the open directions where `at` is, takes it back to the prior along them, and goes on with the others; once
 /// more, as what is open shows the better the closer the surfaces are. False: nothing is determined.
 bool Aligner::keep_open_at_prior(Candidate& at, OpenDirections& open) {
-  const double block_m = kBlock_leaves * own_.leaf_m;
   for (int pass = 0; pass < 2; ++pass) {
-    CovarianceSums sums = covariance_sums(matching_at(own_.max_correspondence_m), at.X, at.matches, block_m);
-    sums.N *= kTiltsAlike;
+    const CovarianceSums& sums = sums_at(at);
     if (sums.matched < kFewestPoints) return true;
     const RegistrationPrecision precision = registration_precision(sums, kInflation * gradient_scatter(sums));
     if (!precision.covariance.allFinite() || precision.open.size() >= 6) return false;
@@ -375,9 +384,7 @@ RegistrationResult Aligner::align() {
     result.status = RegistrationStatus::kTooLittleOverlap;
     return result;
   }
-  CovarianceSums sums =
-      covariance_sums(matching_at(own_.max_correspondence_m), at.X, at.matches, kBlock_leaves * own_.leaf_m);
-  sums.N *= kTiltsAlike;
+  const CovarianceSums& sums = sums_at(at);
   const auto& form = model_row(covariance_forms(), engine_.covariance).make;
   const auto guesses = form.restarts ? restarts(at) : std::vector<Vector6d>();
   RegistrationPrecision precision =

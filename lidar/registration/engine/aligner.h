@@ -26,6 +26,7 @@ class Aligner {
     Vector6d last_step = Vector6d::Zero();  ///< where it settled with a step that still tells
     std::vector<LastMatch> matches;
     NormalEquations equations;
+    std::optional<CovarianceSums> sums;  ///< there, with all points; sums_at()
   };
   /// Rounds on every stride-th point, with a reach that shrinks from `reach_m` to the last one.
   struct Stage {
@@ -42,6 +43,7 @@ class Aligner {
   std::vector<Pose> starts() const;
   std::vector<Candidate> coarse();
   void refine(Candidate& at);
+  const CovarianceSums& sums_at(Candidate& at) const;
   bool keep_open_at_prior(Candidate& at, OpenDirections& open);
   std::vector<double> unexplained(const Candidate& at) const;
   std::vector<Vector6d> restarts(const Candidate& at);

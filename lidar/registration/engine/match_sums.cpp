@@ -180,8 +180,7 @@ NormalEquations normal_equations(const Matching& matching, const Pose& X_TS, std
   return out;
 }
 
-std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS,
-                                    std::span<const LastMatch> matches) {
+std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches) {
   const Eigen::Matrix3d R = X_TS.R.toRotationMatrix(), R_ST = R.transpose();
   const double across_scale = kAcrossScale / (matching.width_m * matching.width_m);
   std::vector<double> missed(matches.size(), -1.0);

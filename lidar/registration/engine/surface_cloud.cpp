@@ -17,7 +17,7 @@ constexpr std::size_t kNeighbours = 12;
 constexpr std::size_t kFewestNeighbours = 6;  // fewer say too little about a plane
 constexpr double kReach_leaves = 8.0;         // neighbours farther away belong to another surface
 constexpr double kNarrowest = 0.1;            // as in prepared_cloud.cpp: a ring by itself lies in many planes
-constexpr std::size_t kChunk = 64;  // leaves
+constexpr std::size_t kChunk = 64;            // leaves
 
 /// Takes the order of the tree for points; other columns are resized.
 void put_in_order(PreparedCloud& cloud) {

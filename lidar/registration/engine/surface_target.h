@@ -21,8 +21,8 @@ struct LastMatch {
 class SurfaceTarget {
  public:
   virtual ~SurfaceTarget() = default;
-  /// Finds the element of a place, closer than sqrt(squared_limit), or kNone: last.matched. What `last` holds of a place
-  /// nearby makes the search shorter or needless, and its result no other.
+  /// Finds the element of a place, closer than sqrt(squared_limit), or kNone: last.matched. What `last` holds of a
+  /// place nearby makes the search shorter or needless, and its result no other.
   virtual void find(const Eigen::Vector3f& place, float squared_limit, LastMatch& last) const = 0;
 
   std::size_t size() const { return points_->size(); }

@@ -69,7 +69,8 @@ TEST(LeafTree, OthersAreNoCloserThanSaid) {
   }
 }
 
-/// What is remembered of a place nearby must not change what is found, wherever the point goes and however far is looked.
+/// What is remembered of a place nearby must not change what is found, wherever the point goes and however far is
+/// looked.
 TEST(SurfaceTarget, WhatIsRememberedChangesNothing) {
   const auto target = point_target(cloud_of(scattered(3000, 5)));
   const RandomStream draws(6, "test.leaf_tree.walk");

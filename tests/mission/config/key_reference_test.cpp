@@ -22,7 +22,7 @@ TEST(KeyReference, SaysWhatThereIsToSayOfAKey) {
   EXPECT_THAT(page, HasSubstr("| `max_speed_m_s` | m/s | 6 | a number from 0.1 to 30 | limit |\n"));
   EXPECT_THAT(page, HasSubstr("| `waypoint[].p_m` | m | required | a list of 2 numbers, each a number from -1e+05 to "
                               "1e+05 | x and y in W, metres east and north of the scene's centre |\n"));
-  EXPECT_THAT(page, HasSubstr("| `method` |  | \"pcl_shell_gicp\" | one of \"none\", "));
+  EXPECT_THAT(page, HasSubstr("| `method` |  | \"gicp\" | one of \"none\", "));
 }
 
 }  // namespace
