@@ -14,15 +14,15 @@ namespace canyon::testing {
 namespace {
 
 /// Buildings at 45 N, 5 E.
-constexpr const char* kTown = R"({"type":"FeatureCollection","features":[{"type":"Feature",
+constexpr const char* kHillTown = R"({"type":"FeatureCollection","features":[{"type":"Feature",
 "properties":{"id":"town hall","height":12.0},"geometry":{"type":"Polygon","coordinates":[
 [[5.0,45.0],[5.0003,45.0],[5.0003,45.0002],[5.0,45.0002],[5.0,45.0]]]}}]})";
 constexpr const char* kWgs84 =
     "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
     "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]";
 
-std::vector<Companion> town() {
-  return {{"town.geojson", kTown}};
+std::vector<Companion> hill_town() {
+  return {{"town.geojson", kHillTown}};
 }
 
 constexpr int kSide = 40;
@@ -138,7 +138,7 @@ Format of_terrain(const std::string& name, const std::string& file, const std::f
           .read = {},
           .seeds = seeds,
           .beside = [more] {
-            std::vector<Companion> out = town();
+            std::vector<Companion> out = hill_town();
             out.insert(out.end(), more.begin(), more.end());
             return out;
           }};

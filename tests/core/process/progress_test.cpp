@@ -59,12 +59,12 @@ Ended end_of_a_deaf_child(const std::string& path, int requests) {
     install_cancel_handler();
     auto file = StagedFile::create(path, false);
     auto folder = StagedDirectory::create(path + "-folder/inner", false);
-    (void)!write(ready[1], "!", 1);
+    (void)!::write(ready[1], "!", 1);
     while (file.ok() && folder.ok()) pause();
     _exit(99);
   }
   char byte = 0;
-  EXPECT_EQ(read(ready[0], &byte, 1), 1);
+  EXPECT_EQ(::read(ready[0], &byte, 1), 1);
   const auto asked = std::chrono::steady_clock::now();
   for (int k = 0; k < requests; ++k) {
     kill(child, SIGINT);

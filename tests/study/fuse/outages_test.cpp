@@ -7,32 +7,33 @@
 namespace canyon::study {
 namespace {
 
-const GpsTime kBegin = GpsTime::from_week_sow(2200, 457000.0);
+const GpsTime kDriveBegin = GpsTime::from_week_sow(2200, 457000.0);
 
 TEST(Outages, WindowsThatFitBetweenTheEnds) {
   for (const double first_s : {150.0, 457150.0}) {
-    const Outages outages({30.0, 75.0, first_s}, kBegin, kBegin + 600.0);
+    const Outages outages({30.0, 75.0, first_s}, kDriveBegin, kDriveBegin + 600.0);
     ASSERT_EQ(outages.windows().size(), 6U);  // 150, 225, ... 525
-    EXPECT_EQ(outages.windows().front().begin, kBegin + 150.0);
-    EXPECT_EQ(outages.windows().back().end, kBegin + 555.0);
+    EXPECT_EQ(outages.windows().front().begin, kDriveBegin + 150.0);
+    EXPECT_EQ(outages.windows().back().end, kDriveBegin + 555.0);
   }
-  EXPECT_TRUE(Outages({30.0, 75.0, 580.0}, kBegin, kBegin + 600.0).windows().empty());
+  EXPECT_TRUE(Outages({30.0, 75.0, 580.0}, kDriveBegin, kDriveBegin + 600.0).windows().empty());
 }
 
 TEST(Outages, TheFixAtTheBeginningIsTheLastOne) {
-  const Outages outages({30.0, 75.0, 150.0}, kBegin, kBegin + 600.0);
+  const Outages outages({30.0, 75.0, 150.0}, kDriveBegin, kDriveBegin + 600.0);
   for (const double t_s : {0.0, 150.0, 180.25, 224.0, 225.0, 600.0})
-    EXPECT_FALSE(outages.withholds(kBegin + t_s)) << t_s;
-  for (const double t_s : {150.25, 151.0, 180.0, 226.0, 555.0}) EXPECT_TRUE(outages.withholds(kBegin + t_s)) << t_s;
+    EXPECT_FALSE(outages.withholds(kDriveBegin + t_s)) << t_s;
+  for (const double t_s : {150.25, 151.0, 180.0, 226.0, 555.0})
+    EXPECT_TRUE(outages.withholds(kDriveBegin + t_s)) << t_s;
 }
 
 TEST(Outages, ScoreIsTheRootMeanSquareOfTheLargestErrors) {
-  Outages outages({10.0, 20.0, 0.0}, kBegin, kBegin + 60.0);
+  Outages outages({10.0, 20.0, 0.0}, kDriveBegin, kDriveBegin + 60.0);
   ASSERT_EQ(outages.windows().size(), 3U);
-  outages.add(kBegin + 5.0, 3.0, 1.0);
-  outages.add(kBegin + 6.0, 2.0, 0.5);
-  outages.add(kBegin + 15.0, 100.0, 100.0);  // between two
-  outages.add(kBegin + 25.0, 4.0, 7.0);
+  outages.add(kDriveBegin + 5.0, 3.0, 1.0);
+  outages.add(kDriveBegin + 6.0, 2.0, 0.5);
+  outages.add(kDriveBegin + 15.0, 100.0, 100.0);  // between two
+  outages.add(kDriveBegin + 25.0, 4.0, 7.0);
   const OutageScore score = outage_score(outages.windows());
   EXPECT_EQ(score.count, 2U);  // the third has no truth in it
   EXPECT_DOUBLE_EQ(score.horizontal_rms_of_max_m, std::sqrt(12.5));
