@@ -165,7 +165,7 @@ class StreetClutter final : public ClutterModel {
       };
       double in_light = 0.0;
       for (const auto& corner : towards.corners()) {
-        if (!(corner.weight > 0.0)) continue;
+        if (corner.weight == 0.0) continue;
         if (towards.lit(corner, one.number, one.p_W, counters)) {
           in_light += corner.weight;
           continue;

@@ -1,10 +1,7 @@
 #include "canyon/gnss/paths/sight/point_sight.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numeric>
-#include <utility>
 
 #include "canyon/core/units.h"
 
@@ -28,31 +25,12 @@ Eigen::Vector3d direction_at(const Eigen::Vector2d& d_rad) {
   return {level.x(), level.y(), std::cos(zenith_rad)};
 }
 
-/// Of a place in cells the corners of its simplex, from the cell's lowest to its highest, and their weights.
-template <int N>
-std::array<std::pair<Eigen::Matrix<double, N, 1>, double>, N + 1> simplex(const Eigen::Matrix<double, N, 1>& x) {
-  Eigen::Matrix<double, N, 1> corner = x.array().floor();
-  const Eigen::Matrix<double, N, 1> f = x - corner;
-  std::array<int, N> order;
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return f[a] > f[b]; });
-  std::array<std::pair<Eigen::Matrix<double, N, 1>, double>, N + 1> out;
-  double before = 1.0;
-  for (std::size_t k = 0; k <= N; ++k) {
-    const double next = k < N ? f[order[k]] : 0.0;
-    out[k] = {corner, before - next};
-    if (k < N) corner[order[k]] += 1.0;
-    before = next;
-  }
-  return out;
-}
-
 }  // namespace
 
 double PointSight::From::share(std::uint32_t id, const Eigen::Vector3d& q_W, GnssCounters& counters) const {
   double sum = 0.0;
   for (const Corner& corner : corners_) {
-    if (!(corner.weight > 0.0)) continue;
+    if (corner.weight == 0.0) continue;
     const bool seen = corner.node->seen(id, counters, [&] {
       const Eigen::Vector3d way_W = q_W - corner.p_W;
       const double r_m = way_W.norm();
@@ -65,13 +43,20 @@ double PointSight::From::share(std::uint32_t id, const Eigen::Vector3d& q_W, Gns
 
 PointSight::From PointSight::from(const Eigen::Vector3d& p_W) {
   places_.make_room();
-  const Eigen::Array3d cell_m(kCell_m, kCell_m, kHigh_m);
+  const Eigen::Vector3d cell = (p_W / kCell_m).array().floor();
+  const Eigen::Vector3d f = p_W / kCell_m - cell;
   From out;
   out.scene_ = &scene_;
-  std::size_t k = 0;
-  for (const auto& [at, weight] : simplex<3>(p_W.array() / cell_m)) {
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d at = cell;
+    double weight = 1.0;
+    for (int k = 0; k < 3; ++k) {
+      const bool upper = (corner >> k & 1U) != 0;
+      at[k] += upper ? 1.0 : 0.0;
+      weight *= upper ? f[k] : 1.0 - f[k];
+    }
     const auto key = lattice_key(std::llround(at.x()), std::llround(at.y()), std::llround(at.z()));
-    out.corners_[k++] = {at.array() * cell_m, weight, places_.at(key)};
+    out.corners_[corner] = {at * kCell_m, weight, places_.at(key)};
   }
   return out;
 }
@@ -81,12 +66,14 @@ PointSight::Towards PointSight::towards(const Eigen::Vector3d& s_W) {
   const double level = s_W.head<2>().norm(), zenith_rad = std::atan2(level, s_W.z());
   const Eigen::Vector2d d =
       level > 0.0 ? Eigen::Vector2d(zenith_rad / (level * kCell_rad) * s_W.head<2>()) : Eigen::Vector2d::Zero();
+  const Eigen::Vector2d cell = d.array().floor(), f = d - cell;
   Towards out;
   out.scene_ = &scene_;
-  std::size_t k = 0;
-  for (const auto& [at, weight] : simplex<2>(d)) {
+  for (unsigned corner = 0; corner < 4; ++corner) {
+    const Eigen::Vector2d upper(corner & 1U ? 1.0 : 0.0, corner & 2U ? 1.0 : 0.0), at = cell + upper;
+    const double weight = (corner & 1U ? f.x() : 1.0 - f.x()) * (corner & 2U ? f.y() : 1.0 - f.y());
     const auto key = lattice_key(std::llround(at.x()), std::llround(at.y()), 0);
-    out.corners_[k++] = {direction_at(kCell_rad * at), weight, directions_.at(key)};
+    out.corners_[corner] = {direction_at(kCell_rad * at), weight, directions_.at(key)};
   }
   return out;
 }

@@ -50,17 +50,15 @@ class SightNode {
 };
 
 /// How far fixed, numbered points of a scene are in sight, as a share that changes evenly with place and direction:
-/// sight is sharp at the nodes of a lattice, and between them the corners of the simplex about the place count by its
-/// barycentric coordinates (a cell is cut along the order of its fractions, Kuhn 1960). So nothing comes or goes at
-/// once, a shadow's border is as wide as a cell, and since rays belong to nodes few are fired where an antenna moves
-/// little from epoch to epoch. What is remembered changes no number. Of the scene as it stands: what moves hides no
-/// point. Nodes within a solid see nothing; they lie at most 1 m under the antenna. Not for several threads at once
-/// (SightPool).
+/// sight is sharp at the nodes of a lattice, and between them the nodes count in shares of the place. So nothing comes
+/// or goes at once, a shadow's border is as wide as a cell, and since rays belong to nodes few are fired where an
+/// antenna moves little from epoch to epoch. What is remembered changes no number. Of the scene as it stands: what
+/// moves hides no point. Nodes within a solid see nothing. Not for several threads at once (SightPool).
 class PointSight {
  public:
   explicit PointSight(const scene::Scene& scene) : scene_(scene) {}
 
-  static constexpr double kCell_m = 4.0, kHigh_m = 1.0;  ///< lattice of places: across and upward
+  static constexpr double kCell_m = 2.0;     ///< lattice of places
   static constexpr double kCell_rad = 0.02;  ///< lattice of directions, on a plane by their angle from the zenith
 
   /// The nodes about a place. Of use until the next call of from().
@@ -77,7 +75,7 @@ class PointSight {
       SightNode* node;
     };
     const scene::SceneAt* scene_ = nullptr;
-    std::array<Corner, 4> corners_;
+    std::array<Corner, 8> corners_;
   };
   From from(const Eigen::Vector3d& p_W);
 
@@ -98,12 +96,12 @@ class PointSight {
         if (corner.weight > 0.0 && lit(corner, id, q_W, counters)) sum += corner.weight;
       return sum;
     }
-    const std::array<Corner, 3>& corners() const { return corners_; }
+    const std::array<Corner, 4>& corners() const { return corners_; }
 
    private:
     friend class PointSight;
     const scene::SceneAt* scene_ = nullptr;
-    std::array<Corner, 3> corners_;
+    std::array<Corner, 4> corners_;
   };
   Towards towards(const Eigen::Vector3d& s_W);
 

@@ -240,7 +240,7 @@ TEST(StreetClutter, FadingIsRician) {
 }
 
 // A centimetre turns a scatterer's phase by at most 2 x 2 pi 0.01 m / wavelength and changes what is seen of it by a
-// 400th of a lattice of 4 m along the way; beside a house, so that some come and go. The square of the
+// hundredth of a lattice of 2 m (in three coordinates); beside a house, so that some come and go. The square of the
 // sum's step is on average that of independent phasors; six times its root is never passed (4e-16 a step).
 TEST(StreetClutter, ACentimetreChangesTheFieldLittle) {
   const auto scene = WallScene().box({4, -30, 0}, {20, 0, 20}).box({-20, 5, 0}, {-5, 40, 15}).build();
