@@ -49,10 +49,8 @@ constexpr int kHeadings = 48;         // of a full turn, likewise
 constexpr int kShotEvery = 8;         // nodes
 constexpr double kShotBlend_m = 3.0;  // within which what is left of a shot's way to the lane falls to 1/e
 constexpr double kBeyondEnd_m = 6.0;  // of a line after the reach, for the tracker to look at
-constexpr double kLeastWay = 0.3;     // of a metre of the route, on the inner side of the sharpest bends
-/// What is left to go counts so much more than what it costs at least: a way that is found costs at most so many times
-/// the cheapest (weighted A*: Pohl 1970), and far fewer nodes are opened for it.
-constexpr double kHaste = 1.5;
+/// Along a bend's inner side a metre of the route takes less than a metre of way.
+constexpr double kLeastWay = 0.5;
 
 /// Search over arcs that the vehicle can drive, through places and headings (hybrid A*: Dolgov, Thrun, Montemerlo and
 /// Diebel 2010, "Path planning for autonomous vehicles in unknown semi-structured environments"), the body's rectangle
@@ -108,10 +106,6 @@ class HybridAStar final : public LocalPlanner {
       Node first{.pose = task.body.pose, .s_m = task.s_m};
       first.beside_m = beside_m(first.pose, first.s_m);
       first.steering_rad = task.body.steering_rad;
-      double sharpest_1_m = 0.0;
-      for (double x = 0.0; x <= p.reach_m; x += kStep_m)
-        sharpest_1_m = std::max(sharpest_1_m, std::abs(task.route.curvature(task.s_m + x)));
-      least_way_ = std::max(kLeastWay, 1.0 - sharpest_1_m * p.room_m);
       add(first);
       run();
     }
@@ -153,7 +147,7 @@ class HybridAStar final : public LocalPlanner {
     }
     /// Along the route rather than aside before something that bars it.
     static double farness_m(const Node& node) { return node.s_m - 0.5 * std::abs(node.beside_m); }
-    double left_m(const Node& node) const { return kHaste * least_way_ * std::max(0.0, end_s_m_ - node.s_m); }
+    double left_m(const Node& node) const { return kLeastWay * std::max(0.0, end_s_m_ - node.s_m); }
 
     std::uint64_t cell_of(const PlanPose& pose) const {
       const auto whole = [](double v) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v))); };
@@ -261,7 +255,6 @@ class HybridAStar final : public LocalPlanner {
     const PlanTask& task_;
     const Beside& last_;
     double end_s_m_, start_clearance_m_ = 0.0;
-    double least_way_ = kLeastWay;  ///< of a metre of the route ahead
     std::array<double, 9> kappa_{};
     std::vector<Node> nodes_;
     std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
