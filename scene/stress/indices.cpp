@@ -279,7 +279,8 @@ StressFigure any_city(std::uint64_t seed) {
       for (const Eigen::Vector2d& p : b.footprint_W) bounds.extend(p);
       const Eigen::Vector2d room = metal[b.object].sizes(), house = bounds.sizes();
       worst.look((metal[b.object].center() - bounds.center()).norm(), 4.0 * kHalfUlp * 400.0);
-      worst.look(room.x() / house.x() - room.y() / house.y(), 8.0 * kHalfUlp * 400.0 / house.minCoeff());
+      worst.look(room.x() / house.x() - room.y() / house.y(),
+                 8.0 * kHalfUlp * 400.0 / house.minCoeff<Eigen::PropagateNaN>());
       ++on_roofs;
     }
     double footprint = 0.0;

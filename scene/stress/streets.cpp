@@ -46,7 +46,9 @@ SceneParts crossing(double slope, double slab_m) {
   walls({36.0, 50.0}, 8.0, true);
   walls({64.0, 50.0}, 8.0, true);
   mesh.begin_object("slab", ObjectKind::kOther);
-  const double z = std::max({ground_m(60, -15), ground_m(70, -15), ground_m(70, 15), ground_m(60, 15)}) + slab_m;
+  const double z = Eigen::Vector4d(ground_m(60, -15), ground_m(70, -15), ground_m(70, 15), ground_m(60, 15))
+                       .maxCoeff<Eigen::PropagateNaN>() +
+                   slab_m;
   mesh.quad({60, -15, z}, {70, -15, z}, {70, 15, z}, {60, 15, z}, brick);
   return parts;
 }
@@ -66,7 +68,7 @@ StressFigure streets(double slope, double slab_m) {
       const Vector2d p = a + u * (b - a), q = p.cwiseAbs();
       const double in_blocks_m = std::min(35.0 - std::abs(q.x() - 50.0), 35.0 - std::abs(q.y() - 50.0));
       wrong += in_blocks_m > -0.5 ? 1 : 0;
-      wrong += q.maxCoeff() < 98.0 ? 0 : 1;
+      wrong += q.maxCoeff<Eigen::PropagateNaN>() < 98.0 ? 0 : 1;
       const bool near_a_corner = (q.x() < 20.0 && (q.y() < 20.0 || q.y() > 80.0)) || (q.x() > 80.0 && q.y() > 80.0) ||
                                  (q.x() > 80.0 && q.y() < 20.0);
       const double off_m = std::min({q.x(), q.y(), std::abs(q.x() - 92.5), std::abs(q.y() - 92.5)});

@@ -149,15 +149,19 @@ TEST_F(MapperTest, WhereRegistrationDoesNotConvergeThePredictedMotionCarriesOn) 
   EXPECT_LT((keyframe->placed->X_TS.p - at(3).p).norm(), 1e-12);
 }
 
-// The filter must not be told its own prediction again: what goes back to it is what the surfaces alone say.
+// The filter must not be told its own prediction again: what goes back to it is what the surfaces alone say. The
+// keyframe stands where both together say, by hand: the motion's 0.05 m and floor against the surfaces' 0.03 m and
+// floor.
 TEST_F(MapperTest, WhatTheSurfacesAloneSayGoesBackToTheFilter) {
-  script_.error = at(0.3);
+  motion_covariance_ = diagonal(1e-3, 0.05);
+  config_.motion_floor_m_s = 0.02;
   script_.result.surfaces = {.X_TS = at(3.5), .covariance = diagonal(2e-3, 0.03)};
   Mapper mapper = this->mapper();
   offer(mapper, 0.0, at(0));
   const Keyframe* keyframe = offer(mapper, 1.0, at(3));
   ASSERT_TRUE(keyframe->aligned && keyframe->placed);
-  EXPECT_NEAR(keyframe->placed->X_TS.p.x(), 3.3, 1e-12);
+  const double motion_m2 = 0.0025 + 0.0004, surfaces_m2 = 0.0009 + 0.0004;
+  EXPECT_NEAR(keyframe->placed->X_TS.p.x(), 3.0 + 0.5 * motion_m2 / (motion_m2 + surfaces_m2), 1e-12);
   EXPECT_NEAR(keyframe->aligned->X_TS.p.x(), 3.5, 1e-12);
   EXPECT_NEAR(keyframe->aligned->covariance(3, 3), 0.03 * 0.03 + 0.02 * 0.02, 1e-12);
 }

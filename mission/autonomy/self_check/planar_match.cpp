@@ -13,7 +13,7 @@ constexpr double kThinned_m = 0.2;
 constexpr double kNoise_m = 0.03;  // of a return across a wall, beside what the piece itself is thick
 constexpr double kWide_m = 0.12;   // 1-sigma: thicker is no wall
 constexpr double kRound = 0.25;    // across over along, 1-sigma: rounder is no wall
-constexpr int kFewest = 4;         // points of a piece
+constexpr int kFewestPoints = 4;   // points of a piece
 constexpr double kGate_m = 0.6;    // farther from a piece is another surface
 /// Returns of one wall err alike (its piece, the deskewing): a hundred of them are worth about one.
 constexpr double kAlike = 100.0;
@@ -65,7 +65,7 @@ WallPieces::WallPieces(const PlanarPoints& points) : pieces_(static_cast<std::si
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Sums& of = sums[i];
-    if (of.n < kFewest) continue;
+    if (of.n < kFewestPoints) continue;
     const Eigen::Vector2d middle = of.first / of.n;
     const Eigen::Matrix2d scatter = of.second / of.n - middle * middle.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter);

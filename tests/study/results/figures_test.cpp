@@ -25,6 +25,15 @@ RunSummary full_run() {
   run.outcome = mission::Outcome::kSuccess;
   run.waypoints.resize(5);
   run.waypoints[0].mission = run.waypoints[1].mission = true;
+  run.waypoints[0].facade_range_m = 40.5;
+  run.waypoints[0].facade_obliquity_deg = 20.5;
+  run.waypoints[0].facade_px_per_m = 15.5;
+  run.waypoints[0].facade_seen_share = 0.625;
+  run.believed_not_reached = 3;
+  run.encounters = {.clearance_min_m = 0.125, .near_misses = 7, .phantoms = 9, .missed_obstacles = 11};
+  run.failure = mission::Failure{.kind = mission::Outcome::kCollision,
+                                 .detail = "a car",
+                                 .seen = mission::Sighting{.range_m = 4.5, .stood_s = 1.75, .ago_s = 0.05}};
   run.waypoints_reached = 4;
   run.mission_waypoints_reached = 1;
   double next = 10.0;

@@ -31,7 +31,7 @@ const std::vector<MeasuredFidelity>& measured_fidelities() {
 }
 
 TEST(Fidelities, ThePlannedRunStandsBehindTheFirstAndIsTheSame) {
-  ASSERT_EQ(measured_fidelities().size(), 5u);  // low, paper, high, modern, and high planned
+  ASSERT_EQ(measured_fidelities().size(), 6u);  // low, paper, high, high_aided, modern, and high planned
   EXPECT_EQ(measured_fidelities()[0].name, "high");
   EXPECT_EQ(measured_fidelities()[1].name, "high_planned");
   const MeasuredFidelity &full = measured_fidelities()[0], &planned = measured_fidelities()[1];

@@ -26,10 +26,13 @@ p_m = [213.9, 150.0]
 observe = "building 273"
 )";
 
-/// The receiver that records.
+/// The receiver that records: without what it smooths and without what of a street is drawn by chance.
 mission::MissionConfig recording_config() {
   mission::MissionFile file = short_drive_file();
-  for (const auto& [key, value] : {std::pair{"gnss.mode", "single_uncorrected"},
+  for (const auto& [key, value] : {std::pair{"gnss.receiver", "snapshot_gps"},
+                                   {"gnss.scatter", "none"},
+                                   {"gnss.clutter", "none"},
+                                   {"gnss.mode", "single_uncorrected"},
                                    {"gnss.ephemeris_error", "none"},
                                    {"gnss.paths", "specular2"},
                                    {"gnss.diffraction", "none"},
@@ -96,7 +99,8 @@ Status write_recording(const std::string& folder) {
   CANYON_TRY_STATUS(write_text_file(folder + "/drive.obs", observed));
   CANYON_TRY_STATUS(write_text_file(folder + "/drive.nav", navigation));
   return write_text_file(folder + "/drive.toml",
-                         "observations = \"drive.obs\"\nnavigation = [\"drive.nav\"]\ntruth = \"truth.csv\"\n");
+                         "observations = \"drive.obs\"\nnavigation = [\"drive.nav\"]\ntruth = \"truth.csv\"\n"
+                         "[gnss]\nreceiver = \"snapshot_gps\"\nscatter = \"none\"\nclutter = \"none\"\n");
 }
 
 }  // namespace
