@@ -42,7 +42,5 @@ ModelTable<MakeLocalPlanner> local_planners();
 /// Makers of the rows of the table in planning/local_planners.cpp, and their parameters, each in the file of its model.
 std::unique_ptr<LocalPlanner> make_offset_planner(const ModelParameters& own);
 void offset_planner_parameters(ModelParameters& section);
-std::unique_ptr<LocalPlanner> make_hybrid_a_star(const ModelParameters& own);
-void hybrid_a_star_parameters(ModelParameters& section);
 
 }  // namespace canyon::mission
