@@ -13,7 +13,11 @@ namespace canyon::scene::embree {
 RTCDevice device() {
   static const RTCDevice instance = [] {
     RTCDevice made = rtcNewDevice(device_options().c_str());
-    CANYON_CHECK(made != nullptr, "Embree error ", static_cast<int>(rtcGetDeviceError(nullptr)));
+    if (made == nullptr) {
+      const RTCError error = rtcGetDeviceError(nullptr);
+      if (error == RTC_ERROR_OUT_OF_MEMORY) throw OutOfMemory("there is not enough memory for a ray tracer");
+      CANYON_CHECK(false, "Embree error ", static_cast<int>(error));
+    }
     CANYON_CHECK(rtcGetDeviceProperty(made, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0,
                  "this Embree was built without ray masks");
     return made;

@@ -102,7 +102,7 @@ constexpr auto kFigures = std::to_array<Figure>({
      [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_range_m, 1.0); }},
     {kMission, "facade_obliquity_max_deg", "deg", "most oblique view of a facade", kLower, kQuantity, 1,
      [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_obliquity_deg, 1.0); }, "from its normal"},
-    {kMission, "facade_seen_share_min", "%", "facade in sight, least", kHigher, kShare, 1,
+    {kMission, "facade_least_seen_share", "%", "facade in sight, least", kHigher, kShare, 1,
      [](const Run& r) { return over_views(r, &mission::WaypointScore::facade_seen_share, -1.0); }, "the rest is hidden"},
     far_capped({kMission, "clearance_min_m", "m", "least distance to a thing", kHigher, kQuantity, 2,
      [](const Run& r) { return if_driven(r, r.encounters.clearance_min_m); },

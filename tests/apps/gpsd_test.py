@@ -41,7 +41,7 @@ def simulate(canyon, folder):
                     "--rate", "1", "--nmea", f"{folder}/log.nmea", "--out", f"{folder}/out"], check=True, stdout=subprocess.DEVNULL)
     with open(f"{folder}/log.nmea", newline="") as f:
         text = f.read()
-    epochs = ["$GPGGA" + part for part in text.split("$GPGGA")[1:]]
+    epochs = ["$GNGGA" + part for part in text.split("$GNGGA")[1:]]  # of two systems
     with open(f"{folder}/out/fixes.csv") as f:
         fixes = list(csv.DictReader(f))
     assert len(epochs) == len(fixes) == EPOCHS, (len(epochs), len(fixes))

@@ -117,10 +117,10 @@ TEST(Aiding, EveryRowHasItsSensorInTheRun) {
     std::string list = "\"position\"";
     for (const std::string& sensor : sensors)
       if (std::find(rows.begin(), rows.end(), sensor) != rows.end()) list += ", \"" + sensor + "\"";
-    return drive(short_config(
-        "low", "low",
-        "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = true\n[lidar]\ndeskew = \"truth\"\n[fusion]\nmeasurements = [" +
-            list + "]\n"));
+    return drive(short_config("low", "low",
+                              "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = true\n[autonomy]\nmodel = "
+                              "\"reference_2012\"\n[fusion]\nmeasurements = [" +
+                                  list + "]\n"));
   };
   const auto has = [&](const char* row) { return std::find(rows.begin(), rows.end(), row) != rows.end(); };
   const RecordedRun all = run_with({"odometer", "barometer", "magnetometer"});

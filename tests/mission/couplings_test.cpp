@@ -186,11 +186,12 @@ TEST(Couplings, WithTheSceneEmptiedTheErrorFallsToItsOpenSkyLevel) {
   }
 }
 
-// With truth as pose, and scans put straight by it, the loop does not feel GNSS and IMU: all else that the fidelities
-// share must then be the same to the bit, road roughness and LIDAR noise included, and only what the two sensors say
-// may differ.
+// With truth as pose, and an autonomy that does not ask how sure it is, the loop does not feel GNSS and IMU: all else
+// that the fidelities share must then be the same to the bit, road roughness and LIDAR noise included, and only what
+// the two sensors say may differ.
 TEST(Couplings, LowAndHighDifferOnlyThroughTheirModels) {
-  const std::string truth = "[time]\nlimit_s = 15.0\n[run]\ntruth_as_pose = true\n[lidar]\ndeskew = \"truth\"\n";
+  const std::string truth =
+      "[time]\nlimit_s = 15.0\n[run]\ntruth_as_pose = true\n[autonomy]\nmodel = \"reference_2012\"\n";
   const RecordedRun low = drive(short_config("low", "low", truth)), high = drive(short_config("high", "high", truth));
   ASSERT_EQ(low.nav.size(), high.nav.size());
   for (std::size_t i = 0; i < low.nav.size(); ++i) {
@@ -233,7 +234,8 @@ TEST(Couplings, LowAndHighShareTheWhiteNoiseOfTheImu) {
 // and without errors, to roundings of 9.8 m/s^2 over 10 ms.
 TEST(Couplings, AnImuMaySitAskew) {
   const std::string common =
-      "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = true\n[lidar]\ndeskew = \"truth\"\n[imu]\nsensor = \"ideal\"\n";
+      "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = true\n[autonomy]\nmodel = \"reference_2012\"\n[imu]\nsensor = "
+      "\"ideal\"\n";
   const RecordedRun straight = drive(short_config("low", "low", common)),
                     askew = drive(short_config("low", "low", common + "mounting_error_deg = 2.0\n"));
   EXPECT_EQ(straight.imu_R_BU.coeffs(), Eigen::Quaterniond::Identity().coeffs());

@@ -64,8 +64,7 @@ class RandomDrive {
     const char* models[] = {"reference", "reference", "reference", "reference_2012", "route_follower"};
     config_.autonomy.model.name = models[one_of(5)];
     auto tree =
-        ConfigNode::parse(std::string("[autonomy.planner]\nmodel = \"") + (once_in(2) ? "hybrid_a_star" : "offsets") +
-                              "\"\n[autonomy.tracker]\nmodel = \"" + (once_in(3) ? "stanley" : "pure_pursuit") +
+        ConfigNode::parse(std::string("[autonomy.tracker]\nmodel = \"") + (once_in(3) ? "stanley" : "pure_pursuit") +
                               "\"\n[autonomy.self_check]\nmodel = \"" + (once_in(2) ? "own_motion" : "none") +
                               "\"\n[autonomy.recovery]\nmodel = \"" + (once_in(4) ? "wait" : "back_up") + "\"\n",
                           "parts");
@@ -139,12 +138,13 @@ std::string wrong_with(std::uint64_t number, int& refused) {
 void drive_all(std::uint64_t from, std::uint64_t to) {
   int refused = 0;
   for (std::uint64_t number = from; number < to; ++number) EXPECT_EQ(wrong_with(number, refused), "") << number;
-  EXPECT_LE(refused, static_cast<int>(to - from) / 5) << "most must be driven";
+  // A way that turns back at a waypoint, or a unit without figures for the chain that is drawn, is refused.
+  EXPECT_LE(refused, static_cast<int>(to - from) / 2) << "most must be driven";
   ::testing::Test::RecordProperty("refused", refused);
 }
 
 TEST(RandomScenes, AHandfulEndsInOutcomes) {
-  drive_all(1, 6);
+  drive_all(1, 13);
 }
 
 /// A thousand, a hundred each.

@@ -48,6 +48,13 @@ constexpr MayBeAbsent kRows[] = {
     {"summary.json", "dop_jumps", "", "", "a GNSS model that makes fixes without satellites, or no epoch was due"},
     {"summary.json", kFixFigures, "dop_jumps", "", "the same"},
     {"summary.json", kFixFigures, "fixes_lost", "=fixes_due", "no fix"},
+    {"summary.json", "facade_px_per_m_min,facade_range_max_m,facade_obliquity_max_deg,facade_least_seen_share", "", "",
+     "no facade was looked at"},
+    {"summary.json", "facade_range_m,facade_obliquity_deg,facade_px_per_m", "", "", "the same"},
+    {"summary.json", "closest_m,believed_at_m", "", "",
+     "a waypoint that no epoch was near to, or that is not believed reached"},
+    {"summary.json", "hit_in_scans_s,hit_last_range_m,hit_last_seen_s", "", "",
+     "nothing was hit, or no scan showed it"},
     {"summary.json", "fix_error_rms_m", "fixes_lost", "=fixes_due", "no fix"},
     {"summary.json",
      "keyframes_registered,keyframes_converged,registration_error_rms_m,map_points_capped,"

@@ -71,7 +71,7 @@ TEST_F(GnssVerbsTest, SimulationAlongAWay) {
   const std::string fixes = read("out/fixes.csv");
   EXPECT_EQ(std::count(fixes.begin(), fixes.end(), '\n'), 22);
   EXPECT_THAT(fixes, HasSubstr("\n1610,306009.500000000,differential,"));
-  EXPECT_THAT(read("out.nmea"), HasSubstr("$GPGGA,125945.00,32"));
+  EXPECT_THAT(read("out.nmea"), HasSubstr("$GNGGA,125945.00,32"));
   EXPECT_THAT(read("out/satellites.csv"), HasSubstr("1610,306000.000000000,G03,"));
 }
 

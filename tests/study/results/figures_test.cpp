@@ -114,7 +114,7 @@ TEST(Figures, OneRowIsAllThatAFigureTakes) {
   // What else stands in a run of summary.json is no figure.
   const std::set<std::string> others{"fidelity", "gnss",     "imu",       "seed",
                                      "outcome",  "failure",  "intervals", "mission_waypoints",
-                                     "verdict",  "counters", "timing"};
+                                     "verdict",  "counters", "timing",    "waypoints"};
   for (const auto& [key, value] : json.items())
     EXPECT_TRUE(others.count(key) > 0 || find_figure(key) != nullptr) << key;
   EXPECT_EQ(in_json, json.size() - others.size() + json["timing"].size() - 1) << "`parts` is the one other in timing";

@@ -64,7 +64,7 @@ TEST(Fidelities, AreToldInEveryForm) {
   Tradeoff tradeoff;
   tradeoff.fidelities = measured_fidelities();
   const auto json = tradeoff_json(tradeoff)["fidelities"];
-  ASSERT_EQ(json.size(), 5u);
+  ASSERT_EQ(json.size(), 6u);
   EXPECT_TRUE(json[1]["planned"].get<bool>());
   EXPECT_EQ(json[0]["closed_loop"]["n"], 2);
   EXPECT_TRUE(json[1]["map_error_rms_m"].is_null());
