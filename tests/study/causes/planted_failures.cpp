@@ -74,11 +74,13 @@ const std::vector<Plant>& plants() {
       {"a cheap inertial unit, no fixes",
        {"imu"},
        Kind::kOwnSwitch,
-       {kPerfectFixes, kAligned, "imu.sensor = \"mpu6050\"\nrun.withhold_fixes_after_s = 0.0\n"}},
+       {kPerfectFixes, kAligned,
+        "imu.errors = \"datasheet\"\nimu.sensor = \"mpu6050\"\nrun.withhold_fixes_after_s = 0.0\n"}},
       {"another, no fixes",
        {"imu"},
        Kind::kOwnSwitch,
-       {kPerfectFixes, kAligned, "imu.sensor = \"phidget_3_3_3\"\nrun.withhold_fixes_after_s = 0.0\n"}},
+       {kPerfectFixes, kAligned,
+        "imu.errors = \"datasheet\"\nimu.sensor = \"phidget_3_3_3\"\nrun.withhold_fixes_after_s = 0.0\n"}},
       {"a crooked start, no fixes",
        {"alignment"},
        Kind::kOwnSwitch,
@@ -135,13 +137,14 @@ const std::vector<Plant>& plants() {
        {"blockage", "imu"},
        Kind::kTwoTogether,
        {kReceiver, kAligned,
-        "imu.sensor = \"mpu6050\"\ngnss.multipath_scale = 0.0\ngnss.hidden_signals = \"dropped\"\n"
+        "imu.errors = \"datasheet\"\nimu.sensor = \"mpu6050\"\ngnss.multipath_scale = 0.0\ngnss.hidden_signals = "
+        "\"dropped\"\n"
         "gnss.fewest_satellites = 9\n"}},
       {"a crooked start and a cheap unit: either is enough",
        {"navigation"},
        Kind::kTwoTogether,
        {kPerfectFixes,
-        "imu.sensor = \"mpu6050\"\nrun.initial_attitude_error_deg = [2.0, 2.0, 10.0]\n"
+        "imu.errors = \"datasheet\"\nimu.sensor = \"mpu6050\"\nrun.initial_attitude_error_deg = [2.0, 2.0, 10.0]\n"
         "run.withhold_fixes_after_s = 0.0\n"}},
       {"blocked satellites and reflections: either is enough",
        {"buildings"},
