@@ -163,7 +163,7 @@ function(canyon_test folder)
                            ENVIRONMENT "GTEST_TOTAL_SHARDS=8;GTEST_SHARD_INDEX=${index}")
     endforeach()
   endforeach()
-  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${alone}" PROPERTIES LABELS ${folder} TIMEOUT 300)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${alone}" PROPERTIES LABELS ${folder} TIMEOUT 900)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "*Nightly*" TEST_LIST ${target}_nightly
                        PROPERTIES LABELS "nightly" TIMEOUT 3600)
 endfunction()

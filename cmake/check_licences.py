@@ -34,14 +34,11 @@ def packages_of(binary):
         return []
     parts = sorted(pathlib.Path(binary).resolve().parent.parent.glob("lib/canyon/*.so"))
     output = subprocess.run(["ldd", binary, *parts], capture_output=True, text=True, check=True).stdout
-    found = set()
-    for path in re.findall(r"=> (/\S+)", output):
-        real = str(pathlib.Path(path).resolve())
-        for name in (real, real.removeprefix("/usr")):
-            owner = subprocess.run(["dpkg-query", "-S", name], capture_output=True, text=True)
-            if owner.returncode == 0:
-                found.add(owner.stdout.split(":")[0])
-                break
+    # A library is known to dpkg by the path that its package was made with: with /usr in front of it, or without.
+    paths = {str(pathlib.Path(path).resolve()) for path in re.findall(r"=> (/\S+)", output)}
+    paths |= {path.removeprefix("/usr") for path in paths}
+    owners = subprocess.run(["dpkg-query", "-S", *sorted(paths)], capture_output=True, text=True).stdout  # of those it knows
+    found = {line.split(":")[0] for line in owners.splitlines()}
     return sorted(found)
 
 

@@ -68,7 +68,7 @@ TEST_F(StressTest, TheExamplesOfThePageAreTaken) {
 
 // Some seconds of it: seeded, so that the same keys are tried; what is left is told.
 TEST_F(StressTest, AMissionsKeysAreTriedForAsLongAsThereIsTime) {
-  ASSERT_EQ(canyon("stress mission.toml --budget-s 8 --json"), 0) << read("stdout");
+  ASSERT_EQ(canyon("stress mission.toml --budget-s 15 --json"), 0) << read("stdout");
   const auto json = nlohmann::json::parse(read("stdout"));
   EXPECT_GT(json["values_tried"].get<int>() + json["pairs_tried"].get<int>(), 0);
   EXPECT_GT(json["not_tried"].get<int>(), 500);

@@ -87,8 +87,8 @@ TEST(PointSight, ChangesEvenlyWithPlaceAndDirection) {
   before = sight.towards(direction(0.0, 5.0)).share(1, {0.0, 0.0, 2.0}, counters);
   moved = 0.0;
   for (int i = 1; i <= 20000; ++i) {
-    const double turn = 1e-4 * i;  // rad; over the zenith and down again
-    const Eigen::Vector3d s(0.3 * std::cos(turn), std::cos(turn), std::sin(turn) + 0.05);
+    const double turn = 1e-4 * i;  // rad; from behind one house over the zenith behind the other
+    const Eigen::Vector3d s(std::cos(turn), -0.3 * std::cos(turn), std::sin(turn) + 0.05);
     const double now = sight.towards(s.normalized()).share(1, {0.0, 0.0, 2.0}, counters);
     EXPECT_LE(std::abs(now - before), i == 1 ? 1.0 : 2.0 * 1.2e-4 / PointSight::kCell_rad) << i;
     moved += std::abs(now - before);
