@@ -77,7 +77,7 @@ void all_come_back(std::uint64_t from, std::uint64_t to, int fewest) {
 }
 
 TEST(BackInLane, WithinThirtyMetresOfAnEvasion) {
-  all_come_back(2, 5, 3);
+  all_come_back(2, 4, 2);
 }
 
 TEST(BackInLaneNightly, FortyTimesWithinThirtyMetres) {

@@ -5,7 +5,7 @@ namespace canyon::mission::testing {
 namespace {
 
 TEST(RandomMissions, OnTruthAHandfulSucceed) {
-  for (std::uint64_t number = 1; number <= 6; ++number) EXPECT_EQ(drive_random(number), "success") << number;
+  for (std::uint64_t number = 1; number <= 3; ++number) EXPECT_EQ(drive_random(number), "success") << number;
 }
 
 TEST(RandomMissionsNightly, OnTruthTwoHundredSucceed) {

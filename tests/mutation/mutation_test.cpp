@@ -12,7 +12,7 @@ namespace canyon::testing {
 namespace {
 
 /// Of each format. The nightly form has the short one's variants, too.
-constexpr std::uint64_t kShort = 40, kFull = 600;
+constexpr std::uint64_t kShort = 20, kFull = 600;
 
 void expect_none(const Format& format, const std::vector<Finding>& found) {
   for (const Finding& f : found)
