@@ -15,6 +15,8 @@ namespace canyon::lidar {
 namespace {
 
 constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kBlock =
+    64 * kChunk;  // points whose surfaces are held at a time: a map of millions would take more for them
 const double kLevel = std::cos(30.0 * kDegree);
 
 struct Sums {
@@ -53,6 +55,18 @@ Sums measure(std::span<MapPoint> points, std::span<const scene::NearestSurface> 
   return sums;
 }
 
+/// The sums of a block, chunk by chunk.
+void measure_block(std::span<MapPoint> points, const scene::Scene& scene, double cap_m, std::span<Sums> chunks) {
+  std::vector<Eigen::Vector3f> places;
+  places.reserve(points.size());
+  for (const MapPoint& point : points) places.push_back(point.p_W);
+  const auto surfaces = scene::nearest_surfaces(scene, places, cap_m);
+  parallel_for(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    chunks[begin / kChunk] =
+        measure(points.subspan(begin, end - begin), std::span(surfaces).subspan(begin, end - begin), scene, cap_m);
+  });
+}
+
 }  // namespace
 
 MapQuality evaluate_map(std::span<MapPoint> points, const scene::SceneAt& scene, double cap_m) {
@@ -60,15 +74,10 @@ MapQuality evaluate_map(std::span<MapPoint> points, const scene::SceneAt& scene,
   MapQuality quality;
   quality.points = static_cast<std::int64_t>(points.size());
   if (points.empty()) return quality;
-  std::vector<Eigen::Vector3f> places;
-  places.reserve(points.size());
-  for (const MapPoint& point : points) places.push_back(point.p_W);
-  const auto surfaces = scene::nearest_surfaces(scene.scene(), places, cap_m);
   std::vector<Sums> chunks((points.size() + kChunk - 1) / kChunk);
-  parallel_for(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    chunks[begin / kChunk] = measure(points.subspan(begin, end - begin),
-                                     std::span(surfaces).subspan(begin, end - begin), scene.scene(), cap_m);
-  });
+  for (std::size_t first = 0; first < points.size(); first += kBlock)
+    measure_block(points.subspan(first, std::min(kBlock, points.size() - first)), scene.scene(), cap_m,
+                  std::span(chunks).subspan(first / kChunk));
   Sums total;
   for (const Sums& s : chunks) {
     total.squared += s.squared;
