@@ -63,7 +63,16 @@ def cached(build):
 def compile_commands(build):
     """By object file, relative to the build: the command with the build's own folder written as @."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    return {entry["output"]: entry["command"].replace(str(build), "@") for entry in entries}
+    # A precompiled header's entry names no output; it is made whenever something beside it is compiled.
+    return {entry["output"]: entry["command"].replace(str(build), "@") for entry in entries if "output" in entry}
+
+
+def same_joined_files(full, out, output):
+    """Whether files that are compiled as one are the same in both builds."""
+    if "/Unity/" not in output:
+        return True
+    joined = output.removesuffix(".o")
+    return (full / joined).read_text(encoding="utf-8") == (out / joined).read_text(encoding="utf-8")
 
 
 def build_without(full, out, options):
@@ -78,7 +87,7 @@ def build_without(full, out, options):
         if target:
             (out / target[1]).parent.mkdir(parents=True, exist_ok=True)
         if target and target[1] in here:
-            same = there.get(target[1]) == here[target[1]]
+            same = there.get(target[1]) == here[target[1]] and same_joined_files(full, out, target[1])
             if same and (full / target[1]).exists():
                 shutil.copyfile(full / target[1], out / target[1])
                 taken += 1

@@ -32,7 +32,9 @@ void declare_lidar_drive(Arguments& arguments, LidarDriveOptions& o) {
       .option("--scene", o.scene.scene, "a mission file's scene and LIDAR, a scene file, or \"vicksburg\" (built in)")
       .default_shown();
   declare_import_options(arguments, o.scene.from);
-  arguments.option("--fidelity", o.fidelity, "whose LIDAR: low, paper, high, modern, or one of the mission file's own")
+  arguments
+      .option("--fidelity", o.fidelity,
+              "whose LIDAR: low, paper, high, high_aided, modern, or one of the mission file's own")
       .default_shown();
   const auto at =
       arguments.option("--at", o.at, "X,Y,H,YAW of the vehicle: metres in the scene, metres above ground, degrees");

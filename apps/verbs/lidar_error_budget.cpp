@@ -67,7 +67,9 @@ Result<int> run(const Options& options) {
 VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_mission_options(arguments, options->mission);
-  arguments.option("--fidelity", options->budget.fidelity, "low, paper, high, modern, or one of the mission file's own")
+  arguments
+      .option("--fidelity", options->budget.fidelity,
+              "low, paper, high, high_aided, modern, or one of the mission file's own")
       .default_shown();
   arguments.option("--seeds", options->budget.seeds, "so many, the mission's own the first; from two on with intervals")
       .default_shown()

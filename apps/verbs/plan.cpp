@@ -107,7 +107,8 @@ Result<int> run(const Options& options) {
 VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_mission_choice(arguments, options->mission);
-  arguments.option("--fidelity", options->fidelity, "low, paper, high, modern, or one of the mission file's own")
+  arguments
+      .option("--fidelity", options->fidelity, "low, paper, high, high_aided, modern, or one of the mission file's own")
       .default_shown();
   arguments
       .option("--for", options->outputs,

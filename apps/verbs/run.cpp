@@ -19,7 +19,8 @@ VerbAction declare(Arguments& arguments) {
   declare_loop_options(arguments, options->loop);
   declare_figures_option(arguments, options->figures);
   declare_plan_options(arguments, options->leave_out);
-  arguments.option("--fidelity", options->fidelity, "low, paper, high, modern, or one of the mission file's own")
+  arguments
+      .option("--fidelity", options->fidelity, "low, paper, high, high_aided, modern, or one of the mission file's own")
       .default_shown();
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -26,7 +27,6 @@ std::atomic<bool> cancel_flag{false};
 std::atomic<int> requests{0};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
               "they are set inside a signal handler");
-std::atomic<bool> told{false};
 
 /// Requests go from the signal handler to the watchdog through a pipe.
 std::array<int, 2> requests_pipe{-1, -1};
@@ -125,10 +125,13 @@ void throw_if_cancelled() {
 }
 
 void tell_interruption() {
-  if (told.exchange(true)) return;
-  if (isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);  // the progress bar's line
-  std::fputs(anything_committed() ? "interrupted: all had been written\n" : "interrupted: nothing was written\n",
-             stderr);
+  // Who comes second waits until it has been said: it ends the process.
+  static std::once_flag told;
+  std::call_once(told, [] {
+    if (isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);  // the progress bar's line
+    std::fputs(anything_committed() ? "interrupted: all had been written\n" : "interrupted: nothing was written\n",
+               stderr);
+  });
 }
 
 }  // namespace canyon
