@@ -63,8 +63,8 @@ def cached(build):
 def compile_commands(build):
     """By object file, relative to the build: the command with the build's own folder written as @."""
     entries = json.loads((build / "compile_commands.json").read_text(encoding="utf-8"))
-    # A precompiled header's entry names no output; it is made whenever something beside it is compiled.
-    return {entry["output"]: entry["command"].replace(str(build), "@") for entry in entries if "output" in entry}
+    commands = (entry["command"].replace(str(build), "@") for entry in entries)
+    return {re.search(r" -o (\S+)", command)[1]: command for command in commands}
 
 
 def same_joined_files(full, out, output):
