@@ -27,13 +27,14 @@ TRIANGLE = "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n"
 PARTS = [
     ("CANYON_WITH_PCL", "pcl", {"m.toml": 'base = "vicksburg"\n[time]\nlimit_s = 1.0\n[registration]\nmethod = "pcl_gicp"\n'}, "run m.toml --fidelity high --out out",
      '"pcl_gicp" was not compiled in, expected a build with CANYON_WITH_PCL=ON'),
-    ("CANYON_WITH_CERES", "ceres", {}, "imu fit log.csv --out unit.toml", "CANYON_WITH_CERES=ON"),
+    ("CANYON_WITH_CERES", "ceres", {}, "imu fit log/imu.csv --static --out unit.toml", "CANYON_WITH_CERES=ON"),
     ("CANYON_WITH_ASSIMP", "assimp", {"s.glb": "glTF"}, "scene info s.glb",
      "this canyon was built without glTF, expected a build with CANYON_WITH_ASSIMP=ON"),
     ("CANYON_WITH_PROJ", "proj", {"s.geojson": SQUARE}, "scene info s.geojson",
      "this canyon was built without map projections, expected a build with CANYON_WITH_PROJ=ON"),
 ]
-# Calls that need none of them.
+# Calls that need none of them, the first before those above: their logs come from it.
+LOG = "imu simulate --at 45,7,200 --duration 1200 --rate 50 --out log"
 STILL = [({"t.obj": TRIANGLE}, "scene info t.obj"),
          ({"n.toml": 'base = "vicksburg"\n[time]\nlimit_s = 1.0\n'}, "run n.toml --fidelity high --out still")]
 
@@ -108,6 +109,9 @@ def say(canyon, folder, arguments):
 
 def check_program(out, dropped, folder):
     canyon = str(out / "bin/canyon")
+    status, said = say(canyon, folder, LOG)
+    if status != 0:
+        raise Failure(f"{' '.join(dropped)}=OFF: canyon {LOG}: status {status}, said {said!r}")
     for option, library, files, arguments, wanted in PARTS:
         if option not in dropped:
             continue

@@ -15,8 +15,8 @@ namespace canyon::lidar {
 namespace {
 
 constexpr std::size_t kChunk = 1024;
-constexpr std::size_t kBlock =
-    64 * kChunk;  // points whose surfaces are held at a time: a map of millions would take more for them
+/// Points whose nearest surfaces are held at a time: more than twice the map itself, if it were of all.
+constexpr std::size_t kBlock = 512 * kChunk;
 const double kLevel = std::cos(30.0 * kDegree);
 
 struct Sums {
