@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kChunk = 1024;
 /// Points whose nearest surfaces are held at a time: more than twice the map itself, if it were of all.
-constexpr std::size_t kBlock = 512 * kChunk;
+constexpr std::size_t kBlock = 128 * kChunk;
 const double kLevel = std::cos(30.0 * kDegree);
 
 struct Sums {
