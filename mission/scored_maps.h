@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/lidar/voxels/voxel_map.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/config/mission_config.h"
 #include "canyon/mission/mapper.h"

@@ -10,7 +10,7 @@
 #include "canyon/lidar/registration/pcl_part.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
 #include "canyon/lidar/registration/registration_covariance.h"
-#include "canyon/lidar/registration/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "canyon/lidar/registration/neighbour_tree.h"
-#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/lidar/voxels/voxel_map.h"
 
 namespace canyon::lidar {
 namespace {

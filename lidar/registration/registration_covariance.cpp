@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 
 #include "canyon/core/check.h"
-#include "canyon/lidar/registration/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {
 namespace {

@@ -10,9 +10,9 @@
 #include "canyon/lidar/map_quality/map_error.h"
 #include "canyon/lidar/registration/neighbour_tree.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
-#include "canyon/lidar/registration/voxel_index.h"
-#include "canyon/lidar/registration/voxel_map.h"
 #include "canyon/lidar/stress/subjects.h"
+#include "canyon/lidar/voxels/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_map.h"
 #include "canyon/scene/mesh_builder.h"
 #include "canyon/scene/scene.h"
 
@@ -126,7 +126,7 @@ StressFigure maps() {
   StressFigure out;
   for (int k = 0; k < 1000; ++k) map.insert({.p_W = {0.1f, 0.2f, 0.3f}});
   for (const float bad : {kBad, kInf, -kInf, 1e9f}) map.insert({.p_W = {0.0f, bad, 0.0f}});
-  out.figure += map.points().size() == 1 && map.out_of_reach() == 4 ? 0.0 : 1.0;
+  out.figure += map.size() == 1 && map.out_of_reach() == 4 ? 0.0 : 1.0;
   return out;
 }
 

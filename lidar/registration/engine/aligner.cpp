@@ -12,7 +12,7 @@
 #include "canyon/core/math/chi_square.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/registration/engine/covariance_forms.h"
-#include "canyon/lidar/registration/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {
 namespace {

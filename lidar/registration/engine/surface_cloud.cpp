@@ -8,7 +8,8 @@
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/lidar/registration/engine/leaf_tree.h"
-#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/lidar/voxels/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_map.h"
 
 namespace canyon::lidar {
 namespace {

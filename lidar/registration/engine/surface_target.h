@@ -5,7 +5,7 @@
 
 #include "canyon/lidar/registration/engine/leaf_tree.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
-#include "canyon/lidar/registration/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {
 

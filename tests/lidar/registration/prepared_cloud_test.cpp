@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "canyon/core/random/random.h"
-#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/lidar/voxels/voxel_map.h"
 
 namespace canyon::lidar {
 namespace {

@@ -1,17 +1,38 @@
-#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/lidar/voxels/voxel_map.h"
+
+#include <cmath>
+
+#include "canyon/core/check.h"
+#include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {
 
+VoxelMap::VoxelMap(double leaf_m) : leaf_m_(leaf_m) {
+  CANYON_CHECK(leaf_m > 0 && std::isfinite(leaf_m), "leaf_m = ", leaf_m);
+}
+
 bool VoxelMap::insert(const MapPoint& point) {
-  const auto voxel = index_.coordinates(point.p_W);
+  const auto voxel = voxel_coordinates(point.p_W, leaf_m_);
   if (!voxel) {
     ++out_of_reach_;
     return false;
   }
-  const std::uint32_t number = index_.insert(*voxel);
-  if (number != points_.size()) return false;
-  points_.push_back(point);
+  if (!voxels_.insert(*voxel)) return false;
+  if (size_ % kBlock == 0) blocks_.push_back(std::make_unique_for_overwrite<std::array<Kept, kBlock>>());
+  (*blocks_.back())[size_++ % kBlock] = {point.p_W, point.intensity};
   return true;
+}
+
+std::vector<MapPoint> VoxelMap::take() && {
+  voxels_ = {};
+  std::vector<MapPoint> points;
+  points.reserve(size_);
+  for (auto& block : blocks_) {
+    for (std::size_t i = 0; i < kBlock && points.size() < size_; ++i)
+      points.push_back({.p_W = (*block)[i].p_W, .intensity = (*block)[i].intensity});
+    block.reset();
+  }
+  return points;
 }
 
 std::vector<Eigen::Vector3f> voxel_centroids(std::span<const Eigen::Vector3f> points, double leaf_m) {

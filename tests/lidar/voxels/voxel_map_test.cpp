@@ -1,4 +1,4 @@
-#include "canyon/lidar/registration/voxel_map.h"
+#include "canyon/lidar/voxels/voxel_map.h"
 
 #include <cmath>
 #include <map>
@@ -33,9 +33,29 @@ TEST(VoxelMap, KeepsTheFirstPointOfEachVoxel) {
     const bool is_first = first.emplace(key(p, 0.3), p).second;
     EXPECT_EQ(map.insert({.p_W = p, .intensity = 0.5f, .error_m = 0.0f}), is_first);
   }
-  ASSERT_EQ(map.points().size(), first.size());
+  ASSERT_EQ(map.size(), first.size());
   ASSERT_LT(first.size(), points.size() / 2);
-  for (const MapPoint& kept : map.points()) EXPECT_EQ(kept.p_W, first.at(key(kept.p_W, 0.3)));
+  const std::vector<MapPoint> taken = std::move(map).take();
+  ASSERT_EQ(taken.size(), first.size());
+  for (const MapPoint& kept : taken) EXPECT_EQ(kept.p_W, first.at(key(kept.p_W, 0.3)));
+}
+
+// More than a block, so that the order goes on from one to the next.
+TEST(VoxelMap, TakesThemInTheOrderOfFirstSight) {
+  const auto points = scattered(100000, 40.0);
+  VoxelMap map(0.3);
+  std::vector<MapPoint> expected;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const MapPoint point{.p_W = points[i], .intensity = static_cast<float>(i)};
+    if (map.insert(point)) expected.push_back(point);
+  }
+  ASSERT_GT(expected.size(), 70000U);
+  const std::vector<MapPoint> taken = std::move(map).take();
+  ASSERT_EQ(taken.size(), expected.size());
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    ASSERT_EQ(taken[i].p_W, expected[i].p_W) << i;
+    ASSERT_EQ(taken[i].intensity, expected[i].intensity) << i;
+  }
 }
 
 TEST(VoxelMap, CentroidsInTheOrderOfFirstSight) {
@@ -66,7 +86,7 @@ TEST(VoxelMap, NegativeCoordinatesAndFarPoints) {
   EXPECT_FALSE(map.insert({.p_W = {NAN, 0, 0}}));
   EXPECT_FALSE(map.insert({.p_W = {0, 0, -INFINITY}}));
   EXPECT_EQ(map.out_of_reach(), 3);
-  EXPECT_EQ(map.points().size(), 3U);
+  EXPECT_EQ(map.size(), 3U);
   EXPECT_TRUE(voxel_centroids(std::vector<Eigen::Vector3f>{{NAN, 0, 0}, {0, 1e9f, 0}}, 1.0).empty());
 }
 

@@ -1,4 +1,4 @@
-#include "canyon/lidar/registration/voxel_index.h"
+#include "canyon/lidar/voxels/voxel_index.h"
 
 #include <cmath>
 
@@ -7,21 +7,7 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr int kHalf = 1 << 20;  // 21 bits per axis
 constexpr std::size_t kFewest = 64;
-
-std::uint64_t key_of(const VoxelCoordinates& v) {
-  const auto part = [](int i) { return static_cast<std::uint64_t>(i + kHalf) & 0x1fffffu; };
-  return part(v.x()) << 42 | part(v.y()) << 21 | part(v.z());
-}
-
-/// splitmix64's finalizer (Steele, Lea and Flood 2014): every bit of the key reaches the low bits, so that neighbouring
-/// voxels spread over the table.
-std::uint64_t mix(std::uint64_t key) {
-  key = (key ^ (key >> 30)) * 0xbf58476d1ce4e5b9u;
-  key = (key ^ (key >> 27)) * 0x94d049bb133111ebu;
-  return key ^ (key >> 31);
-}
 
 std::size_t power_of_two_at_least(std::size_t n) {
   std::size_t power = kFewest;
@@ -36,26 +22,15 @@ VoxelIndex::VoxelIndex(double leaf_m, std::size_t expected_voxels)
   CANYON_CHECK(leaf_m > 0 && std::isfinite(leaf_m), "leaf_m = ", leaf_m);
 }
 
-std::optional<VoxelCoordinates> VoxelIndex::coordinates(const Eigen::Vector3f& p) const {
-  VoxelCoordinates voxel;
-  for (Eigen::Index a = 0; a < 3; ++a) {
-    const double scaled = static_cast<double>(p[a]) / leaf_m_;
-    if (!(scaled >= 1 - kHalf && scaled < kHalf)) return std::nullopt;  // so also for NaN
-    const int towards_zero = static_cast<int>(scaled);
-    voxel[a] = towards_zero - (scaled < towards_zero ? 1 : 0);
-  }
-  return voxel;
-}
-
 std::size_t VoxelIndex::slot_of(std::uint64_t key) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t i = mix(key) & mask;
+  std::size_t i = spread_key(key) & mask;
   while (slots_[i] != kNone && keys_[slots_[i]] != key) i = (i + 1) & mask;
   return i;
 }
 
 std::uint32_t VoxelIndex::insert(const VoxelCoordinates& voxel) {
-  const std::uint64_t key = key_of(voxel);
+  const std::uint64_t key = voxel_key(voxel);
   std::size_t i = slot_of(key);
   if (slots_[i] != kNone) return slots_[i];
   if (2 * (keys_.size() + 1) > slots_.size()) {
@@ -68,7 +43,7 @@ std::uint32_t VoxelIndex::insert(const VoxelCoordinates& voxel) {
 }
 
 std::uint32_t VoxelIndex::find(const VoxelCoordinates& voxel) const {
-  return slots_[slot_of(key_of(voxel))];
+  return slots_[slot_of(voxel_key(voxel))];
 }
 
 void VoxelIndex::grow() {

@@ -4,12 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
+#include "canyon/lidar/voxels/voxel_key.h"
 
 namespace canyon::lidar {
-
-/// Integer coordinates of a voxel.
-using VoxelCoordinates = Eigen::Vector3i;
 
 /// Numbers the occupied voxels of a cubic grid in the order in which they are first met: 0, 1, 2, ...
 /// The numbering depends on the order of insertion only. Coordinates must lie within +-2^20 voxels of the origin.
@@ -25,7 +22,7 @@ class VoxelIndex {
   std::uint32_t size() const { return static_cast<std::uint32_t>(keys_.size()); }
 
   /// Of the voxel that p lies in; none if p is not finite or too far out.
-  std::optional<VoxelCoordinates> coordinates(const Eigen::Vector3f& p) const;
+  std::optional<VoxelCoordinates> coordinates(const Eigen::Vector3f& p) const { return voxel_coordinates(p, leaf_m_); }
   /// Number of a voxel; a new one if it was not met before.
   std::uint32_t insert(const VoxelCoordinates& voxel);
   /// Number of a voxel, or kNone.
