@@ -203,10 +203,10 @@ Status Boundaries::check(const KeyframeRow& row) const {
       .status();
 }
 
-Status Boundaries::check(const std::vector<lidar::MapPoint>& map, double t_s) const {
+Status Boundaries::check(const lidar::MapCloud& map, double t_s) const {
   Gate gate("the recorder", t_s);
-  for (const lidar::MapPoint& point : map)
-    gate.pass("a map point", point.p_W).pass("an intensity", static_cast<double>(point.intensity));
+  for (std::size_t i = 0; i < map.size(); ++i)
+    gate.pass("a map point", map[i].p_W).pass("an intensity", static_cast<double>(map[i].intensity));
   return gate.status();
 }
 

@@ -33,7 +33,7 @@ class Boundaries {
   Status check(const NavRow& row) const;
   Status check(const GnssRow& row) const;
   Status check(const KeyframeRow& row) const;
-  Status check(const std::vector<lidar::MapPoint>& map, double t_s) const;
+  Status check(const lidar::MapCloud& map, double t_s) const;
   Status check_end(double duration_s, double distance_m) const;
 
  private:

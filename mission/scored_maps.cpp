@@ -2,9 +2,16 @@
 
 #include <string>
 
+#include "canyon/core/process/free_memory.h"
 #include "canyon/lidar/map_quality/map_error.h"
 
 namespace canyon::mission {
+namespace {
+
+// A store that grows leaves holes of its smaller sizes, as large together as itself.
+constexpr int kKeyframesToTidy = 64;
+
+}  // namespace
 
 ScoredMaps::ScoredMaps(const RunConfig& config, bool wanted, bool registers, PartClock& clock)
     : range2_m2_(static_cast<float>(config.map_range_m * config.map_range_m)), clock_(clock) {
@@ -14,13 +21,14 @@ ScoredMaps::ScoredMaps(const RunConfig& config, bool wanted, bool registers, Par
 
 void ScoredMaps::add(const LidarScan& deskewed, const Keyframe& keyframe) {
   if (!prior_) return;
+  if (++keyframes_ % kKeyframesToTidy == 0) give_back_free_memory();
   clock_.charge(Part::kScoring, [&] {
     for (const LidarPoint& point : deskewed.points) {
       const Eigen::Vector3f p_L(point.x, point.y, point.z);
       if (p_L.squaredNorm() > range2_m2_) continue;
-      prior_->insert({(keyframe.X_WL_prior * p_L.cast<double>()).cast<float>(), point.intensity, 0.0F});
+      prior_->insert({(keyframe.X_WL_prior * p_L.cast<double>()).cast<float>(), point.intensity});
       if (registered_)
-        registered_->insert({(keyframe.X_WL_registered * p_L.cast<double>()).cast<float>(), point.intensity, 0.0F});
+        registered_->insert({(keyframe.X_WL_registered * p_L.cast<double>()).cast<float>(), point.intensity});
     }
   });
 }
@@ -31,14 +39,17 @@ Status ScoredMaps::finish(const scene::SceneAt& scene, const Boundaries& boundar
   const auto finish_one = [&](std::optional<lidar::VoxelMap>& map, MapKind kind, lidar::MapQuality& quality) -> Status {
     if (!map) return Ok{};
     out_of_reach += map->out_of_reach();
-    std::vector<lidar::MapPoint> points = std::move(*map).take();
+    lidar::MapCloud points = std::move(*map).take();
     map.reset();
-    quality = clock_.charge(Part::kScoring, [&] { return lidar::evaluate_map(points, scene); });
+    give_back_free_memory();
+    const auto score = clock_.charge(Part::kScoring, [&] { return lidar::evaluate_map(points, scene); });
+    quality = score.quality;
     CANYON_TRY_STATUS(boundaries.check(points, record.simulated_s));
-    return recorder.map(kind, points);
+    return recorder.map(kind, points, score.error_m);
   };
   CANYON_TRY_STATUS(finish_one(prior_, MapKind::kPrior, record.prior_quality));
   CANYON_TRY_STATUS(finish_one(registered_, MapKind::kRegistered, record.registered_quality));
+  give_back_free_memory();
   record.counters["map_cells_prior"] = record.prior_quality.points;
   record.counters["map_cells_registered"] = record.registered_quality.points;
   if (out_of_reach > 0)

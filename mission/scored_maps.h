@@ -26,6 +26,7 @@ class ScoredMaps {
   float range2_m2_;
   PartClock& clock_;
   std::optional<lidar::VoxelMap> prior_, registered_;
+  int keyframes_ = 0;
 };
 
 }  // namespace canyon::mission

@@ -49,11 +49,20 @@ void append_bytes(std::string& bytes, const T* values, std::size_t count) {
   bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
 }
 
+/// Vectors that grew hold up to twice what they need, and a scene lives as long as its runs.
+void shrink_to_fit(Mesh& mesh) {
+  mesh.vertices.shrink_to_fit();
+  mesh.triangles.shrink_to_fit();
+  mesh.material.shrink_to_fit();
+  mesh.object.shrink_to_fit();
+}
+
 }  // namespace
 
 Scene::Scene(SceneParts parts) : parts_(std::move(parts)) {
   check_indices(parts_);
   dropped_triangles_ = drop_unusable_triangles(parts_.mesh);
+  shrink_to_fit(parts_.mesh);
   extent_ = extent_of(parts_.mesh);
   tracer_ = std::make_unique<TiledTracer>(parts_, extent_);
   crowns_ = FoliageIndex(parts_.foliage);
@@ -129,7 +138,8 @@ std::string Scene::hash() const {
   const Mesh& mesh = parts_.mesh;
   throw_if_cancelled();
   std::string bytes;
-  bytes.reserve(mesh.vertices.size() * 12 + mesh.triangles.size() * 18 + 65536);
+  bytes.reserve(mesh.vertices.size() * 12 + mesh.triangles.size() * 18 + parts_.objects.size() * 64 +
+                parts_.foliage.size() * 64 + 65536);
   append_bytes(bytes, mesh.vertices.data(), mesh.vertices.size());
   append_bytes(bytes, mesh.triangles.data(), mesh.triangles.size());
   append_bytes(bytes, mesh.material.data(), mesh.material.size());

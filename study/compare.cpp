@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "canyon/core/process/free_memory.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/mission/recorder/run_files.h"
@@ -59,6 +60,7 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
     comparison.configs.push_back(std::move(config));
     comparison.missions.push_back(*std::move(prepared));
   }
+  give_back_free_memory();  // of the making of scenes, before the runs' maps grow
   return comparison;
 }
 

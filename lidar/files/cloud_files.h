@@ -1,24 +1,14 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
-#include <vector>
-
-#include <Eigen/Core>
 
 #include "canyon/core/result.h"
+#include "canyon/lidar/files/map_cloud.h"
 
 namespace canyon::lidar {
 
-/// A point of a map cloud, in W.
-struct MapPoint {
-  Eigen::Vector3f p_W = Eigen::Vector3f::Zero();
-  float intensity = 0;
-  float error_m = 0;  ///< distance to the nearest true surface (scorer's)
-};
-
-/// Binary PCD v0.7 with fields x y z intensity error.
-Status write_pcd(const std::string& path, std::span<const MapPoint> points);
+/// Binary PCD v0.7 with fields x y z intensity error; error_m[i] is of point i.
+Status write_pcd(const std::string& path, const MapCloud& cloud, std::span<const float> error_m);
 
 }  // namespace canyon::lidar

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <vector>
 
 #include "canyon/core/messages.h"
-#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/lidar/files/map_cloud.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::lidar {
@@ -26,7 +26,12 @@ struct MapQuality {
 /// Distances beyond cap_m count as cap_m, so that the answer stays bounded and the search cheap.
 inline constexpr double kMapErrorCap_m = 5.0;
 
-/// Fills error_m of every point and sums up. Same bits for any number of threads. Values without points are NaN.
-MapQuality evaluate_map(std::span<MapPoint> points, const scene::SceneAt& scene, double cap_m = kMapErrorCap_m);
+struct MapScore {
+  MapQuality quality;
+  std::vector<float> error_m;  ///< of each point, its distance to the nearest true surface
+};
+
+/// Same bits for any number of threads. Values without points are NaN.
+MapScore evaluate_map(const MapCloud& cloud, const scene::SceneAt& scene, double cap_m = kMapErrorCap_m);
 
 }  // namespace canyon::lidar

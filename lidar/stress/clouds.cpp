@@ -142,15 +142,15 @@ StressFigure map_errors() {
   const scene::Scene scene(std::move(parts));
   const scene::SceneAt now(scene);
   StressFigure out{0.0, 0x1p-24 * 4.0};
-  std::vector<MapPoint> none;
-  const MapQuality nothing = evaluate_map(none, now);
+  MapCloud none;
+  const MapQuality nothing = evaluate_map(none, now).quality;
   if (nothing.points != 0 || !std::isnan(nothing.map_error_rms_m) || !std::isnan(nothing.map_error_up_rms_m))
     out.figure = 1.0;
-  std::vector<MapPoint> points;
+  MapCloud points;
   for (const float z : {0.0f, 1e-6f, -2.5f, 3.7f, 4.9f, 5.1f, 1e6f}) points.push_back({.p_W = {1.0f, 2.0f, z}});
-  const MapQuality q = evaluate_map(points, now);
-  for (const MapPoint& p : points)
-    take_worst(out, std::abs(p.error_m - std::min(std::abs(static_cast<double>(p.p_W.z())), kMapErrorCap_m)));
+  const auto [q, error_m] = evaluate_map(points, now);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    take_worst(out, std::abs(error_m[i] - std::min(std::abs(static_cast<double>(points[i].p_W.z())), kMapErrorCap_m)));
   if (q.capped_points != 2 || q.points != 7) out.figure = 1.0;
   return out;
 }

@@ -18,21 +18,8 @@ bool VoxelMap::insert(const MapPoint& point) {
     return false;
   }
   if (!voxels_.insert(*voxel)) return false;
-  if (size_ % kBlock == 0) blocks_.push_back(std::make_unique_for_overwrite<std::array<Kept, kBlock>>());
-  (*blocks_.back())[size_++ % kBlock] = {point.p_W, point.intensity};
+  cloud_.push_back(point);
   return true;
-}
-
-std::vector<MapPoint> VoxelMap::take() && {
-  voxels_ = {};
-  std::vector<MapPoint> points;
-  points.reserve(size_);
-  for (auto& block : blocks_) {
-    for (std::size_t i = 0; i < kBlock && points.size() < size_; ++i)
-      points.push_back({.p_W = (*block)[i].p_W, .intensity = (*block)[i].intensity});
-    block.reset();
-  }
-  return points;
 }
 
 std::vector<Eigen::Vector3f> voxel_centroids(std::span<const Eigen::Vector3f> points, double leaf_m) {

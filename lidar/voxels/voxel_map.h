@@ -1,18 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "canyon/lidar/files/cloud_files.h"
+#include "canyon/lidar/files/map_cloud.h"
 #include "canyon/lidar/voxels/voxel_set.h"
 
 namespace canyon::lidar {
 
-/// A growing map cloud thinned to one point per voxel: the first to come stays, as it was measured, but for its error,
-/// which is not known yet. Deterministic. About 27 bytes a voxel, without a copy while it grows.
+/// A growing map cloud thinned to one point per voxel: the first to come stays, as it was measured. Deterministic.
+/// About 27 bytes a voxel, without a copy while it grows.
 class VoxelMap {
  public:
   /// `leaf_m` > 0: edge of a voxel.
@@ -22,21 +20,14 @@ class VoxelMap {
   bool insert(const MapPoint& point);
   std::int64_t out_of_reach() const { return out_of_reach_; }
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return cloud_.size(); }
   /// The points in the order in which they came.
-  std::vector<MapPoint> take() &&;
+  MapCloud take() && { return std::move(cloud_); }
 
  private:
-  struct Kept {
-    Eigen::Vector3f p_W;
-    float intensity;
-  };
-  static constexpr std::size_t kBlock = 32768;
-
   double leaf_m_;
   VoxelSet voxels_;
-  std::vector<std::unique_ptr<std::array<Kept, kBlock>>> blocks_;
-  std::size_t size_ = 0;
+  MapCloud cloud_;
   std::int64_t out_of_reach_ = 0;
 };
 

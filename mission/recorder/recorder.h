@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -29,8 +30,9 @@ class Recorder {
   virtual Status epoch(const NavRow&) { return Ok{}; }
   virtual Status gnss(const GnssRow&) { return Ok{}; }  ///< once the filter has used it, or will not any more
   virtual Status keyframe(const KeyframeRow&) { return Ok{}; }
-  virtual Status map(MapKind, const std::vector<lidar::MapPoint>&) { return Ok{}; }  ///< scored, at the end
-  virtual Status finish() { return Ok{}; }                                           ///< nothing follows
+  /// At the end, with each point's distance to the nearest true surface.
+  virtual Status map(MapKind, const lidar::MapCloud&, std::span<const float>) { return Ok{}; }
+  virtual Status finish() { return Ok{}; }  ///< nothing follows
 };
 
 /// Hands on to several.
@@ -47,7 +49,9 @@ class Recorders final : public Recorder {
   Status epoch(const NavRow& row) override { return all(&Recorder::epoch, row); }
   Status gnss(const GnssRow& row) override { return all(&Recorder::gnss, row); }
   Status keyframe(const KeyframeRow& row) override { return all(&Recorder::keyframe, row); }
-  Status map(MapKind kind, const std::vector<lidar::MapPoint>& map) override { return all(&Recorder::map, kind, map); }
+  Status map(MapKind kind, const lidar::MapCloud& map, std::span<const float> error_m) override {
+    return all(&Recorder::map, kind, map, error_m);
+  }
   Status finish() override { return all(&Recorder::finish); }
 
  private:

@@ -118,8 +118,8 @@ Status RunFiles::keyframe(const KeyframeRow& row) {
   return tables_[kKeyframes]->flush(kPiece);
 }
 
-Status RunFiles::map(MapKind kind, const std::vector<lidar::MapPoint>& map) {
-  return lidar::write_pcd(cloud_stem_ + (kind == MapKind::kPrior ? "_prior.pcd" : "_registered.pcd"), map);
+Status RunFiles::map(MapKind kind, const lidar::MapCloud& map, std::span<const float> error_m) {
+  return lidar::write_pcd(cloud_stem_ + (kind == MapKind::kPrior ? "_prior.pcd" : "_registered.pcd"), map, error_m);
 }
 
 Status RunFiles::finish() {

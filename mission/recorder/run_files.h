@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "canyon/core/files/file_writer.h"
@@ -29,7 +30,7 @@ class RunFiles final : public Recorder {
   Status epoch(const NavRow& row) override;
   Status gnss(const GnssRow& row) override;
   Status keyframe(const KeyframeRow& row) override;
-  Status map(MapKind kind, const std::vector<lidar::MapPoint>& map) override;
+  Status map(MapKind kind, const lidar::MapCloud& map, std::span<const float> error_m) override;
   Status finish() override;
 
  private:

@@ -220,7 +220,7 @@ StressFigure recorded_rows() {
     wrong += passes(boundaries.check_end(1.0, bad), "the recorder");
     wrong += is_finite(DriveCommand{bad, 0.0}) || is_finite(DriveCommand{0.0, bad}) ? 1 : 0;
     for (int i = 0; i < 4; ++i) {
-      std::vector<lidar::MapPoint> map(3);
+      lidar::MapCloud map(std::vector<lidar::MapPoint>(3));
       (i < 3 ? map[1].p_W[i] : map[1].intensity) = static_cast<float>(bad);
       wrong += passes(boundaries.check(map, 1.0), "the recorder");
     }

@@ -87,6 +87,7 @@ std::vector<Edge> convex_edges(const Scene& scene, double min_length_m) {
   }
   std::vector<Edge> edges;
   for (const auto& members : by_object) add_edges(scene, members, min_length_m, edges);
+  edges.shrink_to_fit();
   return edges;
 }
 

@@ -29,8 +29,10 @@ class MemoryRecorder : public Recorder {
   Status epoch(const NavRow& row) override { return keep(nav, row); }
   Status gnss(const GnssRow& row) override { return keep(gnss_rows, row); }
   Status keyframe(const KeyframeRow& row) override { return keep(keyframes, row); }
-  Status map(MapKind kind, const std::vector<lidar::MapPoint>& map) override {
-    (kind == MapKind::kPrior ? prior_map : registered_map) = map;
+  Status map(MapKind kind, const lidar::MapCloud& map, std::span<const float>) override {
+    auto& kept = kind == MapKind::kPrior ? prior_map : registered_map;
+    kept.clear();
+    for (std::size_t i = 0; i < map.size(); ++i) kept.push_back(map[i]);
     return Ok{};
   }
 

@@ -8,7 +8,7 @@
 namespace canyon::gnss {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{32} << 20;  // remembered of places, and of directions
+constexpr std::size_t kMostBytes = std::size_t{4} << 20;  // remembered of places, and of directions
 
 /// 21 bits each: 2^20 cells to either side, 2000 km of places.
 std::uint64_t lattice_key(std::int64_t x, std::int64_t y, std::int64_t z) {

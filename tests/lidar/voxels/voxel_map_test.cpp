@@ -31,26 +31,26 @@ TEST(VoxelMap, KeepsTheFirstPointOfEachVoxel) {
   std::map<Key, Eigen::Vector3f> first;
   for (const auto& p : points) {
     const bool is_first = first.emplace(key(p, 0.3), p).second;
-    EXPECT_EQ(map.insert({.p_W = p, .intensity = 0.5f, .error_m = 0.0f}), is_first);
+    EXPECT_EQ(map.insert({.p_W = p, .intensity = 0.5f}), is_first);
   }
   ASSERT_EQ(map.size(), first.size());
   ASSERT_LT(first.size(), points.size() / 2);
-  const std::vector<MapPoint> taken = std::move(map).take();
+  const MapCloud taken = std::move(map).take();
   ASSERT_EQ(taken.size(), first.size());
-  for (const MapPoint& kept : taken) EXPECT_EQ(kept.p_W, first.at(key(kept.p_W, 0.3)));
+  for (const MapPoint& kept : taken.block(0)) EXPECT_EQ(kept.p_W, first.at(key(kept.p_W, 0.3)));
 }
 
 // More than a block, so that the order goes on from one to the next.
 TEST(VoxelMap, TakesThemInTheOrderOfFirstSight) {
-  const auto points = scattered(100000, 40.0);
+  const auto points = scattered(400000, 40.0);
   VoxelMap map(0.3);
   std::vector<MapPoint> expected;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const MapPoint point{.p_W = points[i], .intensity = static_cast<float>(i)};
     if (map.insert(point)) expected.push_back(point);
   }
-  ASSERT_GT(expected.size(), 70000U);
-  const std::vector<MapPoint> taken = std::move(map).take();
+  ASSERT_GT(expected.size(), MapCloud::kBlock);
+  const MapCloud taken = std::move(map).take();
   ASSERT_EQ(taken.size(), expected.size());
   for (std::size_t i = 0; i < taken.size(); ++i) {
     ASSERT_EQ(taken[i].p_W, expected[i].p_W) << i;

@@ -44,11 +44,8 @@ TEST(PlanNightly, HoldsWhereverItIsReplayed) {
 }
 
 TEST(PlanNightly, AClosedLoopOfAnySeedGoesTheSameWayWhereBoundsAreZero) {
-  for (std::int64_t seed = 1; seed <= 10; ++seed) {
-    const Planned planned("high",
-                          "[time]\nlimit_s = 40.0\n[registration]\nmethod = \"pcl_shell_gicp\"\n[run]\nseed = " +
-                              std::to_string(seed) + "\n",
-                          kDriving);
+  for (std::int64_t seed = 1; seed <= 50; ++seed) {
+    const Planned planned("high", "[time]\nlimit_s = 40.0\n[run]\nseed = " + std::to_string(seed) + "\n", kDriving);
     ASSERT_EQ(planned.config.run.seed, seed);
     const RecordedRun full = planned.drive(false), less = planned.drive(true);
     EXPECT_LT(less.counters.at("lidar_returns"), full.counters.at("lidar_returns")) << seed;
