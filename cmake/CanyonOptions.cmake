@@ -43,6 +43,8 @@ target_compile_features(canyon_flags INTERFACE cxx_std_20)
 target_compile_options(canyon_flags INTERFACE -ffp-contract=off
                                               $<BUILD_INTERFACE:-Wall> $<BUILD_INTERFACE:-Wextra> $<BUILD_INTERFACE:-Wpedantic>
                                               $<BUILD_INTERFACE:-Wshadow> $<BUILD_INTERFACE:-Wnon-virtual-dtor>)
+# oneTBB's target says so to whoever links it in a debug build; what shares a precompiled header with them must be told the same.
+target_compile_definitions(canyon_flags INTERFACE $<BUILD_INTERFACE:$<$<CONFIG:Debug>:TBB_USE_DEBUG>>)
 if(CANYON_WERROR)
   target_compile_options(canyon_flags INTERFACE $<BUILD_INTERFACE:-Werror>)
 endif()

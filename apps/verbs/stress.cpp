@@ -25,7 +25,7 @@ struct Options {
   std::string fidelity;  // empty: not given
   std::optional<std::int64_t> seed, pairs;
   std::optional<double> budget_s;
-  bool list = false;
+  bool list = false, pairs_only = false;
 };
 
 bool is_mission(const std::string& name) {
@@ -48,6 +48,7 @@ Status check_form(const Options& o, bool mission) {
   }
   CANYON_TRY_STATUS(refuse(!o.fidelity.empty(), "--fidelity", mission));
   CANYON_TRY_STATUS(refuse(o.pairs.has_value(), "--pairs", mission));
+  CANYON_TRY_STATUS(refuse(o.pairs_only, "--pairs-only", mission));
   CANYON_TRY_STATUS(refuse(o.seed.has_value(), "--seed", mission));
   return refuse(o.budget_s.has_value(), "--budget-s", mission);
 }
@@ -83,6 +84,7 @@ Result<int> sweep(const Options& options) {
                                                    .fidelity = fidelity},
                                          .seed = static_cast<std::uint64_t>(options.seed.value_or(1)),
                                          .pairs = options.pairs.value_or(500),
+                                         .singles = !options.pairs_only,
                                          .budget_s = options.budget_s,
                                          .show_progress = !options.common.json}));
   if (options.common.json) {
@@ -122,6 +124,8 @@ VerbAction declare(Arguments& arguments) {
       .option("--pairs", options->pairs,
               "of a mission's keys at once, drawn with the seed, after each by itself; else 500")
       .within(std::int64_t{0}, std::int64_t{1'000'000});
+  arguments.flag("--pairs-only", options->pairs_only,
+                 "leave out each key by itself, which no seed changes: for a second seed");
   arguments.option("--seed", options->seed, "of the pairs, and of the order under --budget-s; else 1")
       .within(std::int64_t{0}, kLargestSeed);
   arguments.option("--budget-s", options->budget_s, "seconds that a mission's trials may take, in random order")

@@ -5,6 +5,8 @@
 
 #include "canyon/core/stress_rows.h"
 #include "canyon/fusion/consistency.h"
+#include "canyon/fusion/smoothing/graph/chain_builder.h"
+#include "canyon/fusion/smoothing/graph/chain_solver.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/fusion/stress/simulated_drive.h"
 #include "canyon/fusion/stress/subjects.h"
@@ -137,6 +139,35 @@ StressFigure short_lag_is_filter() {
   return worst.figure();
 }
 
+/// A graph of a run whose fixes are good to 50 um: solved, then solved again from nodes that all stand aside by a part
+/// of that sigma. Both end where a step gains less than 1e-9 of the cost c, so that each lacks at most sqrt(2e-9 c) of
+/// a sigma, any way, to where it is least. Places on Earth round by an epsilon of its radius beside the fixes' sigma;
+/// of the residuals of a fix and of the IMU on both sides, ten such roundings. A step so small beside the way along the
+/// run, 1e-8 of it, is a step all the same. Whether the second says that it has converged is not asked: such residuals
+/// round by more than the least gain.
+StressFigure aside(double sigmas) {
+  constexpr double kSigma_m = 0.5e-4, kRadius_m = 6.4e6, kLeastGain = 1e-9;
+  const Drive drive = simulated_drive(11, {.seconds = 12.0, .outage_from_s = 1e9, .noise_scale = 1e-4});
+  const SmootherInput run = drive.input();
+  ChainBuilder builder(run, *samples_of(run), 1.0);
+  while (!builder.done()) builder.add_node();
+  ChainGraph& graph = builder.graph();
+  const SolveOptions options{.least_gain = kLeastGain};
+  Worst worst;
+  const auto first = solve(graph, builder.measurements(), options);
+  worst.look(first.ok() && first->converged ? 0.0 : stress::kInfinity, 1.0);
+  const std::vector<GraphNode> before = graph.nodes;
+  for (GraphNode& node : graph.nodes) node.nav.p_EU_E += sigmas * kSigma_m * Eigen::Vector3d(0.6, -0.48, 0.64);
+  const auto second = solve(graph, builder.measurements(), options);
+  worst.look(second.ok() ? 0.0 : stress::kInfinity, 1.0);
+  if (!first.ok() || !second.ok()) return worst.figure();
+  const double bound = 2.0 * std::sqrt(2.0 * kLeastGain * first->final_cost) + 10.0 * kEpsilon * kRadius_m / kSigma_m;
+  const auto covariances = marginal_covariances(graph, builder.measurements());
+  for (std::size_t k = 0; k < graph.nodes.size(); ++k)
+    worst.look(std::sqrt(normalized_squared(difference(before[k], graph.nodes[k]), covariances[k])), bound);
+  return worst.figure();
+}
+
 /// One fix of `off_m` among many that are right. Its residual is its offset but for what it pulls: Huber's weight is
 /// sqrt(3 sigma / offset), a switch's cost / (cost + (offset / sigma)^2), to the part of a sigma that the other fixes
 /// leave the place uncertain by (one of 11 fixes, and of a switch twice it); those count in full but for their own
@@ -178,6 +209,10 @@ std::vector<StressCase> smoother_cases() {
   const StressMechanism robust{
       StressGroup::kData, "a fix that is far off in a graph of a run", "a loss that is not what the weights say it is",
       "Huber's weight and a switch's in closed form, by the part that others leave open", "of the bound"};
+  const StressMechanism optimum{StressGroup::kStiff, "a graph that is begun beside where its cost is least",
+                                "it ends at a step that is small beside the run's length, not beside its precision",
+                                "the same place, to what a step that is left out gains, and to roundings on Earth",
+                                "of the bound"};
   StressRows rows;
   rows.of(certain)
       .add("smoother/never_less_certain", [] { return never_less_certain("states = [\"biases\", \"gains\"]"); })
@@ -196,6 +231,9 @@ std::vector<StressCase> smoother_cases() {
       .add("smoother/graph_is_recursion", graph_is_recursion)
       .add("smoother/whole_lag_is_the_graph", lag_is_batch)
       .add("smoother/short_lag_is_the_filter", short_lag_is_filter);
+  rows.of(optimum);
+  for (const double sigmas : {0.02, 30.0})
+    rows.add("smoother/graph_begun_aside_by_" + stress::text(sigmas) + "_sigma", [=] { return aside(sigmas); });
   rows.of(robust);
   for (const double off_m : {1.0, 20.0}) {
     rows.add("smoother/huber_outlier_of_" + stress::text(off_m) + "_m",

@@ -6,6 +6,7 @@
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/beam/footprint/footprint_rays.h"
+#include "canyon/lidar/beam/footprint/glint_sum.h"
 #include "canyon/lidar/beam/pane.h"
 #include "canyon/lidar/beam/signal.h"
 #include "canyon/lidar/beam/surfaces.h"
@@ -93,6 +94,45 @@ StressFigure sub_rays(double angle_rad, double sigma_rad) {
   return out;
 }
 
+/// A beam of which some of its sixteen rays go by an edge to a wall behind, or to nothing: which they are is `mask`'s
+/// bits. Nearest and farthest are those of the two surfaces and the brightest is the first of the brighter one, all
+/// exact; sums of sixteen in four halvings, of terms of three roundings (reflectivity over square, times a difference
+/// of ranges that has one of its own, or times a cosine): eight half units.
+StressFigure past_an_edge(unsigned mask, float near_m, float far_m, float overlap_m2) {
+  constexpr std::size_t kRays = scene::RayPacket::kRays;
+  const auto endless = std::numeric_limits<float>::infinity();
+  scene::HitPacket hits{};
+  float reflectivity[kRays];
+  double power = 0.0, beyond_it = 0.0, cosine = 0.0;
+  double most[2] = {-1.0, -1.0};
+  int first[2] = {16, 16};
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const bool far = (mask >> i & 1U) != 0;
+    const float range_m = far ? far_m : near_m;
+    const bool met = range_m < endless;
+    hits.range_m[i] = range_m, hits.cos_incidence[i] = met ? (far ? 0.75f : 0.5f) : 0.0f;
+    hits.triangle[i] = met ? 0 : scene::Hit::kMiss;
+    reflectivity[i] = met ? (far ? 0.3f : 0.1f) : 0.0f;
+    if (!met) continue;
+    const double p = reflectivity[i] / worse(double{range_m} * range_m, double{overlap_m2});
+    power += p, beyond_it += p * (double{range_m} - (mask == 0xffffU ? far_m : near_m)),
+        cosine += p * hits.cos_incidence[i];
+    if (first[far] == 16) first[far] = static_cast<int>(i), most[far] = p;
+  }
+  GlintSum sum;
+  sum_glints(hits, reflectivity, overlap_m2, sum);
+  stress::Worst worst;
+  const auto exactly = [&](bool right) { worst.look(right ? 0.0 : stress::kInfinity, 1.0); };
+  const bool any_near = mask != 0xffffU, any_far = mask != 0 && far_m < endless;
+  exactly(sum.nearest_m == (any_near ? near_m : far_m));
+  exactly(sum.farthest_m == (any_far ? far_m : any_near ? near_m : 0.0f));
+  exactly(sum.brightest == (most[1] > most[0] ? first[1] : first[0]));
+  worst.look(sum.power - power, 8.0 * kHalfUlp * power + 1e-300);
+  worst.look(sum.beyond - beyond_it, 8.0 * kHalfUlp * beyond_it + 1e-300);
+  worst.look(sum.cosine - cosine, 8.0 * kHalfUlp * cosine + 1e-300);
+  return worst.figure();
+}
+
 /// Any air that the keys allow: extinction and the chance of a false return are numbers, the chance within 0 and 1 and
 /// rising with the range. A figure counts what is not.
 StressFigure air(const WeatherConfig& weather) {
@@ -177,6 +217,15 @@ std::vector<StressCase> light_cases() {
         Width{kPi, 7.5e-4, "against_the_axis"}, Width{1.01e-4, 7.5e-4, "just_beside_the_axis"},
         Width{1e-6, 7.5e-4, "a_rounding_off_the_axis"}, Width{1.0, 0.025, "wide"}, Width{1.0, 0.0, "without_width"}})
     rows.add(std::string("light/beam_") + b.name, [b] { return sub_rays(b.angle, b.sigma); });
+  rows.of({StressGroup::kGeometry, "a beam of which a part goes by an edge",
+           "the first ray's range for all of them; infinity less infinity of rays that meet nothing",
+           "nearest, farthest and brightest exact, sums to eight half units", "of the bound"});
+  for (const unsigned mask : {0x0000U, 0x0001U, 0x8000U, 0x5a3cU, 0xfffeU, 0xffffU}) {
+    rows.add(printed("light/edge_%04x_before_a_wall", mask),
+             [mask] { return past_an_edge(mask, 12.3f, 13.1f, 25.0f); });
+    rows.add(printed("light/edge_%04x_before_nothing", mask),
+             [mask] { return past_an_edge(mask, 3.7f, std::numeric_limits<float>::infinity(), 25.0f); });
+  }
   rows.of({StressGroup::kStiff, "air from none to solid",
            "a visibility next to nothing: infinite extinction times no light",
            "numbers; a chance within 0 and 1 that rises with the range", "wrong"});

@@ -12,6 +12,7 @@
 #include "canyon/mission/motion/sprung_mass.h"
 #include "canyon/mission/stress/subjects.h"
 #include "canyon/scene/flat_ground.h"
+#include "canyon/scene/mesh_builder.h"
 
 namespace canyon::mission {
 namespace {
@@ -86,6 +87,68 @@ StressFigure roughest_road(double hz, double damping) {
   }
   const double longest_hz = 30.0 * 0.05 * std::pow(28.0, 1.0 / 24.0);
   worst.look(0.5 * amplitude_m(0) * gain(damping, longest_hz / hz), 0.5 * (highest_m - lowest_m));
+  return worst.figure();
+}
+
+/// Waves of 8 m along x, 5 mm high, in facets of 1/8 m, 300 m of them. Either level across, so that the axles' heights
+/// differ, or turned: as high on the left track as it is low on the right.
+constexpr double kWaveLength_m = 8.0, kWave_m = 0.005, kFacet_m = 0.125;
+scene::Scene waves(double half_track_m, bool turned) {
+  scene::SceneParts parts;
+  parts.name = "waves";
+  parts.materials = scene::builtin_materials();
+  scene::MeshBuilder mesh(parts);
+  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
+  const auto asphalt = mesh.material("asphalt");
+  const double across_m[] = {-4.0, -half_track_m, half_track_m, 4.0}, sides[] = {-1.0, -1.0, 1.0, 1.0};
+  const auto at = [&](double x, int c) {
+    const double z = kWave_m * std::sin(2.0 * kPi * x / kWaveLength_m);
+    return Eigen::Vector3d(x, across_m[c], turned ? sides[c] * z : z);
+  };
+  for (double x = -8.0; x < 300.0; x += kFacet_m)
+    for (int c = 0; c < 3; ++c)
+      mesh.quad(at(x, c), at(x + kFacet_m, c), at(x + kFacet_m, c + 1), at(x, c + 1), asphalt);
+  return scene::Scene(std::move(parts));
+}
+
+/// Driven straight over waves that come at r times the body's own frequency, it pitches by the gain times the slope
+/// between its axles, 2 A sin(k b / 2) / b, and rolls by the gain times that between its tracks, 2 A / t, as both axles
+/// feel it, cos(k b / 2); nothing else turns it. After five seconds at speed what the start left is
+/// e^(-zeta w 5 s). A road that goes evenly over a step of h takes (w' h)^2 / 12 from a wave of w', and the largest
+/// sample of a swing (w' h)^2 / 8; so do facets, (k d)^2 / 8; a slope s is its tangent to s^2 / 3; and tracks lie on
+/// the facets' edges to single precision.
+StressFigure gain_of_turns(double hz, double r, bool turned) {
+  VehicleConfig config;
+  config.roughness = "none";
+  config.suspension_hz = hz;
+  config.suspension_damping = 0.3;
+  config.max_speed_m_s = 30.0;
+  config.max_acceleration_m_s2 = 10.0;
+  config.start_heading_deg = 90.0;
+  const scene::Scene ground = waves(0.5 * config.track_m, turned);
+  Vehicle vehicle(config, ground, 3, kStart);
+  const double met_hz = r * hz, speed_m_s = kWaveLength_m * met_hz, k = 2.0 * kPi / kWaveLength_m;
+  const double settled_s = 5.0 + speed_m_s / config.max_acceleration_m_s2;
+  double pitch_rad = 0.0, roll_rad = 0.0;
+  for (int n = 0; n * 0.01 < settled_s + 2.0 / met_hz; ++n) {
+    const KinematicState& s = vehicle.advance({speed_m_s, 0.0});
+    if (n * 0.01 < settled_s) continue;
+    const Eigen::Matrix3d R = s.X_WB.R.toRotationMatrix();
+    pitch_rad = worse(pitch_rad, std::abs(std::asin(R(2, 0))));
+    roll_rad = worse(roll_rad, std::abs(std::atan2(R(2, 1), R(2, 2))));
+  }
+  const double b = config.wheelbase_m, w_h = 2.0 * kPi * met_hz * 0.01;
+  const double pitches = 2.0 * kWave_m * std::sin(0.5 * k * b) / b,
+               rolls = 2.0 * kWave_m * std::cos(0.5 * k * b) / config.track_m;
+  const double expected = gain(config.suspension_damping, r) * (turned ? rolls : pitches);
+  const double bound = (1.0 / 12.0 + 1.0 / 8.0) * w_h * w_h +
+                       std::exp(-config.suspension_damping * 2.0 * kPi * hz * 5.0) +
+                       std::pow(k * kFacet_m, 2) / 8.0 / std::sin(0.5 * k * b) + std::pow(2.0 * kWave_m / b, 2) / 3.0 +
+                       8.0 * stress::kHalfUlp * 300.0 / kFacet_m;
+  stress::Worst worst;
+  worst.look((turned ? roll_rad : pitch_rad) / expected - 1.0, bound);
+  worst.look(turned ? pitch_rad : roll_rad, bound * expected);
+  worst.look(vehicle.on_terrain() ? 0.0 : stress::kInfinity, 1.0);
   return worst.figure();
 }
 
@@ -236,6 +299,16 @@ std::vector<StressCase> vehicle_cases() {
     for (const double damping : {0.05, 2.0})
       rows.of(swings).add("vehicle/resonance_" + stress::text(hz) + "_hz_damping_" + stress::text(damping),
                           [=] { return resonance(hz, damping); });
+  const StressMechanism turns{StressGroup::kStiff, "a body that pitches and rolls over waves",
+                              "a frequency of heave's that pitch or roll does not have, an axle or a track for another",
+                              "the gain of a sprung mass times the slope between axles or tracks, to steps and facets",
+                              "of the bound"};
+  for (const double hz : {1.0, 3.0})
+    for (const double r : {0.5, 1.0}) {
+      const std::string name = "_over_waves_at_" + stress::text(r) + "_of_" + stress::text(hz) + "_hz";
+      rows.of(turns).add("vehicle/pitch" + name, [=] { return gain_of_turns(hz, r, false); });
+      rows.of(turns).add("vehicle/roll" + name, [=] { return gain_of_turns(hz, r, true); });
+    }
   rows.of(commands).add("vehicle/commands_to_1e308", wild_commands);
   const StressMechanism slips{StressGroup::kStiff, "a slip that fades in far less or more than a step",
                               "an explicit step rings where k s << h, and at rest k s is 0 and divides; beside them "

@@ -81,6 +81,46 @@ StressFigure packet_like_single(double x_m) {
   return out;
 }
 
+/// A box of 64 x 32 x 16 m on ground of 8 km, which is tiled: from a place in it whose coordinates are no numbers of
+/// single precision, by packets. They are about a point within half a tile of 512 m either way, so that an origin is
+/// off by half a unit of 256 m along each axis; a range by that over the direction's part along it, and its own half
+/// unit.
+StressFigure packets_about_a_near_point(double x_m, double y_m) {
+  const Eigen::Vector3d middle(x_m, y_m, 64.0), half(32.0, 16.0, 8.0), from(0.1, 1.0 / 3.0, 0.7);
+  SceneParts parts = made::nothing();
+  made::add_square(parts, {0.0, 0.0, 0.0}, 4096.0);
+  made::add_box(parts, middle, half);
+  const auto scene = made::scene_of(std::move(parts));
+  const SceneAt now(*scene);
+  const Eigen::Vector3d about = now.packet_origin(middle + from);
+  stress::Worst worst;
+  worst.look((middle + from - about).head<2>().cwiseAbs().maxCoeff<Eigen::PropagateNaN>(), 256.0);
+  const Eigen::Vector3f o = (middle + from - about).cast<float>();
+  for (int p = 0; p < 60; ++p) {
+    RayPacket packet{};
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      const double n = 16.0 * p + static_cast<double>(i), up = 1.0 - 2.0 * (n + 0.5) / 960.0, turn = 2.399963 * n;
+      const double level = std::sqrt(1.0 - up * up);
+      packet.origin_x[i] = o.x(), packet.origin_y[i] = o.y(), packet.origin_z[i] = o.z();
+      packet.direction_x[i] = static_cast<float>(level * std::cos(turn));
+      packet.direction_y[i] = static_cast<float>(level * std::sin(turn));
+      packet.direction_z[i] = static_cast<float>(up);
+      packet.max_m[i] = 1e4f;
+    }
+    HitPacket hits;
+    now.trace(std::span(&packet, 1), std::span(&hits, 1), about);
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      const Eigen::Vector3d d(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]);
+      double exact = stress::kInfinity, along = 1.0;
+      for (int a = 0; a < 3; ++a)
+        if (const double to = ((d[a] > 0.0 ? half[a] : -half[a]) - from[a]) / d[a]; d[a] != 0.0 && to < exact)
+          exact = to, along = std::abs(d[a]);
+      worst.look(hits.range_m[i] - exact, 1.02 * kHalfUlp * (256.0 / along + exact));
+    }
+  }
+  return worst.figure();
+}
+
 /// Level ground of 8 km at z = 16 m: rays from 32 m straight down exactly on the borders of tiles (of 512 m about whole
 /// multiples), a rounding beside them, and at the scene's own border. How many do not meet it at 16 m.
 StressFigure on_borders() {
@@ -168,6 +208,57 @@ StressFigure moving(double place_m, double yaw_rad) {
   return out;
 }
 
+/// Traffic before and behind walls, by packets and one by one: the same object and the same bits, and of cubes that
+/// are square on 9 m exactly, whatever stands 20 m behind them. In a wide scene the traffic is about the tile of its
+/// first thing, another than the sensor's. Coordinates are whole quarters, no sum of which rounds. A figure counts.
+StressFigure traffic_in_packets(bool wide) {
+  SceneParts parts = made::nothing();
+  made::add_square(parts, {0.0, 0.0, -1.0}, wide ? 4096.0 : 64.0);
+  made::add_box(parts, {0.0, 0.0, 8.0}, {30.0, 30.0, 8.0});
+  const auto scene = made::scene_of(std::move(parts));
+  SceneAt now(*scene);
+  std::vector<Instance> traffic;
+  // The first far away; then one each way, turned by quarters, of which the last two stand behind the walls.
+  traffic.push_back({cube(), "far", {Eigen::Quaterniond::Identity(), {wide ? 3000.0 : 60.0, 1000.0, 0.0}}});
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Quaterniond R(Eigen::AngleAxisd(0.5 * kPi * k, Eigen::Vector3d::UnitZ()));
+    traffic.push_back({cube(), "cube", {R, R * Eigen::Vector3d(k < 2 ? 10.0 : 40.0, 0.0, 0.0)}});
+  }
+  now.set_instances(traffic);
+  const Eigen::Vector3d from(0.0, 0.0, 1.25), about = now.packet_origin(from);
+  const Eigen::Vector3f o = (from - about).cast<float>();
+  int wrong = 0, moving = 0, square_on = 0;
+  for (int p = 0; p < 120; ++p) {
+    RayPacket packet{};
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      // Every fifteenth packet leaves square on to a cube's face, or to where one hides.
+      const double turn = 2.0 * kPi / 120.0 * (p + (p % 30 == 0 ? 0.0 : static_cast<double>(i) / 16.0));
+      const double up = p % 30 == 0 ? 0.0 : 0.01 * (static_cast<double>(i) - 8.0);
+      const Eigen::Vector3f d = Eigen::Vector3d(std::cos(turn), std::sin(turn), up).normalized().cast<float>();
+      packet.origin_x[i] = o.x(), packet.origin_y[i] = o.y(), packet.origin_z[i] = o.z();
+      packet.direction_x[i] = d.x(), packet.direction_y[i] = d.y(), packet.direction_z[i] = d.z();
+      packet.max_m[i] = 1e4f;
+    }
+    HitPacket hits;
+    now.trace(std::span(&packet, 1), std::span(&hits, 1), about);
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      const Hit one =
+          now.trace({from, {packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]}, packet.max_m[i]});
+      const bool met = hits.triangle[i] != Hit::kMiss, moves = met && now.surface(hits.triangle[i]).moving;
+      const bool same = one.hit() == met && one.range_m == hits.range_m[i] &&
+                        (!met || now.surface(one.triangle).object == now.surface(hits.triangle[i]).object);
+      wrong += same ? 0 : 1;
+      moving += moves ? 1 : 0;
+      if (p % 30 != 0) continue;
+      // A quarter turn's cosine and sine are half a unit off what they should be: so is the range, of 30 m at most.
+      const bool before = p < 60;
+      square_on += moves == before && std::abs(hits.range_m[i] - (before ? 9.0 : 30.0)) <= 4.0 * kHalfUlp * 30.0;
+    }
+  }
+  wrong += moving > 100 ? 0 : 1;
+  return {1.0 * (wrong + 64 - square_on), 0.0};
+}
+
 /// 3000 m in cells of 0.5 m is 72 million triangles of ground alone, and is refused in those words; of 1000 m in cells
 /// of 20 m what was made is what was foretold, whose streets are counted to a tenth.
 StressFigure size_foretold() {
@@ -209,6 +300,17 @@ std::vector<StressCase> far_cases() {
   rows.add("far/packets_at_0_m", [] { return packet_like_single(0.0); }).add("far/packets_at_1e6_m", [] {
     return packet_like_single(1e6);
   });
+  rows.of({StressGroup::kGeometry, "packets far from the origin, along one axis or both",
+           "the middle of another row's or column's tile, kilometres off: single precision of that way",
+           "half a unit of half a tile over the direction's part, and of the range", "of the bound"});
+  rows.add("far/packets_3_km_east", [] { return packets_about_a_near_point(3000.0, 0.0); })
+      .add("far/packets_3_km_north", [] { return packets_about_a_near_point(0.0, 3000.0); })
+      .add("far/packets_east_and_south", [] { return packets_about_a_near_point(2000.0, -3500.0); });
+  rows.of({StressGroup::kGeometry, "packets that meet what moves, before walls and behind them",
+           "what moves is looked for behind what was met, or about another tile's middle",
+           "the same as single rays, to the bit, and square on the true range", "wrong"});
+  rows.add("far/traffic_in_packets", [] { return traffic_in_packets(false); })
+      .add("far/traffic_in_packets_of_a_wide_scene", [] { return traffic_in_packets(true); });
   rows.of({StressGroup::kGeometry, "rays on the borders of tiles",
            "a point on a border belongs to no tile, or a ray is lost between two",
            "the ground at 16 m, everywhere and to the bit", "misses"});

@@ -284,9 +284,9 @@ std::vector<StressCase> ray_cases() {
              return leaks(24, {7.0, -11.0, 3.0}, true);
            })
       .open(
-          "Embree 3.13's robust test is watertight along edges; of rays exactly through a vertex one in a thousand "
-          "slips between its "
-          "triangles");
+          "needs another ray tracer than Embree 3.13, whose robust test is watertight along edges alone: of rays "
+          "exactly "
+          "through a vertex one in a thousand slips between its triangles");
   rows.of({StressGroup::kGeometry, "ranges at the border of single precision",
            "a range computed in single precision: 20 um at 100 m, more where the ray grazes",
            "brute force in double precision, rounded once: half a unit, and 64 eps 128 m / approach", "of the bound"});

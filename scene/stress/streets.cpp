@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "canyon/core/stress_rows.h"
+#include "canyon/scene/inspect.h"
 #include "canyon/scene/stress/made_scenes.h"
 #include "canyon/scene/stress/subjects.h"
 #include "canyon/scene/tracing/free_space.h"
@@ -101,6 +102,42 @@ StressFigure none() {
   return {1.0 * lines, 0.0};
 }
 
+double distance_m(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
+  const Vector2d way = b - a;
+  return (p - a - std::clamp((p - a).dot(way) / way.squaredNorm(), 0.0, 1.0) * way).norm();
+}
+
+/// Small triangles every 50 m over 2000 x 400 m, or 400 x 2000 m, with a street across at one end and one along the
+/// border at the other. The triangles that count as near a street are those within its reach of 120 m, by the middle of
+/// a square of 10 m, half a diagonal off at most; no place of the lattice has a distance within that of the reach, so
+/// that the count is exact.
+StressFigure near_streets(bool turned) {
+  const auto at = [turned](double along, double across) {
+    return turned ? Vector2d(across, along) : Vector2d(along, across);
+  };
+  SceneParts parts = made::nothing();
+  parts.streets.nodes_W = {at(-950, -150), at(-950, 150), at(500, -200), at(1000, -200)};
+  parts.streets.edges = {{.a = 0, .b = 1}, {.a = 2, .b = 3}};
+  MeshBuilder mesh(parts);
+  mesh.begin_object("plates", ObjectKind::kTerrain);
+  const auto asphalt = mesh.material("asphalt");
+  const double reach_m = SensorNeeds().lidar_reach_m, half_diagonal_m = 5.0 * std::sqrt(2.0);
+  std::size_t near = 0, undecided = 0;
+  for (double along = -1000.0; along <= 1000.0; along += 50.0)
+    for (double across = -200.0; across <= 200.0; across += 50.0) {
+      const Vector2d p = at(along, across);
+      const auto corner = [&p](double x, double y) { return Vector3d(p.x() + x, p.y() + y, 0.0); };
+      mesh.triangle(corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.0, 1.0), asphalt);
+      double least_m = stress::kInfinity;
+      for (const StreetGraph::Edge& edge : parts.streets.edges)
+        least_m = std::min(least_m, distance_m(p, parts.streets.nodes_W[edge.a], parts.streets.nodes_W[edge.b]));
+      near += least_m < reach_m ? 1 : 0;
+      undecided += std::abs(least_m - reach_m) > half_diagonal_m ? 0 : 1;
+    }
+  const std::size_t found = sensor_needs(*made::scene_of(std::move(parts))).near_triangles;
+  return {std::abs(static_cast<double>(found) - static_cast<double>(near)) + static_cast<double>(undecided), 0.0};
+}
+
 }  // namespace
 
 std::vector<StressCase> street_cases() {
@@ -116,6 +153,11 @@ std::vector<StressCase> street_cases() {
   rows.of({StressGroup::kData, "ground on which nothing drives", "an extent without cells, a thinning without end",
            "no street", "streets"});
   rows.add("streets/none", none);
+  rows.of({StressGroup::kGeometry, "what lies near the streets of a plan that is not square",
+           "columns and rows for one another: all of a street beyond the shorter side is left out",
+           "as many as lie within reach, none of which a square's half diagonal could decide", "wrong"});
+  rows.add("streets/near_those_of_a_wide_plan", [] { return near_streets(false); })
+      .add("streets/near_those_of_a_long_plan", [] { return near_streets(true); });
   return rows.take();
 }
 

@@ -51,9 +51,13 @@ std::vector<CaseResult> run_cases(const std::vector<StressCase>& cases, bool sho
   return results;
 }
 
-bool bound_is_tight(const CaseResult& result) {
+bool bound_needs_a_reason(const CaseResult& result) {
   const auto& [figure, bound] = result.found;
-  return figure == 0.0 || std::abs(bound) <= 1000.0 * std::abs(figure) || !result.stress_case.loose.empty();
+  return figure != 0.0 && !(std::abs(bound) <= 1000.0 * std::abs(figure));
+}
+
+bool bound_is_tight(const CaseResult& result) {
+  return !bound_needs_a_reason(result) || !result.stress_case.loose.empty();
 }
 
 std::size_t mechanisms(const std::vector<StressCase>& cases) {

@@ -28,6 +28,9 @@ CaseResult run_case(const StressCase& one);
 /// One after the other, with a progress bar if asked for. Throws Cancelled.
 std::vector<CaseResult> run_cases(const std::vector<StressCase>& cases, bool show_progress);
 
+/// Whether the bound is over 1000 times a figure that is not 0.
+bool bound_needs_a_reason(const CaseResult& result);
+
 /// Whether the bound says something of the figure: it is not over 1000 times as large, or the case says why.
 bool bound_is_tight(const CaseResult& result);
 

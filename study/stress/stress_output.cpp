@@ -88,6 +88,7 @@ nlohmann::ordered_json stress_json(const std::vector<CaseResult>& results) {
              {"pass", result.verdict == CaseVerdict::kHolds},
              {"seconds", result.cpu_s}};
     if (!one.open.empty()) row["open"] = one.open;
+    if (bound_needs_a_reason(result)) row["loose"] = one.loose;
     if (!result.thrown.empty()) row["thrown"] = result.thrown;
     out.push_back(std::move(row));
   }

@@ -40,7 +40,7 @@ TEST_F(StressTest, BadInputIsOneLine) {
 
 // 2026-11-22: an option of the other form was passed over without a word.
 TEST_F(StressTest, OptionsOfTheOtherFormAreRefused) {
-  for (const char* option : {"--budget-s 5", "--pairs 3", "--seed 2", "--fidelity low"}) {
+  for (const char* option : {"--budget-s 5", "--pairs 3", "--pairs-only", "--seed 2", "--fidelity low"}) {
     EXPECT_EQ(canyon(std::string("stress number ") + option), 2) << option;
     const std::string name = std::string(option).substr(0, std::string(option).find(' '));
     EXPECT_EQ(read("stderr"), name + ": is for a mission, not for cases, expected a mission, or cases without it\n");

@@ -176,8 +176,9 @@ std::string text_of(const Settings& settings) {
 
 std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const SweepOptions& options) {
   std::vector<Settings> out;
-  for (const SweptKey& key : keys)
-    for (const std::string& value : key.values) out.push_back({{key.key, value}});
+  if (options.singles)
+    for (const SweptKey& key : keys)
+      for (const std::string& value : key.values) out.push_back({{key.key, value}});
   add_pairs(keys, options, out);
   if (options.budget_s) shuffle(options.seed, out);
   return out;

@@ -17,6 +17,7 @@ struct SweepOptions {
   TrialSetup setup;
   std::uint64_t seed = 1;  ///< of the pairs, and of the order where time is limited
   std::int64_t pairs = 500;
+  bool singles = true;               ///< each value by itself too; these are the same for any seed
   std::optional<double> budget_s{};  ///< wall time; what has not ended by then counts as not tried. None: all are
   bool show_progress = true;
 };
@@ -33,8 +34,9 @@ struct Sweep {
   std::vector<SweepFailure> failures;
 };
 
-/// What is tried, in the order of the keys, then the pairs: two different keys with a value each, drawn from the stream
-/// "stress.pairs" of the seed. With a budget all of it shuffled, by the stream "stress.order".
+/// What is tried, in the order of the keys, unless only pairs are, then the pairs: two different keys with a value
+/// each, drawn from the stream "stress.pairs" of the seed. With a budget all of it shuffled, by the stream
+/// "stress.order".
 std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const SweepOptions& options);
 
 /// Drives the mission for some seconds as it stands, then with every one of them, each in a process of its own, as many

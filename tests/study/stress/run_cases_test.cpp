@@ -73,6 +73,8 @@ TEST(RunCase, ABoundAThousandTimesTooWideNeedsAReason) {
   EXPECT_THAT(stress_table({run_case(wide)}), HasSubstr("a bound over 1000 times its figure says nothing of it. "));
   wide.loose = "the worst of all CPUs";
   EXPECT_TRUE(bound_is_tight(run_case(wide)));
+  EXPECT_EQ(stress_json({run_case(wide)})[0]["loose"], "the worst of all CPUs");
+  EXPECT_FALSE(stress_json({run_case(one("a/b", 1.0, 1000.0))})[0].contains("loose"));
 }
 
 // 2026-11-22: an infinite bound, or one below 0, let every error pass.

@@ -71,6 +71,16 @@ TEST(SweepSettings, PairsAreOfTwoKeysAndTheSameForASeed) {
   EXPECT_NE(settings, sweep_settings(keys(), options));
 }
 
+// Of a second seed only the pairs are new.
+TEST(SweepSettings, OfPairsAloneAreThoseThatFollowTheKeys) {
+  SweepOptions options{.setup = {}, .seed = 7, .pairs = 200};
+  const auto all = sweep_settings(keys(), options);
+  options.singles = false;
+  const auto pairs = sweep_settings(keys(), options);
+  ASSERT_EQ(pairs.size(), 200U);
+  EXPECT_TRUE(std::equal(pairs.begin(), pairs.end(), all.end() - 200));
+}
+
 /// A program in place of canyon: it does what it is told by a setting, and else leaves sound results.
 class SweepTest : public ::testing::Test {
  protected:
