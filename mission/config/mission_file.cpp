@@ -295,13 +295,16 @@ Error MissionFile::locate(Error error, const std::string& gnss, const std::strin
       if (layer->find(*key) != nullptr) error.key = *key;
   const auto point_at = [&error](const ConfigNode& node) { error.file = node.file_, error.line = node.line_; };
   // Where was the key, or its nearest parent, set last?
-  for (std::string key = error.key; !key.empty(); key = parent(key))
+  for (std::string key = error.key; !key.empty(); key = parent(key)) {
     for (const Layer& layer : layers)
       if (const ConfigNode* node = layer.find(key)) {
         point_at(*node);
         if (key == error.key) error.key = layer.prefix + key;
         return error;
       }
+    // A place of the base mission's is not of who sets something else in its section.
+    if (is_of_a_place(key) && node_at(base_, key) != nullptr) break;
+  }
   for (std::string key = error.key; !key.empty(); key = parent(key))
     if (const ConfigNode* node = node_at(base_, key)) {
       point_at(*node);

@@ -379,6 +379,19 @@ TEST(MissionFileMessages, AnInheritedWaypointInACityThatAnOptionChanges) {
                               "expected .*"));
 }
 
+// 2026-11-25: with any other key of [autonomy] set, the waypoint was told as an option's, with no word of the city.
+TEST(MissionFileMessages, AnInheritedWaypointBesideAnotherKeyOfItsSection) {
+  MissionFile file = parse("base = \"vicksburg\"\n");
+  file.set_option("scene.seed", ConfigNode::of(std::int64_t{5}), "--set");
+  file.set_option("autonomy.perception.cell_m", ConfigNode::of(0.1), "--set");
+  SceneCache scenes;
+  const auto mission = prepare(*file.resolve("high"), scenes);
+  ASSERT_FALSE(mission.ok());
+  EXPECT_THAT(file.locate(mission.error(), "high").str(),
+              ::testing::MatchesRegex("missions/vicksburg.toml:[0-9]+: autonomy.waypoint.[0-9]+.: .*"
+                                      "; scene.seed makes it another city., expected .*"));
+}
+
 TEST(MissionFileMessages, FilesThatCannotBeReadAreToldWhereTheyAreNamed) {
   const std::string base = "base = \"vicksburg\"\n[scene]\nempty = true\n";
   EXPECT_EQ(message(base + "[imu]\nsensor = \"mine/imu.toml\"\n"),
