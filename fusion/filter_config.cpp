@@ -19,9 +19,9 @@ FilterParts naive() {
 }
 
 FilterParts vehicle() {
-  return {.states = {"biases", "gains", "mounting", "wheel_scale", "fix_error"},
+  return {.states = {"biases", "gains", "mounting", "wheel_scale", "fix_error", "velocity_error"},
           .measurements = {"position", "velocity", "non_holonomic", "standstill", "odometer"},
-          .acceptance = "innovation_adaptive"};
+          .acceptance = "student_t"};
 }
 
 FilterParts tight() {

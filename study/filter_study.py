@@ -4,15 +4,18 @@
     study/filter_study.py --route vicksburg --seeds 1-10 --filters naive,vehicle,tight --oracle
     study/filter_study.py --route city7 --seeds 101-103 --set 'loose=filter = "vehicle"; fix_error_scale = 3'
     study/filter_study.py --route city7 --seeds 101-103 --fixes
+    study/filter_study.py --like high --seeds 1-20 --filters naive,vehicle --oracle
 
 Each seed is driven once in an open loop, by truth, with everything that any of the filters measures with; `canyon fuse` then gives each
 filter that record. So all of them meet the same motion, fixes, ranges, ticks and noise. The rear axle slips and the unit is mounted
-askew. The channel and the receiver are spelled out below and owe nothing to what a fidelity is: with `--channel` another file's.
+askew. The channel and the receiver are spelled out below and owe nothing to what a fidelity is: with `--channel` another file's, with
+`--like` those of a fidelity as it is today.
 
 vicksburg is the built-in route, which is reported. The routes in other cities at other hours are there to choose by.
 
-The oracle is the filter `vehicle` without `fix_error`, with accept_all, on fixes whose covariance is, epoch by epoch, the mean of e e' over
-the other seeds and the second around, times `--oracle-scale` for what the errors of one fix and the next have in common.
+Oracles get fixes whose covariance is, epoch by epoch, the mean of e e' over the other seeds and the second around. `oracle, white` is
+`vehicle` without states for errors that last, with accept_all, on that times `--oracle-scale` for what the errors of one fix and the next have
+in common; `oracle, lasting` is `vehicle` as it is on that covariance.
 """
 import argparse
 import csv
@@ -61,7 +64,7 @@ waypoint_radius_m = {radius}
 record_filter_input = true
 {run}
 [fidelity.recorded]
-base = "low"
+base = "{base}"
 [fidelity.recorded.imu]
 errors = "datasheet"
 [fidelity.recorded.run]
@@ -123,16 +126,17 @@ def streets_of(arguments, work, place):
 
 def mission(arguments, work, attempt):
     city = ROUTES[arguments.route]
-    channel = arguments.channel.read_text() if arguments.channel else CHANNEL
+    channel = arguments.channel.read_text() if arguments.channel else "" if arguments.like else CHANNEL
+    base = arguments.like or "low"
     if city is None:
-        return 'base = "vicksburg"\n' + COMMON.format(vehicle="", run="", radius=3) + channel
+        return 'base = "vicksburg"\n' + COMMON.format(vehicle="", run="", radius=3, base=base) + channel
     place = (f'[scene]\nseed = {city["seed"]}\nlat_deg = 32.35\nlon_deg = -90.88\n[time]\nstart = "{city["start"]}"\n')
     scene = work / f"{arguments.route}.scene.json"
     if not scene.exists():
         scene.write_text(json.dumps(streets_of(arguments, work, place)))
     start, heading, points = route_of(city, json.loads(scene.read_text())["streets"], attempt)
     text = place + COMMON.format(vehicle=f"start_m = [{start[0]:.3f}, {start[1]:.3f}]\nstart_heading_deg = {heading:.3f}",
-                                 run=f'name = "{arguments.route}"', radius=60) + channel
+                                 run=f'name = "{arguments.route}"', radius=60, base=base) + channel
     for i, p in enumerate(points):
         text += f'[[autonomy.waypoint]]\nname = "{i + 1}"\np_m = [{p[0]:.3f}, {p[1]:.3f}]\n'
     return text
@@ -197,9 +201,9 @@ def fix_errors(folder):
     return out
 
 
-def told_truly(arguments, folder, others, origin):
-    """A copy of the record whose fixes state the covariance that the errors of the other seeds show."""
-    copy = folder.parent / f"{folder.name}-told"
+def told_truly(folder, others, origin, scale):
+    """A copy of the record whose fixes state `scale` times the covariance that the errors of the other seeds show."""
+    copy = folder.parent / f"{folder.name}-told-{scale:g}"
     (copy / "epochs").mkdir(parents=True, exist_ok=True)
     for path in list(folder.iterdir()) + list((folder / "epochs").iterdir()):
         to = copy / path.relative_to(folder)
@@ -218,7 +222,7 @@ def told_truly(arguments, folder, others, origin):
         near = [e[k] for e in errors for k in e if abs(k - t) <= 1.01e9]
         if not near:
             continue
-        C = [[arguments.oracle_scale * sum(e[i] * e[j] for e in near) / len(near) + (1e-4 if i == j else 0.0) for j in range(3)]
+        C = [[scale * sum(e[i] * e[j] for e in near) / len(near) + (1e-4 if i == j else 0.0) for j in range(3)]
              for i in range(3)]
         RC = [[sum(R[i][k] * C[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
         E = [[sum(RC[i][k] * R[j][k] for k in range(3)) for j in range(3)] for i in range(3)]
@@ -297,6 +301,7 @@ def main():
     parser.add_argument("--work", type=pathlib.Path, default=HERE.parent / "build/filter_study", help="what is recorded is kept here")
     parser.add_argument("--route", choices=ROUTES, default="vicksburg")
     parser.add_argument("--channel", type=pathlib.Path, help="TOML with [fidelity.recorded.gnss], in place of the one written here")
+    parser.add_argument("--like", help="name of a fidelity, whose channel and receiver are taken")
     parser.add_argument("--seeds", type=seeds_of, default=seeds_of("1-3"))
     parser.add_argument("--filters", default="", help="of naive, vehicle, tight")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=KEYS", help="a filter of these keys of [fusion], parted by '; '")
@@ -315,8 +320,9 @@ def main():
     results = {name: [fuse(arguments, folder, name, keys) for folder in folders.values()] for name, keys in filters.items()}
     if arguments.oracle:
         origin = json.loads((next(iter(folders.values())) / "summary.json").read_text())["scene"]["origin"]
-        told = [told_truly(arguments, folder, [f for s, f in folders.items() if s != seed], origin) for seed, folder in folders.items()]
-        results["oracle"] = [fuse(arguments, folder, "oracle", ORACLE) for folder in told]
+        for name, keys, scale in (("oracle, white", ORACLE, arguments.oracle_scale), ("oracle, lasting", FILTERS["vehicle"], 1.0)):
+            told = [told_truly(folder, [f for s, f in folders.items() if s != seed], origin, scale) for seed, folder in folders.items()]
+            results[name] = [fuse(arguments, folder, name.replace(", ", "_"), keys) for folder in told]
     if results:
         print_table(results)
 

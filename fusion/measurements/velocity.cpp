@@ -1,16 +1,20 @@
 #include "canyon/fusion/measurements/body_motion.h"
 #include "canyon/fusion/measurements/fix_age.h"
+#include "canyon/fusion/states/velocity_error.h"
 
 namespace canyon::fusion {
 namespace {
 
 struct VelocityParameters {
   double fix_velocity_scale = 1.0;
+  double fix_velocity_up_scale = 1.0;
   double fix_velocity_floor_m_s = 0.05;
 };
 void visit(FieldVisitor& f, VelocityParameters& p) {
   f.number("fix_velocity_scale", p.fix_velocity_scale, {0.01, 100},
            "factor on the 1-sigma that a fix states of its velocity");
+  f.number("fix_velocity_up_scale", p.fix_velocity_up_scale, {0.01, 1000},
+           "a further factor on its vertical part, in which echoes and what a receiver makes of them last the longest");
   f.number("fix_velocity_floor_m_s", p.fix_velocity_floor_m_s, {1e-4, 100},
            "lower bound on a fix's 1-sigma of velocity per axis");
 }
@@ -18,7 +22,8 @@ void visit(FieldVisitor& f, VelocityParameters& p) {
 /// The antenna's velocity as the Doppler shifts give it, where the receiver says how good it is.
 class Velocity final : public Copied<MeasurementModel, Velocity> {
  public:
-  Velocity(const VelocityParameters& p, const ErrorState& state) : p_(p), age_(state) {}
+  Velocity(const VelocityParameters& p, const VelocityErrorParameters& lasting, const ErrorState& state)
+      : p_(p), lasting_(lasting), age_(state), velocity_error_(state.offset("velocity_error")) {}
 
   std::optional<Measurement> received(const FilterView& filter, const AidingMessage& message, int) override {
     const GnssFix* fix = std::get_if<GnssFix>(&message);
@@ -33,11 +38,26 @@ class Velocity final : public Copied<MeasurementModel, Velocity> {
     const double scale = p_.fix_velocity_scale * p_.fix_velocity_scale,
                  floor = p_.fix_velocity_floor_m_s * p_.fix_velocity_floor_m_s;
     m.R = scale * 0.5 * (fix->velocity_covariance_E + fix->velocity_covariance_E.transpose());
+    if (p_.fix_velocity_up_scale != 1.0) stretch(geodetic_from_ecef(fix->p_A_E), m.R);
     m.R.diagonal() = m.R.diagonal().cwiseMax(floor);
+    if (velocity_error_ >= 0) {
+      const Eigen::Vector3d up_E = rotation_E_from_enu(geodetic_from_ecef(fix->p_A_E)).col(2);
+      const Eigen::Matrix3d share = lasting_.share(fix->velocity_covariance_E, up_E);
+      m.residual -= share * filter.state.values(velocity_error_, 3);
+      m.H.middleCols<3>(velocity_error_) = share;
+    }
     return m;
   }
 
  private:
+  /// Of the vertical part alone, so that what it has in common with the rest keeps its correlation.
+  void stretch(const Geodetic& at, Measurement::Square& R) const {
+    const Eigen::Vector3d up = rotation_E_from_enu(at).col(2);
+    const Eigen::Matrix3d D =
+        Eigen::Matrix3d::Identity() + (p_.fix_velocity_up_scale - 1.0) * up * up.transpose();
+    R = (D * R * D).eval();
+  }
+
   /// To the time of the fix, with the acceleration of the IMU: what the antenna's lever arm adds while a turn begins is
   /// left out.
   void carry(const FilterView& filter, const GnssFix& fix, Measurement& m) const {
@@ -49,13 +69,15 @@ class Velocity final : public Copied<MeasurementModel, Velocity> {
   }
 
   VelocityParameters p_;
+  VelocityErrorParameters lasting_;
   FixAge age_;
+  int velocity_error_;
 };
 
 }  // namespace
 
 std::unique_ptr<MeasurementModel> make_velocity(const ModelParameters& own, const MeasurementSetup& at) {
-  return std::make_unique<Velocity>(own.get<VelocityParameters>(), at.state);
+  return std::make_unique<Velocity>(own.get<VelocityParameters>(), own.get<VelocityErrorParameters>(), at.state);
 }
 
 void velocity_parameters(ModelParameters& section) {

@@ -9,9 +9,9 @@ namespace canyon::fusion {
 /// What lasts of the errors of fixes, as reflections make it: how large it is, and over what time and way it changes.
 /// The block `fix_error` has its three states, the measurement `position` says what they are to a fix.
 struct FixErrorParameters {
-  double fix_error_sigma_m = 3.0;
-  double fix_error_scale = 0.0;
-  double fix_error_tau_s = 10.0;
+  double fix_error_sigma_m = 0.3;
+  double fix_error_scale = 1.5;
+  double fix_error_tau_s = 20.0;
   double fix_error_way_m = 1e9;
 
   /// Its covariance, m^2, in a fix that states the covariance `stated`: sigma^2 on each axis, and scale^2 times that.

@@ -82,5 +82,7 @@ std::unique_ptr<StateBlock> make_wheel_scale(const ModelParameters& own, const S
 void wheel_scale_parameters(ModelParameters& section);
 std::unique_ptr<StateBlock> make_fix_error(const ModelParameters& own, const StateSetup& setup);
 void fix_error_parameters(ModelParameters& section);
+std::unique_ptr<StateBlock> make_velocity_error(const ModelParameters& own, const StateSetup& setup);
+void velocity_error_parameters(ModelParameters& section);
 
 }  // namespace canyon::fusion

@@ -15,6 +15,8 @@ constexpr ModelRow<MakeStateBlock> kBlocks[] = {
     {"wheel_scale", make_wheel_scale, "scale of the wheel", wheel_scale_parameters},
     {"fix_error", make_fix_error, "the part of the fixes' errors that lasts from one to the next",
      fix_error_parameters},
+    {"velocity_error", make_velocity_error, "the part of the errors of the fixes' velocities that lasts",
+     velocity_error_parameters},
     {"receiver_clock", make_receiver_clock,
      "clock of the receiver and its rate, and each system's own time against GPS", receiver_clock_parameters},
     {"range_errors", make_range_errors, "the part of the pseudoranges' errors that lasts, satellite by satellite",

@@ -121,7 +121,7 @@ TEST(Acceptance, FixesThatAreSteadilyBesideItSayThatTheFilterIsLost) {
     // At once, or where chance makes the fixes scatter a few later.
     EXPECT_GE(lost_after_s(row, keys, constant), 5.0) << row;
     EXPECT_LE(lost_after_s(row, keys, constant), 7.0) << row;
-    EXPECT_EQ(lost_after_s(row, "", constant), -1.0) << row;  // off by default
+    EXPECT_EQ(lost_after_s(row, "lost_after_s = 0", constant), -1.0) << row;
     // Fixes that wander by 2 m/s, which adds 2.9 m (10 m over the root of 12) to their scatter of 1 m: sums of squares
     // of 120 where 40 are allowed.
     EXPECT_EQ(lost_after_s(row, keys, [&](double t) { return (1.0 + t / 25.0) * beside; }), -1.0) << row;
