@@ -4,7 +4,7 @@
     study/filter_study.py --route vicksburg --seeds 1-10 --filters naive,vehicle,tight --oracle
     study/filter_study.py --route city7 --seeds 101-103 --set 'loose=filter = "vehicle"; fix_error_scale = 3'
     study/filter_study.py --route city7 --seeds 101-103 --fixes
-    study/filter_study.py --like high --seeds 1-20 --filters naive,vehicle --oracle
+    study/filter_study.py --like high --seeds 1-20 --filters naive,vehicle --parts --oracle
 
 Each seed is driven once in an open loop, by truth, with everything that any of the filters measures with; `canyon fuse` then gives each
 filter that record. So all of them meet the same motion, fixes, ranges, ticks and noise. The rear axle slips and the unit is mounted
@@ -82,6 +82,22 @@ ROUTES = {"vicksburg": None,
 
 FILTERS = {"naive": 'filter = "naive"', "vehicle": 'filter = "vehicle"', "tight": 'filter = "tight"'}
 ORACLE = 'filter = "vehicle"\nstates = ["biases", "gains", "mounting", "wheel_scale"]\nacceptance = "accept_all"'
+
+
+STATES = ["biases", "gains", "mounting", "wheel_scale", "fix_error", "velocity_error"]
+MEASUREMENTS = ["position", "velocity", "non_holonomic", "standstill", "odometer"]
+
+
+def parts():
+    """`vehicle` with one part removed at a time, and with what it assumes wrong by two either way."""
+    without = lambda kind, names, one: f'filter = "vehicle"\n{kind} = {json.dumps([n for n in names if n != one])}'
+    wrong = lambda by: (f'filter = "vehicle"\nodometer_slip_percent = {0.3 * by}\nnon_holonomic_sigma_m_s = {0.1 * by}\n'
+                        f'non_holonomic_sideslip = {0.02 * by}\nfix_error_scale = {1.5 * by}\nfix_velocity_scale = {by}\n'
+                        f'velocity_error_scale = {0.5 * by}')
+    out = {f"without {m}": without("measurements", MEASUREMENTS, m) for m in MEASUREMENTS if m != "position"}
+    out |= {f"without state {s}": without("states", STATES, s) for s in ("mounting", "fix_error", "velocity_error")}
+    return out | {"with accept_all": 'filter = "vehicle"\nacceptance = "accept_all"',
+                  "without a way back": 'filter = "vehicle"\nlost_after_s = 0', "all doubled": wrong(2.0), "all halved": wrong(0.5)}
 
 
 def call(arguments, log):
@@ -162,6 +178,7 @@ def record(arguments, work, seed):
 
 
 def fuse(arguments, folder, name, keys):
+    name = name.replace(",", "").replace(" ", "_")
     config = folder.parent / f"{name}.fuse.toml"
     config.write_text("[fusion]\n" + keys.replace("; ", "\n") + "\n")
     out = folder.parent / f"fused-{folder.name}-{name}"
@@ -305,6 +322,7 @@ def main():
     parser.add_argument("--seeds", type=seeds_of, default=seeds_of("1-3"))
     parser.add_argument("--filters", default="", help="of naive, vehicle, tight")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=KEYS", help="a filter of these keys of [fusion], parted by '; '")
+    parser.add_argument("--parts", action="store_true", help="vehicle without each of its parts, and told wrongly")
     parser.add_argument("--oracle", action="store_true")
     parser.add_argument("--oracle-scale", type=float, default=3.0)
     parser.add_argument("--fixes", action="store_true", help="what the fixes' errors are like")
@@ -312,6 +330,7 @@ def main():
     arguments = parser.parse_args()
     filters = {name: FILTERS[name] for name in arguments.filters.split(",") if name}
     filters |= dict(one.split("=", 1) for one in arguments.set)
+    filters |= parts() if arguments.parts else {}
     work = arguments.work
     work.mkdir(parents=True, exist_ok=True)
     folders = {seed: record(arguments, work, seed) for seed in arguments.seeds}
@@ -322,7 +341,7 @@ def main():
         origin = json.loads((next(iter(folders.values())) / "summary.json").read_text())["scene"]["origin"]
         for name, keys, scale in (("oracle, white", ORACLE, arguments.oracle_scale), ("oracle, lasting", FILTERS["vehicle"], 1.0)):
             told = [told_truly(folder, [f for s, f in folders.items() if s != seed], origin, scale) for seed, folder in folders.items()]
-            results[name] = [fuse(arguments, folder, name.replace(", ", "_"), keys) for folder in told]
+            results[name] = [fuse(arguments, folder, name, keys) for folder in told]
     if results:
         print_table(results)
 

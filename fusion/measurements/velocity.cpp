@@ -7,14 +7,11 @@ namespace {
 
 struct VelocityParameters {
   double fix_velocity_scale = 1.0;
-  double fix_velocity_up_scale = 1.0;
   double fix_velocity_floor_m_s = 0.05;
 };
 void visit(FieldVisitor& f, VelocityParameters& p) {
   f.number("fix_velocity_scale", p.fix_velocity_scale, {0.01, 100},
            "factor on the 1-sigma that a fix states of its velocity");
-  f.number("fix_velocity_up_scale", p.fix_velocity_up_scale, {0.01, 1000},
-           "a further factor on its vertical part, in which echoes and what a receiver makes of them last the longest");
   f.number("fix_velocity_floor_m_s", p.fix_velocity_floor_m_s, {1e-4, 100},
            "lower bound on a fix's 1-sigma of velocity per axis");
 }
@@ -38,7 +35,6 @@ class Velocity final : public Copied<MeasurementModel, Velocity> {
     const double scale = p_.fix_velocity_scale * p_.fix_velocity_scale,
                  floor = p_.fix_velocity_floor_m_s * p_.fix_velocity_floor_m_s;
     m.R = scale * 0.5 * (fix->velocity_covariance_E + fix->velocity_covariance_E.transpose());
-    if (p_.fix_velocity_up_scale != 1.0) stretch(geodetic_from_ecef(fix->p_A_E), m.R);
     m.R.diagonal() = m.R.diagonal().cwiseMax(floor);
     if (velocity_error_ >= 0) {
       const Eigen::Vector3d up_E = rotation_E_from_enu(geodetic_from_ecef(fix->p_A_E)).col(2);
@@ -50,14 +46,6 @@ class Velocity final : public Copied<MeasurementModel, Velocity> {
   }
 
  private:
-  /// Of the vertical part alone, so that what it has in common with the rest keeps its correlation.
-  void stretch(const Geodetic& at, Measurement::Square& R) const {
-    const Eigen::Vector3d up = rotation_E_from_enu(at).col(2);
-    const Eigen::Matrix3d D =
-        Eigen::Matrix3d::Identity() + (p_.fix_velocity_up_scale - 1.0) * up * up.transpose();
-    R = (D * R * D).eval();
-  }
-
   /// To the time of the fix, with the acceleration of the IMU: what the antenna's lever arm adds while a turn begins is
   /// left out.
   void carry(const FilterView& filter, const GnssFix& fix, Measurement& m) const {

@@ -16,8 +16,7 @@ void visit(FieldVisitor& f, VelocityErrorParameters& p) {
 
 Eigen::Matrix3d VelocityErrorParameters::share(const Eigen::Matrix3d& stated, const Eigen::Vector3d& up_E) const {
   const Eigen::Matrix3d stretch =
-      velocity_error_scale *
-      (Eigen::Matrix3d::Identity() + (velocity_error_up_scale - 1.0) * up_E * up_E.transpose());
+      velocity_error_scale * (Eigen::Matrix3d::Identity() + (velocity_error_up_scale - 1.0) * up_E * up_E.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of(stretch * (0.5 * (stated + stated.transpose())) * stretch);
   return of.eigenvectors() * of.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * of.eigenvectors().transpose();
 }

@@ -10,8 +10,8 @@ namespace canyon::fusion {
 /// are there, and a receiver's own filter holds on to it. The block `velocity_error` has its three states, without unit
 /// and of variance 1, along E's axes; the measurement `velocity` says what they are to a fix.
 struct VelocityErrorParameters {
-  double velocity_error_scale = 2.0;
-  double velocity_error_up_scale = 2.0;
+  double velocity_error_scale = 0.5;
+  double velocity_error_up_scale = 6.0;
   double velocity_error_tau_s = 2.0;
 
   /// What a velocity's error holds of the states, m/s: the symmetric root of scale^2 times the covariance that it

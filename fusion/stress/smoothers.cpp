@@ -225,6 +225,7 @@ std::vector<StressCase> smoother_cases() {
       .add("smoother/never_less_certain_with_all_of_a_vehicle", [] {
         return never_less_certain(
             "states = [\"turn_on_biases\", \"in_run_biases\", \"gains\", \"fix_error\"]\nfix_error_sigma_m = 0.2\n"
+            "fix_error_scale = 0\nfix_error_tau_s = 10\n"
             "imu_gain_tau_s = 100");
       });
   rows.of(right);

@@ -224,7 +224,8 @@ TEST(ErrorStateFilter, CovarianceSurvivesExtremeNoiseRatios) {
 // 2026-11-23: where the filter knew that a fix's error lasts, it took its place from one as if it did not.
 TEST(ErrorStateFilter, WhatLastsOfAFixIsInThePlaceTakenFromIt) {
   ErrorStateFilter filter = started(
-      configured("states = [\"biases\", \"fix_error\"]\ninitial_position_sigma_m = 1e6\nfix_error_sigma_m = 30"));
+      configured("states = [\"biases\", \"fix_error\"]\ninitial_position_sigma_m = 1e6\nfix_error_sigma_m = 30\n"
+                 "fix_error_scale = 0"));
   for (int k = 0; k < 100; ++k) filter.predict(at_rest(k));
   const UpdateReport first = filter.update(fix_at(filter.nav_state().t, Eigen::Vector3d::Zero(), 1.0));
   EXPECT_TRUE(first.accepted);

@@ -33,6 +33,7 @@ antenna_lever_sigma_m = 0.1
 time_offset_sigma_s = 0.01
 wheel_scale_sigma_percent = 1.0
 fix_error_sigma_m = 2.0
+fix_error_scale = 0.0
 fix_error_tau_s = 10.0
 barometer_bias_sigma_m = 5.0
 barometer_bias_tau_s = 500.0

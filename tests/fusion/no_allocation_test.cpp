@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
     Filters, NoAllocation,
     ::testing::Values(Carried{"of_15_states", "states = [\"biases\"]", 15},
                       Carried{"of_33_states", "states = [\"biases\", \"gains\"]", 33},
-                      Carried{"vehicle", "filter = \"vehicle\"", 40},
+                      Carried{"vehicle", "filter = \"vehicle\"", 43},
                       Carried{"with_time_offset",
                               "filter = \"vehicle\"\nstates = [\"biases\", \"gains\", \"time_offset\"]", 34}),
     [](const auto& one) { return std::string(one.param.name); });

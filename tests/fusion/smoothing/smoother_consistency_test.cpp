@@ -93,7 +93,8 @@ TEST(RtsSmoother, IsNeverLessCertainThanTheFilter) {
 TEST(RtsSmoother, TakesAnySetOfStates) {
   for (const char* keys :
        {"states = [\"biases\"]", "states = [\"turn_on_biases\", \"in_run_biases\", \"gains\"]\nimu_gain_tau_s = 100",
-        "states = [\"biases\", \"gains\", \"mounting\", \"wheel_scale\", \"fix_error\"]\nfix_error_sigma_m = 0.2"}) {
+        "states = [\"biases\", \"gains\", \"mounting\", \"wheel_scale\", \"fix_error\"]\nfix_error_sigma_m = 0.2\n"
+        "fix_error_scale = 0\nfix_error_tau_s = 10"}) {
     const Drive drive = simulated_drive(3, {.keys = keys});
     const Smoothed filtered = smoothed_by("none", drive), smoothed = smoothed_by("rts", drive);
     const auto miss = [&](const Smoothed& s) {

@@ -154,8 +154,9 @@ TEST(UrbanRanges, EveryInstantHasAPositionInBerlin) {
   const auto with = [&](const char* what, const std::string& keys) {
     return print(what, filtered(solved, truth, keys));
   };
-  const Errors loose =
-      with("loosely", "measurements = [\"position\"]\nstates = [\"fix_error\"]\nacceptance = \"student_t\"");
+  const Errors loose = with("loosely",
+                            "measurements = [\"position\"]\nstates = [\"fix_error\"]\nacceptance = \"student_t\"\n"
+                            "fix_error_sigma_m = 3\nfix_error_scale = 0\nfix_error_tau_s = 10");
   const std::string ranges = "measurements = [\"ranges\"]\nacceptance = ",
                     clock = "states = [\"receiver_clock\"]\n" + ranges,
                     lasting = "states = [\"receiver_clock\", \"range_errors\"]\n" + ranges;
