@@ -9,7 +9,7 @@ namespace canyon::fusion {
 
 /// When a filter counts as lost; shared by the rows that weigh what is far off instead of refusing it.
 struct LostWayParameters {
-  double lost_after_s = 8.0;
+  double lost_after_s = 0.0;
   double lost_sigma = 5.0;
 };
 void visit(FieldVisitor& f, LostWayParameters& p);
