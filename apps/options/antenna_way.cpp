@@ -1,5 +1,7 @@
 #include "canyon/apps/options/antenna_way.h"
 
+#include <algorithm>
+
 #include "canyon/core/output/printed.h"
 #include "canyon/gnss/antenna_height.h"
 
@@ -51,7 +53,7 @@ Result<PlacedReceiver> place_receiver(const AntennaWayOptions& options, const Gn
   CANYON_TRY(PlacePath path, antenna_path(options.trajectory, setup, at));
   if (!at && setup_options.start.empty()) setup.start = path.first();
   double duration_s = options.duration_s;
-  if (!at && duration_s == 0.0) duration_s = path.last() - setup.start;
+  if (!at && duration_s == 0.0) duration_s = std::max(0.0, path.last() - setup.start);
   if (!at && (setup.start < path.first() || path.last() < setup.start + duration_s))
     return Error{options.trajectory, 0, "", "covers " + path.first().iso() + " to " + path.last().iso(),
                  "all of " + setup.start.iso() + " and the " + printed("%g s", duration_s) + " that follow"};

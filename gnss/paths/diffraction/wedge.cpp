@@ -53,14 +53,18 @@ Wave wedge_transition(double x) {
   return Wave(0.0, 2.0 * root) * std::polar(1.0, x) * tail;
 }
 
-Wave wedge_field(const WedgeWay& w) {
+WedgeBorders::WedgeBorders(const WedgeWay& w) : root_distance_(std::sqrt(w.distance_m)) {
   const double k = 2.0 * kPi / w.wavelength_m;
   const double k_l = k * w.distance_m * w.sine_beta * w.sine_beta;
   const double less = w.phi_out_rad - w.phi_in_rad, sum = w.phi_out_rad + w.phi_in_rad;
-  const Wave shadow = border_term(less, 1, w.n, k_l) + border_term(less, -1, w.n, k_l);
-  const Wave mirrors = w.face_0 * border_term(sum, -1, w.n, k_l) + w.face_n * border_term(sum, 1, w.n, k_l);
-  const Wave scale = -std::polar(1.0, -0.25 * kPi) / (2.0 * w.n * std::sqrt(2.0 * kPi * k) * w.sine_beta);
-  return scale * (shadow + mirrors) / std::sqrt(w.distance_m);
+  shadow_ = border_term(less, 1, w.n, k_l) + border_term(less, -1, w.n, k_l);
+  mirror_0_ = border_term(sum, -1, w.n, k_l);
+  mirror_n_ = border_term(sum, 1, w.n, k_l);
+  scale_ = -std::polar(1.0, -0.25 * kPi) / (2.0 * w.n * std::sqrt(2.0 * kPi * k) * w.sine_beta);
+}
+
+Wave WedgeBorders::field(const Wave& face_0, const Wave& face_n) const {
+  return scale_ * (shadow_ + (face_0 * mirror_0_ + face_n * mirror_n_)) / root_distance_;
 }
 
 Wave finite_edge_factor(double nu, double u1, double u2) {

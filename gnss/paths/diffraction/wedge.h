@@ -16,18 +16,26 @@ struct WedgeWay {
   double sine_beta = 1.0;    ///< of the angle between the ray and the edge, (0, 1]
   double distance_m = 1.0;   ///< from the edge to where it goes, > 0
   double wavelength_m = 1.0;
-  /// Reflection coefficients of the faces, for that polarization; a conductor has -1 where the field is parallel to the
-  /// edge ("soft") and +1 where it is across ("hard").
-  std::complex<double> face_0 = 0.0, face_n = 0.0;
 };
 
-/// Field that a plane wave makes behind the edge of an endless wedge, relative to that wave at the edge, without the
-/// phase of the way from there (time factor exp(+j w t)): uniform theory of diffraction, K&P eq. 25 and 26 with
-/// L = s sin^2 beta, over sqrt(s); the terms of the two reflections weighed by the faces' coefficients (Luebbers, IEEE
+/// The field that a plane wave makes behind the edge of an endless wedge, relative to that wave at the edge, without
+/// the phase of the way from there (time factor exp(+j w t)): uniform theory of diffraction, K&P eq. 25 and 26 with L =
+/// s sin^2 beta, over sqrt(s); the terms of the two reflections weighed by the faces' coefficients (Luebbers, IEEE
 /// Trans. Antennas Propag. 32 (1984) 70). Added to the geometric field it makes it continuous over the borders of the
 /// shadow and of both reflections; it is exact for a half-plane. At a border itself the limit from where
 /// cos((phi_in - phi_out) / 2), or the sum's, is positive.
-std::complex<double> wedge_field(const WedgeWay& way);
+class WedgeBorders {
+ public:
+  /// What both polarizations share, and takes the time.
+  explicit WedgeBorders(const WedgeWay& way);
+  /// With the reflection coefficients of the faces, for one polarization; a conductor has -1 where the field is
+  /// parallel to the edge ("soft") and +1 where it is across ("hard").
+  std::complex<double> field(const std::complex<double>& face_0, const std::complex<double>& face_n) const;
+
+ private:
+  std::complex<double> shadow_, mirror_0_, mirror_n_, scale_;
+  double root_distance_;
+};
 
 /// Share of the field of an endless edge that the part of it from u1 to u2 makes: the line integral over the edge to
 /// which the surface integral of Kirchhoff reduces (Maggi 1888, Rubinowicz 1917), in Fresnel's approximation,

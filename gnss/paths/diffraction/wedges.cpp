@@ -26,19 +26,34 @@ struct WedgeMeeting {
   Eigen::Vector3d along_W, point_W;  ///< the point held within the edge
 };
 
-std::optional<WedgeMeeting> wedge_meeting(const scene::Edge& edge, const Eigen::Vector3d& p_W,
+/// An edge as it lies about p, for all waves.
+struct EdgeAbout {
+  const scene::Edge* edge = nullptr;
+  Eigen::Vector3d along_W;
+  double length_m, foot_m, across_m;  ///< p stands beside foot_m of it, across_m away
+
+  void look_at(const scene::Edge& e, const Eigen::Vector3d& p_W) {
+    edge = &e;
+    length_m = (e.b_W - e.a_W).norm();
+    along_W = (e.b_W - e.a_W) / length_m;
+    const Eigen::Vector3d from_a = p_W - e.a_W;
+    foot_m = from_a.dot(along_W);
+    across_m = (from_a - foot_m * along_W).norm();
+  }
+};
+
+std::optional<WedgeMeeting> wedge_meeting(const EdgeAbout& about, const Eigen::Vector3d& p_W,
                                           const Eigen::Vector3d& s) {
+  const scene::Edge& edge = *about.edge;
   // An edge throws a shadow where the wave meets one of its faces alone.
   if (edge.normal_1_W.dot(s) * edge.normal_2_W.dot(s) >= 0.0) return std::nullopt;
   WedgeMeeting m;
-  m.length_m = (edge.b_W - edge.a_W).norm();
-  m.along_W = (edge.b_W - edge.a_W) / m.length_m;
-  const Eigen::Vector3d from_a = p_W - edge.a_W;
-  const double foot_m = from_a.dot(m.along_W), across_m = (from_a - foot_m * m.along_W).norm();
+  m.length_m = about.length_m;
+  m.along_W = about.along_W;
   const double cosine = -s.dot(m.along_W), sine2 = 1.0 - cosine * cosine;
-  if (sine2 < 1e-6 || across_m < 1e-3) return std::nullopt;
+  if (sine2 < 1e-6 || about.across_m < 1e-3) return std::nullopt;
   m.sine_beta = std::sqrt(sine2);
-  m.at_m = foot_m - across_m * cosine / m.sine_beta;
+  m.at_m = about.foot_m - about.across_m * cosine / m.sine_beta;
   const Eigen::Vector3d way = edge.a_W + m.at_m * m.along_W - p_W;
   const double forward_m = way.dot(s);
   if (forward_m <= 0.0) return std::nullopt;
@@ -80,9 +95,12 @@ class Wedges final : public DiffractionModel {
     if (waves.empty()) return;
     thread_local std::vector<Found> found;
     found.clear();
-    look_at_edges_near(
-        p_A_W, waves, scene, largest_detour_m(largest_nu_, waves.longest_wavelength_m()),
-        [&](const scene::Edge& edge, std::size_t k) { bend(edge, p_A_W, waves, k, scene, counters, found, out[k]); });
+    EdgeAbout about;
+    look_at_edges_near(p_A_W, waves, scene, largest_detour_m(largest_nu_, waves.longest_wavelength_m()),
+                       [&](const scene::Edge& edge, std::size_t k) {
+                         if (about.edge != &edge) about.look_at(edge, p_A_W);
+                         bend(about, p_A_W, waves, k, scene, counters, found, out[k]);
+                       });
   }
 
  private:
@@ -97,10 +115,11 @@ class Wedges final : public DiffractionModel {
     }
   };
 
-  void bend(const scene::Edge& edge, const Eigen::Vector3d& p_W, const PlaneWaves& waves, std::size_t k,
+  void bend(const EdgeAbout& about, const Eigen::Vector3d& p_W, const PlaneWaves& waves, std::size_t k,
             const scene::SceneAt& scene, GnssCounters& counters, std::vector<Found>& found, SignalPaths& out) const {
     const Eigen::Vector3d& s = waves.direction_W(k);
-    const auto m = wedge_meeting(edge, p_W, s);
+    const scene::Edge& edge = *about.edge;
+    const auto m = wedge_meeting(about, p_W, s);
     const double wavelength_m = waves.wavelength_m(k);
     if (!m || m->detour_m > largest_detour_m(largest_nu_, wavelength_m)) return;
     // Rays are cheaper than fields, and most edges near a way are hidden.
@@ -145,12 +164,8 @@ class Wedges final : public DiffractionModel {
     const double grazing_rad = 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0));
     const Fresnel one = mirror_of(materials[edge.material_1], grazing_rad, carrier_hz);
     const Fresnel two = mirror_of(materials[edge.material_2], grazing_rad, carrier_hz);
-    way.face_0 = one.te;
-    way.face_n = two.te;
-    const std::complex<double> soft = wedge_field(way);
-    way.face_0 = one.tm;
-    way.face_n = two.tm;
-    const std::complex<double> hard = wedge_field(way);
+    const WedgeBorders borders(way);
+    const std::complex<double> soft = borders.field(one.te, two.te), hard = borders.field(one.tm, two.tm);
     SignalPath path;
     path.copolar = 0.5 * (soft + hard);
     path.crosspolar = 0.5 * (hard - soft);

@@ -145,6 +145,10 @@ TEST_F(GnssVerbsTest, MistakesAreToldInOneLine) {
   expect_mistake("gnss simulate --trajectory given_way.csv --duration 20",
                  "given_way.csv: covers 2010-11-17T13:00:00.000 to 2010-11-17T13:00:10.000, expected all of "
                  "2010-11-17T13:00:00.000 and the 20 s that follow");
+  // 2026-11-25: no epoch was simulated, and writing none as RINEX ended the program.
+  expect_mistake("gnss simulate --trajectory given_way.csv --start 2010-11-17T14:00:00 --rinex-obs none.obs",
+                 "given_way.csv: covers 2010-11-17T13:00:00.000 to 2010-11-17T13:00:10.000, expected all of "
+                 "2010-11-17T14:00:00.000 and the 0 s that follow");
   expect_mistake("gnss sky", "command line: no place given, expected --at LAT,LON,H, or --scene and --xy X,Y");
   expect_mistake("gnss sky --at 32.35,x,60",
                  "--at: \"32.35,x,60\" cannot be read, expected LAT,LON,H: degrees, degrees, metres");

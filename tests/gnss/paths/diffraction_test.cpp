@@ -45,6 +45,26 @@ TEST(KnifeEdge, FresnelIntegralsOfTheTable) {
   EXPECT_NEAR(std::abs(step - std::polar(1e-9, 0.5 * kPi * 4.0)), 0.0, 1e-11);
 }
 
+// How many terms and levels are taken changes no bit: the same sums with many more.
+TEST(KnifeEdge, FresnelIntegralsEndWhereNothingChanges) {
+  using Complex = std::complex<double>;
+  const auto series = [](double x) {
+    Complex power = x, sum = 0.0;
+    for (int n = 0; n < 60; ++n) {
+      sum += power / (2.0 * n + 1.0);
+      power *= Complex(0.0, 0.5 * kPi * x * x) / (n + 1.0);
+    }
+    return sum;
+  };
+  const auto fraction = [](double x) {
+    const Complex z = 0.5 * std::sqrt(kPi) * Complex(1.0, -1.0) * x;
+    Complex tail = z;
+    for (int n = 120; n >= 1; --n) tail = z + 0.5 * n / tail;
+    return 0.5 * Complex(1.0, 1.0) * (1.0 - std::exp(-z * z) / (std::sqrt(kPi) * tail));
+  };
+  for (double x = 1e-6; x < 1e3; x *= 1.0007) EXPECT_EQ(fresnel_integral(x), x < 2.0 ? series(x) : fraction(x)) << x;
+}
+
 // P.526-15 eq. 31 approximates the loss for nu > -0.78; the Recommendation's own figure shows both within a line's
 // width.
 TEST(KnifeEdge, LossFollowsTheRecommendation) {
