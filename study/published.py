@@ -157,9 +157,9 @@ def load(root):
     return commands, texts, pages
 
 
-def run(canyon, name, row, seeds):
+def run(root, canyon, name, row, seeds):
     """Calls canyon in a folder of its own."""
-    arguments = list(row["arguments"])
+    arguments = list(row.get("arguments", []))
     if seeds and "--seeds" in arguments:
         at = arguments.index("--seeds") + 1
         arguments[at] = str(min(seeds, int(arguments[at])))
@@ -167,16 +167,17 @@ def run(canyon, name, row, seeds):
         if "mission" in row:
             (pathlib.Path(folder) / "mission.toml").write_text(row["mission"], encoding="utf-8")
             arguments.insert(1, "mission.toml")
-        has_results = arguments[0] in ("compare", "run", "tradeoff")
+        has_results = arguments[:1] and arguments[0] in ("compare", "run", "tradeoff")
         if has_results:
             arguments += ["--out", "results"]
         start = time.monotonic()
+        program = [sys.executable, str(root / row["script"]), "--canyon", canyon] if "script" in row else [canyon]
         try:
-            done = subprocess.run([canyon, *arguments], cwd=folder, stdout=subprocess.PIPE, text=True, check=False)
+            done = subprocess.run([*program, *arguments], cwd=folder, stdout=subprocess.PIPE, text=True, check=False)
         except OSError as error:
             raise Mistake(f"--canyon: {canyon}: {error.strerror}") from error
         if done.returncode != 0:
-            raise Mistake(f"command.{name}: canyon {' '.join(arguments)} ended with status {done.returncode}")
+            raise Mistake(f"command.{name}: {row.get('script', 'canyon')} {' '.join(arguments)} ended with status {done.returncode}")
         summary = {}
         if has_results:
             summary = json.loads((pathlib.Path(folder) / "results" / "summary.json").read_text(encoding="utf-8"))
@@ -213,7 +214,7 @@ def work(options):
     for name in chosen_texts(texts, options):
         command = texts[name]["command"]
         if command not in made:
-            made[command] = run(options.canyon, command, commands[command], options.seeds)
+            made[command] = run(root, options.canyon, command, commands[command], options.seeds)
         text = made[command].text(name, texts[name])
         for page in pages:
             if name not in page.spans:

@@ -47,14 +47,22 @@ def true_way(options, folder):
             yield t, [row[f"true_{a}_m"] for a in "xyz"], q
 
 
-def simulate(options, folder, receiver, k):
-    """One run: its summary, and how far its fixes are off in the plane."""
+def observe(options, folder, receiver, k):
+    """One run, unless it is there: RECEIVER_K.json, .obs and .nav, and fixes and satellites in RECEIVER_K."""
     made = folder / f"{receiver}_{k}.json"
-    if not made.exists():
-        text = canyon(options, "gnss", "simulate", "--fidelity", RECEIVERS[receiver], "--receiver", receiver, "--scene", "vicksburg",
-                      "--trajectory", str(folder / f"way_{k}.tum"), "--rate", "1", "--seed", str(k), "--threads", "1", "--json", "--force",
-                      "--out", str(folder / f"{receiver}_{k}"))
-        made.write_text(text, encoding="utf-8")
+    if made.exists():
+        return made
+    here = str(folder / f"{receiver}_{k}")
+    text = canyon(options, "gnss", "simulate", "--fidelity", RECEIVERS[receiver], "--receiver", receiver, "--scene", "vicksburg",
+                  "--trajectory", str(folder / f"way_{k}.tum"), "--rate", "1", "--seed", str(k), "--threads", "1", "--json", "--force",
+                  "--out", here, "--rinex-obs", here + ".obs", "--rinex-nav", here + ".nav")
+    made.write_text(text, encoding="utf-8")
+    return made
+
+
+def simulate(options, folder, receiver, k):
+    """One run: its summary, and how far its fixes are off, in the plane and in height."""
+    made = observe(options, folder, receiver, k)
     off_m, up_m = [], []
     with open(folder / f"{receiver}_{k}/fixes.csv", encoding="utf-8") as stream:
         for row in csv.DictReader(stream):
@@ -86,11 +94,15 @@ def row_of(receiver, runs):
             f"| {mean('horizontal_log_score'):.2f} |")
 
 
-def table(options, folder):
+def write_ways(options, folder):
     way = list(true_way(options, folder))
     for k in range(1, options.seeds + 1):
         lines = (f"{t + STEP_S * (k - 1):.3f} {' '.join(p)} {' '.join(f'{x:.9f}' for x in q)}" for t, p, q in way)
         (folder / f"way_{k}.tum").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def table(options, folder):
+    write_ways(options, folder)
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         runs = {receiver: [pool.submit(simulate, options, folder, receiver, k) for k in range(1, options.seeds + 1)] for receiver in RECEIVERS}
         print("| receiver | tracked, in sight / hidden | fixes, % | H50 (5 to 95 % of the runs' own), m | H95, m | height 50 / 95 %, m "
@@ -100,8 +112,9 @@ def table(options, folder):
             print(row_of(receiver, [one.result() for one in made]), flush=True)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def run(description, work):
+    """The options of such a study, and work(options, folder)."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     here = pathlib.Path(__file__).resolve().parent.parent
     parser.add_argument("--canyon", default=str(here / "build/release/bin/canyon"))
     parser.add_argument("--keep", metavar="DIR")
@@ -112,9 +125,9 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(options.keep or temporary).resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        table(options, folder)
+        work(options, folder)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, table))

@@ -144,6 +144,22 @@ closed loop
                                                     "<!-- canyon:left -->14.4 s, 0.25 m<!-- /canyon:left -->\n")
         self.assertEqual(sorted(self.read("calls").splitlines()), ["plan --json", "tradeoff --part gnss --out results"])
 
+    def test_a_script_is_called_in_canyons_place_and_told_where_it_is(self):
+        self.write("study/table.py", "import sys; print(' '.join(sys.argv[1:]))")
+        self.write("study/published.toml", """
+[command.table]
+script = "study/table.py"
+arguments = ["--seeds", "20"]
+[text.table]
+command = "table"
+stdout = true
+""")
+        self.write("README.md", "")
+        self.write("docs/page.md", "<!-- canyon:table --><!-- /canyon:table -->\n")
+        self.assertEqual(self.call("--seeds", "3").returncode, 0)
+        self.assertEqual(self.read("docs/page.md"),
+                         f"<!-- canyon:table -->\n--canyon {self.root.resolve() / 'canyon'} --seeds 3\n<!-- /canyon:table -->\n")
+
     def test_what_was_written_is_found_again(self):
         self.call()
         before = self.read("README.md")
