@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "canyon/lidar/beam/no_surface.h"
+
 namespace canyon::mission {
 
 void Sightings::scan(GpsTime t, const std::vector<LidarPointTruth>& returns) {
   for (const LidarPointTruth& point : returns) {
+    if (point.object == lidar::kNoObject) continue;  // a drop, another sensor's pulse
     if (point.object >= seen_.size()) seen_.resize(point.object + 1);
     Seen& seen = seen_[point.object];
     if (seen.ever && seen.last == t) {
