@@ -53,6 +53,7 @@ constexpr MayBeAbsent kRows[] = {
     {"summary.json", "facade_range_m,facade_obliquity_deg,facade_px_per_m", "", "", "the same"},
     {"summary.json", "closest_m,believed_at_m", "", "",
      "a waypoint that no epoch was near to, or that is not believed reached"},
+    {"summary.json", "phantoms_per_km,missed_obstacles_per_km", "distance_m", "0", "no way was driven"},
     {"summary.json", "hit_in_scans_s,hit_last_range_m,hit_last_seen_s", "", "",
      "nothing was hit, or no scan showed it"},
     {"summary.json", "fix_error_rms_m", "fixes_lost", "=fixes_due", "no fix"},

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "canyon/lidar/beam/no_surface.h"
 #include "canyon/mission/scoring/sightings.h"
 #include "canyon/scene/mesh_builder.h"
 #include "canyon/scene/surfaces/material.h"
@@ -90,6 +91,14 @@ TEST(Sightings, TellWhatTheLastScanShowedAndSinceWhen) {
   EXPECT_NEAR(seen->stood_s, 0.1, 1e-9);
   EXPECT_NEAR(seen->ago_s, 0.15, 1e-9);
   EXPECT_FALSE(sightings.of(8, GpsTime{2'050'000'000}));
+}
+
+// 2026-11-25: a return that no surface sent (fog) was looked up by its object, and a mission ended with signal 11.
+TEST(Sightings, LeaveOutWhatNoSurfaceSent) {
+  Sightings sightings;
+  sightings.scan(GpsTime{0}, {{3.0f, 1.0f, lidar::kNoMaterial, lidar::kNoObject}, {12.0f, 1.0f, 0, 7}});
+  EXPECT_TRUE(sightings.of(7, GpsTime{0}));
+  EXPECT_FALSE(sightings.of(lidar::kNoObject, GpsTime{0}));
 }
 
 }  // namespace
