@@ -68,6 +68,7 @@ BLIND_TO_TRUTH = [
     "fusion/*",
     "lidar/deskew*", "lidar/sweep_motion*",
     "lidar/registration/*",
+    "lidar/voxels/*",
     "mission/mapper*", "mission/autonomy/*",
 ]
 
