@@ -91,8 +91,8 @@ TEST(TwoByTwoTest, ANamedFilterTakesThePlaceOfAllRows) {
   const auto comparison = prepare_comparison(*file, plan_runs({"high"}, false, {"naive", "vehicle"}));
   ASSERT_TRUE(comparison.ok()) << comparison.error().str();
   const fusion::FilterParts vehicle = fusion::filter_parts(comparison->configs[1].fusion);
-  EXPECT_EQ(vehicle.acceptance, "innovation_adaptive");
-  EXPECT_EQ(vehicle.states.size(), 5U);
+  EXPECT_EQ(vehicle.acceptance, "student_t");
+  EXPECT_EQ(vehicle.states.size(), 6U);
   EXPECT_EQ(fusion::filter_parts(comparison->configs[0].fusion).acceptance, "gate");
 }
 
