@@ -123,9 +123,14 @@ TEST_P(ScanOverACorrection, IsDeskewedAsByTruth) {
   EXPECT_GT(by_estimate_m, 0.9 * corrected_m);
 }
 
-INSTANTIATE_TEST_SUITE_P(Filters, ScanOverACorrection,
-                         ::testing::Values(Start{"naive", "", true}, Start{"vehicle", "filter = \"vehicle\"\n", false}),
-                         [](const auto& one) { return std::string(one.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Filters, ScanOverACorrection,
+    ::testing::Values(Start{"naive", "", true},
+                      Start{"vehicle",
+                            "filter = \"vehicle\"\nacceptance = \"innovation_adaptive\"\nfix_error_sigma_m = "
+                            "3\nfix_error_scale = 0\nfix_error_tau_s = 10\n",
+                            false}),
+    [](const auto& one) { return std::string(one.param.name); });
 
 /// A localizer along a winding drive, its place known to 20 m, with one fix 4 m off in the middle of a sample. The
 /// motion since half a second before it, from which an alignment begins, is what a copy that gets no fix predicts.
