@@ -162,7 +162,8 @@ def run(root, canyon, name, row, seeds):
     arguments = list(row.get("arguments", []))
     if seeds and "--seeds" in arguments:
         at = arguments.index("--seeds") + 1
-        arguments[at] = str(min(seeds, int(arguments[at])))
+        first, _, last = arguments[at].rpartition("-")
+        arguments[at] = f"{first}-{min(int(first) + seeds - 1, int(last))}" if first else str(min(seeds, int(last)))
     with tempfile.TemporaryDirectory() as folder:
         if "mission" in row:
             (pathlib.Path(folder) / "mission.toml").write_text(row["mission"], encoding="utf-8")
