@@ -163,7 +163,9 @@ class StreetClutter final : public ClutterModel {
         const double power = scale * scale * (std::norm(one.co) + std::norm(one.cross));
         bins.add({scale * one.co, scale * one.cross}, straight_m + detour_m, one.to_W, power * power);
       };
-      double in_light = 0.0;
+      // One way across of the nodes' mean length: several, each with its share, would add up out of phase, and power
+      // be lost between nodes.
+      double in_light = 0.0, across = 0.0, across_m_sum = 0.0;
       for (const auto& corner : towards.corners()) {
         if (corner.weight == 0.0) continue;
         if (towards.lit(corner, one.number, one.p_W, counters)) {
@@ -174,8 +176,11 @@ class StreetClutter final : public ClutterModel {
           ++counters.occlusion_rays;
           return across_m(one.p_W, corner.s_W, scene.scene());
         });
-        if (std::isfinite(level_m)) send(corner.weight * unlit, 2.0 * level * static_cast<double>(level_m));
+        if (!std::isfinite(level_m)) continue;
+        across += corner.weight;
+        across_m_sum += corner.weight * static_cast<double>(level_m);
       }
+      if (across > 0.0) send(across * unlit, 2.0 * level * across_m_sum / across);
       if (in_light > 0.0) send(in_light * lit, 0.0);
     }
   }
