@@ -1,6 +1,7 @@
 // PCL's own registrations, as their users know them: nothing of it is changed but what they are asked to do.
 #include <cmath>
 
+#include <pcl/console/print.h>
 #include <pcl/features/normal_3d.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/point_cloud.h>
@@ -94,7 +95,10 @@ bool ndt(const MatchingParameters& own, const std::vector<Eigen::Vector3f>& sour
 
 class UntouchedPcl final : public Registration {
  public:
-  UntouchedPcl(Solve solve, const MatchingParameters& own) : solve_(solve), own_(own) {}
+  UntouchedPcl(Solve solve, const MatchingParameters& own) : solve_(solve), own_(own) {
+    // Of a cloud that it cannot align PCL tells the terminal; here the status says it.
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+  }
 
   std::shared_ptr<const PreparedCloud> prepare(std::span<const Eigen::Vector3f> points) const override {
     auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
