@@ -1,4 +1,4 @@
-// The missions of examples/ through real cities.
+// The missions of missions/delivery/ through real cities.
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -11,11 +11,11 @@
 namespace canyon::mission::testing {
 namespace {
 
-/// The example beside a folder data/ with the city's files, as its heading asks for.
+/// The mission beside a folder data/ with the city's files, as its heading asks for.
 class City {
  public:
-  City(const std::string& example, const std::string& data_file) : path_(scratch_.file(example)) {
-    std::filesystem::copy(std::filesystem::path(CANYON_SOURCE_DIR) / "examples" / example, path_);
+  City(const std::string& mission, const std::string& data_file) : path_(scratch_.file(mission)) {
+    std::filesystem::copy(std::filesystem::path(CANYON_SOURCE_DIR) / "missions/delivery" / mission, path_);
     std::filesystem::create_symlink(std::filesystem::absolute(data_file).parent_path(), scratch_.file("data"));
   }
   MissionConfig config(const std::string& fidelity) const {

@@ -136,8 +136,8 @@ TEST(PlanNightly, NothingDiffersInSixScenes) {
     EXPECT_TRUE(write_text_file((at / "mission.toml").string(), text).ok());
     return at;
   };
-  const auto example = [](const char* name) {
-    return *read_text_file((fs::path(CANYON_SOURCE_DIR) / "examples" / name).string());
+  const auto delivery = [](const char* name) {
+    return *read_text_file((fs::path(CANYON_SOURCE_DIR) / "missions/delivery" / name).string());
   };
   const fs::path street = beside("street", "", kThroughTheStreet);
   ASSERT_TRUE(write_text_file((street / "street.geojson").string(), street_of_houses()).ok());
@@ -148,8 +148,8 @@ TEST(PlanNightly, NothingDiffersInSixScenes) {
       {"built-in", built_in("[time]\nlimit_s = 90.0\n")},
       {"field", built_in("[time]\nlimit_s = 90.0\n[scene]\nempty = true\n")},
       {"street", in(street)},
-      {"shibuya", in(beside("shibuya", shibuya, example("shibuya.toml")))},
-      {"lyon", in(beside("lyon", lyon, example("lyon.toml")))},
+      {"shibuya", in(beside("shibuya", shibuya, delivery("shibuya.toml")))},
+      {"lyon", in(beside("lyon", lyon, delivery("lyon.toml")))},
       {"delft", in(beside("delft", delft, kThroughDelft))}};
   SceneVerified all;
   for (const auto& [name, config] : scenes) {
