@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 
 #include "canyon/core/math/chi_square.h"
+#include "canyon/core/motion/adjoint.h"
 #include "canyon/core/units.h"
 
 namespace canyon::mission {
@@ -15,13 +16,8 @@ namespace {
 
 /// Covariance of a pose error moved from frame B to a frame L rigidly attached to it: xi_L = Ad(X_LB) xi_B.
 Matrix6d moved(const Matrix6d& covariance_B, const Pose& X_BL) {
-  const Pose X_LB = X_BL.inverse();
-  const Eigen::Matrix3d R = X_LB.R.toRotationMatrix();
-  Matrix6d adjoint = Matrix6d::Zero();
-  adjoint.topLeftCorner<3, 3>() = R;
-  adjoint.bottomRightCorner<3, 3>() = R;
-  adjoint.bottomLeftCorner<3, 3>() = skew(X_LB.p) * R;
-  return adjoint * covariance_B * adjoint.transpose();
+  const Matrix6d to_L = adjoint(X_BL.inverse());
+  return to_L * covariance_B * to_L.transpose();
 }
 
 /// What two say of one pose together: X Exp(K xi) with xi = log(X^-1 Y), K = P_X (P_X + P_Y)^-1.
@@ -68,7 +64,7 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
   keyframe.t = scan.t;
   keyframe.X_WL_prior = keyframe.X_WL_registered = estimate.X_WB * X_BL_;
   keyframe.points = scan.points.size();
-  keyframe.covariance = moved(estimate.pose_covariance, X_BL_);
+  keyframe.prior_covariance = keyframe.covariance = moved(estimate.pose_covariance, X_BL_);
   if (registers(config_)) {
     std::vector<Eigen::Vector3f> points;
     points.reserve(scan.points.size());
@@ -81,7 +77,7 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
           X_BL_.inverse() * motion.X_TS * X_BL_,
           moved(motion.covariance, X_BL_) +
               diagonal(config_.motion_floor_deg_s * kDegree * elapsed_s, config_.motion_floor_m_s * elapsed_s)};
-      fuse(align(*cloud, predicted, keyframe), keyframe.covariance, keyframe);
+      fuse(align(*cloud, predicted, keyframe), keyframe);
     }
     submap_.push_back({cloud, keyframe.X_WL_registered});
     while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
@@ -124,14 +120,14 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
   return result.surfaces ? together(predicted, alone) : alone;
 }
 
-void Mapper::fuse(const lidar::PosePrior& moved_by, const Matrix6d& prior_covariance, Keyframe& keyframe) const {
+void Mapper::fuse(const lidar::PosePrior& moved_by, Keyframe& keyframe) const {
   keyframe.placed =
       RelativePose{.source = keyframe.t, .target = last_.t, .X_TS = moved_by.X_TS, .covariance = moved_by.covariance};
   const double elapsed_s = std::max(keyframe.t - last_.t, 1e-3);
   const lidar::PosePrior carried{last_.X_WL_registered * moved_by.X_TS,
                                  moved(last_.covariance, moved_by.X_TS) + moved_by.covariance};
   const lidar::PosePrior absolute{keyframe.X_WL_prior,
-                                  prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s)};
+                                  keyframe.prior_covariance * std::max(1.0, config_.prior_correlation_s / elapsed_s)};
   const lidar::PosePrior fused = together(carried, absolute);
   keyframe.X_WL_registered = fused.X_TS;
   keyframe.covariance = fused.covariance;

@@ -22,10 +22,11 @@ struct Keyframe {
   int iterations = 0;
   double rms_m = kNaN;
   std::size_t points = 0;
-  double overlap = kNaN;                           ///< as of lidar::RegistrationResult
-  std::optional<int> open;                         ///< directions that the surfaces leave open, where it is known
-  std::optional<RelativePose> placed;              ///< L in L at the keyframe before, by alignment and predicted motion
-  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_registered
+  double overlap = kNaN;               ///< as of lidar::RegistrationResult
+  std::optional<int> open;             ///< directions that the surfaces leave open, where it is known
+  std::optional<RelativePose> placed;  ///< L in L at the keyframe before, by alignment and predicted motion
+  Matrix6d prior_covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_prior
+  Matrix6d covariance = Matrix6d::Constant(kNaN);        ///< of X_WL_registered
   std::optional<RelativePose> aligned;  ///< B in B at the keyframe before, by the alignment alone, where it converged
 };
 
@@ -83,7 +84,7 @@ class Mapper {
   /// L since the keyframe before, by the surfaces where they tell, else as predicted.
   lidar::PosePrior align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted, Keyframe& keyframe);
   /// Fuses where that puts the keyframe with its prior.
-  void fuse(const lidar::PosePrior& moved_by, const Matrix6d& prior_covariance, Keyframe& keyframe) const;
+  void fuse(const lidar::PosePrior& moved_by, Keyframe& keyframe) const;
 
   lidar::RegistrationConfig config_;
   std::unique_ptr<lidar::Registration> registration_;

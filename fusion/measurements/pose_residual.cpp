@@ -32,15 +32,6 @@ BodyPose cloned_body_pose(const FilterView& filter) {
   return pose_of(filter, clone->R_EU, clone->p_EU_E, filter.state.offset("clone"));
 }
 
-Matrix6d adjoint(const Pose& X) {
-  const Eigen::Matrix3d R = X.R.toRotationMatrix();
-  Matrix6d out = Matrix6d::Zero();
-  out.topLeftCorner<3, 3>() = R;
-  out.bottomRightCorner<3, 3>() = R;
-  out.bottomLeftCorner<3, 3>() = skew(X.p) * R;
-  return out;
-}
-
 Measurement pose_residual(const ErrorState& state, const Pose& predicted, const PoseRows& H, const Pose& measured,
                           const Matrix6d& covariance) {
   Measurement m(6, state, ErrorIndex::kPosition);

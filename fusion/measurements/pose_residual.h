@@ -1,5 +1,6 @@
 #pragma once
 
+#include "canyon/core/motion/adjoint.h"
 #include "canyon/fusion/measurements/body_motion.h"
 
 namespace canyon::fusion {
@@ -14,9 +15,6 @@ struct BodyPose {
 BodyPose body_pose(const FilterView& filter);
 /// The same of the clone, which must have been taken.
 BodyPose cloned_body_pose(const FilterView& filter);
-
-/// Adjoint of X for xi = [rotation; translation]: X Exp(xi) = Exp(Ad xi) X.
-Matrix6d adjoint(const Pose& X);
 
 /// What was measured against what is predicted, in the source frame: [Log(R^ R_measured); R^ (p_measured - p)], R^
 /// being that of what is predicted, transposed; `H`: the xi by which the errors move what is predicted.
