@@ -47,7 +47,7 @@ LIBRARIES = [
     ("zlib", r"zlib\.h", ["core/*.cpp", "report/*.cpp"]),
     ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp", "scene/*.cpp"]),
     ("CLI11", r"CLI/", ["apps/*.cpp"]),
-    ("Ceres", r"ceres/", ["inertial/*ceres_*.cpp", "inertial/*ceres_*.h", "fusion/smoothing/graph/ceres_*.cpp"]),
+    ("Ceres", r"ceres/", ["inertial/*ceres_*.cpp", "inertial/*ceres_*.h", "fusion/smoothing/graph/ceres_*.cpp", "fusion/smoothing/pose_graph/ceres_*.cpp"]),
     ("assimp", r"assimp/", ["scene/importers/assimp.cpp"]),
     ("libxml2", r"libxml/", ["scene/importers/parsing/xml_file.cpp"]),
     ("libtiff", r"tiff\w*\.h", ["scene/elevation/geotiff.cpp"]),

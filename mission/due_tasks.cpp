@@ -330,7 +330,9 @@ Status MissionRun::map_scan(const LidarScan& deskewed, const NavEstimate& now) {
   last_keyframe_X_WB_ = config_.run.truth_as_guess ? true_motion_.at(deskewed.t).value() : now.X_WB;
   if (fusion::measures_with(config_.fusion, "relative_pose")) CANYON_TRY_STATUS(aid_by_map(*keyframe));
   CANYON_TRY_STATUS(boundaries_.check(*keyframe));
-  return add_keyframe(deskewed, *keyframe, true_motion_.at(deskewed.t).value());
+  const Pose X_WB_true = true_motion_.at(deskewed.t).value();
+  CANYON_TRY_STATUS(add_keyframe(deskewed, *keyframe, X_WB_true));
+  return recorder_.keyframe_input({deskewed, now, motion, X_WB_true});
 }
 
 /// The motion between two keyframes tells the filter nothing that it has told the map: what a keyframe's pose in the
@@ -356,6 +358,7 @@ Status MissionRun::add_keyframe(const LidarScan& deskewed, const Keyframe& keyfr
                         .rms_m = keyframe.rms_m,
                         .overlap = keyframe.overlap,
                         .open = keyframe.open,
+                        .prior_covariance = keyframe.prior_covariance,
                         .covariance = keyframe.covariance,
                         .placed = keyframe.placed,
                         .X_LL_true = last_keyframe_X_WL_true_.inverse() * X_WL_true};

@@ -113,7 +113,8 @@ int parse_and_run(int argc, char** argv) {
                            fuse_verb(),
                            lidar_register_verb(),
                            lidar_evaluate_verb(),
-                           lidar_error_budget_verb()}) {
+                           lidar_error_budget_verb(),
+                           lidar_close_loops_verb()}) {
     CLI::App* sub = declare_verb(app, verb);
     sub->footer(std::string("\nExample:\n  ") + verb.example);
     Arguments arguments(*sub);

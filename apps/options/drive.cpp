@@ -71,6 +71,14 @@ void declare_loop_options(Arguments& arguments, LoopOptions& options) {
       .within(1e-3, 1e4);
 }
 
+Status check_loop_options(const LoopOptions& options) {
+  const bool on_tape = !options.tape.tape.empty() || !options.tape.trajectory.empty();
+  if (!on_tape || options.open_loop) return Ok{};
+  return Error{.file = options.tape.tape.empty() ? "--trajectory" : "--tape",
+               .what = "is for open loops",
+               .expected = "--open-loop beside it"};
+}
+
 void declare_figures_option(Arguments& arguments, FigureOptions& options) {
   arguments.option("--figures", options.figures,
                    "rows of the table, by their keys with commas between (canyon keys --figures); without it all");
@@ -142,11 +150,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   set_threads(options.common.threads);
   const auto keys = figures.figures.empty() ? std::vector<std::string>() : split_list(figures.figures);
   CANYON_TRY_STATUS(study::choose_figures(keys, "--figures"));
-  const bool on_tape = !loop.tape.tape.empty() || !loop.tape.trajectory.empty();
-  if (on_tape && !loop.open_loop)
-    return Error{.file = loop.tape.tape.empty() ? "--trajectory" : "--tape",
-                 .what = "is for open loops",
-                 .expected = "--open-loop beside it"};
+  CANYON_TRY_STATUS(check_loop_options(loop));
   CANYON_TRY_STATUS(check_why(why, loop, leave_out));
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));

@@ -16,6 +16,8 @@ struct LoopOptions {
   study::TapeChoice tape;
 };
 void declare_loop_options(Arguments& arguments, LoopOptions& options);
+/// A tape without --open-loop.
+Status check_loop_options(const LoopOptions& options);
 
 /// What of the figures is asked for.
 struct FigureOptions {

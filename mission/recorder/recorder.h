@@ -32,7 +32,8 @@ class Recorder {
   virtual Status keyframe(const KeyframeRow&) { return Ok{}; }
   /// At the end, with each point's distance to the nearest true surface.
   virtual Status map(MapKind, const lidar::MapCloud&, std::span<const float>) { return Ok{}; }
-  virtual Status finish() { return Ok{}; }  ///< nothing follows
+  virtual Status finish() { return Ok{}; }                              ///< nothing follows
+  virtual Status keyframe_input(const KeyframeInput&) { return Ok{}; }  ///< of the keyframe just handed on
 };
 
 /// Hands on to several.
@@ -49,6 +50,7 @@ class Recorders final : public Recorder {
   Status epoch(const NavRow& row) override { return all(&Recorder::epoch, row); }
   Status gnss(const GnssRow& row) override { return all(&Recorder::gnss, row); }
   Status keyframe(const KeyframeRow& row) override { return all(&Recorder::keyframe, row); }
+  Status keyframe_input(const KeyframeInput& input) override { return all(&Recorder::keyframe_input, input); }
   Status map(MapKind kind, const lidar::MapCloud& map, std::span<const float> error_m) override {
     return all(&Recorder::map, kind, map, error_m);
   }

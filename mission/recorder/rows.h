@@ -44,12 +44,21 @@ struct KeyframeRow {
   std::optional<lidar::RegistrationStatus> status;  ///< none: not registered
   int iterations = 0;
   double rms_m = kNaN;
-  double overlap = kNaN;                           ///< share of the points that were matched
-  std::optional<int> open;                         ///< directions that the surfaces leave open
-  Matrix6d covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_registered
+  double overlap = kNaN;                                 ///< share of the points that were matched
+  std::optional<int> open;                               ///< directions that the surfaces leave open
+  Matrix6d prior_covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_prior
+  Matrix6d covariance = Matrix6d::Constant(kNaN);        ///< of X_WL_registered
   /// Since the keyframe before, as the map took it and as it was; none: not registered.
   std::optional<RelativePose> placed;
   Pose X_LL_true;
+};
+
+/// What a keyframe was made of, as the mapper was given it; holds while it is handed on.
+struct KeyframeInput {
+  const LidarScan& deskewed;  ///< in L at its stamp
+  const NavEstimate& estimate;
+  const RelativePose& motion;  ///< of B since the keyframe before, by prediction alone
+  Pose X_WB_true;
 };
 
 }  // namespace canyon::mission

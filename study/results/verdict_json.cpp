@@ -1,30 +1,25 @@
 #include "canyon/study/results/verdict_json.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <nlohmann/json.hpp>
+
+#include "canyon/core/output/json.h"
 
 namespace canyon::study {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// A mean of squares under its name, and the band that a right filter's lies in.
 void write(const char* name, const fusion::SquareMean& mean, Json& out) {
-  out[name] = number(mean.value);
-  out["low"] = number(mean.band.low);
-  out["high"] = number(mean.band.high);
-  out["independent"] = number(mean.effective);
+  out[name] = or_null(mean.value);
+  out["low"] = or_null(mean.band.low);
+  out["high"] = or_null(mean.band.high);
+  out["independent"] = or_null(mean.effective);
 }
 
 void write(const fusion::Whiteness& white, Json& out) {
-  out["lag_one"] = number(white.at_lag_one);
-  out["correlation_s"] = number(white.correlation_s);
+  out["lag_one"] = or_null(white.at_lag_one);
+  out["correlation_s"] = or_null(white.correlation_s);
   out["white"] = white.threshold > 0.0 ? Json(white.statistic <= white.threshold) : Json(nullptr);
 }
 
@@ -38,13 +33,13 @@ Json rows_json(const Rows& rows, const Row& row) {
 Json measurement_json(const fusion::MeasurementNumbers& m) {
   Json out{{"name", m.name}, {"count", m.count}, {"refused", m.refused}};
   write("nis", m.nis, out);
-  out["nis_median_ratio"] = number(m.nis_median_ratio);
+  out["nis_median_ratio"] = or_null(m.nis_median_ratio);
   write(m.white, out);
   return out;
 }
 
 Json axis_json(const fusion::AxisNumbers& axis) {
-  Json out{{"name", axis.name}, {"unit", axis.unit}, {"rms", number(axis.rms)}, {"claimed", number(axis.claimed)}};
+  Json out{{"name", axis.name}, {"unit", axis.unit}, {"rms", or_null(axis.rms)}, {"claimed", or_null(axis.claimed)}};
   write("ratio", axis.ratio, out);
   return out;
 }
@@ -52,10 +47,10 @@ Json axis_json(const fusion::AxisNumbers& axis) {
 Json block_json(const fusion::BlockNumbers& block) {
   Json out{{"name", block.name}};
   write("nees", block.nees, out);
-  out["within_50"] = number(block.coverage[0]);
-  out["within_95"] = number(block.coverage[1]);
-  out["within_997"] = number(block.coverage[2]);
-  out["correlation_s"] = number(block.correlation_s);
+  out["within_50"] = or_null(block.coverage[0]);
+  out["within_95"] = or_null(block.coverage[1]);
+  out["within_997"] = or_null(block.coverage[2]);
+  out["correlation_s"] = or_null(block.correlation_s);
   return out;
 }
 
@@ -66,7 +61,7 @@ Json process_json(const fusion::ProcessNumbers& process) {
 }
 
 Json fixes_json(const fusion::FixNumbers& fixes) {
-  Json out{{"rms_m", number(fixes.rms_m)}, {"claimed_m", number(fixes.claimed_m)}};
+  Json out{{"rms_m", or_null(fixes.rms_m)}, {"claimed_m", or_null(fixes.claimed_m)}};
   write("ratio", fixes.ratio, out);
   write(fixes.white, out);
   out["lasting_is_modelled"] = fixes.lasting_is_modelled;
@@ -76,8 +71,8 @@ Json fixes_json(const fusion::FixNumbers& fixes) {
 Json state_json(const fusion::StateNumbers& state) {
   return {{"block", state.block},
           {"name", state.name},
-          {"share", number(state.share)},
-          {"least_share", number(state.least_share)},
+          {"share", or_null(state.share)},
+          {"least_share", or_null(state.least_share)},
           {"halved_after_s", state.halved_after_s ? Json(*state.halved_after_s) : Json(nullptr)}};
 }
 
@@ -85,7 +80,7 @@ Json state_json(const fusion::StateNumbers& state) {
 
 Json evidence_json(const fusion::VerdictNumbers& n) {
   return {{"tests", n.tests},
-          {"false_alarm_each", number(n.false_alarm)},
+          {"false_alarm_each", or_null(n.false_alarm)},
           {"measurements", rows_json(n.measurements, measurement_json)},
           {"errors", rows_json(n.axes, axis_json)},
           {"blocks", rows_json(n.blocks, block_json)},

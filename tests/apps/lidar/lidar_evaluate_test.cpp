@@ -104,6 +104,10 @@ TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {
           "command line: --estimate without the true way, expected --trajectory FILE");
   EXPECT_EQ(canyon("lidar error-budget mission.toml --fidelity hihg"), 2);
   EXPECT_EQ(canyon("lidar error-budget mission.toml --permutations 1"), 2);
+  EXPECT_EQ(canyon("lidar close-loops --set 'registration.method=\"none\"' --fidelity low"), 2);
+  EXPECT_EQ(read("stderr"), "registration.method: \"none\" gives no map to close, expected a method that registers\n");
+  EXPECT_EQ(canyon("lidar close-loops --tape given.tape"), 2);
+  EXPECT_EQ(read("stderr"), "--tape: is for open loops, expected --open-loop beside it\n");
   EXPECT_TRUE(leftovers().empty());
 }
 
