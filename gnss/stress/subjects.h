@@ -25,5 +25,6 @@ std::vector<StressCase> way_cases();
 std::vector<StressCase> sensor_cases();
 std::vector<StressCase> file_cases();
 std::vector<StressCase> fitted_orbit_cases();
+std::vector<StressCase> street_cases();
 
 }  // namespace canyon::gnss

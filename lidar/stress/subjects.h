@@ -14,5 +14,6 @@ std::vector<StressCase> packet_cases();
 std::vector<StressCase> cloud_cases();
 std::vector<StressCase> registration_cases();
 std::vector<StressCase> chain_cases();
+std::vector<StressCase> map_cases();
 
 }  // namespace canyon::lidar

@@ -9,6 +9,7 @@ namespace canyon::mission {
 
 std::vector<StressCase> autonomy_cases();
 std::vector<StressCase> boundary_cases();
+std::vector<StressCase> collision_cases();
 std::vector<StressCase> drive_cases();
 std::vector<StressCase> localizer_cases();
 std::vector<StressCase> path_cases();
