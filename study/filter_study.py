@@ -4,7 +4,7 @@
     study/filter_study.py --route vicksburg --seeds 1-10 --filters naive,vehicle,tight --oracle
     study/filter_study.py --route city7 --seeds 101-103 --set 'loose=filter = "vehicle"; fix_error_scale = 3'
     study/filter_study.py --route city7 --seeds 101-103 --fixes
-    study/filter_study.py --like high --seeds 1-20 --filters naive,vehicle --parts --oracle
+    study/filter_study.py --like high --seeds 1-20 --filters naive,vehicle,tight --parts --oracle
 
 Each seed is driven once in an open loop, by truth, with everything that any of the filters measures with; `canyon fuse` then gives each
 filter that record. So all of them meet the same motion, fixes, ranges, ticks and noise. The rear axle slips and the unit is mounted
@@ -300,16 +300,28 @@ def seeds_of(text):
     return list(range(int(first), int(last or first) + 1))
 
 
+def times(runs, others):
+    """Ratio of the RMS of runs to those of others with the same seeds: its median, and the 95 % interval of that by order statistics."""
+    ratios = sorted(a["rms"] / b["rms"] for a, b in zip(runs, others))
+    n, left = len(ratios), 0
+    while sum(math.comb(n, k) for k in range(left + 1)) / 2**n <= 0.025:
+        left += 1
+    interval = f" [{ratios[left - 1]:.2f}, {ratios[n - left]:.2f}]" if left else ""
+    return f"{statistics.median(ratios):.2f}{interval}"
+
+
 def print_table(results):
+    """The last column is beside `vehicle`, of the same seeds."""
     median = statistics.median
-    print("| filter | seeds | 3-D RMS, m (range) | horizontal | east, north, up | largest | coverage, % | (e/sigma)² mean | median |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| filter | seeds | 3-D RMS, m (range) | horizontal | east, north, up | largest | coverage, % | (e/sigma)² mean | median | times `vehicle` |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     for name, runs in results.items():
         of = lambda key: median(r[key] for r in runs)
         within = " / ".join(f"{statistics.fmean(r['within'][i] for r in runs):.0f}" for i in range(3))
         three = lambda key, d=1: ", ".join(f"{median(r[key][i] for r in runs):.{d}f}" for i in range(3))
         print(f"| {name} | {len(runs)} | {of('rms'):.2f} ({min(r['rms'] for r in runs):.2f} to {max(r['rms'] for r in runs):.2f}) | {of('h'):.2f} | "
-              f"{of('e'):.2f}, {of('n'):.2f}, {of('u'):.2f} | {of('max'):.1f} | {within} | {three('mean')} | {three('median')} |")
+              f"{of('e'):.2f}, {of('n'):.2f}, {of('u'):.2f} | {of('max'):.1f} | {within} | {three('mean')} | {three('median')} | "
+              f"{times(runs, results['vehicle']) if 'vehicle' in results and name != 'vehicle' else ''} |")
 
 
 def main():
