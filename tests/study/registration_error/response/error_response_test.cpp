@@ -1,0 +1,112 @@
+#include "canyon/study/registration_error/response/error_response.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "canyon/core/process/parallel.h"
+#include "canyon/core/units.h"
+#include "canyon/lidar/scanner.h"
+#include "canyon/tests/study/registration_error/taped_start.h"
+
+namespace canyon::study {
+namespace {
+
+using testing::taped_start;
+using testing::TapedStart;
+
+/// The street once for all of these tests.
+const TapedStart& street() {
+  static const TapedStart on = taped_start("low", 14.0);
+  return on;
+}
+
+ErrorResponse respond(std::vector<std::string> errors, std::vector<double> sizes,
+                      std::vector<std::string> methods = {"gicp", "none"}) {
+  ErrorResponseOptions how{.fidelity = "low",
+                           .methods = std::move(methods),
+                           .errors = std::move(errors),
+                           .sizes = std::move(sizes),
+                           .seeds = 1,
+                           .stretch_m = 20.0,
+                           .show_progress = false};
+  auto response = measure_error_response(street().config, street().mission, street().tape, how);
+  EXPECT_TRUE(response.ok()) << (response.ok() ? "" : response.error().str());
+  return *std::move(response);
+}
+
+const ResponseCurve& curve_of(const ErrorResponse& response, const std::string& method, const std::string& kind,
+                              const std::string& axis) {
+  for (const ResponseCurve& curve : response.curves)
+    if (!curve.from_m && curve.method == method && curve.kind == kind && curve.axis == axis) return curve;
+  ADD_FAILURE() << method << " " << kind << " " << axis;
+  return response.curves.front();
+}
+
+/// The estimate is the true pose but for the error, so that what is laid is what the filter's keyframes are off by.
+TEST(ErrorResponse, PriorErrorsAreWhatWasLaid) {
+  const ErrorResponse response = respond({"bias_m", "jump_m", "attitude_deg"}, {0.5, 2.0}, {"none"});
+  EXPECT_EQ(response.curves.size(), 9 * (1 + response.places_from_m.size()));
+  for (const char* axis : {"forward", "left", "up"})
+    for (const char* kind : {"bias_m", "jump_m"}) {
+      const ResponseCurve& curve = curve_of(response, "none", kind, axis);
+      EXPECT_NEAR(curve.keyframe[0].prior_m, 0.5, 1e-9) << kind << axis;
+      EXPECT_NEAR(curve.keyframe[1].prior_m, 2.0, 1e-9) << kind << axis;
+    }
+  // A turned vehicle moves its sensor by 2 |sin(a / 2)| times its distance from the axis.
+  const Eigen::Vector3d p = lidar::sensor_in_body(street().config.lidar).p;
+  const double turned_m = 2.0 * std::sin(0.5 * 2.0 * kDegree) * std::hypot(p.x(), p.y());
+  EXPECT_NEAR(curve_of(response, "none", "attitude_deg", "up").keyframe[1].prior_m, turned_m, 1e-9);
+}
+
+/// Who believes the prior heals nothing, whatever the error.
+TEST(ErrorResponse, WithoutRegistrationNothingIsHealed) {
+  const ErrorResponse response = respond({"jump_m", "latency_s"}, {0.1, 1.0}, {"none"});
+  for (const ResponseCurve& curve : response.curves)
+    for (const auto* points : {&curve.keyframe, &curve.map})
+      for (const ResponsePoint& point : *points) EXPECT_EQ(point.healed.value, 0.0);
+  EXPECT_EQ(curve_of(response, "none", "latency_s", "").keyframe_half.value, 0.0);
+  EXPECT_EQ(response.undisturbed.front().keyframe_m, 0.0);
+}
+
+/// A jump of the estimate is no motion and no surface: what is left of it right behind it is what the filter's claim
+/// makes the mapper take over. The map that begins with a bias has nothing to tell it from the truth.
+TEST(ErrorResponse, AJumpIsHealedMoreThanABias) {
+  const ErrorResponse response = respond({"bias_m", "jump_m"}, {1.0}, {"gicp"});
+  const double bias = curve_of(response, "gicp", "bias_m", "left").keyframe[0].healed.value;
+  const double jump = curve_of(response, "gicp", "jump_m", "left").keyframe[0].healed.value;
+  EXPECT_GT(jump, bias);
+  EXPECT_LE(jump, 1.0);
+  EXPECT_GT(curve_of(response, "gicp", "jump_m", "left").map[0].registered_m, 0.0);
+}
+
+TEST(ErrorResponse, SameBitsForAnyNumberOfThreads) {
+  std::vector<std::string> tables;
+  for (const int n : {1, 2, 8}) {
+    set_threads(n);
+    tables.push_back(error_response_csv(respond({"noise_m"}, {0.5})));
+  }
+  set_threads(0);
+  EXPECT_EQ(tables[1], tables[0]);
+  EXPECT_EQ(tables[2], tables[0]);
+}
+
+TEST(ErrorResponse, WhatIsUnknownIsNamed) {
+  const auto refused = [](ErrorResponseOptions how) {
+    const Status status = check_response(how);
+    return status.ok() ? std::string() : status.error().str();
+  };
+  EXPECT_NE(refused({.methods = {"gicpp"}}).find("--methods: unknown name \"gicpp\""), std::string::npos);
+  EXPECT_NE(refused({.errors = {"jump"}}).find("--errors: unknown name \"jump\""), std::string::npos);
+  ErrorResponseOptions far{.methods = {"none"}, .errors = {"jump_m"}, .sizes = {1.0}, .stretch_m = 1e5, .show_progress = false};
+  mission::MissionConfig config = street().config;
+  config.registration.submap_keyframes = 1000;
+  const auto response = measure_error_response(config, street().mission, street().tape, far);
+  ASSERT_FALSE(response.ok());
+  EXPECT_EQ(response.error().exit_code, 2);
+  EXPECT_NE(response.error().str().find("--stretch"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace canyon::study
