@@ -11,6 +11,8 @@
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/drive_check/drive_page.h"
 #include "canyon/report/error_budget/budget_page.h"
+#include "canyon/report/error_budget/events_page.h"
+#include "canyon/report/error_budget/response_page.h"
 #include "canyon/report/format.h"
 #include "canyon/report/fuse/fuse_page.h"
 #include "canyon/report/read/read_results.h"
@@ -68,6 +70,10 @@ Result<std::string> html_report(const std::string& results_dir) {
   if (std::filesystem::exists(results_dir + "/tradeoff.csv", code)) return tradeoff_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/error_budget.csv", code))
     return budget_page(results_dir + "/summary.json");
+  if (std::filesystem::exists(results_dir + "/error_events.csv", code))
+    return events_page(results_dir + "/summary.json");
+  if (std::filesystem::exists(results_dir + "/error_response.csv", code))
+    return response_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/paper.csv", code)) return reproduce_page(results_dir + "/summary.json");
   if (std::filesystem::exists(results_dir + "/innovations.csv", code)) return fuse_page(results_dir);
   if (std::filesystem::exists(results_dir + "/signals.csv", code)) return drive_page(results_dir);

@@ -114,7 +114,9 @@ int parse_and_run(int argc, char** argv) {
                            lidar_register_verb(),
                            lidar_evaluate_verb(),
                            lidar_error_budget_verb(),
-                           lidar_close_loops_verb()}) {
+                           lidar_close_loops_verb(),
+                           lidar_error_events_verb(),
+                           lidar_error_response_verb()}) {
     CLI::App* sub = declare_verb(app, verb);
     sub->footer(std::string("\nExample:\n  ") + verb.example);
     Arguments arguments(*sub);

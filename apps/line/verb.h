@@ -48,6 +48,8 @@ Verb lidar_scan_verb();
 Verb lidar_evaluate_verb();
 Verb lidar_error_budget_verb();
 Verb lidar_close_loops_verb();
+Verb lidar_error_events_verb();
+Verb lidar_error_response_verb();
 Verb lidar_register_verb();
 
 /// The largest --seed: what a TOML integer and a JSON number both carry without loss.

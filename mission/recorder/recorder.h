@@ -30,10 +30,10 @@ class Recorder {
   virtual Status epoch(const NavRow&) { return Ok{}; }
   virtual Status gnss(const GnssRow&) { return Ok{}; }  ///< once the filter has used it, or will not any more
   virtual Status keyframe(const KeyframeRow&) { return Ok{}; }
+  virtual Status keyframe_input(const KeyframeInput&) { return Ok{}; }  ///< of the keyframe just handed on
   /// At the end, with each point's distance to the nearest true surface.
   virtual Status map(MapKind, const lidar::MapCloud&, std::span<const float>) { return Ok{}; }
-  virtual Status finish() { return Ok{}; }                              ///< nothing follows
-  virtual Status keyframe_input(const KeyframeInput&) { return Ok{}; }  ///< of the keyframe just handed on
+  virtual Status finish() { return Ok{}; }  ///< nothing follows
 };
 
 /// Hands on to several.

@@ -220,6 +220,13 @@ const LongVerb kLongVerbs[] = {
      {"lidar", "error-budget", "mission.toml", "--fidelity", "high", "--seeds", "100", "--out", "given_budget",
       "--force"},
      {}},
+    {"lidar_error_events",
+     {"lidar", "error-events", "mission.toml", "--fidelity", "high", "--seeds", "100", "--out", "given_events",
+      "--force"},
+     {}},
+    {"lidar_error_response",
+     {"lidar", "error-response", "--fidelity", "low", "--seeds", "100", "--out", "given_response", "--force"},
+     {}},
 };
 
 class InterruptionNightly : public Interruption, public ::testing::WithParamInterface<LongVerb> {};

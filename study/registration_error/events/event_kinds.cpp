@@ -4,7 +4,7 @@ namespace canyon::study {
 
 ModelTable<MapEventKind> map_event_kinds() {
   static constexpr ModelRow<MapEventKind> kRows[] = {
-      {"dop_jump", MapEventKind::kDopJump, "GDOP changes by more than 2 from fix to fix; size: by how much"},
+      {"dop_jump", MapEventKind::kDilutionJump, "GDOP changes by more than 2 from fix to fix; size: by how much"},
       {"fix_lost", MapEventKind::kFixLost, "the first epoch without a fix; size: seconds until the next one"},
       {"fix_back", MapEventKind::kFixBack, "the first fix after some without; size: seconds that there was none"},
       {"nlos_begin", MapEventKind::kNlosBegin,
@@ -22,7 +22,7 @@ std::vector<MapEvent> fix_events(const std::vector<Event>& seen, double first_s,
     const double from_s = first_s + event.from_s, to_s = first_s + event.to_s, back_s = to_s + period_s;
     switch (event.kind) {
       case EventKind::kDilutionJump:
-        out.push_back({MapEventKind::kDopJump, from_s, from_s, to_s, event.size});
+        out.push_back({MapEventKind::kDilutionJump, from_s, from_s, to_s, event.size});
         break;
       case EventKind::kHiddenSignals:
         out.push_back({MapEventKind::kNlosBegin, from_s, from_s, to_s, event.size});

@@ -9,13 +9,13 @@ namespace canyon::study {
 
 /// What may move a map, as seen on one run. A new one is a value here, a row of map_event_kinds(), and where it is
 /// seen.
-enum class MapEventKind { kDopJump, kFixLost, kFixBack, kNlosBegin, kEstimateJump };
+enum class MapEventKind { kDilutionJump, kFixLost, kFixBack, kNlosBegin, kEstimateJump };
 /// Name in results, and what it is.
 ModelTable<MapEventKind> map_event_kinds();
 
 /// Times are seconds after the start, on the tape.
 struct MapEvent {
-  MapEventKind kind = MapEventKind::kDopJump;
+  MapEventKind kind = MapEventKind::kDilutionJump;
   double t_s = 0.0;                 ///< when it happens
   double from_s = 0.0, to_s = 0.0;  ///< while what it belongs to lasts: a place is without it only outside of this
   double size = 0.0;  ///< change of GDOP; seconds without fix; most hidden signals; metres of the correction

@@ -13,7 +13,7 @@ inline constexpr std::array<double, 9> kLagEdges_s{-kBefore_s, 0.0, 1.0, 2.0, 4.
 
 /// What one kind of event alone does, the others held fast.
 struct EventRegression {
-  MapEventKind kind = MapEventKind::kDopJump;
+  MapEventKind kind = MapEventKind::kDilutionJump;
   std::vector<EstimatedNumber> by_lag;  ///< after the event, by the ranges of kLagEdges_s, less the one before it
   EstimatedNumber effect_m;             ///< mean over (0, kEffect_s], as EventAverage::effect_m
 };

@@ -145,10 +145,17 @@ void fill_curve(const ErrorSweep& sweep, const ClusteredSums& sums, std::uint64_
   for (std::size_t i = 0; i < n; ++i) {
     const PlacedSums all = weighed(sums[i], once);
     const auto rms = [&](double sum_m2) { return std::sqrt(sum_m2 / all.count); };
-    curve.keyframe.push_back(
-        {sweep.sizes[i], rms(all.keyframe_prior_m2), rms(all.keyframe_registered_m2), {values[i], intervals[i]}});
-    curve.map.push_back(
-        {sweep.sizes[i], rms(all.map_prior_m2), rms(all.map_registered_m2), {values[n + i], intervals[n + i]}});
+    const double unaligned = all.unaligned / all.count;
+    curve.keyframe.push_back({sweep.sizes[i],
+                              rms(all.keyframe_prior_m2),
+                              rms(all.keyframe_registered_m2),
+                              {values[i], intervals[i]},
+                              unaligned});
+    curve.map.push_back({sweep.sizes[i],
+                         rms(all.map_prior_m2),
+                         rms(all.map_registered_m2),
+                         {values[n + i], intervals[n + i]},
+                         unaligned});
   }
   curve.keyframe_half = {values[2 * n], intervals[2 * n]};
   curve.map_half = {values[2 * n + 1], intervals[2 * n + 1]};

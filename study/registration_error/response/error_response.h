@@ -27,7 +27,8 @@ struct ErrorResponseOptions {
 struct ResponsePoint {
   double size = 0.0;
   double prior_m = kNaN, registered_m = kNaN;
-  EstimatedNumber healed;  ///< 1 - registered / prior; below 0: registration makes it worse
+  EstimatedNumber healed;   ///< 1 - registered / prior; below 0: registration makes it worse
+  double unaligned = kNaN;  ///< share of the keyframes whose alignment gave nothing: there the prediction carries on
 };
 
 /// One kind of error along one axis, by its size, with one method: everywhere, or in one place.
@@ -67,7 +68,8 @@ Result<ErrorResponse> measure_error_response(const mission::MissionConfig& confi
 Status check_response(const ErrorResponseOptions& options);
 
 Json error_response_json(const ErrorResponse& response);
-/// `method,kind,axis,from_m,size,series,prior_m,registered_m,healed,low,high`; from_m is empty for all places.
+/// `method,kind,axis,from_m,size,series,prior_m,registered_m,healed,low,high,unaligned`; from_m is empty for all
+/// places.
 std::string error_response_csv(const ErrorResponse& response);
 std::string error_response_table(const ErrorResponse& response);
 

@@ -14,7 +14,8 @@ Json healed_json(const ResponsePoint& point) {
           {"registered_m", or_null(point.registered_m)},
           {"healed", or_null(point.healed.value)},
           {"low", or_null(point.healed.interval.low)},
-          {"high", or_null(point.healed.interval.high)}};
+          {"high", or_null(point.healed.interval.high)},
+          {"unaligned", or_null(point.unaligned)}};
 }
 
 /// A size beyond all that were tried is no number of JSON.
@@ -52,7 +53,7 @@ void add_rows(const ResponseCurve& curve, const char* series, const std::vector<
                    curve.from_m ? printed("%g", *curve.from_m).c_str() : "", point.size, series) +
            response_cell(point.prior_m) + ',' + response_cell(point.registered_m) + ',' +
            response_cell(point.healed.value) + ',' + response_cell(point.healed.interval.low) + ',' +
-           response_cell(point.healed.interval.high) + '\n';
+           response_cell(point.healed.interval.high) + ',' + response_cell(point.unaligned) + '\n';
 }
 
 /// "never" and "beyond": not within the sizes that were tried.
@@ -119,7 +120,7 @@ Json error_response_json(const ErrorResponse& response) {
 }
 
 std::string error_response_csv(const ErrorResponse& response) {
-  std::string out = "method,kind,axis,from_m,size,series,prior_m,registered_m,healed,low,high\n";
+  std::string out = "method,kind,axis,from_m,size,series,prior_m,registered_m,healed,low,high,unaligned\n";
   for (const ResponseCurve& curve : response.curves) {
     add_rows(curve, "keyframe", curve.keyframe, out);
     add_rows(curve, "map", curve.map, out);

@@ -61,14 +61,22 @@ Pose disturbed_pose(const RecordedKeyframes& recorded, const Stretch& stretch, s
                                .keyframe = k});
 }
 
+/// Of a keyframe that was not registered: it is then measured once.
+bool same_place(const Pose& a, const Pose& b) {
+  return a.p == b.p && a.R.coeffs() == b.R.coeffs();
+}
+
 void add_placed(const mission::Keyframe& keyframe, const Pose& X_WL_true, const std::vector<Eigen::Vector3f>& points,
                 const scene::Scene& scene, PlacedSums& sums) {
   sums.keyframe_prior_m2 += (keyframe.X_WL_prior.p - X_WL_true.p).squaredNorm();
   sums.keyframe_registered_m2 += (keyframe.X_WL_registered.p - X_WL_true.p).squaredNorm();
-  sums.map_prior_m2 += placed_error_m2(points, keyframe.X_WL_prior, scene);
-  sums.map_registered_m2 += placed_error_m2(points, keyframe.X_WL_registered, scene);
+  const double prior_m2 = placed_error_m2(points, keyframe.X_WL_prior, scene);
+  sums.map_prior_m2 += prior_m2;
+  sums.map_registered_m2 += same_place(keyframe.X_WL_prior, keyframe.X_WL_registered)
+                                ? prior_m2
+                                : placed_error_m2(points, keyframe.X_WL_registered, scene);
   sums.count += 1.0;
-  if (keyframe.status && *keyframe.status != lidar::RegistrationStatus::kConverged) ++sums.unconverged;
+  if (keyframe.status && *keyframe.status != lidar::RegistrationStatus::kConverged) sums.unaligned += 1.0;
 }
 
 }  // namespace
@@ -79,7 +87,7 @@ void PlacedSums::operator+=(const PlacedSums& other) {
   map_prior_m2 += other.map_prior_m2;
   map_registered_m2 += other.map_registered_m2;
   count += other.count;
-  unconverged += other.unconverged;
+  unaligned += other.unaligned;
 }
 
 DisturbedKeyframe disturbed_keyframe(const RecordedKeyframes& recorded, const Stretch& stretch, std::size_t k,

@@ -39,7 +39,7 @@ struct PlacedSums {
   double keyframe_prior_m2 = 0.0, keyframe_registered_m2 = 0.0;  ///< squares of positions' errors
   double map_prior_m2 = 0.0, map_registered_m2 = 0.0;            ///< mean squares of scans' distances to surfaces
   double count = 0.0;
-  int unconverged = 0;  ///< alignments without a result
+  double unaligned = 0.0;  ///< keyframes whose alignment gave nothing
   void operator+=(const PlacedSums& other);
 };
 /// The mission's mapper (mission/mapper.h) over the keyframes of the stretch, from its first on, each of them a

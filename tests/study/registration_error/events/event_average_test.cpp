@@ -13,7 +13,7 @@ using testing::event_at;
 constexpr double kPlanted_m = 0.5;
 /// From 2 to 8 s after the event.
 double planted_for_a_while(MapEventKind kind, double since_s) {
-  return kind == MapEventKind::kDopJump && since_s >= 2.0 && since_s < 8.0 ? kPlanted_m : 0.0;
+  return kind == MapEventKind::kDilutionJump && since_s >= 2.0 && since_s < 8.0 ? kPlanted_m : 0.0;
 }
 /// What the mean over the lags 0.5, 1, ..., 10 s makes of it: a keyframe a second, so it rises from 1 to 2 s and falls
 /// from 7 to 8 s by straight lines; 0.5 at 1.5, eleven whole ones from 2 to 7, 0.5 at 7.5.
@@ -23,7 +23,7 @@ constexpr double kPlantedMean_m = kPlanted_m * (0.5 + 11.0 + 0.5) / 20.0;
 std::vector<MapEvent> at_crossings(const RandomStream& stream, std::uint64_t run) {
   const double which = std::floor(stream.uniform(0, run) * 6.0);
   if (which >= 4.0) return {};
-  return {event_at(MapEventKind::kDopJump, 50.0 * (which + 1.0))};
+  return {event_at(MapEventKind::kDilutionJump, 50.0 * (which + 1.0))};
 }
 /// Crossings are bad places whatever the sky does.
 double worse_at_crossings(double t_s) {
@@ -38,7 +38,7 @@ bool covers(const EstimatedNumber& number, double value) {
 
 TEST(EventAverage, APlantedEffectIsFoundWithItsDelayAndDuration) {
   const ArtificialRuns runs{.events = at_crossings, .effect = planted_for_a_while};
-  const EventAverage found = average_events(runs.make(), MapEventKind::kDopJump, 0, 1);
+  const EventAverage found = average_events(runs.make(), MapEventKind::kDilutionJump, 0, 1);
   EXPECT_GT(found.matched, 40);
   EXPECT_TRUE(covers(found.effect_m, kPlantedMean_m)) << found.effect_m.value;
   EXPECT_LT(found.effect_m.interval.high - found.effect_m.interval.low, kPlantedMean_m);
@@ -51,7 +51,7 @@ TEST(EventAverage, APlantedEffectIsFoundWithItsDelayAndDuration) {
 TEST(EventAverage, WhatThePlaceDoesIsNoEffect) {
   const ArtificialRuns runs{
       .place = worse_at_crossings, .events = at_crossings, .effect = [](MapEventKind, double) { return 0.0; }};
-  const EventAverage found = average_events(runs.make(), MapEventKind::kDopJump, 0, 1);
+  const EventAverage found = average_events(runs.make(), MapEventKind::kDilutionJump, 0, 1);
   EXPECT_TRUE(covers(found.effect_m, 0.0)) << found.effect_m.value;
   EXPECT_TRUE(covers(found.null_m, 0.0)) << found.null_m.value;
   EXPECT_GT(found.event_m.interval.low, 0.2) << "an average of the events alone takes the crossings for them";

@@ -13,7 +13,7 @@ using testing::event_at;
 /// A DOP jump, half of the time with hidden signals 3 s behind it; hidden signals alone elsewhere.
 std::vector<MapEvent> overlapping(const RandomStream& stream, std::uint64_t run) {
   const double at_s = 60.0 + std::floor(100.0 * stream.uniform(0, run));
-  std::vector<MapEvent> out{event_at(MapEventKind::kDopJump, at_s)};
+  std::vector<MapEvent> out{event_at(MapEventKind::kDilutionJump, at_s)};
   if (stream.uniform(2, run) < 0.5) out.push_back(event_at(MapEventKind::kNlosBegin, at_s + 3.0));
   if (stream.uniform(3, run) < 0.5) out.push_back(event_at(MapEventKind::kNlosBegin, at_s + 80.0));
   return out;
@@ -21,7 +21,7 @@ std::vector<MapEvent> overlapping(const RandomStream& stream, std::uint64_t run)
 constexpr double kOfDop_m = 0.6, kOfNlos_m = -0.4;
 double level_for_10_s(MapEventKind kind, double since_s) {
   if (!(since_s > 0.0 && since_s <= 10.0)) return 0.0;
-  return kind == MapEventKind::kDopJump ? kOfDop_m : kOfNlos_m;
+  return kind == MapEventKind::kDilutionJump ? kOfDop_m : kOfNlos_m;
 }
 double waves(double t_s) {
   return std::sin(0.3 * t_s) + 0.01 * t_s;
@@ -34,7 +34,7 @@ TEST(EventRegression, WithoutNoiseIsExact) {
       .seeds = 6, .noise_m = 0.0, .place = waves, .events = overlapping, .effect = level_for_10_s};
   const auto found = regress_events(runs.make(), 0, 1);
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[0].kind, MapEventKind::kDopJump);
+  EXPECT_EQ(found[0].kind, MapEventKind::kDilutionJump);
   EXPECT_EQ(found[1].kind, MapEventKind::kNlosBegin);
   EXPECT_NEAR(found[0].effect_m.value, kOfDop_m, 1e-10);
   EXPECT_NEAR(found[1].effect_m.value, kOfNlos_m, 1e-10);
@@ -55,7 +55,7 @@ TEST(EventRegression, TellsApartWhatAnAverageMixes) {
   };
   EXPECT_TRUE(covers(found[0].effect_m, kOfDop_m)) << found[0].effect_m.value;
   EXPECT_TRUE(covers(found[1].effect_m, kOfNlos_m)) << found[1].effect_m.value;
-  const EventAverage mixed = average_events(series, MapEventKind::kDopJump, 0, 1);
+  const EventAverage mixed = average_events(series, MapEventKind::kDilutionJump, 0, 1);
   EXPECT_LT(mixed.effect_m.interval.high, kOfDop_m) << "the hidden signals behind half of the jumps count against them";
 }
 

@@ -94,7 +94,7 @@ TEST(PlantedJump, IsFoundWithSizeAndTimeAndNoneInLow) {
 }
 
 TEST(ErrorEvents, SameBitsForAnyNumberOfThreads) {
-  const TapedStart on = taped_start("low", 8.0);
+  const TapedStart on = taped_start("low", 5.0);
   std::vector<std::string> tables;
   for (const int n : {1, 2, 8}) {
     set_threads(n);

@@ -46,23 +46,19 @@ const ResponseCurve& curve_of(const ErrorResponse& response, const std::string& 
 
 /// The estimate is the true pose but for the error, so that what is laid is what the filter's keyframes are off by.
 TEST(ErrorResponse, PriorErrorsAreWhatWasLaid) {
-  const ErrorResponse response = respond({"bias_m", "jump_m", "attitude_deg"}, {0.5, 2.0}, {"none"});
-  EXPECT_EQ(response.curves.size(), 9 * (1 + response.places_from_m.size()));
+  const ErrorResponse response = respond({"jump_m", "attitude_deg"}, {2.0}, {"none"});
+  EXPECT_EQ(response.curves.size(), 6 * (1 + response.places_from_m.size()));
   for (const char* axis : {"forward", "left", "up"})
-    for (const char* kind : {"bias_m", "jump_m"}) {
-      const ResponseCurve& curve = curve_of(response, "none", kind, axis);
-      EXPECT_NEAR(curve.keyframe[0].prior_m, 0.5, 1e-9) << kind << axis;
-      EXPECT_NEAR(curve.keyframe[1].prior_m, 2.0, 1e-9) << kind << axis;
-    }
+    EXPECT_NEAR(curve_of(response, "none", "jump_m", axis).keyframe[0].prior_m, 2.0, 1e-9) << axis;
   // A turned vehicle moves its sensor by 2 |sin(a / 2)| times its distance from the axis.
   const Eigen::Vector3d p = lidar::sensor_in_body(street().config.lidar).p;
   const double turned_m = 2.0 * std::sin(0.5 * 2.0 * kDegree) * std::hypot(p.x(), p.y());
-  EXPECT_NEAR(curve_of(response, "none", "attitude_deg", "up").keyframe[1].prior_m, turned_m, 1e-9);
+  EXPECT_NEAR(curve_of(response, "none", "attitude_deg", "up").keyframe[0].prior_m, turned_m, 1e-9);
 }
 
 /// Who believes the prior heals nothing, whatever the error.
 TEST(ErrorResponse, WithoutRegistrationNothingIsHealed) {
-  const ErrorResponse response = respond({"jump_m", "latency_s"}, {0.1, 1.0}, {"none"});
+  const ErrorResponse response = respond({"latency_s"}, {0.1, 1.0}, {"none"});
   for (const ResponseCurve& curve : response.curves)
     for (const auto* points : {&curve.keyframe, &curve.map})
       for (const ResponsePoint& point : *points) EXPECT_EQ(point.healed.value, 0.0);
@@ -99,7 +95,8 @@ TEST(ErrorResponse, WhatIsUnknownIsNamed) {
   };
   EXPECT_NE(refused({.methods = {"gicpp"}}).find("--methods: unknown name \"gicpp\""), std::string::npos);
   EXPECT_NE(refused({.errors = {"jump"}}).find("--errors: unknown name \"jump\""), std::string::npos);
-  ErrorResponseOptions far{.methods = {"none"}, .errors = {"jump_m"}, .sizes = {1.0}, .stretch_m = 1e5, .show_progress = false};
+  ErrorResponseOptions far{
+      .methods = {"none"}, .errors = {"jump_m"}, .sizes = {1.0}, .stretch_m = 1e5, .show_progress = false};
   mission::MissionConfig config = street().config;
   config.registration.submap_keyframes = 1000;
   const auto response = measure_error_response(config, street().mission, street().tape, far);
