@@ -41,7 +41,7 @@ std::string headline(const FusedRun& run) {
   return out + ".";
 }
 
-std::string verdict_section(const FusedRun& run) {
+std::string fused_verdict_section(const FusedRun& run) {
   std::string facts = show_count(run.samples) + " IMU samples; " + show_count(run.fixes_accepted) + " of " +
                       count_of(run.fixes, "fix", "fixes") + " accepted";
   if (run.fixes_withheld > 0.0) facts += ", " + show_count(run.fixes_withheld) + " withheld";
@@ -268,7 +268,7 @@ Result<std::string> fuse_page(const std::string& directory) {
       "<a href=\"#innovations\">Innovations</a> <a href=\"#filter\">Filter</a> <a href=\"#made\">What it was made "
       "of</a></nav>\n</header>\n";
   for (const auto part :
-       {verdict_section, errors_section, outages_section, innovations_section, consistency_section, made_section}) {
+       {fused_verdict_section, errors_section, outages_section, innovations_section, consistency_section, made_section}) {
     throw_if_cancelled();
     out += part(run);
   }
