@@ -68,16 +68,16 @@ TEST(PlantedJump, IsFoundWithSizeAndTimeAndNoneInLow) {
   ASSERT_GT(plain.size(), 30U);
   EXPECT_TRUE(jumps_of(plain).empty());
 
-  constexpr double kPlanted_m = 3.0;
+  constexpr double kLaidOn_m = 3.0;
   const std::size_t from = plain.size() / 2;
   std::vector<GivenKeyframe> planted = plain;
-  for (std::size_t k = from; k < planted.size(); ++k) planted[k].estimate.X_WB.p.x() += kPlanted_m;
+  for (std::size_t k = from; k < planted.size(); ++k) planted[k].estimate.X_WB.p.x() += kLaidOn_m;
   const std::vector<MapEvent> found = jumps_of(planted);
   ASSERT_EQ(found.size(), 1U);
   const Pose predicted = plain[from - 1].estimate.X_WB * plain[from].motion.X_TS;
   const double corrected_m = (plain[from].estimate.X_WB.p - predicted.p).norm();
   EXPECT_LT(corrected_m, 1.0);
-  EXPECT_NEAR(found[0].size, kPlanted_m, corrected_m + 1e-9);
+  EXPECT_NEAR(found[0].size, kLaidOn_m, corrected_m + 1e-9);
   EXPECT_EQ(found[0].t_s, planted[from].t_s);
   EXPECT_EQ(found[0].from_s, planted[from - 1].t_s);
 
@@ -88,7 +88,7 @@ TEST(PlantedJump, IsFoundWithSizeAndTimeAndNoneInLow) {
   double largest_m = 0.0;
   for (const GivenKeyframe& keyframe : plain)
     largest_m = std::max(largest_m, (keyframe.estimate.X_WB.p - keyframe.p_W_true).norm());
-  EXPECT_NEAR(average.effect_m.value, kPlanted_m, 2.0 * largest_m);
+  EXPECT_NEAR(average.effect_m.value, kLaidOn_m, 2.0 * largest_m);
   EXPECT_EQ(average.delay_s.value, 0.0);
   EXPECT_EQ(average.duration_s.value, kAfter_s + kLagStep_s - average.delay_s.value) << "it stays";
 }
