@@ -267,8 +267,8 @@ Result<std::string> fuse_page(const std::string& directory) {
       std::string(run.outages.front().empty() ? "" : "<a href=\"#outages\">Outages</a> ") +
       "<a href=\"#innovations\">Innovations</a> <a href=\"#filter\">Filter</a> <a href=\"#made\">What it was made "
       "of</a></nav>\n</header>\n";
-  for (const auto part :
-       {fused_verdict_section, errors_section, outages_section, innovations_section, consistency_section, made_section}) {
+  for (const auto part : {fused_verdict_section, errors_section, outages_section, innovations_section,
+                          consistency_section, made_section}) {
     throw_if_cancelled();
     out += part(run);
   }
