@@ -134,7 +134,7 @@ StressFigure crispness(float thick_m) {
     Eigen::Matrix3d S = Eigen::Matrix3d::Zero();
     for (const Vector3d& q : near) S += (q - mean) * (q - mean).transpose() / static_cast<double>(near.size());
     const Vector3d values = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(S).eigenvalues();
-    variance += values.minCoeff();
+    variance += values.minCoeff<Eigen::PropagateNaN>();
     for (int i = 0; i < 3; ++i) entropy += 0.5 * std::log(2.0 * kPi * std::exp(1.0) * worse(values[i], 1e-6));
     ++counted;
   }

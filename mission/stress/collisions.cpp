@@ -57,8 +57,8 @@ StressFigure box_and_triangle(double size_m, double far_m) {
       for (int j = 0; i + j <= kParts; ++j)
         sampled_m = std::min(sampled_m, point_to_box_m(box, triangle.a + (triangle.b - triangle.a) * i / kParts +
                                                                 (triangle.c - triangle.a) * j / kParts));
-    const double edge_m = std::max(
-        {(triangle.b - triangle.a).norm(), (triangle.c - triangle.a).norm(), (triangle.c - triangle.b).norm()});
+    const double edge_m = worse(worse((triangle.b - triangle.a).norm(), (triangle.c - triangle.a).norm()),
+                                (triangle.c - triangle.b).norm());
     const double spacing_m = edge_m / kParts, grain_m = 64.0 * kEpsilon * (far_m + 10.0),
                  found_m = distance_m(box, triangle);
     take_worst(out, beyond(found_m, sampled_m + grain_m) * 1e9);
