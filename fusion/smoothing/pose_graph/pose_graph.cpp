@@ -11,9 +11,6 @@
 namespace canyon::fusion {
 namespace {
 
-/// From one step of what switching off costs to the next.
-constexpr double kHarderPoses = 4.0;
-
 /// L^-1 of the covariance L L'.
 Matrix6d whitening(const Matrix6d& covariance) {
   return Eigen::LLT<Matrix6d>(covariance).matrixL().solve(Matrix6d::Identity());
@@ -48,6 +45,28 @@ Status check(const PoseGraph& graph) {
   return Ok{};
 }
 
+}  // namespace
+
+RelativeRows relative_rows(const PoseGraph::Relative& known, const Pose& X_WS, const Pose& X_WT) {
+  const Pose X_TS = X_WT.inverse() * X_WS;
+  const Vector6d e = (known.X_TS.inverse() * X_TS).log();
+  const Matrix6d W = whitening(known.covariance), by_source = W * se3_right_jacobian_inverse(e);
+  return {W * e, by_source, -by_source * adjoint(X_TS.inverse())};
+}
+
+AbsoluteRows absolute_rows(const PoseGraph::Absolute& known, const Pose& X_WS) {
+  const Vector6d e = (known.X_WS.inverse() * X_WS).log();
+  const Matrix6d W = whitening(known.covariance);
+  return {W * e, W * se3_right_jacobian_inverse(e)};
+}
+
+#ifdef CANYON_WITH_CERES
+
+namespace {
+
+/// From one step of what switching off costs to the next.
+constexpr double kHarderPoses = 4.0;
+
 double squared(const PoseGraph& graph, const PoseGraph::Relative& known) {
   return relative_rows(known, graph.X_WS[known.source], graph.X_WS[known.target]).residual.squaredNorm();
 }
@@ -65,21 +84,6 @@ double set_pose_switches(PoseGraph& graph, double cost) {
 }
 
 }  // namespace
-
-RelativeRows relative_rows(const PoseGraph::Relative& known, const Pose& X_WS, const Pose& X_WT) {
-  const Pose X_TS = X_WT.inverse() * X_WS;
-  const Vector6d e = (known.X_TS.inverse() * X_TS).log();
-  const Matrix6d W = whitening(known.covariance), by_source = W * se3_right_jacobian_inverse(e);
-  return {W * e, by_source, -by_source * adjoint(X_TS.inverse())};
-}
-
-AbsoluteRows absolute_rows(const PoseGraph::Absolute& known, const Pose& X_WS) {
-  const Vector6d e = (known.X_WS.inverse() * X_WS).log();
-  const Matrix6d W = whitening(known.covariance);
-  return {W * e, W * se3_right_jacobian_inverse(e)};
-}
-
-#ifdef CANYON_WITH_CERES
 
 Result<PoseGraphReport> solve(PoseGraph& graph, const PoseGraphOptions& options) {
   CANYON_TRY_STATUS(check(graph));
