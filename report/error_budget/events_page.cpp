@@ -51,8 +51,8 @@ std::string effect_rows(const JsonFields& kind, bool registered) {
 
 std::string effect_table(const JsonFields& kind, bool registered) {
   return "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Effects\"><table class=\"figures\">\n"
-         "<thead><tr><th scope=\"col\" class=\"text\">change, m</th><th scope=\"col\">event less placebos</th>"
-         "<th scope=\"col\">placebos alone</th><th scope=\"col\">a placebo less the others</th>"
+         "<thead><tr><th scope=\"col\" class=\"text\">change, m</th><th scope=\"col\">event − placebos</th>"
+         "<th scope=\"col\">placebos</th><th scope=\"col\">placebo − others</th>"
          "<th scope=\"col\">by regression</th><th scope=\"col\">delay, s</th><th scope=\"col\">duration, "
          "s</th></tr></thead>\n<tbody>" +
          effect_rows(kind, registered) + "</tbody></table></div>\n";
