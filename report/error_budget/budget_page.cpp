@@ -9,6 +9,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/page.h"
+#include "canyon/report/error_budget/study_header.h"
 #include "canyon/report/format.h"
 #include "canyon/report/read/json_fields.h"
 
@@ -124,10 +125,7 @@ Result<std::string> budget_page(const std::string& summary_path) {
   CANYON_TRY(const JsonFile file, JsonFile::parse(text, summary_path));
   std::optional<Error> error;
   const JsonFields f(&file.root(), file, "", error);
-  std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(f.required_text("mission")) +
-                    " \xC2\xB7 " + escape_html(f.required_text("fidelity")) + " \xC2\xB7 " +
-                    count_of(f.number("seeds"), "seed", "seeds") + "</p>\n<h1>" + escape_html(budget_headline(f)) +
-                    ".</h1>\n</header>\n";
+  std::string out = study_header(f, "", escape_html(budget_headline(f)) + ".", "");
   out += budget_section(f, "healed", "Hidden signals healed",
                         "Without multipath a hidden satellite is measured as it was, its error taken away.");
   out += budget_section(f, "dropped", "Hidden signals dropped",

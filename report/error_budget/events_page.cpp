@@ -10,6 +10,7 @@
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/page.h"
+#include "canyon/report/error_budget/study_header.h"
 #include "canyon/report/format.h"
 #include "canyon/report/read/json_fields.h"
 
@@ -134,15 +135,13 @@ Result<std::string> events_page(const std::string& summary_path) {
   std::optional<Error> error;
   const JsonFields f(&file.root(), file, "", error);
   const std::vector<double> lags = f.numbers("lag_s", f.list("lag_s", true).size());
-  std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(f.required_text("mission")) +
-                    " \xC2\xB7 " + escape_html(f.required_text("fidelity")) + " \xC2\xB7 " +
-                    count_of(f.number("seeds"), "seed", "seeds") + " \xC2\xB7 " +
-                    count_of(f.number("starts"), "time of day", "times of day") +
-                    "</p>\n<h1>What events do to map and keyframes.</h1>\n<p>Changes over " +
-                    escape_html(show_number(f.number("effect_s"))) + " s after the event, from the mean of the " +
-                    escape_html(show_number(f.number("before_s"))) +
-                    " s before it. A placebo is the same place on the same way at another time of day, without such "
-                    "an event.</p>\n</header>\n";
+  std::string out = study_header(
+      f, " \xC2\xB7 " + count_of(f.number("starts"), "time of day", "times of day"),
+      "What events do to map and keyframes.",
+      "<p>Changes over " + escape_html(show_number(f.number("effect_s"))) +
+          " s after the event, from the mean of the " + escape_html(show_number(f.number("before_s"))) +
+          " s before it. A placebo is the same place on the same way at another time of day, without such an "
+          "event.</p>\n");
   const JsonNode* kinds = f.find("kinds");
   if (kinds != nullptr && kinds->is_object() && lags.size() > 1)
     for (const auto& [name, node] : kinds->items())

@@ -10,6 +10,7 @@
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/page.h"
+#include "canyon/report/error_budget/study_header.h"
 #include "canyon/report/format.h"
 #include "canyon/report/read/json_fields.h"
 
@@ -136,12 +137,10 @@ Result<std::string> response_page(const std::string& summary_path) {
   CANYON_TRY(const JsonFile file, JsonFile::parse(text, summary_path));
   std::optional<Error> error;
   const JsonFields f(&file.root(), file, "", error);
-  std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(f.required_text("mission")) +
-                    " \xC2\xB7 " + escape_html(f.required_text("fidelity")) + " \xC2\xB7 " +
-                    count_of(f.number("seeds"), "seed", "seeds") +
-                    "</p>\n<h1>Where registration stops healing.</h1>\n<p>Recorded keyframes are mapped again with the "
-                    "true pose and an error laid on it. Healed: 1 \xE2\x88\x92 registered / prior, of the root mean "
-                    "square errors of keyframes.</p>\n</header>\n";
+  std::string out =
+      study_header(f, "", "Where registration stops healing.",
+                   "<p>Recorded keyframes are mapped again with the true pose and an error laid on it. Healed: 1 "
+                   "\xE2\x88\x92 registered / prior, of the root mean square errors of keyframes.</p>\n");
   std::map<std::string, std::size_t> colours;
   std::vector<std::string> order;
   std::map<std::string, std::vector<HealedCurve>> by_sweep;

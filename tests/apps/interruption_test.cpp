@@ -224,6 +224,7 @@ const LongVerb kLongVerbs[] = {
      {"lidar", "error-events", "mission.toml", "--fidelity", "high", "--seeds", "100", "--out", "given_events",
       "--force"},
      {}},
+    {"lidar_close_loops", {"lidar", "close-loops", "--fidelity", "low", "--out", "given_closed", "--force"}, {}},
     {"lidar_error_response",
      {"lidar", "error-response", "--fidelity", "low", "--seeds", "100", "--out", "given_response", "--force"},
      {}},

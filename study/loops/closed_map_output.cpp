@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/output/printed.h"
-#include "canyon/study/closures/closed_map.h"
+#include "canyon/study/loops/closed_map.h"
 #include "canyon/study/tables/text_table.h"
 
 namespace canyon::study {

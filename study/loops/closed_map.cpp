@@ -1,4 +1,4 @@
-#include "canyon/study/closures/closed_map.h"
+#include "canyon/study/loops/closed_map.h"
 
 #include <algorithm>
 #include <cmath>
