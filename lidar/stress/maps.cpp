@@ -232,6 +232,24 @@ StressFigure beam_table_of(const std::string& name, std::size_t lasers, double l
   return out;
 }
 
+/// A built-in rosette is read to its end: lasers that fire in turn, evenly, one cycle after another without a pause,
+/// into a field that is one. A figure counts what differs.
+StressFigure rosette_of(const std::string& name) {
+  const auto table = load_beam_table(name);
+  if (!table.ok() || !table->rosette) return {kInfinity, 0.0};
+  const Rosette& rosette = *table->rosette;
+  StressFigure out;
+  const auto count = [&](bool holds) { out.figure += holds ? 0.0 : 1.0; };
+  const auto lasers = static_cast<double>(table->beams.size());
+  count(std::abs(table->cycle_s * rosette.points_per_s - lasers) < 4.0 * kEpsilon * lasers);
+  for (std::size_t k = 0; k < table->beams.size(); ++k)
+    count(std::abs(table->beams[k].firing_s * rosette.points_per_s - static_cast<double>(k)) < 4.0 * kEpsilon * lasers);
+  count(rosette.elevation_min_rad > -0.5 * kPi && rosette.elevation_min_rad < rosette.elevation_max_rad &&
+        rosette.elevation_max_rad < 0.5 * kPi);
+  count(rosette.head_hz > 0.0 && rosette.swing_hz > rosette.head_hz);
+  return out;
+}
+
 /// A generic sensor has its lasers evenly from end to end: rounding of a product and a sum.
 StressFigure grid_of(int lasers) {
   const auto table = load_beam_table("grid:" + std::to_string(lasers) + ":-25:15");
@@ -304,6 +322,12 @@ std::vector<StressCase> map_cases() {
   for (const auto& sensor : sensors)
     rows.add(std::string("maps/beams_of_") + sensor.name,
              [sensor] { return beam_table_of(sensor.name, sensor.lasers, sensor.low_deg, sensor.high_deg); });
+  rows.of({.group = StressGroup::kData,
+           .mechanism = "the beams of a built-in sensor whose pattern does not repeat",
+           .why = "a table of keys, each in its line, that must end where it ends",
+           .expected = "lasers in turn and evenly, into a field",
+           .unit = ""});
+  rows.add("maps/rosette_of_mid360", [] { return rosette_of("mid360"); });
   rows.of({.group = StressGroup::kData,
            .mechanism = "the beams of a generic sensor of one laser and of very many",
            .why = "a field divided by one laser less than there are",
