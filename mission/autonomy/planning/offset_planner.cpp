@@ -42,7 +42,9 @@ constexpr double kOffsetStep_m = 0.5;
 /// Within which what is left of a line's way to its offset falls to 1/e. Of all shapes this alone stays itself when it
 /// is begun anew from where the vehicle has come to, as happens with every scan.
 constexpr std::array<double, 3> kBlend_m{1.5, 3.0, 6.0};
-constexpr double kBeyond_m = 6.0;  // of a line after the horizon, for the tracker to look at
+constexpr double kFarthest_m = 20.0;      // beside the lane, that it looks for a way where it is
+constexpr double kCrashCost_1_m = 100.0;  // of every metre that is missing to halt in: more than all else together
+constexpr double kBeyond_m = 6.0;         // of a line after the horizon, for the tracker to look at
 
 /// Lines that go sideways from where the vehicle is to an offset from the lane's middle. Driven in thought are those
 /// that may still be the cheapest: the cheap ones first, each as long as what it has cost so far is less than the best.
@@ -54,9 +56,6 @@ class OffsetPlanner final : public LocalPlanner {
       ahead_m_.push_back(i * PlanLine::kSpacing_m);
       for (std::size_t b = 0; b < kBlend_m.size(); ++b) left_[b].push_back(std::exp(-ahead_m_.back() / kBlend_m[b]));
     }
-    const int steps = static_cast<int>(std::floor(p_.max_offset_m / kOffsetStep_m));
-    for (int k = -steps; k <= steps; ++k)
-      for (std::size_t b = 0; b < kBlend_m.size(); ++b) candidates_.push_back({k * kOffsetStep_m, b, 0.0});
   }
 
   Clearances clearances() const override {
@@ -66,6 +65,8 @@ class OffsetPlanner final : public LocalPlanner {
   LocalPlan plan(const PlanTask& task) override {
     const double here = task.route.offset(task.body.pose.p_m + task.from_O_to_W, task.s_m) - task.lane_m;
     lay_out(task);
+    offer(here);
+    const double v = task.body.speed_m_s, halting_m = 0.5 * v * v / task.vehicle.max_deceleration_m_s2;
     for (Candidate& c : candidates_)
       c.beside_cost = p_.offset_cost_1_m * (std::abs(c.offset_m) + p_.change_share * std::abs(c.offset_m - chosen_m_));
     std::vector<std::size_t> order(candidates_.size());
@@ -88,7 +89,8 @@ class OffsetPlanner final : public LocalPlanner {
           its.line, task.body, p_.horizon_m, clearances(), task.tracker, task.blocked, task.vehicle,
           [&](const DrivenArc& arc) { return cost(0.0, arc, turning.of(arc), c.beside_cost) <= best_cost; });
       const double blocked_m = p_.horizon_m - std::min(p_.horizon_m, its.arc.free_m);
-      const double its_cost = cost(blocked_m, its.arc, turning.of(its.arc), c.beside_cost);
+      const double short_m = its.arc.ends_free ? 0.0 : std::max(0.0, halting_m - its.arc.free_m);
+      const double its_cost = cost(blocked_m, its.arc, turning.of(its.arc), c.beside_cost) + kCrashCost_1_m * short_m;
       if (its_cost > best_cost || (its_cost == best_cost && i > best_index)) continue;
       best_cost = its_cost;
       best_index = i;
@@ -104,6 +106,17 @@ class OffsetPlanner final : public LocalPlanner {
     std::size_t blend;
     double beside_cost;
   };
+
+  /// Offsets from the lane's middle to either side. If the vehicle is farther beside it than that, also those where it
+  /// is: the lane is then where an estimate puts it that may be wrong by as much, and what is seen is not.
+  void offer(double here_m) {
+    const int usual = steps(p_.max_offset_m), beyond = std::abs(here_m) > p_.max_offset_m ? steps(std::abs(here_m)) : 0;
+    const int most = beyond > 0 ? std::min(beyond, steps(kFarthest_m)) + usual : usual;
+    candidates_.clear();
+    for (int k = here_m < 0.0 ? -most : -usual; k <= (here_m > 0.0 ? most : usual); ++k)
+      for (std::size_t b = 0; b < kBlend_m.size(); ++b) candidates_.push_back({k * kOffsetStep_m, b, 0.0});
+  }
+  static int steps(double offset_m) { return static_cast<int>(std::floor(offset_m / kOffsetStep_m)); }
 
   /// Integral of the square of what an arc turns more than the route, taken further as the arc grows.
   class Turning {
