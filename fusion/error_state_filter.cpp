@@ -159,10 +159,7 @@ void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vect
   gravity_gradient_at_E_ = state_.nav.p_EU_E;
   gravity_gradient_ = gravity_gradient_E(state_.nav.p_EU_E);
 
-  const double tilt = config_.initial_attitude_sigma_deg_roll_pitch * kDegree;
-  const double heading = config_.initial_attitude_sigma_deg_heading * kDegree;
-  const Eigen::Matrix3d P_theta =
-      R_WB.transpose() * Eigen::Vector3d(tilt * tilt, tilt * tilt, heading * heading).asDiagonal() * R_WB;
+  const Eigen::Matrix3d P_theta = first_attitude(R_WB);
   // The configured position is B's; the state's is U's, so the lever arm couples it to attitude.
   const Eigen::Matrix3d p_theta = -(R_EW * R_WB) * skew(lever_U_B_);
 
@@ -187,6 +184,12 @@ void ErrorStateFilter::initialize(GpsTime t, const Pose& X_WB, const Eigen::Vect
     P.block<3, 3>(Index::kTheta, mounting) = P.block<3, 3>(mounting, Index::kTheta) = -P_mounting;
   }
   estimator_->set(0.5 * (P + P.transpose()));
+}
+
+Eigen::Matrix3d ErrorStateFilter::first_attitude(const Eigen::Matrix3d& R_WU) const {
+  const double tilt = config_.initial_attitude_sigma_deg_roll_pitch * kDegree;
+  const double heading = config_.initial_attitude_sigma_deg_heading * kDegree;
+  return R_WU.transpose() * Eigen::Vector3d(tilt * tilt, tilt * tilt, heading * heading).asDiagonal() * R_WU;
 }
 
 void ErrorStateFilter::predict(const ImuSample& imu) {
@@ -238,6 +241,22 @@ void ErrorStateFilter::renew(std::span<const Renewal> states) {
   }
   estimator_->set(P);
   if (watcher_.observer != nullptr) watcher_.observer->renewed(states);
+}
+
+void ErrorStateFilter::doubt(double v_m_s) {
+  ErrorMatrix& P = copied(estimator_->covariance());
+  P.block<3, 3>(Index::kTheta, Index::kTheta) +=
+      first_attitude(frame_.R_EW().transpose() * state_.nav.R_EU.toRotationMatrix());
+  P.diagonal().segment<3>(Index::kVelocity).array() += v_m_s * v_m_s;
+  if (const int mounting = state_.mounting(); mounting >= 0)
+    for (int i = 0; i < 3; ++i) P(Index::kTheta + i, Index::kTheta + i) += state_.first_variance(mounting + i);
+  estimator_->set(0.5 * (P + P.transpose()));
+  std::vector<Renewal> taught;
+  for (const ErrorState::Member& member : state_.members()) {
+    if (member.offset == state_.offset("clone")) continue;
+    for (int i = 0; i < member.block->size(); ++i) taught.push_back({member.offset + i, 0.0});
+  }
+  renew(taught);
 }
 
 void ErrorStateFilter::take_clone() {
@@ -332,18 +351,32 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
   // The square of more than 1e154 sigma is more than a double holds.
   if (!std::isfinite(report.nis)) report.nis = std::numeric_limits<double>::infinity();
 
-  const Decision decision = aid.acceptance->decide(
-      {.t = state_.nav.t, .residual = m.residual, .R = m.R, .predicted = predicted, .nis = report.nis});
+  const int lasting = lasting_error(state_, m);
+  PlaceBeside place;
+  if (m.motion) {
+    place = {.off_m = m.residual,
+             .leaving_m_s = m.motion->residual_m_s,
+             .velocity_measured = m.motion->measured,
+             .speed_m_s = m.motion->speed_m_s};
+    if (lasting >= 0) place.off_m += m.H.middleCols<3>(lasting).lazyProduct(state_.values(lasting, 3));
+  }
+  const Decision decision = aid.acceptance->decide({.t = state_.nav.t,
+                                                    .residual = m.residual,
+                                                    .R = m.R,
+                                                    .predicted = predicted,
+                                                    .nis = report.nis,
+                                                    .place = m.motion ? &place : nullptr});
   if (!decision.accepted) return report;
   report.accepted = true;
   if (decision.noise_scale != 1.0 || decision.loosening != 1.0) {
     m.R *= decision.noise_scale;
     if (decision.loosening != 1.0) {
-      if (const int lasting = lasting_error(state_, m); lasting >= 0) {
+      if (lasting >= 0) {
         // It has been estimated from a place that is given up.
         m.residual += m.H.middleCols<3>(lasting) * state_.values(lasting, 3);
         renew(std::array{Renewal{lasting, 0.0}, Renewal{lasting + 1, 0.0}, Renewal{lasting + 2, 0.0}});
       }
+      if (decision.loosening_m_s > 0.0) doubt(decision.loosening_m_s);
       // What is off is what is measured, and not by what else is off with it as a rule.
       ErrorMatrix& P = copied(estimator_->covariance());
       const double per_state = m.H.middleCols<3>(m.about).squaredNorm() / n;
@@ -360,7 +393,9 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
   const Gain K = HP.transpose().lazyProduct(S_inverse);
   if (watcher_.observer != nullptr) watcher_.observer->corrected({m, K, S_inverse, aid.name == kPositionModel});
   estimator_->correct(m, K, HP);
-  estimator_->inject(state_, K.lazyProduct(m.residual));
+  const ErrorVector error = K.lazyProduct(m.residual);
+  for (Aid& other : aids_) other.acceptance->moved(error.segment<3>(Index::kPosition), &other == &aid);
+  estimator_->inject(state_, error);
   return report;
 }
 

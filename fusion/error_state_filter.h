@@ -119,6 +119,11 @@ class ErrorStateFilter {
   const ErrorMatrix& P() const { return estimator_->covariance(); }
   Pose pose_of(const Eigen::Quaterniond& R_EU, const Eigen::Vector3d& p_EU_E) const;
   void restart(const Measurement& fix);
+  /// Covariance of the attitude at the start, in the IMU's axes.
+  Eigen::Matrix3d first_attitude(const Eigen::Matrix3d& R_WU) const;
+  /// A filter that is lost has been led astray, and taught wrongly: its blocks begin anew, of its attitude it becomes
+  /// less sure by what was unknown at the start, and of its velocity by this 1-sigma per axis.
+  void doubt(double v_m_s);
   void renew(std::span<const Renewal> states);
   UpdateReport correct(Aid& aid, Measurement& m);
 

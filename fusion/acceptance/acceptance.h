@@ -8,6 +8,15 @@
 
 namespace canyon::fusion {
 
+/// A place that something moving has been measured at, beside where the estimate has it; along E's axes.
+struct PlaceBeside {
+  Eigen::Vector3d off_m =
+      Eigen::Vector3d::Zero();  ///< measured minus predicted; the measurement's lasting error counts
+  Eigen::Vector3d leaving_m_s = Eigen::Vector3d::Zero();  ///< the same of the velocity that was measured with it
+  bool velocity_measured = false;                         ///< else that is zero
+  double speed_m_s = 0.0;
+};
+
 /// What a measurement would do: its residual, the covariance of its noise, and H P H', that of what was predicted.
 struct Innovation {
   GpsTime t;
@@ -15,6 +24,7 @@ struct Innovation {
   const Measurement::Square& R;
   const Measurement::Square& predicted;
   double nis = 0.0;  ///< normalized by R + predicted; chi-square with as many degrees of freedom as residual has
+  const PlaceBeside* place = nullptr;  ///< of a place alone
 };
 
 /// What is made of it.
@@ -22,6 +32,7 @@ struct Decision {
   bool accepted = true;
   double noise_scale = 1.0;  ///< R is taken times this
   double loosening = 1.0;    ///< the filter has lost its way: what it measures is so many times less sure than expected
+  double loosening_m_s = 0.0;  ///< and all else it has been taught is in doubt, its velocity by this 1-sigma per axis
 };
 
 /// Decides on the measurements of one model, in turn. One-level interface; the models are in the table below, each in
@@ -35,6 +46,9 @@ class Acceptance {
   virtual Decision decide(const Innovation& innovation) = 0;
   /// Whether it takes every measurement as it is, so that estimates are linear in what is measured.
   virtual bool takes_all() const { return false; }
+  /// A correction has moved the estimated place by so much along E's axes, m: one by this model's measurements, or by
+  /// others.
+  virtual void moved(const Eigen::Vector3d& /*by_m*/, bool /*by_this*/) {}
 };
 
 using MakeAcceptance = std::unique_ptr<Acceptance>(const ModelParameters& own);

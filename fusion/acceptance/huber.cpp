@@ -19,8 +19,9 @@ class Huber final : public Copied<Acceptance, Huber> {
  public:
   Huber(const HuberParameters& p, const LostWayParameters& lost) : p_(p), lost_(lost) {}
   void start() override { lost_.start(); }
+  void moved(const Eigen::Vector3d& by_m, bool by_this) override { lost_.moved(by_m, by_this); }
   Decision decide(const Innovation& i) override {
-    if (lost_.found(i)) return LostWay::recovery(i);
+    if (lost_.found(i)) return lost_.recovery(i);
     const double d = std::sqrt(i.nis / static_cast<double>(i.residual.size()));
     return {.noise_scale = std::max(1.0, d / p_.huber_sigma)};
   }

@@ -24,10 +24,11 @@ class InnovationAdaptive final : public Copied<Acceptance, InnovationAdaptive> {
     lost_.start();
   }
 
+  void moved(const Eigen::Vector3d& by_m, bool by_this) override { lost_.moved(by_m, by_this); }
   Decision decide(const Innovation& i) override {
     if (lost_.found(i)) {
       weight_ = sum_ = 0.0;
-      return LostWay::recovery(i);
+      return lost_.recovery(i);
     }
     const double kept = weight_ > 0.0 ? std::exp(-std::max(i.t - last_, 0.0) / p_.adaptive_tau_s) : 0.0;
     last_ = i.t;

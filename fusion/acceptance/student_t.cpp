@@ -19,8 +19,9 @@ class StudentT final : public Copied<Acceptance, StudentT> {
  public:
   StudentT(const StudentTParameters& p, const LostWayParameters& lost) : p_(p), lost_(lost) {}
   void start() override { lost_.start(); }
+  void moved(const Eigen::Vector3d& by_m, bool by_this) override { lost_.moved(by_m, by_this); }
   Decision decide(const Innovation& i) override {
-    if (lost_.found(i)) return LostWay::recovery(i);
+    if (lost_.found(i)) return lost_.recovery(i);
     const double dof = static_cast<double>(i.residual.size());
     return {.noise_scale = std::max(1.0, (p_.student_t_dof + i.nis) / (p_.student_t_dof + dof))};
   }

@@ -28,6 +28,13 @@ struct Measurement {
   Rows H;
   /// Three states of ErrorIndex that it is about: a filter that has lost its way by it is unsure of these.
   int about;
+  /// Of the place of something that moves: its speed, and measured minus predicted velocity.
+  struct Motion {
+    double speed_m_s = 0.0;
+    Eigen::Vector3d residual_m_s = Eigen::Vector3d::Zero();
+    bool measured = false;  ///< the message has a velocity; else that residual is zero
+  };
+  std::optional<Motion> motion;
 
   Measurement(int dimension, const ErrorState& state, int about_states);
   int dimension() const { return static_cast<int>(residual.size()); }

@@ -67,6 +67,11 @@ class Position final : public Copied<MeasurementModel, Position> {
     const double age_s = age_.of(filter, fix->t);
     Measurement m(3, filter.state, ErrorIndex::kPosition);
     m.residual = fix->p_A_E - (antenna.p_E + age_s * moving.v_E);
+    m.motion.emplace().speed_m_s = moving.v_E.norm();
+    if (fix->v_A_E.allFinite() && fix->velocity_covariance_E.allFinite()) {
+      m.motion->residual_m_s = fix->v_A_E - moving.v_E;
+      m.motion->measured = true;
+    }
     m.H = age_s * moving.H;
     m.H += antenna.H;
     age_.set_column(m.H, moving.v_E);

@@ -95,44 +95,100 @@ TEST(Acceptance, AdaptiveNoiseIsWhatTheInnovationsSay) {
   EXPECT_EQ(decide(*unsure, 0.0, 10.0, 100.0).noise_scale, 1.0);
 }
 
-/// Decisions on fixes twice a second that are `off` beside the filter and noisy as they say (1 m per axis): the first
-/// that takes the filter for lost, s; -1 if none does in a minute.
-double lost_after_s(const char* row, const std::string& keys, const std::function<Eigen::Vector3d(double t_s)>& off) {
+/// The first decision on fixes twice a second, beside the filter by place(t) and noisy as they say (1 m per axis), that
+/// takes the filter for lost, s; -1 if none does in a minute. Each moves the estimate by moved_m.
+double lost_after_s(const char* row, const std::string& keys, const std::function<PlaceBeside(double t_s)>& place,
+                    const Eigen::Vector3d& moved_m = Eigen::Vector3d::Zero()) {
   const auto model = made(row, keys.c_str());
   const RandomStream stream(6, "test.lost");
   for (int k = 0; k <= 120; ++k) {
     const double t_s = 0.5 * k;
-    const Measurement::Vector residual = off(t_s) + stream.normal3(static_cast<std::uint64_t>(k));
+    PlaceBeside at = place(t_s);
+    at.off_m += stream.normal3(static_cast<std::uint64_t>(k));
+    const Measurement::Vector residual = at.off_m;
     const Measurement::Square R = Measurement::Square::Identity(3, 3);
-    const Decision d = model->decide(
-        {.t = kStart + t_s, .residual = residual, .R = R, .predicted = 0.1 * R, .nis = residual.squaredNorm() / 1.1});
+    const Decision d = model->decide({.t = kStart + t_s,
+                                      .residual = residual,
+                                      .R = R,
+                                      .predicted = 0.1 * R,
+                                      .nis = residual.squaredNorm() / 1.1,
+                                      .place = &at});
     EXPECT_TRUE(d.accepted);
     if (d.loosening > 1.0) return t_s;
+    model->moved(moved_m, true);
   }
   return -1.0;
 }
 
+/// Of a vehicle at 10 m/s.
+PlaceBeside driving(const Eigen::Vector3d& off_m) {
+  PlaceBeside out;
+  out.off_m = off_m;
+  out.speed_m_s = 10.0;
+  return out;
+}
+
+constexpr const char* kWithWayBack[] = {"huber", "student_t", "innovation_adaptive"};
+const Eigen::Vector3d kBeside(40.0, -30.0, 5.0);
+
 // 2026-11-25: after an hour of bad fixes the rows that weigh fixes took minutes to believe the good ones.
 TEST(Acceptance, FixesThatAreSteadilyBesideItSayThatTheFilterIsLost) {
   const std::string keys = "lost_after_s = 5";
-  const Eigen::Vector3d beside(40.0, -30.0, 5.0);
-  const auto constant = [&](double) { return beside; };
-  for (const char* row : {"huber", "student_t", "innovation_adaptive"}) {
+  const auto constant = [](double) { return driving(kBeside); };
+  for (const char* row : kWithWayBack) {
     // At once, or where chance makes the fixes scatter a few later.
     EXPECT_GE(lost_after_s(row, keys, constant), 5.0) << row;
     EXPECT_LE(lost_after_s(row, keys, constant), 7.0) << row;
     EXPECT_EQ(lost_after_s(row, "lost_after_s = 0", constant), -1.0) << row;
     // Fixes that wander by 2 m/s, which adds 2.9 m (10 m over the root of 12) to their scatter of 1 m: sums of squares
     // of 120 where 40 are allowed.
-    EXPECT_EQ(lost_after_s(row, keys, [&](double t) { return (1.0 + t / 25.0) * beside; }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double t) { return driving((1.0 + t / 25.0) * kBeside); }), -1.0) << row;
     // Their noise alone, and what is beside it by two sigma.
-    EXPECT_EQ(lost_after_s(row, keys, [](double) { return Eigen::Vector3d(0.0, 0.0, 0.0); }), -1.0) << row;
-    EXPECT_EQ(lost_after_s(row, keys, [](double) { return Eigen::Vector3d(2.0, 0.0, 0.0); }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double) { return driving({0.0, 0.0, 0.0}); }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double) { return driving({2.0, 0.0, 0.0}); }), -1.0) << row;
     // Bad until the twentieth second, then steady.
     EXPECT_NEAR(
-        lost_after_s(row, keys, [&](double t) { return t < 20.0 ? Eigen::Vector3d((30.0 - t) * beside) : beside; }),
+        lost_after_s(row, keys,
+                     [](double t) { return driving(t < 20.0 ? Eigen::Vector3d((30.0 - t) * kBeside) : kBeside); }),
         26.0, 1.0)
         << row;
+  }
+}
+
+// 2026-11-26: a filter that follows fixes by 1 m/s saw them wander, by what it did itself, and one whose velocity had
+// been led astray saw them wander by that.
+TEST(Acceptance, WhatFixesAreBesideIsCountedAlongTheirOwnMotion) {
+  const std::string keys = "lost_after_s = 5";
+  const auto followed = [](double t) { return driving((1.0 - t / 50.0) * kBeside); };
+  const auto led_astray = [](bool measured) {
+    return [measured](double t) {
+      const Eigen::Vector3d astray(1.0, 0.0, -1.0);  // m/s
+      PlaceBeside out = driving(kBeside + t * astray);
+      out.velocity_measured = measured;
+      if (measured) out.leaving_m_s = astray;
+      return out;
+    };
+  };
+  for (const char* row : kWithWayBack) {
+    EXPECT_EQ(lost_after_s(row, keys, followed), -1.0) << row;
+    EXPECT_NEAR(lost_after_s(row, keys, followed, 0.5 / 50.0 * kBeside), 6.0, 1.0) << row;
+    EXPECT_NEAR(lost_after_s(row, keys, led_astray(true)), 6.0, 1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, led_astray(false)), -1.0) << row;
+  }
+}
+
+TEST(Acceptance, OfAVehicleThatStandsEchoesAreAsSteadyAsTheTruth) {
+  for (const char* row : kWithWayBack) {
+    const auto standing_until = [](double s) {
+      return [s](double t) {
+        PlaceBeside out = driving(kBeside);
+        if (t < s) out.speed_m_s = 0.0;
+        return out;
+      };
+    };
+    EXPECT_EQ(lost_after_s(row, "", standing_until(100.0)), -1.0) << row;
+    // 20 m later, of which half a second's mean is 5 or, the first, 2.5 m; five fixes at least.
+    EXPECT_NEAR(lost_after_s(row, "", standing_until(30.0)), 32.5, 1.0) << row;
   }
 }
 
