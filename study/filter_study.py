@@ -97,7 +97,7 @@ def parts():
     out = {f"without {m}": without("measurements", MEASUREMENTS, m) for m in MEASUREMENTS if m != "position"}
     out |= {f"without state {s}": without("states", STATES, s) for s in ("mounting", "fix_error", "velocity_error")}
     return out | {"with accept_all": 'filter = "vehicle"\nacceptance = "accept_all"',
-                  "with a way back": 'filter = "vehicle"\nlost_after_s = 8', "all doubled": wrong(2.0), "all halved": wrong(0.5)}
+                  "without a way back": 'filter = "vehicle"\nlost_after_s = 0', "all doubled": wrong(2.0), "all halved": wrong(0.5)}
 
 
 def call(arguments, log):
