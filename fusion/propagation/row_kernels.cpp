@@ -7,23 +7,39 @@ CANYON_VECTOR_CLONES void add_integrals(const FeedTerm* terms, int count, const 
                                         const double* __restrict errors, int stride, double* __restrict integrals,
                                         int width) {
   double rates[6 * kMostStates];
-  for (int j = 0; j < 6 * width; ++j) rates[j] = 0.0;
+  bool fed[6] = {};
   for (int n = 0; n < count; ++n) {
     const double rate = terms[n].rate;
     const double* __restrict from = errors + terms[n].state * stride;
     double* __restrict to = rates + terms[n].axis * width;
-    for (int j = 0; j < width; ++j) to[j] += rate * from[j];
+    // The first term of an axis needs no zeros to be added to.
+    if (fed[terms[n].axis]) {
+      for (int j = 0; j < width; ++j) to[j] += rate * from[j];
+    } else {
+      for (int j = 0; j < width; ++j) to[j] = rate * from[j];
+      fed[terms[n].axis] = true;
+    }
   }
   const double first = carried[0], second = carried[1];
   const double rest_a = carried[1] - 0.5 * dt_s * carried[0], rest_g = carried[2] - 0.5 * dt_s * carried[1];
   const int triad = 3 * width;
-  for (int j = 0; j < triad; ++j) {
-    const double gyro = rates[j], accel = rates[triad + j];
-    integrals[j] += first * gyro;
-    integrals[triad + j] += second * gyro;
-    integrals[2 * triad + j] += rest_g * gyro;
-    integrals[3 * triad + j] += first * accel;
-    integrals[4 * triad + j] += rest_a * accel;
+  for (int axis = 0; axis < 3; ++axis) {
+    double* __restrict to = integrals + axis * width;
+    if (fed[axis]) {
+      const double* __restrict gyro = rates + axis * width;
+      for (int j = 0; j < width; ++j) {
+        to[j] += first * gyro[j];
+        to[triad + j] += second * gyro[j];
+        to[2 * triad + j] += rest_g * gyro[j];
+      }
+    }
+    if (fed[3 + axis]) {
+      const double* __restrict accel = rates + (3 + axis) * width;
+      for (int j = 0; j < width; ++j) {
+        to[3 * triad + j] += first * accel[j];
+        to[4 * triad + j] += rest_a * accel[j];
+      }
+    }
   }
 }
 
