@@ -13,6 +13,7 @@ std::vector<StressCase> covariance_cases();
 std::vector<StressCase> dead_reckoning_cases();
 std::vector<StressCase> estimator_cases();
 std::vector<StressCase> fix_cases();
+std::vector<StressCase> graph_cases();
 std::vector<StressCase> measurement_cases();
 std::vector<StressCase> sample_cases();
 std::vector<StressCase> smoother_cases();

@@ -8,6 +8,7 @@
 namespace canyon::inertial {
 
 std::vector<StressCase> aiding_cases();
+std::vector<StressCase> allan_cases();
 std::vector<StressCase> deviation_cases();
 std::vector<StressCase> error_chain_cases();
 std::vector<StressCase> gauss_markov_cases();

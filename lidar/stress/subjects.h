@@ -15,5 +15,6 @@ std::vector<StressCase> cloud_cases();
 std::vector<StressCase> registration_cases();
 std::vector<StressCase> chain_cases();
 std::vector<StressCase> map_cases();
+std::vector<StressCase> engine_cases();
 
 }  // namespace canyon::lidar

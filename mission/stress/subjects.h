@@ -13,6 +13,8 @@ std::vector<StressCase> collision_cases();
 std::vector<StressCase> drive_cases();
 std::vector<StressCase> localizer_cases();
 std::vector<StressCase> path_cases();
+std::vector<StressCase> plan_cases();
+std::vector<StressCase> plan_model_cases();
 std::vector<StressCase> schedule_cases();
 std::vector<StressCase> sprung_mass_cases();
 std::vector<StressCase> traffic_cases();
