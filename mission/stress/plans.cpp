@@ -153,7 +153,7 @@ StressFigure polar_ground() {
     const double azimuth = (k + 0.37) * 2.0 * kPi / 2400;
     ++met[static_cast<std::size_t>(
         PolarGround::sector(static_cast<float>(std::cos(azimuth)), static_cast<float>(std::sin(azimuth))))];
-    for (double d = 0.3; d < 21.5; d += 0.7) {
+    for (double d = 0.31; d < 21.5; d += 0.7) {
       at(azimuth, d, rise * d);
       at(azimuth, d, rise * d + 0.9);  // on it
     }
@@ -165,8 +165,11 @@ StressFigure polar_ground() {
     for (int bin = 0; bin < 60; ++bin) {
       const double middle = 0.5 * bin + 0.25;
       const PolarGround::Height h = ground.at(s, static_cast<float>(middle));
-      const double last = 0.3 + 0.7 * 30.0;
-      looks.near(static_cast<double>(h.above_m), rise * (middle < last ? middle : last), grain);
+      const double last = 0.31 + 0.7 * 30.0;
+      // A bin that has a return has no more than its height after it.
+      const double in_bin = 0.31 + 0.7 * std::ceil((0.5 * bin - 0.31) / 0.7);
+      const double level = in_bin < 0.5 * (bin + 1) && in_bin < middle ? in_bin : middle;
+      looks.near(static_cast<double>(h.above_m), rise * (level < last ? level : last), grain);
       looks.near(static_cast<double>(h.unsure_m), middle > last ? steepest * (middle - last) : 0.0, grain);
     }
   return looks.figure();
@@ -596,6 +599,63 @@ StressFigure route_speeds() {
   return looks.figure();
 }
 
+/// An account of the way by wheel and heading alone, each look 2 cm unsure: an estimate that jumps aside is doubted
+/// just where its square exceeds -2 ln(1e-4) times what estimates, way and course may err against more than half of the
+/// looks before; doubt for 12 s is being lost, and one that comes back is believed. An estimate that says more than 5 m
+/// of itself is doubted too.
+StressFigure own_account(double heading_rad) {
+  Looks looks;
+  const auto make = [] {
+    ModelChoice<self_checks> choice("own_motion");
+    return model_row(self_checks(), "own_motion").make.make(choice.own);
+  };
+  const Vector2d u(std::cos(heading_rad), std::sin(heading_rad)), left(-u.y(), u.x());
+  const GpsTime start = GpsTime::from_week_sow(1600, 0.0);
+  const auto look = [&](SelfCheck& check, int k, double aside_m, double variance_m2) {
+    if (k > 0) check.count({.t = start + 0.5 * k, .dt_s = 0.5, .ticks = 0, .speed_m_s = 3.2});
+    NavEstimate e;
+    e.t = start + 0.5 * k;
+    e.X_WB.R = rotation_from({.yaw_rad = heading_rad, .pitch_rad = 0.0, .roll_rad = 0.0});
+    const Vector2d p = 1.6 * k * u + aside_m * left;
+    e.X_WB.p = {p.x() + 7.0, p.y() - 3.0, 1.0};
+    e.v_WB_W = {3.2 * u.x(), 3.2 * u.y(), 0.0};
+    e.pose_covariance.setZero();
+    e.pose_covariance.diagonal().tail<3>().setConstant(variance_m2);
+    check.see({}, e.X_WB, e);
+  };
+  for (const int before : {6, 11, 30}) {
+    const int decisive = before / 2 + 1;  // looks back
+    const double course = 0.01 * 1.6 * decisive;
+    const double S = 2.0 * 0.25 + 4e-4 * decisive + course * course + 0.01;
+    const double jump = std::sqrt(-2.0 * std::log(1e-4) * S);
+    for (const double share : {0.995, 1.005}) {
+      const auto check = make();
+      for (int k = 0; k < before; ++k) look(*check, k, 0.0, 0.25);
+      looks.right(check->trust() == Trust::kGood);
+      look(*check, before, share * jump, 0.25);
+      looks.right((check->trust() == Trust::kDoubtful) == (share > 1.0));
+      if (share < 1.0) continue;
+      looks.near(check->speed_limit_m_s(), 2.0, 1e-15);
+      const auto other = make();
+      for (int k = 0; k < before; ++k) look(*other, k, 0.0, 0.25);
+      look(*other, before, 9.0, 0.25);
+      look(*other, before + 1, 0.0, 0.25);
+      looks.right(other->trust() == Trust::kGood);
+      // Doubted for 12 s: 24 looks after the first.
+      for (int k = 2; k <= 25; ++k) look(*other, before + k, 40.0, 0.25);
+      looks.right(other->trust() == Trust::kDoubtful);
+      look(*other, before + 26, 40.0, 0.25);
+      looks.right(other->trust() == Trust::kLost);
+    }
+  }
+  for (const double sigma_m : {4.9, 5.1}) {
+    const auto check = make();
+    look(*check, 0, 0.0, sigma_m * sigma_m);
+    looks.right((check->trust() == Trust::kDoubtful) == (sigma_m > 5.0));
+  }
+  return looks.figure();
+}
+
 /// Of a house's walls the one that looks widest from a place, by its angle; 25 points evenly on it, 5 cm out.
 StressFigure facades() {
   Looks looks;
@@ -651,6 +711,8 @@ std::vector<StressCase> plan_cases() {
       .add("plans/backing_up", backing_up)
       .add("plans/route_speeds", route_speeds)
       .add("plans/facades", facades);
+  for (const double heading : {0.0, 2.2})
+    rows.add("plans/own_account_heading_" + stress::text(heading), [heading] { return own_account(heading); });
   for (const double turn : {0.0, 1.0, -2.5})
     rows.add("plans/seen_street_turned_by_" + stress::text(turn), [turn] { return seen_street(turn); });
   for (const double yaw : {0.0, 0.02, -0.03})

@@ -14,5 +14,6 @@ std::vector<StressCase> ground_cases();
 std::vector<StressCase> crown_cases();
 std::vector<StressCase> index_cases();
 std::vector<StressCase> street_cases();
+std::vector<StressCase> shape_cases();
 
 }  // namespace canyon::scene
