@@ -17,7 +17,6 @@ namespace {
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
 
 constexpr double kAlongSurface = 0.5;  // eigenvalue of M in the plane of two unit-variance patches
-constexpr std::size_t kFewestBlocks = 24;
 // Independent error per match that is always added: about what sensors resolve; keeps the covariance positive.
 constexpr double kResolution_m = 1e-3;
 // Curvature must exceed what errors of the normals alone would show by this factor. In a corridor the ratio is 0.5

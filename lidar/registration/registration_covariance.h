@@ -31,6 +31,7 @@ struct CovarianceSums {
   std::vector<Vector6d> block_gradients;
   // What only the own engine sums up (engine/match_sums.h).
   std::vector<Matrix6d> block_curvatures;    ///< A of each block
+  std::vector<Matrix6d> block_surfaces;      ///< H of each block
   Matrix6d point_noise = Matrix6d::Zero();   ///< sum J^T M M J
   Vector6d common_range = Vector6d::Zero();  ///< sum J^T M p / |p|
 };
@@ -49,6 +50,9 @@ struct RegistrationPrecision {
 /// False where, with rotations at that radius, the smallest eigenvalue is below 1e-10 of the largest: the points then
 /// lie within 1e-5 of their distance from one line, some hundred times what single precision can tell.
 bool determines_pose(const Matrix6d& A, double radius_m);
+
+/// With fewer blocks of the cloud their scatter tells too little.
+inline constexpr std::size_t kFewestBlocks = 24;
 
 /// sigma given to a direction that the geometry leaves open (for rotations: at the cloud's rms radius).
 inline constexpr double kUnconstrainedSigma_m = 10.0;

@@ -20,8 +20,11 @@ namespace {
 constexpr std::int64_t kFewestPoints = 50;  // in the source, the target, and matched
 constexpr double kSettled_m = 2e-4;
 constexpr double kSettled_rad = 2e-5;
-// Matches that change to and fro keep a solution moving by so much more; the last step then counts as an error.
-constexpr double kNearly = 50.0;
+// Matches that change to and fro keep a solution moving; the step that is left then counts as an error, up to half of
+// what a closed direction may have.
+constexpr double kNearly_m = 0.03;
+constexpr double kNearly_rad = 1.5e-3;
+constexpr double kUndamped = 1e-7;
 constexpr double kBlock_leaves = 16.0;       // normals correlate over about as much
 constexpr std::size_t kCoarsePoints = 1000;  // of which the coarse rounds make do
 constexpr double kShrinking = 0.6;           // of the reach, from round to round
@@ -31,12 +34,15 @@ constexpr double kFarthest_m = 1e8;          // farther than two clouds of 2^20 
 constexpr double kBasin_m = 1.5;
 constexpr double kBasin_rad = 8.0 * kDegree;
 constexpr int kMostStarts = 1200;
-constexpr std::size_t kRefined = 4;
+constexpr std::size_t kRefined = 6;
+constexpr double kCoarsePieces = 100.0;  // of the cloud, that speak for themselves, against the prior
 // Another minimum counts as another place from here on ...
 constexpr double kApart_m = 0.3;
 constexpr double kApart_rad = 1.5 * kDegree;
 // ... and leaves the choice open if it explains the points nearly as well.
-constexpr double kAlike = 3.0;  // sigma of the difference, by pieces of the cloud
+constexpr double kDecided = 13.8;   // odds of a thousand to one, as twice their logarithm
+constexpr double kCertainSquared = 1e-12;  // variance of what the prior knows to be so
+constexpr double kAsWellMatched = 0.8;
 constexpr double kTelling_leaves = 0.4;
 constexpr double kTellingBlock_leaves = 8.0;
 // A pull of the prior below this leaves no doubt of what the surfaces alone would have.
@@ -45,10 +51,11 @@ constexpr double kNoPull_rad = 3e-3;
 constexpr double kWellMatched = 0.9;  // of the points; fewer may be out of reach because the prior holds them there
 // Normals of neighbours err together (they share points), so that what they feign as curvature counts twice.
 constexpr double kTiltsAlike = 2.0;
-// A direction with more sigma is open: who says that it is closed says 0.2 m, or as much at the cloud's radius (3
-// sigma).
+// A direction with more sigma is open: who says that it is closed says 0.2 m and 0.5 deg (3 sigma).
 constexpr double kWidest_m = 0.2 / 3.0;
+constexpr double kWidest_rad = 0.5 / 3.0 * kDegree;
 constexpr double kProbability = 1e-3;
+constexpr int kMostOpenings = 6;  // each opens a direction
 
 double rms_radius(const PreparedCloud& cloud) {
   double sum = 0;
@@ -64,9 +71,12 @@ std::size_t count_blocks(const PreparedCloud& cloud, double block_m) {
   return std::max<std::size_t>(blocks.size(), 1);
 }
 
-bool apart(const Pose& a, const Pose& b) {
-  const Vector6d xi = (a.inverse() * b).log();
+bool apart(const Vector6d& xi) {
   return xi.tail<3>().norm() > kApart_m || xi.head<3>().norm() > kApart_rad;
+}
+
+bool apart(const Pose& a, const Pose& b) {
+  return apart(Vector6d((a.inverse() * b).log()));
 }
 
 }  // namespace
@@ -89,6 +99,7 @@ Aligner::Aligner(const PreparedCloud& source, const SurfaceTarget& target, Match
   if (eigen.info() != Eigen::Success) return;
   const Vector6d values = eigen.eigenvalues().cwiseMax(0.0).cwiseMin(1e12);
   P_prior_ = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+  held_law_ = P_prior_;
   blocks_ = count_blocks(source, kBlock_leaves * matching.leaf_m);
 }
 
@@ -99,8 +110,8 @@ Matching Aligner::matching_at(double reach_m) const {
 }
 
 /// The minimum of  xi^T A xi / 2 + g^T xi  plus the prior's part, in which a covariance without inverse is as good as
-/// any:  (P A / k + 1) xi = -(P g / k + xi_0),  k = what one piece of independent knowledge weighs. Open directions
-/// stay where they are.
+/// any:  (P A / k + 1) xi = -(P g / k + xi_0),  P carried to X, k = what one piece of independent knowledge weighs.
+/// Open directions stay where they are.
 Vector6d Aligner::step(const NormalEquations& e, const Pose& X, double damping) const {
   Matrix6d A = e.A;
   Vector6d scale;
@@ -110,23 +121,24 @@ Vector6d Aligner::step(const NormalEquations& e, const Pose& X, double damping) 
   const double s2 = std::max(e.cost / std::max(e.weight, 1e-12), 1e-6 / kAcrossScale);
   const double k = P_prior_ ? std::max(1.0, s2 * n / static_cast<double>(blocks_)) : 1.0;
   const Vector6d xi_0 = P_prior_ ? Vector6d((X_prior_.inverse() * X).log()) : Vector6d(Vector6d::Zero());
+  const Matrix6d P_here = P_prior_ ? carried(*P_prior_, X_prior_, X) : Matrix6d(Matrix6d::Zero());
   if (open_.empty()) {
     if (!P_prior_) return -A.ldlt().solve(e.g);
-    const Matrix6d left = *P_prior_ * A / k + Matrix6d::Identity();
-    return -left.partialPivLu().solve(*P_prior_ * e.g / k + xi_0);
+    const Matrix6d left = P_here * A / k + Matrix6d::Identity();
+    return -left.partialPivLu().solve(P_here * e.g / k + xi_0);
   }
   // In coordinates of the directions at right angles to the open ones.
   const Eigen::MatrixXd C = open_.closed_basis(), dual = open_.closed_dual();
   if (C.cols() == 0) return Vector6d::Zero();
   const Eigen::MatrixXd closed = C.transpose() * A * C;
   if (!P_prior_) return -C * closed.ldlt().solve(C.transpose() * e.g);
-  const Eigen::MatrixXd P = dual * *P_prior_ * dual.transpose();
+  const Eigen::MatrixXd P = dual * P_here * dual.transpose();
   const Eigen::MatrixXd left = P * closed / k + Eigen::MatrixXd::Identity(C.cols(), C.cols());
   return -C * left.partialPivLu().solve(P * (C.transpose() * e.g) / k + dual * xi_0);
 }
 
 void Aligner::descend(const Stage& stage, Candidate& at) {
-  double damping = 1e-7, reach_m = stage.reach_m;
+  double damping = kUndamped, reach_m = stage.reach_m;
   bool compare = false;
   Pose before_X = at.X;
   NormalEquations before;
@@ -143,7 +155,7 @@ void Aligner::descend(const Stage& stage, Candidate& at) {
       damping = std::max(10.0 * damping, 1e-3);
       if (damping > 1e3) return;
     } else {
-      damping = std::max(0.1 * damping, 1e-7);
+      damping = std::max(0.1 * damping, kUndamped);
     }
     at.missed = at.equations.missed;
     if (at.equations.matched < 6) return;
@@ -153,18 +165,18 @@ void Aligner::descend(const Stage& stage, Candidate& at) {
     before_X = at.X;
     before = at.equations;
     at.X = moved;
-    // Turning and shifting by turns lets a little slip.
-    at.X = open_.held_at(X_prior_, at.X);
+    // What the others do moves what the prior says of the open ones.
+    at.X = held(open_, at.X);
     const bool last_reach = reach_m <= own_.max_correspondence_m;
     compare = last_reach;
     if (last_reach && xi.tail<3>().norm() < stage.settled_m && xi.head<3>().norm() < stage.settled_rad) {
       at.settled = damping < 1e-2;
       return;
     }
-    if (round + 1 == stage.rounds && last_reach && damping < 1e-2 && xi.tail<3>().norm() < kNearly * stage.settled_m &&
-        xi.head<3>().norm() < kNearly * stage.settled_rad) {
-      at.settled = true;
-      at.last_step = xi;
+    if (round + 1 == stage.rounds && last_reach) {
+      at.last_step = step(before, before_X, kUndamped);
+      at.settled = at.last_step.tail<3>().norm() < kNearly_m && at.last_step.head<3>().norm() < kNearly_rad;
+      if (!at.settled) at.last_step.setZero();
     }
     reach_m = std::max(own_.max_correspondence_m, kShrinking * reach_m);
   }
@@ -220,24 +232,34 @@ std::vector<Aligner::Candidate> Aligner::coarse() {
     found.push_back(std::move(at));
   }
   if (found.size() == 1) return found;
-  const auto better = [](const Candidate& a, const Candidate& b) { return a.missed < b.missed; };
-  std::stable_sort(found.begin(), found.end(), better);
+  std::vector<std::size_t> order(found.size());
+  const auto sort = [this, &order](const std::vector<Candidate>& of) {
+    std::vector<double> improbable;
+    for (const Candidate& at : of) improbable.push_back(kCoarsePieces * at.missed + from_prior(at.X));
+    order.resize(of.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return improbable[a] < improbable[b]; });
+  };
+  const auto known = [](const std::vector<Candidate>& among, const Pose& X) {
+    return std::any_of(among.begin(), among.end(), [&](const Candidate& k) { return !apart(k.X, X); });
+  };
+  const double farthest = chi_square_threshold(kProbability, 6.0);
+  sort(found);
   std::vector<Candidate> kept;
-  for (Candidate& at : found) {
-    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Candidate& k) { return !apart(k.X, at.X); });
-    if (!known) kept.push_back(std::move(at));
+  for (const std::size_t k : order) {
     if (kept.size() == 3 * kRefined) break;
+    if (!kept.empty() && (from_prior(found[k].X) > farthest || known(kept, found[k].X))) continue;
+    kept.push_back(std::move(found[k]));
   }
   for (Candidate& at : kept) {
     at.matches.clear();
     descend({stride, own_.max_correspondence_m, 15, 5e-3, 5e-4}, at);
   }
-  std::stable_sort(kept.begin(), kept.end(), better);
+  sort(kept);
   std::vector<Candidate> best;
-  for (Candidate& at : kept) {
-    const bool known = std::any_of(best.begin(), best.end(), [&](const Candidate& k) { return !apart(k.X, at.X); });
-    if (!known) best.push_back(std::move(at));
+  for (const std::size_t k : order) {
     if (best.size() == kRefined) break;
+    if (!known(best, kept[k].X)) best.push_back(std::move(kept[k]));
   }
   return best;
 }
@@ -255,23 +277,47 @@ const CovarianceSums& Aligner::sums_at(Candidate& at) const {
   return *at.sums;
 }
 
-/// Finds the open directions where `at` is, takes it back to the prior along them, and goes on with the others; once
-/// more, as what is open shows the better the closer the surfaces are. False: nothing is determined.
+/// Without a prior there is nothing to go by; its search runs from where it began.
+Pose Aligner::held(const OpenDirections& open, const Pose& X) const {
+  return held_law_ && !open.empty() ? open.held_at(X_prior_, *held_law_, X) : X;
+}
+
+/// By the surfaces and with `B`; open directions have kUnconstrainedSigma_m, and the others what those lean by.
+RegistrationPrecision Aligner::precision_at(Candidate& at, const Matrix6d& B, const OpenDirections& open) const {
+  const CovarianceSums& sums = sums_at(at);
+  RegistrationPrecision precision = registration_precision(sums, B);
+  if (!precision.covariance.allFinite()) return precision;
+  precision.covariance += 4.0 * at.last_step * at.last_step.transpose();
+  if (open.empty() || !P_prior_) return precision;
+  precision.covariance = open.with_open(precision.covariance, kUnconstrainedSigma_m) +
+                         kInflation * open.leaning(sums.block_surfaces, carried(*P_prior_, X_prior_, at.X));
+  return precision;
+}
+
+/// Finds the open directions where `at` is, takes it to the prior along them, and goes on with the others; again, as
+/// what is open shows the better the closer the surfaces are. Where fewer points then find a match, the surfaces do not
+/// leave it open: it stays where it was, unsettled. False: nothing is determined.
 bool Aligner::keep_open_at_prior(Candidate& at, OpenDirections& open) {
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < kMostOpenings; ++pass) {
     const CovarianceSums& sums = sums_at(at);
     if (sums.matched < kFewestPoints) return true;
-    const RegistrationPrecision precision = registration_precision(sums, kInflation * gradient_scatter(sums));
+    const RegistrationPrecision precision = precision_at(at, kInflation * gradient_scatter(sums), open);
     if (!precision.covariance.allFinite() || precision.open.size() >= 6) return false;
     const std::size_t before = open.open().size();
     for (const Vector6d& v : precision.open) open.add(v);
-    open.open_wide(precision.covariance, kWidest_m);
+    open.open_wide(precision.covariance, kWidest_m, kWidest_rad);
     if (open.open().size() >= 6) return false;
     if (open.open().size() == before) return true;
+    Candidate stays = at;
     open_ = open;
-    at.X = open_.held_at(X_prior_, at.X);
+    at.X = held(open, at.X);
     refine(at);
     open_ = OpenDirections(radius_m_);
+    if (explains_less(at, stays)) {
+      at = std::move(stays);
+      at.settled = false;
+      return true;
+    }
   }
   return true;
 }
@@ -327,6 +373,33 @@ std::vector<double> Aligner::unexplained(const Candidate& at) const {
   return missed_by_point(matching, at.X, at.matches);
 }
 
+/// Squared distance from the prior's pose, in its sigma.
+double Aligner::from_prior(const Pose& X) const {
+  if (!P_prior_) return 0.0;
+  const Vector6d xi = (X_prior_.inverse() * X).log();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(*P_prior_);
+  double sum = 0;
+  for (int k = 0; k < 6; ++k) {
+    const double along = eigen.eigenvectors().col(k).dot(xi), variance = eigen.eigenvalues()[k];
+    if (variance > kCertainSquared) sum += along * along / variance;
+  }
+  return sum;
+}
+
+/// Whether a leaves so many more points without a match than b that it is no rival: where a cloud shifted by the prior
+/// leaves the target it loses some, but not a fifth.
+bool Aligner::explains_less(const Candidate& a, const Candidate& b) {
+  return static_cast<double>(a.equations.matched) < kAsWellMatched * static_cast<double>(b.equations.matched);
+}
+
+/// How much less probable b is than a, as twice the logarithm of the odds: by what they leave unexplained, of which the
+/// sigma counts as one of a normal distribution, and by the prior.
+double Aligner::odds(const Candidate& a, std::span<const double> missed_a, const Candidate& b,
+                     std::span<const double> missed_b) const {
+  const double sigma = evidence_against(missed_a, missed_b, source_, kTellingBlock_leaves * own_.leaf_m);
+  return sigma * std::abs(sigma) + from_prior(b.X) - from_prior(a.X);
+}
+
 void Aligner::judge(const Candidate& best, const RegistrationPrecision& precision, bool ambiguous,
                     RegistrationResult& result) {
   using Status = RegistrationStatus;
@@ -345,7 +418,7 @@ void Aligner::judge(const Candidate& best, const RegistrationPrecision& precisio
 bool Aligner::beyond_prior(const RegistrationPrecision& precision, const RegistrationResult& result) const {
   if (!P_prior_) return false;
   const Vector6d xi = (X_prior_.inverse() * result.surfaces->X_TS).log();
-  const Matrix6d sum = *P_prior_ + precision.covariance;
+  const Matrix6d sum = carried(*P_prior_, X_prior_, result.surfaces->X_TS) + precision.covariance;
   return !(xi.dot(sum.ldlt().solve(xi)) < chi_square_threshold(kProbability, 6.0));
 }
 
@@ -360,22 +433,24 @@ RegistrationResult Aligner::align() {
   std::vector<bool> determined(candidates.size(), true);
   std::vector<std::vector<double>> missed(candidates.size());
   std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     refine(candidates[k]);
     if (P_prior_) determined[k] = keep_open_at_prior(candidates[k], open[k]);
     if (candidates.size() == 1 || !determined[k] || candidates[k].matches.size() != static_cast<std::size_t>(n))
       continue;
     missed[k] = unexplained(candidates[k]);
-    const double sum = std::accumulate(missed[k].begin(), missed[k].end(), 0.0,
-                                       [](double all, double one) { return all + (one < 0 ? 1.0 : one); });
-    if (sum < least) best = k, least = sum;
+    if (missed[best].empty() || explains_less(candidates[best], candidates[k]) ||
+        (!explains_less(candidates[k], candidates[best]) &&
+         odds(candidates[best], missed[best], candidates[k], missed[k]) < 0))
+      best = k;
   }
   Candidate& at = candidates[best];
   bool ambiguous = false;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    if (k == best || missed[k].empty() || missed[best].empty() || !apart(candidates[k].X, at.X)) continue;
-    ambiguous |= evidence_against(missed[best], missed[k], source_, kTellingBlock_leaves * own_.leaf_m) < kAlike;
+    const Candidate& other = candidates[k];
+    if (k == best || missed[k].empty() || missed[best].empty() || explains_less(other, at)) continue;
+    if (!apart(open[best].closed_part((at.X.inverse() * other.X).log()))) continue;
+    ambiguous |= odds(at, missed[best], other, missed[k]) < kDecided;
   }
   result.iterations = rounds_;
   result.correspondences = matched_;
@@ -387,31 +462,23 @@ RegistrationResult Aligner::align() {
   const CovarianceSums& sums = sums_at(at);
   const auto& form = model_row(covariance_forms(), engine_.covariance).make;
   const auto guesses = form.restarts ? restarts(at) : std::vector<Vector6d>();
-  RegistrationPrecision precision =
-      registration_precision(sums, form.gradient({sums, engine_.point_sigma_m, engine_.range_bias_m, guesses}));
+  const RegistrationPrecision precision =
+      precision_at(at, form.gradient({sums, engine_.point_sigma_m, engine_.range_bias_m, guesses}), open[best]);
   result.status = RegistrationStatus::kDegenerate;
   if (!determined[best] || !precision.covariance.allFinite() || precision.open.size() >= 6) return result;
   result.X_TS = at.X;
   result.open = P_prior_ ? open[best].open() : precision.open;
   result.rms_m = precision.rms_m;
-  precision.covariance += 4.0 * at.last_step * at.last_step.transpose();
-  if (P_prior_) {
-    const auto pieces = static_cast<double>(std::max<std::size_t>(sums.block_gradients.size(), 1));
-    precision.covariance = open[best].with_open(precision.covariance, kUnconstrainedSigma_m) +
-                           open[best].leaning(sums.H, pieces, *P_prior_);
-  }
   result.covariance = precision.covariance;
   if (P_prior_) result.surfaces = {.X_TS = by_surfaces(at, open[best]), .covariance = precision.covariance};
   judge(at, precision, ambiguous, result);
   if (P_prior_) {
     // Together: along open directions the prior's, in the others what both know.
-    const Matrix6d K = (*P_prior_ + precision.covariance)
-                           .transpose()
-                           .partialPivLu()
-                           .solve(precision.covariance.transpose())
-                           .transpose();
+    const Matrix6d P = carried(*P_prior_, X_prior_, at.X);
+    const Matrix6d K =
+        (P + precision.covariance).transpose().partialPivLu().solve(precision.covariance.transpose()).transpose();
     const Matrix6d left = Matrix6d::Identity() - K;
-    const Matrix6d both = left * precision.covariance * left.transpose() + K * *P_prior_ * K.transpose();
+    const Matrix6d both = left * precision.covariance * left.transpose() + K * P * K.transpose();
     result.covariance = 0.5 * (both + both.transpose());
   }
   if (!result.covariance.allFinite()) {

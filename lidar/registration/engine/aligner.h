@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "canyon/lidar/registration/engine/engine_registration.h"
@@ -44,8 +45,14 @@ class Aligner {
   std::vector<Candidate> coarse();
   void refine(Candidate& at);
   const CovarianceSums& sums_at(Candidate& at) const;
+  Pose held(const OpenDirections& open, const Pose& X) const;
+  RegistrationPrecision precision_at(Candidate& at, const Matrix6d& B, const OpenDirections& open) const;
   bool keep_open_at_prior(Candidate& at, OpenDirections& open);
   std::vector<double> unexplained(const Candidate& at) const;
+  double from_prior(const Pose& X) const;
+  static bool explains_less(const Candidate& a, const Candidate& b);
+  double odds(const Candidate& a, std::span<const double> missed_a, const Candidate& b,
+              std::span<const double> missed_b) const;
   std::vector<Vector6d> restarts(const Candidate& at);
   bool beyond_prior(const RegistrationPrecision& precision, const RegistrationResult& result) const;
   void judge(const Candidate& best, const RegistrationPrecision& precision, bool ambiguous, RegistrationResult& result);
@@ -58,9 +65,10 @@ class Aligner {
   const EngineParameters& engine_;
   Pose X_prior_;
   std::optional<Matrix6d> P_prior_;
-  double radius_m_ = 1.0;   ///< rms distance of the source's points from its origin
-  std::size_t blocks_ = 1;  ///< independent pieces of the source
-  OpenDirections open_;     ///< held at the prior
+  std::optional<Matrix6d> held_law_;  ///< the same, also while the surfaces are asked alone
+  double radius_m_ = 1.0;             ///< rms distance of the source's points from its origin
+  std::size_t blocks_ = 1;            ///< independent pieces of the source
+  OpenDirections open_;               ///< held at the prior
   int rounds_ = 0;
   std::int64_t matched_ = 0;
 };

@@ -278,8 +278,10 @@ CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::
   sums.A = sums.H + along.matrix();
   sums.point_noise = full(noise) + noise_along.matrix();
   sums.N = tilted_all.matrix() - full(tilted);
-  for (std::size_t b = 0; b < block_across.size(); ++b)
-    sums.block_curvatures.push_back(full(block_across[b]) + block_along[b].matrix());
+  for (std::size_t b = 0; b < block_across.size(); ++b) {
+    sums.block_surfaces.push_back(full(block_across[b]));
+    sums.block_curvatures.push_back(sums.block_surfaces[b] + block_along[b].matrix());
+  }
   return sums;
 }
 

@@ -1,16 +1,54 @@
 #include "canyon/lidar/registration/engine/open_directions.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "canyon/lidar/registration/registration_covariance.h"
 
 namespace canyon::lidar {
 namespace {
 
+constexpr int kMostTerms = 30;  // pi^30 / 31! = 1e-19
+constexpr double kNothing = 1e-17;
 constexpr int kMostMoves = 30;  // each leaves a share of 1 - cos(turn / 2) and less
 constexpr double kHeld = 1e-9;
 
+/// Of a covariance that may be singular: what is certain has no part in a regression.
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
+  constexpr double kCertain = 1e-12;
+  if (covariance.cols() == 0) return covariance;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (covariance + covariance.transpose()));
+  const double least = kCertain * eigen.eigenvalues()[covariance.cols() - 1];
+  Eigen::VectorXd inverse = Eigen::VectorXd::Zero(covariance.cols());
+  for (Eigen::Index k = 0; k < covariance.cols(); ++k) {
+    if (eigen.eigenvalues()[k] > least && eigen.eigenvalues()[k] > 0) inverse[k] = 1.0 / eigen.eigenvalues()[k];
+  }
+  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 }  // namespace
+
+Matrix6d right_jacobian(const Vector6d& xi) {
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = skew(xi.head<3>());
+  ad.bottomLeftCorner<3, 3>() = skew(xi.tail<3>());
+  Matrix6d sum = Matrix6d::Identity(), term = Matrix6d::Identity();
+  for (int n = 1; n <= kMostTerms; ++n) {
+    term = (-1.0 / (n + 1.0) * ad * term).eval();
+    sum += term;
+    if (!(term.squaredNorm() > kNothing * kNothing)) break;
+  }
+  return sum;
+}
+
+Matrix6d carried(const Matrix6d& covariance, const Pose& X_prior, const Pose& X) {
+  const Matrix6d J = right_jacobian((X_prior.inverse() * X).log());
+  const Matrix6d out = J * covariance * J.transpose();
+  return 0.5 * (out + out.transpose());
+}
 
 OpenDirections::OpenDirections(double radius_m, std::vector<Vector6d> open) : open_(std::move(open)) {
   root_ << Eigen::Vector3d::Constant(radius_m), Eigen::Vector3d::Ones();
@@ -38,15 +76,26 @@ Vector6d OpenDirections::closed_part(const Vector6d& xi) const {
   return y.cwiseQuotient(root_);
 }
 
-Pose OpenDirections::held_at(const Pose& X_prior, Pose X) const {
-  for (int k = 0; k < kMostMoves && !open_.empty(); ++k) {
-    const Vector6d xi = (X_prior.inverse() * X).log();
-    const Vector6d along = xi - closed_part(xi);
-    if (!along.allFinite()) break;
-    X = X * Pose::exp(-along);
-    if (root_.cwiseProduct(along).norm() < kHeld) break;
+Pose OpenDirections::held_at(const Pose& X_prior, const Matrix6d& P, Pose X) const {
+  if (open_.empty()) return X;
+  const Eigen::MatrixXd U = open_scaled(), C = closed_scaled();
+  for (int k = 0; k < kMostMoves; ++k) {
+    const Vector6d y = root_.cwiseProduct((X_prior.inverse() * X).log());
+    const Matrix6d law = root_.asDiagonal() * carried(P, X_prior, X) * root_.asDiagonal();
+    const Eigen::VectorXd there = U.transpose() * law * C * inverse_of(C.transpose() * law * C) * (C.transpose() * y);
+    const Eigen::VectorXd move = there - U.transpose() * y;
+    if (!move.allFinite()) break;
+    X = X * Pose::exp((U * move).cwiseQuotient(root_));
+    if (move.norm() < kHeld) break;
   }
   return X;
+}
+
+Eigen::MatrixXd OpenDirections::open_scaled() const {
+  Eigen::MatrixXd U(6, static_cast<Eigen::Index>(open_.size()));
+  for (std::size_t k = 0; k < open_.size(); ++k)
+    U.col(static_cast<Eigen::Index>(k)) = root_.cwiseProduct(open_[k]).normalized();
+  return U;
 }
 
 Eigen::MatrixXd OpenDirections::closed_scaled() const {
@@ -67,14 +116,16 @@ Eigen::MatrixXd OpenDirections::closed_dual() const {
   return closed_scaled().transpose() * root_.asDiagonal();
 }
 
-void OpenDirections::open_wide(const Matrix6d& covariance, double sigma_m) {
+void OpenDirections::open_wide(const Matrix6d& covariance, double sigma_m, double sigma_rad) {
   const Eigen::MatrixXd C = closed_scaled();
   if (C.cols() == 0) return;
   const Matrix6d scaled = root_.asDiagonal() * covariance * root_.asDiagonal();
   const Eigen::MatrixXd S = C.transpose() * scaled * C;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(S);
   for (Eigen::Index k = 0; k < S.cols(); ++k) {
-    if (eigen.eigenvalues()[k] > sigma_m * sigma_m) add((C * eigen.eigenvectors().col(k)).cwiseQuotient(root_));
+    const Vector6d v = (C * eigen.eigenvectors().col(k)).cwiseQuotient(root_);
+    const double sigma = std::sqrt(std::max(0.0, eigen.eigenvalues()[k]));
+    if (sigma * v.tail<3>().norm() > sigma_m || sigma * v.head<3>().norm() > sigma_rad) add(v);
   }
 }
 
@@ -90,19 +141,40 @@ Matrix6d OpenDirections::with_open(const Matrix6d& covariance, double sigma_m) c
   return root_.cwiseInverse().asDiagonal() * out * root_.cwiseInverse().asDiagonal();
 }
 
-Matrix6d OpenDirections::leaning(const Matrix6d& H, double pieces, const Matrix6d& P) const {
+Matrix6d OpenDirections::leaning(std::span<const Matrix6d> curvatures, const Matrix6d& prior) const {
   Matrix6d out = Matrix6d::Zero();
-  if (open_.empty() || open_.size() >= 6) return out;
-  const Eigen::MatrixXd C = closed_basis();
-  const Eigen::MatrixXd curvature = C.transpose() * H * C;
-  const Eigen::MatrixXd inverse = curvature.ldlt().solve(Eigen::MatrixXd::Identity(C.cols(), C.cols()));
-  if (!inverse.allFinite()) return out;
-  const Matrix6d closed = C * inverse * C.transpose();
-  for (const Vector6d& v : open_) {
-    const Vector6d dual = root_.cwiseProduct(root_.cwiseProduct(v));
-    out += dual.dot(P * dual) * std::max(0.0, v.dot(H * v)) / pieces * closed;
+  if (open_.empty() || open_.size() >= 6 || curvatures.empty()) return out;
+  const Eigen::MatrixXd C = closed_scaled(), U = open_scaled();
+  const auto scaled = [this](const Matrix6d& H) -> Matrix6d {
+    return root_.cwiseInverse().asDiagonal() * H * root_.cwiseInverse().asDiagonal();
+  };
+  Matrix6d H = Matrix6d::Zero();
+  for (const Matrix6d& one : curvatures) H += scaled(one);
+  const Eigen::MatrixXd closed = (C.transpose() * H * C).ldlt().solve(Eigen::MatrixXd::Identity(C.cols(), C.cols()));
+  if (!closed.allFinite()) return out;
+  // Along the open directions, given the others.
+  const Matrix6d law = root_.asDiagonal() * prior * root_.asDiagonal();
+  const Eigen::MatrixXd across = U.transpose() * law * C;
+  const Eigen::MatrixXd along =
+      U.transpose() * law * U - across * inverse_of(C.transpose() * law * C) * across.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(along);
+  const auto blocks = static_cast<double>(curvatures.size());
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(C.cols(), C.cols());
+  for (Eigen::Index k = 0; k < along.cols(); ++k) {
+    const Vector6d v = U * eigen.eigenvectors().col(k);
+    const double variance = std::max(0.0, eigen.eigenvalues()[k]);
+    if (curvatures.size() < kFewestBlocks) {
+      sum += variance * std::max(0.0, v.dot(H * v)) / blocks * closed;
+      continue;
+    }
+    Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(C.cols(), C.cols());
+    for (const Matrix6d& one : curvatures) {
+      const Eigen::VectorXd h = C.transpose() * (scaled(one) * v);
+      scatter += blocks / (blocks - 6.0) * h * h.transpose();
+    }
+    sum += variance * closed * scatter * closed;
   }
-  return out;
+  return root_.cwiseInverse().asDiagonal() * (C * sum * C.transpose()) * root_.cwiseInverse().asDiagonal();
 }
 
 }  // namespace canyon::lidar

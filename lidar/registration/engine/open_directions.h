@@ -1,10 +1,19 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "canyon/core/motion/rotation.h"
 
 namespace canyon::lidar {
+
+/// Jr(xi), right Jacobian of SE(3): Exp(xi + d) = Exp(xi) Exp(Jr(xi) d) to first order (Barfoot 2017, State Estimation
+/// for Robotics, eq. 7.83). A series; for turns up to pi exact to rounding.
+Matrix6d right_jacobian(const Vector6d& xi);
+
+/// What is known of log(X_prior^-1 X), as a covariance of xi at X: a turn of the source by which the two differ shifts
+/// what is far from the prior's place, and takes the prior's axes along.
+Matrix6d carried(const Matrix6d& covariance, const Pose& X_prior, const Pose& X);
 
 /// Directions of xi, source frame, measured where a rotation counts by what it moves at `radius_m`. The open ones are
 /// of length 1 and at right angles.
@@ -19,24 +28,28 @@ class OpenDirections {
 
   /// What is left of xi at right angles to the open directions.
   Vector6d closed_part(const Vector6d& xi) const;
-  /// X moved along its open directions alone, until log(X_prior^-1 X) has no part along them. The move is X Exp(v), in
-  /// the frame where the directions were found: were it taken out of the logarithm, a turn between the two poses would
-  /// lead it off the surfaces by half its angle.
-  Pose held_at(const Pose& X_prior, Pose X) const;
+  /// X moved along its open directions alone, to where a prior has its most probable pose given all others: P is the
+  /// covariance of log(X_prior^-1 X) and may be singular. The move is X Exp(v), in the frame where the directions were
+  /// found: were it taken out of the logarithm, a turn between the two poses would lead it off the surfaces by half its
+  /// angle.
+  Pose held_at(const Pose& X_prior, const Matrix6d& P, Pose X) const;
   /// Columns: directions at right angles to the open ones, of length 1. `dual`: what takes xi to its coordinates.
   Eigen::MatrixXd closed_basis() const;
   Eigen::MatrixXd closed_dual() const;
-  /// Opens the closed directions along which `covariance` has more than sigma_m.
-  void open_wide(const Matrix6d& covariance, double sigma_m);
+  /// Opens the closed directions along which `covariance` has a shift of more than sigma_m, or a turn of more than
+  /// sigma_rad.
+  void open_wide(const Matrix6d& covariance, double sigma_m, double sigma_rad);
   /// `covariance` in the closed directions, and `sigma_m` along the open ones.
   Matrix6d with_open(const Matrix6d& covariance, double sigma_m) const;
-  /// What the open directions' own uncertainty adds to the closed ones: whoever holds a pose at a prior of covariance P
-  /// along a direction that leans, leads it off the surfaces. H: curvature by surfaces; along an open v it is what
-  /// errors of the normals feign, so that v leans by H_cv / H_cc, of which the square is at most v^T H v / H_cc (Cauchy
-  /// and Schwarz), and a share of 1 / pieces where as many pieces of the cloud err independently.
-  Matrix6d leaning(const Matrix6d& H, double pieces, const Matrix6d& P) const;
+  /// What the open directions' own uncertainty adds to the closed ones: whoever holds a pose along a direction that
+  /// leans leads it off the surfaces. `curvatures`: by surfaces alone, of each block of the cloud; `prior`: of xi where
+  /// they were found. Along an open v the curvature H is what errors of the normals feign, so that v leans by
+  /// H_cc^-1 H_cv, and how much that may be is told by how the blocks scatter about nothing: the sandwich again. With
+  /// too few blocks for that, by the square's bound v^T H v / H_cc (Cauchy and Schwarz), a share of 1 / blocks of it.
+  Matrix6d leaning(std::span<const Matrix6d> curvatures, const Matrix6d& prior) const;
 
  private:
+  Eigen::MatrixXd open_scaled() const;
   Eigen::MatrixXd closed_scaled() const;
   Vector6d root_;  ///< y = root xi is Euclidean
   std::vector<Vector6d> open_;
