@@ -191,6 +191,22 @@ TEST(FixErrorParameters, AreARootOfTheCovariance) {
 }
 
 // Stretched along the vertical alone, what is said across it stays.
+/// Along the axes of what is stated, each by itself; a power of 1 is what there was before it, to the bit.
+TEST(FixErrorParameters, GrowAsAPowerOfWhatIsStated) {
+  const Eigen::Matrix3d R = so3_exp(Vector3d(0.3, -0.5, 0.7)).toRotationMatrix();
+  const Eigen::Matrix3d stated = R * Vector3d(0.25, 1.0, 16.0).asDiagonal() * R.transpose();
+  FixErrorParameters p{.fix_error_sigma_m = 0.5, .fix_error_scale = 2.0};
+  const Eigen::Matrix3d linear = p.covariance(stated);
+  p.fix_error_power = 1.5;
+  // 1-sigmas of 0.5, 1 and 4 m make 2 times 0.5^1.5, 1 and 8 m; roundings of 256 m^2.
+  const Vector3d variances = Vector3d(4.0 * 0.125, 4.0, 4.0 * 64.0).array() + 0.25;
+  const Eigen::Matrix3d expected = R * variances.asDiagonal() * R.transpose();
+  EXPECT_LT((p.covariance(stated) - expected).norm(), 64.0 * 2.2e-16 * 256.0);
+  const Eigen::Matrix3d root = p.share(stated);
+  EXPECT_LT((0.25 * root * root.transpose() - expected).norm(), 64.0 * 2.2e-16 * 256.0);
+  EXPECT_EQ(linear, Eigen::Matrix3d(0.25 * Eigen::Matrix3d::Identity() + 4.0 * 0.5 * (stated + stated.transpose())));
+}
+
 TEST(VelocityErrorParameters, AreARootOfWhatIsStatedAndStretched) {
   const VelocityErrorParameters p{.velocity_error_scale = 2.0, .velocity_error_up_scale = 3.0};
   const Vector3d up = Vector3d(0.1, -0.8, 0.5).normalized(), across = up.unitOrthogonal();

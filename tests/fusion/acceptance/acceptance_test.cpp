@@ -121,7 +121,7 @@ double lost_after_s(const char* row, const std::string& keys, const std::functio
 }
 
 /// Of a vehicle at 10 m/s.
-PlaceBeside driving(const Eigen::Vector3d& off_m) {
+PlaceBeside beside_by(const Eigen::Vector3d& off_m) {
   PlaceBeside out;
   out.off_m = off_m;
   out.speed_m_s = 10.0;
@@ -134,7 +134,7 @@ const Eigen::Vector3d kBeside(40.0, -30.0, 5.0);
 // 2026-11-25: after an hour of bad fixes the rows that weigh fixes took minutes to believe the good ones.
 TEST(Acceptance, FixesThatAreSteadilyBesideItSayThatTheFilterIsLost) {
   const std::string keys = "lost_after_s = 5";
-  const auto constant = [](double) { return driving(kBeside); };
+  const auto constant = [](double) { return beside_by(kBeside); };
   for (const char* row : kWithWayBack) {
     // At once, or where chance makes the fixes scatter a few later.
     EXPECT_GE(lost_after_s(row, keys, constant), 5.0) << row;
@@ -142,14 +142,14 @@ TEST(Acceptance, FixesThatAreSteadilyBesideItSayThatTheFilterIsLost) {
     EXPECT_EQ(lost_after_s(row, "lost_after_s = 0", constant), -1.0) << row;
     // Fixes that wander by 2 m/s, which adds 2.9 m (10 m over the root of 12) to their scatter of 1 m: sums of squares
     // of 120 where 40 are allowed.
-    EXPECT_EQ(lost_after_s(row, keys, [](double t) { return driving((1.0 + t / 25.0) * kBeside); }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double t) { return beside_by((1.0 + t / 25.0) * kBeside); }), -1.0) << row;
     // Their noise alone, and what is beside it by two sigma.
-    EXPECT_EQ(lost_after_s(row, keys, [](double) { return driving({0.0, 0.0, 0.0}); }), -1.0) << row;
-    EXPECT_EQ(lost_after_s(row, keys, [](double) { return driving({2.0, 0.0, 0.0}); }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double) { return beside_by({0.0, 0.0, 0.0}); }), -1.0) << row;
+    EXPECT_EQ(lost_after_s(row, keys, [](double) { return beside_by({2.0, 0.0, 0.0}); }), -1.0) << row;
     // Bad until the twentieth second, then steady.
     EXPECT_NEAR(
         lost_after_s(row, keys,
-                     [](double t) { return driving(t < 20.0 ? Eigen::Vector3d((30.0 - t) * kBeside) : kBeside); }),
+                     [](double t) { return beside_by(t < 20.0 ? Eigen::Vector3d((30.0 - t) * kBeside) : kBeside); }),
         26.0, 1.0)
         << row;
   }
@@ -159,11 +159,11 @@ TEST(Acceptance, FixesThatAreSteadilyBesideItSayThatTheFilterIsLost) {
 // been led astray saw them wander by that.
 TEST(Acceptance, WhatFixesAreBesideIsCountedAlongTheirOwnMotion) {
   const std::string keys = "lost_after_s = 5";
-  const auto followed = [](double t) { return driving((1.0 - t / 50.0) * kBeside); };
+  const auto followed = [](double t) { return beside_by((1.0 - t / 50.0) * kBeside); };
   const auto led_astray = [](bool measured) {
     return [measured](double t) {
       const Eigen::Vector3d astray(1.0, 0.0, -1.0);  // m/s
-      PlaceBeside out = driving(kBeside + t * astray);
+      PlaceBeside out = beside_by(kBeside + t * astray);
       out.velocity_measured = measured;
       if (measured) out.leaving_m_s = astray;
       return out;
@@ -181,7 +181,7 @@ TEST(Acceptance, OfAVehicleThatStandsEchoesAreAsSteadyAsTheTruth) {
   for (const char* row : kWithWayBack) {
     const auto standing_until = [](double s) {
       return [s](double t) {
-        PlaceBeside out = driving(kBeside);
+        PlaceBeside out = beside_by(kBeside);
         if (t < s) out.speed_m_s = 0.0;
         return out;
       };
