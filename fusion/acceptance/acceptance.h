@@ -10,11 +10,12 @@ namespace canyon::fusion {
 
 /// A place that something moving has been measured at, beside where the estimate has it; along E's axes.
 struct PlaceBeside {
-  Eigen::Vector3d off_m =
-      Eigen::Vector3d::Zero();  ///< measured minus predicted; the measurement's lasting error counts
-  Eigen::Vector3d leaving_m_s = Eigen::Vector3d::Zero();  ///< the same of the velocity that was measured with it
-  bool velocity_measured = false;                         ///< else that is zero
-  double speed_m_s = 0.0;
+  /// Measured minus predicted, with what the states hold of the measurement's lasting error.
+  Eigen::Vector3d off_m = Eigen::Vector3d::Zero();
+  /// The same of the velocity that was measured with it; zero if none was.
+  Eigen::Vector3d leaving_m_s = Eigen::Vector3d::Zero();
+  bool velocity_measured = false;
+  double speed_m_s = 0.0;  ///< of the estimate
 };
 
 /// What a measurement would do: its residual, the covariance of its noise, and H P H', that of what was predicted.
@@ -32,7 +33,8 @@ struct Decision {
   bool accepted = true;
   double noise_scale = 1.0;  ///< R is taken times this
   double loosening = 1.0;    ///< the filter has lost its way: what it measures is so many times less sure than expected
-  double loosening_m_s = 0.0;  ///< and all else it has been taught is in doubt, its velocity by this 1-sigma per axis
+  /// Above 0, what it has been taught is in doubt too: its blocks, its attitude, its velocity by this 1-sigma per axis.
+  double loosening_m_s = 0.0;
 };
 
 /// Decides on the measurements of one model, in turn. One-level interface; the models are in the table below, each in
