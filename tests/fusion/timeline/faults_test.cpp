@@ -125,8 +125,8 @@ TEST(Faults, AnHourOfBadFixesIsForgottenInTenSeconds) {
   EXPECT_LT(worst.final_m, kSound_m);
 }
 
-/// The others trust what has lasted for longer: five minutes here. A way back helps none of them: where no velocity
-/// comes with the fixes they are judged by the filter's own motion, which has been led astray as well.
+/// The others trust what has lasted for longer: five minutes here. No way back is as quick as the gate's: where no
+/// velocity comes with the fixes they are judged by the filter's own motion, which has been led astray as well.
 TEST(Faults, OthersForgetSlowly) {
   for (const auto& row : acceptance_models()) {
     const double soon_m = drive(with_acceptance(row.name), bad_until(30000), 310.0).final_m,
