@@ -12,7 +12,7 @@ std::vector<StressCase> stress_cases() {
        {orbit_cases,       light_time_cases,      dilution_cases,   solver_cases, filter_cases, atmosphere_cases,
         paper_cases,       process_cases,         correlator_cases, lock_cases,   wave_cases,   product_cases,
         time_border_cases, place_cases,           way_cases,        sensor_cases, file_cases,   fitted_orbit_cases,
-        street_cases,      single_position_cases, reception_cases})
+        street_cases,      single_position_cases, reception_cases,  nominal_cases})
     for (StressCase& one : subject()) all.push_back(std::move(one));
   return all;
 }

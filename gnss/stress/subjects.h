@@ -25,6 +25,7 @@ std::vector<StressCase> way_cases();
 std::vector<StressCase> sensor_cases();
 std::vector<StressCase> single_position_cases();
 std::vector<StressCase> reception_cases();
+std::vector<StressCase> nominal_cases();
 std::vector<StressCase> file_cases();
 std::vector<StressCase> fitted_orbit_cases();
 std::vector<StressCase> street_cases();

@@ -12,6 +12,7 @@ std::vector<StressCase> boundary_cases();
 std::vector<StressCase> collision_cases();
 std::vector<StressCase> drive_cases();
 std::vector<StressCase> localizer_cases();
+std::vector<StressCase> mapping_cases();
 std::vector<StressCase> path_cases();
 std::vector<StressCase> plan_cases();
 std::vector<StressCase> plan_model_cases();
