@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 #include "canyon/core/files/files.h"
 #include "canyon/core/math/chi_square.h"
