@@ -21,7 +21,7 @@ Vector6d shift(double x, double y, double z) {
 }
 
 /// What is shifted and what is turned err independently.
-Matrix6d law() {
+Matrix6d independent_law() {
   Matrix6d P = Matrix6d::Identity();
   P.topLeftCorner<3, 3>() *= 1e-4;
   return P;
@@ -32,13 +32,13 @@ Matrix6d law() {
 TEST(OpenDirections, HoldingAPoseMovesItAlongThemAlone) {
   const OpenDirections open(kRadius_m, {shift(1, 0, 0)});
   const Pose prior{so3_exp({0.01, -0.02, 20 * kDegree}), {2, 1, 0.1}}, at{Eigen::Quaterniond::Identity(), {5, 0, 0}};
-  const Pose held = open.held_at(prior, law(), at);
+  const Pose held = open.held_at(prior, independent_law(), at);
   // The corridor runs along x: what is not along it stays, to rounding (1e-15 times 30 moves of metres).
   EXPECT_NEAR(held.p.y(), at.p.y(), 1e-12);
   EXPECT_NEAR(held.p.z(), at.p.z(), 1e-12);
   EXPECT_LT(so3_log(held.R).norm(), 1e-12);
   // The prior's slope along it, in its sigma, is nothing, to the last move of 1e-9 m.
-  const Matrix6d weight = carried(law(), prior, held).inverse();
+  const Matrix6d weight = carried(independent_law(), prior, held).inverse();
   const Vector6d v = shift(1, 0, 0);
   EXPECT_LT(std::abs(v.dot(weight * (prior.inverse() * held).log())) / std::sqrt(v.dot(weight * v)), 1e-8);
 }
@@ -48,7 +48,7 @@ TEST(OpenDirections, OnLevelGroundTurnAndShiftsAreThePriors) {
   turn[2] = 1.0 / kRadius_m;
   const OpenDirections open(kRadius_m, {shift(1, 0, 0), shift(0, 1, 0), turn});
   const Pose prior{so3_exp({0, 0, 30 * kDegree}), {4, -3, 0}}, at{Eigen::Quaterniond::Identity(), {0, 0, 0.2}};
-  const Pose held = open.held_at(prior, law(), at);
+  const Pose held = open.held_at(prior, independent_law(), at);
   EXPECT_NEAR(held.p.z(), 0.2, 1e-9);  // the prior's places in the plane, the ground's height
   EXPECT_LT((held.p.head<2>() - prior.p.head<2>()).norm(), 1e-8);
   EXPECT_LT(so3_log(held.R.conjugate() * prior.R).norm(), 1e-9);
