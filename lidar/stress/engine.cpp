@@ -467,27 +467,49 @@ StressFigure open_directions_algebra(double radius_m) {
   const Matrix6d whole = root.asDiagonal() * open.with_open(C, 7.0) * root.asDiagonal(),
                  scaled = root.asDiagonal() * C * root.asDiagonal();
   looks.near((whole - free * scaled * free - 49.0 * held).norm(), 0.0, 100.0 * grain);
-  const Matrix6d H = root.asDiagonal() * drawn_positive(5) * root.asDiagonal(), P = C;
-  const Eigen::MatrixXd closed = basis * (basis.transpose() * H * basis).inverse() * basis.transpose();
-  Matrix6d leaning = Matrix6d::Zero();
-  for (const Vector6d& v : open.open()) {
-    const Vector6d dual_v = root.cwiseProduct(root.cwiseProduct(v));
-    leaning += dual_v.dot(P * dual_v) * v.dot(H * v) / 9.0 * closed;
+  // Of xi along the open directions, given the others: what the prior's precision has there.
+  Eigen::MatrixXd U(6, 2);
+  for (int i = 0; i < 2; ++i) U.col(i) = root.cwiseProduct(open.open()[static_cast<std::size_t>(i)]);
+  const Eigen::MatrixXd along = (U.transpose() * scaled.inverse() * U).inverse();
+  const auto closed_by = [&](const Matrix6d& H) -> Matrix6d {
+    const Eigen::MatrixXd euclidean = root.asDiagonal() * basis;
+    return euclidean * (euclidean.transpose() * H * euclidean).inverse() * euclidean.transpose();
+  };
+  const auto unscaled = [&](const Matrix6d& m) -> Matrix6d {
+    return root.cwiseInverse().asDiagonal() * m * root.cwiseInverse().asDiagonal();
+  };
+  // Of few blocks the bound, of many what they scatter.
+  const Matrix6d few = drawn_positive(5);
+  const Matrix6d bound = (along * U.transpose() * few * U).trace() / 9.0 * closed_by(few);
+  alike(looks, open.leaning(std::vector<Matrix6d>(9, root.asDiagonal() * few * root.asDiagonal() / 9.0), C),
+        unscaled(bound), 1e-10);
+  std::vector<Matrix6d> blocks;
+  Matrix6d sum = Matrix6d::Zero(), scatter = Matrix6d::Zero();
+  for (int k = 0; k < 30; ++k) {
+    const Matrix6d one = drawn_positive(40 + k);
+    blocks.emplace_back(root.asDiagonal() * one * root.asDiagonal());
+    sum += one;
+    scatter += 30.0 / 24.0 * one * (U * along * U.transpose()) * one;
   }
-  alike(looks, open.leaning(H, 9.0, P), leaning, 1e-10);
+  alike(looks, open.leaning(blocks, C), unscaled(closed_by(sum) * scatter * closed_by(sum)), 1e-10);
+  // Held where no move along its open directions makes it likelier.
   const Pose prior{rotation_from({.yaw_rad = 0.4, .pitch_rad = 0.1, .roll_rad = -0.2}), {5.0, -3.0, 1.0}};
   const Pose off = prior * Pose::exp(0.1 * drawn(6));
-  const Pose back = open.held_at(prior, off);
-  const Vector6d left = (prior.inverse() * back).log();
-  looks.near((root.cwiseProduct(left) - free * root.cwiseProduct(left)).norm(), 0.0, 1e-8);
-  // Along its open directions alone.
+  const Pose back = open.held_at(prior, C, off);
+  const Matrix6d precision = (root.asDiagonal() * carried(C, prior, back) * root.asDiagonal()).inverse();
+  const Vector6d left = root.cwiseProduct((prior.inverse() * back).log());
+  looks.near((U.transpose() * precision * left).norm(), 0.0, 1e-8 * precision.norm());
   const Vector6d way = (off.inverse() * back).log();
   looks.near((free * root.cwiseProduct(way)).norm(), 0.0, 0.05 * root.cwiseProduct(way).norm() + 1e-9);
   OpenDirections wide(radius_m);
-  wide.open_wide(C, 1.5);
+  const double most_m = 1.5, most_rad = 1.2 / radius_m;
+  wide.open_wide(C, most_m, most_rad);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
   int expected = 0;
-  for (int k = 0; k < 6; ++k) expected += eigen.eigenvalues()[k] > 2.25 ? 1 : 0;
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d one_sigma = std::sqrt(eigen.eigenvalues()[k]) * eigen.eigenvectors().col(k);
+    expected += one_sigma.tail<3>().norm() > most_m || one_sigma.head<3>().norm() / radius_m > most_rad ? 1 : 0;
+  }
   looks.right(static_cast<int>(wide.open().size()) == expected);
   for (const Vector6d& v : wide.open()) {
     const Vector6d u = root.cwiseProduct(v), Su = scaled * u;
