@@ -40,7 +40,7 @@ constexpr double kCoarsePieces = 100.0;  // of the cloud, that speak for themsel
 constexpr double kApart_m = 0.3;
 constexpr double kApart_rad = 1.5 * kDegree;
 // ... and leaves the choice open if it explains the points nearly as well.
-constexpr double kDecided = 13.8;   // odds of a thousand to one, as twice their logarithm
+constexpr double kDecided = 13.8;          // odds of a thousand to one, as twice their logarithm
 constexpr double kCertainSquared = 1e-12;  // variance of what the prior knows to be so
 constexpr double kAsWellMatched = 0.8;
 constexpr double kTelling_leaves = 0.4;
@@ -69,6 +69,16 @@ std::size_t count_blocks(const PreparedCloud& cloud, double block_m) {
     if (const auto place = blocks.coordinates(p)) blocks.insert(*place);
   }
   return std::max<std::size_t>(blocks.size(), 1);
+}
+
+/// A prior of endless sigma leaves roundings below nothing.
+Matrix6d without_negative(const Matrix6d& covariance) {
+  const Matrix6d even = 0.5 * (covariance + covariance.transpose());
+  if (!even.allFinite()) return even;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(even);
+  const Vector6d& values = eigen.eigenvalues();
+  if (!(values[0] < 0)) return even;
+  return eigen.eigenvectors() * values.cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 bool apart(const Vector6d& xi) {
@@ -479,7 +489,7 @@ RegistrationResult Aligner::align() {
         (P + precision.covariance).transpose().partialPivLu().solve(precision.covariance.transpose()).transpose();
     const Matrix6d left = Matrix6d::Identity() - K;
     const Matrix6d both = left * precision.covariance * left.transpose() + K * P * K.transpose();
-    result.covariance = 0.5 * (both + both.transpose());
+    result.covariance = without_negative(both);
   }
   if (!result.covariance.allFinite()) {
     result.X_TS = X_prior_;
