@@ -187,7 +187,7 @@ def cases_by_floor(work):
     names = [case["name"] for case in json.loads(ran.stdout)["cases"]]
     out = {}
     for floor in FLOORS:
-        texts = [path.read_text(encoding="utf-8") for path in (ROOT / floor / "stress").glob("*.cpp")]
+        texts = [path.read_text(encoding="utf-8") for path in (ROOT / floor / "stress").rglob("*.cpp")]
         subjects = {found for text in texts for found in re.findall(r'"([a-z_0-9]+)/', text)}
         out[floor] = [name for name in names if name.split("/")[0] in subjects]
     return out

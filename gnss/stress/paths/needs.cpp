@@ -1,0 +1,124 @@
+// What can be said of a piece of a route before anything is received: bounds of reflections, of directions, of
+// horizons.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "canyon/core/earth/local_frame.h"
+#include "canyon/core/motion/route_segment.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/stress/looks.h"
+#include "canyon/core/units.h"
+#include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/diffraction/fresnel.h"
+#include "canyon/gnss/paths/need/ball.h"
+#include "canyon/gnss/paths/need/obstacle_heights.h"
+#include "canyon/gnss/paths/need/reflection_bound.h"
+#include "canyon/gnss/paths/need/sky_span.h"
+#include "canyon/gnss/satellites/constellation.h"
+#include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/signal.h"
+#include "canyon/gnss/stress/paths/plain.h"
+#include "canyon/gnss/stress/subjects.h"
+#include "canyon/scene/scene.h"
+
+namespace canyon::gnss {
+namespace {
+
+using Eigen::Vector3d;
+using stress::Looks;
+
+/// Bounds that are made before anything is received: never below what is, and no farther above it than their steps.
+StressFigure bounds() {
+  Looks looks;
+  const RandomStream draws(4, "stress.receptions");
+  for (const scene::Material& material : scene::builtin_materials())
+    for (const double rough_m : {0.0, 0.01}) {
+      const ReflectionBound bound(material, rough_m);
+      for (double cosine = 0.005; cosine < 1.0; cosine += 0.0217) {
+        double most = 0.0;
+        for (const double hz : {1.15e9, 1.3e9, kL1Hz, 1.62e9}) {
+          const double incidence = std::acos(cosine);
+          const Vector3d in(std::sin(incidence), 0.0, -cosine);
+          const Bounce bounce = bounce_off(material, in, Vector3d::UnitZ(), rough_m, hz);
+          most = worse(most, std::abs(bounce.coefficients.te) * bounce.factor);
+          most = worse(most, std::abs(bounce.coefficients.tm) * bounce.factor);
+        }
+        looks.right(bound.from(cosine) >= most * (1.0 - 1e-12));
+        if (material.thickness_m > 0.0 || material.rf_absorbing) continue;
+        // A half-space: the largest TE at the carriers' ends, at the cosine's step below.
+        const double step = std::floor(256.0 * cosine) / 256.0;
+        double te = 0.0;
+        for (const double hz : {1.15e9, 1.62e9})
+          te = worse(te, std::abs(fresnel(material.permittivity(hz), std::acos(step)).te));
+        looks.near(bound.from(cosine),
+                   te * roughness_factor(std::hypot(material.roughness_m, rough_m), step, kSpeedOfLight / 1.15e9),
+                   1e-12);
+      }
+    }
+  const auto sky = make_nominal_gps();
+  const LocalFrame frame(Geodetic{0.5646, -1.586, 60.0});
+  const GpsTime start = GpsTime::from_week_sow(1600, 3000.0);
+  const Ball place{{200.0, -100.0, 5.0}, 150.0};
+  const SkySpan span = sky_span(*sky, frame, start, start + 400.0, place, 0.1);
+  looks.right(span.directions.size() > 40 && span.spread_rad < 0.01);
+  for (int k = 0; k < 150; ++k) {
+    const Vector3d off = 150.0 * Vector3d(draws.uniform(-1, 1, 0, k), draws.uniform(-1, 1, 1, k), 0.0) / std::sqrt(2.0);
+    const Vector3d p_E = frame.to_E(place.center_W + off);
+    const GpsTime t = start + draws.uniform(0, 400, 2, k);
+    for (const SatelliteId sv : sky->satellites()) {
+      const auto signal = transmission_to(*sky, sv, t, p_E);
+      if (!signal) continue;
+      const Vector3d s = frame.R_EW().transpose() * (signal->p_E() - p_E).normalized();
+      if (s.z() < std::sin(0.1)) continue;
+      double nearest = 4.0;
+      for (const auto& d : span.directions)
+        if (d.sv == sv) nearest = std::min(nearest, 2.0 * std::asin(0.5 * (d.s_W - s).norm()));
+      looks.right(nearest <= span.spread_rad && std::asin(s.z()) >= span.lowest_rad);
+    }
+    const Ball from{{draws.uniform(-50, 50, 3, k), draws.uniform(-50, 50, 4, k), 0.0}, draws.uniform(0, 5, 5, k)},
+        at{{draws.uniform(-200, 200, 6, k), draws.uniform(-200, 200, 7, k), draws.uniform(0, 300, 8, k)},
+           draws.uniform(0, 20, 9, k)};
+    const Vector3d v = at.center_W - from.center_W;
+    const double reach = at.radius_m + from.radius_m;
+    std::optional<std::size_t> expected;
+    for (std::size_t i = 0; i < span.directions.size() && !expected; ++i) {
+      const double turned = std::acos(std::min(1.0, v.normalized().dot(span.directions[i].s_W)));
+      if (v.norm() <= reach || turned <= std::asin(reach / v.norm()) + span.spread_rad) expected = i;
+    }
+    looks.right(span.through(from, at) == expected);
+  }
+  // A box on a plain, from along a way: its top over the lower end, by the distance less half widths and half a square.
+  const scene::Scene plain = plain_at(0.0, 24.0);
+  const ObstacleHeights heights(plain);
+  for (const double x : {-150.0, -40.0, 30.0}) {
+    RouteSegment segment;
+    segment.points_W = {{x, 40.0, 0.0}, {x + 10.0, 40.0, 0.0}};
+    segment.low_m = 0.0, segment.half_width_m = 2.0;
+    const double found = heights.horizon_rad(segment, 1.5, 1.0);
+    // The box spans 90 to 110 by x; a square's circle has up to 4 sqrt 2 of 4 m squares.
+    const double true_m = 90.0 - (x + 10.0) - 3.0;
+    looks.right(found >= std::atan((24.0 - 1.5) / true_m) && found <= std::atan((24.0 - 1.5 + 0.01) / (true_m - 8.0)));
+  }
+  RouteSegment inside;
+  inside.points_W = {{95.0, 40.0, 0.0}, {99.0, 40.0, 0.0}};
+  looks.near(heights.horizon_rad(inside, 1.5, 1.0), 0.5 * kPi, 1e-15);
+  return looks.figure();
+}
+
+}  // namespace
+
+std::vector<StressCase> need_cases() {
+  StressRows rows;
+  rows.of({.group = StressGroup::kGeometry,
+           .mechanism = "what can be said before anything is received",
+           .why = "a bound that is none, or so wide that nothing is ever left out",
+           .expected = "above all that is, and no farther than its steps",
+           .unit = "of the bound"});
+  rows.add("needs/bounds", bounds);
+  return rows.take();
+}
+
+}  // namespace canyon::gnss
