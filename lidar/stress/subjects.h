@@ -15,6 +15,9 @@ std::vector<StressCase> cloud_cases();
 std::vector<StressCase> registration_cases();
 std::vector<StressCase> chain_cases();
 std::vector<StressCase> map_cases();
-std::vector<StressCase> engine_cases();
+std::vector<StressCase> match_cases();
+std::vector<StressCase> neighbour_cases();
+std::vector<StressCase> pose_covariance_cases();
+std::vector<StressCase> closure_cases();
 
 }  // namespace canyon::lidar
