@@ -10,13 +10,16 @@ namespace canyon::mission {
 std::vector<StressCase> autonomy_cases();
 std::vector<StressCase> boundary_cases();
 std::vector<StressCase> collision_cases();
+std::vector<StressCase> command_cases();
 std::vector<StressCase> drive_cases();
 std::vector<StressCase> localizer_cases();
 std::vector<StressCase> mapping_cases();
 std::vector<StressCase> path_cases();
+std::vector<StressCase> perception_cases();
 std::vector<StressCase> plan_cases();
 std::vector<StressCase> plan_model_cases();
 std::vector<StressCase> schedule_cases();
+std::vector<StressCase> self_check_cases();
 std::vector<StressCase> sprung_mass_cases();
 std::vector<StressCase> traffic_cases();
 std::vector<StressCase> vehicle_cases();
