@@ -1,33 +1,24 @@
-// Rows of factors against differences, pose graphs against least squares on a line, evidence against dense matrices,
-// verdicts against the numbers that they are made of, and references between their states.
-#include <algorithm>
+// Graphs of poses, against differences and least squares on a line; later evidence against dense matrices; what an IMU
+// measured between two nodes, against differences.
 #include <array>
-#include <cmath>
+#include <cstddef>
 #include <functional>
-#include <string>
+#include <span>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
-#include "canyon/core/math/chi_square.h"
-#include "canyon/core/motion/adjoint.h"
-#include "canyon/core/random/random.h"
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/stress/looks.h"
-#include "canyon/core/units.h"
-#include "canyon/fusion/consistency.h"
-#include "canyon/fusion/reference_track.h"
 #include "canyon/fusion/smoothing/graph/graph_layout.h"
 #include "canyon/fusion/smoothing/graph/imu_factor.h"
 #include "canyon/fusion/smoothing/graph/preintegration.h"
 #include "canyon/fusion/smoothing/later_evidence.h"
 #include "canyon/fusion/smoothing/pose_graph/pose_graph.h"
 #include "canyon/fusion/smoothing/pose_graph/pose_jacobians.h"
-#include "canyon/fusion/stress/at_rest.h"
+#include "canyon/fusion/stress/drawn_numbers.h"
 #include "canyon/fusion/stress/simulated_drive.h"
 #include "canyon/fusion/stress/subjects.h"
-#include "canyon/fusion/verdict/state_record.h"
-#include "canyon/fusion/verdict/verdict.h"
 
 namespace canyon::fusion {
 namespace {
@@ -35,43 +26,15 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using stress::kEpsilon;
 using stress::kInfinity;
 using stress::Looks;
-
-class Numbers {
- public:
-  explicit Numbers(std::uint64_t seed) : draws_(seed, "stress.graphs") {}
-  double next() { return draws_.normal(0, n_++); }
-  Vector6d xi(double turn_rad, double move_m) {
-    Vector6d out;
-    for (int i = 0; i < 6; ++i) out[i] = (i < 3 ? turn_rad : move_m) * next();
-    return out;
-  }
-  MatrixXd positive(Eigen::Index n, double least) {
-    MatrixXd A(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j) A(i, j) = next();
-    return A * A.transpose() + least * MatrixXd::Identity(n, n);
-  }
-  MatrixXd any(Eigen::Index rows, Eigen::Index columns) {
-    MatrixXd A(rows, columns);
-    for (Eigen::Index i = 0; i < rows; ++i)
-      for (Eigen::Index j = 0; j < columns; ++j) A(i, j) = next();
-    return A;
-  }
-
- private:
-  RandomStream draws_;
-  std::uint64_t n_ = 0;
-};
 
 /// Residuals of relations are the whitened logarithm of what is left; derivatives by fourth-order differences over
 /// 1e-3: h^4 of the fifth derivative and 1e-15 / h; Jacobians by the same of the exponential, and inverse to one
 /// another.
 StressFigure pose_rows() {
   Looks looks;
-  Numbers draw(1);
+  DrawnNumbers draw(1);
   const auto slope = [](const std::function<Vector6d(double)>& f) -> Vector6d {
     constexpr double h = 1e-3;
     return (8.0 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12.0 * h);
@@ -168,7 +131,7 @@ StressFigure pose_lines() {
 /// comes later, the covariance P - P Lambda P.
 StressFigure later() {
   Looks looks;
-  Numbers draw(3);
+  DrawnNumbers draw(3);
   const Eigen::Index n = 14;
   LaterEvidence evidence(n);
   VectorXd lambda = VectorXd::Zero(n);
@@ -215,7 +178,7 @@ StressFigure imu_factor(const char* keys) {
   Preintegrator integrator(drive.config, drive.noise);
   const GraphLayout layout(integrator.state());
   const Eigen::Index others = layout.states() - 9;
-  Numbers draw(5);
+  DrawnNumbers draw(5);
   VectorXd values(others);
   for (Eigen::Index i = 0; i < others; ++i) values[i] = 1e-4 * draw.next();
   const std::span<const ImuSample> samples(drive.imu.data() + 20, 60);
@@ -292,194 +255,6 @@ StressFigure imu_factor(const char* keys) {
   return looks.figure();
 }
 
-/// The names of the states, in the order in which they stand; counts what differs.
-StressFigure names() {
-  StressFigure out;
-  const auto right = [&](bool holds) { out.figure += holds ? 0.0 : 1.0; };
-  const Drive drive = simulated_drive(
-      1, {.seconds = 0.1, .keys = "states = [\"biases\", \"gains\", \"mounting\", \"wheel_scale\", \"fix_error\"]"});
-  const ErrorStateFilter filter(drive.config, drive.noise, drive.frame, drive.lever_U_B, drive.lever_A_B);
-  std::vector<std::string> expected{"roll",          "pitch",          "yaw",
-                                    "east position", "north position", "height",
-                                    "east velocity", "north velocity", "vertical velocity"};
-  const char* const axes = "xyz";
-  for (const ErrorState::Member& member : filter.state().members()) {
-    const int n = member.block->size();
-    for (int i = 0; i < n; ++i) {
-      const std::string triad = 2 * i < n ? "gyro " : "accel ";
-      const char a = axes[i % 3];
-      if (member.name == "biases") expected.push_back(triad + "bias " + a);
-      if (member.name == "gains" && n == 18) {
-        const char r = axes[(i % 9) / 3];
-        expected.push_back(triad + (r == a ? std::string("scale ") + r : std::string("misalignment ") + r + a));
-      }
-      if (member.name == "mounting" || member.name == "fix_error") expected.push_back(member.name + " " + a);
-      if (member.name == "wheel_scale") expected.push_back("wheel_scale");
-    }
-  }
-  const auto found = state_names(filter.state());
-  right(found.size() == expected.size());
-  for (std::size_t k = 0; k < found.size() && k < expected.size(); ++k) right(found[k].name == expected[k]);
-  return out;
-}
-
-/// A verdict's numbers from records that are known: means, bands by chi-square of their degrees, tests counted, each
-/// with its part of the false alarm; and what is said of them, in words and order.
-StressFigure numbers() {
-  Looks looks;
-  Numbers draw(9);
-  const auto t = [](int k) { return GpsTime::from_week_sow(1590, 100.0 + k); };
-  InnovationRecord innovations;
-  double nis = 0.0;
-  for (int k = 0; k < 600; ++k) {
-    UpdateReport report{.measurement = "position", .t = t(k), .accepted = k % 6 != 0, .dimension = 3};
-    for (int i = 0; i < 3; ++i) report.normalized[i] = 2.0 * draw.next();
-    report.nis = report.normalized.head<3>().squaredNorm();
-    nis += report.nis;
-    innovations.add(report);
-  }
-  ErrorRecord errors(ErrorRecord::navigation());
-  double squares[3] = {0.0, 0.0, 0.0};
-  for (int k = 0; k < 500; ++k) {
-    const Vector3d e(3.0 * draw.next(), 0.5 * draw.next(), 1.0 * draw.next());
-    for (int i = 0; i < 3; ++i) squares[i] += e[i] * e[i];
-    errors.add(ErrorRecord::kVelocity, t(k), e, Eigen::Matrix3d::Identity());
-  }
-  FixRecord fixes;
-  double fix_squares = 0.0;
-  const Eigen::Matrix3d P = Vector3d(4.0, 1.0, 9.0).asDiagonal();
-  double whitened = 0.0;
-  for (int k = 0; k < 300; ++k) {
-    const Vector3d e(2.0 * draw.next(), draw.next(), 3.0 * draw.next());
-    fix_squares += e.squaredNorm() / 3.0;
-    whitened += (e.x() * e.x() / 4.0 + e.y() * e.y() + e.z() * e.z() / 9.0) / 3.0;
-    fixes.add(t(k), e, P);
-  }
-  const VerdictNumbers v = verdict_numbers({.innovations = &innovations, .errors = &errors, .fixes = &fixes}, 0.01);
-  looks.right(v.tests == 2 + 2 + 4);
-  looks.close(v.false_alarm, 0.01 / 8.0, 4.0);
-  if (v.measurements.size() != 1 || v.axes.size() != 3 || v.blocks.size() != 1 || !v.fixes) return {kInfinity, 1.0};
-  const MeasurementNumbers& m = v.measurements[0];
-  looks.right(m.name == "position" && m.count == 600.0 && m.refused == 100.0);
-  looks.near(m.nis.value, nis / 1800.0, 1e-12);
-  const double alarm = v.false_alarm;
-  looks.near(m.nis.band.low, chi_square_threshold(1.0 - 0.5 * alarm, 1800.0) / 1800.0, 1e-12);
-  looks.near(m.nis.band.high, chi_square_threshold(0.5 * alarm, 1800.0) / 1800.0, 1e-12);
-  looks.near(m.nis.factor(), std::sqrt(nis / 1800.0), 1e-12);
-  looks.right(m.nis.off() && m.nis.judged() && !m.white.off());
-  looks.near(m.white.threshold, chi_square_threshold(alarm, 16.0), 1e-9);
-  for (std::size_t i = 0; i < 3; ++i) {
-    looks.near(v.axes[i].rms, std::sqrt(squares[i] / 500.0), 1e-12);
-    looks.near(v.axes[i].claimed, 1.0, 1e-12);
-    looks.near(v.axes[i].ratio.value, squares[i] / 500.0, 1e-12);
-    looks.near(v.axes[i].ratio.band.low, 0.0, 1e-300);
-    looks.near(v.axes[i].ratio.band.high,
-               chi_square_threshold(alarm, v.axes[i].ratio.effective) / v.axes[i].ratio.effective, 1e-12);
-  }
-  looks.right(v.axes[0].ratio.off() && !v.axes[1].ratio.off());
-  looks.near(v.blocks[0].nees.value, (squares[0] + squares[1] + squares[2]) / 1500.0, 1e-12);
-  looks.near(v.fixes->rms_m, std::sqrt(fix_squares / 300.0), 1e-12);
-  looks.near(v.fixes->claimed_m, std::sqrt(14.0 / 3.0), 1e-12);
-  looks.near(v.fixes->ratio.value, whitened / 300.0, 1e-12);
-  looks.right(!v.fixes->lasting_is_modelled && !v.fixes->ratio.off());
-  // Said: the axis that is three times off, innovations twice too large, a sixth refused; the worst first.
-  const auto said = findings(v);
-  if (said.size() != 3) return {kInfinity, 1.0};
-  looks.right(said[0].kind == Finding::Kind::kErrors && said[0].subject == "east velocity");
-  looks.right(said[1].kind == Finding::Kind::kInnovations && said[1].subject == "position");
-  looks.right(said[2].kind == Finding::Kind::kRefused);
-  looks.near(said[0].badness, 0.5 * std::log(squares[0] / 500.0), 1e-12);
-  looks.near(said[1].badness, 0.5 * std::log(nis / 1800.0), 1e-12);
-  looks.near(said[2].badness, 100.0 / 600.0, 1e-12);
-  const auto lines = verdict_lines(v);
-  looks.right(lines.size() == 3 && lines[2] == "position: 100 of 600 refused" &&
-              lines[1] == "position: innovations 2.0 times too large");
-  looks.right(verdict_lines(VerdictNumbers{}) == std::vector<std::string>{"consistent"});
-  // Whiteness: a correlation of 20 samples at 0.5 s counts half the logarithm of 1 + 2 tau / dt, and itself.
-  VerdictNumbers white;
-  white.measurements.push_back({.name = "x", .count = 100.0});
-  white.measurements[0].white = {0.9, 50.0, 30.0, 10.0, 0.5};
-  const auto told = findings(white);
-  if (told.size() != 1) return {kInfinity, 1.0};
-  looks.near(told[0].badness, 0.5 * std::log(41.0) + 0.9, 1e-12);
-  white.measurements[0].white.at_lag_one = 0.05;
-  looks.right(findings(white).empty());
-  // What is not observed: blocks as a whole, by number, or one by one.
-  VerdictNumbers seen;
-  for (int k = 0; k < 3; ++k) seen.states.push_back({.block = "a", .name = "a " + std::to_string(k)});
-  for (int k = 0; k < 6; ++k)
-    seen.states.push_back(
-        {.block = "b", .name = "b " + std::to_string(k), .halved_after_s = k < 2 ? std::optional(1.0) : std::nullopt});
-  for (int k = 0; k < 3; ++k)
-    seen.states.push_back(
-        {.block = "c", .name = "c " + std::to_string(k), .halved_after_s = k < 2 ? std::optional(1.0) : std::nullopt});
-  const std::vector<std::string> expected{"consistent", "a not observed", "b: 4 of 6 not observed", "c 2 not observed"};
-  looks.right(verdict_lines(seen) == expected);
-  ConsistencyMean mean;
-  looks.right(std::isnan(mean.per_state()));
-  mean.add(6.0, 3), mean.add(1.0, 2);
-  looks.near(mean.per_state(), 7.0 / 5.0, 1e-15);
-  looks.right(mean.count() == 2);
-  return looks.figure();
-}
-
-/// A reference whose velocity and turn are of fifth degree between its states: met exactly, and a position of the third
-/// with velocities, of the fifth without them; nothing in a gap, and where a log may begin.
-StressFigure references() {
-  Looks looks;
-  const GpsTime start = GpsTime::from_week_sow(1590, 100.0);
-  const Vector3d origin(4e6, 1e6, 4.8e6), axis(0.36, 0.48, 0.8);
-  const auto fifth = [](double s) {
-    return 0.1 * s - 0.02 * s * s + 0.004 * std::pow(s, 3) - 3e-4 * std::pow(s, 4) + 1e-5 * std::pow(s, 5);
-  };
-  for (const bool with_velocity : {true, false}) {
-    const auto at = [&](double s) {
-      NavState n;
-      n.t = start + s;
-      n.R_EU = so3_exp(fifth(s) * axis);
-      const double x = with_velocity ? s - 0.2 * s * s + 0.03 * s * s * s : 10.0 * fifth(s);
-      n.p_EU_E = origin + x * Vector3d(1.0, -2.0, 0.5);
-      n.v_EU_E = with_velocity ? Vector3d((1.0 - 0.4 * s + 0.09 * s * s) * Vector3d(1.0, -2.0, 0.5))
-                               : Vector3d(Vector3d::Constant(kNaN));
-      return n;
-    };
-    std::vector<NavState> reference;
-    for (int k = 0; k <= 10; ++k)
-      if (k != 8) reference.push_back(at(k));
-    for (double s = 0.1; s < 6.9; s += 0.37) {
-      const auto found = reference_at(reference, start + s);
-      if (!found) return {kInfinity, 1.0};
-      const NavState truth = at(s);
-      // Weights of six states at the end of their span are some 10; ulps of 6e6 m.
-      const double fade = s < 2.0 || s > 5.0 ? 0.0 : 1.0;
-      looks.near((found->p_EU_E - truth.p_EU_E).norm(), 0.0,
-                 32.0 * kEpsilon * 6.4e6 + (with_velocity || fade > 0.0 ? 0.0 : 1e-2));
-      if (fade > 0.0) {
-        looks.near(so3_log(found->R_EU.conjugate() * truth.R_EU).norm(), 0.0, 1e-13);
-        if (with_velocity) looks.near((found->v_EU_E - truth.v_EU_E).norm(), 0.0, 1e-12);
-      }
-    }
-    looks.right(!reference_at(reference, start + 7.5) && !reference_at(reference, start + 8.5));
-    looks.right(!reference_at(reference, start - 0.1) && !reference_at(reference, start + 10.1));
-    looks.right(reference_at(reference, start + 4.0)->p_EU_E == at(4.0).p_EU_E);
-    std::vector<ImuSample> log;
-    for (int k = 0; k < 900; ++k) {
-      ImuSample s;
-      s.t = start + (2.505 + 0.01 * k), s.dt_s = 0.01;
-      log.push_back(s);
-    }
-    const auto common = first_common_state(reference, log);
-    looks.right(common.has_value());
-    if (common) looks.near(common->t - start, 2.495, 1e-9);
-    for (ImuSample& s : log) s.t = s.t - 5.0;
-    const auto first = first_common_state(reference, log);
-    looks.right(first && first->t == start);
-    const auto rest = reference_from(*reference_at(reference, start + 2.5), reference);
-    looks.right(rest.size() == 8 && rest[1].t == start + 3.0);
-  }
-  return looks.figure();
-}
-
 }  // namespace
 
 std::vector<StressCase> graph_cases() {
@@ -496,24 +271,6 @@ std::vector<StressCase> graph_cases() {
       .add("graphs/later_evidence", later);
   rows.add("graphs/imu_with_biases", [] { return imu_factor("states = [\"biases\"]"); })
       .add("graphs/imu_with_gains", [] { return imu_factor("states = [\"biases\", \"gains\"]"); });
-  rows.of({.group = StressGroup::kData,
-           .mechanism = "a verdict from records that are known",
-           .why = "a test that is not counted, a band of half the degrees, an order that puts the worst last",
-           .expected = "the numbers by hand, and the words that they are said in",
-           .unit = "of the bound"});
-  rows.add("graphs/numbers_of_a_verdict", numbers);
-  rows.of({.group = StressGroup::kData,
-           .mechanism = "names of a filter's states",
-           .why = "an axis of another row, a gyroscope's name for an accelerometer",
-           .expected = "each by hand",
-           .unit = "wrong"});
-  rows.add("graphs/names_of_states", names);
-  rows.of({.group = StressGroup::kGeometry,
-           .mechanism = "a reference between its states",
-           .why = "a weight of another state, a gap bridged, a start that the log does not have",
-           .expected = "polynomials up to the degree that it has, where six states are near: roundings of places",
-           .unit = "of the bound"});
-  rows.add("graphs/references", references);
   return rows.take();
 }
 

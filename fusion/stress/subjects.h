@@ -15,6 +15,8 @@ std::vector<StressCase> estimator_cases();
 std::vector<StressCase> fix_cases();
 std::vector<StressCase> graph_cases();
 std::vector<StressCase> measurement_cases();
+std::vector<StressCase> record_cases();
+std::vector<StressCase> reference_track_cases();
 std::vector<StressCase> sample_cases();
 std::vector<StressCase> smoother_cases();
 std::vector<StressCase> timeline_cases();
