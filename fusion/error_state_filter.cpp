@@ -13,6 +13,7 @@
 #include "canyon/core/units.h"
 #include "canyon/fusion/consistency.h"
 #include "canyon/fusion/measurements/body_motion.h"
+#include "canyon/fusion/measurements/innovation_covariance.h"
 #include "canyon/fusion/states/state_block.h"
 
 namespace canyon::fusion {
@@ -40,67 +41,11 @@ void check_finite(const GnssFix& fix) {
                ", covariance diagonal = ", fix.covariance_E.diagonal().transpose());
 }
 
-/// H P; what H does not know costs nothing.
-Measurement::Rows rows_of(const Measurement::Rows& H, const ErrorMatrix& P) {
-  Measurement::Rows out = Measurement::Rows::Zero(H.rows(), P.cols());
-  for (Eigen::Index i = 0; i < H.rows(); ++i) {
-    for (Eigen::Index k = 0; k < H.cols(); ++k)
-      if (H(i, k) != 0.0) out.row(i) += H(i, k) * P.row(k);
-  }
-  return out;
-}
-
-/// (H P) H'.
-Measurement::Square times_transposed(const Measurement::Rows& HP, const Measurement::Rows& H) {
-  const Eigen::Index m = H.rows();
-  Measurement::Square out = Measurement::Square::Zero(m, m);
-  for (Eigen::Index j = 0; j < m; ++j) {
-    for (Eigen::Index k = 0; k < H.cols(); ++k) {
-      if (H(j, k) == 0.0) continue;
-      for (Eigen::Index i = 0; i < m; ++i) out(i, j) += HP(i, k) * H(j, k);
-    }
-  }
-  return 0.5 * (out + out.transpose());
-}
-
 /// Room of this thread's own for the covariance while it is changed, so that no correction asks for memory.
 ErrorMatrix& copied(const ErrorMatrix& P) {
   thread_local ErrorMatrix room;
   room = P;
   return room;
-}
-
-/// What rounding may take off an eigenvalue of H P H': an epsilon of each of the n x n terms of an element, and of the
-/// elements of a row.
-double rounding_of_HPHt(const Measurement::Rows& H, const ErrorMatrix& P) {
-  double terms = 0.0, known = 0.0;
-  for (Eigen::Index k = 0; k < H.cols(); ++k) {
-    const double h = H.col(k).cwiseAbs().maxCoeff();
-    if (h == 0.0) continue;
-    ++known;
-    for (Eigen::Index l = 0; l < H.cols(); ++l) terms += h * std::abs(P(k, l)) * H.col(l).cwiseAbs().maxCoeff();
-  }
-  return known * known * std::numeric_limits<double>::epsilon() * static_cast<double>(H.rows()) * terms;
-}
-
-/// Whether what is measured was known better than the noise by so much that P may hold nothing of it but rounding.
-bool nearly_exact(const Measurement& m, const Measurement::Square& predicted) {
-  return (m.R.diagonal().array() <= 1e-12 * predicted.diagonal().array().abs()).any();
-}
-
-/// Of what an earlier measurement without noise has told, P holds rounding, which may have no part in a correction: no
-/// row of H P is larger than its own variance and that of the other state allow (Cauchy & Schwarz). What is beyond
-/// counts as noise, with all of that row's part in H P H'.
-void count_rounding(Measurement& m, const Measurement::Rows& HP, const Measurement::Square& predicted,
-                    const ErrorMatrix& P) {
-  m.R.diagonal().array() += rounding_of_HPHt(m.H, P);
-  for (Eigen::Index i = 0; i < HP.rows(); ++i) {
-    double least = 0.0;
-    for (Eigen::Index j = 0; j < HP.cols(); ++j)
-      if (P(j, j) > 0.0) least = std::max(least, HP(i, j) * HP(i, j) / P(j, j));
-    constexpr double kRounded = 1.0 + 1e-6;
-    if (least > kRounded * predicted(i, i)) m.R(i, i) += least + predicted.row(i).cwiseAbs().sum();
-  }
 }
 
 /// Where the states are that hold what lasts of the error of what is measured; -1 if none do.

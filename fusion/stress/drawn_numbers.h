@@ -14,6 +14,11 @@ class DrawnNumbers {
  public:
   explicit DrawnNumbers(std::uint64_t seed) : draws_(seed, "stress.graphs") {}
   double next() { return draws_.normal(0, n_++); }
+  Eigen::Vector3d three() {
+    Eigen::Vector3d out;
+    for (int i = 0; i < 3; ++i) out[i] = next();
+    return out;
+  }
   Vector6d xi(double turn_rad, double move_m) {
     Vector6d out;
     for (int i = 0; i < 6; ++i) out[i] = (i < 3 ? turn_rad : move_m) * next();

@@ -9,13 +9,13 @@
 #include <Eigen/LU>
 
 #include "canyon/core/motion/rotation.h"
+#include "canyon/core/motion/se3_jacobian.h"
 #include "canyon/core/stress/looks.h"
 #include "canyon/fusion/smoothing/graph/graph_layout.h"
 #include "canyon/fusion/smoothing/graph/imu_factor.h"
 #include "canyon/fusion/smoothing/graph/preintegration.h"
 #include "canyon/fusion/smoothing/later_evidence.h"
 #include "canyon/fusion/smoothing/pose_graph/pose_graph.h"
-#include "canyon/fusion/smoothing/pose_graph/pose_jacobians.h"
 #include "canyon/fusion/stress/drawn_numbers.h"
 #include "canyon/fusion/stress/simulated_drive.h"
 #include "canyon/fusion/stress/subjects.h"

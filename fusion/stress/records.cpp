@@ -73,7 +73,7 @@ StressFigure numbers() {
   ErrorRecord errors(ErrorRecord::navigation());
   double squares[3] = {0.0, 0.0, 0.0};
   for (int k = 0; k < 500; ++k) {
-    const Vector3d e(3.0 * draw.next(), 0.5 * draw.next(), 1.0 * draw.next());
+    const Vector3d e = Vector3d(3.0, 0.5, 1.0).cwiseProduct(draw.three());
     for (int i = 0; i < 3; ++i) squares[i] += e[i] * e[i];
     errors.add(ErrorRecord::kVelocity, t(k), e, Eigen::Matrix3d::Identity());
   }
@@ -82,7 +82,7 @@ StressFigure numbers() {
   const Eigen::Matrix3d P = Vector3d(4.0, 1.0, 9.0).asDiagonal();
   double whitened = 0.0;
   for (int k = 0; k < 300; ++k) {
-    const Vector3d e(2.0 * draw.next(), draw.next(), 3.0 * draw.next());
+    const Vector3d e = Vector3d(2.0, 1.0, 3.0).cwiseProduct(draw.three());
     fix_squares += e.squaredNorm() / 3.0;
     whitened += (e.x() * e.x() / 4.0 + e.y() * e.y() + e.z() * e.z() / 9.0) / 3.0;
     fixes.add(t(k), e, P);

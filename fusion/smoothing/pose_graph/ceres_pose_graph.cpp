@@ -5,7 +5,7 @@
 
 #include "canyon/core/process/progress.h"
 #include "canyon/fusion/smoothing/pose_graph/pose_graph.h"
-#include "canyon/fusion/smoothing/pose_graph/pose_jacobians.h"
+#include "canyon/core/motion/se3_jacobian.h"
 
 namespace canyon::fusion {
 namespace {

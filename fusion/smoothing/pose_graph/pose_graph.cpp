@@ -6,7 +6,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "canyon/fusion/smoothing/pose_graph/pose_jacobians.h"
+#include "canyon/core/motion/adjoint.h"
+#include "canyon/core/motion/se3_jacobian.h"
 
 namespace canyon::fusion {
 namespace {
