@@ -117,8 +117,8 @@ class Registration {
   virtual RegistrationResult align(const PreparedCloud& source, std::span<const Placed> targets,
                                    const Pose& guess) const = 0;
   /// The same with what is known before: the own methods search as far as the prior reaches, and their result is the
-  /// most probable pose by prior and surfaces together; along open directions it is the prior's. The others start from
-  /// its pose and make no use of its covariance.
+  /// most probable pose by prior and surfaces together; along open directions the prior alone has a say. The others
+  /// start from its pose and make no use of its covariance.
   virtual RegistrationResult align_with_prior(const PreparedCloud& source, std::span<const Placed> targets,
                                               const PosePrior& prior) const {
     return align(source, targets, prior.X_TS);

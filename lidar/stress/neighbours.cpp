@@ -68,7 +68,8 @@ StressFigure trees(int n) {
     const auto first = leaves.nearest(q, reach * reach);
     looks.right((first.at == LeafTree::kNone) == (within == 0));
     if (within > 0) looks.near(static_cast<double>(first.squared_m), static_cast<double>(all[0].first), grain);
-    const auto from = leaves.nearest_from(q, reach * reach, static_cast<std::uint32_t>(k) % leaves.size());
+    const auto from =
+        leaves.nearest_from(q, reach * reach, static_cast<std::uint32_t>(static_cast<std::size_t>(k) % leaves.size()));
     looks.right((from.at == LeafTree::kNone) == (within == 0));
     if (within > 0) {
       looks.near(static_cast<double>(from.squared_m), static_cast<double>(all[0].first), grain);

@@ -83,11 +83,12 @@ StressFigure open_directions_algebra(double radius_m) {
   }
   alike(looks, open.leaning(blocks, C), unscaled(closed_by(sum) * scatter * closed_by(sum)), 1e-10);
   // Held where no move along its open directions makes it likelier.
-  const Pose prior{rotation_from({.yaw_rad = 0.4, .pitch_rad = 0.1, .roll_rad = -0.2}), {5.0, -3.0, 1.0}};
-  const Pose off = prior * Pose::exp(0.1 * drawn(6));
-  const Pose back = open.held_at(prior, C, off);
-  const Matrix6d precision = (root.asDiagonal() * carried(C, prior, back) * root.asDiagonal()).inverse();
-  const Vector6d left = root.cwiseProduct((prior.inverse() * back).log());
+  const Pose at{rotation_from({.yaw_rad = 0.4, .pitch_rad = 0.1, .roll_rad = -0.2}), {5.0, -3.0, 1.0}};
+  const PriorLaw prior = *PriorLaw::of({.X_TS = at, .covariance = C});
+  const Pose off = at * Pose::exp(0.1 * drawn(6));
+  const Pose back = open.held_at(prior, off);
+  const Matrix6d precision = (root.asDiagonal() * prior.covariance_at(back) * root.asDiagonal()).inverse();
+  const Vector6d left = root.cwiseProduct(prior.off(back));
   looks.near((U.transpose() * precision * left).norm(), 0.0, 1e-8 * precision.norm());
   const Vector6d way = (off.inverse() * back).log();
   looks.near((free * root.cwiseProduct(way)).norm(), 0.0, 0.05 * root.cwiseProduct(way).norm() + 1e-9);

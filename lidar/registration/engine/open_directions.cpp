@@ -11,8 +11,6 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr int kMostTerms = 30;  // pi^30 / 31! = 1e-19
-constexpr double kNothing = 1e-17;
 constexpr int kMostMoves = 30;  // each leaves a share of 1 - cos(turn / 2) and less
 constexpr double kHeld = 1e-9;
 
@@ -30,25 +28,6 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
 }
 
 }  // namespace
-
-Matrix6d right_jacobian(const Vector6d& xi) {
-  Matrix6d ad = Matrix6d::Zero();
-  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = skew(xi.head<3>());
-  ad.bottomLeftCorner<3, 3>() = skew(xi.tail<3>());
-  Matrix6d sum = Matrix6d::Identity(), term = Matrix6d::Identity();
-  for (int n = 1; n <= kMostTerms; ++n) {
-    term = (-1.0 / (n + 1.0) * ad * term).eval();
-    sum += term;
-    if (!(term.squaredNorm() > kNothing * kNothing)) break;
-  }
-  return sum;
-}
-
-Matrix6d carried(const Matrix6d& covariance, const Pose& X_prior, const Pose& X) {
-  const Matrix6d J = right_jacobian((X_prior.inverse() * X).log());
-  const Matrix6d out = J * covariance * J.transpose();
-  return 0.5 * (out + out.transpose());
-}
 
 OpenDirections::OpenDirections(double radius_m, std::vector<Vector6d> open) : open_(std::move(open)) {
   root_ << Eigen::Vector3d::Constant(radius_m), Eigen::Vector3d::Ones();
@@ -76,12 +55,12 @@ Vector6d OpenDirections::closed_part(const Vector6d& xi) const {
   return y.cwiseQuotient(root_);
 }
 
-Pose OpenDirections::held_at(const Pose& X_prior, const Matrix6d& P, Pose X) const {
+Pose OpenDirections::held_at(const PriorLaw& prior, Pose X) const {
   if (open_.empty()) return X;
   const Eigen::MatrixXd U = open_scaled(), C = closed_scaled();
   for (int k = 0; k < kMostMoves; ++k) {
-    const Vector6d y = root_.cwiseProduct((X_prior.inverse() * X).log());
-    const Matrix6d law = root_.asDiagonal() * carried(P, X_prior, X) * root_.asDiagonal();
+    const Vector6d y = root_.cwiseProduct(prior.off(X));
+    const Matrix6d law = root_.asDiagonal() * prior.covariance_at(X) * root_.asDiagonal();
     const Eigen::VectorXd there = U.transpose() * law * C * inverse_of(C.transpose() * law * C) * (C.transpose() * y);
     const Eigen::VectorXd move = there - U.transpose() * y;
     if (!move.allFinite()) break;

@@ -4,16 +4,9 @@
 #include <vector>
 
 #include "canyon/core/motion/rotation.h"
+#include "canyon/lidar/registration/engine/prior_law.h"
 
 namespace canyon::lidar {
-
-/// Jr(xi), right Jacobian of SE(3): Exp(xi + d) = Exp(xi) Exp(Jr(xi) d) to first order (Barfoot 2017, State Estimation
-/// for Robotics, eq. 7.83). A series; for turns up to pi exact to rounding.
-Matrix6d right_jacobian(const Vector6d& xi);
-
-/// What is known of log(X_prior^-1 X), as a covariance of xi at X: a turn of the source by which the two differ shifts
-/// what is far from the prior's place, and takes the prior's axes along.
-Matrix6d carried(const Matrix6d& covariance, const Pose& X_prior, const Pose& X);
 
 /// Directions of xi, source frame, measured where a rotation counts by what it moves at `radius_m`. The open ones are
 /// of length 1 and at right angles.
@@ -28,11 +21,10 @@ class OpenDirections {
 
   /// What is left of xi at right angles to the open directions.
   Vector6d closed_part(const Vector6d& xi) const;
-  /// X moved along its open directions alone, to where a prior has its most probable pose given all others: P is the
-  /// covariance of log(X_prior^-1 X) and may be singular. The move is X Exp(v), in the frame where the directions were
-  /// found: were it taken out of the logarithm, a turn between the two poses would lead it off the surfaces by half its
-  /// angle.
-  Pose held_at(const Pose& X_prior, const Matrix6d& P, Pose X) const;
+  /// X moved along its open directions alone, to where a prior has its most probable pose given all others. The move is
+  /// X Exp(v), in the frame where the directions were found: were it taken out of the logarithm, a turn between the two
+  /// poses would lead it off the surfaces by half its angle.
+  Pose held_at(const PriorLaw& prior, Pose X) const;
   /// Columns: directions at right angles to the open ones, of length 1. `dual`: what takes xi to its coordinates.
   Eigen::MatrixXd closed_basis() const;
   Eigen::MatrixXd closed_dual() const;

@@ -21,10 +21,10 @@ Vector6d shift(double x, double y, double z) {
 }
 
 /// What is shifted and what is turned err independently.
-Matrix6d independent_law() {
+PriorLaw independent_law(const Pose& at) {
   Matrix6d P = Matrix6d::Identity();
   P.topLeftCorner<3, 3>() *= 1e-4;
-  return P;
+  return *PriorLaw::of({.X_TS = at, .covariance = P});
 }
 
 // 2026-11-24: with the prior turned by 20 deg, what was held along a corridor was taken out of the logarithm, which
@@ -32,13 +32,13 @@ Matrix6d independent_law() {
 TEST(OpenDirections, HoldingAPoseMovesItAlongThemAlone) {
   const OpenDirections open(kRadius_m, {shift(1, 0, 0)});
   const Pose prior{so3_exp({0.01, -0.02, 20 * kDegree}), {2, 1, 0.1}}, at{Eigen::Quaterniond::Identity(), {5, 0, 0}};
-  const Pose held = open.held_at(prior, independent_law(), at);
+  const Pose held = open.held_at(independent_law(prior), at);
   // The corridor runs along x: what is not along it stays, to rounding (1e-15 times 30 moves of metres).
   EXPECT_NEAR(held.p.y(), at.p.y(), 1e-12);
   EXPECT_NEAR(held.p.z(), at.p.z(), 1e-12);
   EXPECT_LT(so3_log(held.R).norm(), 1e-12);
   // The prior's slope along it, in its sigma, is nothing, to the last move of 1e-9 m.
-  const Matrix6d weight = carried(independent_law(), prior, held).inverse();
+  const Matrix6d weight = independent_law(prior).covariance_at(held).inverse();
   const Vector6d v = shift(1, 0, 0);
   EXPECT_LT(std::abs(v.dot(weight * (prior.inverse() * held).log())) / std::sqrt(v.dot(weight * v)), 1e-8);
 }
@@ -48,7 +48,7 @@ TEST(OpenDirections, OnLevelGroundTurnAndShiftsAreThePriors) {
   turn[2] = 1.0 / kRadius_m;
   const OpenDirections open(kRadius_m, {shift(1, 0, 0), shift(0, 1, 0), turn});
   const Pose prior{so3_exp({0, 0, 30 * kDegree}), {4, -3, 0}}, at{Eigen::Quaterniond::Identity(), {0, 0, 0.2}};
-  const Pose held = open.held_at(prior, independent_law(), at);
+  const Pose held = open.held_at(independent_law(prior), at);
   EXPECT_NEAR(held.p.z(), 0.2, 1e-9);  // the prior's places in the plane, the ground's height
   EXPECT_LT((held.p.head<2>() - prior.p.head<2>()).norm(), 1e-8);
   EXPECT_LT(so3_log(held.R.conjugate() * prior.R).norm(), 1e-9);
@@ -102,27 +102,12 @@ TEST(OpenDirections, LeaningIsWhatTheBlocksScatter) {
   EXPECT_NEAR(leans(3, 3), 0.0, 1e-15);
 }
 
-TEST(CarriedPrior, RightJacobianIsTheDerivative) {
-  const RandomStream random(1, "test.right_jacobian");
-  for (std::uint64_t n = 0; n < 20; ++n) {
-    Vector6d xi;
-    xi << random.uniform(0, 3, 0, n) * random.direction(1, n), 8.0 * random.direction(2, n);
-    const Matrix6d J = right_jacobian(xi);
-    constexpr double h = 1e-5;
-    for (int k = 0; k < 6; ++k) {
-      const Vector6d d = h * Vector6d::Unit(k);
-      const Vector6d by_differences = ((Pose::exp(xi - d).inverse() * Pose::exp(xi + d)).log()) / (2.0 * h);
-      // Truncation: h^2 times a third derivative of 8 m; rounding: 1e-16 of 8 m over h.
-      EXPECT_LT((by_differences - J.col(k)).norm(), 2e-9) << n << ' ' << k;
-    }
-  }
-}
-
 // 2026-11-26: what is open was held at the prior's own coordinates whatever the others had become. With a prior that is
 // 6 m and 25 deg off, a tilt was then several of its sigma off, and the covariance did not say so.
-TEST(CarriedPrior, WhatIsHeldErrsAsItsCovarianceSays) {
+TEST(OpenDirections, WhatIsHeldErrsAsThePriorsCovarianceSaysThere) {
   Matrix6d P = Matrix6d::Zero();
   P.diagonal() << 0.008 * 0.008, 0.008 * 0.008, 0.43 * 0.43, 16, 16, 0.01;
+  const PriorLaw prior = *PriorLaw::of({.X_TS = Pose{}, .covariance = P});
   Vector6d leaning;  // a tilt, with some height and way in it
   leaning << 1.0 / kRadius_m, 0.2 / kRadius_m, 0, 0.05, 0.1, 0.5;
   OpenDirections open(kRadius_m);
@@ -135,9 +120,9 @@ TEST(CarriedPrior, WhatIsHeldErrsAsItsCovarianceSays) {
     Vector6d xi;
     for (int k = 0; k < 6; ++k) xi[k] = std::sqrt(P(k, k)) * random.normal(static_cast<std::uint32_t>(k), n);
     const Pose truth = Pose::exp(xi);
-    const Pose held = open.held_at(Pose{}, P, truth * Pose::exp(random.normal(6, n) * v));
+    const Pose held = open.held_at(prior, truth * Pose::exp(random.normal(6, n) * v));
     const double off = v.dot((held.inverse() * truth).log()) / v.squaredNorm();
-    sum += off * off * v.dot(carried(P, Pose{}, held).ldlt().solve(v));
+    sum += off * off * v.dot(prior.covariance_at(held).ldlt().solve(v));
   }
   // The mean of squares of as many normal numbers: 4 sigma, sqrt(2 / n) each. False alarms: 6e-5.
   EXPECT_NEAR(sum / kDraws, 1.0, 4.0 * std::sqrt(2.0 / kDraws));

@@ -16,7 +16,7 @@
 #include "canyon/lidar/files/clouds/read_cloud.h"
 #include "canyon/lidar/registration/cloud_pair.h"
 #include "canyon/lidar/registration/engine/engine_registration.h"
-#include "canyon/lidar/registration/engine/open_directions.h"
+#include "canyon/lidar/registration/engine/prior_law.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
 #include "canyon/tests/support/test_data.h"
 
@@ -210,7 +210,7 @@ void expect_prior_along(const char* name, const Points& source, const Points& ta
     EXPECT_LT(std::abs(moved[k]), 0.05 * sigma) << name << " axis " << k;
     EXPECT_GT(result.covariance(k, k), 0.5 * sigma * sigma) << name << " axis " << k;
   }
-  const Matrix6d weight = carried(prior.covariance, prior.X_TS, result.X_TS).inverse();
+  const Matrix6d weight = PriorLaw::of(prior)->covariance_at(result.X_TS).inverse();
   for (const Vector6d& v : result.open)
     EXPECT_LT(std::abs(v.dot(weight * moved)) / std::sqrt(v.dot(weight * v)), 1e-3) << name << ' ' << v.transpose();
 }
