@@ -190,8 +190,7 @@ TEST(FixErrorParameters, AreARootOfTheCovariance) {
   EXPECT_EQ(p.share(stated), Eigen::Matrix3d::Identity());
 }
 
-// Stretched along the vertical alone, what is said across it stays.
-/// Along the axes of what is stated, each by itself; a power of 1 is what there was before it, to the bit.
+// Along the axes of what is stated, each by itself; a power of 1 is what there was before it, to the bit.
 TEST(FixErrorParameters, GrowAsAPowerOfWhatIsStated) {
   const Eigen::Matrix3d R = so3_exp(Vector3d(0.3, -0.5, 0.7)).toRotationMatrix();
   const Eigen::Matrix3d stated = R * Vector3d(0.25, 1.0, 16.0).asDiagonal() * R.transpose();
@@ -207,6 +206,7 @@ TEST(FixErrorParameters, GrowAsAPowerOfWhatIsStated) {
   EXPECT_EQ(linear, Eigen::Matrix3d(0.25 * Eigen::Matrix3d::Identity() + 4.0 * 0.5 * (stated + stated.transpose())));
 }
 
+// Stretched along the vertical alone, what is said across it stays.
 TEST(VelocityErrorParameters, AreARootOfWhatIsStatedAndStretched) {
   const VelocityErrorParameters p{.velocity_error_scale = 2.0, .velocity_error_up_scale = 3.0};
   const Vector3d up = Vector3d(0.1, -0.8, 0.5).normalized(), across = up.unitOrthogonal();

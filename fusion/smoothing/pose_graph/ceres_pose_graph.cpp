@@ -3,9 +3,9 @@
 
 #include <ceres/ceres.h>
 
+#include "canyon/core/motion/se3_jacobian.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/fusion/smoothing/pose_graph/pose_graph.h"
-#include "canyon/core/motion/se3_jacobian.h"
 
 namespace canyon::fusion {
 namespace {
