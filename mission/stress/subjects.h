@@ -19,6 +19,7 @@ std::vector<StressCase> perception_cases();
 std::vector<StressCase> plan_cases();
 std::vector<StressCase> plan_model_cases();
 std::vector<StressCase> schedule_cases();
+std::vector<StressCase> searched_plan_cases();
 std::vector<StressCase> self_check_cases();
 std::vector<StressCase> sprung_mass_cases();
 std::vector<StressCase> traffic_cases();

@@ -16,9 +16,12 @@ namespace canyon::mission::testing {
 /// before the bumper.
 class RandomMission {
  public:
-  explicit RandomMission(std::uint64_t number) : stream_(number, "tests.random_missions") {
-    config_ = short_config(
-        "low", "low", "[run]\ntruth_as_pose = true\n[autonomy]\nmodel = \"reference\"\n[success]\nlimit_factor = 3.0");
+  explicit RandomMission(std::uint64_t number, const std::string& planner = "offsets")
+      : stream_(number, "tests.random_missions") {
+    config_ = short_config("low", "low",
+                           "[run]\ntruth_as_pose = true\n[success]\nlimit_factor = 3.0\n"
+                           "[autonomy]\nmodel = \"reference\"\nplanner.model = \"" +
+                               planner + "\"");
     config_.run.seed = static_cast<std::int64_t>(number);
     while (!lay(number % 2 == 0)) {
     }
@@ -79,8 +82,8 @@ class RandomMission {
 };
 
 /// How it ended, with the number, for messages.
-inline std::string drive_random(std::uint64_t number) {
-  const RandomMission mission(number);
+inline std::string drive_random(std::uint64_t number, const std::string& planner) {
+  const RandomMission mission(number, planner);
   SceneCache own;  // each has other cars: the shared one would keep them all
   const auto prepared = prepare(mission.config(), own);
   if (!prepared.ok()) return prepared.error().str();

@@ -5,11 +5,19 @@ namespace canyon::mission::testing {
 namespace {
 
 TEST(RandomMissions, OnTruthAHandfulSucceed) {
-  for (std::uint64_t number = 1; number <= 3; ++number) EXPECT_EQ(drive_random(number), "success") << number;
+  for (std::uint64_t number = 1; number <= 3; ++number)
+    for (const char* planner : {"offsets", "hybrid_a_star"})
+      EXPECT_EQ(drive_random(number, planner), "success") << number << " " << planner;
 }
 
 TEST(RandomMissionsNightly, OnTruthTwoHundredSucceed) {
-  for (std::uint64_t number = 1; number <= 200; ++number) EXPECT_EQ(drive_random(number), "success") << number;
+  for (std::uint64_t number = 1; number <= 200; ++number)
+    EXPECT_EQ(drive_random(number, "offsets"), "success") << number;
+}
+
+TEST(RandomMissionsNightly, OnTruthTwoHundredSucceedByASearch) {
+  for (std::uint64_t number = 1; number <= 200; ++number)
+    EXPECT_EQ(drive_random(number, "hybrid_a_star"), "success") << number;
 }
 
 // 2026-11-23: it drove into the car before it. Standing so near, its lowest beam passes over the boot.

@@ -4,24 +4,6 @@
 #include <cmath>
 
 namespace canyon::mission {
-namespace {
-
-/// What has to be kept after a way: what there was at its beginning if that was less, and a little more with every
-/// metre.
-class LeastClearance {
- public:
-  LeastClearance(double least_m, double at_start_m) : least_(least_m), start_(std::max(0.0, at_start_m - kSlack_m)) {}
-  double after(double way_m) const { return std::min(least_, start_ + kGrowth * way_m); }
-
- private:
-  static constexpr double kSlack_m = 0.05, kGrowth = 0.1;
-  double least_, start_;
-};
-
-constexpr double kSlowest_m_s = 1.0;  // that steering rates are reckoned with
-
-}  // namespace
-
 double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const KnownVehicle& vehicle) {
   const double wanted =
       std::clamp(std::atan(curvature_1_m * vehicle.wheelbase_m), -vehicle.max_steering_rad, vehicle.max_steering_rad);
@@ -36,7 +18,7 @@ DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double 
   DrivenArc arc;
   if (line.empty()) return arc;
   MovingBody body = from;
-  const double speed = std::max(kSlowest_m_s, from.speed_m_s), dt_s = DrivenArc::kStep_m / speed;
+  const double speed = std::max(kSlowestSteered_m_s, from.speed_m_s), dt_s = DrivenArc::kStep_m / speed;
   const double reach = std::max(clearances.comfort_m, clearances.least_m);
   const LeastClearance least(clearances.least_m, blocked.clearance_m(body.pose, vehicle, reach));
   std::size_t nearest = line.nearest(body.pose.p_m, 0);

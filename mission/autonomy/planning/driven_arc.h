@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -30,6 +31,21 @@ struct Clearances {
   double least_m = 0.3;    ///< from the body to a blocked cell, at which it counts as hit
   double comfort_m = 0.8;  ///< nearer than this costs
 };
+
+/// What has to be kept after a way: what there was at its beginning if that was less, and a little more with every
+/// metre.
+class LeastClearance {
+ public:
+  LeastClearance(double least_m, double at_start_m) : least_(least_m), start_(std::max(0.0, at_start_m - kSlack_m)) {}
+  double after(double way_m) const { return std::min(least_, start_ + kGrowth * way_m); }
+
+ private:
+  static constexpr double kSlack_m = 0.05, kGrowth = 0.1;
+  double least_, start_;
+};
+
+/// That steering rates are reckoned with, m/s: nothing is steered on the spot.
+inline constexpr double kSlowestSteered_m_s = 1.0;
 
 /// Steering once the vehicle has been asked for a curvature for a while.
 double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const KnownVehicle& vehicle);

@@ -39,8 +39,8 @@ class LocalPlanner {
 using MakeLocalPlanner = std::unique_ptr<LocalPlanner>(const ModelParameters& own);
 ModelTable<MakeLocalPlanner> local_planners();
 
-/// Makers of the rows of the table in planning/local_planners.cpp, and their parameters, each in the file of its model.
+/// Makers of the rows of the table in planning/local_planners.cpp, each in the file of its model.
 std::unique_ptr<LocalPlanner> make_offset_planner(const ModelParameters& own);
-void offset_planner_parameters(ModelParameters& section);
+std::unique_ptr<LocalPlanner> make_hybrid_a_star(const ModelParameters& own);
 
 }  // namespace canyon::mission

@@ -5,53 +5,22 @@
 #include <vector>
 
 #include "canyon/mission/autonomy/planning/local_planner.h"
+#include "canyon/mission/autonomy/planning/plan_parameters.h"
 
 namespace canyon::mission {
 namespace {
-
-struct OffsetPlannerParameters {
-  double horizon_m = 22.0;
-  double max_offset_m = 3.5;
-  double clearance_m = 0.3;
-  double comfort_clearance_m = 0.8;
-  double blocked_cost_1_m = 4.0;
-  double closeness_cost_1_m2 = 1.0;
-  double offset_cost_1_m = 0.6;
-  double change_share = 0.5;
-  double turning_cost_m = 5.0;
-};
-void visit(FieldVisitor& f, OffsetPlannerParameters& p) {
-  f.number("horizon_m", p.horizon_m, {5, 60}, "offsets: how far ahead each line is driven in thought");
-  f.number("max_offset_m", p.max_offset_m, {0, 20}, "offsets: how far beside the middle of its lane it may go");
-  f.number("clearance_m", p.clearance_m, {0.05, 3}, "offsets: from the body's outline to the middle of a blocked cell");
-  f.number("comfort_clearance_m", p.comfort_clearance_m, {0, 5}, "offsets: nearer than this costs");
-  f.number("blocked_cost_1_m", p.blocked_cost_1_m, {0, 1e3},
-           "offsets: cost of every metre of the horizon after an obstacle");
-  f.number("closeness_cost_1_m2", p.closeness_cost_1_m2, {0, 1e3},
-           "offsets: cost of every metre driven one metre nearer than comfortable");
-  f.number("offset_cost_1_m", p.offset_cost_1_m, {0.01, 1e3}, "offsets: cost of every metre beside the lane's middle");
-  f.number(
-      "change_share", p.change_share, {0, 0.95},
-      "offsets: cost of every metre beside the line chosen last, as a share of offset_cost_1_m; less than 1, so that "
-      "going back to the lane always pays");
-  f.number("turning_cost_m", p.turning_cost_m, {0, 1e3},
-           "offsets: cost of the squared curvature beside the route's own, per metre driven");
-}
 
 constexpr double kOffsetStep_m = 0.5;
 /// Within which what is left of a line's way to its offset falls to 1/e. Of all shapes this alone stays itself when it
 /// is begun anew from where the vehicle has come to, as happens with every scan.
 constexpr std::array<double, 3> kBlend_m{1.5, 3.0, 6.0};
-constexpr double kFarthest_m = 20.0;      // beside the lane, that it looks for a way where it is
-constexpr double kCrashCost_1_m = 100.0;  // of every metre that is missing to halt in: more than all else together
-constexpr double kBeyond_m = 6.0;         // of a line after the horizon, for the tracker to look at
 
 /// Lines that go sideways from where the vehicle is to an offset from the lane's middle. Driven in thought are those
 /// that may still be the cheapest: the cheap ones first, each as long as what it has cost so far is less than the best.
 class OffsetPlanner final : public LocalPlanner {
  public:
-  explicit OffsetPlanner(const OffsetPlannerParameters& p) : p_(p) {
-    const int points = static_cast<int>((p_.horizon_m + kBeyond_m) / PlanLine::kSpacing_m);
+  explicit OffsetPlanner(const PlanParameters& p) : p_(p) {
+    const int points = static_cast<int>((p_.horizon_m + kBeyondHorizon_m) / PlanLine::kSpacing_m);
     for (int i = 0; i <= points; ++i) {
       ahead_m_.push_back(i * PlanLine::kSpacing_m);
       for (std::size_t b = 0; b < kBlend_m.size(); ++b) left_[b].push_back(std::exp(-ahead_m_.back() / kBlend_m[b]));
@@ -111,7 +80,7 @@ class OffsetPlanner final : public LocalPlanner {
   /// is: the lane is then where an estimate puts it that may be wrong by as much, and what is seen is not.
   void offer(double here_m) {
     const int usual = steps(p_.max_offset_m), beyond = std::abs(here_m) > p_.max_offset_m ? steps(std::abs(here_m)) : 0;
-    const int most = beyond > 0 ? std::min(beyond, steps(kFarthest_m)) + usual : usual;
+    const int most = beyond > 0 ? std::min(beyond, steps(kFarthestBeside_m)) + usual : usual;
     candidates_.clear();
     for (int k = here_m < 0.0 ? -most : -usual; k <= (here_m > 0.0 ? most : usual); ++k)
       for (std::size_t b = 0; b < kBlend_m.size(); ++b) candidates_.push_back({k * kOffsetStep_m, b, 0.0});
@@ -168,7 +137,7 @@ class OffsetPlanner final : public LocalPlanner {
            beside_cost;
   }
 
-  OffsetPlannerParameters p_;
+  PlanParameters p_;
   std::vector<Candidate> candidates_;
   std::vector<double> ahead_m_;                            ///< of the vehicle, of each point of a line
   std::array<std::vector<double>, kBlend_m.size()> left_;  ///< of a way to an offset, there
@@ -180,11 +149,7 @@ class OffsetPlanner final : public LocalPlanner {
 }  // namespace
 
 std::unique_ptr<LocalPlanner> make_offset_planner(const ModelParameters& own) {
-  return std::make_unique<OffsetPlanner>(own.get<OffsetPlannerParameters>());
-}
-
-void offset_planner_parameters(ModelParameters& section) {
-  section.add<OffsetPlannerParameters>();
+  return std::make_unique<OffsetPlanner>(own.get<PlanParameters>());
 }
 
 }  // namespace canyon::mission

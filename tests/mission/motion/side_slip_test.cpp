@@ -11,11 +11,11 @@ namespace canyon::mission {
 namespace {
 
 constexpr double kCompliance = 0.5 * kDegree;  // rad s^2/m
-constexpr double kSpeed_m_s = 6.0, kTurning_m_s2 = 2.0, kOften_rad_s = 3.0;
+constexpr double kRound_m_s = 6.0, kTurning_m_s2 = 2.0, kOften_rad_s = 3.0;
 
 // v' = -v / T - u, u = U sin(W t), v(0) = 0: its closed form.
 double swaying_m_s(double t_s) {
-  const double T = kCompliance * kSpeed_m_s, x = kOften_rad_s * T;
+  const double T = kCompliance * kRound_m_s, x = kOften_rad_s * T;
   const double most = kTurning_m_s2 * T / (1.0 + x * x);
   return -most * (std::sin(kOften_rad_s * t_s) - x * std::cos(kOften_rad_s * t_s) + x * std::exp(-t_s / T));
 }
@@ -28,7 +28,7 @@ Errors errors_of(int steps_per_s) {
   SideSlip slip(kCompliance);
   const double h = 1.0 / steps_per_s;
   const auto drive = [](double t_s) {
-    return SideSlip::Drive{kSpeed_m_s, kTurning_m_s2 * std::sin(kOften_rad_s * t_s)};
+    return SideSlip::Drive{kRound_m_s, kTurning_m_s2 * std::sin(kOften_rad_s * t_s)};
   };
   Errors worst;
   for (int k = 0; k < 3 * steps_per_s; ++k) {

@@ -1,0 +1,69 @@
+#include "canyon/mission/autonomy/planning/free_ways.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace canyon::mission {
+
+LanePlaces::Place LanePlaces::of(const Eigen::Vector2d& p_O, double from_m, double to_m) const {
+  const Eigen::Vector2d p_W = p_O + task_.from_O_to_W;
+  const double end_m = task_.route.length_m();
+  double s = task_.route.project(p_W, std::min(from_m, end_m), to_m);
+  if (s >= end_m) s += std::max(0.0, task_.route.direction(end_m).dot(p_W - task_.route.at(end_m)));
+  return {s, task_.route.offset(p_W, s) - task_.lane_m};
+}
+
+Eigen::Vector2d LanePlaces::at(const Place& place) const {
+  const Eigen::Vector2d u = task_.route.direction(place.s_m);
+  return task_.route.at(place.s_m) + std::max(0.0, place.s_m - task_.route.length_m()) * u +
+         (task_.lane_m + place.beside_m) * Eigen::Vector2d(-u.y(), u.x()) - task_.from_O_to_W;
+}
+
+FreeWays::FreeWays(const PlanTask& task, const PlanParameters& p, double right_m, double left_m,
+                   const CostOfPlace& cost_1_m)
+    : from_m_(task.s_m),
+      right_m_(right_m),
+      columns_(static_cast<std::size_t>(std::ceil(p.horizon_m / kCell_m)) + 1),
+      rows_(static_cast<std::size_t>(std::ceil((left_m - right_m) / kCell_m)) + 1),
+      cost_(columns_ * rows_, 0.0) {
+  const LanePlaces lane(task);
+  const KnownVehicle point{.rear_m = 0.0, .front_m = 0.0, .half_width_m = 0.0};
+  // Less half a cell, so that no gap of the grid is closed that is open.
+  const double reach_m = task.vehicle.half_width_m + p.clearance_m - 0.5 * kCell_m;
+  std::vector<double> next_cost_1_m(rows_), here_cost_1_m(rows_);
+  std::vector<bool> next_blocked(rows_);
+  for (std::size_t i = columns_; i-- > 0;) {
+    const double missing_m = std::max(0.0, p.horizon_m - kCell_m * static_cast<double>(i));
+    for (std::size_t j = 0; j < rows_; ++j) {
+      const LanePlaces::Place place{from_m_ + kCell_m * static_cast<double>(i),
+                                    right_m_ + kCell_m * static_cast<double>(j)};
+      here_cost_1_m[j] = cost_1_m(place);
+      double best = p.blocked_cost_1_m * missing_m + p.horizon_m * here_cost_1_m[j];
+      for (int aside = -kMostAside; aside <= kMostAside && i + 1 < columns_; ++aside) {
+        const std::size_t to = j + static_cast<std::size_t>(aside);  // below the first: beyond the last
+        if (to >= rows_ || next_blocked[to]) continue;
+        best = std::min(best, 0.5 * kCell_m * (here_cost_1_m[j] + next_cost_1_m[to]) + at(i + 1, to));
+      }
+      at(i, j) = best;
+    }
+    for (std::size_t j = 0; j < rows_; ++j) {
+      const PlanPose pose{
+          lane.at({from_m_ + kCell_m * static_cast<double>(i), right_m_ + kCell_m * static_cast<double>(j)}), 0.0};
+      next_blocked[j] = task.blocked.clearance_m(pose, point, reach_m) < reach_m;
+    }
+    std::swap(next_cost_1_m, here_cost_1_m);
+  }
+}
+
+std::size_t FreeWays::row(double beside_m) const {
+  const double j = std::round((beside_m - right_m_) / kCell_m);
+  return static_cast<std::size_t>(std::clamp(j, 0.0, static_cast<double>(rows_ - 1)));
+}
+
+double FreeWays::cost(const LanePlaces::Place& place) const {
+  const double i = std::round((place.s_m - from_m_) / kCell_m);
+  const auto column = static_cast<std::size_t>(std::clamp(i, 0.0, static_cast<double>(columns_ - 1)));
+  return cost_[column * rows_ + row(place.beside_m)];
+}
+
+}  // namespace canyon::mission

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "canyon/core/config/config.h"
+
+namespace canyon::mission {
+
+/// What the planners weigh a way by. All of them read the same keys, so that they can be held beside one another.
+struct PlanParameters {
+  double horizon_m = 22.0;
+  double max_offset_m = 3.5;
+  double clearance_m = 0.3;
+  double comfort_clearance_m = 0.8;
+  double blocked_cost_1_m = 4.0;
+  double closeness_cost_1_m2 = 1.0;
+  double offset_cost_1_m = 0.6;
+  double change_share = 0.5;
+  double turning_cost_m = 5.0;
+};
+void visit(FieldVisitor& f, PlanParameters& p);
+
+/// Of every metre that is missing to halt in: more than all else together.
+inline constexpr double kCrashCost_1_m = 100.0;
+/// Beside the lane, that a way is looked for where the vehicle is.
+inline constexpr double kFarthestBeside_m = 20.0;
+/// Of a line after the horizon, for the tracker to look at.
+inline constexpr double kBeyondHorizon_m = 6.0;
+
+}  // namespace canyon::mission
