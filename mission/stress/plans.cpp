@@ -116,11 +116,13 @@ StressFigure driven_arcs() {
                  wall_m < 100.0 ? 0.25 * std::floor((20.0 - 0.4 - 0.3 - wall_m) / 0.25 + 1e-9) : 18.0, 1e-12);
       for (const float kappa : arc.curvature_1_m) looks.near(static_cast<double>(kappa), 0.0, 1e-7);
     }
-  // A body that already stands too near goes on where it comes no nearer, a little less near with every metre.
+  // A body that already stands too near goes on where it comes no nearer, after two metres a little less near with
+  // every metre.
   std::vector<Vector2d> wall;
   for (double x = -5.0; x < 60.0; x += 0.2) wall.emplace_back(x, 0.95);
   const BlockedCells near({0.0, 0.0}, wall);
-  looks.near(free_along({{0.0, 0.0}, 0.0}, 0.0, 10.0, {}, near, vehicle), 0.25 * std::floor(0.05 / 0.1 / 0.25), 1e-12);
+  looks.near(free_along({{0.0, 0.0}, 0.0}, 0.0, 10.0, {}, near, vehicle), 2.0 + 0.25 * std::floor(0.05 / 0.1 / 0.25),
+             1e-12);
   return looks.figure();
 }
 

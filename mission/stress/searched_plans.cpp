@@ -46,7 +46,7 @@ StressFigure free_ways() {
     const double lane_m = draws.uniform(-0.5, 0.5, 4, k);
     const PlanTask task{route, 12.0, to_W, lane_m, {{{12.0, lane_m}, 0.0}, 2.0, 0.0}, blocked, *pursuit, vehicle};
     const auto cost_1_m = [](const LanePlaces::Place& at) { return 0.1 + 0.03 * at.beside_m * at.beside_m; };
-    const FreeWays ways(task, p, -3.0, 3.0, cost_1_m);
+    const FreeWays ways(task, p, {-3.0, 3.0}, cost_1_m);
     std::vector<double> on(kRows, 0.0);
     for (int i = kColumns - 1; i >= 0; --i) {
       std::vector<double> here(kRows);

@@ -32,15 +32,16 @@ struct Clearances {
   double comfort_m = 0.8;  ///< nearer than this costs
 };
 
-/// What has to be kept after a way: what there was at its beginning if that was less, and a little more with every
-/// metre.
+/// What has to be kept after a way: what there was at its beginning if that was less, and once it has had room to turn
+/// away, a little more with every metre.
 class LeastClearance {
  public:
   LeastClearance(double least_m, double at_start_m) : least_(least_m), start_(std::max(0.0, at_start_m - kSlack_m)) {}
-  double after(double way_m) const { return std::min(least_, start_ + kGrowth * way_m); }
+  double after(double way_m) const { return std::min(least_, start_ + kGrowth * std::max(0.0, way_m - kTurning_m)); }
 
  private:
   static constexpr double kSlack_m = 0.05, kGrowth = 0.1;
+  static constexpr double kTurning_m = 2.0;  ///< at 5 m/s a body beside a wall has turned its tail out by then
   double least_, start_;
 };
 

@@ -19,12 +19,11 @@ Eigen::Vector2d LanePlaces::at(const Place& place) const {
          (task_.lane_m + place.beside_m) * Eigen::Vector2d(-u.y(), u.x()) - task_.from_O_to_W;
 }
 
-FreeWays::FreeWays(const PlanTask& task, const PlanParameters& p, double right_m, double left_m,
-                   const CostOfPlace& cost_1_m)
+FreeWays::FreeWays(const PlanTask& task, const PlanParameters& p, const OffsetRange& range, const CostOfPlace& cost_1_m)
     : from_m_(task.s_m),
-      right_m_(right_m),
+      right_m_(range.right_m),
       columns_(static_cast<std::size_t>(std::ceil(p.horizon_m / kCell_m)) + 1),
-      rows_(static_cast<std::size_t>(std::ceil((left_m - right_m) / kCell_m)) + 1),
+      rows_(static_cast<std::size_t>(std::ceil((range.left_m - range.right_m) / kCell_m)) + 1),
       cost_(columns_ * rows_, 0.0) {
   const LanePlaces lane(task);
   const KnownVehicle point{.rear_m = 0.0, .front_m = 0.0, .half_width_m = 0.0};

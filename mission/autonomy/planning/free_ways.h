@@ -36,7 +36,7 @@ using CostOfPlace = std::function<double(const LanePlaces::Place&)>;
 /// may, so a search is led by it (the heuristic "holonomic with obstacles" of Dolgov et al. 2010).
 class FreeWays {
  public:
-  FreeWays(const PlanTask& task, const PlanParameters& p, double right_m, double left_m, const CostOfPlace& cost_1_m);
+  FreeWays(const PlanTask& task, const PlanParameters& p, const OffsetRange& range, const CostOfPlace& cost_1_m);
 
   /// From the place of the grid that is nearest on.
   double cost(const LanePlaces::Place& place) const;

@@ -51,9 +51,8 @@ class WaySearch {
         speed_m_s_(std::max(kSlowestSteered_m_s, task.body.speed_m_s)),
         halting_m_(0.5 * task.body.speed_m_s * task.body.speed_m_s / task.vehicle.max_deceleration_m_s2),
         start_(place_of(task.body.pose.p_m, task.s_m)),
-        right_m_(-reach(-start_.beside_m)),
-        left_m_(reach(start_.beside_m)),
-        free_ways_(task, p, right_m_, left_m_, [&](const LanePlaces::Place& at) { return cost_1_m(at); }) {}
+        range_(offset_range(p, start_.beside_m)),
+        free_ways_(task, p, range_, [&](const LanePlaces::Place& at) { return cost_1_m(at); }) {}
 
   /// Its nodes, from the start on.
   std::vector<SearchNode> cheapest() {
@@ -79,12 +78,6 @@ class WaySearch {
 
  private:
   using Open = std::pair<double, std::size_t>;  // what a whole way costs at least, node; of equals the first one made
-
-  /// If it is farther beside its lane than the usual, as far as it is and the usual more: the lane is then where an
-  /// estimate puts it that may be wrong by as much, and what is seen is not.
-  double reach(double here_m) const {
-    return p_.max_offset_m + (here_m > p_.max_offset_m ? std::min(here_m, kFarthestBeside_m) : 0.0);
-  }
 
   /// Arcs inside of a bend come forward by more than their length.
   LanePlaces::Place place_of(const Eigen::Vector2d& p_O, double near_m) const {
@@ -159,7 +152,7 @@ class WaySearch {
       n.cost += p_.closeness_cost_1_m2 * DrivenArc::kStep_m * std::max(0.0, comfort_m_ - clearance);
     }
     arrive(n, kArc_m);
-    if (n.place.beside_m < right_m_ || n.place.beside_m > left_m_) return std::nullopt;
+    if (n.place.beside_m < range_.right_m || n.place.beside_m > range_.left_m) return std::nullopt;
     const Eigen::Vector2d u = task_.route.direction(n.place.s_m), forward = n.body.pose.forward();
     if (u.dot(forward) < std::cos(kMostTurned_rad)) return std::nullopt;
     return n;
@@ -216,7 +209,7 @@ class WaySearch {
   LeastClearance least_;
   double speed_m_s_, halting_m_;
   LanePlaces::Place start_;
-  double right_m_, left_m_;
+  OffsetRange range_;
   FreeWays free_ways_;
   std::vector<SearchNode> nodes_;
   std::size_t best_ = 0;  ///< node at the end of the cheapest way so far

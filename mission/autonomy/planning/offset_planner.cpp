@@ -76,16 +76,14 @@ class OffsetPlanner final : public LocalPlanner {
     double beside_cost;
   };
 
-  /// Offsets from the lane's middle to either side. If the vehicle is farther beside it than that, also those where it
-  /// is: the lane is then where an estimate puts it that may be wrong by as much, and what is seen is not.
   void offer(double here_m) {
-    const int usual = steps(p_.max_offset_m), beyond = std::abs(here_m) > p_.max_offset_m ? steps(std::abs(here_m)) : 0;
-    const int most = beyond > 0 ? std::min(beyond, steps(kFarthestBeside_m)) + usual : usual;
+    const OffsetRange range = offset_range(p_, here_m);
+    const int first = static_cast<int>(std::ceil(range.right_m / kOffsetStep_m)),
+              last = static_cast<int>(std::floor(range.left_m / kOffsetStep_m));
     candidates_.clear();
-    for (int k = here_m < 0.0 ? -most : -usual; k <= (here_m > 0.0 ? most : usual); ++k)
+    for (int k = first; k <= last; ++k)
       for (std::size_t b = 0; b < kBlend_m.size(); ++b) candidates_.push_back({k * kOffsetStep_m, b, 0.0});
   }
-  static int steps(double offset_m) { return static_cast<int>(std::floor(offset_m / kOffsetStep_m)); }
 
   /// Integral of the square of what an arc turns more than the route, taken further as the arc grows.
   class Turning {

@@ -1,5 +1,8 @@
 #include "canyon/mission/autonomy/planning/plan_parameters.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace canyon::mission {
 
 void visit(FieldVisitor& f, PlanParameters& p) {
@@ -18,6 +21,14 @@ void visit(FieldVisitor& f, PlanParameters& p) {
            "back to the lane always pays");
   f.number("turning_cost_m", p.turning_cost_m, {0, 1e3},
            "cost of the squared curvature beside the route's own, per metre driven");
+}
+
+OffsetRange offset_range(const PlanParameters& p, double here_m) {
+  constexpr double kTowardsTheLane_m = 20.0;  // of a vehicle that is even farther off
+  const double usual = p.max_offset_m, beside = std::abs(here_m);
+  if (beside <= usual) return {-usual, usual};
+  const double near = std::max(-usual, beside - kTowardsTheLane_m - usual), far = beside + usual;
+  return here_m > 0.0 ? OffsetRange{near, far} : OffsetRange{-far, -near};
 }
 
 }  // namespace canyon::mission

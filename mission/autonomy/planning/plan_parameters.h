@@ -20,9 +20,15 @@ void visit(FieldVisitor& f, PlanParameters& p);
 
 /// Of every metre that is missing to halt in: more than all else together.
 inline constexpr double kCrashCost_1_m = 100.0;
-/// Beside the lane, that a way is looked for where the vehicle is.
-inline constexpr double kFarthestBeside_m = 20.0;
 /// Of a line after the horizon, for the tracker to look at.
 inline constexpr double kBeyondHorizon_m = 6.0;
+
+/// How far beside the lane's middle ways are looked for, left positive. Of a vehicle that is farther beside it than
+/// max_offset_m these are also the ways where it is, however far: the lane is then where an estimate puts it that may
+/// be wrong by as much, and what is seen is not.
+struct OffsetRange {
+  double right_m, left_m;
+};
+OffsetRange offset_range(const PlanParameters& p, double here_m);
 
 }  // namespace canyon::mission

@@ -184,18 +184,19 @@ TEST_P(EachPlanner, GoesBackToTheLaneOnceItIsFree) {
   }
 }
 
-/// The plan of a vehicle at 5 m/s that an estimate puts 14 m to the left of its lane, with a wall between the two and
-/// things `more`.
-LocalPlan plan_beside_a_wall(const char* planner_name, std::vector<Eigen::Vector2d> more = {}) {
+/// The plan of a vehicle at 5 m/s that an estimate puts so far to the left of its lane, with a wall between the two, in
+/// parallel and so far from the vehicle's middle, and things `more`.
+LocalPlan plan_beside_a_wall(const char* planner_name, double beside_m, double from_wall_m,
+                             std::vector<Eigen::Vector2d> more = {}) {
   const Path route({{0.0, 0.0}, {200.0, 0.0}}, 6.5);
-  add_wall(more, {0.0, 12.2}, {100.0, 12.2});
-  const BlockedCells blocked({10.0, 14.0}, more);
+  add_wall(more, {0.0, beside_m - from_wall_m}, {100.0, beside_m - from_wall_m});
+  const BlockedCells blocked({10.0, beside_m}, more);
   const auto planner = default_planner(planner_name);
   return planner->plan({route,
                         10.0,
                         Eigen::Vector2d::Zero(),
                         0.0,
-                        {{{10.0, 14.0}, 0.0}, 5.0, 0.0},
+                        {{{10.0, beside_m}, 0.0}, 5.0, 0.0},
                         blocked,
                         *default_tracker("pure_pursuit"),
                         KnownVehicle{}});
@@ -204,16 +205,29 @@ LocalPlan plan_beside_a_wall(const char* planner_name, std::vector<Eigen::Vector
 // 2026-11-26: all ways that it looked at led to within 3.5 m of where it took its lane to be, through the wall; of 20
 // missions with a receiver's errors 14 ended in what had stood before it for ten seconds.
 TEST_P(EachPlanner, GoesStraightOnWhereItsLaneSeemsBehindAWall) {
-  const LocalPlan plan = plan_beside_a_wall(GetParam());
-  EXPECT_TRUE(plan.arc.ends_free);
-  EXPECT_GE(plan.offset_m, 13.0);
+  for (const double beside_m : {14.0, 23.0, 26.0, 60.0}) {
+    const LocalPlan plan = plan_beside_a_wall(GetParam(), beside_m, 1.8);
+    EXPECT_TRUE(plan.arc.ends_free) << beside_m;
+    EXPECT_GE(plan.offset_m, beside_m - 1.0) << beside_m;
+  }
+}
+
+// 2026-11-26: nearer to a wall than it should be, every way was asked to lead away from it within the first metre,
+// which none does at 5 m/s; so all counted as blocked, and it braked and steered for its lane, into the wall.
+TEST_P(EachPlanner, TurnsAwayFromAWallThatItHasComeTooNearTo) {
+  const double half_m = KnownVehicle{}.half_width_m;
+  for (const double clearance_m : {0.24, 0.15, 0.08}) {
+    const LocalPlan plan = plan_beside_a_wall(GetParam(), 3.6, half_m + clearance_m);
+    EXPECT_TRUE(plan.arc.ends_free) << clearance_m;
+    EXPECT_GE(plan.offset_m, 3.5) << clearance_m;
+  }
 }
 
 TEST_P(EachPlanner, KeepsToAWayInWhichItCanHalt) {
   const KnownVehicle vehicle;
   std::vector<Eigen::Vector2d> across;
   add_wall(across, {10.0 + vehicle.front_m + 5.5, 12.0}, {10.0 + vehicle.front_m + 5.5, 36.0});
-  const LocalPlan plan = plan_beside_a_wall(GetParam(), across);
+  const LocalPlan plan = plan_beside_a_wall(GetParam(), 14.0, 1.8, across);
   EXPECT_FALSE(plan.arc.ends_free);
   EXPECT_GE(plan.arc.free_m, 5.0 * 5.0 / (2.0 * vehicle.max_deceleration_m_s2));
 }
