@@ -25,18 +25,19 @@ using stress::kInfinity;
 using stress::Worst;
 
 /// Boxes all over a kilometre and more, turned and of many heights, some of them hanging or sunk.
-std::unique_ptr<Scene> scattered(std::uint64_t seed) {
+std::unique_ptr<Scene> scattered(std::uint64_t seed, double longer_m = 0.0) {
   const RandomStream draw(seed, "stress.boxes");
   SceneParts parts = made::nothing();
   for (std::uint64_t k = 0; k < 150; ++k) {
     MeshBuilder mesh(parts);
     mesh.begin_object("box " + std::to_string(k), ObjectKind::kBuilding);
-    const Vector3d half(1.0 + 9.0 * draw.uniform(0, k), 1.0 + 9.0 * draw.uniform(1, k),
+    const Vector3d half(1.0 + (9.0 + longer_m) * draw.uniform(0, k), 1.0 + 9.0 * draw.uniform(1, k),
                         1.0 + 20.0 * draw.uniform(2, k));
-    const Eigen::Matrix3d axes = rotation_from({.yaw_rad = 6.0 * draw.uniform(3, k),
-                                                .pitch_rad = k % 3 == 0 ? 0.5 * draw.uniform(4, k) : 0.0,
-                                                .roll_rad = 0.0})
-                                     .toRotationMatrix();
+    const Eigen::Matrix3d axes =
+        rotation_from({.yaw_rad = longer_m > 0.0 ? 0.3 * draw.uniform(3, k) : 6.0 * draw.uniform(3, k),
+                       .pitch_rad = k % 3 == 0 ? 0.5 * draw.uniform(4, k) : 0.0,
+                       .roll_rad = 0.0})
+            .toRotationMatrix();
     mesh.box({1500.0 * (draw.uniform(5, k) - 0.5), 1500.0 * (draw.uniform(6, k) - 0.5), 30.0 * draw.uniform(7, k)},
              axes, half, mesh.material("brick"));
   }
@@ -92,8 +93,8 @@ StressFigure facets(std::uint64_t seed) {
 /// A box has twelve edges of its three lengths, each between two of its faces and pointing out of it; those that shade
 /// a place are those that reach above a direction by no more than the bend that the detour allows: trying all. And a
 /// sheet has four borders. A figure counts.
-StressFigure edges(std::uint64_t seed) {
-  const auto scene = scattered(seed);
+StressFigure edges(std::uint64_t seed, double longer_m) {
+  const auto scene = scattered(seed, longer_m);
   const EdgeIndex& index = scene->edges();
   const auto& all = index.edges();
   StressFigure out;
@@ -157,20 +158,40 @@ RawScene houses(const std::vector<Vector3d>& places, const std::string& crs) {
   return out;
 }
 
+/// The same as triangles, the lowest corner of each in its second one alone.
+RawScene meshes(const std::vector<Vector3d>& places) {
+  RawScene out;
+  RawMesh mesh;
+  for (const Vector3d& p : places) {
+    const std::uint32_t object = out.add_object("house " + std::to_string(out.objects.size()), ObjectKind::kBuilding);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vector3d& off : {Vector3d(0, 4, 6), Vector3d(4, 4, 3), Vector3d(4, 0, 2), Vector3d(0, 0, 0)})
+      mesh.vertices.push_back(p + off);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+    mesh.object.insert(mesh.object.end(), 2, object);
+    mesh.material.insert(mesh.material.end(), 2, 0);
+  }
+  out.meshes.push_back(mesh);
+  return out;
+}
+
 /// Files in local metres, near their origin and far from it: near, W is the file; far, W's origin is the middle of all
 /// files, at the median of the houses' lowest corners; and a file with y upwards is turned. Exactly.
-StressFigure local_frame(const Vector3d& far, bool y_up) {
+StressFigure local_frame(const Vector3d& far, bool y_up, bool as_mesh = false) {
   const std::vector<Vector3d> places{{0, 0, 3}, {40, 10, 5}, {-20, 30, 4}}, others{{60, -50, 9}, {10, 5, 8}};
   FileScenes files;
   for (const auto& of : {places, others}) {
     std::vector<Vector3d> moved;
     for (const Vector3d& p : of) moved.push_back(p + far);
-    RawScene scene = houses(moved, "");
+    RawScene scene = as_mesh ? meshes(moved) : houses(moved, "");
     if (y_up) {
       scene.y_up = true;
       for (RawPolygon& polygon : scene.polygons)
         for (auto& ring : polygon.rings)
           for (Vector3d& p : ring) p = Vector3d(p.x(), p.z(), -p.y());
+      for (RawMesh& mesh : scene.meshes)
+        for (Vector3d& p : mesh.vertices) p = Vector3d(p.x(), p.z(), -p.y());
     }
     files.scenes.push_back(scene);
     files.projections.emplace_back();
@@ -187,7 +208,8 @@ StressFigure local_frame(const Vector3d& far, bool y_up) {
   worst.look(report.warnings.empty() == !moves ? 0.0 : kInfinity, 1.0);
   RawScene second = files.scenes[1];
   worst.look(set_down(second, std::nullopt, *found), 1e-300);
-  const Vector3d corner = second.polygons[0].rings[0][0], expected = Vector3d(60, -50, 9) + far - found->file_origin_m;
+  const Vector3d corner = as_mesh ? second.meshes[0].vertices[3] : second.polygons[0].rings[0][0],
+                 expected = Vector3d(60, -50, 9) + far - found->file_origin_m;
   worst.look((corner - expected).norm(), 16.0 * kEpsilon * (1.0 + far.norm()));
   return worst.figure();
 }
@@ -370,7 +392,8 @@ std::vector<StressCase> index_cases() {
            "an edge of two coplanar faces, a normal of another, a square of the ground left out",
            "twelve of a box, four of a sheet, and as trying all finds them", "wrong"});
   for (const std::uint64_t seed : {1U, 2U})
-    rows.add("indices/edges_" + std::to_string(seed), [seed] { return edges(seed); });
+    rows.add("indices/edges_" + std::to_string(seed), [seed] { return edges(seed, 0.0); });
+  rows.add("indices/edges_of_long_roofs", [] { return edges(4, 250.0); });
   rows.of({StressGroup::kGeometry, "several files of a scene set down on Earth",
            "the extremes of one file for another's, the other side of the date line, a height of the wrong corner",
            "the middle of all corners at the median foot, and each corner where it is", "of the bound"});
@@ -382,8 +405,16 @@ std::vector<StressCase> index_cases() {
            [] {
              return local_frame({5e5, -4e6, 0}, false);
            })
-      .add("indices/frame_of_metres_y_up", [] {
-        return local_frame({3e4, 2e4, 0}, true);
+      .add("indices/frame_of_metres_y_up",
+           [] {
+             return local_frame({3e4, 2e4, 0}, true);
+           })
+      .add("indices/triangles_in_metres_of_a_map",
+           [] {
+             return local_frame({5e5, -4e6, 0}, false, true);
+           })
+      .add("indices/triangles_in_metres_y_up", [] {
+        return local_frame({3e4, 2e4, 0}, true, true);
       });
   for (const double lon_deg : {7.0, 179.996, -180.0})
     rows.add("indices/frame_of_degrees_from_" + stress::text(lon_deg), [lon_deg] { return mapped_frame(lon_deg); })

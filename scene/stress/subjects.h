@@ -7,6 +7,7 @@
 /// One subject a file; stress_cases() joins them.
 namespace canyon::scene {
 
+std::vector<StressCase> elevation_cases();
 std::vector<StressCase> ray_cases();
 std::vector<StressCase> far_cases();
 std::vector<StressCase> surface_cases();

@@ -235,6 +235,13 @@ std::vector<StressCase> surface_cases() {
              return cut_up({comb(40, {1e7, -1e7})}, 40 * 100.0 + 79.0);
            })
       .add("surfaces/square_with_60_holes", [] { return square_with_holes(60); })
+      .add("surfaces/square_beside_its_holes",
+           [] {
+             // East, above, below and beside a corner: none of them is in it.
+             return cut_up({rectangle(0, 0, 4, 4), rectangle(6, 1, 8, 3), rectangle(1, 6, 3, 8),
+                            rectangle(1, -4, 3, -2), rectangle(-3, 5, -1, 7)},
+                           16.0);
+           })
       .add("surfaces/square_of_repeated_and_needless_corners", [] {
         return cut_up({{{0, 0}, {0, 0}, {1, 0}, {2, 0}, {4, 0}, {4, 2}, {4, 2}, {4, 4}, {2, 4}, {0, 4}, {0, 1}}}, 16.0);
       });
