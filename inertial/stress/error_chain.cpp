@@ -149,6 +149,48 @@ StressFigure latency_beyond_the_run() {
   return {1.0 * wrong, 0.0};
 }
 
+/// A latency of m whole samples and a part f of one: sample k holds f of the motion m + 1 samples before and 1 - f of
+/// that m before, for both triads and all axes, whether they are asked for one by one, in batches over the border of a
+/// block, or anew after others; before the first it is the first: roundings of a sum of two.
+StressFigure latency_in_samples(double samples) {
+  constexpr double kRate_hz = 200.0;
+  CatalogueEntry entry;
+  entry.unit.latency_ms.value = 1e3 * samples / kRate_hz;
+  stress::Worst worst;
+  const auto motion = [](std::int64_t k) {
+    const auto x = static_cast<double>(k);
+    return Vector3d(std::sin(0.3 * x), 2.0 + 0.01 * x, std::cos(1.7 * x));
+  };
+  const auto in = [&](std::int64_t k) { return sample_at(k, kRate_hz, motion(k), -3.0 * motion(k + 5)); };
+  const auto whole = static_cast<std::int64_t>(samples + 1e-9);
+  const double part = samples - static_cast<double>(whole);
+  const auto look = [&](const ImuSample& out, std::int64_t k, std::int64_t first) {
+    const auto from = [&](std::int64_t before) { return std::max(k - before, first); };
+    const Vector3d rate = part * motion(from(whole + 1)) + (1.0 - part) * motion(from(whole));
+    const Vector3d force = -3.0 * (part * motion(from(whole + 1) + 5) + (1.0 - part) * motion(from(whole) + 5));
+    // The part of a sample is one of the quotient, which rounds by so many epsilons of itself.
+    const double rounding = (16.0 + 8.0 * samples) * kEpsilon * out.dt_s;
+    worst.look((out.dtheta_U - out.dt_s * rate).norm(), rounding * 8.0);
+    worst.look((out.dv_U - out.dt_s * force).norm(), rounding * 24.0);
+  };
+  const auto one_by_one = chain_of(entry, kRate_hz), batches = chain_of(entry, kRate_hz);
+  worst.look(static_cast<double>(one_by_one->memory() - whole - 1), 0.5);
+  for (const std::int64_t first : {std::int64_t{0}, std::int64_t{4000}, std::int64_t{170}}) {
+    for (std::int64_t k = first; k < first + 700; ++k) {
+      ImuSample s = in(k);
+      one_by_one->corrupt(k, s);
+      look(s, k, first);
+    }
+    for (std::int64_t k = first, count = 1; k < first + 700; k += count, count = 1 + (count * 7) % 61) {
+      std::vector<ImuSample> some;
+      for (std::int64_t i = 0; i < count; ++i) some.push_back(in(k + i));
+      batches->corrupt_batch(k, some);
+      for (std::int64_t i = 0; i < count; ++i) look(some[static_cast<std::size_t>(i)], k + i, first);
+    }
+  }
+  return worst.figure();
+}
+
 StressFigure refused_samples() {
   const auto chain = chain_of(*load_catalogue_entry("high_grade_mems"), 100.0);
   int passed = 0;
@@ -195,6 +237,11 @@ std::vector<StressCase> error_chain_cases() {
   rows.of(range).add("error_chain/2000_deg_s_and_50_g", saturation);
   rows.of(border).add("error_chain/batch_over_a_block", order_of_samples);
   rows.of(delay).add("error_chain/latency_beyond_the_run", latency_beyond_the_run);
+  rows.of({group, "a delay of samples and parts of one", "a sample more or less that is kept, or a part for its rest",
+           "the motion so many samples before, shared between two: roundings", "of the bound"});
+  for (const double samples : {0.3, 1.0, 2.0, 7.75, 300.5})
+    rows.add("error_chain/latency_of_" + stress::text(samples) + "_samples",
+             [=] { return latency_in_samples(samples); });
   rows.of(refusal).add("error_chain/intervals_refused", refused_samples);
   for (const double step : {1e-12, 1e-3, 10.0})
     rows.of(steps).add("error_chain/resolution_" + stress::text(step) + "_deg_s", [=] { return quantization(step); });
