@@ -2,9 +2,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 
 #include "canyon/core/earth/earth.h"
 #include "canyon/core/output/printed.h"
+#include "canyon/core/random/random.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/satellites/transmission.h"
@@ -207,6 +212,49 @@ StressFigure velocity(double speed_m_s, double gdop) {
   return {error, 4.0 * kEpsilon * (4e3 + speed_m_s) * true_gdop};
 }
 
+/// Rates of which three are trusted by `ratio` more than the others: the geometry is whole, but the weighed system has
+/// a direction `ratio` weaker than the rest, which the poor ones alone tell. Rates of a true velocity, so it comes
+/// back: 64 epsilons of the rates, carried through `ratio` once, times the GDOP; and the covariance is the inverse of
+/// the normal equations, whose condition is the ratio's square, where that leaves digits.
+StressFigure velocity_of_weights(double ratio) {
+  stress::Worst worst;
+  const Eigen::Vector3d p_E = ecef_from_geodetic({0.8, 0.3, 200.0}), v_E(12.0, -7.0, 3.0);
+  const double drift_m_s = 41.0;
+  const RandomStream draws(8, "stress.velocity");
+  const Eigen::Matrix3d R = rotation_E_from_enu({0.8, 0.3, 200.0});
+  for (int set = 0; set < 20; ++set) {
+    std::vector<RateMeasurement> rates;
+    Eigen::MatrixXd A(9, 4);
+    for (int k = 0; k < 9; ++k) {
+      const double azimuth = 0.7 * k + draws.uniform(0.0, 0.5, 0, 9 * set + k),
+                   elevation = draws.uniform(0.2, 1.4, 1, 9 * set + k);
+      const Eigen::Vector3d line = R * Eigen::Vector3d(std::cos(elevation) * std::sin(azimuth),
+                                                       std::cos(elevation) * std::cos(azimuth), std::sin(elevation));
+      RateMeasurement m;
+      m.p_E = p_E + 2.2e7 * line;
+      m.v_E = 3000.0 * line.cross(Eigen::Vector3d(0.3, -0.5, 0.8).normalized());
+      m.sigma_m_s = k < 3 ? 0.1 / ratio : 0.1;
+      m.rate_m_s = range_rate_m_s(m, p_E, v_E) + drift_m_s;
+      rates.push_back(m);
+      A.row(k) << -line.transpose() / m.sigma_m_s, 1.0 / m.sigma_m_s;
+    }
+    const VelocitySolution found = solve_velocity(rates, p_E);
+    if (!found.ok) return {stress::kInfinity, 1.0};
+    const double bound = 64.0 * kEpsilon * 3000.0 * ratio * 10.0;
+    worst.look((found.v_E - v_E).norm(), bound);
+    worst.look(found.clock_drift_m_s - drift_m_s, bound);
+    for (std::size_t k = 0; k < 9; ++k)
+      worst.look(found.residuals_m_s[k], k < 3 ? 64.0 * kEpsilon * 3000.0 * 10.0 : bound);
+    // By an orthogonal factor, whose error is that of A and not of A' A; the Earth turns while the signal travels, 7e-6
+    // of A.
+    const Eigen::Matrix4d inverse =
+        A.householderQr().matrixQR().topRows<4>().triangularView<Eigen::Upper>().solve(Eigen::Matrix4d::Identity());
+    const Eigen::Matrix3d P = (inverse * inverse.transpose()).topLeftCorner<3, 3>();
+    worst.look((found.covariance_E - P).norm() / P.norm(), 1e-4 + 64.0 * kEpsilon * ratio);
+  }
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> solver_cases() {
@@ -286,6 +334,11 @@ std::vector<StressCase> solver_cases() {
       .add("solver/velocity_of_gdop_1e+04", [] { return velocity(30.0, 1e4); })
       .add("solver/velocity_of_gdop_1e+08", [] { return velocity(30.0, 1e8); })
       .loose("where no residual is left the decomposition errs far less than its bound in the worst direction");
+  rows.of({StressGroup::kStiff, "velocity of rates with weights many decades apart",
+           "a direction that poor rates alone tell is taken for one that none tells, and left at nothing",
+           "the true velocity and covariance to 64 eps of the rates times the ratio", "of the bound"});
+  for (const double ratio : {1.0, 1e4, 1e10})
+    rows.add("solver/velocity_of_weights_1_to_" + stress::text(ratio), [=] { return velocity_of_weights(ratio); });
   return rows.take();
 }
 

@@ -33,5 +33,6 @@ std::vector<StressCase> nominal_cases();
 std::vector<StressCase> file_cases();
 std::vector<StressCase> fitted_orbit_cases();
 std::vector<StressCase> street_cases();
+std::vector<StressCase> edge_cases();
 
 }  // namespace canyon::gnss

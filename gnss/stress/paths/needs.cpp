@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "canyon/core/earth/local_frame.h"
@@ -12,17 +13,23 @@
 #include "canyon/core/stress/looks.h"
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/diffraction/diffraction.h"
 #include "canyon/gnss/paths/diffraction/fresnel.h"
 #include "canyon/gnss/paths/need/ball.h"
 #include "canyon/gnss/paths/need/obstacle_heights.h"
+#include "canyon/gnss/paths/need/path_question.h"
 #include "canyon/gnss/paths/need/reflection_bound.h"
 #include "canyon/gnss/paths/need/sky_span.h"
+#include "canyon/gnss/paths/propagation.h"
 #include "canyon/gnss/satellites/constellation.h"
 #include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/gnss/stress/paths/plain.h"
 #include "canyon/gnss/stress/subjects.h"
+#include "canyon/scene/mesh_builder.h"
 #include "canyon/scene/scene.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {
@@ -108,6 +115,109 @@ StressFigure bounds() {
   return looks.figure();
 }
 
+/// What may happen at least on a piece of a route: asked of walls near and far, strong and weak, of crowns and of
+/// houses that hide the sky; and then followed from many places of that piece, at many times. What is said not to be
+/// needed must not be there: none of the ways that a search without it leaves out, to the bit; and where it is said to
+/// be needed for a wall that mirrors a satellite onto the piece, it must be found somewhere.
+struct NeedScene {
+  scene::SceneParts parts;
+  PathParameters limits;
+  std::optional<bool> reflects;  ///< whether it is known to be needed, and found
+};
+NeedScene need_scene(int which) {
+  NeedScene out;
+  out.parts.name = "needs";
+  out.parts.frame = LocalFrame(Geodetic{0.5646, -1.586, 60.0});
+  out.parts.materials = scene::builtin_materials();
+  scene::MeshBuilder mesh(out.parts);
+  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
+  mesh.quad({-400, -400, 0}, {400, -400, 0}, {400, 400, 0}, {-400, 400, 0}, mesh.material("asphalt"));
+  const auto wall = [&](double x_m, double half_m, double top_m, const char* material) {
+    mesh.begin_object("wall", scene::ObjectKind::kWall);
+    // Faces the east.
+    mesh.quad({x_m, -half_m, 0}, {x_m, half_m, 0}, {x_m, half_m, top_m}, {x_m, -half_m, top_m},
+              mesh.material(material));
+  };
+  if (which == 1) wall(-12.0, 60.0, 40.0, "metal"), out.reflects = true;
+  // Of concrete not more than half of a field: below what is looked for, however it stands.
+  if (which == 2)
+    wall(-12.0, 60.0, 40.0, "metal"), out.limits.weakest_db = out.limits.weakest_nlos_db = 0.5, out.reflects = false;
+  if (which == 3) wall(-150.0, 0.3, 1.2, "concrete"), out.reflects = false;
+  if (which == 4) wall(-90.0, 8.0, 9.0, "concrete"), wall(-30.0, 2.0, 3.0, "metal");
+  if (which == 5) {
+    mesh.begin_object("box", scene::ObjectKind::kBuilding);
+    mesh.box({-60.0, 20.0, 6.0}, Eigen::Matrix3d::Identity(), {9.0, 7.0, 6.0}, mesh.material("concrete"));
+    out.parts.foliage.push_back({{-30.0, -25.0, 5.0}, {3.0, 3.0, 3.0}});
+  }
+  return out;
+}
+
+StressFigure followed(int which) {
+  Looks looks;
+  const RandomStream draws(6, "stress.needs");
+  NeedScene made = need_scene(which);
+  const scene::Scene city(std::move(made.parts));
+  const scene::SceneAt at(city);
+  const GpsTime start = GpsTime::from_week_sow(1600, 30000.0);
+  const auto sky = make_nominal_gps();
+  RouteSegment segment;
+  segment.points_W = {{0.0, -4.0, 0.0}, {0.0, 4.0, 0.0}};
+  segment.end_m = 8.0, segment.half_width_m = 1.0;
+  const Ball place{Vector3d::Zero(), 8.0};
+  constexpr double kMask = 0.17;
+  const SkySpan span = sky_span(*sky, city.frame(), start, start + 900.0, place, kMask);
+  const ObstacleHeights heights(city);
+  PathQuestion question{.segment = segment,
+                        .antenna_reach_m = 1.6,
+                        .antenna_above_m = 1.2,
+                        .scene = city,
+                        .sky = span,
+                        .heights = heights,
+                        .limits = made.limits};
+  std::vector<Need> needs = specular_needs(2, question);
+  for (const Need& need : diffraction_needs(question)) needs.push_back(need);
+  const PathOmissions omissions = omissions_of(needs);
+  looks.right(needs.size() == 5);
+  for (const Need& need : needs) looks.right(!need.reason.empty());
+  if (which == 0)
+    looks.right(omissions.occlusion && omissions.foliage && omissions.diffraction && omissions.most_reflections == 0);
+  if (made.reflects) looks.right((omissions.most_reflections == 0) != *made.reflects);
+  PathParameters less = made.limits;
+  less.leave_out = omissions;
+  const auto all_of =
+      make_propagation(make_specular2(made.limits), make_double_knife_edge(made.limits), false, made.limits);
+  const auto rest_of = omissions.diffraction
+                           ? make_specular2(less)
+                           : make_propagation(make_specular2(less), make_double_knife_edge(less), false, less);
+  int reflected = 0;
+  for (int k = 0; k < 120; ++k) {
+    const Vector3d antenna(draws.uniform(-1, 1, 0, k), draws.uniform(-4, 4, 1, k), draws.uniform(1.2, 1.6, 2, k));
+    const GpsTime t = start + draws.uniform(0.0, 900.0, 3, k);
+    const Vector3d p_E = city.frame().to_E(antenna);
+    std::vector<Vector3d> directions;
+    for (const SatelliteId sv : sky->satellites()) {
+      const auto signal = transmission_to(*sky, sv, t, p_E);
+      if (!signal) continue;
+      const Vector3d s = city.frame().R_EW().transpose() * (signal->p_E() - p_E).normalized();
+      if (s.z() > std::sin(kMask)) directions.push_back(s);
+    }
+    std::vector<SignalPaths> all(directions.size()), rest(directions.size());
+    GnssCounters all_counters, rest_counters;
+    all_of->trace(antenna, PlaneWaves(directions), at, all, all_counters);
+    rest_of->trace(antenna, PlaneWaves(directions), at, rest, rest_counters);
+    looks.right(rest_counters.occlusion_rays <= all_counters.occlusion_rays);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      looks.right(all[i].line_of_sight == rest[i].line_of_sight && all[i].foliage_m == rest[i].foliage_m &&
+                  all[i].direct == rest[i].direct && all[i].echoes.size() == rest[i].echoes.size());
+      for (const SignalPath& echo : all[i].echoes) reflected += echo.reflections > 0 ? 1 : 0;
+      if (omissions.occlusion) looks.right(all[i].line_of_sight);
+      if (omissions.foliage) looks.right(all[i].foliage_m == 0.0);
+    }
+  }
+  if (made.reflects) looks.right((reflected > 0) == *made.reflects);
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> need_cases() {
@@ -118,6 +228,15 @@ std::vector<StressCase> need_cases() {
            .expected = "above all that is, and no farther than its steps",
            .unit = "of the bound"});
   rows.add("needs/bounds", bounds);
+  rows.of({.group = StressGroup::kGeometry,
+           .mechanism = "what a piece of a route needs, and what is received there",
+           .why = "a wall that mirrors is said not to, a weak one to be needed, a limit the wrong way round",
+           .expected = "without what is not needed the same ways to the bit; what is needed is found",
+           .unit = "of the bound"});
+  constexpr const char* kPlaces[] = {"an_open_field", "a_mirror",      "a_mirror_too_weak",
+                                     "a_small_wall",  "two_far_walls", "a_house_and_a_tree"};
+  for (int which = 0; which < 6; ++which)
+    rows.add(std::string("needs/beside_") + kPlaces[which], [which] { return followed(which); });
   return rows.take();
 }
 

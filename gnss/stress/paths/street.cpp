@@ -223,6 +223,44 @@ StressFigure mixture(const char* environment) {
   return out;
 }
 
+/// Spread and multipath of either state, at every elevation of the table, between two of them and beyond: of levels
+/// weaker than both states the bad one's straight line, of stronger ones the good one's, evenly shared between; none
+/// below 0. Sixteen epsilons of the terms.
+StressFigure spreads(const std::string& environment) {
+  stress::Worst worst;
+  const TwoStateLaw law(environment, 1.0);
+  const auto& table = law.table();
+  const auto line = [](double slope, double level, double at_0) { return worse(slope * level + at_0, 0.0); };
+  const auto of = [&](const TwoStateLaw::Elevation& e, double level) {
+    const double good = line(e.good.g1, level, e.good.g2_db), bad = line(e.bad.g1, level, e.bad.g2_db);
+    if (level >= e.good.ma_db) return good;
+    if (level <= e.bad.ma_db) return bad;
+    const double share = (level - e.bad.ma_db) / (e.good.ma_db - e.bad.ma_db);
+    return share * good + (1.0 - share) * bad;
+  };
+  for (std::size_t i = 0; i < table.size(); ++i)
+    for (const double part : {0.0, 0.25, 0.7}) {
+      const auto& low = table[i];
+      const auto& high = table[std::min(i + 1, table.size() - 1)];
+      double elevation = low.elevation_rad + part * (high.elevation_rad - low.elevation_rad);
+      if (i == 0 && part == 0.25) elevation = 0.01;
+      if (i + 1 == table.size()) elevation += part;
+      const double share = i == 0 && part == 0.25 ? 0.0 : part;
+      for (double level = -30.0; level < 6.0; level += 0.7)
+        worst.look(law.spread_db(level, elevation) - ((1.0 - share) * of(low, level) + share * of(high, level)),
+                   16.0 * kEpsilon * 60.0);
+      for (const bool shaded : {false, true}) {
+        const auto db = [&](const TwoStateLaw::Elevation& e) {
+          const SignalState& state = shaded ? e.bad : e.good;
+          return state.h1 * state.ma_db + state.h2_db;
+        };
+        const double power = std::pow(10.0, ((1.0 - share) * db(low) + share * db(high)) / 10.0);
+        worst.look(law.multipath_power(shaded, elevation) / power - 1.0, 1e-13);
+      }
+    }
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> street_cases() {
@@ -286,6 +324,13 @@ std::vector<StressCase> street_cases() {
            .unit = "dB"});
   for (const char* name : {"urban", "suburban"})
     rows.add(std::string("street/two_states_") + name, [name] { return mixture(name); });
+  rows.of({.group = StressGroup::kData,
+           .mechanism = "spread and multipath of two states, at all elevations",
+           .why = "a line of the other state, a level for its inverse, an elevation beyond the table",
+           .expected = "the table's own lines, shared between states and elevations: roundings",
+           .unit = "of the bound"});
+  for (const std::string& environment : TwoStateLaw::environments())
+    rows.add("street/spreads_in_" + environment, [environment] { return spreads(environment); });
   return rows.take();
 }
 
