@@ -1,7 +1,9 @@
 // What is made of innovations, and where a recording starts.
 #include <vector>
 
+#include "canyon/core/earth/earth.h"
 #include "canyon/core/math/chi_square.h"
+#include "canyon/core/random/random.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/fusion/acceptance/acceptance.h"
 #include "canyon/fusion/alignment/alignment.h"
@@ -153,6 +155,61 @@ StressFigure at_rest(double lat_deg, double heading_deg) {
   return worst.figure();
 }
 
+/// What an alignment at rest says of itself, over noise, latitude and time at rest: tilt of what biases and the mean of
+/// white noise leave of gravity, heading of what they leave of the Earth's rate's horizontal part, pi from 20 degrees
+/// on; place by the fixes and the heading's share of the lever arm. By the formulas that the model cites: roundings.
+StressFigure said_at_rest(double lat_deg) {
+  Worst worst;
+  const RandomStream draws(5, "stress.alignment");
+  int compassed = 0, lost = 0;
+  // The antenna stands 2 m beside the unit, and the rate's share turns with the latitude's tangent.
+  const double beside = 1e-6 * (1.0 + std::abs(std::tan(lat_deg * kDegree)));
+  for (std::uint64_t k = 0; k < 24; ++k) {
+    NavState s = levelled({lat_deg * kDegree, 0.4, 100.0}, 2.0, {0.1, -0.2, 1.0});
+    s.t = GpsTime::from_week_sow(1590, 1000.0);
+    const double rest_s = draws.uniform(2.0, 30.0, 0, k);
+    std::vector<ImuSample> imu;
+    for (std::int64_t i = 0; i < 1600; ++i) imu.push_back(rest_sample(s, i, 50.0));
+    ImuNoise noise;
+    const double size = std::pow(10.0, draws.uniform(-8.5, -4.5, 1, k));
+    noise.gyro = {.white_per_sqrt_hz = size * draws.uniform(0.1, 3.0, 2, k),
+                  .turn_on_bias_sigma = size * draws.uniform(0.1, 3.0, 3, k),
+                  .in_run_bias_sigma = size * draws.uniform(0.1, 3.0, 4, k)};
+    noise.accel = {.white_per_sqrt_hz = draws.uniform(1e-3, 0.1, 5, k),
+                   .turn_on_bias_sigma = draws.uniform(1e-3, 0.1, 6, k),
+                   .in_run_bias_sigma = draws.uniform(1e-3, 0.1, 7, k)};
+    const Vector3d imu_B(0.3, -0.2, 1.0), antenna_B(-1.0, 0.4, 2.0);
+    std::vector<GnssFix> fixes(3);
+    for (std::size_t i = 0; i < 3; ++i) {
+      fixes[i].t = s.t + 0.5 * static_cast<double>(i);
+      fixes[i].status = FixStatus::kSingle;
+      fixes[i].p_A_E = s.p_EU_E + s.R_EU * (antenna_B - imu_B);
+      fixes[i].covariance_E = Vector3d(0.3, 0.5 + static_cast<double>(i), 0.2).cwiseAbs2().asDiagonal();
+    }
+    const auto found =
+        aligned("static", "static_s = " + number_text(rest_s) + "\nstatic_velocity_sigma_m_s = 0.07",
+                {.imu = imu, .fixes = fixes, .noise = noise, .lever_U_B = imu_B, .lever_A_B = antenna_B});
+    if (!found) return {stress::kInfinity, 1.0};
+    // Samples that end up to static_s after the first one did.
+    const double span_s = (std::floor(rest_s * 50.0 + 1e-9) + 1.0) / 50.0;
+    worst.look(found->nav.t - s.t - span_s, 1e-6);
+    const auto rms = [&](const TriadNoise& n) {
+      return std::sqrt(std::pow(n.turn_on_bias_sigma, 2) + std::pow(n.in_run_bias_sigma, 2) +
+                       std::pow(n.white_per_sqrt_hz, 2) / span_s);
+    };
+    worst.look(found->tilt_rad / (rms(noise.accel) / gravity_E(s.p_EU_E).norm()) - 1.0, 1e-6);
+    const double compass = rms(noise.gyro) / (Wgs84::rate_rad_s * std::cos(lat_deg * kDegree));
+    const bool known = compass < 20.0 * kDegree;
+    (known ? compassed : lost) += 1;
+    worst.look(found->heading_rad / (known ? compass : kPi) - 1.0, beside);
+    const double place = std::hypot(2.5, std::min(2.0, known ? compass : kPi) * (antenna_B - imu_B).norm());
+    worst.look(found->position_m / place - 1.0, 1e-6);
+    worst.look(found->velocity_m_s - 0.07, 1e-300);
+  }
+  worst.look(compassed > 3 && lost > 3 ? 0.0 : stress::kInfinity, 1.0);
+  return worst.figure();
+}
+
 /// In a bend of even speed the course turns evenly; what the alignment takes for the nose is the course of the last
 /// fix, and for the acceleration the difference of two velocities: half the turn between them squared over six.
 StressFigure in_motion(double lat_deg, double heading_deg, double turn_rad_s) {
@@ -263,6 +320,12 @@ std::vector<StressCase> acceptance_cases() {
     rows.add("acceptance/start_in_a_bend_of_" + stress::text(turn) + "_rad_s",
              [turn] { return in_motion(-30.0, 130.0, turn); });
   rows.add("acceptance/start_as_given", given);
+  rows.of({StressGroup::kData, "what an alignment at rest says of itself",
+           "a density over the wrong time, a compass that does not know of the latitude, an axis left out",
+           "biases and means over gravity and the Earth's rate, by the formulas: roundings", "of the bound"});
+  for (const double lat_deg : {0.0, 45.0, -80.0})
+    rows.add("alignment/said_at_rest_at_" + stress::text(lat_deg) + "_deg",
+             [lat_deg] { return said_at_rest(lat_deg); });
   return rows.take();
 }
 

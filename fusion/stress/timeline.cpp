@@ -70,6 +70,69 @@ StressFigure any_order(const std::string& keys) {
   return {static_cast<double>(wrong), 0.0};
 }
 
+/// All messages of two seconds come before any sample of theirs, in any order: fixes, wheels and pressures. None of
+/// them is before its time, so none makes the filter go back; each is told, all wait, and what comes of them is to the
+/// bit what comes of them in time.
+StressFigure all_ahead(int turn) {
+  const Drive drive =
+      simulated_drive(4, {.seconds = 6.0,
+                          .outage_from_s = 1e9,
+                          .keys = "filter = \"vehicle\"\nmeasurements = [\"position\", \"odometer\", \"barometer\"]"});
+  std::vector<AidingMessage> messages;
+  for (std::int64_t k = 1; k <= 30; ++k) {
+    // Beside the samples and at them, no two at one time.
+    const GpsTime t{drive.start.ns + 200'000'000 * k - (k % 3) * 7'000'000};
+    const auto& at = drive.truth[static_cast<std::size_t>(10 * k)];
+    if (k % 3 == 0) {
+      GnssFix fix;
+      fix.t = t;
+      fix.status = FixStatus::kSingle;
+      fix.p_A_E = at.p_EU_E + at.R_EU * (drive.lever_A_B - drive.lever_U_B);
+      fix.covariance_E = Eigen::Matrix3d::Identity();
+      messages.emplace_back(fix);
+    } else if (k % 3 == 1) {
+      OdometerSample wheel;
+      wheel.t = t;
+      wheel.dt_s = 0.1;
+      wheel.speed_m_s = (at.R_EU.conjugate() * at.v_EU_E).x();
+      messages.emplace_back(wheel);
+    } else {
+      BarometerSample air;
+      air.t = t;
+      air.pressure_pa = 98000.0;
+      messages.emplace_back(air);
+    }
+  }
+  const auto run = [&](const auto& order, double before_s) {
+    FilterTimeline timeline(started(drive), {});
+    std::size_t next = 0;
+    std::int64_t wrong = 0;
+    for (const ImuSample& sample : drive.imu) {
+      // Blocks of ten messages, two seconds, each given in its order.
+      while (next < messages.size() &&
+             (before_s == 0.0 ? time_of(messages[next]) <= sample.t
+                              : time_of(messages[next / 10 * 10]) - sample.t < 0.06 + before_s)) {
+        if (before_s == 0.0) {
+          timeline.add(messages[next++]);
+          continue;
+        }
+        const std::size_t waiting = timeline.waiting();
+        for (std::size_t i = 0; i < 10; ++i) {
+          wrong += timeline.add(messages[next + order(i)]) == Trouble::kAhead ? 0 : 1;
+          wrong += timeline.waiting() == waiting + i + 1 ? 0 : 1;
+        }
+        next += 10;
+      }
+      timeline.add(sample);
+    }
+    wrong += timeline.replays() + static_cast<std::int64_t>(timeline.waiting());
+    return std::pair(std::move(timeline), wrong);
+  };
+  const auto [in_time, none] = run([](std::size_t i) { return i; }, 0.0);
+  const auto [ahead, wrong] = run([turn](std::size_t i) { return (i * static_cast<std::size_t>(turn) + 9) % 10; }, 0.1);
+  return {static_cast<double>(differ(in_time, ahead) + wrong + none), 0.0};
+}
+
 /// A gap of a vehicle that rests: what it is less sure by on each axis is the stated rate and force times the gap, half
 /// the force by its square, beside what prediction over the gap makes by itself. Attitudes are known to 0.1 degrees,
 /// and gravity's pull moves those into velocity and place: prediction alone over the same time says how far.
@@ -207,6 +270,8 @@ std::vector<StressCase> timeline_cases() {
       .add("timeline/late_and_early", [] { return any_order("states = [\"biases\", \"gains\"]"); })
       .add("timeline/late_and_early_with_all_of_a_vehicle",
            [] { return any_order("filter = \"vehicle\"\nmeasurements = [\"position\", \"non_holonomic\"]"); });
+  for (const int turn : {1, 3, 7, 9})
+    rows.add("timeline/all_ahead_in_turns_of_" + std::to_string(turn), [turn] { return all_ahead(turn); });
   for (const double gap_s : {0.02, 0.5, 5.0, 60.0})
     rows.of(bridged).add("timeline/gap_of_" + stress::text(gap_s) + "_s", [gap_s] { return gap(gap_s); });
   rows.of(trouble).add("timeline/each_trouble", troubles);
