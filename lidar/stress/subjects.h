@@ -19,5 +19,7 @@ std::vector<StressCase> match_cases();
 std::vector<StressCase> neighbour_cases();
 std::vector<StressCase> pose_covariance_cases();
 std::vector<StressCase> closure_cases();
+std::vector<StressCase> offset_cases();
+std::vector<StressCase> capture_cases();
 
 }  // namespace canyon::lidar
