@@ -24,5 +24,6 @@ std::vector<StressCase> self_check_cases();
 std::vector<StressCase> sprung_mass_cases();
 std::vector<StressCase> traffic_cases();
 std::vector<StressCase> vehicle_cases();
+std::vector<StressCase> score_cases();
 
 }  // namespace canyon::mission
