@@ -20,5 +20,6 @@ std::vector<StressCase> paper_recursion_cases();
 std::vector<StressCase> proof_mass_cases();
 std::vector<StressCase> spline_cases();
 std::vector<StressCase> unit_log_cases();
+std::vector<StressCase> simulated_log_cases();
 
 }  // namespace canyon::inertial
