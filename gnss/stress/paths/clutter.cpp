@@ -5,21 +5,26 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "canyon/core/config/config.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/stress/looks.h"
 #include "canyon/core/units.h"
+#include "canyon/gnss/paths/clutter/clutter.h"
 #include "canyon/gnss/paths/clutter/clutter_scatterers.h"
 #include "canyon/gnss/paths/clutter/lattice_noise.h"
 #include "canyon/gnss/paths/clutter/street_shading.h"
 #include "canyon/gnss/paths/clutter/two_state_law.h"
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/paths/scatter/delay_bins.h"
+#include "canyon/gnss/signal.h"
 #include "canyon/gnss/stress/paths/plain.h"
 #include "canyon/gnss/stress/subjects.h"
 #include "canyon/scene/scene.h"
+#include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
 namespace {
@@ -191,6 +196,56 @@ StressFigure gathered() {
   return looks.figure();
 }
 
+/// A whole street's clutter where everything is in sight and lit: over 80 streets what arrives beside a satellite's
+/// signal has the multipath power that the table states for its elevation, half of it of either hand, at the carrier:
+/// five deviations of exponential powers. The straight way and an echo are shaded by where they come from, as the field
+/// of shades says at that place and time, to roundings.
+StressFigure whole_street(double elevation_rad, double echo_db) {
+  Looks looks;
+  const scene::Scene plain = plain_at(0.0, 0.25);
+  const scene::SceneAt at(plain);
+  const Vector3d antenna(-120.0, -60.0, 2.0), from = Vector3d(0.3, -0.4, 0.8).normalized();
+  const std::vector<Vector3d> sky{{std::cos(elevation_rad), 0.0, std::sin(elevation_rad)}};
+  const GpsTime t = GpsTime::from_week_sow(1700, 5000.0);
+  const TwoStateLaw law("suburban", 1.0);
+  PathParameters p;
+  p.weakest_db = p.weakest_nlos_db = -140.0, p.seed = 6;
+  ModelParameters own;
+  street_clutter_parameters(own);
+  constexpr int kStreets = 80;
+  double co = 0.0, cross = 0.0;
+  for (int street = 0; street < kStreets; ++street) {
+    const auto node = ConfigNode::parse(
+        "clutter_street = " + std::to_string(street) + "\nclutter_echo_db = " + std::to_string(echo_db), "stress");
+    CANYON_CHECK(node && read_fields(&*node, "gnss", [&own](FieldVisitor& f) { own.visit_all(f); }).ok(), street);
+    const auto model = make_street_clutter(own, p);
+    std::vector<SignalPaths> out(1);
+    SignalPath echo;
+    echo.excess_m = 3.0, echo.copolar = {0.5, 0.1}, echo.crosspolar = {0.0, 0.2}, echo.arrival_W = from;
+    out[0].echoes.push_back(echo);
+    GnssCounters counters;
+    model->trace(antenna, PlaneWaves(sky).at(t), at, out, counters);
+    const StreetShading shading(law, {}, static_cast<std::uint64_t>(street), p.seed);
+    const double straight = std::pow(10.0, shading.level_db(antenna, sky[0], t) / 20.0),
+                 beside = std::pow(10.0, shading.level_db(antenna, from, t) / 20.0);
+    looks.near(std::abs(out[0].direct - straight), 0.0, 1e-13);
+    looks.right(out[0].echoes.size() > 3);
+    looks.near(std::abs(out[0].echoes[0].copolar - beside * echo.copolar), 0.0, 1e-13);
+    looks.near(std::abs(out[0].echoes[0].crosspolar - beside * echo.crosspolar), 0.0, 1e-13);
+    Hand co_sum = 0.0, cross_sum = 0.0;
+    for (std::size_t k = 1; k < out[0].echoes.size(); ++k) {
+      const SignalPath& path = out[0].echoes[k];
+      const Hand turn = std::polar(1.0, -2.0 * kPi * path.excess_m / kL1WavelengthM);
+      co_sum += path.copolar * turn, cross_sum += path.crosspolar * turn;
+      looks.right(path.facets[0] == SignalPath::kClutter && path.excess_m >= 0.0 && path.excess_m < 2.0 * 85.0 + 30.0);
+    }
+    co += std::norm(co_sum) / kStreets, cross += std::norm(cross_sum) / kStreets;
+  }
+  const double half = 0.5 * law.multipath_power(false, elevation_rad) * std::pow(10.0, echo_db / 10.0);
+  for (const double found : {co, cross}) looks.near(found / half, 1.0, 5.0 / std::sqrt(1.0 * kStreets));
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> clutter_cases() {
@@ -203,6 +258,13 @@ std::vector<StressCase> clutter_cases() {
   rows.add("clutter/lattices", lattices).add("clutter/scatterers", scatterers).add("clutter/gathered_delays", gathered);
   for (const double e : {0.4, 0.9})
     rows.add("clutter/shades_at_" + stress::text(e) + "_rad", [e] { return shades(e); });
+  rows.of({.group = StressGroup::kGeometry,
+           .mechanism = "a whole street's clutter, all of it in sight",
+           .why = "a hand of the other's power, an amplitude for a power, a shade of another direction",
+           .expected = "the table's multipath over many streets, five deviations; shades to roundings",
+           .unit = "of the bound"});
+  rows.add("clutter/whole_street_at_0.5_rad", [] { return whole_street(0.5, 0.0); })
+      .add("clutter/whole_street_at_1.1_rad_6_db_stronger", [] { return whole_street(1.1, 6.0); });
   return rows.take();
 }
 
