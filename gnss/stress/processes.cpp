@@ -144,7 +144,7 @@ StressFigure orbits_and_clocks(const char* name, double scale) {
       const auto model = row.make.make(own, {.seed = static_cast<std::uint64_t>(seed)});
       if (!model) return {stress::kInfinity, 1.0};
       const GpsTime t = GpsTime::from_week_sow(1700, 3600.0 * (seed % 100));
-      const SatelliteId sv{GnssSystem::kGps, 1 + seed % 31};
+      const SatelliteId sv{GnssSystem::kGps, static_cast<std::uint8_t>(1 + seed % 31)};
       const double now = (*model)->range_m(sv, satellite, receiver_E, t),
                    later = (*model)->range_m(sv, satellite, receiver_E, t + 60.0),
                    years = (*model)->range_m(sv, satellite, receiver_E, t + 1e8);
