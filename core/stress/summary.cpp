@@ -1,3 +1,6 @@
+#include <cmath>
+#include <initializer_list>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,6 +59,29 @@ StressFigure weak_direction(double ratio) {
   return worst.figure();
 }
 
+/// What cases are written with: a figure is the largest part of any bound, and holds up to 1 and no further; without a
+/// bound, without a number, or merely wrong it is as bad as can be. A figure counts what differs.
+StressFigure figures_themselves() {
+  int wrong = 0;
+  const auto worst_of = [](std::initializer_list<std::pair<double, double>> looks) {
+    stress::Worst worst;
+    for (const auto& [error, bound] : looks) worst.look(error, bound);
+    return worst.figure();
+  };
+  const auto is = [&](const StressFigure& found, double figure) {
+    wrong += found.figure == figure && found.bound == 1.0 ? 0 : 1;
+  };
+  is(worst_of({}), 0.0), is(worst_of({{-3.0, 2.0}, {1.0, 4.0}}), 1.5), is(worst_of({{0.0, 1.0}, {-0.5, 0.5}}), 1.0);
+  for (const double none : {0.0, -1.0, std::nan(""), stress::kInfinity})
+    is(worst_of({{0.1, none}, {0.0, 1.0}}), stress::kInfinity);
+  is(worst_of({{std::nan(""), 1.0}, {0.0, 1.0}}), stress::kInfinity);
+  wrong += beyond(3.0, 1.0) == 2.0 && beyond(-3.0, 1.0) == 0.0 && beyond(1.0, 1.0) == 0.0 ? 0 : 1;
+  wrong +=
+      std::isnan(beyond(std::nan(""), 1.0)) && std::isnan(worse(1.0, std::nan(""))) && worse(2.0, 3.0) == 3.0 ? 0 : 1;
+  wrong += std::isnan(worse(std::nan(""), 1.0)) && worse(3.0, 2.0) == 3.0 ? 0 : 1;
+  return {1.0 * wrong, 0.0};
+}
+
 }  // namespace
 
 std::vector<StressCase> summary_cases() {
@@ -73,6 +99,10 @@ std::vector<StressCase> summary_cases() {
   StressRows rows;
   rows.of(overflow).add("median/of_largest_values", medians);
   rows.of(order).add("median/of_no_numbers", medians_of_no_numbers);
+  rows.of({StressGroup::kData, "figures that cases are told by",
+           "a bound that lets more through than it says, a number that is none",
+           "up to the bound and no further: exact", "differences"});
+  rows.add("figures/themselves", figures_themselves);
   for (const double ratio : {1.0, 1e-6, 1e-12, 0.0})
     rows.of(weak).add("singular_values/second_direction_weaker_by_" + stress::text(ratio),
                       [ratio] { return weak_direction(ratio); });

@@ -12,6 +12,7 @@
 #include "canyon/gnss/atmosphere/niell.h"
 #include "canyon/gnss/atmosphere/troposphere.h"
 #include "canyon/gnss/products/ionex_file.h"
+#include "canyon/gnss/satellites/navigation_data.h"
 #include "canyon/gnss/stress/subjects.h"
 
 namespace canyon::gnss {
@@ -70,6 +71,50 @@ StressFigure over_the_day(GpsTime midnight) {
   const double night = kSpeedOfLight * 5e-9 * klobuchar_obliquity(e), amplitude = most - night;
   // The step of the phase is 2 pi 10 s / 72000 s; the slope of the series is below 1.
   return {largest, amplitude * (0.0208 + 2.0 * kPi * step_s / 72000.0)};
+}
+
+/// One pierce point seen from its west, east, south and north, at any hour: as far off as the specification says of an
+/// elevation, in semicircles, and east by the cosine of the latitude there. The same electrons: sixteen roundings of 20
+/// m.
+StressFigure one_pierce_point() {
+  StressFigure out{0.0, 1.0};
+  double most = 0.0, least = 1e9;
+  for (const double elevation : {0.1, 0.4, 1.0})
+    for (const double lat : {-0.5, 0.0, 0.7})
+      for (double lon = -3.0; lon < 3.1; lon += 0.7) {
+        const double away = kPi * (0.0137 / (elevation / kPi + 0.11) - 0.022), east = away / std::cos(lat);
+        const auto from = [&](double by_lat, double by_lon, double azimuth) {
+          return klobuchar_delay_m(kBuiltInKlobuchar, kNoon, lat + by_lat, lon + by_lon, azimuth, elevation);
+        };
+        const double west = from(0.0, -east, 0.5 * kPi),
+                     others[] = {from(0.0, east, -0.5 * kPi), from(-away, 0.0, 0.0), from(away, 0.0, kPi)};
+        for (const double other : others) take_worst(out, std::abs(other - west) / (16.0 * kEpsilon * 20.0));
+        most = worse(most, west), least = std::min(least, west);
+      }
+  out.figure = most > 2.0 * least ? out.figure : stress::kInfinity;
+  return out;
+}
+
+/// The coefficients of an ionosphere at an instant: of that system, the last that were given by then, else its first;
+/// of a system without any, none. A figure counts what differs.
+StressFigure coefficients_by_time() {
+  NavigationData data;
+  StressFigure out;
+  const auto right = [&](bool holds) { out.figure += holds ? 0.0 : 1.0; };
+  const auto first_alpha = [&](GnssSystem system, double hours) -> double {
+    const auto found = data.klobuchar_at(system, kNoon + 3600.0 * hours);
+    return found ? found->alpha[0] : -1.0;
+  };
+  right(first_alpha(GnssSystem::kGps, 0.0) == -1.0);
+  for (const double hours : {4.0, 0.0, 8.0}) {
+    BroadcastKlobuchar one{GnssSystem::kBeidou, kNoon + 3600.0 * hours, {}};
+    one.coefficients.alpha[0] = hours;
+    data.klobuchar.push_back(one);
+  }
+  for (const double hours : {-5.0, 0.0, 3.9, 4.0, 7.0, 8.0, 90.0})
+    right(first_alpha(GnssSystem::kBeidou, hours) == (hours < 4.0 ? 0.0 : hours < 8.0 ? 4.0 : 8.0));
+  right(first_alpha(GnssSystem::kGps, 5.0) == -1.0 && first_alpha(GnssSystem::kQzss, 5.0) == -1.0);
+  return out;
 }
 
 /// Of zero electrons by day there is still the night's 5 ns, times the obliquity.
@@ -258,6 +303,14 @@ std::vector<StressCase> atmosphere_cases() {
   rows.of({StressGroup::kLong, "an instant beside the maps", "extrapolation, or the wrong map at the border",
            "no value", "values"});
   rows.add("atmosphere/beside_the_maps_time", beside_the_maps);
+  rows.of({StressGroup::kGeometry, "a pierce point from all sides of it",
+           "a sign of an azimuth, or degrees of longitude for those of latitude",
+           "the same electrons: 16 roundings of 20 m", "of the bound"});
+  rows.add("atmosphere/klobuchar_of_one_pierce_point", one_pierce_point);
+  rows.of({StressGroup::kData, "coefficients of an ionosphere by their time",
+           "those of another system, the next ones, or of none", "the last by then of that system, else its first",
+           "differences"});
+  rows.add("atmosphere/coefficients_by_time", coefficients_by_time);
   return rows.take();
 }
 

@@ -83,6 +83,22 @@ StressFigure links() {
   return looks.figure();
 }
 
+/// No signal at all, and none that is strong enough: not tracked, by any rule, and nothing is told of it.
+StressFigure no_signals() {
+  Looks looks;
+  MultipathParameters p;
+  p.threshold_dbhz = 25.0;
+  for (const auto& row : multipath_rules())
+    for (int k = 0; k < 2; ++k) {
+      std::vector<ReceivedSignal> echoes;
+      if (k == 1) echoes.push_back({12.0, 10.0, 0.3, 0.0});
+      const Reception found = row.make({}, p)->receive(std::nullopt, echoes, 0.19);
+      looks.right(!found.tracked && found.error_m == 0.0 && found.carrier_error_m == 0.0 &&
+                  found.range_rate_error_m_s == 0.0);
+    }
+  return looks.figure();
+}
+
 /// The rules without a correlator, case by case.
 StressFigure rules() {
   Looks looks;
@@ -251,6 +267,9 @@ std::vector<StressCase> reception_cases() {
       .add("receptions/rules", rules)
       .add("receptions/reported_strength", reported_strength)
       .add("receptions/modes", modes);
+  rows.of({StressGroup::kData, "a receiver of no signal", "a loop that is read where it locks on nothing",
+           "not tracked, and nothing told", "of the bound"});
+  rows.add("receptions/of_no_signal", no_signals);
   return rows.take();
 }
 

@@ -311,7 +311,7 @@ std::vector<StressCase> sensor_cases() {
   rows.add("sensors/street_of_one_frequency",
            [] { return street_budget("mode = \"single_uncorrected\"\ntroposphere = \"none\"\n", true); });
   rows.add("sensors/street_of_two_frequencies",
-           [] { return street_budget("mode = \"dual\"\nsystems = \"G\"\n", true); });
+           [] { return street_budget("mode = \"dual\"\nsystems = \"G\"\nmultipath_rule = \"correlator\"\n", true); });
   rows.add("sensors/street_beside_a_base", [] { return street_budget("mode = \"dgps\"\n", true); });
   rows.of({StressGroup::kData, "noise of the simple receivers",
            "a direction that prefers the poles, an axis of another frame, epochs that hang together",

@@ -121,6 +121,54 @@ StressFigure packets_about_a_near_point(double x_m, double y_m) {
   return worst.figure();
 }
 
+/// Packets whose rays begin at places of their own, leave the tile they begin in and meet walls one to three kilometres
+/// away, ground, or nothing: the same triangle as single rays, and the same range to half a unit of it and of half a
+/// tile over the direction. A figure is the worst share.
+StressFigure packets_that_leave_their_tile() {
+  SceneParts parts = made::nothing();
+  made::add_square(parts, {0.0, 0.0, 0.0}, 4096.0);
+  for (int k = 0; k < 6; ++k) {
+    const double turn = 1.05 * k + 0.2, away_m = 1000.0 + 400.0 * k;
+    made::add_box(parts, {away_m * std::cos(turn), away_m * std::sin(turn), 60.0}, {200.0, 200.0, 60.0});
+  }
+  const auto scene = made::scene_of(std::move(parts));
+  const SceneAt now(*scene);
+  const Eigen::Vector3d middle(40.0, -30.0, 30.0), about = now.packet_origin(middle);
+  stress::Worst worst;
+  int far = 0;
+  for (int p = 0; p < 90; ++p) {
+    RayPacket packet{};
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      const auto n = static_cast<double>(i);
+      const Eigen::Vector3f o =
+          (middle + Eigen::Vector3d(11.0 * n - 80.0, 60.0 - 9.0 * n, 2.0 * n) - about).cast<float>();
+      const double turn = 2.0 * kPi / 90.0 * p + 0.001 * n;
+      const Eigen::Vector3f d =
+          Eigen::Vector3d(std::cos(turn), std::sin(turn), 0.004 * (n - 9.0)).normalized().cast<float>();
+      packet.origin_x[i] = o.x(), packet.origin_y[i] = o.y(), packet.origin_z[i] = o.z();
+      packet.direction_x[i] = d.x(), packet.direction_y[i] = d.y(), packet.direction_z[i] = d.z();
+      packet.max_m[i] = i == 5 ? 700.0f : 1e5f;
+    }
+    HitPacket hits;
+    now.trace(std::span(&packet, 1), std::span(&hits, 1), about);
+    for (std::size_t i = 0; i < RayPacket::kRays; ++i) {
+      const Ray ray{about + Eigen::Vector3f(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]).cast<double>(),
+                    {packet.direction_x[i], packet.direction_y[i], packet.direction_z[i]},
+                    packet.max_m[i]};
+      const Hit one = now.trace(ray);
+      const bool met = hits.triangle[i] != Hit::kMiss;
+      worst.look(one.hit() == met && (!met || one.triangle == hits.triangle[i]) ? 0.0 : stress::kInfinity, 1.0);
+      if (!met || !one.hit()) continue;
+      const double approach = std::abs(one.normal.cast<double>().dot(ray.direction.cast<double>()));
+      worst.look(hits.range_m[i] - one.range_m, kHalfUlp * (2.0 * one.range_m + 512.0 / approach));
+      worst.look(hits.cos_incidence[i] - approach, 8.0 * kHalfUlp);
+      far += one.range_m > 600.0f ? 1 : 0;
+    }
+  }
+  worst.look(far > 200 ? 0.0 : stress::kInfinity, 1.0);
+  return worst.figure();
+}
+
 /// Level ground of 8 km at z = 16 m: rays from 32 m straight down exactly on the borders of tiles (of 512 m about whole
 /// multiples), a rounding beside them, and at the scene's own border. How many do not meet it at 16 m.
 StressFigure on_borders() {
@@ -331,6 +379,10 @@ std::vector<StressCase> far_cases() {
   rows.add("far/cube_at_0_m", [] { return moving(0.0, 0.3); })
       .add("far/cube_at_100_km", [] { return moving(1e5, 1.1); })
       .add("far/cube_at_1e7_m", [] { return moving(1e7, -2.0); });
+  rows.of({StressGroup::kGeometry, "packets whose rays leave their tile",
+           "the first ray's origin for another's, a tile beyond the first that is not looked at",
+           "the same triangles as single rays, ranges to single precision of half a tile", "of the bound"});
+  rows.add("far/packets_that_leave_their_tile", packets_that_leave_their_tile);
   return rows.take();
 }
 

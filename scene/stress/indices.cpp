@@ -1,6 +1,7 @@
 // Indices of facets and edges against trying all, maps set down on Earth, and what is true of any built-in city.
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -145,6 +146,46 @@ StressFigure edges(std::uint64_t seed, double longer_m) {
   return out;
 }
 
+/// Long roofs about places on the diagonal, each alone in its square of the ground: seen from beyond their ends, where
+/// no other coordinate than that along them tells how far they reach. Every edge of which a point stands above the
+/// direction is listed. A figure counts those that are not.
+StressFigure long_roofs_on_the_diagonal() {
+  StressFigure out;
+  for (const bool along_x : {true, false}) {
+    SceneParts parts = made::nothing();
+    for (int k = -3; k <= 3; ++k) {
+      MeshBuilder mesh(parts);
+      mesh.begin_object("roof " + std::to_string(k), ObjectKind::kBuilding);
+      const double at = 25.0 + 700.0 * k;
+      mesh.box({at, at, 10.0}, Eigen::Matrix3d::Identity(), along_x ? Vector3d(220, 2, 1) : Vector3d(2, 220, 1),
+               mesh.material("brick"));
+    }
+    const auto scene = made::scene_of(std::move(parts));
+    const auto& all = scene->edges().edges();
+    std::vector<std::uint32_t> found;
+    int above = 0;
+    for (int k = -3; k <= 3; ++k)
+      for (const double beyond_m : {5.0, 20.0, 60.0})
+        for (const double elevation : {0.05, 0.15, 0.4, 0.9}) {
+          const double at = 25.0 + 700.0 * k, along = 220.0 + beyond_m;
+          const Vector3d p(at + (along_x ? along : 0.5), at + (along_x ? 0.5 : along), 1.0);
+          scene->edges().shading(p, elevation, 1e-3, found);
+          const std::set<std::uint32_t> listed(found.begin(), found.end());
+          for (std::uint32_t i = 0; i < all.size(); ++i) {
+            bool stands_out = false;
+            for (int s = 0; s <= 40; ++s) {
+              const Vector3d q = all[i].a_W + s / 40.0 * (all[i].b_W - all[i].a_W) - p;
+              stands_out = stands_out || std::atan2(q.z(), q.head<2>().norm()) >= elevation;
+            }
+            above += stands_out ? 1 : 0;
+            if (stands_out) out.figure += listed.count(i) == 1 ? 0.0 : 1.0;
+          }
+        }
+    out.figure += above > 40 ? 0.0 : 1.0;
+  }
+  return out;
+}
+
 RawScene houses(const std::vector<Vector3d>& places, const std::string& crs) {
   RawScene out;
   out.frame.crs = crs;
@@ -169,6 +210,8 @@ RawScene meshes(const std::vector<Vector3d>& places) {
       mesh.vertices.push_back(p + off);
     mesh.triangles.push_back({first, first + 1, first + 2});
     mesh.triangles.push_back({first, first + 2, first + 3});
+    // Of the first house, the other way round: what is lowest there is of no other house.
+    if (first == 0) std::swap(mesh.triangles[0], mesh.triangles[1]);
     mesh.object.insert(mesh.object.end(), 2, object);
     mesh.material.insert(mesh.material.end(), 2, 0);
   }
@@ -394,6 +437,7 @@ std::vector<StressCase> index_cases() {
   for (const std::uint64_t seed : {1U, 2U})
     rows.add("indices/edges_" + std::to_string(seed), [seed] { return edges(seed, 0.0); });
   rows.add("indices/edges_of_long_roofs", [] { return edges(4, 250.0); });
+  rows.add("indices/edges_of_roofs_on_the_diagonal", long_roofs_on_the_diagonal);
   rows.of({StressGroup::kGeometry, "several files of a scene set down on Earth",
            "the extremes of one file for another's, the other side of the date line, a height of the wrong corner",
            "the middle of all corners at the median foot, and each corner where it is", "of the bound"});

@@ -71,6 +71,19 @@ StressFigure bounds() {
   const Ball place{{200.0, -100.0, 5.0}, 150.0};
   const SkySpan span = sky_span(*sky, frame, start, start + 400.0, place, 0.1);
   looks.right(span.directions.size() > 40 && span.spread_rad < 0.01);
+  // The lowest stands no lower than its own direction less the spread, or the mask as it is tilted over the place.
+  double lowest_rad = 4.0;
+  for (const auto& d : span.directions) lowest_rad = std::min(lowest_rad, std::asin(d.s_W.z()));
+  looks.right(span.lowest_rad <= worse(lowest_rad, 0.1) && span.lowest_rad >= lowest_rad - span.spread_rad - 1e-4);
+  for (const double mask : {0.3, 0.6, 1.0}) {
+    const SkySpan above = sky_span(*sky, frame, start, start + 400.0, place, mask);
+    lowest_rad = 4.0;
+    for (const auto& d : above.directions) lowest_rad = std::min(lowest_rad, std::asin(d.s_W.z()));
+    if (above.directions.empty()) lowest_rad = 0.5 * kPi;
+    looks.right(above.lowest_rad >= mask - 1e-3 && above.lowest_rad >= lowest_rad - above.spread_rad - 1e-4);
+    // From beyond the last direction on there is none.
+    looks.right(!above.through(place, place, above.directions.size()));
+  }
   for (int k = 0; k < 150; ++k) {
     const Vector3d off = 150.0 * Vector3d(draws.uniform(-1, 1, 0, k), draws.uniform(-1, 1, 1, k), 0.0) / std::sqrt(2.0);
     const Vector3d p_E = frame.to_E(place.center_W + off);

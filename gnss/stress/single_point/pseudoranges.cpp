@@ -151,6 +151,15 @@ StressFigure codes_chosen() {
   const SatelliteObservations galileo = observed(GnssSystem::kGalileo, codes.size());
   right(single_frequency_signal(codes, galileo)->pseudorange_m == 101.0);
   right(dual_frequency_signals(codes, galileo)->second.pseudorange_m == 107.0);
+  // Of GLONASS two precise codes where they are, and the civil one for who has one frequency.
+  std::vector<ObservationCode> both = codes;
+  both.push_back({'C', '2', 'C'}), both.push_back({'C', '2', 'P'});
+  const SatelliteObservations glonass = observed(GnssSystem::kGlonass, both.size());
+  right(single_frequency_signal(both, glonass)->pseudorange_m == 101.0);
+  const auto pair = dual_frequency_signals(both, glonass);
+  right(pair && pair->first.pseudorange_m == 100.0 && pair->second.pseudorange_m == 111.0);
+  const SatelliteObservations qzss = observed(GnssSystem::kQzss, codes.size());
+  right(single_frequency_signal(codes, qzss)->pseudorange_m == 101.0);
   return out;
 }
 
