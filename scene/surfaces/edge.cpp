@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kBlock_m = 50.0;
 constexpr double kTile_m = 2000.0;
+constexpr std::size_t kEdgeRow = 8;  // edges that are looked at together
 const double kFlat = std::cos(15.0 * kDegree);
 
 using Place = std::tuple<float, float, float>;
@@ -98,6 +99,26 @@ void EdgeIndex::Square::add(const Edge& e) {
   }
 }
 
+void EdgeIndex::Block::take(const Edge& e, std::uint32_t index) {
+  add(e);
+  const Eigen::Vector3d middle_W = 0.5 * (e.a_W + e.b_W), along_W = e.b_W - e.a_W;
+  edges.push_back(index);
+  middle_x_m.push_back(middle_W.x());
+  middle_y_m.push_back(middle_W.y());
+  middle_z_m.push_back(middle_W.z());
+  half_m.push_back(0.5 * along_W.norm());
+  level_half_m.push_back(0.5 * along_W.head<2>().norm());
+  edge_top_m.push_back(std::max(e.a_W.z(), e.b_W.z()));
+}
+
+void EdgeIndex::Block::fill_up() {
+  const std::size_t rows = (edges.size() + kEdgeRow - 1) / kEdgeRow;
+  for (auto* column : {&middle_x_m, &middle_y_m, &middle_z_m, &half_m, &level_half_m, &edge_top_m}) {
+    column->resize(rows * kEdgeRow, 0.0);
+    column->shrink_to_fit();
+  }
+}
+
 EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
   if (edges_.empty()) return;
   Eigen::Vector3d low = edges_[0].a_W;
@@ -119,42 +140,64 @@ EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
     const Cell place(static_cast<int>(std::floor(middle.y() / kBlock_m)),
                      static_cast<int>(std::floor(middle.x() / kBlock_m)));
     const auto [at, fresh] = block_of.emplace(std::pair{wide, place}, tile.blocks.size());
-    if (fresh)
-      tile.blocks.push_back({{.x_m = (place.second + 0.5) * kBlock_m, .y_m = (place.first + 0.5) * kBlock_m}, {}});
-    Block& block = tile.blocks[at->second];
+    if (fresh) {
+      Block& block = tile.blocks.emplace_back();
+      block.x_m = (place.second + 0.5) * kBlock_m, block.y_m = (place.first + 0.5) * kBlock_m;
+    }
     tile.add(e);
-    block.add(e);
-    block.edges.push_back(i);
+    tile.blocks[at->second].take(e, i);
   }
+  for (Tile& tile : tiles_)
+    for (Block& block : tile.blocks) block.fill_up();
+}
+
+template <class Take>
+void EdgeIndex::find_shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
+                             const Take& take) const {
+  const double rise = std::tan(std::min(elevation_rad, 0.4999 * kPi)), cosine = std::cos(elevation_rad);
+  const auto within = [&](const Square& square) {
+    const double distance_m = std::hypot(square.x_m - p_W.x(), square.y_m - p_W.y());
+    const double top_m = square.top_m - p_W.z(), farthest_m = distance_m + square.reach_m;
+    // The way there is longer than its horizontal part; the widest bend is across it.
+    const double bend_m = std::sqrt(2.0 * detour_m * (farthest_m / cosine + std::abs(top_m)));
+    return top_m + bend_m / cosine >= std::max(distance_m - square.reach_m, 0.0) * rise;
+  };
+  // The same of each edge, by rows, at its nearest.
+  using Row = Eigen::Array<double, static_cast<int>(kEdgeRow), 1>;
+  const auto look = [&](const Block& block) {
+    for (std::size_t begin = 0; begin < block.edges.size(); begin += kEdgeRow) {
+      const auto row = [begin](const std::vector<double>& column) {
+        return Eigen::Map<const Row>(column.data() + begin);
+      };
+      const Row x_m = row(block.middle_x_m) - p_W.x(), y_m = row(block.middle_y_m) - p_W.y();
+      const Row top_m = row(block.edge_top_m) - p_W.z();
+      const Row distance_m = ((x_m * x_m + y_m * y_m).sqrt() - row(block.level_half_m)).max(0.0);
+      const Row bend_m = (2.0 * detour_m * (distance_m / cosine + top_m.abs())).sqrt();
+      const Row reached_m = top_m + bend_m / cosine, asked_m = distance_m * rise;
+      const std::size_t count = std::min(kEdgeRow, block.edges.size() - begin);
+      for (std::size_t k = 0; k < count; ++k)
+        if (reached_m[static_cast<Eigen::Index>(k)] >= asked_m[static_cast<Eigen::Index>(k)]) take(block, begin + k);
+    }
+  };
+  for (const Tile& tile : tiles_) {
+    if (!within(tile)) continue;
+    for (const Block& block : tile.blocks)
+      if (within(block)) look(block);
+  }
+}
+
+void EdgeIndex::shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
+                        std::vector<Outline>& out) const {
+  out.clear();
+  find_shading(p_W, elevation_rad, detour_m, [&](const Block& of, std::size_t i) {
+    out.push_back({of.edges[i], {of.middle_x_m[i], of.middle_y_m[i], of.middle_z_m[i]}, of.half_m[i]});
+  });
 }
 
 void EdgeIndex::shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
                         std::vector<std::uint32_t>& out) const {
   out.clear();
-  const double rise = std::tan(std::min(elevation_rad, 0.4999 * kPi)), cosine = std::cos(elevation_rad);
-  const auto stands_out = [&](double top_m, double nearest_m, double farthest_m) {
-    // The way there is longer than its horizontal part; the widest bend is across it.
-    const double bend_m = std::sqrt(2.0 * detour_m * (farthest_m / cosine + std::abs(top_m)));
-    return top_m + bend_m / cosine >= nearest_m * rise;
-  };
-  const auto within = [&](const Square& square) {
-    const double distance_m = std::hypot(square.x_m - p_W.x(), square.y_m - p_W.y());
-    return stands_out(square.top_m - p_W.z(), std::max(distance_m - square.reach_m, 0.0), distance_m + square.reach_m);
-  };
-  for (const Tile& tile : tiles_) {
-    if (!within(tile)) continue;
-    for (const Block& block : tile.blocks) {
-      if (!within(block)) continue;
-      for (const std::uint32_t i : block.edges) {
-        const Edge& e = edges_[i];
-        const Eigen::Vector3d middle = 0.5 * (e.a_W + e.b_W) - p_W;
-        const double half_m = 0.5 * (e.b_W - e.a_W).head<2>().norm();
-        const double top_m = std::max(e.a_W.z(), e.b_W.z()) - p_W.z();
-        const double distance_m = std::max(middle.head<2>().norm() - half_m, 0.0);
-        if (stands_out(top_m, distance_m, distance_m)) out.push_back(i);
-      }
-    }
-  }
+  find_shading(p_W, elevation_rad, detour_m, [&](const Block& of, std::size_t i) { out.push_back(of.edges[i]); });
 }
 
 }  // namespace canyon::scene

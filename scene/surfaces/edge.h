@@ -23,9 +23,16 @@ class EdgeIndex {
   explicit EdgeIndex(std::vector<Edge> edges);
 
   const std::vector<Edge>& edges() const { return edges_; }
+  /// An edge, where its middle is, and half of its length.
+  struct Outline {
+    std::uint32_t edge;
+    Eigen::Vector3d middle_W;
+    double half_m;
+  };
   /// Edges that from p come to within sqrt(2 detour_m x distance) of some direction at least `elevation_rad` above W's
   /// horizontal, in a fixed order: those at which a wave from there may bend towards p with no larger detour. Whatever
   /// hides them. Cost grows with what stands out.
+  void shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m, std::vector<Outline>& out) const;
   void shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
                std::vector<std::uint32_t>& out) const;
 
@@ -37,13 +44,21 @@ class EdgeIndex {
     double top_m = -1e300;
     void add(const Edge& edge);
   };
+  /// With what is asked of the edges whose middles lie in it, by columns, which are filled up to whole rows.
   struct Block : Square {
-    std::vector<std::uint32_t> edges;  ///< whose middles lie in it
+    std::vector<std::uint32_t> edges;
+    std::vector<double> middle_x_m, middle_y_m, middle_z_m, half_m;
+    std::vector<double> level_half_m, edge_top_m;  ///< half of the length in plan; the higher end
+    void take(const Edge& edge, std::uint32_t index);
+    void fill_up();
   };
   /// Blocks of a large square, so that of a wide scene only what is near or high is looked at closely.
   struct Tile : Square {
     std::vector<Block> blocks;
   };
+  template <class Take>
+  void find_shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m, const Take& take) const;
+
   std::vector<Edge> edges_;
   std::vector<Tile> tiles_;
 };

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,27 +10,24 @@
 
 namespace canyon::gnss {
 
-/// Calls look(edge, k) for every edge of the scene at which wave k may bend towards p with a detour of at most
-/// `detour_m`, in a fixed order, and for few others. There must be waves.
+/// An edge of the scene and a wave that may bend there: indices into EdgeIndex::edges() and of the wave.
+struct EdgeAndWave {
+  std::uint32_t edge, wave;
+};
+
+/// Every edge of the scene at which a wave may bend towards p with a detour of at most `detour_m`, with that wave, and
+/// few others; in a fixed order, all waves of an edge together. Replaces what is in `out`. There must be waves.
+void find_edges_near(const Eigen::Vector3d& p_W, const PlaneWaves& waves, const scene::SceneAt& scene, double detour_m,
+                     std::vector<EdgeAndWave>& out);
+
+/// Calls look(edge, k) for each of them.
 template <class Look>
 void look_at_edges_near(const Eigen::Vector3d& p_W, const PlaneWaves& waves, const scene::SceneAt& scene,
                         double detour_m, Look look) {
-  const auto& edges = scene.scene().edges();
-  double lowest = 1.0;
-  for (const Eigen::Vector3d& s : waves.directions_W()) lowest = std::min(lowest, s.z());
-  thread_local std::vector<std::uint32_t> candidates;
-  edges.shading(p_W, std::asin(std::clamp(lowest, 0.0, 1.0)), detour_m, candidates);
-  for (const std::uint32_t i : candidates) {
-    const scene::Edge& edge = edges.edges()[i];
-    const Eigen::Vector3d to_middle_W = 0.5 * (edge.a_W + edge.b_W) - p_W;
-    const double half_m = 0.5 * (edge.b_W - edge.a_W).norm(), distance_m = to_middle_W.norm();
-    // The whole edge, and how far a wave may bend there, lie in a cone around its middle.
-    const double near_m = std::max(distance_m - half_m, 0.1);
-    const double angle_rad = std::asin(std::min(half_m / distance_m, 1.0)) + 1.1 * std::sqrt(2.0 * detour_m / near_m);
-    const double least = angle_rad < 3.0 ? std::cos(angle_rad) * distance_m : -distance_m;
-    for (std::size_t k = 0; k < waves.directions_W().size(); ++k)
-      if (to_middle_W.dot(waves.direction_W(k)) >= least) look(edge, k);
-  }
+  thread_local std::vector<EdgeAndWave> near;
+  find_edges_near(p_W, waves, scene, detour_m, near);
+  const auto& edges = scene.scene().edges().edges();
+  for (const EdgeAndWave& one : near) look(edges[one.edge], static_cast<std::size_t>(one.wave));
 }
 
 }  // namespace canyon::gnss

@@ -201,7 +201,7 @@ TEST(WrittenFiles, OurOwnSolverFindsThePlace) {
 // A stranger: RTKLIB's single point positioning of the same files, all errors but clocks, group delays and Sagnac off.
 TEST(WrittenFiles, RnxToRtkpFindsThePlace) {
   CANYON_OUTSIDE_PROGRAM("rnx2rtkp");
-  const testing::ScratchDirectory scratch;
+  const canyon::testing::ScratchDirectory scratch;
   const Written w = written();
   ASSERT_TRUE(write_text_file(scratch.file("w.rnx"), w.observations).ok());
   ASSERT_TRUE(write_text_file(scratch.file("w.nav"), w.navigation).ok());
