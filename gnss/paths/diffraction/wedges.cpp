@@ -11,6 +11,7 @@
 #include "canyon/gnss/paths/diffraction/edges_near.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
 #include "canyon/gnss/paths/diffraction/wedge.h"
+#include "canyon/gnss/paths/diffraction/wedge_bound.h"
 #include "canyon/scene/scene_at.h"
 
 namespace canyon::gnss {
@@ -29,8 +30,9 @@ struct WedgeMeeting {
 /// An edge as it lies about p, for all waves.
 struct EdgeAbout {
   const scene::Edge* edge = nullptr;
-  Eigen::Vector3d along_W;
-  double length_m, foot_m, across_m;  ///< p stands beside foot_m of it, across_m away
+  Eigen::Vector3d along_W = Eigen::Vector3d::Zero();
+  double length_m = 0.0, foot_m = 0.0, across_m = 0.0;  ///< p stands beside foot_m of it, across_m away
+  double n = 0.0;                                       ///< exterior angle / pi
 
   void look_at(const scene::Edge& e, const Eigen::Vector3d& p_W) {
     edge = &e;
@@ -39,6 +41,7 @@ struct EdgeAbout {
     const Eigen::Vector3d from_a = p_W - e.a_W;
     foot_m = from_a.dot(along_W);
     across_m = (from_a - foot_m * along_W).norm();
+    n = 1.0 + std::acos(std::clamp(e.normal_1_W.dot(e.normal_2_W), -1.0, 1.0)) / kPi;
   }
 };
 
@@ -122,14 +125,19 @@ class Wedges final : public DiffractionModel {
     const auto m = wedge_meeting(about, p_W, s);
     const double wavelength_m = waves.wavelength_m(k);
     if (!m || m->detour_m > largest_detour_m(largest_nu_, wavelength_m)) return;
-    // Rays are cheaper than fields, and most edges near a way are hidden.
-    if (!clear(edge, *m, p_W, s, scene, counters)) return;
+    const double nu = knife_edge_nu(m->detour_m, wavelength_m);
     const double per_m = m->sine_beta * std::sqrt(2.0 / (wavelength_m * m->distance_m));
-    const std::complex<double> part =
-        finite_edge_factor(knife_edge_nu(m->detour_m, wavelength_m), -m->at_m * per_m, (m->length_m - m->at_m) * per_m);
+    const double u1 = -m->at_m * per_m, u2 = (m->length_m - m->at_m) * per_m;
     const double least = out.line_of_sight ? weakest_ : weakest_nlos_;
+    // Most pairs are too weak, which a bound of what they make tells; of the others most are hidden.
+    const double largest_part = largest_finite_edge_factor(nu, u1, u2);
+    if (largest_part < 0.5 * least) return;
+    const WedgeWay way = wedge_way(about, *m, p_W, s, wavelength_m);
+    if (largest_part * largest_wedge_field(way) < least) return;
+    if (!clear(edge, *m, p_W, s, scene, counters)) return;
+    const std::complex<double> part = finite_edge_factor(nu, u1, u2);
     if (std::abs(part) < 0.5 * least) return;
-    SignalPath path = field(edge, *m, p_W, s, waves.carrier_hz(k), scene);
+    SignalPath path = field(edge, *m, way, p_W, s, waves.carrier_hz(k), scene);
     const double amplitude = std::abs(part) * std::sqrt(std::norm(path.copolar) + std::norm(path.crosspolar));
     // A field fades out over 3.5 dB to the weakest that is followed, so that none appears at once.
     const double kept = std::clamp(2.0 * (amplitude / least - 1.0), 0.0, 1.0);
@@ -149,17 +157,25 @@ class Wedges final : public DiffractionModel {
     ++counters.diffracted_paths;
   }
 
-  static SignalPath field(const scene::Edge& edge, const WedgeMeeting& m, const Eigen::Vector3d& p_W,
-                          const Eigen::Vector3d& s, double carrier_hz, const scene::SceneAt& scene) {
-    const auto& materials = scene.scene().materials();
+  static WedgeWay wedge_way(const EdgeAbout& about, const WedgeMeeting& m, const Eigen::Vector3d& p_W,
+                            const Eigen::Vector3d& s, double wavelength_m) {
+    const scene::Edge& edge = *about.edge;
     const Eigen::Vector3d from_W = edge.a_W + m.at_m * m.along_W;
     WedgeWay way;
-    way.n = 1.0 + std::acos(std::clamp(edge.normal_1_W.dot(edge.normal_2_W), -1.0, 1.0)) / kPi;
+    way.n = about.n;
     way.phi_in_rad = angle_about(edge, m.along_W, s, way.n);
     way.phi_out_rad = angle_about(edge, m.along_W, p_W - from_W, way.n);
     way.sine_beta = m.sine_beta;
     way.distance_m = m.distance_m;
-    way.wavelength_m = kSpeedOfLight / carrier_hz;
+    way.wavelength_m = wavelength_m;
+    return way;
+  }
+
+  static SignalPath field(const scene::Edge& edge, const WedgeMeeting& m, const WedgeWay& way,
+                          const Eigen::Vector3d& p_W, const Eigen::Vector3d& s, double carrier_hz,
+                          const scene::SceneAt& scene) {
+    const auto& materials = scene.scene().materials();
+    const Eigen::Vector3d from_W = edge.a_W + m.at_m * m.along_W;
     const double cosine = -s.dot(p_W - from_W) / m.distance_m;
     const double grazing_rad = 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0));
     const Fresnel one = mirror_of(materials[edge.material_1], grazing_rad, carrier_hz);
