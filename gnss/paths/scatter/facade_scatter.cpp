@@ -6,6 +6,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/rows/near_waves.h"
 #include "canyon/gnss/paths/scatter/delay_bins.h"
 #include "canyon/gnss/paths/scatter/directive_lobe.h"
 #include "canyon/gnss/paths/scatter/facade_tiles.h"
@@ -30,6 +31,8 @@ void visit(FieldVisitor& f, DirectiveParameters& c) {
   f.number("scatter_reach_m", c.reach_m, {10.0, 1000.0}, "scatter directive: walls farther away do not count");
 }
 
+constexpr double kConeSlack = 1e-5;  // of a projection, far beyond its rounding
+
 /// Share of the power that a material gives back, both polarizations alike, by the cosine of incidence.
 class ReturnTable {
  public:
@@ -47,8 +50,10 @@ class ReturnTable {
     return nodes_[i] + (x - static_cast<double>(i)) * (nodes_[i + 1] - nodes_[i]);
   }
 
+  static constexpr std::size_t kNodes = 65;
+
  private:
-  std::array<double, 65> nodes_;
+  std::array<double, kNodes> nodes_;
 };
 
 /// Each tile of a wall that is lit scatters S^2 of what the wall gives back, G^2 of the power that falls on it, into
@@ -78,61 +83,120 @@ class DirectiveScatter final : public ScatterModel {
     if (waves.empty() || own_.coefficient == 0.0) return;
     const FacadeTiles& tiles = tiles_of(scene.scene());
     const SightPool::Loan sight = sights_.borrow(scene.scene());
-    thread_local std::vector<Seen> seen;
-    look(tiles, p_A_W, *sight, counters, seen);
+    thread_local Bright bright;
+    find_bright(tiles, p_A_W, waves, scene, bright);
+    look(p_A_W, *sight, counters, bright);
     DelayBins bins;
     for (std::size_t k = 0; k < out.size(); ++k) {
       bins.clear(waves.wavelength_m(k));
-      gather(seen, waves, k, scene, *sight, counters, bins);
+      gather(bright, waves, k, scene, *sight, counters, bins);
       bins.append(0.5 * weakest_, SignalPath::kScattered, out[k].echoes);
     }
   }
 
  private:
-  /// A tile that is seen from the antenna.
+  /// A tile that may send something that counts.
   struct Seen {
     std::uint32_t id;
     const FacadeTile* tile;
     Eigen::Vector3d to_W;  ///< unit, from the antenna
     double r_m, fade;      ///< 0 to 1, of the field
   };
+  /// The tiles of an epoch that are near enough and stand in the right direction for some wave, and for which ones.
+  struct Bright {
+    std::vector<Seen> tiles;
+    std::vector<std::vector<std::uint32_t>> of_wave;  ///< places in `tiles`, in their order
+    std::vector<double> most_returned;                ///< by material, of all waves
+    std::vector<std::uint32_t> near;
+    WaveAxes axes;
+    NearWaves waves;
+    std::vector<AxisAndWave> pairs;
+  };
 
-  void look(const FacadeTiles& tiles, const Eigen::Vector3d& p_W, PointSight& sight, GnssCounters& counters,
-            std::vector<Seen>& seen) const {
-    seen.clear();
-    const PointSight::From from = sight.from(p_W);
-    thread_local std::vector<std::uint32_t> near;
-    tiles.near(p_W, own_.reach_m, near);
-    for (const std::uint32_t i : near) {
+  /// Most tiles send less than counts towards the antenna, whatever hides them. The power above is no more than
+  ///
+  ///   S^2 A / (r^2 + A / (2 pi)) x most of G^2 cos(incidence) / (integral of the lobe) x ((1 + cos psi) / 2)^exponent,
+  ///
+  /// and cos psi is the direction's projection on the way to the antenna as the wall mirrors it: what may count comes
+  /// from a cone about that.
+  void find_bright(const FacadeTiles& tiles, const Eigen::Vector3d& p_W, const PlaneWaves& waves,
+                   const scene::SceneAt& scene, Bright& out) const {
+    out.tiles.clear();
+    out.axes.clear();
+    const double faint2 = 0.01 * weakest_ * weakest_;
+    tiles.near(p_W, std::min(own_.reach_m, largest_reach_m(waves, scene, faint2, out)), out.near);
+    for (const std::uint32_t i : out.near) {
       const FacadeTile& tile = tiles.tiles()[i];
       const Eigen::Vector3d way_W = tile.center_W - p_W;
-      if (way_W.dot(tile.normal_W) >= 0.0) continue;
-      const double r_m = way_W.norm(), fade = std::min(5.0 * (1.0 - r_m / own_.reach_m), 1.0);
+      const double approach_m = way_W.dot(tile.normal_W);
+      if (approach_m >= 0.0) continue;
+      const double r2_m2 = way_W.squaredNorm();
+      const double power =
+          scattered_share() * out.most_returned[tile.material] * tile.area_m2 / (r2_m2 + tile.area_m2 / (2.0 * kPi));
+      if (!(power > faint2)) continue;
+      const double r_m = std::sqrt(r2_m2), fade = std::min(5.0 * (1.0 - r_m / own_.reach_m), 1.0);
       if (fade <= 0.0 || r_m < 1e-3) continue;
-      const double share = from.share(i, tile.center_W, counters);
-      if (share > 0.0) seen.push_back({i, &tile, way_W / r_m, r_m, fade * share});
+      const Eigen::Vector3d to_W = way_W / r_m;
+      const double least = 2.0 * std::pow(faint2 / power, 1.0 / lobe_.exponent) - 1.0;
+      out.axes.add(to_W - 2.0 * (approach_m / r_m) * tile.normal_W, 1.0 + kConeSlack, least - kConeSlack);
+      out.tiles.push_back({i, &tile, to_W, r_m, fade});
     }
+    out.waves.fill(waves.directions_W());
+    out.waves.find(out.axes, out.pairs);
+    keep_paired(waves.size(), out);
   }
 
-  void gather(const std::vector<Seen>& seen, const PlaneWaves& waves, std::size_t k, const scene::SceneAt& scene,
+  /// No tile beyond it counts. Fills in what materials give back at most.
+  double largest_reach_m(const PlaneWaves& waves, const scene::SceneAt& scene, double faint2, Bright& out) const {
+    double most = 0.0;
+    out.most_returned.assign(scene.scene().materials().size(), 0.0);
+    for (std::size_t i = 0; i < out.most_returned.size(); ++i) {
+      for (std::size_t k = 0; k < waves.size(); ++k) {
+        if (k > 0 && waves.carrier_hz(k) == waves.carrier_hz(k - 1)) continue;
+        out.most_returned[i] =
+            std::max(out.most_returned[i], returned(scene, static_cast<std::uint16_t>(i), waves.carrier_hz(k)).most);
+      }
+      most = std::max(most, out.most_returned[i]);
+    }
+    return (1.0 + 1e-6) * own_.tile_m * std::sqrt(scattered_share() * most / faint2);
+  }
+
+  /// Of the tiles those that a wave stands to, and for each wave its own.
+  static void keep_paired(std::size_t waves, Bright& out) {
+    out.of_wave.resize(std::max(out.of_wave.size(), waves));
+    for (auto& of : out.of_wave) of.clear();
+    std::size_t kept = 0;
+    std::uint32_t last = ~0U;
+    for (const AxisAndWave& pair : out.pairs) {
+      if (pair.axis != last) {
+        last = pair.axis;
+        out.tiles[kept++] = out.tiles[pair.axis];
+      }
+      out.of_wave[pair.wave].push_back(static_cast<std::uint32_t>(kept - 1));
+    }
+    out.tiles.resize(kept);
+  }
+
+  static void look(const Eigen::Vector3d& p_W, PointSight& sight, GnssCounters& counters, Bright& bright) {
+    const PointSight::From from = sight.from(p_W);
+    for (Seen& one : bright.tiles) one.fade *= from.share(one.id, one.tile->center_W, counters);
+  }
+
+  void gather(const Bright& bright, const PlaneWaves& waves, std::size_t k, const scene::SceneAt& scene,
               PointSight& sight, GnssCounters& counters, DelayBins& bins) const {
     const Eigen::Vector3d& s = waves.direction_W(k);
     const PointSight::Towards towards = sight.towards(s);
     const double faint = 0.1 * weakest_;
-    const ReturnTable* table = nullptr;  // of the tile before, mostly the same wall's
-    std::uint16_t of_table = 0;
-    for (const Seen& one : seen) {
+    for (const std::uint32_t i : bright.of_wave[k]) {
+      const Seen& one = bright.tiles[i];
       const FacadeTile& tile = *one.tile;
-      if (table == nullptr || of_table != tile.material) {
-        table = &returned(scene, tile.material, waves.carrier_hz(k));
-        of_table = tile.material;
-      }
       const double cosine = tile.normal_W.dot(s);
-      if (cosine <= 0.0) continue;
+      if (cosine <= 0.0 || one.fade == 0.0) continue;
       const double excess_m = one.r_m * (1.0 - one.to_W.dot(s));
       // The mirror's direction is 2 (n.s) n - s; the tile scatters towards -to.
       const double cos_psi = one.to_W.dot(s) - 2.0 * cosine * tile.normal_W.dot(one.to_W);
-      const double power = scattered_share() * table->at(cosine) * tile.area_m2 * cosine * lobe_.at(cos_psi) /
+      const double power = scattered_share() * returned(scene, tile.material, waves.carrier_hz(k)).table.at(cosine) *
+                           tile.area_m2 * cosine * lobe_.at(cos_psi) /
                            (lobe_sr(cosine) * (one.r_m * one.r_m + tile.area_m2 / (2.0 * kPi)));
       const double amplitude = std::sqrt(power);
       const double kept = one.fade * std::clamp(amplitude / faint - 1.0, 0.0, 1.0);
@@ -162,27 +226,46 @@ class DirectiveScatter final : public ScatterModel {
     return *tiles_;
   }
 
-  /// At the first carrier met within 50 MHz.
-  const ReturnTable& returned(const scene::SceneAt& scene, std::uint16_t material, double carrier_hz) const {
+  /// What a material gives back, and the most of that times cos(incidence) over the lobe's integral.
+  struct Returned {
+    ReturnTable table;
+    double most = 0.0;
+  };
+
+  /// Between two neighbours of its nodes, of which the other table's are some, either function is straight.
+  double most_of(const ReturnTable& table) const {
+    static_assert((kLobeNodes - 1) % (ReturnTable::kNodes - 1) == 0);
+    double most = 0.0;
+    for (std::size_t i = 0; i + 1 < kLobeNodes; ++i) {
+      const double from = static_cast<double>(i) / static_cast<double>(kLobeNodes - 1);
+      const double to = static_cast<double>(i + 1) / static_cast<double>(kLobeNodes - 1);
+      most = std::max(most, std::max(table.at(from), table.at(to)) * to / std::min(lobe_sr_[i], lobe_sr_[i + 1]));
+    }
+    return most;
+  }
+
+  /// At the carrier, rounded to 50 MHz.
+  const Returned& returned(const scene::SceneAt& scene, std::uint16_t material, double carrier_hz) const {
     const std::scoped_lock lock(mutex_);
     const std::pair key(material, std::lround(carrier_hz / 50e6));
     auto at = returns_.find(key);
-    if (at == returns_.end())
-      at = returns_
-               .emplace(key, ReturnTable(scene.scene().materials()[material], 50e6 * static_cast<double>(key.second)))
-               .first;
+    if (at == returns_.end()) {
+      const ReturnTable table(scene.scene().materials()[material], 50e6 * static_cast<double>(key.second));
+      at = returns_.emplace(key, Returned{table, most_of(table)}).first;
+    }
     return at->second;
   }
 
   DirectiveParameters own_;
   DirectiveLobe lobe_;
   double weakest_;
-  std::array<double, 257> lobe_sr_;
+  static constexpr std::size_t kLobeNodes = 257;
+  std::array<double, kLobeNodes> lobe_sr_;
   mutable SightPool sights_;
   mutable std::mutex mutex_;
   mutable const scene::Scene* scene_ = nullptr;
   mutable std::unique_ptr<FacadeTiles> tiles_;
-  mutable std::map<std::pair<std::uint16_t, long>, ReturnTable> returns_;
+  mutable std::map<std::pair<std::uint16_t, long>, Returned> returns_;
 };
 
 }  // namespace
