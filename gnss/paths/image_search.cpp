@@ -1,11 +1,14 @@
 #include "canyon/gnss/paths/image_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "canyon/gnss/paths/beam.h"
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/rows/facet_rows.h"
+#include "canyon/gnss/paths/rows/near_waves.h"
 #include "canyon/gnss/paths/skyline.h"
 #include "canyon/scene/scene_at.h"
 
@@ -16,115 +19,23 @@ namespace {
 // mirror does not block its own reflection in single precision.
 constexpr double kClearance_m = 2e-3;
 
-/// The facets that take part, as arrays of single precision in spatial order, 16 in a row with a ball around them: most
-/// beams miss most rows.
-class Arena {
- public:
-  static constexpr std::size_t kRow = 16;
-
-  void fill(const std::vector<scene::Facet>& facets) {
-    const std::size_t rows = (ids.size() + kRow - 1) / kRow;
-    for (auto* a : {&x_, &y_, &z_, &radius_, &nx_, &ny_, &nz_, &offset_}) a->assign(rows * kRow, 0.0F);
-    row_center_W_.clear();
-    row_radius_m_.clear();
-    for (std::size_t row = 0; row < rows; ++row) {
-      const std::size_t begin = row * kRow, end = std::min(begin + kRow, ids.size());
-      Eigen::Vector3d low = Eigen::Vector3d::Constant(1e300), high = -low;
-      for (std::size_t i = begin; i < end; ++i) {
-        const scene::Facet& f = facets[ids[i]];
-        x_[i] = static_cast<float>(f.center_W.x());
-        y_[i] = static_cast<float>(f.center_W.y());
-        z_[i] = static_cast<float>(f.center_W.z());
-        radius_[i] = static_cast<float>(f.radius_m);
-        nx_[i] = static_cast<float>(f.normal_W.x());
-        ny_[i] = static_cast<float>(f.normal_W.y());
-        nz_[i] = static_cast<float>(f.normal_W.z());
-        offset_[i] = static_cast<float>(f.offset_m);
-        low = low.cwiseMin((f.center_W.array() - f.radius_m).matrix());
-        high = high.cwiseMax((f.center_W.array() + f.radius_m).matrix());
-      }
-      row_center_W_.emplace_back(0.5 * (low + high));
-      row_radius_m_.push_back(0.5 * (high - low).norm());
-    }
-  }
-
-  /// Appends the places in `ids` of facets that may be met through `window` from the image of the antenna behind it,
-  /// and that face the image. A centimetre of slack for single precision; what is given in vain fails later.
-  void meet(const scene::Facet& window, const Beam& beam, std::vector<std::uint32_t>& out) const {
-    struct Side {
-      float x, y, z, offset;
-    };
-    std::array<Side, 5> sides;
-    const auto side = [](const Eigen::Vector3d& n, double offset_m) {
-      return Side{static_cast<float>(n.x()), static_cast<float>(n.y()), static_cast<float>(n.z()),
-                  static_cast<float>(offset_m - kSlack_m)};
-    };
-    sides[0] = side(window.normal_W, window.offset_m);
-    for (std::size_t k = 0; k < 4; ++k) sides[k + 1] = side(beam.inward_W[k], beam.inward_W[k].dot(beam.apex_W));
-    const Eigen::Vector3f image = beam.apex_W.cast<float>();
-    for (std::size_t row = 0; row < row_center_W_.size(); ++row) {
-      if (window.normal_W.dot(row_center_W_[row]) - window.offset_m < -row_radius_m_[row]) continue;
-      if (!beam.may_meet(row_center_W_[row], row_radius_m_[row])) continue;
-      const std::size_t begin = row * kRow;
-      std::array<float, kRow> room;
-      for (std::size_t j = 0; j < kRow; ++j) {
-        const std::size_t i = begin + j;
-        room[j] = nx_[i] * image.x() + ny_[i] * image.y() + nz_[i] * image.z() - offset_[i] + kSlack_m;
-      }
-      for (const Side& s : sides) {
-        for (std::size_t j = 0; j < kRow; ++j) {
-          const std::size_t i = begin + j;
-          const float inside = s.x * x_[i] + s.y * y_[i] + s.z * z_[i] - s.offset + radius_[i];
-          room[j] = inside < room[j] ? inside : room[j];
-        }
-      }
-      const std::size_t count = std::min(kRow, ids.size() - begin);
-      for (std::size_t j = 0; j < count; ++j)
-        if (room[j] > 0.0F) out.push_back(static_cast<std::uint32_t>(begin + j));
-    }
-  }
-
-  std::vector<std::uint32_t> ids;  ///< indices into Scene::facets()
-
- private:
-  static constexpr float kSlack_m = 0.01F;
-  std::vector<float> x_, y_, z_, radius_, nx_, ny_, nz_, offset_;
-  std::vector<Eigen::Vector3d> row_center_W_;
-  std::vector<double> row_radius_m_;
-};
-
-/// Satellites as arrays of single precision, for the test that nearly all fail.
-struct Sky {
-  std::vector<float> x, y, z, cosine;
-
-  void fill(std::span<const Eigen::Vector3d> directions_W) {
-    for (auto* a : {&x, &y, &z, &cosine}) a->resize(directions_W.size());
-    for (std::size_t i = 0; i < directions_W.size(); ++i) {
-      x[i] = static_cast<float>(directions_W[i].x());
-      y[i] = static_cast<float>(directions_W[i].y());
-      z[i] = static_cast<float>(directions_W[i].z());
-    }
-  }
-  void project(const Eigen::Vector3d& axis_W) {
-    const Eigen::Vector3f a = axis_W.cast<float>();
-    for (std::size_t i = 0; i < x.size(); ++i) cosine[i] = x[i] * a.x() + y[i] * a.y() + z[i] * a.z();
-  }
-};
-
 /// Memory that a search uses, kept from epoch to epoch.
 struct Workspace {
-  Sky sky;
-  Arena arena;
+  NearWaves waves;
+  WaveAxes axes;
+  std::vector<AxisAndWave> pairs;
+  FacetRows rows;
   std::vector<std::uint32_t> first, near;
+  std::vector<std::uint32_t> last;  ///< facets at the end of sequences that are looked at together
   std::array<std::vector<std::uint32_t>, SignalPath::kMaxReflections> met;
 };
 
 /// One epoch's search, depth first over sequences of facets f1, f2, ... in order from the antenna. Image k is the
 /// antenna mirrored at f1 ... fk; the way over them to satellite s is the straight line from image k towards s, folded.
-class Search {
+class ImageSearch {
  public:
-  Search(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
-         const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters, Workspace& work)
+  ImageSearch(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
+              const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters, Workspace& work)
       : order_(order),
         p_(p),
         antenna_W_(p_A_W),
@@ -140,7 +51,7 @@ class Search {
                                         : std::numeric_limits<double>::infinity()) {}
 
   void run() {
-    work_.sky.fill(waves_.directions_W());
+    work_.waves.fill(waves_.directions_W());
     choose_facets();
     for (const std::uint32_t id : work_.first) {
       sequence_[0] = id;
@@ -151,7 +62,7 @@ class Search {
  private:
   void choose_facets() {
     const scene::FacetIndex& index = scene_.scene().facets();
-    std::vector<std::uint32_t>& ids = work_.arena.ids;
+    std::vector<std::uint32_t>& ids = work_.rows.ids;
     if (p_.exhaustive) {
       ids.resize(facets_.size());
       for (std::uint32_t i = 0; i < facets_.size(); ++i) ids[i] = i;
@@ -162,7 +73,7 @@ class Search {
       if (order_ > 1) add_near(index, ids);
     }
     std::erase_if(ids, [&](std::uint32_t i) { return scene_.scene().materials()[facets_[i].material].rf_absorbing; });
-    if (order_ > 1) work_.arena.fill(facets_);
+    if (order_ > 1) work_.rows.fill(facets_);
 
     std::vector<std::uint32_t>& first = work_.first;
     first.clear();
@@ -198,38 +109,69 @@ class Search {
   void extend(int count, const Eigen::Vector3d& before_W) {
     const auto k = static_cast<std::size_t>(count);
     const scene::Facet& last = facets_[sequence_[k - 1]];
-    const Eigen::Vector3d image_W = before_W - 2.0 * (last.normal_W.dot(before_W) - last.offset_m) * last.normal_W;
+    const Eigen::Vector3d image_W = mirrored(last, before_W);
     images_W_[k - 1] = image_W;
-    satellites(count, last, image_W);
+    work_.last.assign(1, sequence_[k - 1]);
+    satellites(count, before_W);
     if (count == order_) return;
 
     std::vector<std::uint32_t>& met = work_.met[k];
-    met.clear();
-    work_.arena.meet(last, Beam(image_W, last), met);
-    for (const std::uint32_t place : met) {
-      const std::uint32_t id = work_.arena.ids[place];
-      if (id == sequence_[k - 1] || !in_reach(facets_[id], image_W)) continue;
+    work_.rows.meet(last, Beam(image_W, last), met);
+    std::erase_if(met, [&](std::uint32_t id) { return id == sequence_[k - 1] || !in_reach(facets_[id], image_W); });
+    if (count + 1 == order_) {
+      work_.last = met;
+      satellites(order_, image_W);
+      return;
+    }
+    for (const std::uint32_t id : met) {
       sequence_[k] = id;
       extend(count + 1, image_W);
     }
   }
 
-  /// Looks from the image through the last facet: which satellites may stand there?
-  void satellites(int count, const scene::Facet& last, const Eigen::Vector3d& image_W) {
-    const Eigen::Vector3d to_center_W = last.center_W - image_W;
-    const double distance_m = to_center_W.norm();
-    ++counters_.facets_tested;
-    Sky& sky = work_.sky;
-    float least = 0.0F;
-    if (distance_m > last.radius_m) {
-      const double sine = last.radius_m / distance_m;
-      least = static_cast<float>(std::sqrt(1.0 - sine * sine)) - 1e-5F;
-      sky.project(to_center_W / distance_m);
-    } else {
-      std::fill(sky.cosine.begin(), sky.cosine.end(), 1.0F);
+  static Eigen::Vector3d mirrored(const scene::Facet& f, const Eigen::Vector3d& p_W) {
+    return p_W - 2.0 * (f.normal_W.dot(p_W) - f.offset_m) * f.normal_W;
+  }
+
+  /// Sequences of `count` facets that end with one of `work_.last` each, `before_W` being the image before that: which
+  /// satellites may stand where one looks from the image through the last facet?
+  void satellites(int count, const Eigen::Vector3d& before_W) {
+    const auto k = static_cast<std::size_t>(count);
+    counters_.facets_tested += static_cast<std::int64_t>(work_.last.size());
+    WaveAxes& axes = work_.axes;
+    axes.clear();
+    for (const std::uint32_t id : work_.last) {
+      const Cone cone = cone_of(facets_[id], mirrored(facets_[id], before_W));
+      axes.add(cone.axis_W, 1.0, cone.least);
     }
-    for (std::size_t i = 0; i < out_.size(); ++i)
-      if (sky.cosine[i] >= least) try_satellite(count, i);
+    work_.waves.find(axes, work_.pairs);
+    const Cone before = k > 1 ? cone_of(facets_[sequence_[k - 2]], before_W) : Cone{};
+    std::uint32_t at = ~0U;
+    Eigen::Vector3d through_W = Eigen::Vector3d::Zero();
+    for (const AxisAndWave& pair : work_.pairs) {
+      if (pair.axis != at) {
+        at = pair.axis;
+        sequence_[k - 1] = work_.last[at];
+        const scene::Facet& last = facets_[sequence_[k - 1]];
+        images_W_[k - 1] = mirrored(last, before_W);
+        through_W = before.axis_W - 2.0 * last.normal_W.dot(before.axis_W) * last.normal_W;
+      }
+      // Most that the last facet mirrors passes the one before it by.
+      if (through_W.dot(waves_.direction_W(pair.wave)) >= before.least) try_satellite(count, pair.wave);
+    }
+  }
+
+  /// The directions from an image in which the ball around a facet may be met; all of them from within the ball.
+  struct Cone {
+    Eigen::Vector3d axis_W = Eigen::Vector3d::Zero();
+    double least = 0.0;
+  };
+  static Cone cone_of(const scene::Facet& f, const Eigen::Vector3d& image_W) {
+    const Eigen::Vector3d to_center_W = f.center_W - image_W;
+    const double distance_m = to_center_W.norm();
+    if (distance_m <= f.radius_m) return {};
+    const double sine = f.radius_m / distance_m;
+    return {to_center_W / distance_m, std::sqrt(1.0 - sine * sine) - 1e-5};
   }
 
   void try_satellite(int count, std::size_t satellite) {
@@ -352,7 +294,7 @@ void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_
                  const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) {
   if (waves.empty()) return;
   thread_local Workspace work;
-  Search(order, p, p_A_W, waves, scene, out, counters, work).run();
+  ImageSearch(order, p, p_A_W, waves, scene, out, counters, work).run();
 }
 
 }  // namespace canyon::gnss
