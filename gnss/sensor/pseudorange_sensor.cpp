@@ -1,4 +1,5 @@
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -64,14 +65,8 @@ class PseudorangeSensor final : public GnssSensor {
                      out.truth.receiver_clock_m, out.truth.receiver_clock_rate_m_s};
 
     const std::vector<Sight> sights = in_view_.at(t, out.epoch.t, out.truth.p_A_E, epoch.horizon);
-    const std::vector<SignalPaths> paths = trace(
-        t, p_A_W, sights, [](GnssSystem system) { return first_band(system); }, scene);
-    // Fields, and so which ways are worth following, depend on the carrier.
-    std::vector<SignalPaths> second_paths;
-    if (parts_.mode->dual_frequency())
-      second_paths = trace(
-          t, p_A_W, sights,
-          [this](GnssSystem system) { return second_band(system, config_.tracking.second_frequency); }, scene);
+    std::vector<SignalPaths> paths, second_paths;
+    trace(t, p_A_W, sights, scene, paths, second_paths);
     receive_epoch(epoch, sights, paths, second_paths);
     return std::move(out);
   }
@@ -174,18 +169,26 @@ class PseudorangeSensor final : public GnssSensor {
     return *reduced_.back().second;
   }
 
-  template <class BandOf>
-  std::vector<SignalPaths> trace(GpsTime t, const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights,
-                                 const BandOf& band_of, const scene::SceneAt& scene) {
+  /// The ways of all first signals and, of a receiver of two, of all second ones. Fields, and so which ways are worth
+  /// following, depend on the carrier, but what is looked for is the same: both are traced at once.
+  void trace(GpsTime t, const Eigen::Vector3d& p_A_W, const std::vector<Sight>& sights, const scene::SceneAt& scene,
+             std::vector<SignalPaths>& first, std::vector<SignalPaths>& second) {
     std::vector<Eigen::Vector3d> directions_W;
     std::vector<double> carriers_hz;
-    for (const auto& s : sights) {
-      directions_W.push_back(s.direction_W);
-      carriers_hz.push_back(s.carrier_hz(band_of(s.sv.system)));
-    }
-    std::vector<SignalPaths> paths(sights.size());
-    paths_now().trace(p_A_W, PlaneWaves(directions_W, carriers_hz).at(t), scene, paths, counters_);
-    return paths;
+    const auto add = [&](const auto& band_of) {
+      for (const Sight& s : sights) {
+        directions_W.push_back(s.direction_W);
+        carriers_hz.push_back(s.carrier_hz(band_of(s.sv.system)));
+      }
+    };
+    add([](GnssSystem system) { return first_band(system); });
+    if (parts_.mode->dual_frequency())
+      add([this](GnssSystem system) { return second_band(system, config_.tracking.second_frequency); });
+    first.resize(directions_W.size());
+    paths_now().trace(p_A_W, PlaneWaves(directions_W, carriers_hz).at(t), scene, first, counters_);
+    const auto second_begin = first.begin() + static_cast<std::ptrdiff_t>(sights.size());
+    second.assign(std::make_move_iterator(second_begin), std::make_move_iterator(first.end()));
+    first.erase(second_begin, first.end());
   }
 
   GnssObservationTruth describe(const Epoch& epoch, const Sight& sight, const SignalPaths& paths) const {
