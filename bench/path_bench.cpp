@@ -1,7 +1,10 @@
 // Propagation paths of one epoch, one thread, 40 satellites spread over the sky above 5 degrees, at street level along
 // the streets: each model beside the bare occlusion rays that it traces (the same number, towards the satellites), and
-// against the number of buildings at the same density.
+// against the number of buildings at the same density. Beside the built-in city: Shibuya, of the recordings in the
+// folder that CANYON_TEST_DATA names, else in ../shared/data beside the checkout.
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/paths/propagation.h"
 #include "canyon/scene/city/city.h"
+#include "canyon/scene/import.h"
 #include "canyon/scene/scene_at.h"
 
 namespace {
@@ -34,13 +38,36 @@ const canyon::scene::Scene& city(double extent_m) {
   return *scene;
 }
 
+/// Null, having said so, where its files are not at hand.
+const canyon::scene::Scene* shibuya(benchmark::State& state) {
+  static const auto made = []() -> std::unique_ptr<canyon::scene::Scene> {
+    namespace fs = std::filesystem;
+    const char* configured = std::getenv("CANYON_TEST_DATA");
+    const fs::path data =
+        configured != nullptr ? fs::path(configured) : fs::path(CANYON_SOURCE_DIR).parent_path() / "shared" / "data";
+    const fs::path folder = data / "scenes" / "shibuya";
+    canyon::scene::ImportConfig config;
+    config.file = folder / "shibuya_buildings_lod1_epsg6668.geojson";
+    config.more_files = {folder / "shibuya_bridges_lod2_epsg6668.geojson"};
+    config.undulation_m = 36.7;
+    if (!fs::exists(config.file)) return nullptr;
+    auto read = import_scene(config, {});
+    if (!read.ok()) return nullptr;
+    auto scene = std::make_unique<canyon::scene::Scene>(std::move(read->parts));
+    (void)scene->facets();
+    (void)scene->edges();
+    return scene;
+  }();
+  if (made == nullptr) state.SkipWithError("the recordings' scenes/shibuya cannot be read (set CANYON_TEST_DATA)");
+  return made.get();
+}
+
 /// Evenly over the sky (Fibonacci spiral).
-std::vector<Eigen::Vector3d> satellites() {
-  constexpr int kCount = 40;
+std::vector<Eigen::Vector3d> satellites(int count = 40) {
   const double lowest = std::sin(5.0 * canyon::kDegree), turn_rad = canyon::kPi * (3.0 - std::sqrt(5.0));
   std::vector<Eigen::Vector3d> out;
-  for (int i = 0; i < kCount; ++i) {
-    const double z = lowest + (1.0 - lowest) * (i + 0.5) / kCount, r = std::sqrt(1.0 - z * z);
+  for (int i = 0; i < count; ++i) {
+    const double z = lowest + (1.0 - lowest) * (i + 0.5) / count, r = std::sqrt(1.0 - z * z);
     out.emplace_back(r * std::cos(turn_rad * i), r * std::sin(turn_rad * i), z);
   }
   return out;
@@ -103,18 +130,38 @@ void model(benchmark::State& state, const char* paths, const char* diffraction, 
   state.counters["buildings"] = static_cast<double>(scene.buildings().size());
 }
 
+/// Every 2.5 m along straight legs.
+std::vector<Eigen::Vector3d> way_of(const std::vector<Eigen::Vector3d>& corners) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    const Eigen::Vector3d leg = corners[i + 1] - corners[i];
+    for (double f = 0.0; f < 1.0; f += 2.5 / leg.norm()) points.emplace_back(corners[i] + f * leg);
+  }
+  return points;
+}
+
+/// Antenna 1.5 m above the way of missions/delivery/shibuya.toml.
+std::vector<Eigen::Vector3d> shibuya_way(const canyon::scene::Scene& scene) {
+  std::vector<Eigen::Vector2d> nodes;
+  const Eigen::Vector2d stops[] = {{-135.0, 129.0}, {-16.0, 52.0}, {13.0, 126.0}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto leg = scene.streets().route(stops[i], stops[i + 1]);
+    nodes.insert(nodes.end(), leg.begin(), leg.end());
+  }
+  std::vector<Eigen::Vector3d> corners;
+  for (const Eigen::Vector2d& xy : nodes) {
+    const auto ground = scene.ground(xy.x(), xy.y());
+    const Eigen::Vector3d corner(xy.x(), xy.y(), ground ? ground->height_m + 1.5 : 0.0);
+    if (ground && (corners.empty() || (corner - corners.back()).norm() > 1.0)) corners.push_back(corner);
+  }
+  return way_of(corners);
+}
+
 /// As a receiver of 28 dB-Hz meets it on the way, every 2.5 m (5 m/s, 2 Hz): what a drive remembers from epoch to epoch
 /// counts. Second order, with what else is named.
-void channel(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter) {
-  const canyon::scene::Scene& scene = city(extent_of(state));
+void drive(benchmark::State& state, const canyon::scene::Scene& scene, const std::vector<Eigen::Vector3d>& points,
+           const std::vector<Eigen::Vector3d>& sky, const char* diffraction, const char* scatter, const char* clutter) {
   const canyon::scene::SceneAt at(scene);
-  const auto sky = satellites();
-  std::vector<Eigen::Vector3d> points;
-  const auto corners = street_points(scene);
-  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-    const Eigen::Vector3d way = corners[i + 1] - corners[i];
-    for (double f = 0.0; f < 1.0; f += 2.5 / way.norm()) points.emplace_back(corners[i] + f * way);
-  }
   canyon::gnss::PropagationConfig config;
   config.paths.name = "specular2";
   config.diffraction.name = diffraction;
@@ -139,6 +186,30 @@ void channel(benchmark::State& state, const char* diffraction, const char* scatt
   state.counters["echoes"] = echoes / epochs;
 }
 
+void channel(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter) {
+  const canyon::scene::Scene& scene = city(extent_of(state));
+  drive(state, scene, way_of(street_points(scene)), satellites(), diffraction, scatter, clutter);
+}
+
+/// 45 satellites: of five systems no more are in sight at once there.
+void channel_in_shibuya(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter) {
+  if (const canyon::scene::Scene* scene = shibuya(state))
+    drive(state, *scene, shibuya_way(*scene), satellites(45), diffraction, scatter, clutter);
+}
+
+void bare_rays_in_shibuya(benchmark::State& state) {
+  const canyon::scene::Scene* scene = shibuya(state);
+  if (scene == nullptr) return;
+  const canyon::scene::SceneAt at(*scene);
+  const auto sky = satellites(45);
+  const auto points = shibuya_way(*scene);
+  std::size_t k = 0;
+  for (auto _ : state) {
+    const Eigen::Vector3d& p = points[k++ % points.size()];
+    for (const auto& s : sky) benchmark::DoNotOptimize(at.blocked_towards(p, s));
+  }
+}
+
 // 100, 370 (the built-in city), 1000, 3000 and 10,000 buildings.
 void cities(benchmark::internal::Benchmark* b) {
   for (const int extent_m : {800, 1000, 1600, 2800, 5200}) b->Arg(extent_m);
@@ -161,6 +232,10 @@ BENCHMARK_CAPTURE(channel, mirrors, "none", "none", "none")->Name("channel/mirro
 BENCHMARK_CAPTURE(channel, wedge, "wedge", "none", "none")->Name("channel/wedge")->Arg(1000);
 BENCHMARK_CAPTURE(channel, scatter, "wedge", "directive", "none")->Name("channel/wedge+directive")->Arg(1000);
 BENCHMARK_CAPTURE(channel, street, "wedge", "directive", "street")->Name("channel/wedge+directive+street")->Arg(1000);
+BENCHMARK_CAPTURE(channel, scatter_wide, "wedge", "directive", "none")->Name("channel/wedge+directive")->Arg(5200);
+BENCHMARK(bare_rays_in_shibuya)->Name("shibuya/bare_rays")->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(channel_in_shibuya, scatter, "wedge", "directive", "none")->Name("shibuya/wedge+directive");
+BENCHMARK_CAPTURE(channel_in_shibuya, street, "wedge", "directive", "street")->Name("shibuya/wedge+directive+street");
 BENCHMARK_CAPTURE(model, launching, "launching", "none", false)
     ->Name("paths/launching")
     ->Arg(1000)
