@@ -138,6 +138,36 @@ StressFigure harmless(const EchoSignal& far, double front_end_hz, double bound_m
   return {lock ? std::abs(lock->delay_m) : std::numeric_limits<double>::quiet_NaN(), bound_m};
 }
 
+/// What a receiver's keys make of each of its channels: a front end of that width, but never narrower than the main
+/// lobes of the signal, two chip rates or, of BOC(1,1), four; none where it is said to be infinite; and the rest as the
+/// keys say. Rounding of the units.
+StressFigure channels_of_a_receiver() {
+  stress::Worst worst;
+  struct Signal {
+    Modulation modulation;
+    double lobes_mhz;
+  };
+  for (const Signal& signal :
+       {Signal{Modulation::kBpsk05, 1.022}, Signal{Modulation::kBpsk1, 2.046}, Signal{Modulation::kBpsk2, 4.092},
+        Signal{Modulation::kBpsk10, 20.46}, Signal{Modulation::kBoc11, 4.092}})
+    for (const double mhz : {0.0, 0.5, 3.0, 5.0, 21.0, 60.0})
+      for (const bool other : {false, true}) {
+        TrackingConfig keys;
+        keys.front_end_mhz = mhz, keys.integration_ms = 4.0, keys.correlator_spacing_chips = 0.1,
+        keys.code_loop_hz = 0.7;
+        keys.correlator = other ? TrackingConfig::Correlator::kDoubleDelta : TrackingConfig::Correlator::kEarlyLate;
+        keys.discriminator = other ? TrackingConfig::Discriminator::kCoherent : TrackingConfig::Discriminator::kPower;
+        const CorrelatorDesign d = keys.channel(signal.modulation);
+        const double expected_mhz = mhz == 0.0 ? 0.0 : worse(mhz, signal.lobes_mhz);
+        worst.look(d.front_end_hz - 1e6 * expected_mhz, 4.0 * kEpsilon * 1e6 * (expected_mhz + 1.0));
+        worst.look(d.integration_s - 0.004, 4.0 * kEpsilon * 0.004);
+        const bool same = d.modulation == signal.modulation && d.spacing_chips == 0.1 && d.code_loop_hz == 0.7 &&
+                          d.carrier_loop_hz == keys.carrier_loop_hz && d.double_delta == other && d.coherent == other;
+        worst.look(same ? 0.0 : stress::kInfinity, 1.0);
+      }
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> correlator_cases() {
@@ -214,6 +244,10 @@ std::vector<StressCase> correlator_cases() {
         const double f = 0.5, h = 1.0 / std::hypot(1.0, 2.0 * kPi * f / 2.0);
         return harmless({.delay_m = 100.0, .amplitude = 0.5, .doppler_hz = f}, 0.0, 1.001 * plateau_m * h);
       });
+  rows.of({StressGroup::kData, "channels of a receiver by its keys",
+           "a front end that cuts off the signal's own lobes, megahertz for hertz",
+           "the lobes at least, and what the keys say: roundings", "of the bound"});
+  rows.add("correlators/channels_of_a_receiver", channels_of_a_receiver);
   return rows.take();
 }
 
