@@ -151,7 +151,7 @@ StressFigure street_budget(const std::string& keys, bool own_covariance) {
       worst.look(o.corrected_m() - truth.range_m - out.truth.receiver_clock_m - errors, ulp_m + 1e-6 + 5e-3);
       bent += std::abs(truth.multipath_m) > 0.01 ? 1 : 0;
       second += std::isfinite(o.second.pseudorange_m) ? 1 : 0;
-      sigma_low_m = std::min(sigma_low_m, o.sigma_m), sigma_high_m = std::max(sigma_high_m, o.sigma_m);
+      sigma_low_m = std::min(sigma_low_m, o.sigma_m), sigma_high_m = worse(sigma_high_m, o.sigma_m);
       if (!o.used || out.fix.status == FixStatus::kNone) continue;
       const Vector3d way = o.p_E - out.fix.p_A_E;
       const double left_m = o.corrected_m() - way.norm() - out.fix.clock_m, weight = 1.0 / (o.sigma_m * o.sigma_m);

@@ -165,7 +165,7 @@ StressFigure latency_in_samples(double samples) {
   const auto whole = static_cast<std::int64_t>(samples + 1e-9);
   const double part = samples - static_cast<double>(whole);
   const auto look = [&](const ImuSample& out, std::int64_t k, std::int64_t first) {
-    const auto from = [&](std::int64_t before) { return std::max(k - before, first); };
+    const auto from = [&](std::int64_t before) { return worse(k - before, first); };
     const Vector3d rate = part * motion(from(whole + 1)) + (1.0 - part) * motion(from(whole));
     const Vector3d force = -3.0 * (part * motion(from(whole + 1) + 5) + (1.0 - part) * motion(from(whole) + 5));
     // The part of a sample is one of the quotient, which rounds by so many epsilons of itself.

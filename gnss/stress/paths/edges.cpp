@@ -91,7 +91,7 @@ OverSheets by_plane_geometry(const TwoSheets& t) {
   OverSheets out;
   out.margin = std::min({std::abs(up_near - up_far), std::abs(up_near - t.elevation_rad),
                          std::abs(up_far - t.elevation_rad), std::abs(between - t.elevation_rad)});
-  if (t.elevation_rad > std::max(up_near, up_far)) {
+  if (t.elevation_rad > worse(up_near, up_far)) {
     // The nearest of those whose way is not cut off by the other.
     double nearest = kDeepestLitNu;
     const auto look = [&](const Vector2d& top, bool cut_off) {
