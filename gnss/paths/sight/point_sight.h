@@ -22,18 +22,15 @@ class SightNode {
   /// Whether point `id` is seen; `blocked()` fires the ray.
   template <class Blocked>
   bool seen(std::uint32_t id, GnssCounters& counters, const Blocked& blocked) {
-    const std::size_t word = id / 64;
+    Page& page = page_of(id / kPoints);
+    const std::size_t word = id % kPoints / 64;
     const std::uint64_t bit = std::uint64_t{1} << (id % 64);
-    if (word >= known_.size()) {
-      known_.resize(word + 64, 0);
-      seen_.resize(word + 64, 0);
-    }
-    if ((known_[word] & bit) == 0) {
+    if ((page.known[word] & bit) == 0) {
       ++counters.occlusion_rays;
-      known_[word] |= bit;
-      if (!blocked()) seen_[word] |= bit;
+      page.known[word] |= bit;
+      if (!blocked()) page.seen[word] |= bit;
     }
-    return (seen_[word] & bit) != 0;
+    return (page.seen[word] & bit) != 0;
   }
   /// A number that hangs on point and node, remembered likewise.
   template <class Make>
@@ -42,10 +39,26 @@ class SightNode {
     if (is_new) at->second = make();
     return at->second;
   }
-  std::size_t bytes() const { return 16 * known_.size() + 16 * numbers_.size(); }
+  std::size_t bytes() const { return sizeof(Page) * pages_.size() + 16 * numbers_.size(); }
 
  private:
-  std::vector<std::uint64_t> known_, seen_;
+  /// Of points that follow one another. Those near a node are a few runs of a scene's, however many it has.
+  static constexpr std::uint32_t kPoints = 512;
+  struct Page {
+    std::uint32_t number;
+    std::array<std::uint64_t, kPoints / 64> known{}, seen{};
+  };
+
+  Page& page_of(std::uint32_t number) {
+    if (last_ < pages_.size() && pages_[last_].number == number) return pages_[last_];
+    for (last_ = 0; last_ < pages_.size(); ++last_)
+      if (pages_[last_].number == number) return pages_[last_];
+    pages_.push_back({.number = number});
+    return pages_.back();
+  }
+
+  std::vector<Page> pages_;
+  std::size_t last_ = 0;
   std::unordered_map<std::uint32_t, float> numbers_;
 };
 
