@@ -246,7 +246,8 @@ StressFigure patches_of_walls(double apart_m, double spread_m) {
   const SignedDistance distance(scene);
   std::vector<WallPoint> points;
   const auto add = [&](const Vector3d& p) {
-    points.push_back({p.cast<float>(), distance.at(p.cast<float>().cast<double>(), 2.0)});
+    points.push_back({p.cast<float>(), {}});
+    points.back().offset = distance.at(points.back().p_W.cast<double>(), 2.0);
   };
   // 200 points in each patch but the last column, which has 19: too few.
   for (int column = 0; column < 10; ++column)
