@@ -194,7 +194,7 @@ void channel(benchmark::State& state, const char* diffraction, const char* scatt
   drive(state, scene, way_of(street_points(scene)), satellites(), diffraction, scatter, clutter);
 }
 
-/// 45 satellites: of five systems no more are in sight at once there.
+/// 45 satellites: as many as five systems show at once in the open.
 void channel_in_shibuya(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter) {
   if (const canyon::scene::Scene* scene = shibuya(state))
     drive(state, *scene, shibuya_way(*scene), satellites(45), diffraction, scatter, clutter);
