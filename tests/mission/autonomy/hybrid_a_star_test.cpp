@@ -111,7 +111,7 @@ TEST(HybridAStar, FindsAWayWhereOffsetsDo) {
     by_search += searched ? 1 : 0;
     by_both += offset && searched ? 1 : 0;
   }
-  // 94 of 95, and 172.
+  // 93 of 95, and 185.
   EXPECT_GE(by_both, 0.95 * by_offsets) << by_offsets;
   EXPECT_GE(by_search, 1.5 * by_offsets) << by_offsets;
 }
