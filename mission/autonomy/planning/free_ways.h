@@ -4,27 +4,10 @@
 #include <functional>
 #include <vector>
 
-#include "canyon/mission/autonomy/planning/local_planner.h"
+#include "canyon/mission/autonomy/planning/lane_places.h"
 #include "canyon/mission/autonomy/planning/plan_parameters.h"
 
 namespace canyon::mission {
-
-/// Places along a task's lane: how far along the route, and how far beside the lane's middle (left positive). After the
-/// route's end it goes straight on.
-class LanePlaces {
- public:
-  explicit LanePlaces(const PlanTask& task) : task_(task) {}
-
-  struct Place {
-    double s_m, beside_m;
-  };
-  /// Of a place in O whose nearest one on the route lies between two.
-  Place of(const Eigen::Vector2d& p_O, double from_m, double to_m) const;
-  Eigen::Vector2d at(const Place& place) const;  ///< in O
-
- private:
-  const PlanTask& task_;
-};
 
 /// What a way costs per metre where it is, besides what turning and closeness cost. Where it ends it costs as much as a
 /// whole horizon there.
