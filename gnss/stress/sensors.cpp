@@ -11,6 +11,7 @@
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sensor/sensor.h"
 #include "canyon/gnss/signal.h"
+#include "canyon/gnss/stress/level_ground.h"
 #include "canyon/gnss/stress/subjects.h"
 #include "canyon/scene/mesh_builder.h"
 #include "canyon/scene/scene.h"
@@ -26,16 +27,9 @@ using stress::Worst;
 
 const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
 
-/// Level ground far below, so that a scene has something in it; at 32 degrees north.
+/// Level ground far below, so that a scene has something in it.
 std::unique_ptr<scene::Scene> open_place() {
-  scene::SceneParts parts;
-  parts.name = "open";
-  parts.frame = LocalFrame(Geodetic{0.5646, -1.586, 60.0});
-  parts.materials = scene::builtin_materials();
-  scene::MeshBuilder mesh(parts);
-  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
-  mesh.quad({-50, -50, -1}, {50, -50, -1}, {50, 50, -1}, {-50, 50, -1}, mesh.material("asphalt"));
-  return std::make_unique<scene::Scene>(std::move(parts));
+  return std::make_unique<scene::Scene>(level_ground("open", 50.0, -1.0));
 }
 
 std::unique_ptr<GnssSensor> sensor_of(const std::string& keys, const scene::Scene& place, std::uint64_t seed = 1) {
@@ -105,13 +99,8 @@ StressFigure budget(const std::string& keys, bool error_free) {
 
 /// A street between two rows of houses along y, level.
 std::unique_ptr<scene::Scene> narrow_street() {
-  scene::SceneParts parts;
-  parts.name = "street";
-  parts.frame = LocalFrame(Geodetic{0.5646, -1.586, 60.0});
-  parts.materials = scene::builtin_materials();
+  scene::SceneParts parts = level_ground("street", 200.0, 0.0);
   scene::MeshBuilder mesh(parts);
-  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
-  mesh.quad({-200, -200, 0}, {200, -200, 0}, {200, 200, 0}, {-200, 200, 0}, mesh.material("asphalt"));
   for (int k = -3; k <= 3; ++k)
     for (const double side : {-1.0, 1.0}) {
       mesh.begin_object("house", scene::ObjectKind::kBuilding);

@@ -25,6 +25,7 @@
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/sensor/sensor_need.h"
 #include "canyon/gnss/signal.h"
+#include "canyon/gnss/stress/level_ground.h"
 #include "canyon/gnss/stress/paths/plain.h"
 #include "canyon/gnss/stress/subjects.h"
 #include "canyon/scene/mesh_builder.h"
@@ -139,12 +140,8 @@ struct NeedScene {
 };
 NeedScene need_scene(int which) {
   NeedScene out;
-  out.parts.name = "needs";
-  out.parts.frame = LocalFrame(Geodetic{0.5646, -1.586, 60.0});
-  out.parts.materials = scene::builtin_materials();
+  out.parts = level_ground("needs", 400.0, 0.0);
   scene::MeshBuilder mesh(out.parts);
-  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
-  mesh.quad({-400, -400, 0}, {400, -400, 0}, {400, 400, 0}, {-400, 400, 0}, mesh.material("asphalt"));
   const auto wall = [&](double x_m, double half_m, double top_m, const char* material) {
     mesh.begin_object("wall", scene::ObjectKind::kWall);
     // Faces the east.
