@@ -276,6 +276,25 @@ UpdateReport ErrorStateFilter::update(const GnssFix& fix) {
   return report;
 }
 
+PlaceBeside ErrorStateFilter::place_beside(const Measurement& m, double nis) const {
+  PlaceBeside out{.off_m = m.residual,
+                  .leaving_m_s = m.motion->residual_m_s,
+                  .velocity_measured = m.motion->measured,
+                  .speed_m_s = m.motion->speed_m_s,
+                  .nis = nis};
+  const int lasting = lasting_error(state_, m);
+  if (lasting < 0) return out;
+  const Eigen::Matrix3d share = m.H.middleCols<3>(lasting);
+  out.off_m += share * state_.values(lasting, 3);
+  Measurement::Rows others = m.H;
+  others.middleCols<3>(lasting).setZero();
+  const Eigen::Matrix3d S = times_transposed(rows_of(others, P()), others) + m.R +
+                            state_.first_variance(lasting) * share * share.transpose();
+  out.nis = out.off_m.dot(S.llt().solve(out.off_m));
+  if (!std::isfinite(out.nis)) out.nis = std::numeric_limits<double>::infinity();
+  return out;
+}
+
 UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
   const int n = m.dimension();
   UpdateReport report{.measurement = aid.name, .t = state_.nav.t, .dimension = n};
@@ -298,13 +317,7 @@ UpdateReport ErrorStateFilter::correct(Aid& aid, Measurement& m) {
 
   const int lasting = lasting_error(state_, m);
   PlaceBeside place;
-  if (m.motion) {
-    place = {.off_m = m.residual,
-             .leaving_m_s = m.motion->residual_m_s,
-             .velocity_measured = m.motion->measured,
-             .speed_m_s = m.motion->speed_m_s};
-    if (lasting >= 0) place.off_m += m.H.middleCols<3>(lasting).lazyProduct(state_.values(lasting, 3));
-  }
+  if (m.motion) place = place_beside(m, report.nis);
   const Decision decision = aid.acceptance->decide({.t = state_.nav.t,
                                                     .residual = m.residual,
                                                     .R = m.R,

@@ -126,6 +126,8 @@ class ErrorStateFilter {
   void doubt(double v_m_s);
   void renew(std::span<const Renewal> states);
   UpdateReport correct(Aid& aid, Measurement& m);
+  /// Of a measurement with `motion`, whose innovation has this NIS.
+  PlaceBeside place_beside(const Measurement& m, double nis) const;
 
   FilterConfig config_;
   LocalFrame frame_;

@@ -16,6 +16,9 @@ struct PlaceBeside {
   Eigen::Vector3d leaving_m_s = Eigen::Vector3d::Zero();
   bool velocity_measured = false;
   double speed_m_s = 0.0;  ///< of the estimate
+  /// Of off_m, normalized by what is expected of it while nothing is known of the lasting error but its law;
+  /// chi-square with three degrees of freedom.
+  double nis = 0.0;
 };
 
 /// What a measurement would do: its residual, the covariance of its noise, and H P H', that of what was predicted.

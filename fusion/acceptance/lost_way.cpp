@@ -88,7 +88,8 @@ bool LostWay::steady() {
 
 bool LostWay::found(const Innovation& i) {
   if (p_.lost_after_s == 0.0 || i.place == nullptr) return false;
-  if (chi_square_tail(i.nis, 3) >= normal_two_sided_tail(p_.lost_sigma)) {
+  // Not by the innovation: what has been made of the lasting error hides whatever it was led astray by.
+  if (chi_square_tail(i.place->nis, 3) >= normal_two_sided_tail(p_.lost_sigma)) {
     start();
     return false;
   }
@@ -100,7 +101,7 @@ bool LostWay::found(const Innovation& i) {
 }
 
 Decision LostWay::recovery(const Innovation& i) const {
-  return {.loosening = std::max(i.nis / static_cast<double>(i.residual.size()), 1.0),
+  return {.loosening = std::max(i.place->nis / 3.0, 1.0),
           .loosening_m_s = std::sqrt(i.place->leaving_m_s.squaredNorm() / 3.0 + told_m_s_ * told_m_s_)};
 }
 

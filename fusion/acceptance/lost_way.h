@@ -29,7 +29,7 @@ class LostWay {
   void moved(const Eigen::Vector3d& by_m, bool by_this);
   /// To be asked of every innovation in turn; begins anew where it says yes.
   bool found(const Innovation& i);
-  /// That makes the filter as unsure as this innovation says: its normalized square becomes what is expected of it. Its
+  /// That makes the filter as unsure as this place says: its normalized square becomes what is expected of it. Its
   /// velocity by what is measured, and by what the stretch can tell of it at all. After found() has said yes.
   Decision recovery(const Innovation& i) const;
 

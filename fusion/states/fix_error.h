@@ -11,7 +11,7 @@ namespace canyon::fusion {
 struct FixErrorParameters {
   double fix_error_sigma_m = 0.3;
   double fix_error_scale = 1.5;
-  double fix_error_power = 1.0;
+  double fix_error_power = 1.5;
   double fix_error_tau_s = 20.0;
   double fix_error_way_m = 1e9;
 

@@ -178,7 +178,7 @@ TEST(MatchedFixes, EveryBlockIsAsFarOffAsItSays) {
 }
 
 TEST(FixErrorParameters, AreARootOfTheCovariance) {
-  FixErrorParameters p{.fix_error_sigma_m = 0.7, .fix_error_scale = 3.0};
+  FixErrorParameters p{.fix_error_sigma_m = 0.7, .fix_error_scale = 3.0, .fix_error_power = 1.0};
   const Eigen::Matrix3d turned = rotation_from({.yaw_rad = 0.4, .pitch_rad = 0.9, .roll_rad = -1.1}).toRotationMatrix();
   const Eigen::Matrix3d stated = turned * Vector3d(0.01, 4.0, 25.0).asDiagonal() * turned.transpose();
   const Eigen::Matrix3d root = p.share(stated), C = p.covariance(stated);
@@ -194,7 +194,7 @@ TEST(FixErrorParameters, AreARootOfTheCovariance) {
 TEST(FixErrorParameters, GrowAsAPowerOfWhatIsStated) {
   const Eigen::Matrix3d R = so3_exp(Vector3d(0.3, -0.5, 0.7)).toRotationMatrix();
   const Eigen::Matrix3d stated = R * Vector3d(0.25, 1.0, 16.0).asDiagonal() * R.transpose();
-  FixErrorParameters p{.fix_error_sigma_m = 0.5, .fix_error_scale = 2.0};
+  FixErrorParameters p{.fix_error_sigma_m = 0.5, .fix_error_scale = 2.0, .fix_error_power = 1.0};
   const Eigen::Matrix3d linear = p.covariance(stated);
   p.fix_error_power = 1.5;
   // 1-sigmas of 0.5, 1 and 4 m make 2 times 0.5^1.5, 1 and 8 m; roundings of 256 m^2.

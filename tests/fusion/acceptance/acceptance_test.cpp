@@ -107,11 +107,12 @@ double lost_after_s(const char* row, const std::string& keys, const std::functio
     at.off_m += stream.normal3(static_cast<std::uint64_t>(k));
     const Measurement::Vector residual = at.off_m;
     const Measurement::Square R = Measurement::Square::Identity(3, 3);
+    at.nis = residual.squaredNorm() / 1.1;
     const Decision d = model->decide({.t = kStart + t_s,
                                       .residual = residual,
                                       .R = R,
                                       .predicted = 0.1 * R,
-                                      .nis = residual.squaredNorm() / 1.1,
+                                      .nis = at.nis,
                                       .place = &at});
     EXPECT_TRUE(d.accepted);
     if (d.loosening > 1.0) return t_s;
