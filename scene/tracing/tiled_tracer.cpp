@@ -59,6 +59,7 @@ TiledTracer::TiledTracer(const SceneParts& parts, const Extent& extent) : parts_
     Tile& only = *tiles_.emplace_back(std::make_unique<Tile>());
     only.triangles.resize(mesh.triangles.size());
     std::iota(only.triangles.begin(), only.triangles.end(), 0u);
+    std::swap(only.bottom_m, only.top_m);  // at any height
     tracer(only);
     return;
   }
