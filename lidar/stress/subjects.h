@@ -21,5 +21,8 @@ std::vector<StressCase> pose_covariance_cases();
 std::vector<StressCase> closure_cases();
 std::vector<StressCase> offset_cases();
 std::vector<StressCase> capture_cases();
+std::vector<StressCase> volley_cases();
+std::vector<StressCase> placement_cases();
+std::vector<StressCase> beam_cases();
 
 }  // namespace canyon::lidar

@@ -17,6 +17,9 @@ std::vector<StressCase> crown_cases();
 std::vector<StressCase> frame_cases();
 std::vector<StressCase> index_cases();
 std::vector<StressCase> street_cases();
+std::vector<StressCase> fitted_ground_cases();
+std::vector<StressCase> tile_cases();
+std::vector<StressCase> block_cases();
 std::vector<StressCase> shape_cases();
 
 }  // namespace canyon::scene
