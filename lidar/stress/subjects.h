@@ -22,6 +22,8 @@ std::vector<StressCase> closure_cases();
 std::vector<StressCase> offset_cases();
 std::vector<StressCase> capture_cases();
 std::vector<StressCase> volley_cases();
+std::vector<StressCase> map_figure_cases();
+std::vector<StressCase> aligner_cases();
 std::vector<StressCase> placement_cases();
 std::vector<StressCase> beam_cases();
 
