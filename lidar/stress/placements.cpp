@@ -1,4 +1,5 @@
 // Where a turning head and a moving sensor let each shot begin and point, against the definitions.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -49,9 +50,7 @@ StressFigure placed_at_all_times(double deg_s, double speed_m_s, double spacing_
   const SweepMotion sweep(motion, kStamp, first_s, last_s, X_RW, X_BL);
   looks.right(sweep.covers(first_s) && sweep.covers(last_s) && sweep.covers(first_s - 0.5e-8) &&
               !sweep.covers(first_s - 3e-8) && sweep.covers(last_s + 0.5e-8) && !sweep.covers(last_s + 3e-8));
-  const auto exact = [&](double t) {
-    return X_RW * begin * Pose::exp(per_s * std::min(std::max(t, first_s), last_s)) * X_BL;
-  };
+  const auto exact = [&](double t) { return X_RW * begin * Pose::exp(per_s * std::clamp(t, first_s, last_s)) * X_BL; };
   const Vector3d w_B = per_s.head<3>(), w_L = X_BL.R.conjugate() * w_B;
   const double w = w_B.norm(), fastest = per_s.tail<3>().norm() + w * X_BL.p.norm(), bend = w * fastest;
   const double chord_rad = 3e-8 + 1e-10, chord_m = 1.01e-6;
@@ -79,7 +78,7 @@ StressFigure placed_at_all_times(double deg_s, double speed_m_s, double spacing_
     // times that; nodes are no farther apart than poses, and no closer than 5 us.
     const double t = time_s + 8.0 * step_s;
     const double lasts_s = std::min(spacing_s, std::max(5e-6, std::sqrt(8e-6 / std::max(bend, 1e-12))));
-    const Vector3d v_W = (X_RW * begin * Pose::exp(per_s * std::min(std::max(t, first_s), last_s))).R *
+    const Vector3d v_W = (X_RW * begin * Pose::exp(per_s * std::clamp(t, first_s, last_s))).R *
                          (Vector3d(per_s.tail<3>()) + w_B.cross(X_BL.p));
     for (int a = 0; a < 3; ++a) {
       looks.near(out.w_WL_L[a], w_L[a], 1e-6 * w + 1e-9 + w * std::pow(w * lasts_s, 2));

@@ -233,7 +233,7 @@ StressFigure cells_by_account(double yaw_rad, double slope) {
     // A direction kept in single precision, over a metre.
     for (std::size_t k = 0; k < found.size() && k < expected.size(); ++k)
       looks.near((found[k] - expected[k]).norm(), 0.0, 4.0 * stress::kHalfUlp);
-    most = std::max(most, found.size());
+    most = worse(most, found.size());
     for (int k = 0; k < 48; ++k) {
       const Vector2d d(std::cos(0.13 * k), std::sin(0.13 * k));
       const int sector = PolarGround::sector(static_cast<float>(d.x()), static_cast<float>(d.y()));

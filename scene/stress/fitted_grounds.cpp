@@ -157,7 +157,7 @@ StressFigure cells_by_their_rule(double rise_m, double full_m) {
   }
   std::int32_t largest = 0;
   for (const auto& c : cells) {
-    largest = std::max(largest, c.size);
+    largest = worse(largest, c.size);
     const GroundPlan::Cell parent{c.column, c.row, 2 * c.size};
     if (c.column % parent.size != 0 || c.row % parent.size != 0) continue;
     bool four = true;
