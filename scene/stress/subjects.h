@@ -19,6 +19,7 @@ std::vector<StressCase> index_cases();
 std::vector<StressCase> street_cases();
 std::vector<StressCase> fitted_ground_cases();
 std::vector<StressCase> tile_cases();
+std::vector<StressCase> inspection_cases();
 std::vector<StressCase> facet_cases();
 std::vector<StressCase> block_cases();
 std::vector<StressCase> shape_cases();
