@@ -153,7 +153,7 @@ std::vector<StressCase> inspection_cases() {
            "an edge that counts as open because its ground lies beside it, a height over another cell",
            "each as it was built: single precision of heights", "wrong"});
   rows.add("inspections/open_below", open_below).add("inspections/needs_of_materials", needs_of_materials);
-  for (const double cell_m : {1.5, 4.0})
+  for (const double cell_m : {1.5, 3.7})
     rows.add("inspections/from_above_in_cells_of_" + stress::text(cell_m) + "_m",
              [cell_m] { return from_above(cell_m); });
   return rows.take();
