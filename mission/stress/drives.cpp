@@ -4,6 +4,7 @@
 
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
+#include "canyon/lidar/scanner.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/recorder/estimate_error.h"
 #include "canyon/mission/recorder/recorder.h"
@@ -59,6 +60,21 @@ p_m = [213.9, 109.9]
 struct Rows : Recorder {
   std::vector<NavRow> rows;
   std::vector<TapeNode> nodes;
+  std::vector<GnssRow> fixes;
+  std::vector<KeyframeRow> keyframes;
+  std::vector<ImuSample> samples;
+  Status imu(const ImuSample& sample) override {
+    samples.push_back(sample);
+    return Ok{};
+  }
+  Status gnss(const GnssRow& row) override {
+    fixes.push_back(row);
+    return Ok{};
+  }
+  Status keyframe(const KeyframeRow& row) override {
+    keyframes.push_back(row);
+    return Ok{};
+  }
   Status epoch(const NavRow& row) override {
     rows.push_back(row);
     return Ok{};
@@ -157,6 +173,94 @@ StressFigure again() {
   return {1.0 * wrong, 0.0};
 }
 
+/// What a run records of each thing at its own time: rows of the true node there, antennas at their lever arm,
+/// keyframes where the sensor is and what lies between them, one after another as far as is asked for; as many of each
+/// as its rate says. Nodes are at whole hundredths of a second: nothing lies between them.
+StressFigure recorded_as_driven() {
+  const auto drive =
+      driven("low", "[gnss]\nlever_arm_m = [0.4, -0.3, 1.5]\n[lidar]\nmount_yaw_pitch_roll_deg = [20, 2, -1]");
+  const Rows& rows = drive->rows;
+  const MissionConfig& config = drive->config;
+  if (rows.nodes.size() < 500 || rows.fixes.size() < 20 || rows.keyframes.size() < 5) return {kInfinity, 1.0};
+  Worst worst;
+  const auto right = [&](bool holds) { worst.look(holds ? 0.0 : kInfinity, 1.0); };
+  const GpsTime start = drive->record.start;
+  const auto node_at = [&](GpsTime t) -> const KinematicState& {
+    const auto k = static_cast<std::size_t>(std::lround((t - start) / 0.01));
+    return rows.nodes.at(k < rows.nodes.size() ? k : rows.nodes.size() - 1).motion;
+  };
+  const double seconds = rows.nodes.back().motion.t - start;
+  const auto count = [&](std::size_t found, double hz) {
+    right(std::abs(static_cast<double>(found) - seconds * hz) <= 1.01);
+  };
+  count(rows.rows.size(), config.run.epoch_rate_hz), count(rows.fixes.size(), 5.0);
+  count(rows.samples.size(), config.imu.rate_hz);
+  for (const NavRow& row : rows.rows) {
+    const KinematicState& truth = node_at(row.t);
+    worst.look((row.X_WB_true.p - truth.X_WB.p).norm(), 1e-9);
+    worst.look(row.X_WB_true.R.angularDistance(truth.X_WB.R), 1e-7);
+    worst.look(row.true_speed_m_s - std::hypot(truth.v_WB_W.x(), truth.v_WB_W.y()), 1e-9);
+    right(row.waypoint == 1 || (row.waypoint == 2 && row.state == AutonomyState::kDone));
+  }
+  for (const GnssRow& row : rows.fixes) {
+    worst.look((row.p_A_W_true - node_at(row.fix.t).X_WB * config.gnss.lever_arm_m).norm(), 1e-9);
+    // Six of a centimetre's three axes.
+    worst.look((drive->record.frame.to_W(row.fix.p_A_E) - row.p_A_W_true).norm(), 0.06 * std::sqrt(3.0));
+    right(!row.withheld && row.update.accepted);
+  }
+  const Pose X_BL = lidar::sensor_in_body(config.lidar);
+  for (std::size_t k = 0; k < rows.keyframes.size(); ++k) {
+    const KeyframeRow& row = rows.keyframes[k];
+    const Pose X_WL = node_at(row.t).X_WB * X_BL;
+    worst.look((row.X_WL_true.p - X_WL.p).norm(), 1e-9), worst.look((row.X_WL_prior.p - X_WL.p).norm(), 0.15);
+    right(row.points > 100);
+    if (k == 0) continue;
+    const Pose between = rows.keyframes[k - 1].X_WL_true.inverse() * row.X_WL_true;
+    worst.look((row.X_LL_true.p - between.p).norm(), 1e-9);
+    worst.look(row.X_LL_true.R.angularDistance(between.R), 1e-7);
+    right(between.p.norm() > config.registration.keyframe_distance_m - 0.3 ||
+          between.R.angularDistance(Eigen::Quaterniond::Identity()) >
+              (config.registration.keyframe_angle_deg - 1.0) * kDegree);
+  }
+  return worst.figure();
+}
+
+/// The same run with a coupling cut: up to that time it is the same to the bit, from then on no fix reaches the filter,
+/// or no scan the map, and neither the other; a height that is added is in every row, and in no other coordinate of the
+/// first.
+StressFigure couplings_cut() {
+  const auto whole = driven("low", ""), fixes = driven("low", "[run]\nwithhold_fixes_after_s = 3.0"),
+             scans = driven("low", "[run]\nwithhold_scans_after_s = 3.0"),
+             lifted = driven("low", "[run]\nestimate_up_offset_m = 2.5");
+  Worst worst;
+  const auto right = [&](bool holds) { worst.look(holds ? 0.0 : kInfinity, 1.0); };
+  const GpsTime start = whole->record.start;
+  const auto same_until = [&](const Driven& other, double seconds) {
+    std::size_t k = 0;
+    for (; k < whole->rows.rows.size() && whole->rows.rows[k].t - start < seconds - 1e-9; ++k)
+      right(k < other.rows.rows.size() && other.rows.rows[k].estimate.X_WB.p == whole->rows.rows[k].estimate.X_WB.p &&
+            other.rows.rows[k].X_WB_true.p == whole->rows.rows[k].X_WB_true.p);
+    right(k > 10);
+  };
+  same_until(*fixes, 3.0), same_until(*scans, 3.0);
+  int withheld = 0;
+  for (const GnssRow& row : fixes->rows.fixes) {
+    right(row.withheld == (row.fix.t - start >= 3.0 - 1e-9) && row.update.accepted != row.withheld);
+    withheld += row.withheld ? 1 : 0;
+  }
+  right(withheld > 10 && fixes->rows.keyframes.size() > 4);
+  for (const GnssRow& row : scans->rows.fixes) right(!row.withheld);
+  std::size_t before = 0;
+  for (const KeyframeRow& row : whole->rows.keyframes) before += row.t - start < 3.0 - 1e-9 ? 1 : 0;
+  right(scans->rows.keyframes.size() == before && before > 0);
+  // A vehicle that is shown nothing any more stands.
+  right(scans->rows.rows.back().true_speed_m_s < 0.1 && scans->record.distance_m < whole->record.distance_m - 5.0);
+  for (const NavRow& row : lifted->rows.rows) worst.look(row.estimate.X_WB.p.z() - row.X_WB_true.p.z() - 2.5, 0.1);
+  const auto &a = lifted->rows.rows.at(0).estimate.X_WB.p, &b = whole->rows.rows.at(0).estimate.X_WB.p;
+  worst.look((a - b - Eigen::Vector3d(0, 0, 2.5)).norm(), 1e-12);
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> drive_cases() {
@@ -172,6 +276,10 @@ std::vector<StressCase> drive_cases() {
   rows.of(whole).add("drives/estimate_follows_at_low", [] { return estimate_follows("low"); });
   rows.of(smooth).add("drives/motion_is_smooth", motion_is_smooth);
   rows.of(same).add("drives/again", again);
+  rows.of(whole).add("drives/recorded_as_driven", recorded_as_driven);
+  rows.of({StressGroup::kData, "a mission with a coupling cut", "a fix or a scan too many, or the other kind cut too",
+           "the same to the bit until then, and from then on without", "of the bound"});
+  rows.add("drives/couplings_cut", couplings_cut);
   return rows.take();
 }
 
