@@ -288,8 +288,8 @@ PlaceBeside ErrorStateFilter::place_beside(const Measurement& m, double nis) con
   out.off_m += share * state_.values(lasting, 3);
   Measurement::Rows others = m.H;
   others.middleCols<3>(lasting).setZero();
-  const Eigen::Matrix3d S = times_transposed(rows_of(others, P()), others) + m.R +
-                            state_.first_variance(lasting) * share * share.transpose();
+  const Eigen::Matrix3d S =
+      times_transposed(rows_of(others, P()), others) + m.R + state_.first_variance(lasting) * share * share.transpose();
   out.nis = out.off_m.dot(S.llt().solve(out.off_m));
   if (!std::isfinite(out.nis)) out.nis = std::numeric_limits<double>::infinity();
   return out;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,10 @@
 #include "canyon/core/motion/rotation.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/stress/looks.h"
+#include "canyon/core/units.h"
 #include "canyon/lidar/registration/engine/covariance_forms.h"
 #include "canyon/lidar/registration/engine/open_directions.h"
+#include "canyon/lidar/registration/engine/witnesses.h"
 #include "canyon/lidar/registration/registration_covariance.h"
 #include "canyon/lidar/stress/engine_pieces.h"
 #include "canyon/lidar/stress/subjects.h"
@@ -151,7 +154,7 @@ StressFigure forms(int blocks) {
     scatter += b / (b - 6.0) * squares;
   alike(looks, form("hessian"), Matrix6d(3.0 / (n - 6.0) * sums.A), 1e-12);
   alike(looks, form("sandwich"), scatter, 1e-12);
-  alike(looks, form("calibrated"), Matrix6d(1.5 * scatter), 1e-12);
+  alike(looks, form("calibrated"), scatter, 1e-12);
   const Matrix6d noise = 2.0 * 0.02 * 0.02 * sums.point_noise;
   alike(looks, form("censi"), noise, 1e-12);
   alike(looks, form("guess_and_bias"),
@@ -188,6 +191,70 @@ StressFigure forms(int blocks) {
   return looks.figure();
 }
 
+/// Share of Student's distribution beyond -t and t: with x = sqrt(degrees) tan(angle) an integral of a power of a
+/// cosine, by the rule of midpoints to 1e-6.
+double student_tail(double t, double degrees) {
+  constexpr int kParts = 4000;
+  const double from = std::atan(t / std::sqrt(degrees)), step = (0.5 * kPi - from) / kParts;
+  double sum = 0.0;
+  for (int k = 0; k < kParts; ++k) sum += std::pow(std::cos(from + (k + 0.5) * step), degrees - 1.0);
+  return 2.0 / std::sqrt(kPi) * std::exp(std::lgamma(0.5 * (degrees + 1.0)) - std::lgamma(0.5 * degrees)) * sum * step;
+}
+
+/// Student's bound over the normal's of 3.2905: as wide as it must be, and no wider than is said.
+StressFigure student_bounds() {
+  Looks looks;
+  for (const double degrees : {1.0, 1.1, 1.5, 1.9, 2.0, 2.4, 3.0, 3.5, 4.5, 7.5, 9.0, 13.0, 25.0, 40.0, 90.0, 300.0}) {
+    const double t = 3.2905 * student_over_normal(degrees), wide = degrees < 2.0 ? 0.3 : degrees < 3.0 ? 0.04 : 0.01;
+    looks.right(student_tail(t * (1.0 + 2e-4), degrees) < 1e-3);
+    looks.right(student_tail(t / (1.0 + wide), degrees) > 1e-3);
+  }
+  looks.near(student_over_normal(1e9), 1.0, 1e-6);
+  looks.right(std::isinf(student_over_normal(0.99)) &&
+              std::isinf(student_over_normal(std::numeric_limits<double>::quiet_NaN())));
+  return looks.figure();
+}
+
+/// A cloud of so many blocks of which three alone tell of the first direction, and one more of an open one: by
+/// definition, and each axis as wide as its own witnesses make it.
+StressFigure told_by_few(int blocks) {
+  Looks looks;
+  const double radius_m = 5.0;
+  const Vector6d root = (Vector6d() << Vector3d::Constant(radius_m), Vector3d::Ones()).finished();
+  CovarianceSums sums;
+  for (int b = 0; b < blocks; ++b) {
+    // Where a turn counts by what it moves: the fourth of xi by three blocks, the fifth by one, the others by all.
+    Vector6d told = Vector6d::Constant(2.0 / blocks);
+    told[3] = b < 3 ? 0.5 : 0.0;
+    told[4] = b == 7 ? 0.1 : 0.0;
+    const Vector6d of_xi = told.cwiseProduct(root.cwiseAbs2());
+    sums.block_surfaces.emplace_back(of_xi.asDiagonal());
+    sums.A += sums.block_surfaces.back();
+  }
+  const Vector6d alone = Vector6d::Unit(3), mixed = (Vector6d() << 0.1, 0.0, 0.0, 0.3, 0.0, 0.7).finished();
+  double sum = 0.0, squares = 0.0;
+  for (const Matrix6d& H : sums.block_surfaces) {
+    const double w = mixed.dot(H * mixed);
+    sum += w, squares += w * w;
+  }
+  const double grain = 1e3 * kEpsilon;
+  looks.near(witnesses(sums, alone), 3.0, grain);
+  looks.near(witnesses(sums, mixed), sum * sum / squares, grain * blocks);
+  looks.near(witnesses(sums, Vector6d::Zero()), 0.0, 0.0);
+  OpenDirections open(radius_m);
+  open.add(Vector6d::Unit(4));
+  Vector6d variances;
+  variances << 1e-6, 2e-6, 3e-6, 4e-4, 100.0, 5e-4;
+  const Vector6d of_xi = variances.cwiseQuotient(root.cwiseAbs2());
+  const Vector6d wider = widened_by_witnesses(of_xi.asDiagonal(), sums, open).diagonal().cwiseQuotient(of_xi);
+  const double by_all = student_over_normal(blocks - 1.0), by_three = student_over_normal(2.0);
+  Vector6d expected = Vector6d::Constant(by_all * by_all);
+  expected[3] = by_three * by_three;
+  expected[4] = 1.0;
+  for (int k = 0; k < 6; ++k) looks.near(wider[k], expected[k], grain * expected[k]);
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> pose_covariance_cases() {
@@ -198,6 +265,10 @@ std::vector<StressCase> pose_covariance_cases() {
              [radius_m] { return open_directions_algebra(radius_m); });
   for (const int blocks : {8, 20, 60})
     rows.add("pose_covariance/covariance_of_" + std::to_string(blocks) + "_blocks", [blocks] { return forms(blocks); });
+  rows.add("pose_covariance/bounds_of_few", student_bounds);
+  for (const int blocks : {30, 200})
+    rows.add("pose_covariance/told_by_few_of_" + std::to_string(blocks) + "_blocks",
+             [blocks] { return told_by_few(blocks); });
   return rows.take();
 }
 

@@ -9,7 +9,7 @@
 
 #include "canyon/core/math/chi_square.h"
 #include "canyon/core/units.h"
-#include "canyon/lidar/registration/engine/covariance_forms.h"
+#include "canyon/lidar/registration/engine/witnesses.h"
 
 namespace canyon::lidar {
 namespace {
@@ -31,6 +31,9 @@ constexpr double kWidest_m = 0.2 / 3.0;
 constexpr double kWidest_rad = 0.5 / 3.0 * kDegree;
 constexpr double kProbability = 1e-3;
 constexpr int kMostOpenings = 6;  // each opens a direction
+// By how much what open directions lean by is above what scatter says of it, of variances: measured
+// (docs/registration.md).
+constexpr double kLeaning = 1.5;
 
 }  // namespace
 
@@ -52,16 +55,23 @@ const CovarianceSums& Aligner::sums_at(FoundPose& at) const {
   return *at.sums;
 }
 
-/// By the surfaces and with `B`; open directions have kUnconstrainedSigma_m, and the others what those lean by.
-RegistrationPrecision Aligner::precision_at(FoundPose& at, const Matrix6d& B, const OpenDirections& open) const {
+/// By the surfaces and as `form` says; open directions have kUnconstrainedSigma_m, and the others what those lean by.
+RegistrationPrecision Aligner::precision_at(FoundPose& at, const CovarianceForm& form, const OpenDirections& open) {
   const CovarianceSums& sums = sums_at(at);
-  RegistrationPrecision precision = registration_precision(sums, B);
+  const auto guesses = form.restarts ? restarts(at) : std::vector<Vector6d>();
+  RegistrationPrecision precision =
+      registration_precision(sums, form.gradient({sums, engine_.point_sigma_m, engine_.range_bias_m, guesses}));
   if (!precision.covariance.allFinite()) return precision;
+  if (form.by_witnesses) {
+    OpenDirections all = open;
+    for (const Vector6d& v : precision.open) all.add(v);
+    precision.covariance = widened_by_witnesses(precision.covariance, sums, all);
+  }
   precision.covariance += 4.0 * at.last_step * at.last_step.transpose();
   const auto& prior = search_.prior();
   if (open.empty() || !prior) return precision;
   precision.covariance = open.with_open(precision.covariance, kUnconstrainedSigma_m) +
-                         kInflation * open.leaning(sums.block_surfaces, prior->covariance_at(at.X));
+                         kLeaning * open.leaning(sums.block_surfaces, prior->covariance_at(at.X));
   return precision;
 }
 
@@ -74,7 +84,7 @@ bool Aligner::keep_open_at_prior(Place& place) {
   for (int pass = 0; pass < kMostOpenings; ++pass) {
     const CovarianceSums& sums = sums_at(at);
     if (sums.matched < kFewestPoints) return true;
-    const RegistrationPrecision precision = precision_at(at, kInflation * gradient_scatter(sums), open);
+    const RegistrationPrecision precision = precision_at(at, model_row(covariance_forms(), "calibrated").make, open);
     if (!precision.covariance.allFinite() || precision.open.size() >= 6) return false;
     const std::size_t before = open.open().size();
     for (const Vector6d& v : precision.open) open.add(v);
@@ -217,11 +227,8 @@ RegistrationResult Aligner::align() {
     result.status = RegistrationStatus::kTooLittleOverlap;
     return result;
   }
-  const CovarianceSums& sums = sums_at(at);
-  const auto& form = model_row(covariance_forms(), engine_.covariance).make;
-  const auto guesses = form.restarts ? restarts(at) : std::vector<Vector6d>();
   const RegistrationPrecision precision =
-      precision_at(at, form.gradient({sums, engine_.point_sigma_m, engine_.range_bias_m, guesses}), best.open);
+      precision_at(at, model_row(covariance_forms(), engine_.covariance).make, best.open);
   result.status = RegistrationStatus::kDegenerate;
   if (!best.determined || !precision.covariance.allFinite() || precision.open.size() >= 6) return result;
   result.X_TS = at.X;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "canyon/lidar/registration/engine/covariance_forms.h"
 #include "canyon/lidar/registration/engine/pose_search.h"
 
 namespace canyon::lidar {
@@ -25,7 +26,7 @@ class Aligner {
 
   std::vector<Place> places();
   const CovarianceSums& sums_at(FoundPose& at) const;
-  RegistrationPrecision precision_at(FoundPose& at, const Matrix6d& B, const OpenDirections& open) const;
+  RegistrationPrecision precision_at(FoundPose& at, const CovarianceForm& form, const OpenDirections& open);
   bool keep_open_at_prior(Place& place);
   Pose by_surfaces(const FoundPose& at, const OpenDirections& open);
   std::vector<double> unexplained(const FoundPose& at) const;

@@ -19,10 +19,6 @@ Matrix6d sandwich(const CovarianceCase& of) {
   return gradient_scatter(of.sums);
 }
 
-Matrix6d calibrated(const CovarianceCase& of) {
-  return kInflation * gradient_scatter(of.sums);
-}
-
 /// Censi 2007, "An accurate closed-form estimate of ICP's covariance": independent noise of each matched point of both
 /// clouds through the implicit function of the minimum.
 Matrix6d censi(const CovarianceCase& of) {
@@ -63,12 +59,12 @@ Matrix6d guess_and_bias(const CovarianceCase& of) {
 }
 
 constexpr ModelRow<CovarianceForm> kForms[] = {
-    {"hessian", {hessian, false}, "every residual by itself: s^2 A^-1, known to be far too small"},
-    {"sandwich", {sandwich, false}, "from the residuals themselves, by blocks of the cloud"},
-    {"calibrated", {calibrated, false}, "the sandwich times what it was found too small by"},
-    {"censi", {censi, false}, "independent noise of the points alone, known to be too small"},
-    {"sampled", {sampled, false}, "bootstrap over blocks of the cloud"},
-    {"guess_and_bias", {guess_and_bias, true}, "where other guesses end, noise, and a bias of all ranges"},
+    {"hessian", {hessian, false, false}, "every residual by itself: s^2 A^-1, known to be far too small"},
+    {"sandwich", {sandwich, false, false}, "from the residuals themselves, by blocks of the cloud"},
+    {"calibrated", {sandwich, false, true}, "the sandwich, wider where few blocks tell of a direction"},
+    {"censi", {censi, false, false}, "independent noise of the points alone, known to be too small"},
+    {"sampled", {sampled, false, false}, "bootstrap over blocks of the cloud"},
+    {"guess_and_bias", {guess_and_bias, true, false}, "where other guesses end, noise, and a bias of all ranges"},
 };
 
 }  // namespace

@@ -7,9 +7,6 @@
 
 namespace canyon::lidar {
 
-/// By how much the default form is above the sandwich, of variances: measured (docs/registration.md).
-inline constexpr double kInflation = 1.5;
-
 /// What a form of covariance is made from.
 struct CovarianceCase {
   const CovarianceSums& sums;
@@ -22,7 +19,8 @@ struct CovarianceCase {
 /// How sure a result is: the covariance of the gradient at the solution, B in A^-1 B A^-1 (registration_covariance.h).
 struct CovarianceForm {
   Matrix6d (*gradient)(const CovarianceCase& of);
-  bool restarts;  ///< needs them
+  bool restarts;      ///< needs them
+  bool by_witnesses;  ///< widened by how few blocks tell of a direction (witnesses.h)
 };
 ModelTable<CovarianceForm> covariance_forms();
 

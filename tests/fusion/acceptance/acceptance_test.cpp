@@ -108,12 +108,8 @@ double lost_after_s(const char* row, const std::string& keys, const std::functio
     const Measurement::Vector residual = at.off_m;
     const Measurement::Square R = Measurement::Square::Identity(3, 3);
     at.nis = residual.squaredNorm() / 1.1;
-    const Decision d = model->decide({.t = kStart + t_s,
-                                      .residual = residual,
-                                      .R = R,
-                                      .predicted = 0.1 * R,
-                                      .nis = at.nis,
-                                      .place = &at});
+    const Decision d = model->decide(
+        {.t = kStart + t_s, .residual = residual, .R = R, .predicted = 0.1 * R, .nis = at.nis, .place = &at});
     EXPECT_TRUE(d.accepted);
     if (d.loosening > 1.0) return t_s;
     model->moved(moved_m, true);
