@@ -9,14 +9,19 @@ namespace canyon::inertial {
 
 std::vector<StressCase> aiding_cases();
 std::vector<StressCase> allan_cases();
+std::vector<StressCase> average_cases();
 std::vector<StressCase> calibration_cases();
 std::vector<StressCase> deviation_cases();
+std::vector<StressCase> element_cases();
 std::vector<StressCase> error_chain_cases();
 std::vector<StressCase> gauss_markov_cases();
+std::vector<StressCase> given_figure_cases();
 std::vector<StressCase> imu_log_cases();
 std::vector<StressCase> increment_cases();
+std::vector<StressCase> link_cases();
 std::vector<StressCase> motion_cases();
 std::vector<StressCase> paper_recursion_cases();
+std::vector<StressCase> path_cases();
 std::vector<StressCase> proof_mass_cases();
 std::vector<StressCase> spline_cases();
 std::vector<StressCase> unit_log_cases();
