@@ -54,7 +54,8 @@ void LostWay::push() {
   if (count_ > 0 && (now_.t - at(count_ - 1).t < p_.lost_after_s / kSpaced ||
                      now_.way_m - at(count_ - 1).way_m < p_.lost_after_m / kSpaced))
     return;
-  while (count_ > 1 && (count_ == kMost || spans(at(1)))) {
+  // Fixes that are far between: as many as are asked for stay, however long they take.
+  while (count_ > 1 && (count_ == kMost || (count_ >= kFewest && spans(at(1))))) {
     first_ = (first_ + 1) % kMost;
     --count_;
   }
