@@ -283,6 +283,50 @@ StressFigure entry_of_rest() {
   return looks.figure();
 }
 
+/// A whole unit beside a reference that moves on all axes: its triads, to five deviations of 4000 samples over motions
+/// of 0.3 rad/s and 2 m/s^2; and what they leave is its own white noise, of known size: five deviations of so many
+/// differences, 7 %, and gains of 2 % an element beside. A reference without a channel is none.
+StressFigure against_reference() {
+  if (!can_fit_noise()) return {0.0, 1.0};
+  Looks looks;
+  constexpr std::size_t kN = 4000;
+  constexpr double kStep_s = 0.02, kNoise[2] = {1e-3, 2e-2};
+  const std::array<MadeTriad, 2> triads{made_triad(11, false), made_triad(12, false)};
+  const RandomStream draws(9, "stress.against_reference");
+  ImuLog log, truth;
+  for (std::size_t k = 0; k < kN; ++k) {
+    const double t = kStep_s * static_cast<double>(k + 1);
+    const Vector3d rate = 0.4 * Vector3d(std::sin(0.9 * t), std::cos(0.6 * t), std::sin(0.35 * t + 1.0)),
+                   force = 3.0 * Vector3d(std::cos(0.8 * t), std::sin(0.5 * t), std::cos(1.1 * t)) +
+                           Vector3d(0.0, 0.0, 9.8);
+    push(truth, t, rate, force);
+    push(log, t, triads[0].measured(rate) + kNoise[0] * draws.normal3(k, 0),
+         triads[1].measured(force) + kNoise[1] * draws.normal3(k, 1));
+  }
+  const auto unit = fit_to_truth({log, "some/where/unit.csv"}, {truth, "else/where/reference.csv"});
+  if (!unit) return {stress::kInfinity, 1.0};
+  looks.right(unit->name == "unit" && unit->log == "unit.csv" && unit->noise.size() == 6);
+  looks.near(unit->rate_hz, 50.0, 1e-9), looks.near(unit->duration_s, kN * kStep_s, 1e-9);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (!unit->calibration[i]) return {stress::kInfinity, 1.0};
+    const TriadCalibration& found = *unit->calibration[i];
+    const double mean = 5.0 * kNoise[i] / std::sqrt(1.0 * kN), size = i == 0 ? 0.4 : 3.0;
+    // The accelerometer's bias goes with gravity times its gain.
+    looks.near((found.bias - triads[i].bias).norm(), 0.0, 3.0 * mean * (i == 0 ? 1.0 : 1.0 + 9.8 / size));
+    looks.near((found.gain - triads[i].gain).norm(), 0.0, 5.0 * mean / size);
+    looks.near(unit->bias[i], found.bias.norm() / std::sqrt(3.0), 1e-15);
+    looks.right(unit->calibration_source[i].find("unit.csv against the reference reference.csv") != std::string::npos);
+    looks.right(found.used == kN);
+  }
+  for (const ChannelNoise& noise : unit->noise)
+    looks.near(noise.points.front().deviation / kNoise[noise.channel < 3 ? 0 : 1], 1.0, 0.15);
+  ImuLog lacking = truth;
+  lacking.channels[4].clear();
+  looks.right(!fit_to_truth({log, "unit.csv"}, {lacking, "reference.csv"}) &&
+              !fit_to_truth({lacking, "unit.csv"}, {truth, "reference.csv"}));
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> calibration_cases() {
@@ -295,6 +339,7 @@ std::vector<StressCase> calibration_cases() {
   rows.add("calibrations/laid_down", laid_down);
   rows.add("calibrations/beside_another_rate", another_rate);
   rows.add("calibrations/entry_of_a_rest", entry_of_rest);
+  rows.add("calibrations/against_a_reference", against_reference);
   return rows.take();
 }
 

@@ -27,7 +27,8 @@ ErrorStateFilter begun(const Drive& drive) {
 }
 
 /// What a gap makes less sure is told once, with its length: of a sample that did not arrive its own interval, of
-/// missing ones their time; and how long was bridged in all. Half an interval late or early is no gap.
+/// missing ones their time; and how long was bridged in all: roundings of a second. Half an interval late or early is
+/// no gap.
 StressFigure told_of_gaps() {
   Looks looks;
   RestingFilter rest({}, usual_noise(), 100.0);
@@ -51,7 +52,7 @@ StressFigure told_of_gaps() {
   lengths.push_back(0.01);
   looks.right(timeline.add(sample(14)) == Trouble::kGap);  // three are missing
   lengths.push_back(0.03);
-  looks.near(timeline.bridged_s(), 0.03, 1e-9);
+  looks.near(timeline.bridged_s(), 0.03, 16.0 * kEpsilon);
   looks.right(timeline.add(sample(15)) == Trouble::kNone);
   ImuSample late = sample(16);
   late.t.ns += 4'000'000;
@@ -63,11 +64,12 @@ StressFigure told_of_gaps() {
   lengths.push_back(0.006);
   looks.right(timeline.add(sample(100)) == Trouble::kGap);
   lengths.push_back(0.81);
-  looks.near(timeline.bridged_s(), 0.03 + 0.006 + 0.81, 1e-8);
+  looks.near(timeline.bridged_s(), 0.03 + 0.006 + 0.81, 16.0 * kEpsilon);
   looks.right(told.size() == lengths.size());
   for (std::size_t i = 0; i < told.size() && i < lengths.size(); ++i) {
-    looks.near(told[i][0], 3.0 * kDegree * lengths[i], 1e-9), looks.near(told[i][2], 0.7 * lengths[i], 1e-8);
-    looks.near(told[i][1], 0.5 * 0.7 * lengths[i] * lengths[i], 1e-8);
+    looks.near(told[i][0], 3.0 * kDegree * lengths[i], 64.0 * kEpsilon),
+        looks.near(told[i][2], 0.7 * lengths[i], 64.0 * kEpsilon);
+    looks.near(told[i][1], 0.5 * 0.7 * lengths[i] * lengths[i], 64.0 * kEpsilon);
   }
   looks.right(timeline.incidents().count(Trouble::kGap) == 3 && timeline.incidents().count(Trouble::kLost) == 1);
   looks.right(timeline.incidents().first(Trouble::kGap) == sample(14).t);

@@ -495,13 +495,13 @@ StressFigure linearized(double dt_s, double turn_rad) {
   // What is left out of theta is nothing; of v and p the square of the turn in the step, and the Earth's cube and its
   // product with the turn; differences leave the square of their angle, and of a place what gravity's gradient, itself
   // a difference, is good to. Places round by an epsilon of the Earth's radius, attitudes and speeds by theirs.
-  const auto look = [&](const Vector9& found, const Vector9& expected, double by, double differences) {
+  const auto look = [&](const Vector9& found, const Vector9& expected, double by, double differences, double beside) {
     for (int block = 0; block < 3; ++block) {
       const double size = expected.segment<3>(3 * block).norm();
       const double order = block == 0 ? 0.0 : turn_rad * turn_rad + earth * turn_rad + earth * earth * earth;
       const double rounded = (block == 1 ? 4.0 * 6.4e6 : block == 2 ? 200.0 : 8.0) * kEpsilon / by;
       looks.near((found.segment<3>(3 * block) - expected.segment<3>(3 * block)).norm(), 0.0,
-                 size * (order + differences) + rounded);
+                 size * (order + differences) + rounded + (block == 0 ? 0.0 : beside));
     }
   };
   const double h = dt_s;
@@ -512,7 +512,11 @@ StressFigure linearized(double dt_s, double turn_rad) {
     expected.head<3>() = J.theta_theta * unit.head<3>();
     expected.tail<3>() = J.v_theta * unit.head<3>() + J.v_p * unit.segment<3>(3) + J.v_v * unit.tail<3>();
     expected.segment<3>(3) = unit.segment<3>(3) + 0.5 * h * (unit.tail<3>() + expected.tail<3>());
-    look(slope(by * unit, Vector3d::Zero(), Vector3d::Zero(), by), expected, by, j < 3 ? 2e-8 : j < 6 ? 1e-4 : 3e-10);
+    look(slope(by * unit, Vector3d::Zero(), Vector3d::Zero(), by), expected, by,
+         j < 3   ? 2e-8
+         : j < 6 ? 1e-4
+                 : 3e-10,
+         0.0);
   }
   for (int j = 0; j < 6; ++j) {
     const Vector3d gyro = j < 3 ? Vector3d(Vector3d::Unit(j)) : Vector3d(Vector3d::Zero()),
@@ -524,10 +528,10 @@ StressFigure linearized(double dt_s, double turn_rad) {
     expected.tail<3>() = J.v_accel * accel * h + J.v_gyro * gyro * (0.5 * h * h);
     // The step's own place is the trapezoid of speeds.
     expected.segment<3>(3) = 0.5 * h * expected.tail<3>();
-    // A turn within the step turns the force by its own square too, of which the first order has two thirds of the
-    // turn.
-    look(slope(Vector9::Zero(), by * gyro, by * accel, by), expected, by,
-         j < 3 ? 2e-8 + 2.0 / 3.0 * (turn_rad + earth) : 2e-9);
+    // A turn within the step turns the force by its own square too: of half the force the first order has two thirds of
+    // the turn, whatever part of it lies across the axis.
+    const double squared = j < 3 ? 2.0 / 3.0 * (turn_rad + earth) * 0.55 * h * in.dv_U.norm() : 0.0;
+    look(slope(Vector9::Zero(), by * gyro, by * accel, by), expected, by, j < 3 ? 2e-8 : 2e-9, squared);
   }
   // In axes that stand still.
   const StepJacobian still(before.R_EU, in, imu);
