@@ -9,11 +9,11 @@ namespace canyon::gnss {
 std::vector<StressCase> stress_cases() {
   std::vector<StressCase> all;
   for (const auto& subject :
-       {orbit_cases,       light_time_cases,  dilution_cases,   solver_cases,    filter_cases,    atmosphere_cases,
-        paper_cases,       process_cases,     correlator_cases, lock_cases,      wave_cases,      product_cases,
-        time_border_cases, place_cases,       way_cases,        sensor_cases,    file_cases,      fitted_orbit_cases,
-        street_cases,      pseudorange_cases, accuracy_cases,   recording_cases, reception_cases, clutter_cases,
-        need_cases,        nominal_cases,     edge_cases})
+       {orbit_cases,       light_time_cases,  dilution_cases,   solver_cases,    filter_cases,     atmosphere_cases,
+        paper_cases,       process_cases,     correlator_cases, lock_cases,      wave_cases,       product_cases,
+        time_border_cases, place_cases,       way_cases,        sensor_cases,    file_cases,       fitted_orbit_cases,
+        street_cases,      pseudorange_cases, accuracy_cases,   recording_cases, reception_cases,  clutter_cases,
+        need_cases,        nominal_cases,     edge_cases,       tracking_cases,  considered_cases, drive_cases})
     for (StressCase& one : subject()) all.push_back(std::move(one));
   return all;
 }
