@@ -20,6 +20,7 @@ std::vector<StressCase> lock_cases();
 std::vector<StressCase> tracking_cases();
 std::vector<StressCase> considered_cases();
 std::vector<StressCase> drive_cases();
+std::vector<StressCase> sent_cases();
 std::vector<StressCase> wave_cases();
 std::vector<StressCase> product_cases();
 std::vector<StressCase> time_border_cases();
