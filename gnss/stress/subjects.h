@@ -21,6 +21,8 @@ std::vector<StressCase> tracking_cases();
 std::vector<StressCase> considered_cases();
 std::vector<StressCase> drive_cases();
 std::vector<StressCase> sent_cases();
+std::vector<StressCase> shortcut_cases();
+std::vector<StressCase> wall_cases();
 std::vector<StressCase> wave_cases();
 std::vector<StressCase> product_cases();
 std::vector<StressCase> time_border_cases();
