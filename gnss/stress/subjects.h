@@ -23,6 +23,7 @@ std::vector<StressCase> drive_cases();
 std::vector<StressCase> sent_cases();
 std::vector<StressCase> shortcut_cases();
 std::vector<StressCase> wall_cases();
+std::vector<StressCase> air_cases();
 std::vector<StressCase> wave_cases();
 std::vector<StressCase> product_cases();
 std::vector<StressCase> time_border_cases();
