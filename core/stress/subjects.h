@@ -8,8 +8,10 @@
 namespace canyon {
 
 std::vector<StressCase> chi_square_cases();
+std::vector<StressCase> draw_cases();
 std::vector<StressCase> earth_cases();
 std::vector<StressCase> geoid_cases();
+std::vector<StressCase> motion_cases();
 std::vector<StressCase> number_cases();
 std::vector<StressCase> random_cases();
 std::vector<StressCase> rotation_cases();
