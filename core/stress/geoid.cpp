@@ -1,7 +1,9 @@
 #include "canyon/core/earth/geoid.h"
 
+#include <string>
 #include <vector>
 
+#include "canyon/core/earth/geoid_grid.h"
 #include "canyon/core/stress/subjects.h"
 #include "canyon/core/stress_rows.h"
 #include "canyon/core/units.h"
@@ -58,6 +60,47 @@ StressFigure beyond_the_table() {
   return {1.0 * passed, 0.0};
 }
 
+/// A smooth surface over the sphere, whose harmonics of third degree ten points 5 degrees apart meet to 1e-7 m.
+double smooth_m(double lat, double lon) {
+  const double c = std::cos(lat), s = std::sin(lat);
+  return 3.0 + 20.0 * s + 15.0 * c * std::cos(lon - 0.4) + 12.0 * c * c * std::sin(2.0 * lon) +
+         8.0 * s * c * c * std::cos(2.0 * lon);
+}
+std::string made_grid(int rows, double offset_m, double scale_m) {
+  std::string out = "P5\n# a made grid\n# Offset " + std::to_string(offset_m) + "\n# Scale " + std::to_string(scale_m) +
+                    "\n" + std::to_string(2 * (rows - 1)) + " " + std::to_string(rows) + "\n65535\n";
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < 2 * (rows - 1); ++column) {
+      const double step = kPi / (rows - 1), lat = 0.5 * kPi - row * step, lon = column * step;
+      const auto sample = static_cast<int>(std::lround((smooth_m(lat, lon) - offset_m) / scale_m));
+      out += static_cast<char>(sample / 256), out += static_cast<char>(sample % 256);
+    }
+  return out;
+}
+
+/// Half a unit of the grid's scale, by the weights' magnitudes of 9; everywhere, over poles and Greenwich too.
+StressFigure made_surface() {
+  Worst worst;
+  const std::string text = made_grid(37, -60.0, 0.002);
+  const GeoidGrid grid(text);
+  for (double lat = -1.57; lat < 1.58; lat += 0.0317)
+    for (double lon = -7.0; lon < 7.0; lon += 0.239)
+      worst.look(grid.undulation_m({lat, lon, 0.0}) - smooth_m(lat, lon), 0.001 * 9.0);
+  return worst.figure();
+}
+
+StressFigure grids_that_are_none() {
+  int passed = 0;
+  const std::string good = made_grid(7, -60.0, 0.002);
+  for (const std::string& bad : {good.substr(1), good.substr(0, good.size() - 1), good + "x",
+                                 std::string(good).replace(good.find("65535"), 5, "00255"),
+                                 std::string(good).replace(good.find("Offset"), 6, "offset"),
+                                 std::string(good).replace(good.find("Scale"), 5, "scale"),
+                                 std::string(good).replace(good.find("12 7"), 4, "14 6")})
+    passed += stress::not_refused([&] { return GeoidGrid(bad); });
+  return {1.0 * passed, 0.0};
+}
+
 }  // namespace
 
 std::vector<StressCase> geoid_cases() {
@@ -78,6 +121,13 @@ std::vector<StressCase> geoid_cases() {
       .loose("on a row of the table all weights but ten are zero, so that little is summed");
   rows.of(border).add("geoid/across_its_borders", across_borders);
   rows.of(beyond).add("geoid/beyond_its_table", beyond_the_table);
+  rows.of({group, "a surface that is known, on a grid",
+           "weights of the points beside, a row for a column, bytes in the other order",
+           "the surface itself, to half a unit of the grid's scale", "of the bound"});
+  rows.add("geoid/made_surface", made_surface);
+  rows.of({StressGroup::kData, "grids that are none", "a size that does not fit its samples", "each is refused",
+           "let through"});
+  rows.add("geoid/grids_that_are_none", grids_that_are_none);
   return rows.take();
 }
 
