@@ -27,6 +27,7 @@ std::vector<StressCase> air_cases();
 std::vector<StressCase> epoch_cases();
 std::vector<StressCase> asked_cases();
 std::vector<StressCase> made_cases();
+std::vector<StressCase> signal_cases();
 std::vector<StressCase> wave_cases();
 std::vector<StressCase> product_cases();
 std::vector<StressCase> time_border_cases();
