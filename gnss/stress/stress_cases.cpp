@@ -13,7 +13,7 @@ std::vector<StressCase> stress_cases() {
         paper_cases,       process_cases,     correlator_cases, lock_cases,      wave_cases,       product_cases,
         time_border_cases, place_cases,       way_cases,        sensor_cases,    file_cases,       fitted_orbit_cases,
         street_cases,      pseudorange_cases, accuracy_cases,   recording_cases, reception_cases,  clutter_cases,
-        need_cases,        nominal_cases,     edge_cases,       tracking_cases,  considered_cases, drive_cases,
+        need_cases,        nominal_cases,     edge_cases,       tracking_cases,  considered_cases, receiver_drive_cases,
         sent_cases,        shortcut_cases,    wall_cases,       air_cases,       epoch_cases,      asked_cases,
         made_cases,        signal_cases})
     for (StressCase& one : subject()) all.push_back(std::move(one));

@@ -19,7 +19,7 @@ std::vector<StressCase> correlator_cases();
 std::vector<StressCase> lock_cases();
 std::vector<StressCase> tracking_cases();
 std::vector<StressCase> considered_cases();
-std::vector<StressCase> drive_cases();
+std::vector<StressCase> receiver_drive_cases();
 std::vector<StressCase> sent_cases();
 std::vector<StressCase> shortcut_cases();
 std::vector<StressCase> wall_cases();

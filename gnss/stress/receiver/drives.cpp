@@ -327,20 +327,20 @@ StressFigure sheets_of_receivers() {
 
 }  // namespace
 
-std::vector<StressCase> drive_cases() {
+std::vector<StressCase> receiver_drive_cases() {
   StressRows rows;
   rows.of({.group = StressGroup::kData,
            .mechanism = "a drive of a receiver by itself",
            .why = "a way in the wrong frame, an epoch too many, fixes that count twice or not at all",
            .expected = "places, counts and figures as they were put in: roundings of places on Earth",
            .unit = "of the bound"});
-  rows.add("drives/straight_on", straight_drive).add("drives/tables", tables_of_looks);
+  rows.add("receiver_drives/straight_on", straight_drive).add("receiver_drives/tables", tables_of_looks);
   rows.of({StressGroup::kGeometry, "heights that models cover", "a limit the other way round, a depth for a height",
            "from -500 m to 20 km, a micrometre beyond it: exact", "wrong"});
-  rows.add("drives/heights_covered", heights_covered);
+  rows.add("receiver_drives/heights_covered", heights_covered);
   rows.of({StressGroup::kData, "sheets of receivers", "a figure that may be missing, a contradiction that is none",
            "each figure and source is asked for, and what contradicts is refused: exact", "wrong"});
-  rows.add("drives/sheets_of_receivers", sheets_of_receivers);
+  rows.add("receiver_drives/sheets_of_receivers", sheets_of_receivers);
   return rows.take();
 }
 
