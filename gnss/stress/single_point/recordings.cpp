@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "canyon/core/earth/earth.h"
@@ -12,6 +13,7 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/atmosphere/klobuchar.h"
 #include "canyon/gnss/atmosphere/troposphere.h"
+#include "canyon/gnss/products/ionex_file.h"
 #include "canyon/gnss/rinex/observation/observation_file.h"
 #include "canyon/gnss/rinex/observation/observation_writer.h"
 #include "canyon/gnss/satellites/navigation_data.h"
@@ -203,6 +205,55 @@ StressFigure whole(const std::string& how) {
   return looks.figure();
 }
 
+/// What cannot be solved is said, and what just can is not: maps that end with the recording or a second sooner, models
+/// without coefficients, a base of another time, systems that were not observed, no ephemeris at all. And with maps of
+/// one value, ranges come out as without them where that value is none.
+StressFigure what_cannot_be_solved() {
+  int wrong = 0;
+  const NavigationData navigation = day_of_four_systems();
+  const auto constellation = make_broadcast(navigation);
+  const Vector3d place_E = ecef_from_geodetic({48.0 * kDegree, 11.0 * kDegree, 520.0});
+  const auto none_m = [](GnssSystem, const SkyView&) { return 0.0; };
+  const ObservationFile file = recorded(navigation, place_E, Vector3d::Zero(), none_m, standard_troposphere_m);
+  const GpsTime first = file.epochs.front().t, last = file.epochs.back().t;
+  SinglePointConfig c;
+  c.systems = "GEC", c.ionosphere = IonosphereCorrection::kNone, c.shared_ionosphere = 0.0;
+  const auto solves = [&](const SinglePointInputs& inputs) {
+    const auto r = solve_observations(file, inputs, c);
+    return r.ok() && r->solved() == 10 && (r->epochs[3].fix.p_A_E - place_E).norm() < 0.1;
+  };
+  wrong += solves({*constellation, navigation}) ? 0 : 1;
+  c.ionosphere = IonosphereCorrection::kIonex;
+  wrong += solves({*constellation, navigation}) ? 1 : 0;
+  for (const auto& [sooner_s, later_s, good] :
+       {std::tuple{0.0, 0.0, true}, {-100.0, 100.0, true}, {1.0, 100.0, false}, {-100.0, -1.0, false}}) {
+    IonexMaps maps;
+    maps.lat_first_deg = 87.5, maps.lat_step_deg = -87.5, maps.lon_first_deg = -180.0, maps.lon_step_deg = 180.0;
+    maps.latitudes = 3, maps.longitudes = 3;
+    for (const GpsTime t : {first + sooner_s, last + later_s}) maps.maps.push_back({t, std::vector<double>(9, 0.0)});
+    wrong += solves({*constellation, navigation, &maps}) == good ? 0 : 1;
+  }
+  c.ionosphere = IonosphereCorrection::kKlobuchar;
+  NavigationData bare = navigation;
+  bare.klobuchar.clear();
+  wrong += solve_observations(file, {*constellation, bare}, c).ok() ? 1 : 0;
+  c.ionosphere = IonosphereCorrection::kNone;
+  for (const double off_s : {-29.0, 29.0, 400.0}) {
+    BaseRecording base{file, place_E};
+    for (ObservationEpoch& epoch : base.observations.epochs) epoch.t = epoch.t + off_s;
+    const auto r = solve_observations(file, {*constellation, navigation, nullptr, &base}, c);
+    // Within 30 s of some epoch of the base's, which come every 30 s.
+    wrong += r.ok() == (off_s < 300.0) ? 0 : 1;
+  }
+  const auto nothing = make_broadcast({});
+  wrong += solve_observations(file, {*nothing, navigation}, c).ok() ? 1 : 0;
+  for (const char* systems : {"", "X", "GG", "J"}) {
+    c.systems = systems;
+    wrong += solve_observations(file, {*constellation, navigation}, c).ok() ? 1 : 0;
+  }
+  return {1.0 * wrong, 0.0};
+}
+
 }  // namespace
 
 std::vector<StressCase> recording_cases() {
@@ -214,6 +265,10 @@ std::vector<StressCase> recording_cases() {
            .unit = "of the bound"});
   for (const char* how : {"single", "smoothed", "dual", "moving", "filtered", "differential"})
     rows.add(std::string("recordings/whole_") + how, [name = std::string(how)] { return whole(name); });
+  rows.of({StressGroup::kData, "recordings that cannot be solved",
+           "maps that end a second too soon, a base of another hour",
+           "each is said, and what just can be solved is: exact", "wrong"});
+  rows.add("recordings/what_cannot_be_solved", what_cannot_be_solved);
   return rows.take();
 }
 
