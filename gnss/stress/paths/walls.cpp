@@ -255,6 +255,12 @@ StressFigure clutter_of_walls(double moving_share, double echo_db) {
   for (const Vector3d& antenna : {Vector3d(1.0, 3.0, 2.0), Vector3d(-9.0, -20.0, 1.5)}) {
     std::vector<SignalPaths> out(sky.size());
     for (std::size_t k = 0; k < sky.size(); k += 2) out[k].line_of_sight = false, out[k].direct = 0.3;
+    // One that comes of many scatterers already.
+    SignalPath many;
+    many.excess_m = 4.0, many.copolar = {0.2, 0.1}, many.crosspolar = {0.0, -0.3},
+    many.arrival_W = Vector3d(0.6, 0.0, 0.8);
+    many.gathered_copolar = 0.06, many.gathered_crosspolar = 0.11;
+    out[3].echoes.push_back(many);
     GnssCounters counters;
     model->trace(antenna, waves, at, out, counters);
     std::vector<ClutterScatterer> near;
@@ -315,6 +321,15 @@ StressFigure clutter_of_walls(double moving_share, double echo_db) {
       }
       std::vector<SignalPath> expected;
       bins.append(0.5 * std::pow(10.0, -60.0 / 20.0), SignalPath::kClutter, expected);
+      if (k == 3) {
+        const double left = std::pow(10.0, shading.level_db(antenna, many.arrival_W, waves.t()) / 20.0);
+        const SignalPath first = out[k].echoes.front();
+        looks.near(std::abs(first.copolar - left * many.copolar), 0.0, 1e-14);
+        looks.near(std::abs(first.crosspolar - left * many.crosspolar), 0.0, 1e-14);
+        looks.near(first.gathered_copolar, left * left * 0.06, 1e-14);
+        looks.near(first.gathered_crosspolar, left * left * 0.11, 1e-14);
+        out[k].echoes.erase(out[k].echoes.begin());
+      }
       looks.right(out[k].echoes.size() == expected.size() && expected.size() > 1);
       if (out[k].echoes.size() != expected.size()) continue;
       for (std::size_t e = 0; e < expected.size(); ++e) {

@@ -520,6 +520,10 @@ StressFigure whole_epochs(bool dual, bool reported) {
       claimed = covariance_of_fit(ranges, errors->sigma_m(evidence_of(ranges, signals, last)), last);
     }
     looks.near((fix.covariance_E - claimed).norm(), 0.0, 1e-7 * claimed.norm());
+    // What nobody tests holds, as long as there is a solution and its geometry is good enough.
+    looks.right(decisions_hold(last, made, 1e3, 1.02 * last.dop.gdop) &&
+                !decisions_hold(last, made, 0.0, last.dop.gdop));
+    looks.right(!decisions_hold(PositionSolution{}, made, 0.0, 1e9));
     // Given out, or not.
     const double sigma_m = std::sqrt(fix.covariance_E.trace());
     for (const auto& [fewest, limit_m, given] :
