@@ -47,7 +47,7 @@ double student_over_normal(double degrees) {
 
 Matrix6d widened_by_witnesses(const Matrix6d& covariance, const CovarianceSums& sums, const OpenDirections& open) {
   const Eigen::MatrixXd C = open.closed_basis(), D = open.closed_dual();
-  if (C.cols() == 0) return covariance;
+  if (C.cols() == 0 || sums.block_surfaces.size() < kFewestBlocks) return covariance;
   const Eigen::MatrixXd S = D * covariance * D.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (S + S.transpose()));
   const Eigen::PartialPivLU<Eigen::MatrixXd> A(C.transpose() * sums.A * C);

@@ -16,7 +16,8 @@ double student_over_normal(double degrees);
 
 /// `covariance` with each of its principal axes among the closed directions as wide as the number of its witnesses
 /// makes it, less one that their mean takes: scatter of few says little of their error (Bell and McCaffrey 2002, of
-/// clusters). An axis with hardly more than one of them is as good as open.
+/// clusters). An axis with hardly more than one of them is as good as open. Of clouds with fewer than kFewestBlocks as
+/// it is: there the residuals of all blocks together tell of each.
 Matrix6d widened_by_witnesses(const Matrix6d& covariance, const CovarianceSums& sums, const OpenDirections& open);
 
 }  // namespace canyon::lidar
