@@ -123,8 +123,11 @@ TEST_P(ScanOverACorrection, IsDeskewedAsByTruth) {
   EXPECT_GT(by_estimate_m, 0.9 * corrected_m);
 }
 
+// A fix that states 7 m must count for enough to move the vehicle's filter by 4 m.
+constexpr const char* kVehicle = "filter = \"vehicle\"\nfix_error_power = 1\n";
+
 INSTANTIATE_TEST_SUITE_P(Filters, ScanOverACorrection,
-                         ::testing::Values(Start{"naive", "", true}, Start{"vehicle", "filter = \"vehicle\"\n", false}),
+                         ::testing::Values(Start{"naive", "", true}, Start{"vehicle", kVehicle, false}),
                          [](const auto& one) { return std::string(one.param.name); });
 
 /// A localizer along a winding drive, its place known to 20 m, with one fix 4 m off in the middle of a sample. The
