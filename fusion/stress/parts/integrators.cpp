@@ -493,7 +493,7 @@ StressFigure rounding() {
     e.t = state.t, e.position_enu_m = Vector3d(i < 800 ? 1e-4 * i : 0.0, 0.0, 0.0);
     e.velocity_enu_m_s = e.attitude_rad = Vector3d::Zero();
     errors.push_back(e);
-    largest = std::max(largest, e.position_enu_m.norm());
+    largest = worse(largest, e.position_enu_m.norm());
     if (first_beyond == 0 && alone.position_m() > largest) first_beyond = static_cast<std::size_t>(i);
     at_end = alone.position_m();
   }
