@@ -1,5 +1,6 @@
 #include "canyon/fusion/stress/stress_cases.h"
 
+#include "canyon/fusion/stress/integrators/subjects.h"
 #include "canyon/fusion/stress/parts/subjects.h"
 #include "canyon/fusion/stress/subjects.h"
 
@@ -15,7 +16,11 @@ std::vector<StressCase> stress_cases() {
                               estimator_cases,
                               fix_cases,
                               graph_cases,
-                              integrator_cases,
+                              integrator_step_cases,
+                              integrator_path_cases,
+                              omission_cases,
+                              integrator_log_cases,
+                              rounding_growth_cases,
                               measurement_cases,
                               measurement_model_cases,
                               record_cases,
