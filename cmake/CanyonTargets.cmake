@@ -22,7 +22,7 @@ endfunction()
 # canyon_join(TARGET): where headers are precompiled, up to eight files that follow one another are compiled as one, which more
 # than halves the work. So names in the unnamed namespaces of a folder differ. Rooms whose files are alike by design (verbs) stay
 # apart, and files with definitions of their own.
-set(CANYON_APART verbs verbs/lidar verbs/study stress stress/integrators stress/parts stress/paths stress/single_point tables contributing)
+set(CANYON_APART verbs verbs/lidar verbs/study stress stress/integrators stress/measurement_models stress/parts stress/paths stress/single_point tables contributing)
 function(canyon_join target)
   if(NOT CANYON_PRECOMPILED_HEADERS)
     return()

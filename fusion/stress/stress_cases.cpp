@@ -1,6 +1,7 @@
 #include "canyon/fusion/stress/stress_cases.h"
 
 #include "canyon/fusion/stress/integrators/subjects.h"
+#include "canyon/fusion/stress/measurement_models/subjects.h"
 #include "canyon/fusion/stress/parts/subjects.h"
 #include "canyon/fusion/stress/subjects.h"
 
@@ -22,7 +23,11 @@ std::vector<StressCase> stress_cases() {
                               integrator_log_cases,
                               rounding_growth_cases,
                               measurement_cases,
-                              measurement_model_cases,
+                              vehicle_motion_cases,
+                              single_reading_cases,
+                              measured_fix_cases,
+                              range_cases,
+                              lever_arm_cases,
                               record_cases,
                               reference_track_cases,
                               run_cases,

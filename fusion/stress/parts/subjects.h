@@ -8,7 +8,6 @@
 namespace canyon::fusion {
 
 std::vector<StressCase> arrival_cases();
-std::vector<StressCase> measurement_model_cases();
 std::vector<StressCase> run_cases();
 std::vector<StressCase> start_cases();
 std::vector<StressCase> state_cases();
