@@ -8,7 +8,9 @@
 namespace canyon::fusion {
 
 std::vector<StressCase> arrival_cases();
-std::vector<StressCase> run_cases();
+std::vector<StressCase> body_estimate_cases();
+std::vector<StressCase> run_graph_cases();
+std::vector<StressCase> run_message_cases();
 std::vector<StressCase> start_cases();
 std::vector<StressCase> state_cases();
 std::vector<StressCase> trust_cases();
