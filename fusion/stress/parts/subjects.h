@@ -9,10 +9,15 @@ namespace canyon::fusion {
 
 std::vector<StressCase> arrival_cases();
 std::vector<StressCase> body_estimate_cases();
+std::vector<StressCase> error_step_cases();
+std::vector<StressCase> given_setting_cases();
+std::vector<StressCase> lasting_error_cases();
+std::vector<StressCase> process_cases();
 std::vector<StressCase> run_graph_cases();
 std::vector<StressCase> run_message_cases();
+std::vector<StressCase> satellite_place_cases();
 std::vector<StressCase> start_cases();
-std::vector<StressCase> state_cases();
+std::vector<StressCase> state_block_cases();
 std::vector<StressCase> trust_cases();
 
 }  // namespace canyon::fusion
