@@ -28,6 +28,8 @@ std::vector<StressCase> wedge_bound_cases();
 std::vector<StressCase> carrier_cases();
 std::vector<StressCase> wall_cases();
 std::vector<StressCase> air_cases();
+std::vector<StressCase> fit_cases();
+std::vector<StressCase> fault_cases();
 std::vector<StressCase> epoch_cases();
 std::vector<StressCase> printed_antenna_cases();
 std::vector<StressCase> default_cases();
