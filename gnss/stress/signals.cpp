@@ -18,6 +18,7 @@
 #include "canyon/gnss/sensor/satellites_in_view.h"
 #include "canyon/gnss/sensor/sensor_models.h"
 #include "canyon/gnss/sensor/signal_tracker.h"
+#include "canyon/gnss/stress/counted_sky.h"
 #include "canyon/gnss/stress/level_ground.h"
 #include "canyon/gnss/stress/subjects.h"
 #include "canyon/scene/scene.h"
@@ -150,21 +151,6 @@ StressFigure parts_of_signals() {
   looks.right(followed > 40 && dropped > 5);
   return looks.figure();
 }
-
-/// Counts what it is asked.
-class CountedSky final : public Constellation {
- public:
-  explicit CountedSky(std::unique_ptr<Constellation> sky) : sky_(std::move(sky)) {}
-  const std::vector<SatelliteId>& satellites() const override { return sky_->satellites(); }
-  std::optional<SatelliteState> state(SatelliteId sv, GpsTime t) const override {
-    ++asked;
-    return sky_->state(sv, t);
-  }
-  mutable int asked = 0;
-
- private:
-  std::unique_ptr<Constellation> sky_;
-};
 
 /// Satellites that are in view, epoch after epoch, by one that remembers what stands low and by one that does not: the
 /// same, wherever the antenna goes, and asked for half as often at least.

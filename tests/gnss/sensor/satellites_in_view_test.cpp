@@ -4,26 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/units.h"
+#include "canyon/gnss/stress/counted_sky.h"
 
 namespace canyon::gnss {
 namespace {
 
 const GpsTime kViewStart = GpsTime::from_calendar(2020, 6, 25, 12, 0, 0);
-
-/// Counts what the search asks of the sky.
-class Counted final : public Constellation {
- public:
-  explicit Counted(std::unique_ptr<Constellation> sky) : sky_(std::move(sky)) {}
-  const std::vector<SatelliteId>& satellites() const override { return sky_->satellites(); }
-  std::optional<SatelliteState> state(SatelliteId sv, GpsTime t) const override {
-    ++asked;
-    return sky_->state(sv, t);
-  }
-  mutable int asked = 0;
-
- private:
-  std::unique_ptr<Constellation> sky_;
-};
 
 class SatellitesInViewTest : public ::testing::Test {
  protected:
@@ -45,7 +31,7 @@ class SatellitesInViewTest : public ::testing::Test {
   }
 
   static constexpr double kMask_rad = 5.0 * kDegree;
-  std::shared_ptr<Counted> sky_ = std::make_shared<Counted>(make_nominal("GRECJ"));
+  std::shared_ptr<CountedSky> sky_ = std::make_shared<CountedSky>(make_nominal("GRECJ"));
   LocalFrame frame_{Geodetic{52.5 * kDegree, 13.4 * kDegree, 40.0}};
   SatellitesInView going_on_{sky_, frame_, kMask_rad};
   std::size_t last_ = 0;
