@@ -69,7 +69,7 @@ BLIND_TO_TRUTH = [
     "lidar/deskew*", "lidar/sweep_motion*",
     "lidar/registration/*",
     "lidar/voxels/*",
-    "mission/mapper*", "mission/autonomy/*",
+    "mission/mapping/mapper*", "mission/autonomy/*",
 ]
 
 # Random numbers come from core/random/random.h: the standard's distributions differ from library to library.

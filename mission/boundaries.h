@@ -6,7 +6,7 @@
 #include "canyon/gnss/sensor/sensor.h"
 #include "canyon/lidar/files/cloud_files.h"
 #include "canyon/lidar/scanner.h"
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/mapper.h"
 #include "canyon/mission/recorder/rows.h"
 
 namespace canyon::mission {

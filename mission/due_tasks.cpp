@@ -29,7 +29,7 @@ NavEstimate MissionRun::estimate(GpsTime t) const {
 }
 
 NavEstimate MissionRun::as_told(NavEstimate estimate) const {
-  if (config_.autonomy.map == MapPose::kRegistered) estimate.X_WB = mapper_.correction() * estimate.X_WB;
+  if (config_.autonomy.map == MapPose::kRegistered) estimate.X_WB = keyframes_.correction() * estimate.X_WB;
   told_errors_.lay_over(estimate);
   return estimate;
 }
@@ -217,7 +217,7 @@ void MissionRun::forget_motion_before(GpsTime t) {
 /// before it is made, if the filter has come there.
 bool MissionRun::scan_is_wanted(GpsTime t) const {
   return (answers_.looks && !omissions_.autonomy) ||
-         (!omissions_.keyframes && (localizer_.at() != t || mapper_.wants(estimate(t))));
+         (!omissions_.keyframes && (localizer_.at() != t || keyframes_.wants(estimate(t))));
 }
 
 LidarScan MissionRun::deskew(const LidarScan& scan, const NavEstimate& now) const {
@@ -231,14 +231,15 @@ LidarScan MissionRun::deskew(const LidarScan& scan, const NavEstimate& now) cons
 
 Status MissionRun::use_scan(const LidarScan& scan) {
   const NavEstimate now = estimate(scan.t);
-  const LidarScan deskewed = clock_.charge(Part::kLidar, [&] { return deskew(scan, now); });
-  record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed.points.size());
+  const auto deskewed =
+      clock_.charge(Part::kLidar, [&] { return std::make_shared<const LidarScan>(deskew(scan, now)); });
+  record_.counters["lidar_returns"] += static_cast<std::int64_t>(deskewed->points.size());
 
-  if (!omissions_.keyframes && !deskewed.points.empty()) CANYON_TRY_STATUS(map_scan(deskewed, now));
+  if (!omissions_.keyframes && !deskewed->points.empty()) CANYON_TRY_STATUS(map_scan(deskewed, now));
 
   if (omissions_.autonomy) return Ok{};
   const NavEstimate seen = as_told(estimate(scan.t));
-  clock_.charge(Part::kAutonomy, [&] { ask([&] { autonomy_->see(deskewed, seen.X_WB * X_BL_, seen); }); });
+  clock_.charge(Part::kAutonomy, [&] { ask([&] { autonomy_->see(*deskewed, seen.X_WB * X_BL_, seen); }); });
   return Ok{};
 }
 
@@ -322,50 +323,25 @@ RelativePose MissionRun::motion_since_keyframe(GpsTime scan_t, const NavEstimate
   return motion;
 }
 
-Status MissionRun::map_scan(const LidarScan& deskewed, const NavEstimate& now) {
-  const RelativePose motion = motion_since_keyframe(deskewed.t, now);
-  const Keyframe* keyframe = clock_.charge(Part::kRegistration, [&] { return mapper_.offer(deskewed, now, motion); });
-  if (keyframe == nullptr) return Ok{};
+Status MissionRun::map_scan(const std::shared_ptr<const LidarScan>& deskewed, const NavEstimate& now) {
+  if (!keyframes_.wants(now)) return Ok{};
+  const RelativePose motion = motion_since_keyframe(deskewed->t, now);
+  const Pose X_WB_true = true_motion_.at(deskewed->t).value();
   if (lidar::registers(config_.registration)) localizer_.begin_motion();
-  last_keyframe_X_WB_ = config_.run.truth_as_guess ? true_motion_.at(deskewed.t).value() : now.X_WB;
-  if (fusion::measures_with(config_.fusion, "relative_pose")) CANYON_TRY_STATUS(aid_by_map(*keyframe));
-  CANYON_TRY_STATUS(boundaries_.check(*keyframe));
-  const Pose X_WB_true = true_motion_.at(deskewed.t).value();
-  CANYON_TRY_STATUS(add_keyframe(deskewed, *keyframe, X_WB_true));
-  return recorder_.keyframe_input({deskewed, now, motion, X_WB_true});
+  last_keyframe_X_WB_ = config_.run.truth_as_guess ? X_WB_true : now.X_WB;
+  CANYON_TRY_STATUS(keyframes_.take({deskewed, now, motion, X_WB_true}));
+  return fusion::measures_with(config_.fusion, "relative_pose") ? aid_by_map() : Ok{};
 }
 
 /// The motion between two keyframes tells the filter nothing that it has told the map: what a keyframe's pose in the
 /// map is would come back to it as new.
-Status MissionRun::aid_by_map(const Keyframe& keyframe) {
-  if (keyframe.aligned) {
-    CANYON_TRY_STATUS(localizer_.update(*keyframe.aligned));
+Status MissionRun::aid_by_map() {
+  if (keyframes_.last().aligned) {
+    CANYON_TRY_STATUS(localizer_.update(*keyframes_.last().aligned));
     follow_correction();
   }
   localizer_.take_clone();
   return Ok{};
-}
-
-Status MissionRun::add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true) {
-  const Pose X_WL_true = X_WB_true * X_BL_;
-  const KeyframeRow row{.t = keyframe.t,
-                        .points = keyframe.points,
-                        .X_WL_true = X_WL_true,
-                        .X_WL_prior = keyframe.X_WL_prior,
-                        .X_WL_registered = keyframe.X_WL_registered,
-                        .status = keyframe.status,
-                        .iterations = keyframe.iterations,
-                        .rms_m = keyframe.rms_m,
-                        .overlap = keyframe.overlap,
-                        .open = keyframe.open,
-                        .prior_covariance = keyframe.prior_covariance,
-                        .covariance = keyframe.covariance,
-                        .placed = keyframe.placed,
-                        .X_LL_true = last_keyframe_X_WL_true_.inverse() * X_WL_true};
-  last_keyframe_X_WL_true_ = X_WL_true;
-  CANYON_TRY_STATUS(boundaries_.check(row));
-  maps_.add(deskewed, keyframe);
-  return recorder_.keyframe(row);
 }
 
 }  // namespace canyon::mission

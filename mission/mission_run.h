@@ -16,11 +16,10 @@
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/corridor_guard.h"
 #include "canyon/mission/localizer.h"
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/keyframes.h"
 #include "canyon/mission/motion/motion_source.h"
 #include "canyon/mission/motion/schedule.h"
 #include "canyon/mission/run.h"
-#include "canyon/mission/scored_maps.h"
 #include "canyon/mission/told_errors.h"
 
 namespace canyon::mission {
@@ -95,10 +94,9 @@ class MissionRun {
   void forget_motion_before(GpsTime t);
   LidarScan deskew(const LidarScan& scan, const NavEstimate& now) const;
   Status use_scan(const LidarScan& scan);
-  Status map_scan(const LidarScan& deskewed, const NavEstimate& now);
+  Status map_scan(const std::shared_ptr<const LidarScan>& deskewed, const NavEstimate& now);
   RelativePose motion_since_keyframe(GpsTime scan_t, const NavEstimate& now) const;
-  Status aid_by_map(const Keyframe& keyframe);
-  Status add_keyframe(const LidarScan& deskewed, const Keyframe& keyframe, const Pose& X_WB_true);
+  Status aid_by_map();
   void count_work();
   void place_traffic(GpsTime t);
   /// Takes what is another from some moment on, once it is there.
@@ -125,7 +123,6 @@ class MissionRun {
   std::unique_ptr<LaterSensors> later_;  // null: none, or in use already
   fusion::RunEvidence evidence_;
   Localizer localizer_;
-  Mapper mapper_;
   const Omissions omissions_;
   CorridorGuard corridor_;
   const ToldErrorDraws told_errors_;
@@ -150,10 +147,9 @@ class MissionRun {
   TrueMotion motion_;                          // from the last IMU sample or sweep on
   Trajectory true_motion_, estimated_motion_;  // buffers of one revolution, at master steps and at IMU samples
   std::deque<GnssRow> fixes_;                  // measured, and not used yet
-  Pose last_keyframe_X_WL_true_;
-  Pose last_keyframe_X_WB_;  // as estimated then; true with truth_as_guess
-  ScoredMaps maps_;
+  Pose last_keyframe_X_WB_;                    // as estimated then; true with truth_as_guess
   RunRecord record_;
+  Keyframes keyframes_;
 };
 
 }  // namespace canyon::mission

@@ -76,7 +76,6 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       scanner_(std::move(parts.scanner)),
       later_(std::move(parts.later)),
       localizer_(filter_of(config, mission, parts.imu_noise, parts.omissions), mission.start, boundaries_, clock),
-      mapper_(config.registration, std::move(parts.registration), lidar::sensor_in_body(config.lidar)),
       omissions_(std::move(parts.omissions)),
       corridor_(omissions_.corridor, omissions_.corridor_until_s),
       told_errors_(config.run.told, static_cast<std::uint64_t>(config.run.seed), mission.start),
@@ -86,7 +85,7 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       schedule_(mission.start, rates_of(config)),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
-      maps_(config.run, !omissions_.maps, lidar::registers(config.registration), clock) {
+      keyframes_(config_, std::move(parts.registration), !omissions_.maps, boundaries_, clock, recorder_) {
   CANYON_CHECK(open_loop_ || !omissions_.autonomy, "nobody drives");
   gnss_->leave_out(omissions_.ranges);
   record_.config = config;
@@ -197,6 +196,7 @@ bool MissionRun::score() {
 }
 
 Result<RunRecord> MissionRun::finish() {
+  CANYON_TRY_STATUS(keyframes_.complete());
   if (!open_loop_) {
     scorer_.finish(source_->now().motion, answers_.state == AutonomyState::kDone);
     record_.outcome = scorer_.outcome();
@@ -212,7 +212,7 @@ Result<RunRecord> MissionRun::finish() {
   record_.warnings.insert(record_.warnings.begin(), mission_.warnings.begin(), mission_.warnings.end());
   for (std::string& warning : gnss_->warnings()) record_.warnings.push_back(std::move(warning));
   if (corridor_.left()) record_.warnings.push_back(*corridor_.left());
-  CANYON_TRY_STATUS(maps_.finish(scene_, boundaries_, record_, recorder_));
+  CANYON_TRY_STATUS(keyframes_.score_maps(scene_, record_));
   CANYON_TRY_STATUS(recorder_.finish());
   count_work();
   return std::move(record_);
@@ -233,7 +233,7 @@ void MissionRun::count_work() {
   for (const char* scans : {"lidar_scans", "lidar_returns"}) counters.try_emplace(scans, 0);
   counters["filter_predictions"] = localizer_.predictions();
   counters["filter_updates"] = localizer_.updates();
-  const Mapper::Counters& mapper = mapper_.counters();
+  const Mapper::Counters& mapper = keyframes_.counters();
   counters["keyframes_registered"] = mapper.alignments;
   counters["registration_iterations"] = mapper.iterations;
   counters["registration_correspondences"] = mapper.correspondences;

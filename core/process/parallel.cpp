@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -19,10 +20,14 @@ namespace {
 /// The arena our loops run in, and the process-wide limit that also binds what others (Embree) start on oneTBB.
 struct Pool {
   explicit Pool(int n)
-      : count(n), limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n)), arena(n) {}
+      : count(n),
+        limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n)),
+        arena(n),
+        aside(n) {}
   int count;
   tbb::global_control limit;
   tbb::task_arena arena;
+  tbb::task_arena aside;  ///< of what is offered to idle threads, with its loops
 };
 
 int all_cores() {
@@ -106,6 +111,15 @@ OwnRoom::OwnRoom() : room_(std::make_unique<Room>()) {
 
 OwnRoom::~OwnRoom() {
   own_arena = room_->before;
+}
+
+void offer_to_idle(std::function<void()> work) {
+  const std::shared_ptr<Pool> keep = pool();
+  if (keep->count == 1) return;
+  keep->aside.enqueue([keep, work = std::move(work)] {
+    const InArena in(&keep->aside);
+    work();
+  });
 }
 
 void run_on_one_thread(const std::function<void()>& work) {

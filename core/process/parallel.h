@@ -31,6 +31,9 @@ class OwnRoom {
   std::unique_ptr<Room> room_;
 };
 
+/// Has a thread of the pool do `work` once it is idle, which it may never be; with one thread nobody ever is.
+void offer_to_idle(std::function<void()> work);
+
 /// Runs `work` so that whatever it starts on oneTBB stays on the calling thread: for library calls whose result would
 /// depend on the number of threads.
 void run_on_one_thread(const std::function<void()>& work);

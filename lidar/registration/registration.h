@@ -41,7 +41,8 @@ struct RegistrationConfig {
   std::int64_t submap_keyframes = 10;  ///< keyframes that form the target
   double keyframe_distance_m = 2.0;
   double keyframe_angle_deg = 10.0;
-  // How the mapper weighs an alignment against the filter's pose; mission/mapper.h says where the figures come from.
+  // How the mapper weighs an alignment against the filter's pose; mission/mapping/mapper.h says where the figures come
+  // from.
   double alignment_floor_m = 0.02;
   double alignment_floor_deg = 0.05;
   double motion_floor_m_s = 0.5;

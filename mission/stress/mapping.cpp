@@ -1,6 +1,6 @@
 // A mapper that is told what each alignment says: what it makes of it with the filter's pose, by the formulas that
 // mapper.h states, written out.
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/mapper.h"
 
 #include <cmath>
 #include <string>

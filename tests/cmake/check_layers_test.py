@@ -146,7 +146,7 @@ class CheckLayers(unittest.TestCase):
     # 2026-11-22: deskewing, on the way of the estimate, could see the truth through the scanner's header, and no rule
     # forbade it; nor was it forbidden to the mapper and to what registration stands on.
     def test_truth_does_not_reach_what_lies_on_the_way_of_the_estimate(self):
-        for name in ("lidar/deskew.cpp", "lidar/registration/prepared_cloud.cpp", "lidar/voxels/voxel_map.cpp", "mission/mapper.cpp"):
+        for name in ("lidar/deskew.cpp", "lidar/registration/prepared_cloud.cpp", "lidar/voxels/voxel_map.cpp", "mission/mapping/mapper.cpp"):
             self.assert_breach(
                 {"lidar/scanner.h": '#pragma once\n#include "canyon/core/truth.h"\n', name: '#include "canyon/lidar/scanner.h"\n'},
                 f'{name}:1: "core/truth.h" (through lidar/scanner.h): truth is for sensors, recorder and scorer only')

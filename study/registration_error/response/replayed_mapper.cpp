@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "canyon/core/process/progress.h"
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/mapper.h"
 #include "canyon/study/registration_error/scan_error.h"
 
 namespace canyon::study {

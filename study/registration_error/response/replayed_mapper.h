@@ -42,7 +42,7 @@ struct PlacedSums {
   double unaligned = 0.0;  ///< keyframes whose alignment gave nothing
   void operator+=(const PlacedSums& other);
 };
-/// The mission's mapper (mission/mapper.h) over the keyframes of the stretch, from its first on, each of them a
+/// The mission's mapper (mission/mapping/mapper.h) over the keyframes of the stretch, from its first on, each of them a
 /// keyframe whatever the error. `points`: sampled_points() of each keyframe.
 PlacedSums replay_mapper(const RecordedKeyframes& recorded, const std::vector<std::vector<Eigen::Vector3f>>& points,
                          const MethodClouds& method, const Pose& X_BL, const Stretch& stretch,

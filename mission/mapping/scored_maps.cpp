@@ -1,4 +1,4 @@
-#include "canyon/mission/scored_maps.h"
+#include "canyon/mission/mapping/scored_maps.h"
 
 #include <string>
 

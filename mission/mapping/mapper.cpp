@@ -1,4 +1,4 @@
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/mapper.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,14 +52,19 @@ Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::R
     : config_(config), registration_(std::move(registration)), X_BL_(X_BL) {}
 
 bool Mapper::wants(const NavEstimate& estimate) const {
-  if (!has_last_) return true;
-  const Pose moved_by = last_.X_WL_prior.inverse() * (estimate.X_WB * X_BL_);
+  if (!chosen_) return true;
+  const Pose moved_by = chosen_->inverse() * (estimate.X_WB * X_BL_);
   return !(moved_by.p.norm() < config_.keyframe_distance_m &&
            so3_log(moved_by.R).norm() < config_.keyframe_angle_deg * kDegree);
 }
 
 const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate, const RelativePose& motion) {
   if (!wants(estimate)) return nullptr;
+  choose(estimate);
+  return &place(scan, estimate, motion);
+}
+
+const Keyframe& Mapper::place(const LidarScan& scan, const NavEstimate& estimate, const RelativePose& motion) {
   Keyframe keyframe;
   keyframe.t = scan.t;
   keyframe.X_WL_prior = keyframe.X_WL_registered = estimate.X_WB * X_BL_;
@@ -85,7 +90,7 @@ const Keyframe* Mapper::offer(const LidarScan& scan, const NavEstimate& estimate
   last_ = keyframe;
   has_last_ = true;
   correction_ = keyframe.X_WL_registered * keyframe.X_WL_prior.inverse();
-  return &last_;
+  return last_;
 }
 
 lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted,

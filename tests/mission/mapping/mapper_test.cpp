@@ -1,4 +1,4 @@
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/mapper.h"
 
 #include <cmath>
 

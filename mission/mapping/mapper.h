@@ -64,8 +64,12 @@ class Mapper {
   /// Returns the new keyframe if it became one, else nullptr. The pointer is valid until the next call.
   const Keyframe* offer(const LidarScan& scan, const NavEstimate& estimate, const RelativePose& motion);
 
+  // The two halves of an offer. One thread may choose while another places what was chosen before, in the same order.
   /// Whether a scan there would become a keyframe, if it has returns.
   bool wants(const NavEstimate& estimate) const;
+  /// It becomes the next one.
+  void choose(const NavEstimate& estimate) { chosen_ = estimate.X_WB * X_BL_; }
+  const Keyframe& place(const LidarScan& scan, const NavEstimate& estimate, const RelativePose& motion);
 
   /// Work done.
   struct Counters {
@@ -89,6 +93,7 @@ class Mapper {
   lidar::RegistrationConfig config_;
   std::unique_ptr<lidar::Registration> registration_;
   Pose X_BL_;
+  std::optional<Pose> chosen_;  ///< the last keyframe's prior
   std::deque<Placed> submap_;
   Keyframe last_;
   bool has_last_ = false;

@@ -5,7 +5,7 @@
 #include "canyon/lidar/voxels/voxel_map.h"
 #include "canyon/mission/boundaries.h"
 #include "canyon/mission/config/mission_config.h"
-#include "canyon/mission/mapper.h"
+#include "canyon/mission/mapping/mapper.h"
 #include "canyon/mission/recorder/recorder.h"
 #include "canyon/mission/recorder/run_record.h"
 
