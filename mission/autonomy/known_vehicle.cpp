@@ -1,5 +1,6 @@
 #include "canyon/mission/autonomy/known_vehicle.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/core/units.h"
@@ -15,6 +16,13 @@ KnownVehicle known_vehicle(const VehicleConfig& config) {
           .max_steering_rad = config.max_steering_deg * kDegree,
           .max_steering_rate_rad_s = config.max_steering_rate_deg_s * kDegree,
           .max_deceleration_m_s2 = config.max_deceleration_m_s2};
+}
+
+double KnownVehicle::distance_m(const PlanPose& body, const Eigen::Vector2d& point) const {
+  const Eigen::Vector2d u = body.forward(), d = point - body.p_m - 0.5 * (rear_m + front_m) * u;
+  const double ahead = std::abs(u.dot(d)) - 0.5 * (front_m - rear_m),
+               aside = std::abs(u.x() * d.y() - u.y() * d.x()) - half_width_m;
+  return std::hypot(std::max(0.0, ahead), std::max(0.0, aside));
 }
 
 Eigen::Vector2d PlanPose::forward() const {

@@ -11,16 +11,13 @@ double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const
   return steering_rad + std::clamp(wanted - steering_rad, -most, most);
 }
 
-DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
-                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle,
-                           const WorthDriving& worth) {
+DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Tracker& tracker,
+                           const Room& room, double come_m, const WorthDriving& worth) {
   constexpr int kAskedEvery = 4;  // steps
   DrivenArc arc;
   if (line.empty()) return arc;
   MovingBody body = from;
   const double speed = std::max(kSlowestSteered_m_s, from.speed_m_s), dt_s = DrivenArc::kStep_m / speed;
-  const double reach = std::max(clearances.comfort_m, clearances.least_m);
-  const LeastClearance least(clearances.least_m, blocked.clearance_m(body.pose, vehicle, reach));
   std::size_t nearest = line.nearest(body.pose.p_m, 0);
   const int steps = static_cast<int>(std::ceil(length_m / DrivenArc::kStep_m));
   arc.curvature_1_m.reserve(static_cast<std::size_t>(steps));
@@ -28,13 +25,13 @@ DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double 
     nearest = line.nearest(body.pose.p_m, nearest);
     const double wanted = tracker.curvature_1_m(line, nearest, body.pose, speed);
     const double before = body.steering_rad;
-    body.steering_rad = steered_rad(before, wanted, dt_s, vehicle);
-    const double kappa = std::tan(0.5 * (before + body.steering_rad)) / vehicle.wheelbase_m;
+    body.steering_rad = steered_rad(before, wanted, dt_s, room.vehicle());
+    const double kappa = std::tan(0.5 * (before + body.steering_rad)) / room.vehicle().wheelbase_m;
     body.pose = body.pose.along(kappa, DrivenArc::kStep_m);
-    const double clearance = blocked.clearance_m(body.pose, vehicle, reach);
-    if (clearance < least.after(i * DrivenArc::kStep_m)) return arc;
+    const double clearance = room.clearance_m(body.pose);
+    if (!room.allows(body.pose, clearance, come_m + i * DrivenArc::kStep_m)) return arc;
     arc.free_m = i * DrivenArc::kStep_m;
-    arc.closeness_m2 += DrivenArc::kStep_m * std::max(0.0, clearances.comfort_m - clearance);
+    arc.closeness_m2 += DrivenArc::kStep_m * std::max(0.0, room.clearances().comfort_m - clearance);
     arc.curvature_1_m.push_back(static_cast<float>(kappa));
     if (worth && i % kAskedEvery == 0 && !worth(arc)) return arc;
   }
@@ -42,15 +39,21 @@ DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double 
   return arc;
 }
 
+DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
+                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle) {
+  return drive_in_thought(line, from, length_m, tracker, Room(from.pose, clearances, blocked, vehicle));
+}
+
 double free_along(const PlanPose& from, double curvature_1_m, double distance_m, const Clearances& clearances,
                   const BlockedCells& blocked, const KnownVehicle& vehicle) {
-  const LeastClearance least(clearances.least_m, blocked.clearance_m(from, vehicle, clearances.least_m));
   const double sign = distance_m < 0.0 ? -1.0 : 1.0;
+  const Room room(from, {clearances.least_m, clearances.least_m}, blocked, vehicle,
+                  distance_m < 0.0 ? Gear::kReverse : Gear::kForward);
   const int steps = static_cast<int>(std::floor(std::abs(distance_m) / DrivenArc::kStep_m));
   for (int i = 1; i <= steps; ++i) {
     const double way = i * DrivenArc::kStep_m;
     const PlanPose pose = from.along(curvature_1_m, sign * way);
-    if (blocked.clearance_m(pose, vehicle, clearances.least_m) < least.after(way)) return way - DrivenArc::kStep_m;
+    if (!room.allows(pose, room.clearance_m(pose), way)) return way - DrivenArc::kStep_m;
   }
   return std::abs(distance_m);
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <vector>
 
 #include "canyon/mission/autonomy/perception/blocked_cells.h"
+#include "canyon/mission/autonomy/planning/room.h"
 #include "canyon/mission/autonomy/planning/tracker.h"
 
 namespace canyon::mission {
@@ -27,24 +27,6 @@ struct DrivenArc {
   std::vector<float> curvature_1_m;  ///< at every step
 };
 
-struct Clearances {
-  double least_m = 0.3;    ///< from the body to a blocked cell, at which it counts as hit
-  double comfort_m = 0.8;  ///< nearer than this costs
-};
-
-/// What has to be kept after a way: what there was at its beginning if that was less, and once it has had room to turn
-/// away, a little more with every metre.
-class LeastClearance {
- public:
-  LeastClearance(double least_m, double at_start_m) : least_(least_m), start_(std::max(0.0, at_start_m - kSlack_m)) {}
-  double after(double way_m) const { return std::min(least_, start_ + kGrowth * std::max(0.0, way_m - kTurning_m)); }
-
- private:
-  static constexpr double kSlack_m = 0.05, kGrowth = 0.1;
-  static constexpr double kTurning_m = 2.0;  ///< at 5 m/s a body beside a wall has turned its tail out by then
-  double least_, start_;
-};
-
 /// That steering rates are reckoned with, m/s: nothing is steered on the spot.
 inline constexpr double kSlowestSteered_m_s = 1.0;
 
@@ -54,12 +36,14 @@ double steered_rad(double steering_rad, double curvature_1_m, double dt_s, const
 /// Whether an arc that has been driven so far is still worth driving on.
 using WorthDriving = std::function<bool(const DrivenArc& so_far)>;
 
-/// Over `length_m`, the first pose being the body's own. A body that already stands nearer to something than the least
-/// clearance may go on where it does not come nearer. `worth` (may be empty) is asked every now and then; once it says
-/// no, the arc ends there and does not end free.
+/// Over `length_m`, the first pose being the body's own, as long as it keeps to `room`, in which it has come `come_m`
+/// already. `worth` (may be empty) is asked every now and then; once it says no, the arc ends there and does not end
+/// free.
+DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Tracker& tracker,
+                           const Room& room, double come_m = 0.0, const WorthDriving& worth = {});
+/// In the room that the body has where it is.
 DrivenArc drive_in_thought(const PlanLine& line, const MovingBody& from, double length_m, const Clearances& clearances,
-                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle,
-                           const WorthDriving& worth = {});
+                           const Tracker& tracker, const BlockedCells& blocked, const KnownVehicle& vehicle);
 
 /// How far the body may go along an arc of constant curvature, in reverse if `distance_m` is negative; at most that.
 double free_along(const PlanPose& from, double curvature_1_m, double distance_m, const Clearances& clearances,

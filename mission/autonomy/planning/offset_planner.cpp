@@ -43,6 +43,7 @@ class OffsetPlanner final : public LocalPlanner {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return candidates_[a].beside_cost < candidates_[b].beside_cost;
     });
+    const Room room(task.body.pose, clearances(), task.blocked, task.vehicle);
     LocalPlan best;
     double best_cost = 1e300;
     std::size_t best_index = candidates_.size();
@@ -54,9 +55,9 @@ class OffsetPlanner final : public LocalPlanner {
                     .offset_m = c.offset_m,
                     .horizon_m = p_.horizon_m};
       Turning turning(turning_1_m_);
-      its.arc = drive_in_thought(
-          its.line, task.body, p_.horizon_m, clearances(), task.tracker, task.blocked, task.vehicle,
-          [&](const DrivenArc& arc) { return cost(0.0, arc, turning.of(arc), c.beside_cost) <= best_cost; });
+      its.arc = drive_in_thought(its.line, task.body, p_.horizon_m, task.tracker, room, 0.0, [&](const DrivenArc& arc) {
+        return cost(0.0, arc, turning.of(arc), c.beside_cost) <= best_cost;
+      });
       const double blocked_m = p_.horizon_m - std::min(p_.horizon_m, its.arc.free_m);
       const double short_m = its.arc.ends_free ? 0.0 : std::max(0.0, halting_m - its.arc.free_m);
       const double its_cost = cost(blocked_m, its.arc, turning.of(its.arc), c.beside_cost) + kCrashCost_1_m * short_m;

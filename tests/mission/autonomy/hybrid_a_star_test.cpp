@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/random/random.h"
-#include "canyon/mission/autonomy/planning/free_ways.h"
+#include "canyon/mission/autonomy/planning/search/free_ways.h"
 #include "canyon/tests/mission/autonomy/planning_parts.h"
 
 namespace canyon::mission {

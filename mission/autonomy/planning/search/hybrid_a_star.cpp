@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "canyon/mission/autonomy/planning/free_ways.h"
+#include "canyon/mission/autonomy/planning/search/free_ways.h"
 
 namespace canyon::mission {
 namespace {
@@ -45,9 +45,7 @@ class WaySearch {
         p_(p),
         lane_(task),
         last_(last),
-        comfort_m_(clearances.comfort_m),
-        reach_m_(std::max(clearances.comfort_m, clearances.least_m + kMargin_m)),
-        least_(clearances.least_m + kMargin_m, task.blocked.clearance_m(task.body.pose, task.vehicle, reach_m_)),
+        room_(task.body.pose, {clearances.least_m + kMargin_m, clearances.comfort_m}, task.blocked, task.vehicle),
         speed_m_s_(std::max(kSlowestSteered_m_s, task.body.speed_m_s)),
         halting_m_(0.5 * task.body.speed_m_s * task.body.speed_m_s / task.vehicle.max_deceleration_m_s2),
         start_(place_of(task.body.pose.p_m, task.s_m)),
@@ -147,9 +145,9 @@ class WaySearch {
       n.body.steering_rad = steered_rad(steering, wanted_1_m, dt_s, task_.vehicle);
       step(n, std::tan(0.5 * (steering + n.body.steering_rad)) / task_.vehicle.wheelbase_m,
            from_m + (k + 0.5) * DrivenArc::kStep_m);
-      const double clearance = task_.blocked.clearance_m(n.body.pose, task_.vehicle, reach_m_);
-      if (clearance < least_.after(n.driven_m)) return std::nullopt;
-      n.cost += p_.closeness_cost_1_m2 * DrivenArc::kStep_m * std::max(0.0, comfort_m_ - clearance);
+      const double clearance = room_.clearance_m(n.body.pose);
+      if (!room_.allows(n.body.pose, clearance, n.driven_m)) return std::nullopt;
+      n.cost += p_.closeness_cost_1_m2 * DrivenArc::kStep_m * std::max(0.0, room_.clearances().comfort_m - clearance);
     }
     arrive(n, kArc_m);
     if (n.place.beside_m < range_.right_m || n.place.beside_m > range_.left_m) return std::nullopt;
@@ -165,9 +163,8 @@ class WaySearch {
     const double to_m = task_.s_m + p_.horizon_m + kBeyondHorizon_m;
     for (double s = n.place.s_m; s < to_m; s += PlanLine::kSpacing_m)
       line.points_O.push_back(lane_.at({s, n.place.beside_m * std::exp((n.place.s_m - s) / blend_m)}));
-    const DrivenArc driven = drive_in_thought(line, n.body, missing_m(n) + DrivenArc::kStep_m,
-                                              {.least_m = least_.after(n.driven_m), .comfort_m = comfort_m_},
-                                              task_.tracker, task_.blocked, task_.vehicle);
+    const DrivenArc driven =
+        drive_in_thought(line, n.body, missing_m(n) + DrivenArc::kStep_m, task_.tracker, room_, n.driven_m);
     n.cost += p_.closeness_cost_1_m2 * driven.closeness_m2;
     const double from_m = n.place.s_m;
     int since = 0;
@@ -205,8 +202,7 @@ class WaySearch {
   const PlanParameters& p_;
   LanePlaces lane_;
   const std::vector<LanePlaces::Place>& last_;
-  double comfort_m_, reach_m_;
-  LeastClearance least_;
+  Room room_;
   double speed_m_s_, halting_m_;
   LanePlaces::Place start_;
   OffsetRange range_;

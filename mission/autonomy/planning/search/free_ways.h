@@ -4,8 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include "canyon/mission/autonomy/planning/lane_places.h"
 #include "canyon/mission/autonomy/planning/plan_parameters.h"
+#include "canyon/mission/autonomy/planning/search/lane_places.h"
 
 namespace canyon::mission {
 

@@ -1,4 +1,4 @@
-#include "canyon/mission/autonomy/planning/free_ways.h"
+#include "canyon/mission/autonomy/planning/search/free_ways.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "canyon/mission/autonomy/planning/lane_places.h"
+#include "canyon/mission/autonomy/planning/search/lane_places.h"
 
 #include <algorithm>
 
