@@ -76,15 +76,19 @@ const Keyframe& Mapper::place(const LidarScan& scan, const NavEstimate& estimate
     for (const LidarPoint& point : scan.points) points.emplace_back(point.x, point.y, point.z);
     const auto cloud = registration_->prepare(points);
     // The first one defines the map.
+    Pose X_OL;
     if (has_last_) {
       const double elapsed_s = scan.t - last_.t;
       const lidar::PosePrior predicted{
           X_BL_.inverse() * motion.X_TS * X_BL_,
           moved(motion.covariance, X_BL_) +
               diagonal(config_.motion_floor_deg_s * kDegree * elapsed_s, config_.motion_floor_m_s * elapsed_s)};
-      fuse(align(*cloud, predicted, keyframe), keyframe);
+      const lidar::PosePrior moved_by = align(*cloud, predicted, keyframe);
+      X_OL = submap_.back().X_OL * moved_by.X_TS;
+      fuse(moved_by, keyframe);
+      if (keyframe.status != lidar::RegistrationStatus::kConverged) submap_.clear();
     }
-    submap_.push_back({cloud, keyframe.X_WL_registered});
+    submap_.push_back({cloud, X_OL});
     while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
   }
   last_ = keyframe;
@@ -96,9 +100,9 @@ const Keyframe& Mapper::place(const LidarScan& scan, const NavEstimate& estimate
 lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted,
                                Keyframe& keyframe) {
   // In the frame of the last keyframe, where numbers stay small.
-  const Pose X_LW = last_.X_WL_registered.inverse();
+  const Pose X_LO = submap_.back().X_OL.inverse();
   std::vector<lidar::Registration::Placed> targets;
-  for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LW * placed.X_WL});
+  for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LO * placed.X_OL});
   const lidar::RegistrationResult result = registration_->align_with_prior(cloud, targets, predicted);
   keyframe.status = result.status;
   keyframe.iterations = result.iterations;

@@ -43,6 +43,11 @@ struct Keyframe {
 /// carries on from the keyframe before, with its own covariance, and is weighed with the filter's pose likewise:
 /// nothing jumps onto the prior.
 ///
+/// The keyframes of the submap stand to one another as they were driven, not as they were placed in W: that the
+/// filter's pose moves one by decimetres is no motion, and would bend the surfaces that the next is aligned to. A
+/// keyframe that could not be aligned begins a new submap, for where it stands beside the surfaces before it is not
+/// known. Both measured in `high`, docs/registration.md.
+///
 /// Where the three constants of [registration] come from. alignment_floor_m and _deg: the covariance of an alignment
 /// knows its residuals, not what biases it (correspondences, the sensor: Brossard, Bonnabel and Barrau 2020, "A new
 /// approach to 3D ICP covariance estimation"). 0.02 m is the range noise of the built-in LIDAR; 0.05 degrees are as
@@ -81,9 +86,10 @@ class Mapper {
   const Pose& correction() const { return correction_; }
 
  private:
+  /// In a frame O of what was driven: L's poses as they followed from one another.
   struct Placed {
     std::shared_ptr<const lidar::PreparedCloud> cloud;
-    Pose X_WL;
+    Pose X_OL;
   };
   /// L since the keyframe before, by the surfaces where they tell, else as predicted.
   lidar::PosePrior align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted, Keyframe& keyframe);
