@@ -77,6 +77,27 @@ mission.waypoint[].stop_s | s | 5 | a number of 0 or more | time to stop
   EXPECT_TRUE(m.waypoint.empty());
 }
 
+// 2026-11-26: of a key of several units the last alone was told, "Hz" of a variance in m^2 Hz, or nothing.
+TEST(DocumentedFields, UnitsOfSeveralFactors) {
+  double x = 1.0;
+  const auto unit = [&](const char* key) {
+    return documented_fields("", [&](FieldVisitor& f) { f.number(key, x, kPositive, ""); }).at(0).unit;
+  };
+  EXPECT_EQ(unit("light_variance_m2"), "m²");
+  EXPECT_EQ(unit("light_variance_m2_hz"), "m² Hz");
+  EXPECT_EQ(unit("closeness_cost_1_m2"), "1/m²");
+  EXPECT_EQ(unit("front_cornering_per_deg"), "1/deg");
+  EXPECT_EQ(unit("camera_px_per_rad"), "px/rad");
+  EXPECT_EQ(unit("clock_walk_m_per_sqrt_s"), "m/√s");
+  EXPECT_EQ(unit("clock_rate_walk_m_s_per_sqrt_s"), "m/s/√s");
+  EXPECT_EQ(unit("arw_deg_per_sqrt_hr"), "deg/√h");
+  EXPECT_EQ(unit("vrw_m_s_per_sqrt_hr"), "m/s/√h");
+  EXPECT_EQ(unit("noise_pa_per_sqrt_hz"), "Pa/√Hz");
+  EXPECT_EQ(unit("slip_percent_per_m_s2"), "% s²/m");
+  EXPECT_EQ(unit("rate_hz"), "Hz");
+  EXPECT_EQ(unit("period_s"), "s");
+}
+
 TEST(NamedFiles, PathsButNoNames) {
   Mission m;
   const auto list = [&] {
