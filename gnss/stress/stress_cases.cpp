@@ -24,7 +24,8 @@ std::vector<StressCase> stress_cases() {
                               fault_cases,       epoch_cases,         printed_antenna_cases,
                               default_cases,     lock_rule_cases,     verdict_cases,
                               point_sight_cases, nominal_table_cases, precise_product_cases,
-                              orbit_error_cases, fitted_record_cases, signal_cases})
+                              orbit_error_cases, fitted_record_cases, signal_cases,
+                              observer_cases,    curved_ground_cases, sentence_cases})
     for (StressCase& one : subject()) all.push_back(std::move(one));
   return all;
 }

@@ -58,5 +58,8 @@ std::vector<StressCase> file_cases();
 std::vector<StressCase> fitted_orbit_cases();
 std::vector<StressCase> street_cases();
 std::vector<StressCase> edge_cases();
+std::vector<StressCase> observer_cases();
+std::vector<StressCase> curved_ground_cases();
+std::vector<StressCase> sentence_cases();
 
 }  // namespace canyon::gnss
