@@ -26,5 +26,7 @@ std::vector<StressCase> proof_mass_cases();
 std::vector<StressCase> spline_cases();
 std::vector<StressCase> unit_log_cases();
 std::vector<StressCase> simulated_log_cases();
+std::vector<StressCase> noise_parameter_cases();
+std::vector<StressCase> unsaid_setting_cases();
 
 }  // namespace canyon::inertial
