@@ -26,5 +26,6 @@ std::vector<StressCase> map_figure_cases();
 std::vector<StressCase> aligner_cases();
 std::vector<StressCase> placement_cases();
 std::vector<StressCase> beam_cases();
+std::vector<StressCase> unsaid_setting_cases();
 
 }  // namespace canyon::lidar
