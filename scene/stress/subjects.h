@@ -23,5 +23,6 @@ std::vector<StressCase> inspection_cases();
 std::vector<StressCase> facet_cases();
 std::vector<StressCase> block_cases();
 std::vector<StressCase> shape_cases();
+std::vector<StressCase> modelled_ground_cases();
 
 }  // namespace canyon::scene
