@@ -9,6 +9,7 @@
 #include "canyon/mission/recorder/estimate_error.h"
 #include "canyon/mission/recorder/recorder.h"
 #include "canyon/mission/run.h"
+#include "canyon/mission/stress/open_street.h"
 #include "canyon/mission/stress/subjects.h"
 
 namespace canyon::mission {
@@ -18,44 +19,6 @@ using Eigen::Vector2d;
 using stress::kEpsilon;
 using stress::kInfinity;
 using stress::Worst;
-
-/// Up a street of the built-in city whose houses are left out, and round a corner of it.
-constexpr const char* kMission = R"(
-base = "vicksburg"
-[run]
-name = "open"
-[scene]
-empty = true
-slope_percent = 0
-hill_height_m = 0
-terrain_cell_m = 10
-[vehicle]
-start_m = [213.9, 60.0]
-start_heading_deg = 0.0
-roughness = "none"
-[imu]
-errors = "none"
-mounting_error_deg = 0
-[gnss]
-model = "truth_plus_white"
-white_sigma_m = 0.01
-white_sigma_up_m = 0.01
-rate_hz = 5
-[lidar]
-azimuth_steps = 180
-range_noise_m = 0
-[fusion]
-initial_position_sigma_m = 0.01
-initial_velocity_sigma_m_s = 0.01
-initial_attitude_sigma_deg_roll_pitch = 0.01
-initial_attitude_sigma_deg_heading = 0.01
-[registration]
-method = "none"
-[autonomy]
-[[autonomy.waypoint]]
-name = "crossing"
-p_m = [213.9, 109.9]
-)";
 
 struct Rows : Recorder {
   std::vector<NavRow> rows;
@@ -95,7 +58,7 @@ struct Driven {
 std::unique_ptr<Driven> driven(const std::string& fidelity, const std::string& more) {
   static SceneCache scenes;
   auto out = std::make_unique<Driven>();
-  auto file = MissionFile::parse(kMission, "open.toml");
+  auto file = MissionFile::parse(kOpenStreet, "open.toml");
   CANYON_CHECK(file.ok(), file.ok() ? "" : file.error().str());
   auto config = file->resolve(fidelity);
   CANYON_CHECK(config.ok(), config.ok() ? "" : config.error().str());
