@@ -10,6 +10,7 @@ namespace canyon::mission {
 std::vector<StressCase> heard_run_cases();
 std::vector<StressCase> ended_run_cases();
 std::vector<StressCase> corridor_cases();
+std::vector<StressCase> default_cases();
 std::vector<StressCase> search_cases();
 
 }  // namespace canyon::mission
