@@ -46,7 +46,9 @@ std::vector<StressCase> stress_cases() {
                               trust_cases,
                               unaided_cases,
                               vehicle_filter_cases,
-                              verdict_cases})
+                              verdict_cases,
+                              known_start_cases,
+                              renewed_state_cases})
     for (StressCase& one : subject()) all.push_back(std::move(one));
   return all;
 }
