@@ -11,6 +11,7 @@
 #include "canyon/lidar/stress/stress_cases.h"
 #include "canyon/mission/stress/stress_cases.h"
 #include "canyon/scene/stress/stress_cases.h"
+#include "canyon/study/stress/parts/subjects.h"
 
 namespace canyon::study {
 namespace {
@@ -63,7 +64,7 @@ std::vector<StressCase> all_stress_cases() {
   std::vector<StressCase> all;
   for (std::vector<StressCase>& floor :
        std::vector{stress_cases(), scene::stress_cases(), gnss::stress_cases(), inertial::stress_cases(),
-                   lidar::stress_cases(), fusion::stress_cases(), mission::stress_cases()})
+                   lidar::stress_cases(), fusion::stress_cases(), mission::stress_cases(), study_stress_cases()})
     std::move(floor.begin(), floor.end(), std::back_inserter(all));
   return all;
 }
