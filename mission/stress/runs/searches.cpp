@@ -10,7 +10,7 @@
 
 #include "canyon/core/random/random.h"
 #include "canyon/core/stress/looks.h"
-#include "canyon/mission/autonomy/planning/free_ways.h"
+#include "canyon/mission/autonomy/planning/search/free_ways.h"
 #include "canyon/mission/autonomy/reference.h"
 #include "canyon/mission/stress/autonomy_parts.h"
 #include "canyon/mission/stress/runs/subjects.h"
