@@ -21,6 +21,7 @@ struct MadeItem {
 void visit(FieldVisitor& f, MadeItem& c) {
   f.number("size_m", c.size_m, kPositive, "how large");
   f.text("name", c.name, "what it is");
+  f.old_key("weight", "size_m");
 }
 
 struct MadeConfig {
@@ -124,6 +125,8 @@ StressFigure mistakes_of_fields() {
   told(must + "kind = 3\n", ":2: kind: found integer 3, expected one of \"red\", \"green\", \"blue\"");
   told(must + "kinds = [\"red\", \"red\"]\n",
        ":2: kinds: \"red\" stands there twice, expected a list out of \"red\", \"green\", \"blue\"");
+  told(must + "kinds = [3]\n", ":2: kinds: found integer 3, expected a list out of \"red\", \"green\", \"blue\"");
+  told(must + "[group]\nweight = 1\n", ":3: group.weight: is a key of an earlier version, expected size_m");
   told(must + "list = 3\n", ":2: list: found integer 3, expected a list of numbers");
   told(must + "arm_m = [1, 2]\n", ":2: arm_m: found array of 2, expected a list of 3 numbers");
   told(must + "arm_m = [1, 9.5, 2]\n", ":2: arm_m[2]: 9.5 is out of range, expected a number from -9 to 9");

@@ -1,7 +1,7 @@
 // Ground that is no plane: how wide the patch is that reflects.
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "canyon/core/stress_rows.h"
@@ -19,21 +19,26 @@ namespace {
 using Eigen::Vector3d;
 using stress::Worst;
 
-/// A valley along W's y of two slopes, seen from above its bottom along it: a patch of radius r has heights slope r to
-/// both sides and 0 before and behind, so that its plane lies slope r / 2 above the bottom, and the way is 2 sin(e) (h
-/// - slope r / 2) longer. The radius is that of the first Fresnel zone across, sqrt(wavelength h / sin e), held at 0.3
-/// and 10 m. Heights of the terrain's corners, 16 m to the side, are in single precision.
-StressFigure valley(double slope) {
+scene::Scene valley_of(double slope, double side) {
   scene::SceneParts parts;
   parts.name = "valley";
   parts.materials = scene::builtin_materials();
   scene::MeshBuilder mesh(parts);
   mesh.begin_object("valley", scene::ObjectKind::kTerrain);
-  const double half = 4096.0, side = 16.0, rim = slope * side;
+  const double half = 4096.0, rim = slope * side;
   const auto material = mesh.material("asphalt");
   mesh.quad({0, -half, 0}, {side, -half, rim}, {side, half, rim}, {0, half, 0}, material);
   mesh.quad({-side, -half, rim}, {0, -half, 0}, {0, half, 0}, {-side, half, rim}, material);
-  const scene::Scene land(std::move(parts));
+  return scene::Scene(std::move(parts));
+}
+
+/// A valley along W's y of two slopes, seen from above its bottom along it: a patch of radius r has heights slope r to
+/// both sides and 0 before and behind, so that its plane lies slope r / 2 above the bottom, and the way is 2 sin(e) (h
+/// - slope r / 2) longer. The radius is that of the first Fresnel zone across, sqrt(wavelength h / sin e), held at 0.3
+/// and 10 m. Heights of the terrain's corners, 16 m to the side, are in single precision.
+StressFigure valley(double slope) {
+  const double side = 16.0, rim = slope * side;
+  const scene::Scene land = valley_of(slope, side);
   PathParameters p;
   p.cutoff_m = 1e6, p.weakest_db = p.weakest_nlos_db = -300.0;
   Worst worst;
@@ -56,6 +61,29 @@ StressFigure valley(double slope) {
   return worst.figure();
 }
 
+/// The same valley, looked across from above its bottom: the ground that reflects is the one slope, as an endless
+/// mirror, once the search has left the bottom: 2 h (sin(e) - slope cos(e)) / (1 + slope^2). 0.1 mm along the slope
+/// move no mirror.
+StressFigure across_valley(double slope) {
+  const double side = 1024.0;
+  const scene::Scene land = valley_of(slope, side);
+  PathParameters p;
+  p.cutoff_m = 1e6, p.weakest_db = p.weakest_nlos_db = -300.0;
+  Worst worst;
+  for (const double h : {40.0, 150.0})
+    for (const double e : {0.5, 0.9})
+      for (const double to : {-1.0, 1.0}) {
+        const std::vector<Vector3d> sky{{to * std::cos(e), 0.0, std::sin(e)}};
+        std::vector<SignalPaths> out(1);
+        GnssCounters counters;
+        add_ground_reflections(p, {0.0, 0.0, h}, PlaneWaves(sky), scene::SceneAt(land), out, counters);
+        if (out[0].echoes.size() != 1) return {stress::kInfinity, 1.0};
+        const double exact_m = 2.0 * h * (std::sin(e) - slope * std::cos(e)) / (1.0 + slope * slope);
+        worst.look(out[0].echoes[0].excess_m - exact_m, 4.0 * stress::kHalfUlp * slope * side);
+      }
+  return worst.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> curved_ground_cases() {
@@ -65,7 +93,8 @@ std::vector<StressCase> curved_ground_cases() {
            "a valley's plane by the first Fresnel zone across, from 0.3 to 10 m: single precision of its corners",
            "of the bound"});
   for (const double slope : {0.02, 0.1, 0.2})
-    rows.add("curved_ground/valley_of_slope_" + stress::text(slope), [slope] { return valley(slope); });
+    rows.add("curved_ground/valley_of_slope_" + stress::text(slope), [slope] { return valley(slope); })
+        .add("curved_ground/across_a_slope_of_" + stress::text(slope), [slope] { return across_valley(slope); });
   return rows.take();
 }
 
