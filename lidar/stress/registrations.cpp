@@ -111,7 +111,7 @@ StressFigure found(const std::string& name, double off_m, double off_deg, double
 
 /// The precision of matches by themselves: of unit normals of all directions without tilt every direction is
 /// determined; of points on one line the turn about it is open: no covariance. A figure counts what differs.
-StressFigure precision() {
+StressFigure precision_of_a_line() {
   std::vector<Correspondence> all, on_line;
   for (int k = 0; k < 600; ++k) {
     Correspondence m;
@@ -243,7 +243,7 @@ std::vector<StressCase> registration_cases() {
   rows.of({StressGroup::kGeometry, "the curvature of matches on a line",
            "the inverse of a matrix without rank: sigmas of rounding",
            "no covariance, where all directions are met a finite one", "wrong"});
-  rows.add("registrations/precision_of_a_line", precision);
+  rows.add("registrations/precision_of_a_line", precision_of_a_line);
   const std::string usual = RegistrationConfig{}.method.name;
   for (const auto& method : registration_methods()) {
     if (method.make.make == nullptr || !method.make.registers) continue;

@@ -14,7 +14,7 @@ namespace {
 
 using stress::kEpsilon;
 using stress::kHalfUlp;
-constexpr float kEndless = std::numeric_limits<float>::infinity();
+constexpr float kAnyRange = std::numeric_limits<float>::infinity();
 
 /// A box of 64 x 32 x 16 m whose corners are whole metres, about a far place; rays from inside it. Each range is that
 /// to the box's sides, as if it stood at the origin: half a unit of single precision, and a direction's reciprocal.
@@ -29,7 +29,7 @@ StressFigure far_box(double x_m, double y_m, double z_m, bool packets) {
   for (int k = 0; k < 960; ++k) {
     const double up = 1.0 - 2.0 * (k + 0.5) / 960.0, turn = 2.399963 * k, level = std::sqrt(1.0 - up * up);
     rays.push_back({middle + Eigen::Vector3d(0.5 * (k % 9), -0.25 * (k % 5), 0.125 * (k % 7)),
-                    Eigen::Vector3d(level * std::cos(turn), level * std::sin(turn), up).cast<float>(), kEndless});
+                    Eigen::Vector3d(level * std::cos(turn), level * std::sin(turn), up).cast<float>(), kAnyRange});
   }
   std::vector<Hit> hits(rays.size());
   if (packets)
@@ -184,7 +184,7 @@ StressFigure on_borders() {
         const double sx = x == 4096.0 ? -1.0 : x == -4096.0 ? 1.0 : 0.0;
         // On the ground's own border a rounding decides: 1 mm inside.
         const Eigen::Vector3d o(x + beside + 1e-3 * sx, y + (y == 4096.0 ? -1e-3 : y == -4096.0 ? 1e-3 : beside), 32.0);
-        const Hit hit = now.trace({o, down, kEndless});
+        const Hit hit = now.trace({o, down, kAnyRange});
         out.figure += hit.hit() && hit.range_m == 16.0f ? 0.0 : 1.0;
         out.figure += now.blocked_towards(o, {0.0, 0.0, -1.0}, 1e5, false) ? 0.0 : 1.0;
         const auto ground = scene->ground(o.x(), o.y());
@@ -207,7 +207,7 @@ StressFigure along_borders(double turn) {
     for (const double y : {-256.0, 0.0, 256.0, 768.0}) {
       const double exact = (3800.0 - x) / static_cast<double>(d.x());
       if (std::abs(y + exact * static_cast<double>(d.y())) > 3999.0) continue;
-      const Hit hit = now.trace({{x, y, 1.0}, d, kEndless});
+      const Hit hit = now.trace({{x, y, 1.0}, d, kAnyRange});
       take_worst(out, hit.hit() ? std::abs(hit.range_m / exact - 1.0) : 1.0);
     }
   return out;
@@ -223,7 +223,7 @@ StressFigure wide(double apart_m) {
   StressFigure out{0.0, 1.02 * kHalfUlp};
   for (int k = 0; k < 100; ++k) {
     const Eigen::Vector3f d = Eigen::Vector3d(1.0, 0.01 * k - 0.5, 0.3).normalized().cast<float>();
-    const Hit hit = now.trace({{-4.0, 0.0, 0.0}, d, kEndless});
+    const Hit hit = now.trace({{-4.0, 0.0, 0.0}, d, kAnyRange});
     take_worst(out, hit.hit() ? std::abs(hit.range_m * static_cast<double>(d.x()) / 4.0 - 1.0) : 1.0);
   }
   return out;
@@ -250,7 +250,7 @@ StressFigure moving(double place_m, double yaw_rad) {
     const double a = yaw_rad + 0.5 * kPi * k;
     const Eigen::Vector3d way(std::cos(a), std::sin(a), 0.0);
     // A direction in single precision is off by up to half a unit: 9 m * that, twice (its length and its tilt).
-    const Hit hit = now.trace({at - 10.0 * way + Eigen::Vector3d(0.0, 0.0, 1.0), way.cast<float>(), kEndless});
+    const Hit hit = now.trace({at - 10.0 * way + Eigen::Vector3d(0.0, 0.0, 1.0), way.cast<float>(), kAnyRange});
     take_worst(out, hit.hit() && now.surface(hit.triangle).moving ? std::abs(hit.range_m - 9.0) : 1e9);
   }
   return out;

@@ -14,7 +14,7 @@ namespace canyon::scene {
 namespace {
 
 using stress::kEpsilon;
-constexpr float kEndless = std::numeric_limits<float>::infinity();
+constexpr float kNoEnd = std::numeric_limits<float>::infinity();
 
 /// Points, needles, lines, what is not finite: dropped, and counted, and the one good triangle is left, whose range is
 /// its own. A figure counts what differs.
@@ -44,7 +44,7 @@ StressFigure degenerate(float at_m) {
   StressFigure out;
   out.figure += scene->dropped_triangles() == 7 && scene->mesh().triangles.size() == 1 ? 0.0 : 1.0;
   const Hit hit =
-      SceneAt(*scene).trace({a.cast<double>() + Eigen::Vector3d(0.0, 0.0, 4.0), {0.0f, 0.0f, -1.0f}, kEndless});
+      SceneAt(*scene).trace({a.cast<double>() + Eigen::Vector3d(0.0, 0.0, 4.0), {0.0f, 0.0f, -1.0f}, kNoEnd});
   out.figure += hit.hit() && hit.range_m == 4.0f ? 0.0 : 1.0;
   out.figure += scene->extent().min.allFinite() && scene->extent().max.allFinite() ? 0.0 : 1.0;
   return out;
@@ -60,7 +60,7 @@ StressFigure nothing_at_all() {
                                   (MeshBuilder(parts).begin_object("n", ObjectKind::kTerrain), 0));
     const auto scene = made::scene_of(std::move(parts));
     const SceneAt now(*scene);
-    out.figure += now.trace({Eigen::Vector3d::Zero(), Eigen::Vector3f::UnitX(), kEndless}).hit() ? 1.0 : 0.0;
+    out.figure += now.trace({Eigen::Vector3d::Zero(), Eigen::Vector3f::UnitX(), kNoEnd}).hit() ? 1.0 : 0.0;
     out.figure += now.blocked({0, 0, 0}, {1e6, 0, 0}) || now.blocked_towards({0, 0, 0}, {0, 0, -1}) ? 1.0 : 0.0;
     out.figure += now.nearest({0, 0, 0}, 1e9).triangle == Hit::kMiss ? 0.0 : 1.0;
     out.figure += scene->ground(0.0, 0.0) || scene->ground_beside(0.0, 0.0) ? 1.0 : 0.0;
