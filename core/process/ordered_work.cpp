@@ -57,6 +57,10 @@ struct OrderedWork::Line {
       else
         do_first(lock);
     }
+    tell();
+  }
+
+  void tell() {
     if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
   }
 };
@@ -72,6 +76,7 @@ OrderedWork::~OrderedWork() {
 void OrderedWork::add(std::function<void()> piece) {
   const std::shared_ptr<Line> line = line_;
   std::unique_lock lock(line->mutex);
+  line->tell();  // before the piece is in the line
   line->waiting.push_back({std::move(piece), charged_cpu_account()});
   line->come_down_to(threads() == 1 ? 0 : line->most_waiting, lock);
   if (line->waiting.empty()) return;
