@@ -329,7 +329,7 @@ Status MissionRun::map_scan(const std::shared_ptr<const LidarScan>& deskewed, co
   const Pose X_WB_true = true_motion_.at(deskewed->t).value();
   if (lidar::registers(config_.registration)) localizer_.begin_motion();
   last_keyframe_X_WB_ = config_.run.truth_as_guess ? X_WB_true : now.X_WB;
-  CANYON_TRY_STATUS(keyframes_.take({deskewed, now, motion, X_WB_true}));
+  CANYON_TRY_STATUS(keyframes_.take({deskewed, now, motion, X_WB_true, source_->now().distance_m}));
   return fusion::measures_with(config_.fusion, "relative_pose") ? aid_by_map() : Ok{};
 }
 

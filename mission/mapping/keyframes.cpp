@@ -78,7 +78,8 @@ Status Keyframes::hand_on() {
     if (!each.row) return each.row.error();
     CANYON_TRY_STATUS(recorder_.keyframe(*each.row));
     const Scan& scan = each.scan;
-    CANYON_TRY_STATUS(recorder_.keyframe_input({*scan.deskewed, scan.estimate, scan.motion, scan.X_WB_true}));
+    CANYON_TRY_STATUS(
+        recorder_.keyframe_input({*scan.deskewed, scan.estimate, scan.motion, scan.X_WB_true, scan.distance_m}));
   }
   return Ok{};
 }

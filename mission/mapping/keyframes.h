@@ -22,6 +22,7 @@ class Keyframes {
     NavEstimate estimate;
     RelativePose motion;  ///< of B since the keyframe before, by prediction alone
     Pose X_WB_true;
+    double distance_m = 0.0;  ///< truly driven by then
   };
   /// All that is given by reference outlives it. `recorder` is asked by the thread of take() and finish() alone.
   Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration, bool maps_made,

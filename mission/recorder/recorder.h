@@ -17,7 +17,8 @@ namespace canyon::mission {
 
 enum class MapKind { kPrior, kRegistered };
 
-/// Takes what a run gives as it comes, each kind in the order of its times. An Error ends the run. This one keeps
+/// Takes what a run gives as it comes, each kind in the order of its times; keyframes may come when other kinds are
+/// further on. An Error ends the run. This one keeps
 /// nothing; others keep what they are made for.
 class Recorder {
  public:

@@ -59,6 +59,7 @@ struct KeyframeInput {
   const NavEstimate& estimate;
   const RelativePose& motion;  ///< of B since the keyframe before, by prediction alone
   Pose X_WB_true;
+  double distance_m = 0.0;  ///< truly driven by then
 };
 
 }  // namespace canyon::mission

@@ -145,7 +145,7 @@ StressFigure counted_rounding() {
   too_small(0, 0) = 0.5 * predicted(0, 0);
   Measurement repaired = m;
   count_rounding(repaired, HP, too_small, P);
-  const double least = std::max(HP(0, 3) * HP(0, 3) / P(3, 3), HP(0, 4) * HP(0, 4) / P(4, 4));
+  const double least = worse(HP(0, 3) * HP(0, 3) / P(3, 3), HP(0, 4) * HP(0, 4) / P(4, 4));
   looks.near(repaired.R(0, 0) - honest.R(0, 0), least + std::abs(too_small(0, 0)) + std::abs(too_small(0, 1)), 1e-12);
   looks.near(repaired.R(1, 1), honest.R(1, 1), 1e-12);
   return looks.figure();

@@ -40,9 +40,8 @@ class SearchAgain {
     start.body = task.body, start.place = place_of(task.body.pose.p_m, task.s_m);
     const double off = std::abs(start.place.beside_m);
     range_ = off <= 3.5                 ? OffsetRange{-3.5, 3.5}
-             : start.place.beside_m > 0 ? OffsetRange{std::max(-3.5, off - 23.5), off + 3.5}
-                                        : OffsetRange{-off - 3.5, -std::max(-3.5, off - 23.5)};
-    begins_clear_ = std::max(0.0, task.blocked.clearance_m(task.body.pose, task.vehicle, 0.8) - 0.05);
+             : start.place.beside_m > 0 ? OffsetRange{worse(-3.5, off - 23.5), off + 3.5}
+                                        : OffsetRange{-off - 3.5, -worse(-3.5, off - 23.5)};
     nodes_.push_back(start);
   }
 
@@ -92,7 +91,7 @@ class SearchAgain {
   Place place_of(const Vector2d& p_O, double near_m) const {
     const Vector2d p = p_O + task_.from_O_to_W;
     double s = task_.route.project(p, std::min(near_m - 1.5, end_m_), near_m + 3.0);
-    if (s >= end_m_) s += std::max(0.0, task_.route.direction(end_m_).dot(p - task_.route.at(end_m_)));
+    if (s >= end_m_) s += worse(0.0, task_.route.direction(end_m_).dot(p - task_.route.at(end_m_)));
     return {s, task_.route.offset(p, s) - task_.lane_m};
   }
   double last_at(double s) const {
@@ -108,10 +107,10 @@ class SearchAgain {
   double a_metre(const Place& at) const {
     return 0.6 / 22.0 * (std::abs(at.beside_m) + 0.5 * std::abs(at.beside_m - last_at(at.s_m)));
   }
-  double missing(const Node& n) const { return std::max(0.0, task_.s_m + 22.0 - n.place.s_m); }
+  double missing(const Node& n) const { return worse(0.0, task_.s_m + 22.0 - n.place.s_m); }
   double whole(const Node& n) const {
     const double v = task_.body.speed_m_s, halts_in = 0.5 * v * v / 3.0;
-    const double cannot_halt = missing(n) > 0.0 ? std::max(0.0, halts_in - n.driven) : 0.0;
+    const double cannot_halt = missing(n) > 0.0 ? worse(0.0, halts_in - n.driven) : 0.0;
     return n.cost + 22.0 * a_metre(n.place) + 4.0 * missing(n) + 100.0 * cannot_halt;
   }
   std::array<long, 3> cell(const PlanPose& pose) const {
@@ -119,7 +118,7 @@ class SearchAgain {
     const double turned_deg = (pose.yaw_rad - task_.body.pose.yaw_rad) * 180.0 / 3.141592653589793;
     return {std::lround(2.0 * d.x()), std::lround(2.0 * d.y()), std::lround(turned_deg / 10.0)};
   }
-  double must_keep(double driven) const { return std::min(0.4, begins_clear_ + 0.1 * std::max(0.0, driven - 2.0)); }
+  static constexpr double kMustKeep_m = 0.4;  // no way here begins nearer to anything
   void step(Node& n, double kappa, double s) const {
     n.body.pose = n.body.pose.along(kappa, 0.25);
     n.driven += 0.25;
@@ -134,15 +133,15 @@ class SearchAgain {
   }
   bool arc(std::size_t from, double share, Node& n) const {
     n = nodes_[from], n.from = from, n.points.clear();
-    const double angle = share * 0.5585, s = n.place.s_m, speed = std::max(1.0, task_.body.speed_m_s);
+    const double angle = share * 0.5585, s = n.place.s_m, speed = worse(1.0, task_.body.speed_m_s);
     const double most = 0.7854 * 0.25 / speed;
     for (int k = 0; k < 6; ++k) {
       const double before = n.body.steering_rad;
       n.body.steering_rad += std::clamp(angle - before, -most, most);
       step(n, std::tan(0.5 * (before + n.body.steering_rad)) / 1.8, s + (k + 0.5) * 0.25);
       const double clear = task_.blocked.clearance_m(n.body.pose, task_.vehicle, 0.8);
-      if (clear < must_keep(n.driven)) return false;
-      n.cost += 0.25 * std::max(0.0, 0.8 - clear);
+      if (clear < kMustKeep_m) return false;
+      n.cost += 0.25 * worse(0.0, 0.8 - clear);
     }
     arrive(n, 1.5);
     const double turned = task_.route.direction(n.place.s_m).dot(n.body.pose.forward());
@@ -156,8 +155,8 @@ class SearchAgain {
     for (double s = n.place.s_m; s < task_.s_m + 28.0; s += 0.25)
       line.points_O.push_back(at(s, n.place.beside_m * std::exp((n.place.s_m - s) / blend_m)));
     const DrivenArc driven =
-        drive_in_thought(line, n.body, missing(n) + 0.25, {.least_m = must_keep(n.driven), .comfort_m = 0.8},
-                         task_.tracker, task_.blocked, task_.vehicle);
+        drive_in_thought(line, n.body, missing(n) + 0.25, {.least_m = kMustKeep_m, .comfort_m = 0.8}, task_.tracker,
+                         task_.blocked, task_.vehicle);
     n.cost += driven.closeness_m2;
     const double s = n.place.s_m;
     std::size_t k = 0;
@@ -171,7 +170,7 @@ class SearchAgain {
 
   const PlanTask& task_;
   std::vector<Place> last_;
-  double end_m_, begins_clear_ = 0.0;
+  double end_m_;
   OffsetRange range_{};
   std::vector<Node> nodes_;
 };
@@ -216,14 +215,14 @@ StressFigure searched_again(const Searched& given, std::uint64_t seed) {
       expected.insert(expected.end(), way[i].points.begin(), way[i].points.end());
     const std::size_t driven = expected.size();
     const Place end = way.back().place;
-    const double to_m = std::max(end.s_m, task.s_m + 22.0) + 6.0;
+    const double to_m = worse(end.s_m, task.s_m + 22.0) + 6.0;
     for (double s = end.s_m + 0.25; s < to_m; s += 0.25) expected.push_back(again.at(s, end.beside_m));
     looks.right(plan.line.points_O.size() == expected.size() && driven > 1);
     for (std::size_t i = 0; i < std::min(expected.size(), plan.line.points_O.size()); ++i)
       looks.near((plan.line.points_O[i] - expected[i]).norm(), 0.0, 1e-9);
     looks.near(plan.offset_m, end.beside_m, 1e-9);
     looks.right(plan.horizon_m == 22.0);
-    const DrivenArc arc = drive_in_thought(plan.line, body, std::max(22.0, way.back().driven),
+    const DrivenArc arc = drive_in_thought(plan.line, body, worse(22.0, way.back().driven),
                                            {.least_m = 0.3, .comfort_m = 0.8}, *pursuit, blocked, vehicle);
     looks.right(plan.arc.free_m == arc.free_m && plan.arc.curvature_1_m.size() == arc.curvature_1_m.size());
     last.clear();

@@ -13,13 +13,12 @@ class KeyframeKeeper final : public mission::Recorder {
 
   Status node(const TapeNode& node) override {
     out_.motion.append(node.motion);
-    distance_m_ = node.distance_m;
     return Ok{};
   }
   Status keyframe_input(const mission::KeyframeInput& input) override {
     out_.keyframes.push_back({.t = input.deskewed.t,
                               .X_WB_true = input.X_WB_true,
-                              .distance_m = distance_m_,
+                              .distance_m = input.distance_m,
                               .scan = input.deskewed,
                               .pose_covariance = input.estimate.pose_covariance,
                               .motion_covariance = input.motion.covariance});
@@ -28,7 +27,6 @@ class KeyframeKeeper final : public mission::Recorder {
 
  private:
   RecordedKeyframes& out_;
-  double distance_m_ = 0.0;
 };
 
 }  // namespace
