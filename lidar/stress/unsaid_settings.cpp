@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include "canyon/core/config/config.h"
 #include "canyon/core/stress_rows.h"
+#include "canyon/core/stress_unsaid.h"
 #include "canyon/lidar/lidar_config.h"
 #include "canyon/lidar/registration/engine/engine_registration.h"
 #include "canyon/lidar/registration/registration.h"
@@ -12,12 +12,7 @@
 namespace canyon::lidar {
 namespace {
 
-/// Whether a configuration that nothing was said to is this one.
-template <class Config>
-bool said_nothing(const std::string& expected) {
-  Config config;
-  return fields_as_json([&config](FieldVisitor& f) { visit(f, config); }) == expected;
-}
+using stress::said_nothing;
 
 /// The keys of each part with their values. A figure counts the parts that differ.
 StressFigure unsaid_settings() {
