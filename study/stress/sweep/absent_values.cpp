@@ -35,6 +35,8 @@ constexpr MayBeAbsent kRows[] = {
      "no keyframe before it to be registered to"},
     {"keyframes", "overlap,open_directions", "", "", "the own methods alone tell them, of what they matched"},
     {"keyframes", "rms_m", "iterations", "0", "nothing was matched"},
+    {"keyframes", "rms_m", "status", "too_little_overlap", "less was matched than determines a pose"},
+    {"keyframes", "rms_m", "status", "degenerate", "what was matched determines none"},
     {"fixes", kPosition, "status", "none", "no fix"},
     {"fixes", kVelocity, "", "", "the receiver gives no velocity"},
     {"manifest.json", "commit", "", "", "the program was built of a source without its history"},

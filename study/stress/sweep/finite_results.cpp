@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -32,6 +33,19 @@ std::vector<std::string_view> pieces(std::string_view text, char border) {
   return out;
 }
 
+std::optional<double> number(std::string_view text) {
+  double value = 0.0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || end.ec != std::errc() || end.ptr != text.data() + text.size()) return {};
+  return value;
+}
+
+/// The same word, or the same number: "0" and "0.0" are.
+bool same(std::string_view a, std::string_view b) {
+  const auto first = number(a), second = number(b);
+  return first && second ? *first == *second : a == b;
+}
+
 /// Whether the list lets `value` be absent; `read` gives the text of a column or key beside it, "" where it is absent.
 template <class Read>
 bool may_miss(std::string_view kind, std::string_view value, Read&& read) {
@@ -39,7 +53,7 @@ bool may_miss(std::string_view kind, std::string_view value, Read&& read) {
     const auto values = pieces(row.values, ',');
     if (row.file != kind || std::ranges::find(values, value) == values.end()) return false;
     if (*row.when == '\0') return true;
-    return read(row.when) == (*row.is == '=' ? read(row.is + 1) : std::string(row.is));
+    return same(read(row.when), *row.is == '=' ? read(row.is + 1) : std::string(row.is));
   });
 }
 

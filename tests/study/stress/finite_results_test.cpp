@@ -33,6 +33,11 @@ TEST(FiniteResults, AFieldIsEmptyOnlyWhereItsRowSaysSo) {
   EXPECT_EQ(gnss("single,8,1e999,1.5,1,"), "2: gdop is 1e999");
   EXPECT_EQ(gnss("single,8,2.5,1.5,1"), "2: 5 fields for 6 columns");
   EXPECT_EQ(not_finite_in_csv("t_s,x_m\n0,1", "nav"), "the last line has no end");
+  const auto keyframe = [](const std::string& row) {
+    return not_finite_in_csv("status,iterations,rms_m\n" + row + "\n", "keyframes");
+  };
+  EXPECT_EQ(keyframe("degenerate,29,"), "") << "matched, but nothing that determines a pose";
+  EXPECT_EQ(keyframe("converged,29,"), "2: rms_m is empty");
 }
 
 TEST(FiniteResults, ANullStandsOnlyWhereItsObjectSaysSo) {
@@ -46,6 +51,8 @@ TEST(FiniteResults, ANullStandsOnlyWhereItsObjectSaysSo) {
   EXPECT_EQ(run(R"("map_points_level_prior": 0, "map_error_up_prior_rms_m": null)"), "");
   EXPECT_EQ(run(R"("map_points_level_prior": 1, "map_error_up_prior_rms_m": null)"),
             "runs[0].map_error_up_prior_rms_m is null");
+  EXPECT_EQ(run(R"("distance_m": 0.0, "phantoms_per_km": null)"), "");
+  EXPECT_EQ(run(R"("distance_m": 1e-9, "phantoms_per_km": null)"), "runs[0].phantoms_per_km is null");
   EXPECT_EQ(run(R"("closest_m": [1, null])"), "runs[0].closest_m[1] is null");
   EXPECT_THAT(run(R"("distance_m": NaN)"), HasSubstr("summary.json:1: "));
 }
