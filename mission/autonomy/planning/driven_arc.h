@@ -21,11 +21,15 @@ struct MovingBody {
 struct DrivenArc {
   static constexpr double kStep_m = 0.25;
 
-  double free_m = 0.0;               ///< driven before the body comes too near to a blocked cell
-  bool ends_free = false;            ///< nothing is in the way
-  double closeness_m2 = 0.0;         ///< way driven, times how much nearer than the comfortable clearance
+  double free_m = 0.0;        ///< driven before the body comes too near to a blocked cell
+  bool ends_free = false;     ///< nothing is in the way
+  double untouched_m = 0.0;   ///< driven before the body all but touches one; looked for as far as it takes to halt
+  double closeness_m2 = 0.0;  ///< way driven, times how much nearer than the comfortable clearance
   std::vector<float> curvature_1_m;  ///< at every step
 };
+
+/// Way that it takes to halt by full braking.
+double halting_way_m(const MovingBody& body, const KnownVehicle& vehicle);
 
 /// That steering rates are reckoned with, m/s: nothing is steered on the spot.
 inline constexpr double kSlowestSteered_m_s = 1.0;

@@ -35,7 +35,7 @@ class OffsetPlanner final : public LocalPlanner {
     const double here = task.route.offset(task.body.pose.p_m + task.from_O_to_W, task.s_m) - task.lane_m;
     lay_out(task);
     offer(here);
-    const double v = task.body.speed_m_s, halting_m = 0.5 * v * v / task.vehicle.max_deceleration_m_s2;
+    const double halting_m = halting_way_m(task.body, task.vehicle);
     for (Candidate& c : candidates_)
       c.beside_cost = p_.offset_cost_1_m * (std::abs(c.offset_m) + p_.change_share * std::abs(c.offset_m - chosen_m_));
     std::vector<std::size_t> order(candidates_.size());
@@ -59,8 +59,8 @@ class OffsetPlanner final : public LocalPlanner {
         return cost(0.0, arc, turning.of(arc), c.beside_cost) <= best_cost;
       });
       const double blocked_m = p_.horizon_m - std::min(p_.horizon_m, its.arc.free_m);
-      const double short_m = its.arc.ends_free ? 0.0 : std::max(0.0, halting_m - its.arc.free_m);
-      const double its_cost = cost(blocked_m, its.arc, turning.of(its.arc), c.beside_cost) + kCrashCost_1_m * short_m;
+      const double crash = its.arc.ends_free ? 0.0 : crash_cost(halting_m, its.arc.free_m, its.arc.untouched_m);
+      const double its_cost = cost(blocked_m, its.arc, turning.of(its.arc), c.beside_cost) + crash;
       if (its_cost > best_cost || (its_cost == best_cost && i > best_index)) continue;
       best_cost = its_cost;
       best_index = i;

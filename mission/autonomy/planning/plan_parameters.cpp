@@ -23,6 +23,11 @@ void visit(FieldVisitor& f, PlanParameters& p) {
            "cost of the squared curvature beside the route's own, per metre driven");
 }
 
+double crash_cost(double halting_m, double free_m, double untouched_m) {
+  constexpr double kTooNear_1_m = 100.0, kTouched_1_m = 1000.0;
+  return kTooNear_1_m * std::max(0.0, halting_m - free_m) + kTouched_1_m * std::max(0.0, halting_m - untouched_m);
+}
+
 OffsetRange offset_range(const PlanParameters& p, double here_m) {
   constexpr double kTowardsTheLane_m = 20.0;  // of a vehicle that is even farther off
   const double usual = p.max_offset_m, beside = std::abs(here_m);

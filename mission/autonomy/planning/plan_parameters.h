@@ -18,8 +18,9 @@ struct PlanParameters {
 };
 void visit(FieldVisitor& f, PlanParameters& p);
 
-/// Of every metre that is missing to halt in: more than all else together.
-inline constexpr double kCrashCost_1_m = 100.0;
+/// Of a way that is not free to its end, on which it takes `halting_m` to halt: more than all else together. Nothing is
+/// worse than to touch a thing before, and then to come too near to one.
+double crash_cost(double halting_m, double free_m, double untouched_m);
 /// Of a line after the horizon, for the tracker to look at.
 inline constexpr double kBeyondHorizon_m = 6.0;
 

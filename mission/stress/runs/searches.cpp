@@ -23,13 +23,13 @@ using stress::Looks;
 using Place = LanePlaces::Place;
 
 /// The search as docs and header say it, with all its numbers in place: horizon 22 m, clearance 0.3 m and 0.1 m more,
-/// comfort 0.8 m, costs of 4, 1, 0.6 (half of it beside the last way), 5 and 100.
+/// comfort 0.8 m, costs of 4, 1, 0.6 (half of it beside the last way), 5, 100 and 1000.
 class SearchAgain {
  public:
   struct Node {
     MovingBody body;
     Place place{};
-    double driven = 0.0, cost = 0.0;
+    double driven = 0.0, cost = 0.0, untouched = 0.0, aside = 0.0;
     std::size_t from = 0;
     std::vector<Vector2d> points{};
   };
@@ -70,11 +70,18 @@ class SearchAgain {
       if (at_least > least - 0.2) break;
       open.erase(open.begin());
       if (kept.at(cell(nodes_[i].body.pose)) < nodes_[i].cost) continue;
-      if (expanded % 4 == 0) ends(shot(i, 3.0)), ends(shot(i, 6.0));
+      if (expanded % 4 == 0) ends(shot(i, 3.0, 0.0)), ends(shot(i, 6.0, 0.0));
       for (const double share : {0.0, 0.25, -0.25, 0.6, -0.6, 1.0, -1.0}) {
         Node node;
         if (arc(i, share, node) && ends(node)) keep(nodes_.size() - 1);
       }
+    }
+    const double v = task_.body.speed_m_s, start = nodes_[0].place.beside_m;
+    for (int k = -16; k <= 16; ++k) {
+      if (missing(nodes_[best]) <= 0.0 || nodes_[best].untouched >= 0.5 * v * v / 3.0) continue;
+      Node turned = shot(0, 1.5, start + 0.125 * k);
+      turned.aside = start + 0.125 * k - turned.place.beside_m;
+      ends(turned);
     }
     std::vector<Node> way{nodes_[best]};
     while (best != 0) best = nodes_[best].from, way.push_back(nodes_[best]);
@@ -111,7 +118,8 @@ class SearchAgain {
   double whole(const Node& n) const {
     const double v = task_.body.speed_m_s, halts_in = 0.5 * v * v / 3.0;
     const double cannot_halt = missing(n) > 0.0 ? worse(0.0, halts_in - n.driven) : 0.0;
-    return n.cost + 22.0 * a_metre(n.place) + 4.0 * missing(n) + 100.0 * cannot_halt;
+    const double touches = missing(n) > 0.0 ? worse(0.0, halts_in - n.untouched) : 0.0;
+    return n.cost + 22.0 * a_metre(n.place) + 4.0 * missing(n) + 100.0 * cannot_halt + 1000.0 * touches;
   }
   std::array<long, 3> cell(const PlanPose& pose) const {
     const Vector2d d = pose.p_m - task_.body.pose.p_m;
@@ -145,19 +153,30 @@ class SearchAgain {
     }
     arrive(n, 1.5);
     const double turned = task_.route.direction(n.place.s_m).dot(n.body.pose.forward());
+    n.untouched = n.driven;
+    const double v = task_.body.speed_m_s, still = 0.5 * v * v / 3.0 - n.driven;
+    if (still > 0.0) {
+      PlanLine on;
+      for (double to = n.place.s_m; to < n.place.s_m + 22.0; to += 0.25)
+        on.points_O.push_back(at(to, n.place.beside_m));
+      n.untouched += drive_in_thought(on, n.body, still, {.least_m = kMustKeep_m, .comfort_m = 0.8}, task_.tracker,
+                                      task_.blocked, task_.vehicle)
+                         .untouched_m;
+    }
     return n.place.beside_m >= range_.right_m && n.place.beside_m <= range_.left_m &&
            turned >= -std::sin(10.0 * 3.141592653589793 / 180.0);
   }
-  Node shot(std::size_t from, double blend_m) const {
+  Node shot(std::size_t from, double blend_m, double beside) const {
     Node n = nodes_[from];
     n.from = from, n.points.clear();
     PlanLine line;
     for (double s = n.place.s_m; s < task_.s_m + 28.0; s += 0.25)
-      line.points_O.push_back(at(s, n.place.beside_m * std::exp((n.place.s_m - s) / blend_m)));
+      line.points_O.push_back(at(s, beside + (n.place.beside_m - beside) * std::exp((n.place.s_m - s) / blend_m)));
     const DrivenArc driven =
         drive_in_thought(line, n.body, missing(n) + 0.25, {.least_m = kMustKeep_m, .comfort_m = 0.8}, task_.tracker,
                          task_.blocked, task_.vehicle);
     n.cost += driven.closeness_m2;
+    n.untouched = n.driven + driven.untouched_m;
     const double s = n.place.s_m;
     std::size_t k = 0;
     for (; k < driven.curvature_1_m.size(); ++k) {
@@ -216,7 +235,8 @@ StressFigure searched_again(const Searched& given, std::uint64_t seed) {
     const std::size_t driven = expected.size();
     const Place end = way.back().place;
     const double to_m = worse(end.s_m, task.s_m + 22.0) + 6.0;
-    for (double s = end.s_m + 0.25; s < to_m; s += 0.25) expected.push_back(again.at(s, end.beside_m));
+    for (double s = end.s_m + 0.25; s < to_m; s += 0.25)
+      expected.push_back(again.at(s, end.beside_m + way.back().aside * (1.0 - std::exp((end.s_m - s) / 1.5))));
     looks.right(plan.line.points_O.size() == expected.size() && driven > 1);
     for (std::size_t i = 0; i < std::min(expected.size(), plan.line.points_O.size()); ++i)
       looks.near((plan.line.points_O[i] - expected[i]).norm(), 0.0, 1e-9);
@@ -245,6 +265,9 @@ std::vector<StressCase> search_cases() {
   });
   rows.add("searches/before_a_wall", [=] {
     return searched_again({straight, {{{6.0, 0.4}, 0.02}, 6.0, 0.0}, 6.0, 0.1, 2, 17.0}, 3);
+  });
+  rows.add("searches/too_near_to_halt_before_a_wall", [=] {
+    return searched_again({straight, {{{6.0, 0.4}, 0.02}, 6.0, 0.0}, 6.0, 0.1, 2, 13.0}, 3);
   });
   rows.add("searches/far_beside_the_lane", [=] {
     return searched_again({straight, {{{6.0, 5.2}, 0.1}, 2.0, 0.0}, 6.0, -0.4, 3}, 4);

@@ -102,6 +102,25 @@ TEST(DrivenArc, EndsWhereTheBumperDoes) {
   EXPECT_EQ(free_along({}, 0.0, -20.0, {}, blocked, {}), 20.0);
 }
 
+// A post 0.2 m beside the way is too near, and not touched; one ahead is touched, all but 0.1 m of it.
+TEST(DrivenArc, TellsTooNearFromTouched) {
+  const KnownVehicle vehicle;
+  const MovingBody body{{}, 5.0, 0.0};
+  const auto driven = [&](const Eigen::Vector2d& post) {
+    return drive_in_thought(straight(40.0), body, 20.0, {.least_m = 0.3, .comfort_m = 0.8},
+                            *default_tracker("pure_pursuit"), BlockedCells({0.0, 0.0}, {post}), vehicle);
+  };
+  const DrivenArc beside = driven({vehicle.front_m + 2.0, vehicle.half_width_m + 0.2});
+  EXPECT_EQ(beside.free_m, 1.75);  // sqrt(0.3^2 - 0.2^2) = 0.22 m before it, in steps of 0.25 m
+  EXPECT_EQ(beside.untouched_m, std::ceil(halting_way_m(body, vehicle) / DrivenArc::kStep_m) * DrivenArc::kStep_m);
+  EXPECT_FALSE(beside.ends_free);
+  const DrivenArc ahead = driven({vehicle.front_m + 2.2, 0.0});
+  EXPECT_EQ(ahead.free_m, 1.75);
+  EXPECT_EQ(ahead.untouched_m, 2.0);
+  EXPECT_EQ(ahead.curvature_1_m.size(), 7U);
+  EXPECT_TRUE(driven({30.0, 0.0}).ends_free);
+}
+
 // 2026-11-26: one cell at its bumper made the least clearance nothing for two metres, of the wall a metre behind it
 // too: three of 29 runs crept into a wall in plain view.
 TEST(Room, WhatStandsTooNearGivesNothingElseAway) {
@@ -258,6 +277,28 @@ TEST_P(EachPlanner, KeepsToAWayInWhichItCanHalt) {
   const LocalPlan plan = plan_beside_a_wall(GetParam(), 14.0, 1.8, across);
   EXPECT_FALSE(plan.arc.ends_free);
   EXPECT_GE(plan.arc.free_m, 5.0 * 5.0 / (2.0 * vehicle.max_deceleration_m_s2));
+}
+
+// 2026-11-26: where no way kept its clearance for as long as it takes to halt, all were as good as that one which
+// leads along the lane: seed 38 of `high` braked into a pole that it could have braked beside.
+TEST_P(EachPlanner, BrakesAlongTheWayThatTouchesLast) {
+  const Path route({{0.0, 0.0}, {100.0, 0.0}}, 6.5);
+  const KnownVehicle vehicle;
+  const MovingBody body{{{10.0, 0.0}, 0.0}, 5.0, 0.0};
+  const double poles_m = 10.0 + vehicle.front_m + 3.5, side_m = vehicle.half_width_m;
+  ASSERT_GT(halting_way_m(body, vehicle), 3.5);
+  for (const double sign : {-1.0, 1.0}) {
+    // 0.23 m of air on either side of a body in the middle between them, 0.18 m beside the lane's.
+    std::vector<Eigen::Vector2d> cells{{poles_m, -sign * (side_m + 0.05)}, {poles_m, sign * (side_m + 0.41)}};
+    add_wall(cells, {poles_m, -sign * (side_m + 0.05)}, {poles_m, -sign * 14.0});
+    add_wall(cells, {poles_m, sign * (side_m + 0.41)}, {poles_m, sign * 14.0});
+    const LocalPlan plan = default_planner(GetParam())
+                               ->plan({route, 10.0, Eigen::Vector2d::Zero(), 0.0, body,
+                                       BlockedCells({10.0, 0.0}, cells), *default_tracker("pure_pursuit"), vehicle});
+    EXPECT_FALSE(plan.arc.ends_free);
+    EXPECT_LT(plan.arc.free_m, 3.5);
+    EXPECT_GE(plan.arc.untouched_m, halting_way_m(body, vehicle)) << sign;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(LocalPlanners, EachPlanner, ::testing::Values("offsets", "hybrid_a_star"),

@@ -21,6 +21,8 @@ constexpr std::array<double, 7> kSteered{0.0, 0.25, -0.25, 0.6, -0.6, 1.0, -1.0}
 /// Ways on from a node to the lane, within which what is left to it falls to 1/e; tried from one in so many nodes.
 constexpr std::array<double, 2> kShotBlend_m{3.0, 6.0};
 constexpr std::size_t kShotEvery = 4;
+/// Ways aside, tried from the start where whatever else there is touches something before it is halted on.
+constexpr double kAside_m = 2.0, kAsideStep_m = 0.125, kAsideBlend_m = 1.5;
 constexpr double kWorthSearching = 0.2;  // that a way may be cheaper than the best so far
 constexpr double kPlaces_m = 0.5, kHeadings_rad = std::numbers::pi / 18.0;  // a cell of the search
 constexpr double kMostTurned_rad = 100.0 / 180.0 * std::numbers::pi;        // from the route
@@ -32,6 +34,8 @@ struct SearchNode {
   MovingBody body;
   LanePlaces::Place place;
   double driven_m = 0.0, cost = 0.0;      ///< since the start
+  double untouched_m = 0.0;               ///< that may be driven on the same way, DrivenArc's
+  double aside_m = 0.0;                   ///< so much further to the left the way still goes
   std::size_t from = 0;                   ///< node
   std::vector<Eigen::Vector2d> points_O;  ///< at every step since `from`
 };
@@ -47,7 +51,7 @@ class WaySearch {
         last_(last),
         room_(task.body.pose, {clearances.least_m + kMargin_m, clearances.comfort_m}, task.blocked, task.vehicle),
         speed_m_s_(std::max(kSlowestSteered_m_s, task.body.speed_m_s)),
-        halting_m_(0.5 * task.body.speed_m_s * task.body.speed_m_s / task.vehicle.max_deceleration_m_s2),
+        halting_m_(halting_way_m(task.body, task.vehicle)),
         start_(place_of(task.body.pose.p_m, task.s_m)),
         range_(offset_range(p, start_.beside_m)),
         free_ways_(task, p, range_, [&](const LanePlaces::Place& at) { return cost_1_m(at); }) {}
@@ -63,10 +67,12 @@ class WaySearch {
       open_.pop();
       if (cheapest_.at(cell(nodes_[from].body.pose)) < nodes_[from].cost) continue;
       for (std::size_t k = 0; k < kShotBlend_m.size() && expanded % kShotEvery == 0; ++k)
-        end(shot(from, kShotBlend_m[k]));
+        end(shot(from, kShotBlend_m[k], 0.0));
       for (const double steered : kSteered)
         if (auto node = arc(from, steered); node && end(*std::move(node))) keep(nodes_.size() - 1);
     }
+    const auto touches = [&] { return missing_m(nodes_[best_]) > 0.0 && nodes_[best_].untouched_m < halting_m_; };
+    for (double aside = -kAside_m; aside <= kAside_m && touches(); aside += kAsideStep_m) end(aside_by(aside));
     std::size_t best = best_;
     std::vector<SearchNode> way{nodes_[best]};
     for (; best != 0; best = nodes_[best].from) way.push_back(nodes_[nodes_[best].from]);
@@ -101,8 +107,8 @@ class WaySearch {
 
   double cost_of_ending(const SearchNode& n) const {
     const double missing = missing_m(n);
-    const double short_m = missing > 0.0 ? std::max(0.0, halting_m_ - n.driven_m) : 0.0;
-    return n.cost + p_.horizon_m * cost_1_m(n.place) + p_.blocked_cost_1_m * missing + kCrashCost_1_m * short_m;
+    const double crash = missing > 0.0 ? crash_cost(halting_m_, n.driven_m, n.untouched_m) : 0.0;
+    return n.cost + p_.horizon_m * cost_1_m(n.place) + p_.blocked_cost_1_m * missing + crash;
   }
 
   std::uint64_t cell(const PlanPose& pose) const {
@@ -153,19 +159,22 @@ class WaySearch {
     if (n.place.beside_m < range_.right_m || n.place.beside_m > range_.left_m) return std::nullopt;
     const Eigen::Vector2d u = task_.route.direction(n.place.s_m), forward = n.body.pose.forward();
     if (u.dot(forward) < std::cos(kMostTurned_rad)) return std::nullopt;
+    n.untouched_m = untouched_m(n);
     return n;
   }
 
-  /// Driven by the tracker to the lane and along it, as far as that is free.
-  SearchNode shot(std::size_t from, double blend_m) const {
+  /// Driven by the tracker to so far beside the lane and along there, as far as that is free.
+  SearchNode shot(std::size_t from, double blend_m, double beside_m) const {
     SearchNode n = begun(from);
     PlanLine line;
     const double to_m = task_.s_m + p_.horizon_m + kBeyondHorizon_m;
     for (double s = n.place.s_m; s < to_m; s += PlanLine::kSpacing_m)
-      line.points_O.push_back(lane_.at({s, n.place.beside_m * std::exp((n.place.s_m - s) / blend_m)}));
+      line.points_O.push_back(
+          lane_.at({s, beside_m + (n.place.beside_m - beside_m) * std::exp((n.place.s_m - s) / blend_m)}));
     const DrivenArc driven =
         drive_in_thought(line, n.body, missing_m(n) + DrivenArc::kStep_m, task_.tracker, room_, n.driven_m);
     n.cost += p_.closeness_cost_1_m2 * driven.closeness_m2;
+    n.untouched_m = n.driven_m + driven.untouched_m;
     const double from_m = n.place.s_m;
     int since = 0;
     for (std::size_t k = 0; k < driven.curvature_1_m.size(); ++k) {
@@ -177,11 +186,27 @@ class WaySearch {
     return n;
   }
 
+  SearchNode aside_by(double aside_m) const {
+    SearchNode n = shot(0, kAsideBlend_m, start_.beside_m + aside_m);
+    n.aside_m = start_.beside_m + aside_m - n.place.beside_m;
+    return n;
+  }
+
   SearchNode begun(std::size_t from) const {
     SearchNode n = nodes_[from];
     n.from = from;
     n.points_O.clear();
     return n;
+  }
+
+  /// On beside the lane as there, over what it still takes to halt.
+  double untouched_m(const SearchNode& n) const {
+    if (n.driven_m >= halting_m_) return n.driven_m;
+    PlanLine line;
+    for (double s = n.place.s_m; s < n.place.s_m + p_.horizon_m; s += PlanLine::kSpacing_m)
+      line.points_O.push_back(lane_.at({s, n.place.beside_m}));
+    return n.driven_m +
+           drive_in_thought(line, n.body, halting_m_ - n.driven_m, task_.tracker, room_, n.driven_m).untouched_m;
   }
 
   void step(SearchNode& n, double curvature_1_m, double s_m) const {
@@ -239,7 +264,7 @@ class HybridAStar final : public LocalPlanner {
   }
 
  private:
-  /// All that was driven, then beside the lane as at its end, for the tracker to look at.
+  /// All that was driven, then on beside the lane, for the tracker to look at.
   PlanLine line(const PlanTask& task, const std::vector<SearchNode>& way) const {
     PlanLine out;
     out.points_O.push_back(way.front().body.pose.p_m);
@@ -249,7 +274,8 @@ class HybridAStar final : public LocalPlanner {
     const LanePlaces::Place end = way.back().place;
     const double to_m = std::max(end.s_m, task.s_m + p_.horizon_m) + kBeyondHorizon_m;
     for (double s = end.s_m + PlanLine::kSpacing_m; s < to_m; s += PlanLine::kSpacing_m)
-      out.points_O.push_back(lane.at({s, end.beside_m}));
+      out.points_O.push_back(
+          lane.at({s, end.beside_m + way.back().aside_m * (1.0 - std::exp((end.s_m - s) / kAsideBlend_m))}));
     return out;
   }
 
