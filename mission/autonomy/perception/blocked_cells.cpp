@@ -36,19 +36,25 @@ BlockedCells::BlockedCells(const Eigen::Vector2d& centre_O, const std::vector<Ei
     if (of[i] != kNowhere) cells_[next[of[i]]++] = cells_O[i];
 }
 
+template <class Look>
+void BlockedCells::look_around(const Eigen::Vector2d& from_centre, double reach_m, const Look& look) const {
+  const int x0 = std::max(0, tile(from_centre.x() - reach_m)),
+            x1 = std::min(kTiles - 1, tile(from_centre.x() + reach_m));
+  const int y0 = std::max(0, tile(from_centre.y() - reach_m)),
+            y1 = std::min(kTiles - 1, tile(from_centre.y() + reach_m));
+  for (int iy = y0; iy <= y1 && x0 <= x1; ++iy) {
+    // The tiles of a row lie one after the other.
+    const auto row = static_cast<std::size_t>(iy * kTiles);
+    look(first_[row + static_cast<std::size_t>(x0)], first_[row + static_cast<std::size_t>(x1) + 1]);
+  }
+}
+
 double BlockedCells::clearance_m(const PlanPose& body, const KnownVehicle& vehicle, double cap_m) const {
   const Eigen::Vector2d u = body.forward();
   const double middle = 0.5 * (vehicle.rear_m + vehicle.front_m), half = 0.5 * (vehicle.front_m - vehicle.rear_m);
   const Eigen::Vector2d centre = body.p_m + middle * u - centre_;
-  const double reach = std::hypot(half, vehicle.half_width_m) + cap_m;
-  const int x0 = std::max(0, tile(centre.x() - reach)), x1 = std::min(kTiles - 1, tile(centre.x() + reach));
-  const int y0 = std::max(0, tile(centre.y() - reach)), y1 = std::min(kTiles - 1, tile(centre.y() + reach));
   double best = cap_m * cap_m;
-  for (int iy = y0; iy <= y1 && x0 <= x1; ++iy) {
-    // The tiles of a row lie one after the other.
-    const auto row = static_cast<std::size_t>(iy * kTiles);
-    const std::uint32_t from = first_[row + static_cast<std::size_t>(x0)],
-                        to = first_[row + static_cast<std::size_t>(x1) + 1];
+  look_around(centre, std::hypot(half, vehicle.half_width_m) + cap_m, [&](std::uint32_t from, std::uint32_t to) {
     for (std::uint32_t i = from; i < to; ++i) {
       const Eigen::Vector2d d = cells_[i] - centre_ - centre;
       const double ahead = std::abs(u.dot(d)) - half;
@@ -56,8 +62,15 @@ double BlockedCells::clearance_m(const PlanPose& body, const KnownVehicle& vehic
       const double dx = std::max(0.0, ahead), dy = std::max(0.0, aside);
       best = std::min(best, dx * dx + dy * dy);
     }
-  }
+  });
   return std::sqrt(best);
+}
+
+void BlockedCells::find_within(const Eigen::Vector2d& p_O, double distance_m, std::vector<std::uint32_t>& found) const {
+  look_around(p_O - centre_, distance_m, [&](std::uint32_t from, std::uint32_t to) {
+    for (std::uint32_t i = from; i < to; ++i)
+      if ((cells_[i] - p_O).norm() <= distance_m) found.push_back(i);
+  });
 }
 
 }  // namespace canyon::mission

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -15,42 +14,25 @@ constexpr double kSlack_m = 0.05, kTouching_m = 0.01;
 constexpr double kTurning_m = 2.0;  // at 5 m/s a body beside a wall has turned its tail out by then
 constexpr double kGrowth = 0.1;     // from there on, a metre
 
-std::int64_t square_of(const Eigen::Vector2d& cell) {
-  const auto x = static_cast<std::int64_t>(std::floor(cell.x() / kTogether_m)),
-             y = static_cast<std::int64_t>(std::floor(cell.y() / kTogether_m));
-  return (x << 32) + y;
-}
-
-/// Cells that hang together with the first `begun` ones come to the front; how many they are then.
-std::size_t gather(std::vector<Eigen::Vector2d>& cells, std::size_t begun) {
-  std::unordered_multimap<std::int64_t, std::size_t> left;
-  for (std::size_t i = begun; i < cells.size(); ++i) left.emplace(square_of(cells[i]), i);
-  std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < begun; ++i) found.push_back(i);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const Eigen::Vector2d at = cells[found[k]];
-    for (const double dx : {-kTogether_m, 0.0, kTogether_m})
-      for (const double dy : {-kTogether_m, 0.0, kTogether_m}) {
-        auto [next, end] = left.equal_range(square_of(at + Eigen::Vector2d(dx, dy)));
-        while (next != end) {
-          if ((cells[next->second] - at).norm() > kTogether_m) {
-            ++next;
-            continue;
-          }
-          found.push_back(next->second);
-          next = left.erase(next);
-        }
-      }
-  }
+/// Which cells a body stands nearer to than `least_m`, and those that hang together with them.
+std::vector<bool> beside_body(const PlanPose& body, double least_m, const BlockedCells& blocked,
+                              const KnownVehicle& vehicle) {
+  const std::vector<Eigen::Vector2d>& cells = blocked.all();
   std::vector<bool> is_found(cells.size(), false);
-  for (const std::size_t i : found) is_found[i] = true;
-  std::vector<Eigen::Vector2d> sorted;
-  sorted.reserve(cells.size());
-  for (const bool wanted : {true, false})
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (is_found[i] == wanted) sorted.push_back(cells[i]);
-  cells = std::move(sorted);
-  return found.size();
+  std::vector<std::uint32_t> found, next;
+  const auto add = [&](std::uint32_t i) {
+    if (is_found[i]) return;
+    is_found[i] = true;
+    found.push_back(i);
+  };
+  for (std::uint32_t i = 0; i < cells.size(); ++i)
+    if (vehicle.distance_m(body, cells[i]) < least_m) add(i);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    next.clear();
+    blocked.find_within(cells[found[k]], kTogether_m, next);
+    for (const std::uint32_t i : next) add(i);
+  }
+  return is_found;
 }
 
 }  // namespace
@@ -60,15 +42,12 @@ Room::Room(const PlanPose& from, const Clearances& clearances, const BlockedCell
     : clearances_(clearances), blocked_(blocked), vehicle_(vehicle) {
   const double least_m = clearances.least_m;
   if (blocked.clearance_m(from, vehicle, least_m) >= least_m) return;
-  std::vector<Eigen::Vector2d> cells = blocked.all();
-  const auto far = std::stable_partition(cells.begin(), cells.end(), [&](const Eigen::Vector2d& cell) {
-    return vehicle.distance_m(from, cell) < least_m;
-  });
-  const std::size_t near = gather(cells, static_cast<std::size_t>(far - cells.begin()));
-  const auto border = cells.begin() + static_cast<std::ptrdiff_t>(near);
+  const std::vector<bool> is_near = beside_body(from, least_m, blocked, vehicle);
+  std::vector<Eigen::Vector2d> near, rest;
+  for (std::size_t i = 0; i < is_near.size(); ++i) (is_near[i] ? near : rest).push_back(blocked.all()[i]);
   Beside beside;
-  beside.near = BlockedCells(from.p_m, {cells.begin(), border});
-  beside.rest = BlockedCells(from.p_m, {border, cells.end()});
+  beside.near = BlockedCells(from.p_m, near);
+  beside.rest = BlockedCells(from.p_m, rest);
   beside.leading = vehicle;
   (gear == Gear::kForward ? beside.leading.rear_m : beside.leading.front_m) = 0.5 * (vehicle.rear_m + vehicle.front_m);
   beside.whole_m = std::max(0.0, beside.near.clearance_m(from, vehicle, least_m) - kSlack_m);
