@@ -5,6 +5,7 @@
     study/filter_study.py --route city7 --seeds 101-103 --set 'loose=filter = "vehicle"; fix_error_scale = 3'
     study/filter_study.py --route city7 --seeds 101-103 --fixes
     study/filter_study.py --like high --seeds 1-20 --filters naive,vehicle,tight --parts --oracle
+    study/filter_study.py --like high --seeds 1-20 --filters vehicle --map-aided
 
 Each seed is driven once in an open loop, by truth, with everything that any of the filters measures with; `canyon fuse` then gives each
 filter that record. So all of them meet the same motion, fixes, ranges, ticks and noise. The rear axle slips and the unit is mounted
@@ -193,12 +194,30 @@ def fuse(arguments, folder, name, keys):
     return {"rms": summary["rms_3d_m"], "e": summary["rms_e_m"], "n": summary["rms_n_m"], "u": summary["rms_u_m"], "max": largest,
             "h": math.hypot(summary["rms_e_m"], summary["rms_n_m"]),
             "mean": [statistics.fmean(r) for r in ratio], "median": [statistics.median(r) for r in ratio],
-            "within": horizontal_shares(summary)}
+            "within": horizontal_shares(summary["evidence"])}
 
 
-def horizontal_shares(summary):
+def map_aided(arguments, folder):
+    """`vehicle` on the same drive, with the motion between registered keyframes: what no record holds, so the drive is simulated again."""
+    file, out = folder.parent / f"{arguments.route}-aided.toml", folder.parent / f"aided-{folder.name}"
+    text = (folder.parent / f"{arguments.route}.toml").read_text().replace('[registration]\nmethod = "none"\n', "")
+    file.write_text(text + '[fidelity.aided]\nbase = "recorded"\n[fidelity.aided.fusion]\nfilter = "vehicle"\nstates = []\nmeasurements = []\n'
+                           'acceptance = "as_filter"\nmap_aiding = true\n')
+    call([arguments.canyon, "compare", file, "--open-loop", "--seed", folder.name.rpartition("-")[2], "--fidelities", "aided", "--no-2x2", "--plan",
+          "--for", "position", "--threads", str(arguments.threads), "--out", out, "--force"], folder.parent / f"{out.name}.log")
+    run = json.loads((out / "summary.json").read_text())["runs"][0]
+    rows = [[float(r[k]) for k in ("error_e_m", "error_n_m", "error_u_m", "sigma_e_m", "sigma_n_m", "sigma_u_m")]
+            for r in table_rows(out / "epochs" / "aided_nav.csv")]
+    ratio = [[(r[i] / r[3 + i]) ** 2 for r in rows] for i in range(3)]
+    e, n, u = (run[f"position_error_{axis}_rms_m"] for axis in ("e", "n", "up"))
+    return {"rms": run["position_error_rms_m"], "e": e, "n": n, "u": u, "max": run["position_error_max_m"], "h": math.hypot(e, n),
+            "mean": [statistics.fmean(r) for r in ratio], "median": [statistics.median(r) for r in ratio],
+            "within": horizontal_shares(run["evidence"])}
+
+
+def horizontal_shares(evidence):
     """Of epochs within the 50, 95 and 99.7 % ellipses, %."""
-    for block in summary["evidence"]["blocks"]:
+    for block in evidence["blocks"]:
         if block["name"] == "position":
             return [100.0 * block[k] for k in ("within_50", "within_95", "within_997")]
     return [math.nan] * 3
@@ -335,6 +354,7 @@ def main():
     parser.add_argument("--filters", default="", help="of naive, vehicle, tight")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=KEYS", help="a filter of these keys of [fusion], parted by '; '")
     parser.add_argument("--parts", action="store_true", help="vehicle without each of its parts, and told wrongly")
+    parser.add_argument("--map-aided", action="store_true", help="vehicle with the motion between registered keyframes too")
     parser.add_argument("--oracle", action="store_true")
     parser.add_argument("--oracle-scale", type=float, default=3.0)
     parser.add_argument("--fixes", action="store_true", help="what the fixes' errors are like")
@@ -349,6 +369,8 @@ def main():
     if arguments.fixes:
         describe_fixes(list(folders.values()))
     results = {name: [fuse(arguments, folder, name, keys) for folder in folders.values()] for name, keys in filters.items()}
+    if arguments.map_aided:
+        results["vehicle, map-aided"] = [map_aided(arguments, folder) for folder in folders.values()]
     if arguments.oracle:
         origin = json.loads((next(iter(folders.values())) / "summary.json").read_text())["scene"]["origin"]
         for name, keys, scale in (("oracle, white", ORACLE, arguments.oracle_scale), ("oracle, lasting", FILTERS["vehicle"], 1.0)):

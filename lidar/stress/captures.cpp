@@ -4,11 +4,14 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "canyon/core/output/staged.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/stress/looks.h"
 #include "canyon/lidar/stress/subjects.h"
+#include "canyon/lidar/velodyne/packet_output.h"
 #include "canyon/lidar/velodyne/pcap.h"
 
 namespace canyon::lidar {
@@ -136,6 +139,33 @@ StressFigure our_own() {
   return looks.figure();
 }
 
+/// Captures count by Unix, which knows no leap seconds: noon of the first day of 2000, 2010 and 2020 (ISO 8601 and
+/// POSIX), to the microsecond in which its first packet ends.
+StressFigure dated() {
+  Looks looks;
+  const std::string path =
+      (std::filesystem::temp_directory_path() / ("canyon-capture-dated-" + std::to_string(::getpid()))).string();
+  const LidarConfig config;  // a VLP-16
+  for (const auto& [noon, unix_s] : {std::pair{"2000-01-01T12:00:00Z", 946'728'000},
+                                     {"2010-01-01T12:00:00Z", 1'262'347'200},
+                                     {"2020-01-01T12:00:00Z", 1'577'880'000}}) {
+    auto output = velodyne::PacketOutput::create(config);
+    auto file = StagedFile::create(path, true);
+    looks.right(output.ok() && file.ok() && output->capture_to(*file).ok());
+    LidarScan scan;
+    scan.t = *GpsTime::parse(noon, "noon");
+    scan.period_s = 0.1;
+    looks.right(output->add(0, scan).ok() && file->commit().ok());
+    const auto found = velodyne::read_pcap(path);
+    looks.right(found.ok() && !found->datagrams.empty());
+    if (found && !found->datagrams.empty())
+      looks.near(static_cast<double>(found->datagrams[0].unix_us) / 1e6 - unix_s, 0.0, 0.2);
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+  }
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> capture_cases() {
@@ -148,6 +178,10 @@ std::vector<StressCase> capture_cases() {
       rows.add(std::string("captures/") + (big ? "big_endian" : "little_endian") + (nano ? "_ns" : "_us"),
                [big, nano] { return of_others(big, nano); });
   rows.add("captures/our_own", our_own);
+  rows.of({StressGroup::kData, "the date of packets in a capture",
+           "leap seconds of the other sign: 36 s off, and no reader says so",
+           "POSIX's count of three noons, within a scan before or after", "of the bound"});
+  rows.add("captures/dated", dated);
   return rows.take();
 }
 

@@ -1,6 +1,7 @@
 #include "canyon/scene/city/traffic.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "canyon/core/stress_rows.h"
@@ -53,6 +54,22 @@ StressFigure standing() {
   return worst.figure();
 }
 
+/// Along a leg each step of any length is speed times it, whatever the steps are: a thing's place is a function of
+/// time, and no sum of steps. To a rounding of the time, which counts by the speed, at both ends.
+StressFigure steps(double step_s) {
+  const double speed = 2.0, along_x = 0.8, along_y = 0.6;
+  const auto traffic = traffic_of({-100, -75, 100, 75}, speed, 0.0);
+  stress::Worst worst;
+  for (int k = 0; k < 120; ++k) {
+    const double t_s = 2.0 * step_s + 0.7 * k;
+    if (t_s + step_s > 120.0) break;
+    const Eigen::Vector2d moved = (traffic.at(t_s + step_s)[0].X_WS.p - traffic.at(t_s)[0].X_WS.p).head<2>();
+    worst.look((moved - speed * ((t_s + step_s) - t_s) * Eigen::Vector2d(along_x, along_y)).norm(),
+               16.0 * stress::kEpsilon * (250.0 + speed * t_s));
+  }
+  return worst.figure();
+}
+
 /// The room that is told to be swept by a thing holds every corner of it at any time, along each leg, of a single point
 /// too: within the radius of one of the legs, below its top, and each room is of the leg's two ends. A figure
 /// counts corners outside and other ends.
@@ -99,6 +116,14 @@ std::vector<StressCase> traffic_cases() {
   rows.of(way).add("traffic/from_before_its_start_to_1e300_s", [] { return ways(0.0); });
   rows.of(way).add("traffic/start_after_1e6_s", [] { return ways(1e6); });
   rows.of(way).add("traffic/that_stands", standing);
+  rows.of({StressGroup::kStiff, "a moving thing looked at in steps of any length",
+           "a place that is a sum of steps drifts, or moves by whole steps alone",
+           "speed times the step along a leg, to roundings of the way", "of the bound"});
+  for (const auto& [name, step_s] : {std::pair{"traffic/steps_of_10_us", 1e-5},
+                                     {"traffic/steps_of_10_ms", 1e-2},
+                                     {"traffic/steps_of_1_s", 1.0},
+                                     {"traffic/steps_of_40_s", 40.0}})
+    rows.add(name, [step_s = step_s] { return steps(step_s); });
   rows.of({StressGroup::kGeometry, "the room that moving things ever take",
            "a leg that is left out, or one after the last", "every corner of theirs within it, at all times",
            "corners"});

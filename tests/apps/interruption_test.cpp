@@ -186,6 +186,10 @@ const LongVerb kLongVerbs[] = {
     {"gnss_solve",
      {"gnss", "solve", "--obs", "given.rnx", "--nav", "given.nav", "--out", "given.csv", "--force"},
      {"gnss simulate --at 32.3,-90.9,50 --duration 6000 --rinex-obs given.rnx --rinex-nav given.nav"}},
+    {"gnss_drive_check",
+     {"gnss", "drive-check", "--obs", "given.rnx", "--nav", "given.nav", "--truth", "given_way.csv", "--scene",
+      "vicksburg", "--draws", "100", "--out", "given_check", "--force"},
+     {"gnss simulate --trajectory given_way.csv --rate 1 --rinex-obs given.rnx --rinex-nav given.nav"}},
     {"gnss_map", {"gnss", "map", "--out", "given_map", "--force"}, {}},
     {"gnss_sky",
      {"gnss", "sky", "--scene", "vicksburg", "--xy", "120,-40", "--duration", "86400", "--step", "1", "--out",
@@ -216,6 +220,9 @@ const LongVerb kLongVerbs[] = {
     {"lidar_evaluate",
      {"lidar", "evaluate", "given_out/clouds/high_prior.pcd"},
      {"run --fidelity high --set time.limit_s=60 --set 'registration.method=\"none\"' --out given_out"}},
+    {"lidar_register",
+     {"lidar", "register", "given_out/clouds/high_prior.pcd", "given_out/clouds/high_prior.pcd", "--leaf", "0.01"},
+     {"run --fidelity high --set time.limit_s=60 --set 'registration.method=\"none\"' --out given_out"}},
     {"lidar_error_budget",
      {"lidar", "error-budget", "mission.toml", "--fidelity", "high", "--seeds", "100", "--out", "given_budget",
       "--force"},
@@ -235,6 +242,10 @@ class InterruptionNightly : public Interruption, public ::testing::WithParamInte
 // Twenty moments that nobody has chosen, within what the verb takes, or its first eight seconds.
 TEST_P(InterruptionNightly, AtRandomMoments) {
   const LongVerb& verb = GetParam();
+  std::string way;
+  for (int k = 0; k <= 60; ++k)
+    way += "1610," + std::to_string(306000 + k) + "," + std::to_string(32.35 + 2e-5 * k) + ",-90.88,60\n";
+  write("given_way.csv", way);
   for (const std::string& words : verb.before) ASSERT_EQ(canyon(words), 0) << words << ": " << read("stderr");
   const auto started = Clock::now();
   const Ended whole = interrupted(verb.words, 8.0);

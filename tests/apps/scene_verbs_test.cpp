@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdio>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -151,7 +153,22 @@ TEST_F(SceneVerbsTest, MistakesAreToldInOneLine) {
                "given.geojson: crs: PROJ knows no coordinate system \"EPSG:1\", expected an EPSG code, WKT or PROJ "
                "string");
   expect_mistake("scene info given.geojson --cell 0", "--cell");
-  expect_mistake("scene make city --extent 10 --out given_small", "--extent");
+  // 2026-11-22: allowed other ranges than the mission's keys of the same names.
+  for (const char* range : {"extent_m 300 3000", "block_m 60 200", "slope_percent 0 8"}) {
+    std::istringstream in(range);
+    std::string key;
+    double least = 0.0, most = 0.0;
+    in >> key >> least >> most;
+    for (const double beside : {std::nextafter(least, -1e9), std::nextafter(most, 1e9)}) {
+      char value[40];
+      std::snprintf(value, sizeof value, "%.17g", beside);
+      const std::string option = "--" + key.substr(0, key.find('_'));
+      expect_mistake("scene make city " + option + "=" + value + " --out given_beside", option);
+      write("given_key.toml", "base = \"vicksburg\"\n[scene]\n" + key + " = " + value + "\n");
+      EXPECT_EQ(canyon("run given_key.toml --out given_beside"), 2) << key;
+      EXPECT_THAT(read("stderr"), HasSubstr(key));
+    }
+  }
   expect_mistake("scene info", "scene");
 }
 

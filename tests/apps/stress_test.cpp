@@ -98,7 +98,7 @@ bool is_mission(const std::filesystem::path& file) {
 
 TEST_F(StressTest, EveryExampleNightly) {
   int missions = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(CANYON_SOURCE_DIR "/examples")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(CANYON_SOURCE_DIR "/examples")) {
     if (entry.path().extension() != ".toml" || !is_mission(entry.path())) continue;
     ++missions;
     const int status = canyon("stress " + entry.path().string() + " --budget-s 600 --json");

@@ -21,7 +21,7 @@ namespace {
 struct Options {
   CommonOptions common;
   std::vector<std::string> guess;
-  std::string source, target, method = "gicp", sigma, covariance = "sandwich", kernel = "geman_mcclure";
+  std::string source, target, method = "gicp", sigma, covariance = "calibrated", kernel = "geman_mcclure";
   double leaf_m = 0.25, reach_m = 1.0;
   std::int64_t iterations = 50;
 };

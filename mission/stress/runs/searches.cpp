@@ -251,6 +251,33 @@ StressFigure searched_again(const Searched& given, std::uint64_t seed) {
   return looks.figure();
 }
 
+/// From a body to a point, beside what a walk along its outline finds, in steps of 1 mm: half a step, and less with the
+/// distance. Within the outline it is nothing.
+StressFigure distances_of_points() {
+  Looks looks;
+  const RandomStream draws(6, "stress.distances");
+  const KnownVehicle vehicle;
+  const double length = vehicle.front_m - vehicle.rear_m, width = 2.0 * vehicle.half_width_m;
+  for (std::uint64_t k = 0; k < 60; ++k) {
+    const PlanPose body{{draws.uniform(-5, 5, 0, k), draws.uniform(-5, 5, 1, k)}, draws.uniform(-4, 4, 2, k)};
+    const Vector2d u = body.forward(), left(-u.y(), u.x());
+    const Vector2d p = body.p_m + draws.uniform(-6, 8, 3, k) * u + draws.uniform(-4, 4, 4, k) * left;
+    const double ahead = u.dot(p - body.p_m), aside = left.dot(p - body.p_m);
+    double nearest = 1e300;
+    const auto look = [&](double x, double y) {
+      const double d = std::hypot(ahead - x, aside - y);
+      if (d < nearest) nearest = d;
+    };
+    for (double s = 0.0; s <= length; s += 1e-3)
+      for (const double side : {-0.5, 0.5}) look(vehicle.rear_m + s, side * width);
+    for (double s = 0.0; s <= width; s += 1e-3)
+      for (const double end : {vehicle.rear_m, vehicle.front_m}) look(end, s - 0.5 * width);
+    const bool within = ahead > vehicle.rear_m && ahead < vehicle.front_m && std::abs(aside) < 0.5 * width;
+    looks.near(vehicle.distance_m(body, p), within ? 0.0 : nearest, within ? 1e-15 : 1e-3);
+  }
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> search_cases() {
@@ -275,6 +302,7 @@ std::vector<StressCase> search_cases() {
   rows.add("searches/to_the_end_of_the_route", [] {
     return searched_again({{{0, 0}, {20, 0}}, {{{6.0, -0.2}, 0.0}, 2.0, 0.0}, 6.0, 0.0, 3}, 5);
   });
+  rows.add("searches/points_beside_a_body", distances_of_points);
   return rows.take();
 }
 

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -143,14 +144,21 @@ void shuffle(std::uint64_t seed, std::vector<Settings>& settings) {
   for (std::size_t i = settings.size(); i > 1; --i) std::swap(settings[i - 1], settings[drawn(stream, i, i)]);
 }
 
-void count(const std::vector<Settings>& tried, Sweep& sweep) {
+/// Keys that are set by themselves.
+std::set<std::string> single_keys(const std::vector<Settings>& settings) {
   std::set<std::string> keys;
-  for (const Settings& settings : tried) {
-    if (settings.empty()) continue;
-    if (settings.size() == 1) keys.insert(settings.front().first);
-    ++(settings.size() == 1 ? sweep.values_tried : sweep.pairs_tried);
-  }
+  for (const Settings& s : settings)
+    if (s.size() == 1) keys.insert(s.front().first);
+  return keys;
+}
+
+void count(const std::vector<Settings>& tried, const std::vector<Settings>& all, Sweep& sweep) {
+  for (const Settings& settings : tried)
+    if (!settings.empty()) ++(settings.size() == 1 ? sweep.values_tried : sweep.pairs_tried);
+  const std::set<std::string> keys = single_keys(tried), wanted = single_keys(all);
   sweep.keys_tried = static_cast<std::int64_t>(keys.size());
+  std::ranges::set_difference(wanted, keys, std::back_inserter(sweep.keys_not_tried));
+  sweep.not_tried = static_cast<std::int64_t>(all.size() - tried.size());
 }
 
 Sweep summed_up(const std::vector<Settings>& settings, const std::map<std::size_t, TrialEnd>& ends) {
@@ -161,8 +169,7 @@ Sweep summed_up(const std::vector<Settings>& settings, const std::map<std::size_
     sweep.refused += end.refused ? 1 : 0;
     if (!end.what.empty()) sweep.failures.push_back({settings[trial], end.what});
   }
-  count(tried, sweep);
-  sweep.not_tried = static_cast<std::int64_t>(settings.size() - tried.size());
+  count(tried, settings, sweep);
   return sweep;
 }
 
@@ -217,6 +224,8 @@ std::string sweep_table(const Sweep& sweep) {
           std::to_string(sweep.pairs_tried) + " pairs: " + std::to_string(sweep.refused) + " refused, " +
           std::to_string(sweep.failures.size()) + " failed";
   if (sweep.not_tried > 0) text += ", " + std::to_string(sweep.not_tried) + " not tried for lack of time";
+  if (!sweep.keys_not_tried.empty()) text += "\nno value of:";
+  for (const std::string& key : sweep.keys_not_tried) text += " " + key;
   return text + "\n";
 }
 

@@ -29,8 +29,9 @@ struct SweepFailure {
 
 struct Sweep {
   std::int64_t keys_tried = 0, values_tried = 0, pairs_tried = 0;
-  std::int64_t refused = 0;    ///< of all trials
-  std::int64_t not_tried = 0;  ///< for lack of time
+  std::int64_t refused = 0;                 ///< of all trials
+  std::int64_t not_tried = 0;               ///< for lack of time
+  std::vector<std::string> keys_not_tried;  ///< of which no value has been, by itself
   std::vector<SweepFailure> failures;
 };
 
@@ -45,7 +46,7 @@ std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const Sw
 Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options);
 
 std::string sweep_table(const Sweep& sweep);
-/// {keys_tried, values_tried, pairs_tried, refused, not_tried, failures: [{settings, what}]}
+/// {keys_tried, values_tried, pairs_tried, refused, not_tried, keys_not_tried: [..], failures: [{settings, what}]}
 nlohmann::ordered_json sweep_json(const Sweep& sweep);
 
 }  // namespace canyon::study

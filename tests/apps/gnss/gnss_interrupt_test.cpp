@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "canyon/core/random/random.h"
 #include "canyon/core/time.h"
 #include "canyon/tests/apps/command_line_fixture.h"
 
@@ -117,9 +118,11 @@ TEST_F(GnssInterruptTest, SolveOfALongFileReadingAndSolving) {
   expect_ends_soon("gnss solve --obs given.rnx --nav given.nav --systems G --out positions", {0.3, 1.2, 4.0});
 }
 
-TEST_F(GnssInterruptTest, OrbitErrorOfALongFile) {
-  write_navigation();
-  {
+class OrbitErrorInterruptTest : public GnssInterruptTest {
+ protected:
+  void SetUp() override {
+    GnssInterruptTest::SetUp();
+    write_navigation();
     std::ofstream out(path("given.sp3"));
     out << "#cP2010 11 17 13  0  0.00000000  150000 ORBIT IGS08 FIT TEST\n"
            "## 1610 306000.00000000     0.04000000 55517 0.5416666666667\n"
@@ -137,7 +140,19 @@ TEST_F(GnssInterruptTest, OrbitErrorOfALongFile) {
     }
     out << "EOF\n";
   }
-  expect_ends_soon("gnss orbit-error --nav given.nav --sp3 given.sp3 --out errors", {0.2, 0.8, 1.6, 2.4});
+  const std::string verb_ = "gnss orbit-error --nav given.nav --sp3 given.sp3 --out errors";
+};
+
+TEST_F(OrbitErrorInterruptTest, OfALongFile) {
+  expect_ends_soon(verb_, {0.2, 0.8, 1.6, 2.4});
+}
+
+// Twenty moments that nobody has chosen, as of the other verbs (interruption_test.cpp).
+TEST_F(OrbitErrorInterruptTest, OfALongFileAtRandomMomentsNightly) {
+  const RandomStream stream(15, "test.interruption.gnss_orbit_error");
+  std::vector<double> moments_s;
+  for (std::uint64_t k = 0; k < 20; ++k) moments_s.push_back(stream.uniform(0.0, 2.4, 0, k));
+  expect_ends_soon(verb_, moments_s);
 }
 
 }  // namespace

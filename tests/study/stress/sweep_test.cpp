@@ -234,6 +234,9 @@ TEST_F(SweepTest, WhatHasNotEndedWithinTheBudgetIsNotTried) {
   EXPECT_TRUE(found.failures.empty());
   EXPECT_EQ(found.values_tried, 0);
   EXPECT_EQ(found.not_tried, 1);
+  ASSERT_EQ(found.keys_not_tried.size(), 1U);
+  EXPECT_THAT(sweep_table(found),
+              HasSubstr("1 not tried for lack of time\nno value of: " + found.keys_not_tried[0] + "\n"));
 }
 
 TEST_F(SweepTest, NoPlaceForTemporaryFilesIsOneLine) {
