@@ -141,7 +141,10 @@ class SinglePoint {
     }
     const auto velocity =
         solve_velocity(rates_of(candidates, out.epoch), solution.p_E, {config_.max_gdop, kOutlierSigmas});
-    if (velocity.ok) out.fix.v_A_E = velocity.v_E;
+    if (velocity.ok) {
+      out.fix.v_A_E = velocity.v_E;
+      out.fix.velocity_covariance_E = velocity.covariance_E;
+    }
     return out;
   }
 

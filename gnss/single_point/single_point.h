@@ -14,7 +14,7 @@ namespace canyon::gnss {
 
 /// One epoch solved.
 struct SinglePointEpoch {
-  GnssFix fix;      ///< of the antenna; velocity where there is Doppler of four satellites
+  GnssFix fix;      ///< of the antenna; velocity and its covariance where there is Doppler of four satellites
   GnssEpoch epoch;  ///< the observations that could be used: satellite, corrections, sigma; `used` = in the fix
   std::vector<double> residuals_m;  ///< of the epoch's observations; empty without a fix
   IntegrityTest integrity;

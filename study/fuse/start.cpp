@@ -94,16 +94,19 @@ Status search_heading(const FuseInputs& in, FusePlan& plan) {
   trial.outages.reset();
   trial.realign = nullptr;
   trial.rate_hz = 0.0;
+  const std::vector<std::string> measured = fusion::filter_parts(plan.filter).measurements;
+  const std::string_view by = std::ranges::find(measured, "position") != measured.end() ? "position" : "ranges";
   double least = 0.0;
   Eigen::Quaterniond best = plan.X_WB.R;
   for (int i = 0; i < kHeadings; ++i) {
     const Eigen::AngleAxisd turn(2.0 * kPi * i / kHeadings, Eigen::Vector3d::UnitZ());
     trial.X_WB.R = (Eigen::Quaterniond(turn) * plan.X_WB.R).normalized();
     CANYON_TRY(const Fused run, fuse(part, trial));
-    // In metres: one that has lost its way takes its own innovations for likely.
+    // In metres: one that has lost its way takes its own innovations for likely. Of satellites one by one what is
+    // measured of each is a pseudorange.
     double sum = 0.0;
     for (const fusion::UpdateReport& update : run.updates)
-      if (std::string_view(update.measurement) == "position") sum += update.innovation.squaredNorm();
+      if (std::string_view(update.measurement) == by) sum += update.innovation.squaredNorm();
     if (i > 0 && !(sum < least)) continue;
     least = sum;
     best = trial.X_WB.R;

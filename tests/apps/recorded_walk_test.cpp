@@ -1,0 +1,123 @@
+// A recorded walk with a u-blox receiver and a MEMS unit (rtklibexplorer/GNSS_IMU, walk_0827), the reference by RTK:
+// the filter loosely and tightly coupled on the same satellites. The raw messages of the receiver are made RINEX by
+// RTKLIB.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "canyon/core/files/files.h"
+#include "canyon/core/time.h"
+#include "canyon/tests/apps/command_line_fixture.h"
+#include "canyon/tests/support/outside_program.h"
+#include "canyon/tests/support/test_data.h"
+
+namespace canyon::apps {
+namespace {
+
+struct Walked {
+  double rms_3d_m = 0.0, rms_up_m = 0.0;
+  double innovations_m = 0.0;  ///< RMS, of what tells the headings apart
+};
+
+class RecordedWalk : public testing::CommandLineTest {
+ protected:
+  /// Logs as `canyon fuse` reads them. The unit's stamps are of its own clock: 0.95 s is where its rate about the
+  /// vertical is most like that of the receiver's course (-0.92), which is all that ties the two together.
+  void prepare(const std::string& raw, const std::string& imu, const std::string& reference) {
+    ASSERT_TRUE(write_text_file(path("given.ubx"), *read_text_or_gzip_file(raw)).ok());
+    const std::string convert =
+        "cd '" + folder_.string() +
+        "' && convbin -r ubx -v 3.04 -od -os -o given.obs -n given.nav given.ubx > /dev/null 2>&1";
+    ASSERT_EQ(std::system(convert.c_str()), 0);
+    std::ofstream log(path("given_imu.csv"));
+    log << "ax_g,ay_g,az_g,gx_dps,gy_dps,gz_dps,t_ms\n";
+    std::istringstream rows(*read_text_file(imu));
+    for (std::string line; std::getline(rows, line);)  // the first and the last one are cut off
+      if (std::count(line.begin(), line.end(), ',') == 6 && line.back() != ',') log << line << "\n";
+    std::ofstream truth(path("given_truth.csv"));
+    truth << "gps_week,sow,lat_deg,lon_deg,h_m,vn_m_s,ve_m_s,vu_m_s\n";
+    std::istringstream places(*read_text_file(reference));
+    for (std::string line; std::getline(places, line);) {
+      if (line.empty() || line[0] == '%') continue;
+      std::istringstream in(line);
+      std::vector<std::string> words;
+      for (std::string word; in >> word;) words.push_back(word);
+      std::string date = words[0];
+      std::replace(date.begin(), date.end(), '/', '-');
+      const GpsTime t = *GpsTime::parse(date + "T" + words[1], "reference");
+      char time[64];
+      std::snprintf(time, sizeof time, "%d,%.3f", t.week(), t.sow_s());
+      truth << time << "," << words[2] << "," << words[3] << "," << words[4] << "," << words[15] << "," << words[16]
+            << "," << words[17] << "\n";
+    }
+    write("given_solve.toml", "ionosphere = \"none\"\n");  // the two minutes hold no coefficients
+  }
+
+  Walked walk(const std::string& fusion, double heading_deg, double heading_sigma_deg) {
+    write("given.toml",
+          "[imu]\nsensor = \"mpu6050\"\nclock_offset_s = 405314.36\n[gnss]\nsolve = \"given_solve.toml\"\n"
+          "[start]\nfrom = \"static\"\nstatic_s = 8\nstatic_heading_deg = " +
+              std::to_string(heading_deg) + "\nstatic_heading_sigma_deg = " + std::to_string(heading_sigma_deg) +
+              "\n[fusion]\n" + fusion);
+    EXPECT_EQ(canyon("fuse --imu given_imu.csv --gnss given.obs --nav given.nav --truth given_truth.csv --config "
+                     "given.toml --out fused --force --json"),
+              0)
+        << read("stderr");
+    const auto json = nlohmann::json::parse(read("stdout"));
+    Walked out{json["rms_3d_m"], json["rms_u_m"]};
+    double square = 0.0;
+    int count = 0;
+    std::istringstream rows(read("fused/innovations.csv"));
+    for (std::string line; std::getline(rows, line);) {
+      std::istringstream in(line);
+      std::vector<std::string> words;
+      for (std::string word; std::getline(in, word, ',');) words.push_back(word);
+      if (words.size() < 7 || (words[2] != "position" && words[2] != "ranges")) continue;
+      for (std::size_t k = 6; k < words.size(); ++k)
+        if (!words[k].empty()) square += std::stod(words[k]) * std::stod(words[k]), ++count;
+    }
+    out.innovations_m = std::sqrt(square / count);
+    return out;
+  }
+
+  /// Which way the unit looks nobody has written down: of eight headings the one whose innovations are the smallest.
+  Walked walk(const std::string& fusion) {
+    double heading_deg = 0.0, least = 1e300;
+    for (double at = 0.0; at < 360.0; at += 45.0)
+      if (const double found = walk(fusion, at, 30.0).innovations_m; found < least) least = found, heading_deg = at;
+    return walk(fusion, heading_deg, 30.0);
+  }
+};
+
+TEST_F(RecordedWalk, SatellitesOneByOneErrLessThanTheirFixes) {
+  CANYON_OUTSIDE_PROGRAM("convbin");
+  CANYON_REAL_DATA(raw, "gnss/gnss_imu_walk_0827/gnss_1730.ubx.gz");
+  CANYON_REAL_DATA(imu, "gnss/gnss_imu_walk_0827/imu_1730.csv");
+  CANYON_REAL_DATA(reference, "gnss/gnss_imu_walk_0827/gnss_1730_sf.pos");
+  prepare(raw, imu, reference);
+  const std::string student = "acceptance = \"student_t\"\n";
+  const Walked of_fixes = walk("states = [\"biases\", \"fix_error\"]\nmeasurements = [\"position\"]\n" + student);
+  const Walked of_fixes_and_rates =
+      walk("states = [\"biases\", \"fix_error\", \"velocity_error\"]\nmeasurements = [\"position\", \"velocity\"]\n" +
+           student);
+  const Walked of_ranges =
+      walk("states = [\"biases\", \"receiver_clock\", \"range_errors\"]\nmeasurements = [\"ranges\"]\n" + student);
+  for (const auto& [name, found] : {std::pair("positions", of_fixes),
+                                    {"positions and velocities", of_fixes_and_rates},
+                                    {"ranges and rates", of_ranges}})
+    std::printf("%-26s 3-D RMS %.1f m, up %.1f m, innovations %.2f m\n", name, found.rms_3d_m, found.rms_up_m,
+                found.innovations_m);
+  EXPECT_LT(of_ranges.rms_3d_m, of_fixes.rms_3d_m);
+}
+
+}  // namespace
+}  // namespace canyon::apps
