@@ -52,8 +52,9 @@ struct TrackingConfig {
   Correlator correlator = Correlator::kEarlyLate;
   Discriminator discriminator = Discriminator::kPower;
   double correlator_spacing_chips = 0.5;
-  double front_end_mhz = 0.0;  ///< 0 = infinite; a channel is given at least the main lobes of its signal
-  double code_loop_hz = 0.13;  ///< carrier-aided: 0.3 m of noise at 45 dB-Hz and half a chip
+  double front_end_mhz = 0.0;     ///< 0 = infinite; a channel is given at least the main lobes of its signal
+  double code_loop_hz = 0.13;     ///< carrier-aided: 0.3 m of noise at 45 dB-Hz and half a chip
+  bool code_loop_memory = false;  ///< multipath goes through the code loop; else it is there at once
   double carrier_loop_hz = 15.0;
   double integration_ms = 20.0;
   double thermal_noise_scale = 1.0;  ///< of code, carrier and Doppler, 1 = physical

@@ -48,6 +48,10 @@ void visit(FieldVisitor& f, TrackingConfig& c) {
   f.number("front_end_mhz", c.front_end_mhz, {0.0, 100.0},
            "two-sided bandwidth of the receiver, at least the signal's main lobes; 0 = infinite");
   f.number("code_loop_hz", c.code_loop_hz, {0.001, 20.0}, "noise bandwidth of the code loop");
+  f.flag(
+      "code_loop_memory", c.code_loop_memory,
+      "multipath goes through the code loop, which follows it within 1 / (4 code_loop_hz) seconds; else it is there at "
+      "once");
   f.number("carrier_loop_hz", c.carrier_loop_hz, {0.5, 50.0}, "noise bandwidth of the carrier loop");
   f.number("integration_ms", c.integration_ms, {1.0, 40.0}, "predetection integration");
   f.number("thermal_noise_scale", c.thermal_noise_scale, {0.0, 100.0},

@@ -108,14 +108,14 @@ class PseudorangeSensor final : public GnssSensor {
       solve_epoch(epoch, sights, paths, second_paths, ranges_.delays);
       return;
     }
-    const SignalLocks first = first_.locks(), second = second_.locks();
+    const SignalTracker::Memory first = first_.memory(), second = second_.memory();
     const auto filter = filter_;
     const auto smoothing = smoothing_;
     const GnssOutput empty = epoch.out;
     if (solve_epoch(epoch, sights, paths, second_paths, ranges_.delays)) return;
     ++counters_.epochs_in_full;
-    first_.set_locks(first);
-    second_.set_locks(second);
+    first_.set_memory(first);
+    second_.set_memory(second);
     filter_ = filter;
     smoothing_ = smoothing;
     epoch.out = empty;

@@ -33,7 +33,7 @@ SignalTracker::SignalTracker(const std::string& prefix, const GnssConfig& config
       doppler_(parts.noise_seed, prefix + "doppler_noise"),
       cn0_(parts.noise_seed, prefix + "cn0_noise", config.cn0_report, parts.locks.integration_s,
            parts.locks.interval_s),
-      locks_(parts.locks) {}
+      memory_{SignalLocks(parts.locks), CodeLoopMemory(config_.code_loop_hz, parts.locks.interval_s)} {}
 
 const Channel& SignalTracker::channel(GnssSystem system, int band) const {
   return parts_.channels[static_cast<std::size_t>(config_.modulation.value_or(modulation_of(system, band)))];
@@ -74,9 +74,10 @@ SignalMeasurement SignalTracker::measure(const ReceivingAntenna& antenna, const 
   const Channel& own = channel(sight.sv.system, band);
   SignalMeasurement m;
   m.reception = with_cuts(receive_signals(antenna, sight, paths, own, wavelength_m), sight, paths);
-  const Reception& r = m.reception;
-  const auto lock = locks_.update(sight.sv, r.tracked ? r.cn0_dbhz : kNaN, identity(paths, r.source));
+  Reception& r = m.reception;
+  const auto lock = memory_.locks.update(sight.sv, r.tracked ? r.cn0_dbhz : kNaN, identity(paths, r.source));
   if (!lock.tracked) return m;
+  if (config_.code_loop_memory) r.error_m = memory_.code.follow(sight.sv, antenna.index, r.error_m);
 
   m.tracked = true;
   m.cn0_dbhz = cn0_.reported_dbhz(r.cn0_dbhz, sight.sv.entity(), antenna.index);

@@ -7,6 +7,7 @@
 
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
+#include "canyon/gnss/receiver/code_loop_memory.h"
 #include "canyon/gnss/receiver/loop_noise.h"
 #include "canyon/gnss/receiver/reports/cn0_estimator.h"
 #include "canyon/gnss/sensor/gnss_config.h"
@@ -44,11 +45,18 @@ class SignalTracker {
   SignalTracker(const std::string& prefix, const GnssConfig& config, const PseudorangeParts& parts);
 
   /// Every lock is lost.
-  void restart() { locks_.restart(); }
-  void begin_epoch(std::int64_t index) { locks_.begin_epoch(index); }
+  void restart() {
+    memory_.locks.restart();
+    memory_.code.restart();
+  }
+  void begin_epoch(std::int64_t index) { memory_.locks.begin_epoch(index); }
+  struct Memory {
+    SignalLocks locks;
+    CodeLoopMemory code;
+  };
   /// So that an epoch can be measured twice.
-  const SignalLocks& locks() const { return locks_; }
-  void set_locks(const SignalLocks& locks) { locks_ = locks; }
+  const Memory& memory() const { return memory_; }
+  void set_memory(const Memory& memory) { memory_ = memory; }
 
   SignalMeasurement measure(const ReceivingAntenna& antenna, const Sight& sight, const SignalPaths& paths, int band,
                             const ArrivingRange& range);
@@ -65,7 +73,7 @@ class SignalTracker {
   LoopNoise code_;
   RandomStream carrier_, doppler_;
   Cn0Estimator cn0_;
-  SignalLocks locks_;
+  Memory memory_;
 };
 
 }  // namespace canyon::gnss
