@@ -78,32 +78,22 @@ TEST(Faults, LatencyNobodyDeclared) {
   EXPECT_LT(guarded.off_m, bare.off_m);
 }
 
+/// `naive` on its own, without a timeline before it, and what a driver that ignores stamps makes of it.
+void print_bare(const char* what, const Fault& fault) {
+  for (const Stamps stamps : {Stamps::kAsTheyCome, Stamps::kCounted}) {
+    const Bare bare = drive_bare(kBare, fault, stamps);
+    std::printf("  %s, %s: ", what, stamps == Stamps::kAsTheyCome ? "stamps as they come" : "counted");
+    if (bare.ended_s)
+      std::printf("ends after %.2f s: %s\n", *bare.ended_s, bare.why.c_str());
+    else
+      std::printf("at most %.1f m off, %.2f m at the end\n", bare.worst.off_m, bare.worst.final_m);
+  }
+}
+
 TEST(Faults, SamplesAndFixesTwiceInReverseAndNotANumber) {
-  Fault backwards, nan;
-  std::optional<ImuSample> before;
-  backwards.imu = [&](int k, const ImuSample& s) {
-    std::vector<ImuSample> out;
-    if (k % 100 == 1) {
-      before = s;
-    } else if (k % 100 == 2) {
-      out = {s, *before};
-    } else {
-      out = {s};
-    }
-    return out;
-  };
-  nan.imu = [](int k, ImuSample s) {
-    if (k % 200 == 7) s.dtheta_U.z() = kNaN;
-    if (k % 200 == 107) s.dv_U.x() = -std::numeric_limits<double>::infinity();
-    return std::vector<ImuSample>{s};
-  };
-  nan.fix = [](int k, GnssFix f) {
-    if (k % 200 == 0) f.p_A_E.x() = kNaN;
-    if (k % 300 == 0) f.covariance_E.setZero();
-    return std::vector<GnssFix>{f};
-  };
-  const Worst none = drive(kGuarded, {}), a = drive(kGuarded, all_twice()), b = drive(kGuarded, backwards),
-              c = drive(kGuarded, nan);
+  const Worst none = drive(kGuarded, {}), a = drive(kGuarded, all_twice()), b = drive(kGuarded, two_in_reverse()),
+              c = drive(kGuarded, not_a_number());
+  std::printf("guarded: all twice %.2f m, in reverse %.2f m, not a number %.2f m\n", a.off_m, b.off_m, c.off_m);
   EXPECT_EQ(a.off_m, none.off_m);  // nothing counts twice
   EXPECT_EQ(a.incidents.count(Trouble::kDuplicate), 18000 + 2 * 360);
   EXPECT_EQ(b.incidents.count(Trouble::kReversed), 180);
@@ -111,6 +101,21 @@ TEST(Faults, SamplesAndFixesTwiceInReverseAndNotANumber) {
   EXPECT_LT(b.off_m, kSound_m);
   EXPECT_EQ(c.incidents.count(Trouble::kNotFinite), 180 + 90 + 60 - 30);
   EXPECT_LT(c.off_m, kSound_m);
+}
+
+TEST(Faults, WithoutATimelineTheFilterEndsOrIsLedAstray) {
+  print_bare("all twice", all_twice());
+  print_bare("in reverse", two_in_reverse());
+  print_bare("not a number", not_a_number());
+  // The very first of each ends it.
+  EXPECT_EQ(drive_bare(kBare, all_twice(), Stamps::kAsTheyCome).ended_s, 0.01);
+  EXPECT_EQ(drive_bare(kBare, two_in_reverse(), Stamps::kAsTheyCome).ended_s, 0.02);
+  for (const Stamps stamps : {Stamps::kAsTheyCome, Stamps::kCounted})
+    EXPECT_EQ(drive_bare(kBare, not_a_number(), stamps).ended_s, 0.07);
+  // Everything twice is a vehicle that moves twice as far.
+  const Bare twice = drive_bare(kBare, all_twice(), Stamps::kCounted);
+  EXPECT_FALSE(twice.ended_s);
+  EXPECT_GT(twice.worst.off_m, 5.0 * kSound_m);
 }
 
 std::string with_acceptance(const char* acceptance) {

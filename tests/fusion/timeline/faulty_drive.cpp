@@ -1,6 +1,7 @@
 #include "canyon/tests/fusion/timeline/faulty_drive.h"
 
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "canyon/fusion/stress/at_rest.h"
@@ -47,34 +48,86 @@ class Wheel {
   double way_m_ = 0.0, ticks_ = 0.0;
 };
 
+/// The drive itself: `sample`, `message` take what comes, `place_E` says where the filter is.
+class Drive {
+ public:
+  Drive(const Fault& fault, Carries carries) : fault_(fault), wheels_(carries == Carries::kWheelsToo) {}
+
+  const DrivenTruth& truth() const { return truth_; }
+
+  template <class TakeSample, class TakeMessage>
+  void step(const TakeSample& take_sample, const TakeMessage& take_message) {
+    const int k = ++k_;
+    const ImuSample sample = truth_.step();
+    for (const ImuSample& s : fault_.imu(k, sample)) take_sample(s);
+    wheel_.roll(truth_, sample);
+    if (wheels_ && k % 10 == 0) take_message(AidingMessage(wheel_.count(sample.t, 0.1)));
+    if (k % kSamplesPerFix != 0) return;
+    const auto n = static_cast<std::uint64_t>(k);
+    const Eigen::Vector3d noise(stream_.normal(0, n), stream_.normal(1, n), stream_.normal(2, n));
+    GnssFix fix = truth_.fix(kSigma_m * noise, kSigma_m);
+    if (wheels_) {
+      fix.v_A_E = truth_.state().v_EU_E + 0.05 * speeds_.normal3(n);
+      fix.velocity_covariance_E = 0.05 * 0.05 * Eigen::Matrix3d::Identity();
+    }
+    for (const GnssFix& f : fault_.fix(k, fix)) take_message(AidingMessage(f));
+  }
+
+  void look(const ErrorStateFilter& filter, Worst& out) const {
+    out.final_m = (filter.nav_state().p_EU_E - truth_.state().p_EU_E).norm();
+    if (k_ > 3000) out.off_m = std::max(out.off_m, out.final_m);
+  }
+
+ private:
+  const Fault& fault_;
+  bool wheels_;
+  DrivenTruth truth_ = tactical(0.5);
+  RandomStream stream_{12, "test.fixes"}, speeds_{12, "test.fix_velocities"};
+  Wheel wheel_;
+  int k_ = 0;
+};
+
 }  // namespace
 
 Worst drive(const std::string& keys, const Fault& fault, double seconds, Carries carries) {
-  DrivenTruth truth = tactical(0.5);
-  const RandomStream stream(12, "test.fixes"), speeds(12, "test.fix_velocities");
-  FilterTimeline timeline(started(truth, keys), {});
-  const bool wheels = carries == Carries::kWheelsToo;
-  Wheel wheel;
+  Drive drive(fault, carries);
+  FilterTimeline timeline(started(drive.truth(), keys), {});
   Worst out;
   for (int k = 1; k <= static_cast<int>(100 * seconds); ++k) {
-    const ImuSample sample = truth.step();
-    for (const ImuSample& s : fault.imu(k, sample)) timeline.add(s);
-    wheel.roll(truth, sample);
-    if (wheels && k % 10 == 0) timeline.add(AidingMessage(wheel.count(sample.t, 0.1)));
-    if (k % kSamplesPerFix == 0) {
-      const auto n = static_cast<std::uint64_t>(k);
-      const Eigen::Vector3d noise(stream.normal(0, n), stream.normal(1, n), stream.normal(2, n));
-      GnssFix fix = truth.fix(kSigma_m * noise, kSigma_m);
-      if (wheels) {
-        fix.v_A_E = truth.state().v_EU_E + 0.05 * speeds.normal3(n);
-        fix.velocity_covariance_E = 0.05 * 0.05 * Eigen::Matrix3d::Identity();
-      }
-      for (const GnssFix& f : fault.fix(k, fix)) timeline.add(AidingMessage(f));
-    }
-    out.final_m = (timeline.filter().nav_state().p_EU_E - truth.state().p_EU_E).norm();
-    if (k > 3000) out.off_m = std::max(out.off_m, out.final_m);
+    drive.step([&](const ImuSample& s) { timeline.add(s); }, [&](const AidingMessage& m) { timeline.add(m); });
+    drive.look(timeline.filter(), out);
   }
   out.incidents = timeline.incidents();
+  return out;
+}
+
+Bare drive_bare(const std::string& keys, const Fault& fault, Stamps stamps, Carries carries) {
+  constexpr int kSamples = 18000;
+  Drive drive(fault, carries);
+  ErrorStateFilter filter = started(drive.truth(), keys);
+  const auto now = [&](auto message) {
+    if (stamps == Stamps::kCounted) message.t = filter.nav_state().t;
+    return message;
+  };
+  const auto sample = [&](ImuSample s) {
+    if (stamps == Stamps::kCounted) s.t = filter.nav_state().t + s.dt_s;
+    filter.predict(s);
+  };
+  const auto message = [&](const AidingMessage& m) {
+    if (const auto* fix = std::get_if<GnssFix>(&m)) filter.update(now(*fix));
+    if (const auto* ticks = std::get_if<OdometerSample>(&m)) filter.update(AidingMessage(now(*ticks)));
+  };
+  Bare out;
+  for (int k = 1; k <= kSamples; ++k) {
+    try {
+      drive.step(sample, message);
+    } catch (const ProgramError& refused) {
+      out.ended_s = drive.truth().elapsed_s();
+      out.why = refused.what();
+      break;
+    }
+    drive.look(filter, out.worst);
+  }
   return out;
 }
 
@@ -127,6 +180,33 @@ Fault all_twice() {
   Fault fault;
   fault.imu = [](int, const ImuSample& s) { return std::vector<ImuSample>{s, s}; };
   fault.fix = [](int, const GnssFix& f) { return std::vector<GnssFix>{f, f, f}; };
+  return fault;
+}
+
+Fault two_in_reverse() {
+  Fault fault;
+  fault.imu = [before = std::make_shared<ImuSample>()](int k, const ImuSample& s) {
+    if (k % 100 == 1) {
+      *before = s;
+      return std::vector<ImuSample>{};
+    }
+    return k % 100 == 2 ? std::vector<ImuSample>{s, *before} : std::vector<ImuSample>{s};
+  };
+  return fault;
+}
+
+Fault not_a_number() {
+  Fault fault;
+  fault.imu = [](int k, ImuSample s) {
+    if (k % 200 == 7) s.dtheta_U.z() = kNaN;
+    if (k % 200 == 107) s.dv_U.x() = -std::numeric_limits<double>::infinity();
+    return std::vector<ImuSample>{s};
+  };
+  fault.fix = [](int k, GnssFix f) {
+    if (k % 200 == 0) f.p_A_E.x() = kNaN;
+    if (k % 300 == 0) f.covariance_E.setZero();
+    return std::vector<GnssFix>{f};
+  };
   return fault;
 }
 

@@ -46,6 +46,20 @@ enum class Carries {
 Worst drive(const std::string& keys, const Fault& fault, double seconds = 180.0,
             Carries carries = Carries::kUnitAndReceiver);
 
+/// What becomes of a filter that stands without a timeline: it refuses what is no sample of its own next interval, and
+/// what is no number, and with that the run ends.
+enum class Stamps {
+  kAsTheyCome,
+  kCounted  ///< by a driver that takes each sample and fix for the next one, whatever its stamp says
+};
+struct Bare {
+  Worst worst;                    ///< until then
+  std::optional<double> ended_s;  ///< after the start; nothing: it took everything
+  std::string why;
+};
+Bare drive_bare(const std::string& keys, const Fault& fault, Stamps stamps,
+                Carries carries = Carries::kUnitAndReceiver);
+
 /// One fix in five is 100 m off, 1-sigma per axis.
 Fault one_in_five_anywhere();
 /// From the 60th to the 70th second the last fix again and again, with new stamps.
@@ -54,6 +68,10 @@ Fault frozen_for_ten_seconds();
 Fault late_by_200_ms(double seconds = 180.0);
 /// Each sample twice, each fix three times.
 Fault all_twice();
+/// Of each hundred samples two come in the wrong order.
+Fault two_in_reverse();
+/// Now and then a rate or a force is no number, or what a fix says is none.
+Fault not_a_number();
 /// So many samples with fixes that wander 200 m off, then good ones.
 Fault bad_until(int samples);
 

@@ -68,6 +68,31 @@ TEST(VehicleFaults, TwiceIsOnce) {
   EXPECT_EQ(twice.vehicle.incidents.count(Trouble::kDuplicate), 18000 + 2 * 360);
 }
 
+TEST(VehicleFaults, InReverseAndNotANumber) {
+  const Three back = drive_all("in reverse", two_in_reverse()), nan = drive_all("not a number", not_a_number());
+  EXPECT_LT(back.vehicle.off_m, kSound_m);
+  EXPECT_EQ(back.vehicle.incidents.count(Trouble::kReversed), 180);
+  EXPECT_EQ(back.vehicle.incidents.count(Trouble::kGap), 180);
+  EXPECT_LT(nan.vehicle.off_m, kSound_m);
+  EXPECT_EQ(nan.vehicle.incidents.count(Trouble::kNotFinite), 180 + 90 + 60 - 30);
+}
+
+/// Nothing in the rows of `vehicle` protects from them: the timeline before it does.
+TEST(VehicleFaults, WithoutATimelineItEndsAsNaiveDoes) {
+  const auto ended_s = [](const Fault& fault) {
+    return drive_bare(kVehicle, fault, Stamps::kAsTheyCome, Carries::kWheelsToo).ended_s;
+  };
+  EXPECT_EQ(ended_s(all_twice()), 0.01);
+  EXPECT_EQ(ended_s(two_in_reverse()), 0.02);
+  EXPECT_EQ(ended_s(not_a_number()), 0.07);
+  for (const Stamps stamps : {Stamps::kAsTheyCome, Stamps::kCounted})
+    for (const auto& [what, fault] : {std::pair{"all twice", all_twice()}, std::pair{"in reverse", two_in_reverse()}}) {
+      const Bare bare = drive_bare(kVehicle, fault, stamps, Carries::kWheelsToo);
+      std::printf("vehicle without a timeline, %s: ended %d, at most %.1f m off, %.2f m at the end\n", what,
+                  bare.ended_s.has_value(), bare.worst.off_m, bare.worst.final_m);
+    }
+}
+
 // Fixes that wander at the pace of a walker, 200 m off, and say that they are good to a metre: a filter that knows that
 // errors last follows them, as naive does, if less far. Ten seconds of good ones must be enough to tell (2026-11-26:
 // 0.8 m; 164 m without a way back, as before).
