@@ -1,5 +1,7 @@
 #include "canyon/inertial/imu_log.h"
 
+#include <limits>
+
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/line_reader.h"
 #include "canyon/core/process/progress.h"
@@ -11,6 +13,7 @@
 namespace canyon::inertial {
 namespace {
 
+constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to stop
 
 /// A sensor's increment covers its own sample interval: what a host stamps late, and what a gap has lost, is not in it.
@@ -49,7 +52,7 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
     const bool commas = line.find(',') != std::string_view::npos;
     split(line, commas ? "," : " \t;", !commas, fields);
     if (format.mend && says_nothing(columns, fields)) {
-      ++log.mended.not_finite;
+      log.passed_over.not_finite.add(in.number(), kNoTime, log.t_s.empty() ? kNoTime : log.t_s.back());
       continue;
     }
     std::array<double, 6> values{};
@@ -64,7 +67,7 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
     if (!log.t_s.empty() && !(log.t_s.back() < t_s)) {
       if (!format.mend) return in.error("time does not increase", "samples in the order of time");
       const bool same = t_s == log.t_s.back();
-      ++(same ? log.mended.duplicates : log.mended.reversed);
+      (same ? log.passed_over.duplicates : log.passed_over.reversed).add(in.number(), t_s, log.t_s.back());
       // Of two in the wrong order the one ahead goes: one stamp of the far future must not end the log.
       if (same || log.size() < 2 || !(log.t_s[log.size() - 2] < t_s)) continue;
       log.t_s.pop_back();
@@ -89,6 +92,7 @@ Result<ImuLog> read_imu_log(const std::string& path, const ImuLogFormat& format)
   CANYON_TRY_STATUS(check_range(log, places));
   CANYON_TRY_STATUS(check_magnitudes(log, {places, named_units, interval_s}));
   if (format.live) CANYON_TRY_STATUS(check_live(log, places));
+  log.lines = std::move(places.lines);
   return log;
 }
 

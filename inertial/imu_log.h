@@ -8,6 +8,7 @@
 
 #include "canyon/core/model_table.h"
 #include "canyon/core/result.h"
+#include "canyon/core/tables/passed_over.h"
 
 namespace canyon::inertial {
 
@@ -21,11 +22,8 @@ struct ImuLog {
   /// What makes the units that the file names look mistaken, a line each; they were taken as named.
   std::vector<std::string> doubts;
 
-  /// Rows that were passed over, where the format lets them.
-  struct Mended {
-    std::size_t not_finite = 0, duplicates = 0, reversed = 0;
-    std::size_t all() const { return not_finite + duplicates + reversed; }
-  } mended;
+  std::vector<int> lines;  ///< of the file, on which the samples stand
+  PassedOver passed_over;  ///< where the format lets rows be
 
   std::size_t size() const { return t_s.size(); }
 };
@@ -44,7 +42,7 @@ struct ImuLogFormat {
   /// Refuses channels that never change or stay at their extreme value, as those of a working sensor never do.
   bool live = true;
   /// Passes over rows with a field that is empty or says NaN, and rows that are not later than the one before, where
-  /// they are else an Error; ImuLog::mended counts them.
+  /// they are else an Error; ImuLog::passed_over counts them.
   bool mend = false;
 };
 

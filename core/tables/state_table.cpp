@@ -317,6 +317,7 @@ Result<StateTable> read_state_table(const std::string& path, const std::string& 
   std::vector<std::string_view> fields;
   std::string_view line;
   std::optional<RowReader> reader;
+  const auto latest_s = [&table] { return table.rows.empty() ? kNone : table.stated_s(table.rows.back().came); };
   for (bool first = true; in.next(line);) {
     if (line.front() == '%') {
       if (is_rtklib_header(line)) percent_line = line.substr(1);
@@ -351,15 +352,17 @@ Result<StateTable> read_state_table(const std::string& path, const std::string& 
                         "a header of names, or 7, 8, 11 or 13 columns as of KF-GINS and TUM");
     }
     if (!reader) reader.emplace(in, places, utc);
+    table.has_week = places[kWeek].there() || places[kDate].there();
     CANYON_TRY(const auto row, reader->read(fields));
     if (!row) {
-      ++table.passed_over.not_finite;
+      table.passed_over.not_finite.add(in.number(), kNone, latest_s());
       continue;
     }
     const bool behind = !table.rows.empty() && !(table.rows.back().came < row->t);
     if (behind && !(late_s > 0.0 && table.rows.back().came - row->t <= late_s)) {
       const bool same = row->t == table.rows.back().came;
-      ++(same ? table.passed_over.duplicates : table.passed_over.reversed);
+      (same ? table.passed_over.duplicates : table.passed_over.reversed)
+          .add(in.number(), table.stated_s(row->t), latest_s());
       // Of two in the wrong order the one ahead goes: one stamp of the far future must not end the file.
       if (same || table.rows.size() < 2 || !(table.rows[table.rows.size() - 2].came < row->t)) continue;
       table.rows.pop_back();
@@ -371,7 +374,6 @@ Result<StateTable> read_state_table(const std::string& path, const std::string& 
   std::stable_sort(table.rows.begin(), table.rows.end(),
                    [](const StateRow& a, const StateRow& b) { return a.t < b.t; });
   if (table.rows.empty()) return in.empty_file("solutions");
-  table.has_week = places[kWeek].there() || places[kDate].there();
   for (const StateRow& row : table.rows)
     if (row.p.allFinite()) table.local = row.p.norm() < kEarthAtLeast_m;
   for (const StateRow& row : table.rows)

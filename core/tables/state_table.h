@@ -9,6 +9,7 @@
 
 #include "canyon/core/model_table.h"
 #include "canyon/core/result.h"
+#include "canyon/core/tables/passed_over.h"
 #include "canyon/core/time.h"
 
 namespace canyon {
@@ -28,17 +29,13 @@ struct StateRow {
   GpsTime came;     ///< the latest time in the file up to it: its own, but of a row that is late
 };
 
-/// Rows that were passed over.
-struct PassedOver {
-  std::size_t not_finite = 0, duplicates = 0, reversed = 0;
-  std::size_t all() const { return not_finite + duplicates + reversed; }
-};
-
 struct StateTable {
   std::vector<StateRow> rows;  ///< in order of time
   bool has_week = false;       ///< else the times are of GPS week 0
   bool local = false;          ///< places in a local frame W (east, north, up), and not on the Earth
   PassedOver passed_over;
+  /// A time as the file has it: of week, or of the epoch where it names none.
+  double stated_s(GpsTime t) const { return has_week ? t.sow_s() : t - GpsTime{}; }
 };
 
 /// Layouts of files of numbers without a header, told apart by how many there are on a line; makes the column names.

@@ -89,7 +89,7 @@ Json dead_reckoning_json(const DeadReckoning& o) {
   out["integrator"] = o.integrator;
   out["gravity"] = o.gravity;
   out["samples"] = o.states.size() - 1;
-  out["gaps"] = o.recording.gaps;
+  out["gaps"] = o.recording.gaps.count;
   out["compared"] = o.errors.empty() ? 0 : o.errors.size() - 1;
   out["start_sow_s"] = o.states.front().t.sow_s();
   out["duration_s"] = o.states.back().t - o.states.front().t;

@@ -60,9 +60,7 @@ Result<ImuRecording> read_imu_recording(const std::string& path, const ImuRecord
   out.kf_gins = format.columns == "kf_gins" || (format.columns.empty() && bare);
   CANYON_TRY(const inertial::ImuLog log,
              read_log(path, {.columns = out.kf_gins ? "kf_gins" : format.columns, .mend = format.mend}, warn));
-  out.not_finite = log.mended.not_finite;
-  out.duplicates = log.mended.duplicates;
-  out.reversed = log.mended.reversed;
+  out.passed_over = log.passed_over;
   CANYON_TRY_STATUS(check_stamps(path, log, format.gps_week));
   for (int c = 0; c < 6; ++c)
     if (log.channels[static_cast<std::size_t>(c)].empty())
@@ -71,10 +69,12 @@ Result<ImuRecording> read_imu_recording(const std::string& path, const ImuRecord
       format.forward_right_down && !out.kf_gins ? Eigen::Vector3d(1, -1, -1) : Eigen::Vector3d(1, 1, 1);
   const inertial::Sampling sampling = inertial::sampling_of(log.t_s, format.gap_factor);
   out.interval_s = sampling.interval_s;
-  out.gaps = sampling.segments.size() - 1;
   out.samples.reserve(log.size());
   for (const inertial::Segment& segment : sampling.segments) {
-    if (segment.begin > 0) out.after_gap.push_back(segment.begin);
+    if (segment.begin > 0) {
+      out.after_gap.push_back(segment.begin);
+      out.gaps.add(log.lines[segment.begin], log.t_s[segment.begin], log.t_s[segment.begin - 1]);
+    }
     for (std::size_t k = segment.begin; k < segment.end; ++k) {
       if (k % kSamplesPerLook == 0) throw_if_cancelled();
       const auto& c = log.channels;

@@ -6,6 +6,7 @@
 
 #include "canyon/core/messages.h"
 #include "canyon/core/result.h"
+#include "canyon/core/tables/passed_over.h"
 #include "canyon/fusion/strapdown.h"
 
 namespace canyon::study {
@@ -16,10 +17,9 @@ struct ImuRecording {
   std::vector<ImuSample> samples;
   bool kf_gins = false;  ///< the file is the KF-GINS text format
   double interval_s = 0.0;
-  std::size_t gaps = 0;
+  Occurrences gaps;                    ///< each at the first sample after it
   std::vector<std::size_t> after_gap;  ///< the first sample after each of them
-  /// Rows of the file that were passed over, where the format lets them.
-  std::size_t not_finite = 0, duplicates = 0, reversed = 0;
+  PassedOver passed_over;              ///< rows of the file, where the format lets them be
 };
 
 struct ImuRecordingFormat {

@@ -10,7 +10,8 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/antenna_height.h"
 #include "canyon/study/dead_reckoning/reference.h"
-#include "canyon/study/fuse/fix_log.h"
+#include "canyon/study/fuse/logs/aiding_logs.h"
+#include "canyon/study/fuse/logs/fix_log.h"
 
 namespace canyon::study {
 namespace {
@@ -71,10 +72,12 @@ void turn(ImuRecording& imu, const FuseImuConfig& config) {
 class Diagnosing {
  public:
   Diagnosing(FuseInputs& inputs, const Warn& warn) : inputs_(inputs), warn_(warn) {}
-  void add(const std::string& path, const char* key, std::size_t count, const char* what) {
-    if (count == 0) return;
-    inputs_.diagnoses[key] += count;
-    warn_(path + ": " + std::to_string(count) + " " + what);
+  /// `what` of the first of them.
+  void add(const std::string& path, const std::string& key, const Occurrences& where, const std::string& what) {
+    if (where.count == 0) return;
+    inputs_.diagnoses[key] += where.count;
+    const std::string place = where.line > 0 ? path + ":" + std::to_string(where.line) : path;
+    warn_(place + ": " + what + " (" + std::to_string(where.count) + " in all)");
   }
 
  private:
@@ -84,14 +87,22 @@ class Diagnosing {
 
 void diagnose(Diagnosing& tell, const std::string& path, const char* of, const PassedOver& over) {
   const std::string key(of);
-  tell.add(path, (key + "_not_finite").c_str(), over.not_finite, "rows without finite numbers passed over");
-  tell.add(path, (key + "_duplicates").c_str(), over.duplicates, "rows of a time that has been passed over");
-  tell.add(path, (key + "_reversed").c_str(), over.reversed, "rows that go back in time passed over");
+  const Occurrences &no_number = over.not_finite, &twice = over.duplicates, &back = over.reversed;
+  const bool begins = std::isnan(no_number.after_s);
+  tell.add(
+      path, key + "_not_finite", no_number,
+      (begins ? "no finite numbers at the beginning" : printed("no finite numbers after %.3f s", no_number.after_s)) +
+          ", passed over");
+  tell.add(path, key + "_duplicates", twice, printed("%.3f s once more, passed over", twice.t_s));
+  tell.add(path, key + "_reversed", back,
+           printed("back in time from %.3f s to %.3f s, one of them passed over", back.after_s, back.t_s));
 }
 
 void diagnose(Diagnosing& tell, const ImuRecording& imu) {
-  diagnose(tell, imu.path, "imu", PassedOver{imu.not_finite, imu.duplicates, imu.reversed});
-  tell.add(imu.path, "imu_gaps", imu.gaps, "gaps in the IMU's samples");
+  diagnose(tell, imu.path, "imu", imu.passed_over);
+  const Occurrences& gap = imu.gaps;
+  tell.add(imu.path, "imu_gaps", gap,
+           printed("gap of %.4g s after %.3f s", gap.t_s - gap.after_s - imu.interval_s, gap.after_s));
 }
 
 Status check_overlap(const FuseInputs& in, const std::string& path, GpsTime first, GpsTime last) {
@@ -210,8 +221,10 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
 
   diagnose(tell, out.imu);
   diagnose(tell, files.gnss, "fixes", fixes.passed_over);
-  tell.add(files.gnss, "fixes_without_solution", fixes.without_solution, "rows without a solution");
-  tell.add(files.gnss, "fixes_marked_withheld", fixes.withheld, "fixes marked as withheld are not used");
+  tell.add(files.gnss, "fixes_without_solution", fixes.without_solution,
+           printed("no solution at %.3f s", fixes.without_solution.t_s));
+  tell.add(files.gnss, "fixes_marked_withheld", fixes.withheld,
+           printed("fix at %.3f s marked as withheld, not used", fixes.withheld.t_s));
   diagnose(tell, files.odometer, "odometer", odometer.passed_over);
   diagnose(tell, files.truth, "truth", truth.passed_over);
   CANYON_TRY_STATUS(check_fuse_inputs(out, config));

@@ -173,11 +173,31 @@ TEST_F(FuseTest, WhatIsMendedIsToldInOneLineEach) {
   EXPECT_NEAR(json["bridged_s"].get<double>(), 0.5, 1e-6);
   EXPECT_LT(json["rms_3d_m"].get<double>(), 1.5);
   EXPECT_EQ(read("stderr"),
-            "warning: damaged.txt: 1 rows without finite numbers passed over\n"
-            "warning: damaged.txt: 1 rows of a time that has been passed over\n"
-            "warning: damaged.txt: 1 rows that go back in time passed over\n"
-            "warning: damaged.txt: 1 gaps in the IMU's samples\n"
-            "warning: fixes.txt: 1 rows without finite numbers passed over\n");
+            "warning: damaged.txt:502: no finite numbers after 1010.020 s, passed over (1 in all)\n"
+            "warning: damaged.txt:603: 1012.020 s once more, passed over (1 in all)\n"
+            "warning: damaged.txt:704: back in time from 1014.020 s to 1014.000 s, one of them passed over (1 in all)\n"
+            "warning: damaged.txt:2004: gap of 0.5 s after 1040.000 s (1 in all)\n"
+            "warning: fixes.txt:121: no finite numbers after 1059.520 s, passed over (1 in all)\n");
+}
+
+// Of several the first, of each file and each kind.
+TEST_F(FuseTest, TheFirstOfWhatIsMendedHasItsLineAndTime) {
+  simulate();
+  write(
+      "fixes.csv",
+      "gps_week,sow,lat_deg,lon_deg,h_m,status,offered\n2200,1000.01,,7,200,none,1\n" + fixes("", [](const double* v) {
+        const std::string end = v[1] < 1003.0 ? ",none,1\n" : v[1] < 1005.0 ? ",single,0\n" : ",single,1\n";
+        return text("2200,%.3f,%.9f,%.9f,%.4f", v[1], v[2], v[3], v[4]) + end;
+      }));
+  write("wheel.csv",
+        "sow,speed_m_s,dt_s\n1001,nan,1\n1002,5,1\n1002,5,1\n1003,nan,1\n1001.5,5,1\n1002,5,1\n1004,5,1\n");
+  json_of("fuse --imu log/imu.csv --gnss fixes.csv --odometer wheel.csv --truth log/truth.nav --config fuse.toml");
+  EXPECT_EQ(read("stderr"),
+            "warning: fixes.csv:2: no solution at 1000.010 s (7 in all)\n"
+            "warning: fixes.csv:9: fix at 1003.020 s marked as withheld, not used (4 in all)\n"
+            "warning: wheel.csv:2: no finite numbers at the beginning, passed over (2 in all)\n"
+            "warning: wheel.csv:4: 1002.000 s once more, passed over (1 in all)\n"
+            "warning: wheel.csv:6: back in time from 1003.000 s to 1001.500 s, one of them passed over (2 in all)\n");
 }
 
 // Rows of fixes in another order than that of their times, one of them twice, and some that stand still.

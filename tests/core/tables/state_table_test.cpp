@@ -114,9 +114,17 @@ TEST_F(StateTableTest, WhatSaysNothingIsPassedOverAndCounted) {
   EXPECT_EQ(times, (std::vector<double>{1, 2, 3, 4, 5, 6}));
   EXPECT_FALSE(table->rows[1].solved);
   EXPECT_FALSE(table->rows[2].solved);
-  EXPECT_EQ(table->passed_over.not_finite, 1U);
-  EXPECT_EQ(table->passed_over.duplicates, 1U);
-  EXPECT_EQ(table->passed_over.reversed, 2U);
+  const PassedOver& over = table->passed_over;
+  EXPECT_EQ(over.not_finite.count, 1U);
+  EXPECT_EQ(over.not_finite.line, 5);
+  EXPECT_EQ(over.not_finite.after_s, 3.0);
+  EXPECT_EQ(over.duplicates.count, 1U);
+  EXPECT_EQ(over.duplicates.line, 7);
+  EXPECT_EQ(over.duplicates.t_s, 4.0);
+  EXPECT_EQ(over.reversed.count, 2U);
+  EXPECT_EQ(over.reversed.line, 9);
+  EXPECT_EQ(over.reversed.t_s, 5.0);
+  EXPECT_EQ(over.reversed.after_s, 1e6);
 }
 
 TEST_F(StateTableTest, MistakesWordForWord) {

@@ -15,7 +15,7 @@ struct FixLog {
   std::vector<GpsTime> came;      ///< the same index: as StateRow::came
   std::vector<GnssEpoch> ranges;  ///< of RINEX observations, corrected; also of epochs without a fix
   bool has_week = false;
-  std::size_t without_solution = 0, withheld = 0;
+  Occurrences without_solution, withheld;
   PassedOver passed_over;
   std::vector<std::string> warnings;
 };
@@ -24,14 +24,5 @@ struct FixLog {
 /// that the file does not state are those of `config`; an Error where neither does. Fixes may stand so late in it.
 Result<FixLog> read_fix_log(const std::string& path, const std::vector<std::string>& navigation,
                             const FuseGnssConfig& config, double late_s);
-
-/// Speeds or counts of a wheel: columns `t_s` (or gps_week, sow), `speed_m_s` (any unit of speed) or `ticks`, and
-/// `dt_s` if they are not of the time since the line before.
-struct OdometerLog {
-  std::vector<OdometerSample> samples;
-  bool has_week = false;
-  PassedOver passed_over;
-};
-Result<OdometerLog> read_odometer_log(const std::string& path, const FuseOdometerConfig& config);
 
 }  // namespace canyon::study

@@ -1,4 +1,4 @@
-#include "canyon/study/fuse/fix_log.h"
+#include "canyon/study/fuse/logs/fix_log.h"
 
 #include "canyon/core/earth/earth.h"
 #include "canyon/gnss/single_point/recorded_data.h"
@@ -60,9 +60,9 @@ Result<FixLog> solve(const std::string& path, const std::vector<std::string>& na
     if (!epoch.epoch.observations.empty() && (out.ranges.empty() || epoch.epoch.t > out.ranges.back().t))
       out.ranges.push_back(epoch.epoch);
     if (epoch.fix.status == FixStatus::kNone)
-      ++out.without_solution;
+      out.without_solution.add(0, epoch.epoch.t.sow_s(), kNaN);
     else if (!out.fixes.empty() && epoch.fix.t <= out.fixes.back().t)
-      ++out.passed_over.reversed;
+      out.passed_over.reversed.add(0, epoch.fix.t.sow_s(), out.fixes.back().t.sow_s());
     else
       out.fixes.push_back(epoch.fix);
   }
@@ -84,9 +84,9 @@ Result<FixLog> read_fix_log(const std::string& path, const std::vector<std::stri
   out.passed_over = table.passed_over;
   for (const StateRow& row : table.rows) {
     if (!row.offered) {
-      ++out.withheld;
+      out.withheld.add(row.line, table.stated_s(row.t), kNaN);
     } else if (!row.solved) {
-      ++out.without_solution;
+      out.without_solution.add(row.line, table.stated_s(row.t), kNaN);
     } else {
       CANYON_TRY(GnssFix fix, fix_of(row, path, config));
       out.fixes.push_back(std::move(fix));
