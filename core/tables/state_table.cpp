@@ -30,7 +30,7 @@ enum Target {
   kSdN, kSdE, kSdU, kXX, kXY, kXZ, kYY, kYZ, kZZ,
   kVn, kVe, kVd, kVu, kVx, kVy, kVz,
   kSdVn, kSdVe, kSdVu, kVxx, kVxy, kVxz, kVyy, kVyz, kVzz,
-  kRoll, kPitch, kHeading, kQw, kQx, kQy, kQz,
+  kRoll, kPitch, kHeading, kSdRoll, kSdPitch, kSdHeading, kQw, kQx, kQy, kQz,
   kQuality, kStatus, kOffered,
   kTargets
 };
@@ -57,6 +57,10 @@ constexpr KnownColumn kColumns[] = {
     {"vyy", Q::kSpeedSquared, kVyy}, {"vyz", Q::kSpeedSquared, kVyz}, {"vzz", Q::kSpeedSquared, kVzz},
     {"roll", Q::kAngle, kRoll, "deg"}, {"pitch", Q::kAngle, kPitch, "deg"},
     {"yaw", Q::kAngle, kHeading, "deg"}, {"heading", Q::kAngle, kHeading, "deg"},
+    {"sd_roll", Q::kAngle, kSdRoll, "deg"}, {"sigma_roll", Q::kAngle, kSdRoll, "deg"},
+    {"sd_pitch", Q::kAngle, kSdPitch, "deg"}, {"sigma_pitch", Q::kAngle, kSdPitch, "deg"},
+    {"sd_yaw", Q::kAngle, kSdHeading, "deg"}, {"sigma_yaw", Q::kAngle, kSdHeading, "deg"},
+    {"sd_heading", Q::kAngle, kSdHeading, "deg"}, {"sigma_heading", Q::kAngle, kSdHeading, "deg"},
     {"qw", Q::kPlain, kQw}, {"qx", Q::kPlain, kQx}, {"qy", Q::kPlain, kQy}, {"qz", Q::kPlain, kQz},
     {"q", Q::kPlain, kQuality}, {"status", Q::kPlain, kStatus}, {"offered", Q::kPlain, kOffered},
 };
@@ -226,6 +230,7 @@ Status RowReader::read_velocity(StateRow& row, const Eigen::Matrix3d& R_enu) {
 }
 
 Status RowReader::read_attitude(StateRow& row) {
+  CANYON_TRY(row.attitude_sigma_rad, three(kSdRoll));
   if (has(kRoll) && has(kPitch) && has(kHeading)) {
     CANYON_TRY(const Eigen::Vector3d a, three(kRoll));
     if (!a.allFinite()) return Ok{};

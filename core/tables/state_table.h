@@ -22,6 +22,7 @@ struct StateRow {
   Eigen::Vector3d v;                    ///< in the same axes
   Eigen::Matrix3d v_covariance;         ///< m^2/s^2
   std::optional<Eigen::Quaterniond> R;  ///< of forward-left-up in the same axes
+  Eigen::Vector3d attitude_sigma_rad;   ///< about forward, left, up
   bool solved = true;                   ///< false: the line says that there was no solution; p is NaN then
   bool offered = true;                  ///< false: a column `offered` says that it was withheld
   int quality = 0;  ///< as RTKLIB counts: 1 and 2 carrier phase, 4 differential, 5 single; 0: not said
@@ -50,7 +51,7 @@ ModelTable<const char*> state_layouts();
 ///   its sigma sd_n, sd_e, sd_d or sd_u; sigma_e, sigma_n, sigma_u; or covariances xx, xy, xz, yy, yz, zz in E
 ///   velocity  vn, ve, vd or vu; or vx, vy, vz in the axes of x, y, z; sd_vn, ...; vxx, ...
 ///   attitude  roll, pitch, yaw or heading: of forward-right-down in north-east-down; or qw, qx, qy, qz: of
-///             forward-left-up in the axes of x, y, z
+///             forward-left-up in the axes of x, y, z; sd_roll, sd_pitch, sd_yaw or sd_heading, or sigma_roll, ...
 ///   beside    q (quality as RTKLIB counts), status (a word; `none`: no solution), offered (0: withheld)
 /// Without a header: state_layouts(). RTKLIB's .pos files are known by their %-lines, times in GPST or UTC. Plain or
 /// gzip.
