@@ -89,11 +89,15 @@ VerbAction declare(Arguments& arguments) {
       "fixes: positions of gnss solve, KF-GINS text, RTKLIB .pos, CSV with named columns; with --nav RINEX");
   arguments.option("--nav", files.navigation, "RINEX navigation files; --gnss then holds observations");
   arguments.option("--odometer", files.odometer, "CSV of t_s (or sow) and speed_m_s or ticks");
+  arguments.option("--heading", files.heading, "CSV of t_s (or sow), heading_deg and sigma_deg, of two antennas");
+  arguments.option("--poses", files.poses,
+                   "poses in a map that was there before: CSV with named columns of places, attitudes and 1-sigmas, "
+                   "TUM or KF-GINS text");
   arguments.option("--truth", files.truth,
                    "reference to compare with, and to start from: KF-GINS text, TUM, CSV with named columns");
   arguments.option("--config", options->config,
-                   "TOML with [fusion], [imu], [gnss], [odometer], [truth], [start], [timeline], [smoother], [score], "
-                   "[output]; keys in "
+                   "TOML with [fusion], [imu], [gnss], [odometer], [heading], [poses], [truth], [start], [timeline], "
+                   "[smoother], [score], [output]; keys in "
                    "docs/fuse.md");
   arguments.option("--outage", options->outage,
                    "LENGTH,EVERY,FIRST in seconds: fixes are withheld for LENGTH after FIRST from the log's beginning "
@@ -113,7 +117,7 @@ VerbAction declare(Arguments& arguments) {
   return [options]() -> Result<int> {
     const study::FuseFiles& given = options->files;
     const bool of_run = !options->results.empty() || !options->run.empty();
-    if (of_run && !(given.imu + given.gnss + given.odometer + given.truth).empty())
+    if (of_run && !(given.imu + given.gnss + given.odometer + given.heading + given.poses + given.truth).empty())
       return Error{"", 0, "command line", "logs beside --results", "one or the other"};
     if (of_run ? options->results.empty() || options->run.empty() : given.imu.empty() || given.gnss.empty())
       return Error{"", 0, "command line", "no logs given",

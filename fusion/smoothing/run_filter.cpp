@@ -47,10 +47,14 @@ void run_filter(const SmootherInput& run, std::span<const ImuSample> samples, Er
   Queue odometer(run.odometer);
   Queue barometer(run.barometer);
   Queue magnetometer(run.magnetometer);
+  Queue heading(run.heading);
+  Queue poses(run.poses);
   fixes.begin(samples.front());
   odometer.begin(samples.front());
   barometer.begin(samples.front());
   magnetometer.begin(samples.front());
+  heading.begin(samples.front());
+  poses.begin(samples.front());
   auto loosened = run.loosened.begin();
   while (loosened != run.loosened.end() && loosened->t <= run.start) ++loosened;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -59,8 +63,10 @@ void run_filter(const SmootherInput& run, std::span<const ImuSample> samples, Er
     for (; loosened != run.loosened.end() && loosened->t <= samples[k].t; ++loosened)
       filter.loosen(loosened->theta_rad, loosened->p_m, loosened->v_m_s);
     for (const OdometerSample& sample : odometer.with(samples, k)) filter.update(AidingMessage(sample));
+    for (const HeadingSample& sample : heading.with(samples, k)) filter.update(AidingMessage(sample));
     for (const BarometerSample& sample : barometer.with(samples, k)) filter.update(AidingMessage(sample));
     for (const MagnetometerSample& sample : magnetometer.with(samples, k)) filter.update(AidingMessage(sample));
+    for (const PoseInMap& pose : poses.with(samples, k)) filter.update(AidingMessage(pose));
     for (const GnssFix& fix : fixes.with(samples, k)) filter.update(fix);
     after(samples[k]);
   }

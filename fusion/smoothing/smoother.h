@@ -36,9 +36,11 @@ struct SmootherInput {
   std::span<const ImuSample> imu;
   std::span<const GnssFix> fixes;
   std::span<const OdometerSample> odometer;
-  std::span<const BarometerSample> barometer = {};        ///< not of factor graphs, as the next two
+  std::span<const BarometerSample> barometer = {};        ///< not of factor graphs, as all that follow
   std::span<const MagnetometerSample> magnetometer = {};  ///< axes of U
-  std::span<const Loosening> loosened = {};               ///< at the ends of samples
+  std::span<const HeadingSample> heading = {};
+  std::span<const PoseInMap> poses = {};     ///< in a map that was there before
+  std::span<const Loosening> loosened = {};  ///< at the ends of samples
 };
 
 /// How far a fix was believed.
@@ -61,8 +63,8 @@ class Smoother {
   virtual Result<Smoothed> smooth(const SmootherInput& run) = 0;
 };
 
-/// Rows of the filter's measurements that the smoother has no place for: of a factor graph "barometer" and
-/// "magnetometer". ("standstill" looks at a stretch of time, and graphs do without it.)
+/// Rows of the filter's measurements that the smoother has no place for: of a factor graph "barometer",
+/// "magnetometer", "heading" and "map_pose". ("standstill" looks at a stretch of time, and graphs do without it.)
 std::vector<std::string> not_smoothed_by(std::string_view smoother, const FilterConfig& config);
 
 using MakeSmoother = std::unique_ptr<Smoother>(const ModelParameters& own);

@@ -13,7 +13,7 @@ constexpr ModelRow<MakeSmoother> kSmoothers[] = {
 };
 
 /// Rows of which a graph gets no messages.
-constexpr std::string_view kNotOfGraphs[] = {"barometer", "magnetometer"};
+constexpr std::string_view kNotOfGraphs[] = {"barometer", "magnetometer", "heading", "map_pose"};
 
 }  // namespace
 

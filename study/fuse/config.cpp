@@ -94,6 +94,22 @@ void visit(FieldVisitor& f, FuseOdometerConfig& c) {
   f.number("tick_m", c.tick_m, {1e-6, 10}, "metres per tick, for a log of ticks");
 }
 
+void visit(FieldVisitor& f, FuseHeadingConfig& c) {
+  f.text("columns", c.columns, "names of the columns: t_s, heading_deg, sigma_deg; empty: the header's");
+  f.number("offset_deg", c.offset_deg, {-360, 360},
+           "added to the log's headings: the vehicle's nose clockwise from the line of the antennas");
+  f.number("sigma_deg", c.sigma_deg, {0, 180}, "1-sigma of headings that state none");
+}
+
+void visit(FieldVisitor& f, FusePosesConfig& c) {
+  f.text("columns", c.columns, "names of the columns of poses in a map; empty: the header's, KF-GINS text or TUM");
+  f.numbers("origin_deg_deg_m", c.origin_deg_deg_m, 0, {-1e6, 1e6},
+            "latitude, longitude, height of the origin of a map in local coordinates");
+  f.vector3("sigma_enu_m", c.sigma_enu_m, {0, 1e6}, "1-sigma east, north, up of places that state none");
+  f.vector3("attitude_sigma_deg", c.attitude_sigma_deg, {0, 180},
+            "1-sigma about forward, left, up of attitudes that state none");
+}
+
 void visit(FieldVisitor& f, FuseTruthConfig& c) {
   f.text("columns", c.columns, "names of the reference's columns; empty: the header's, KF-GINS text or TUM");
   f.choice("of", c.of, std::span<const ModelRow<TruthPoint>>(kPoints), "what the reference is the place of");
@@ -120,6 +136,8 @@ void visit(FieldVisitor& f, FuseConfig& c) {
   f.group("imu", c.imu, "the IMU and its log");
   f.group("gnss", c.gnss, "the antenna and the log of fixes");
   f.group("odometer", c.odometer, "the log of the wheel");
+  f.group("heading", c.heading, "the log of headings");
+  f.group("poses", c.poses, "the log of poses in a map");
   f.group("truth", c.truth, "the reference");
   f.group("start", c.start, "the first state");
   f.group("timeline", c.timeline, "what is late, missing or wrong");
@@ -136,10 +154,10 @@ Result<FuseConfig> config_from(ConfigNode node) {
   config.imu.sensor_given = node.find("imu.sensor") != nullptr || node.find("fusion.imu") != nullptr;
   for (const auto& figure : config.imu.figures) config.imu.sensor_given |= figure.has_value();
   config.file = std::move(node);
-  const std::size_t numbers = config.truth.origin_deg_deg_m.size();
-  if (numbers != 0 && numbers != 3)
-    return at_key(config, "truth.origin_deg_deg_m", std::to_string(numbers) + " numbers",
-                  "latitude, longitude, height");
+  for (const auto& [key, origin] : {std::pair{"truth.origin_deg_deg_m", &config.truth.origin_deg_deg_m},
+                                    std::pair{"poses.origin_deg_deg_m", &config.poses.origin_deg_deg_m}})
+    if (!origin->empty() && origin->size() != 3)
+      return at_key(config, key, std::to_string(origin->size()) + " numbers", "latitude, longitude, height");
   CANYON_TRY_STATUS(fuse_noise(config));
   return config;
 }

@@ -60,6 +60,23 @@ struct FuseOdometerConfig {
 };
 void visit(FieldVisitor& f, FuseOdometerConfig& c);
 
+/// [heading]
+struct FuseHeadingConfig {
+  std::string columns;
+  double offset_deg = 0.0;
+  double sigma_deg = 0.0;
+};
+void visit(FieldVisitor& f, FuseHeadingConfig& c);
+
+/// [poses]
+struct FusePosesConfig {
+  std::string columns;
+  std::vector<double> origin_deg_deg_m;  ///< of the map, for poses in local coordinates; empty: none
+  Eigen::Vector3d sigma_enu_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d attitude_sigma_deg = Eigen::Vector3d::Zero();
+};
+void visit(FieldVisitor& f, FusePosesConfig& c);
+
 /// What a reference is the place of.
 enum class TruthPoint { kImu, kAntenna, kBody };
 
@@ -102,6 +119,8 @@ struct FuseConfig {
   FuseImuConfig imu;
   FuseGnssConfig gnss;
   FuseOdometerConfig odometer;
+  FuseHeadingConfig heading;
+  FusePosesConfig poses;
   FuseTruthConfig truth;
   FuseStartConfig start;
   fusion::TimelineConfig timeline{.held_s = 1.0};  ///< for as long as bridge_s: no curve ends at once

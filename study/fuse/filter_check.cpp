@@ -10,8 +10,8 @@ namespace {
 constexpr const char* kMeasurements = "fusion.measurements";
 
 /// Rows that no message of another sensor is needed for, and those whose messages may be among the inputs.
-constexpr std::string_view kFed[] = {"position", "velocity",  "non_holonomic", "standstill",
-                                     "odometer", "barometer", "magnetometer",  "ranges"};
+constexpr std::string_view kFed[] = {"position", "velocity",  "non_holonomic", "standstill", "odometer",
+                                     "heading",  "barometer", "magnetometer",  "map_pose",   "ranges"};
 
 std::string quoted(const std::string& name) {
   return "\"" + name + "\"";
@@ -33,6 +33,8 @@ bool states_velocity(const GnssFix& fix) {
 bool has_sensor(const FuseInputs& in, const std::string& name) {
   if (name == "velocity") return std::any_of(in.fixes.begin(), in.fixes.end(), states_velocity);
   if (name == "odometer") return !in.odometer.empty();
+  if (name == "heading") return !in.heading.empty();
+  if (name == "map_pose") return !in.poses.empty();
   if (name == "barometer") return !in.barometer.empty();
   if (name == "magnetometer") return !in.magnetometer.empty();
   if (name == "ranges") return !in.ranges.empty();
@@ -53,7 +55,17 @@ Error without_sensor(const FuseInputs& in, const FuseConfig& config, const std::
     return at_key(config, key, quoted(name) + ", of which the run " + quoted(in.of_run) + " has no record",
                   "a run whose own filter measures with it");
   return at_key(config, key, quoted(name) + " without a log of one",
-                name == "odometer" ? "--odometer FILE" : "--results of a run whose filter measures with it");
+                name == "odometer"   ? "--odometer FILE"
+                : name == "heading"  ? "--heading FILE"
+                : name == "map_pose" ? "--poses FILE"
+                                     : "--results of a run whose filter measures with it");
+}
+
+/// A log of headings or poses is given to be measured with.
+Status check_taken(const FuseConfig& config, const char* option, const std::string& path, const char* row) {
+  if (path.empty() || fusion::measures_with(config.fusion, row)) return Ok{};
+  return Error{"", 0, option, path + ", but the filter does not measure with " + quoted(row),
+               quoted(row) + " in fusion.measurements of --config"};
 }
 
 }  // namespace
@@ -69,6 +81,8 @@ Status check_fuse_filter(const FuseInputs& in, const FuseConfig& config) {
       return at_key(config, kMeasurements, quoted(name) + ", for which canyon fuse has no messages", fed_rows());
     if (!has_sensor(in, name)) return without_sensor(in, config, name);
   }
+  CANYON_TRY_STATUS(check_taken(config, "--heading", in.heading_path, "heading"));
+  CANYON_TRY_STATUS(check_taken(config, "--poses", in.poses_path, "map_pose"));
   // What a set measures with is left out where there is none, but not its only word of the place.
   if (fusion::measures_with(config.fusion, "ranges") && !has_sensor(in, "ranges"))
     return without_sensor(in, config, "ranges", "fusion.filter");

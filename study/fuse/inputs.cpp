@@ -10,7 +10,6 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/antenna_height.h"
 #include "canyon/study/dead_reckoning/reference.h"
-#include "canyon/study/fuse/logs/aiding_logs.h"
 #include "canyon/study/fuse/logs/fix_log.h"
 
 namespace canyon::study {
@@ -105,6 +104,23 @@ void diagnose(Diagnosing& tell, const ImuRecording& imu) {
            printed("gap of %.4g s after %.3f s", gap.t_s - gap.after_s - imu.interval_s, gap.after_s));
 }
 
+/// Poses are told the filter in its own frame, and a map that lies elsewhere would carry it there.
+Status check_map_frame(const FuseInputs& in) {
+  constexpr double kMost_m = 1000.0;
+  std::vector<double> off_m;
+  for (const StampedMapPose& pose : in.poses) {
+    const auto after = std::lower_bound(in.fixes.begin(), in.fixes.end(), pose.t,
+                                        [](const GnssFix& fix, GpsTime t) { return fix.t < t; });
+    if (after != in.fixes.end() && after->t - pose.t <= 1.0) off_m.push_back((after->p_A_E - pose.X_EB.p).norm());
+  }
+  if (off_m.empty()) return Ok{};
+  const auto middle = off_m.begin() + static_cast<std::ptrdiff_t>(off_m.size() / 2);
+  std::nth_element(off_m.begin(), middle, off_m.end());
+  if (*middle < kMost_m) return Ok{};
+  return Error{in.poses_path, 0, "", printed("lie %.3g km from the fixes of the same time", 1e-3 * *middle),
+               "the frame of " + in.gnss_path + " (degrees or metres, their order, poses.origin_deg_deg_m)"};
+}
+
 Status check_overlap(const FuseInputs& in, const std::string& path, GpsTime first, GpsTime last) {
   if (first < in.end() && in.begin() < last) return Ok{};
   const bool one_week = first.week() == in.begin().week();
@@ -170,10 +186,14 @@ Status check_fuse_inputs(const FuseInputs& in, const FuseConfig& config) {
   CANYON_TRY_STATUS(check_overlap(in, in.gnss_path, in.fixes.front().t, in.fixes.back().t));
   if (!in.odometer.empty())
     CANYON_TRY_STATUS(check_overlap(in, in.odometer_path, in.odometer.front().t, in.odometer.back().t));
+  if (!in.heading.empty())
+    CANYON_TRY_STATUS(check_overlap(in, in.heading_path, in.heading.front().t, in.heading.back().t));
+  if (!in.poses.empty()) CANYON_TRY_STATUS(check_overlap(in, in.poses_path, in.poses.front().t, in.poses.back().t));
   if (!in.truth.states.empty())
     CANYON_TRY_STATUS(check_overlap(in, in.truth.path, in.truth.states.front().t, in.truth.states.back().t));
   CANYON_TRY_STATUS(check_fuse_filter(in, config));
   CANYON_TRY_STATUS(check_same_frame(in));
+  CANYON_TRY_STATUS(check_map_frame(in));
   return check_attitude(in, config);
 }
 
@@ -192,6 +212,16 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
     CANYON_TRY(odometer, read_odometer_log(files.odometer, config.odometer));
     out.odometer_path = files.odometer;
   }
+  HeadingLog heading;
+  if (!files.heading.empty()) {
+    CANYON_TRY(heading, read_heading_log(files.heading, config.heading));
+    out.heading_path = files.heading;
+  }
+  PoseLog poses;
+  if (!files.poses.empty()) {
+    CANYON_TRY(poses, read_pose_log(files.poses, config.poses));
+    out.poses_path = files.poses;
+  }
   const GpsTime first_fix = fixes.fixes.front().t, first_truth = truth.rows.empty() ? GpsTime{} : truth.rows.front().t;
   const bool week_of_fixes = fixes.has_week || counts_from_epoch(first_fix);
   const bool week_of_truth = truth.has_week || counts_from_epoch(first_truth);
@@ -202,10 +232,15 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
   for (GnssEpoch& epoch : fixes.ranges) shift(epoch.t, missing(week_of_fixes), config.gnss.clock_offset_s);
   for (StateRow& row : truth.rows) shift(row.t, missing(week_of_truth), 0.0);
   for (OdometerSample& sample : odometer.samples) shift(sample.t, missing(odometer.has_week), 0.0);
+  const bool week_of_poses = !poses.poses.empty() && (poses.has_week || counts_from_epoch(poses.poses.front().t));
+  for (HeadingSample& sample : heading.samples) shift(sample.t, missing(heading.has_week), 0.0);
+  for (StampedMapPose& pose : poses.poses) shift(pose.t, missing(week_of_poses), 0.0);
   out.fixes = std::move(fixes.fixes);
   out.fixes_came = std::move(fixes.came);
   for (GnssEpoch& epoch : fixes.ranges) out.ranges.push_back({epoch.t, std::move(epoch)});
   out.odometer = std::move(odometer.samples);
+  out.heading = std::move(heading.samples);
+  out.poses = std::move(poses.poses);
   if (!files.truth.empty()) {
     CANYON_TRY(out.truth, truth_from(files.truth, truth, config));
   }
@@ -226,6 +261,8 @@ Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& co
   tell.add(files.gnss, "fixes_marked_withheld", fixes.withheld,
            printed("fix at %.3f s marked as withheld, not used", fixes.withheld.t_s));
   diagnose(tell, files.odometer, "odometer", odometer.passed_over);
+  diagnose(tell, files.heading, "heading", heading.passed_over);
+  diagnose(tell, files.poses, "poses", poses.passed_over);
   diagnose(tell, files.truth, "truth", truth.passed_over);
   CANYON_TRY_STATUS(check_fuse_inputs(out, config));
   return out;

@@ -10,12 +10,13 @@
 #include "canyon/fusion/strapdown.h"
 #include "canyon/study/dead_reckoning/recording.h"
 #include "canyon/study/fuse/config.h"
+#include "canyon/study/fuse/logs/aiding_logs.h"
 
 namespace canyon::study {
 
 /// Names of the files that `canyon fuse` reads; empty: none.
 struct FuseFiles {
-  std::string imu, gnss, odometer, truth;
+  std::string imu, gnss, odometer, heading, poses, truth;
   std::vector<std::string> navigation;  ///< RINEX: then `gnss` holds observations
 };
 
@@ -41,11 +42,13 @@ struct FuseInputs {
   std::vector<GpsTime> fixes_came;
   std::vector<DueRanges> ranges;  ///< in order of time; of RINEX observations, or of a run that measured with ranges
   std::vector<OdometerSample> odometer;
+  std::vector<HeadingSample> heading;            ///< of logs alone, as the next
+  std::vector<StampedMapPose> poses;             ///< in a map that was there before
   std::vector<BarometerSample> barometer;        ///< of recorded runs alone, as the next
   std::vector<MagnetometerSample> magnetometer;  ///< axes of U
   FuseTruth truth;
-  std::string gnss_path, odometer_path;  ///< of the log, for messages; empty: none
-  std::string of_run;                    ///< of a results directory; empty: logs
+  std::string gnss_path, odometer_path, heading_path, poses_path;  ///< of the log, for messages; empty: none
+  std::string of_run;                                              ///< of a results directory; empty: logs
   /// What was passed over or mended, by its key in summary.json; those of nothing are left out.
   std::map<std::string, std::size_t> diagnoses;
 
@@ -57,7 +60,8 @@ using Warn = std::function<void(const std::string&)>;
 
 /// Reads all files in the axes and units of `config`. A file without GPS weeks takes that of another one. `warn` gets a
 /// line on each thing that was mended. Errors: as of the readers; logs that do not overlap; axes upside down; a truth
-/// in another frame than the fixes; a measurement that `config` names without its sensor.
+/// in another frame than the fixes; a measurement that `config` names without its sensor; headings or poses that no
+/// measurement takes.
 Result<FuseInputs> read_fuse_inputs(const FuseFiles& files, const FuseConfig& config, const Warn& warn);
 
 /// What must hold of inputs, wherever they are from; part of read_fuse_inputs().

@@ -367,8 +367,9 @@ namespace {
 
 /// Keys that say how logs are read.
 Status refuse_keys_of_logs(const FuseConfig& config) {
-  for (const char* key : {"imu.columns", "imu.axes", "imu.turn_deg", "imu.instantaneous", "imu.clock_offset_s",
-                          "imu.lever_m", "imu.bridge_s", "gnss", "odometer", "truth", "start", "timeline", "output"})
+  for (const char* key :
+       {"imu.columns", "imu.axes", "imu.turn_deg", "imu.instantaneous", "imu.clock_offset_s", "imu.lever_m",
+        "imu.bridge_s", "gnss", "odometer", "heading", "poses", "truth", "start", "timeline", "output"})
     if (config.file.find(key) != nullptr)
       return at_key(config, key, "is of logs, and a recorded run has its own",
                     "[fusion], the figures of [imu], [score]");

@@ -18,7 +18,7 @@ constexpr std::size_t kSamplesPerLook = 4096;  // at whether the user wants to s
 
 /// What waits for its time. Of one time the order of `kind` holds.
 struct Message {
-  enum Kind { kOdometer, kBarometer, kMagnetometer, kFix, kRanges, kEpoch };
+  enum Kind { kOdometer, kHeading, kBarometer, kMagnetometer, kMapPose, kFix, kRanges, kEpoch };
   GpsTime came;
   Kind kind;
   std::size_t index;
@@ -30,8 +30,10 @@ std::vector<Message> messages_of(const FuseInputs& in, const FusePlan& plan) {
     for (std::size_t i = 0; i < all.size(); ++i) out.push_back({all[i].t, kind, i});
   };
   add(in.odometer, Message::kOdometer);
+  add(in.heading, Message::kHeading);
   add(in.barometer, Message::kBarometer);
   add(in.magnetometer, Message::kMagnetometer);
+  add(in.poses, Message::kMapPose);
   for (std::size_t i = 0; i < in.fixes.size(); ++i)
     out.push_back({in.fixes_came.empty() ? in.fixes[i].t : in.fixes_came[i], Message::kFix, i});
   if (fusion::measures_with(plan.filter, "ranges"))
@@ -173,10 +175,14 @@ void Run::give(const Message& message) {
   switch (message.kind) {
     case Message::kOdometer:
       return add(in_.odometer[message.index]);
+    case Message::kHeading:
+      return add(in_.heading[message.index]);
     case Message::kBarometer:
       return add(in_.barometer[message.index]);
     case Message::kMagnetometer:
       return add(in_.magnetometer[message.index]);
+    case Message::kMapPose:
+      return add(pose_in_frame(in_.poses[message.index], plan_.frame));
     case Message::kFix:
       return give(in_.fixes[message.index]);
     case Message::kRanges:

@@ -103,10 +103,10 @@ struct Fused {
 };
 
 /// Runs the filter over the samples on a fusion::FilterTimeline. Messages come in the order of their files, of one time
-/// odometer, barometer, magnetometer, fix, ranges, epoch, and after the sample that ends there; one within a sample
-/// divides it there, rate and force being constant over it. A fix that stands behind a later one in its file comes when
-/// that does, and is taken in its place. After a gap longer than bridge_s the filter starts anew, in motion. An Error
-/// (exit status 1) where the estimate is no number any more.
+/// odometer, heading, barometer, magnetometer, pose in a map, fix, ranges, epoch, and after the sample that ends there;
+/// one within a sample divides it there, rate and force being constant over it. A fix that stands behind a later one in
+/// its file comes when that does, and is taken in its place. After a gap longer than bridge_s the filter starts anew,
+/// in motion. An Error (exit status 1) where the estimate is no number any more.
 Result<Fused> fuse(const FuseInputs& inputs, const FusePlan& plan);
 
 }  // namespace canyon::study

@@ -45,6 +45,8 @@ Result<FuseSmoothed> smooth(const std::string& smoother, const ModelParameters& 
   CANYON_TRY_STATUS(check_smoother(smoother, plan.filter));
   FuseSmoothed out;
   out.smoother = smoother;
+  std::vector<PoseInMap> poses;
+  for (const StampedMapPose& pose : in.poses) poses.push_back(pose_in_frame(pose, plan.frame));
   Outages outages = plan.outages ? Outages(*plan.outages, in.begin(), in.end()) : Outages();
   for (const FuseSegment& segment : run.segments) {
     if (segment.steps.empty()) continue;
@@ -67,6 +69,8 @@ Result<FuseSmoothed> smooth(const std::string& smoother, const ModelParameters& 
                                  .odometer = in.odometer,
                                  .barometer = in.barometer,
                                  .magnetometer = in.magnetometer,
+                                 .heading = in.heading,
+                                 .poses = poses,
                                  .loosened = segment.loosened});
     if (!smoothed) {
       Error error = smoothed.error();

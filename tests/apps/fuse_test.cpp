@@ -250,6 +250,33 @@ TEST_F(FuseTest, TheVerdictAndThePage) {
   EXPECT_THAT(read("alone/report.html"), HasSubstr("There was no reference (--truth)"));
 }
 
+// The truth's own attitudes as headings, and its poses as those of a map.
+TEST_F(FuseTest, HeadingsAndPosesInAMap) {
+  simulate();
+  write("fixes.txt", bare_fixes());
+  const std::string call = "fuse --imu log/imu.csv --gnss fixes.txt --truth log/truth.nav --heading log/truth.nav ";
+  const std::string logs =
+      "[heading]\ncolumns = \"gps_week,sow,a,b,c,d,e,f,g,i,heading_deg\"\nsigma_deg = 0.2\n"
+      "[poses]\nsigma_enu_m = [0.1, 0.1, 0.1]\nattitude_sigma_deg = [0.2, 0.2, 0.2]\n";
+  write("both.toml",
+        std::string(kUnit) + logs + "[fusion]\nmeasurements = [\"position\", \"heading\", \"map_pose\"]\n");
+  const auto out = json_of(call + "--poses log/truth.nav --config both.toml");
+  EXPECT_EQ(out["measurements"], nlohmann::json({"position", "heading", "map_pose"}));
+  EXPECT_EQ(out["innovations"]["heading"]["count"], 3000);
+  EXPECT_EQ(out["innovations"]["map_pose"]["count"], 3000);
+  EXPECT_LT(out["rms_3d_m"].get<double>(), 0.1);
+  write("none.toml", std::string(kUnit) + logs);
+  refused(call + "--config none.toml",
+          "--heading: log/truth.nav, but the filter does not measure with \"heading\", expected \"heading\" in "
+          "fusion.measurements of --config");
+  write("heading.csv", "sow,heading_deg\n1001,10\n");
+  write("fuse.toml", std::string(kUnit) + "[fusion]\nmeasurements = [\"position\", \"heading\"]\n");
+  refused(std::string(kCall) + " --heading heading.csv",
+          "heading.csv:2: a heading without a sigma, or with one of 0, expected a column sigma_deg, or "
+          "heading.sigma_deg in --config");
+  refused(kCall, "fuse.toml:6: fusion.measurements: \"heading\" without a log of one, expected --heading FILE");
+}
+
 TEST_F(FuseTest, MistakesAreToldInOneLine) {
   simulate();
   write("fixes.txt", bare_fixes());
