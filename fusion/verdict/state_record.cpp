@@ -92,6 +92,24 @@ void StateRecord::add(const ErrorStateFilter& filter, const PredictionAlone& alo
     const double z = filter.value(static_cast<int>(i)) / std::sqrt(before[i] - now[i]);
     state.estimate.add(t, Eigen::VectorXd::Constant(1, std::clamp(z, -kMostRecorded, kMostRecorded)));
   }
+  keep_shares(t - first_);
+}
+
+/// Where there is no room for another one every second goes, and half as many are kept from then on.
+void StateRecord::keep_shares(double elapsed_s) {
+  if (looks_++ % every_ != 0) return;
+  if (times_s_.size() == kInstants) {
+    const auto thin = [](std::vector<double>& series) {
+      for (std::size_t i = 1; 2 * i < series.size(); ++i) series[i] = series[2 * i];
+      series.resize((series.size() + 1) / 2);
+    };
+    thin(times_s_);
+    for (StateHistory& state : states_) thin(state.shares);
+    every_ *= 2;
+    if ((looks_ - 1) % every_ != 0) return;
+  }
+  times_s_.push_back(elapsed_s);
+  for (StateHistory& state : states_) state.shares.push_back(state.share);
 }
 
 }  // namespace canyon::fusion

@@ -41,21 +41,28 @@ struct StateHistory {
   /// should have, sqrt(sigma_alone^2 - sigma^2), since an optimal estimate and its error are uncorrelated. Unit normal
   /// if the state's own process is what the filter is told.
   NormalSeries estimate;
+  std::vector<double> shares;  ///< over time, at StateRecord::times_s()
 };
 
-/// The states of a filter over a run.
+/// The states of a filter over a run. Shares are kept at up to kInstants of its looks, evenly spread from the first on.
 class StateRecord {
  public:
   /// From this share of sigma on a state counts as observed.
   static constexpr double kObserved = 0.5;
+  static constexpr std::size_t kInstants = 50;
 
   void add(const ErrorStateFilter& filter, const PredictionAlone& alone);
   const std::vector<StateHistory>& states() const { return states_; }
+  const std::vector<double>& times_s() const { return times_s_; }  ///< since the first look
 
  private:
+  void keep_shares(double elapsed_s);
+
   GpsTime first_;
   std::vector<StateHistory> states_;
   std::vector<bool> with_prior_;
+  std::vector<double> times_s_;
+  std::size_t looks_ = 0, every_ = 1;  ///< of which so many one is kept
 };
 
 /// Name of each state: "roll", "east velocity", "accel x", "mounting z"; attitude about the IMU's axes, position and

@@ -70,6 +70,7 @@ struct StateNumbers {
   std::string block, name;
   double share = kNaN, least_share = kNaN;
   std::optional<double> halved_after_s = {};
+  std::vector<double> shares = {};  ///< at VerdictNumbers::looked_s
 };
 
 /// All that is known of how a filter did, in numbers.
@@ -82,6 +83,7 @@ struct VerdictNumbers {
   std::vector<ProcessNumbers> processes;
   std::optional<FixNumbers> fixes;
   std::vector<StateNumbers> states;
+  std::vector<double> looked_s = {};  ///< up to 50 instants since the first look
 };
 
 /// The errors of the fixes against the truth, where that is known.

@@ -135,9 +135,12 @@ VerdictNumbers verdict_numbers(const VerdictEvidence& evidence, double false_ala
                            correlated(fixes.series, out.false_alarm), whiteness(fixes.series, out.false_alarm),
                            evidence.states != nullptr && carries_fix_error(*evidence.states)};
   }
-  if (evidence.states != nullptr)
+  if (evidence.states != nullptr) {
     for (const StateHistory& state : evidence.states->states())
-      out.states.push_back({state.block, state.name, state.share, state.least_share, state.halved_after_s});
+      out.states.push_back(
+          {state.block, state.name, state.share, state.least_share, state.halved_after_s, state.shares});
+    out.looked_s = evidence.states->times_s();
+  }
   return out;
 }
 

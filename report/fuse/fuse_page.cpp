@@ -241,7 +241,7 @@ std::string consistency_section(const FusedRun& run) {
                                 "measured, and when that fell to a half. A state that never gets there is not "
                                 "observed: its value is what was assumed.</p>\n<details><summary>All states"
                                 "</summary>\n" +
-                                    states + "</details>\n"));
+                                    states + "</details>\n" + observability_chart(run.verdict, 0)));
 }
 
 std::string made_section(const FusedRun& run) {

@@ -48,6 +48,11 @@ FilterVerdict read_filter_verdict(const JsonFields& owner) {
   each("states", [&](const JsonFields& f) {
     out.states.push_back({f.text("block"), f.text("name"), f.number("share"), f.number("halved_after_s")});
   });
+  if (!evidence.has("observability")) return out;
+  const JsonFields observability = evidence.object("observability");
+  out.looked_s = observability.numbers("t_s", observability.list("t_s").size());
+  const JsonFields shares = observability.object("states");
+  for (ObservedState& state : out.states) state.shares = shares.numbers(state.name, out.looked_s.size());
   return out;
 }
 

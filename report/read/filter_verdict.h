@@ -22,6 +22,7 @@ struct ConsistencyRow {
 struct ObservedState {
   std::string block, name;
   double share = std::nan(""), halved_after_s = std::nan("");
+  std::vector<double> shares = {};  ///< at FilterVerdict::looked_s
 };
 
 /// What is said of a run's filter (`verdict` and `evidence` of summary.json); empty where a directory has none.
@@ -29,6 +30,7 @@ struct FilterVerdict {
   std::vector<std::string> lines;  ///< the worst first; "consistent" where there is no fault
   std::vector<ConsistencyRow> rows;
   std::vector<ObservedState> states;
+  std::vector<double> looked_s;  ///< since the filter was first looked at
   double tests = std::nan("");
 };
 

@@ -17,7 +17,8 @@ std::string filter_section(const Results& results) {
     if (!said(i)) continue;
     const FilterVerdict& verdict = results.runs[i].filter_verdict;
     body += "<h3>" + run_tag(results.runs, i) + "</h3>\n" + filter_words(verdict) +
-            "<details><summary>The numbers behind it</summary>\n" + consistency_table(verdict) + "</details>\n";
+            "<details><summary>The numbers behind it</summary>\n" + consistency_table(verdict) +
+            observability_chart(verdict, i) + "</details>\n";
   }
   return section(
       "filter", title,

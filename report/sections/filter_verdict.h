@@ -13,4 +13,7 @@ std::string consistency_table(const FilterVerdict& verdict);
 /// Which states the measurements tell, and from when on; empty without any.
 std::string observability_table(const FilterVerdict& verdict);
 
+/// How well each state is known over time, a panel for each block; empty without any. `run` gives the colour.
+std::string observability_chart(const FilterVerdict& verdict, std::size_t run);
+
 }  // namespace canyon::report

@@ -1,6 +1,7 @@
 #include "canyon/study/results/verdict_json.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -76,6 +77,19 @@ Json state_json(const fusion::StateNumbers& state) {
           {"halved_after_s", state.halved_after_s ? Json(*state.halved_after_s) : Json(nullptr)}};
 }
 
+/// Four decimals are enough of a share, and of a time that is looked at once a second.
+Json shortened(const std::vector<double>& values) {
+  Json out = Json::array();
+  for (const double value : values) out.push_back(or_null(std::round(1e4 * value) / 1e4));
+  return out;
+}
+
+Json observability_json(const fusion::VerdictNumbers& n) {
+  Json states = Json::object();
+  for (const fusion::StateNumbers& state : n.states) states[state.name] = shortened(state.shares);
+  return {{"t_s", shortened(n.looked_s)}, {"states", std::move(states)}};
+}
+
 }  // namespace
 
 Json evidence_json(const fusion::VerdictNumbers& n) {
@@ -86,7 +100,8 @@ Json evidence_json(const fusion::VerdictNumbers& n) {
           {"blocks", rows_json(n.blocks, block_json)},
           {"fixes", n.fixes ? fixes_json(*n.fixes) : Json(nullptr)},
           {"processes", rows_json(n.processes, process_json)},
-          {"states", rows_json(n.states, state_json)}};
+          {"states", rows_json(n.states, state_json)},
+          {"observability", observability_json(n)}};
 }
 
 std::string verdict_in_short(const std::vector<std::string>& verdict) {

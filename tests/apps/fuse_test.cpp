@@ -231,6 +231,12 @@ TEST_F(FuseTest, TheVerdictAndThePage) {
   EXPECT_THAT(out["verdict"].dump(), HasSubstr(" times too small"));
   EXPECT_EQ(out["evidence"]["measurements"][0]["name"], "position");
   EXPECT_EQ(out["evidence"]["errors"].size(), 9U);
+  const auto& observed = out["evidence"]["observability"];
+  EXPECT_GE(observed["t_s"].size(), 25U);
+  EXPECT_LE(observed["t_s"].size(), 50U);
+  EXPECT_EQ(observed["states"].size(), out["evidence"]["states"].size());
+  for (const auto& state : out["evidence"]["states"])
+    EXPECT_EQ(observed["states"][state["name"].get<std::string>()].size(), observed["t_s"].size());
   EXPECT_EQ(out["smoother"]["name"], "rts");
   EXPECT_TRUE(out["smoother"]["outage"]["horizontal_rms_of_max_m"].is_number());
   EXPECT_LT(out["smoother"]["rms_3d_m"].get<double>(), out["rms_3d_m"].get<double>());
@@ -238,7 +244,8 @@ TEST_F(FuseTest, TheVerdictAndThePage) {
   EXPECT_THAT(read("fused/smoothed_errors.csv"), StartsWith("gps_week,sow,scored,error_e_m,"));
   const std::string page = read("fused/report.html");
   for (const char* text : {"Errors over time", "Outages of the fixes", "Innovations", "position: innovations ",
-                           "Does the filter know how wrong it is?", "smoothed by rts", "log/imu_kf_gins.txt"})
+                           "Does the filter know how wrong it is?", "smoothed by rts", "log/imu_kf_gins.txt",
+                           "What the measurements tell of each state, over time"})
     EXPECT_THAT(page, HasSubstr(text));
   ASSERT_EQ(canyon("report fused"), 0) << read("stderr");
   EXPECT_EQ(read("fused/report.html"), page);

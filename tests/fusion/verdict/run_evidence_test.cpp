@@ -52,5 +52,37 @@ TEST(RunEvidence, LooksOnceASecond) {
   EXPECT_LE(most, 20.0 * 9.0);
 }
 
+// Up to 50 instants, evenly spread from the first look on; the last one is that of the share that is told by itself
+// where the number of looks comes out so.
+TEST(RunEvidence, KeepsWhatIsObservedOverTime) {
+  for (const int seconds : {10, 49, 50, 230}) {
+    MatchedWorld world(4);
+    ErrorStateFilter filter = world.filter(matched_keys(), matched_unit());
+    RunEvidence evidence;
+    evidence.follow(filter);
+    evidence.look(filter);
+    for (int k = 0; k < 100 * seconds; ++k) {
+      world.step(filter);
+      evidence.look(filter);
+    }
+    const VerdictNumbers numbers = evidence.numbers();
+    const std::vector<double>& t_s = numbers.looked_s;
+    ASSERT_LE(t_s.size(), 50U);
+    ASSERT_GE(t_s.size(), std::min<std::size_t>(static_cast<std::size_t>(seconds) + 1, 25));
+    EXPECT_EQ(t_s.front(), 0.0);
+    const double apart_s = t_s[1] - t_s[0];
+    for (std::size_t i = 1; i < t_s.size(); ++i) EXPECT_NEAR(t_s[i] - t_s[i - 1], apart_s, 1e-6);
+    EXPECT_LT(seconds - t_s.back(), apart_s + 1e-6);
+    for (const StateNumbers& state : numbers.states) {
+      ASSERT_EQ(state.shares.size(), t_s.size()) << state.name;
+      EXPECT_EQ(state.shares.front(), 1.0) << state.name;  // nothing has been measured yet
+      if (t_s.back() > seconds - 0.5) {
+        EXPECT_EQ(state.shares.back(), state.share) << state.name;
+      }
+      for (const double share : state.shares) EXPECT_TRUE(share >= state.least_share && share <= 1.0) << state.name;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace canyon::fusion
