@@ -305,6 +305,7 @@ Status MissionRun::record_epoch(const Due& due) {
              answers_.state};
   return localizer_.once_at(due.t, [this, row, v_WB_W_true = truth.v_WB_W]() mutable -> Status {
     row.estimate = localizer_.estimate();
+    if (config_.run.record_covariance) row.covariance = localizer_.body_covariance();
     row.estimate.X_WB.p.z() += config_.run.estimate_up_offset_m;
     CANYON_TRY_STATUS(boundaries_.check(row));
     clock_.charge(Part::kScoring, [&] { compare(row, v_WB_W_true); });

@@ -34,6 +34,7 @@ class Localizer {
   /// Time of the last IMU sample, or of the part of one, that the filter has taken in.
   GpsTime at() const { return at_; }
   NavEstimate estimate() const { return filter_.estimate(); }
+  Eigen::Matrix<double, 9, 9> body_covariance() const { return filter_.body_covariance(); }
 
   /// Takes in the sample that ends at t; what waits for a time within it is done there, in the order it came.
   Status take(ImuSample sample, GpsTime t);

@@ -39,6 +39,9 @@ void visit(FieldVisitor& f, RunConfig& c) {
   f.flag("record_filter_input", c.record_filter_input,
          "keeps what sensors tell the filter, fixes with full covariances, as epochs/RUN_imu.csv, RUN_fixes.csv and "
          "others, for other filters");
+  f.flag("record_covariance", c.record_covariance,
+         "keeps the full covariance of position, velocity and attitude at the rows of epochs/RUN_nav.csv, as "
+         "epochs/RUN_nav_covariance.csv: some 35 MB an hour");
   f.flag("truth_as_height", c.truth_as_height, "the height of the pose that is handed on is the true one");
   f.flag("truth_as_pose", c.truth_as_pose, "cuts the filter out: autonomy, deskewing and map get the true pose");
   f.flag("truth_as_guess", c.truth_as_guess,

@@ -65,6 +65,7 @@ struct RunConfig {
   double epoch_rate_hz = 10.0;       ///< rows of epochs/RUN_nav.csv per second
   bool record_tape = true;           ///< keeps the true motion, so that other models can be driven on it
   bool record_filter_input = false;  ///< keeps what the filter was given: at 100 Hz some 55 MB an hour
+  bool record_covariance = false;    ///< keeps the estimates' covariances: at 10 Hz some 35 MB an hour
   // Couplings that a study may cut on purpose.
   bool truth_as_height = false;                  ///< hands the true height on with the rest of the estimate
   bool truth_as_pose = false;                    ///< hands the true pose on; what is recorded stays the filter's

@@ -60,6 +60,24 @@ void write(CsvWriter& csv, const NavRow& row, const RowPlace& run) {
   csv.integer(row.waypoint).word(name(row.state)).end_row();
 }
 
+const char* const kNavCovarianceColumns =
+    "t_s,p_0_0,p_0_1,p_0_2,p_0_3,p_0_4,p_0_5,p_0_6,p_0_7,p_0_8,p_1_1,p_1_2,p_1_3,p_1_4,p_1_5,p_1_6,p_1_7,"
+    "p_1_8,p_2_2,p_2_3,p_2_4,p_2_5,p_2_6,p_2_7,p_2_8,p_3_3,p_3_4,p_3_5,p_3_6,p_3_7,p_3_8,p_4_4,p_4_5,"
+    "p_4_6,p_4_7,p_4_8,p_5_5,p_5_6,p_5_7,p_5_8,p_6_6,p_6_7,p_6_8,p_7_7,p_7_8,p_8_8";
+
+void write_covariance(CsvWriter& csv, const NavRow& row, const RowPlace& run) {
+  const Eigen::Matrix3d R = row.estimate.X_WB.R.toRotationMatrix();
+  Eigen::Matrix<double, 9, 9> J = Eigen::Matrix<double, 9, 9>::Zero();  // of [turned; moved, both in B; velocity in W]
+  J.block<3, 3>(0, 3) = R;
+  J.block<3, 3>(3, 6).setIdentity();
+  J.block<3, 3>(6, 0) = R;
+  const Eigen::Matrix<double, 9, 9> P = J * *row.covariance * J.transpose();
+  csv.number(row.t - run.start, 3);
+  for (int i = 0; i < 9; ++i)
+    for (int j = i; j < 9; ++j) csv.exact(0.5 * (P(i, j) + P(j, i)));
+  csv.end_row();
+}
+
 const char* const kGnssColumns =
     "t_s,gps_week,sow,status,satellites,above_mask,tracked,nlos,reflected,gdop,pdop,hdop,vdop,fix_x_m,fix_y_m,fix_z_"
     "m,sigma_e_m,"

@@ -18,8 +18,12 @@ struct RowPlace {
 };
 
 /// Columns and rows of epochs/RUN_*.csv (docs/results.md).
-extern const char *const kNavColumns, *const kGnssColumns, *const kSatelliteColumns, *const kKeyframeColumns;
+extern const char *const kNavColumns, *const kNavCovarianceColumns, *const kGnssColumns, *const kSatelliteColumns,
+                                                                                             *const kKeyframeColumns;
 void write(CsvWriter& csv, const NavRow& row, const RowPlace& run);
+/// Of [position; velocity; attitude], along and about W's axes, m, m/s and rad: the upper triangle row by row, of a row
+/// that has a covariance.
+void write_covariance(CsvWriter& csv, const NavRow& row, const RowPlace& run);
 void write(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write_satellites(CsvWriter& csv, const GnssRow& row, const RowPlace& run);
 void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run);

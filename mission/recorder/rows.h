@@ -21,6 +21,8 @@ struct NavRow {
   DriveCommand command;
   int waypoint = 0;  ///< 1-based number of the waypoint the autonomy heads for
   AutonomyState state = AutonomyState::kBlind;
+  /// As of fusion::ErrorStateFilter::body_covariance(); where it is to be recorded.
+  std::optional<Eigen::Matrix<double, 9, 9>> covariance = {};
 };
 
 /// One row per due GNSS epoch.

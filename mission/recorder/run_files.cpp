@@ -37,6 +37,8 @@ Result<std::unique_ptr<RunFiles>> RunFiles::create(const std::string& directory,
   std::unique_ptr<RunFiles> files(new RunFiles(directory + "/clouds/" + name, config, mission));
   const std::string stem = directory + "/epochs/" + name;
   CANYON_TRY_STATUS(files->open(kNav, stem + "_nav.csv", kNavColumns));
+  if (config.run.record_covariance)
+    CANYON_TRY_STATUS(files->open(kNavCovariance, stem + "_nav_covariance.csv", kNavCovarianceColumns));
   CANYON_TRY_STATUS(files->open(kGnss, stem + "_gnss.csv", kGnssColumns));
   CANYON_TRY_STATUS(files->open(kSatellites, stem + "_satellites.csv", kSatelliteColumns));
   CANYON_TRY_STATUS(files->open(kKeyframes, stem + "_keyframes.csv", kKeyframeColumns));
@@ -95,6 +97,10 @@ Status RunFiles::magnetometer(const inertial::Magnetometer::Reading& reading) {
 
 Status RunFiles::epoch(const NavRow& row) {
   write(tables_[kNav]->rows, row, place_);
+  if (tables_[kNavCovariance] && row.covariance) {
+    write_covariance(tables_[kNavCovariance]->rows, row, place_);
+    CANYON_TRY_STATUS(tables_[kNavCovariance]->flush(kPiece));
+  }
   return tables_[kNav]->flush(kPiece);
 }
 

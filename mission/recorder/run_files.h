@@ -41,7 +41,20 @@ class RunFiles final : public Recorder {
     /// Once there is enough of it.
     Status flush(std::size_t at_least);
   };
-  enum { kNav, kGnss, kSatellites, kKeyframes, kImu, kOdometer, kBarometer, kMagnetometer, kFixes, kRanges, kTables };
+  enum {
+    kNav,
+    kNavCovariance,
+    kGnss,
+    kSatellites,
+    kKeyframes,
+    kImu,
+    kOdometer,
+    kBarometer,
+    kMagnetometer,
+    kFixes,
+    kRanges,
+    kTables
+  };
 
   RunFiles(std::string cloud_stem, const MissionConfig& config, const PreparedMission& mission);
   /// A row, where the table is wanted.

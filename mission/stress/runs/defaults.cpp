@@ -122,7 +122,7 @@ waypoint_radius_m=3; stop_s=5; stopped_speed_m_s=0.1; facade_share=0.5; camera_h
 stuck_after_s=90; camera_px_per_rad=1000; collision="lines"; near_miss_m=0.3; phantom_free_m=5;
 [run]
 name="mission"; seed=1; initial_attitude_error_deg=[0.1, 0.1, 1]; map_leaf_m=0.25; map_range_m=40;
-epoch_rate_hz=10; record_tape=true; record_filter_input=false; truth_as_height=false; truth_as_pose=false;
+epoch_rate_hz=10; record_tape=true; record_filter_input=false; record_covariance=false; truth_as_height=false; truth_as_pose=false;
 truth_as_guess=false; estimate_up_offset_m=0; told_step_m=0; told_step_every_s=20; told_drift_m_s=0;
 told_heading_deg=0; withhold_fixes_after_s=-1; withhold_scans_after_s=-1;
 )";

@@ -27,6 +27,7 @@ start_heading_deg = 0.0
 method = "none"
 [run]
 record_filter_input = true
+record_covariance = true
 withhold_fixes_after_s = 5.0
 [autonomy]
 [[autonomy.waypoint]]
@@ -120,6 +121,29 @@ struct AidingLog {
   }
 };
 
+/// What a run records of its estimate's covariance: the replayed filter's own, and what RUN_nav.csv says of it.
+void compare_covariances(const fusion::ErrorStateFilter& filter, const std::map<std::string, double>& recorded,
+                         const std::map<std::string, double>& nav) {
+  Eigen::Matrix<double, 9, 9> P;
+  for (int i = 0; i < 9; ++i)
+    for (int j = i; j < 9; ++j) P(i, j) = P(j, i) = recorded.at("p_" + std::to_string(i) + "_" + std::to_string(j));
+  EXPECT_EQ(recorded.at("t_s"), nav.at("t_s"));
+  EXPECT_EQ(P.llt().info(), Eigen::Success);
+  const char* const sigmas[] = {"sigma_e_m", "sigma_n_m", "sigma_u_m"};
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(std::sqrt(P(i, i)), nav.at(sigmas[i]), 0.51e-4);  // of four decimals
+  EXPECT_NEAR(std::sqrt(P(8, 8)) / kDegree, nav.at("sigma_yaw_deg"), 0.51e-4);
+  // The other way round: from W's axes back to B's, to rounding.
+  const Eigen::Matrix3d R_BW = filter.estimate().X_WB.R.toRotationMatrix().transpose();
+  Eigen::Matrix<double, 9, 9> J = Eigen::Matrix<double, 9, 9>::Zero();
+  J.block<3, 3>(0, 6) = J.block<3, 3>(3, 0) = R_BW;
+  J.block<3, 3>(6, 3).setIdentity();
+  const Eigen::Matrix<double, 9, 9> own = filter.body_covariance(), back = J * P * J.transpose();
+  const Eigen::Matrix<double, 9, 1> sigma = own.diagonal().cwiseSqrt();
+  for (int i = 0; i < 9; ++i)
+    for (int j = 0; j < 9; ++j)
+      EXPECT_NEAR(back(i, j), own(i, j), 1e-12 * sigma.norm() * sigma.norm()) << i << "," << j;
+}
+
 fusion::ErrorStateFilter filter_of(const mission::MissionConfig& config, const mission::PreparedMission& mission,
                                    const nlohmann::json& initial) {
   fusion::ErrorStateFilter filter(config.fusion, *noise_told_to_filter(config), mission.scene->frame(),
@@ -151,6 +175,10 @@ void replay(const std::string& fusion, const mission::AidingSensors& has) {
 
     const std::string stem = std::string("epochs/") + fidelity;
     const auto samples = read_csv(folder.file(stem + "_imu.csv")), fixes = read_csv(folder.file(stem + "_fixes.csv"));
+    const auto nav = read_csv(folder.file(stem + "_nav.csv")),
+               covariances = read_csv(folder.file(stem + "_nav_covariance.csv"));
+    ASSERT_EQ(nav.size(), run.nav.size());
+    ASSERT_EQ(covariances.size(), nav.size());
     const auto rows_of = [&](const char* sensor, bool there) {
       const std::string path = folder.file(stem + sensor);
       EXPECT_EQ(std::filesystem::exists(path), there) << path;
@@ -185,6 +213,8 @@ void replay(const std::string& fusion, const mission::AidingSensors& has) {
         ASSERT_EQ(got.X_WB.R.coeffs(), expected.X_WB.R.coeffs()) << fidelity << ", epoch " << epoch;
         ASSERT_EQ(got.v_WB_W, expected.v_WB_W) << fidelity << ", epoch " << epoch;
         ASSERT_EQ(got.pose_covariance, expected.pose_covariance) << fidelity << ", epoch " << epoch;
+        ASSERT_EQ(filter.body_covariance(), run.nav[epoch].covariance) << fidelity << ", epoch " << epoch;
+        compare_covariances(filter, covariances[epoch], nav[epoch]);
       }
     }
     EXPECT_EQ(epoch, run.nav.size());
