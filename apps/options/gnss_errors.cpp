@@ -22,8 +22,10 @@ constexpr ModelRow<SwitchOff> kSwitches[] = {
        if (c.propagation.paths.name != "none") c.propagation.paths.name = "visibility";
        c.propagation.diffraction.name = "none";
        c.propagation.ground_reflection = false;
+       c.propagation.scatter.name = "none";
+       c.propagation.clutter.name = "none";
      },
-     "reflections and diffraction"},
+     "reflections, diffraction, scattering and what the street has beside the scene"},
     {"noise", [](gnss::GnssConfig& c) { c.tracking.thermal_noise_scale = 0.0; }, "thermal noise"},
     {"antenna", [](gnss::GnssConfig& c) { c.link.antenna_phase_centre = false; }, "phase centre"},
     {"base_station", [](gnss::GnssConfig& c) { c.mode.own.get<gnss::DgpsParameters>().base_error_scale = 0.0; },
