@@ -8,6 +8,7 @@
 #include "canyon/gnss/atmosphere/ionosphere_map.h"
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/signal.h"
+#include "canyon/gnss/solver/gauss_newton.h"
 
 namespace canyon::gnss {
 
@@ -169,9 +170,13 @@ BaseDifferences base_differences(RangeObserver& base, const ObservationFile& obs
     std::vector<RangeMeasurement> ranges;
     base.correct(candidates, epoch.t, p_E, corrected, ranges);
     const Horizon horizon(p_E);
-    auto& of = out.epochs.emplace_back(BaseDifferences::Epoch{epoch.t, {}}).satellites;
-    for (const auto& o : corrected.observations)
-      of[o.sv] = {o.corrected_m() - (o.p_E - p_E).norm(), o.band, horizon.view(epoch.t, o.p_E).elevation_rad};
+    BaseDifferences::Epoch& now = out.epochs.emplace_back(BaseDifferences::Epoch{epoch.t, {}});
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      const GnssObservation& o = corrected.observations[i];
+      now.satellites[o.sv] = {ranges[i].range_m - line_of_sight(ranges[i].p_E, p_E).range_m, o.band,
+                              horizon.view(epoch.t, o.p_E).elevation_rad};
+    }
+    take_out_clock(now);
   }
   return out;
 }

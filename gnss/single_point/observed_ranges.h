@@ -91,7 +91,7 @@ class RangeObserver {
   std::int64_t observed_ = 0, with_ephemeris_ = 0;
 };
 
-/// What the ranges that a base at p_E observed are off.
+/// What the ranges that a base at p_E observed are off, its clock taken out.
 BaseDifferences base_differences(RangeObserver& base, const ObservationFile& observed, const Eigen::Vector3d& p_E);
 
 }  // namespace canyon::gnss

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/core/earth/earth.h"
+#include "canyon/core/units.h"
 #include "canyon/gnss/satellites/constellation.h"
 #include "canyon/tests/apps/command_line_fixture.h"
 #include "canyon/tests/gnss/atmosphere/product_text.h"
@@ -245,6 +247,55 @@ TEST_F(GnssSolveTest, RealPreciseOrbits) {
   EXPECT_LT(json["rms_3d_m"].get<double>(), 1.2);  // measured 1.133
   EXPECT_THAT(read("stderr"), HasSubstr("without --antex"));
   EXPECT_THAT(json["skipped_navigation_records"]["EPH S"].get<int>(), ::testing::Gt(0));
+}
+
+/// As --base-position has it.
+std::string ecef_text(double lat_deg, double lon_deg, double h_m) {
+  const Eigen::Vector3d p_E = ecef_from_geodetic({lat_deg * kDegree, lon_deg * kDegree, h_m});
+  char text[120];
+  std::snprintf(text, sizeof text, "%.4f,%.4f,%.4f", p_E.x(), p_E.y(), p_E.z());
+  return text;
+}
+
+// Two receivers 4.4 km apart under the same sky: alone the rover is metres off, with the base by what the air and the
+// orbits differ by over the distance, epoch by epoch and filtered.
+TEST_F(GnssSolveTest, ABaseTakesAwayWhatBothSee) {
+  const std::string simulate =
+      "gnss simulate --force --duration 60 --errors ionosphere,troposphere,ephemeris --systems ";
+  const auto simulated = [&](const std::string& more) { ASSERT_EQ(canyon(simulate + more), 0) << read("stderr"); };
+  simulated("GR --at 32.35,-90.88,60 --rinex-obs given.rnx --rinex-nav given.nav");
+  simulated("GR --at 32.38,-90.85,70 --rinex-obs given_base.rnx --rinex-nav given_base.nav");
+  write("filter.toml", "estimator = \"kalman\"\n");
+  const std::string base = " --base given_base.rnx --base-position=" + ecef_text(32.38, -90.85, 70.0);
+  const std::string solve = "gnss solve --obs given.rnx --nav given.nav --systems GR --json ";
+  for (const char* config : {"", "--config filter.toml "}) {
+    const auto rms_m = [&](const std::string& more) {
+      EXPECT_EQ(canyon(solve + config + kTruth + more), 0) << read("stderr");
+      const auto json = nlohmann::json::parse(read("stdout"));
+      EXPECT_EQ(json["solved"], 61);
+      return json["rms_3d_m"].get<double>();
+    };
+    EXPECT_GT(rms_m(""), 1.0);
+    // 4.4 km over 20,000 km of metres each, and millimetres of what the models see elsewhere, times a gain of 5.
+    EXPECT_LT(rms_m(base), 0.05);
+  }
+  ASSERT_EQ(canyon("gnss solve --obs given.rnx --nav given.nav --systems GR --out given_out.csv" + base), 0);
+  EXPECT_THAT(read("given_out.csv"), HasSubstr(",differential,"));
+
+  simulated("R --at 32.38,-90.85,70 --rinex-obs given_r.rnx --rinex-nav given_r.nav");
+  simulated(
+      "GR --start 2010-11-17T15:00:00 --at 32.38,-90.85,70 --rinex-obs given_late.rnx --rinex-nav given_late.nav");
+  const std::string there = " --base-position=" + ecef_text(32.38, -90.85, 70.0);
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav --systems GR --base given_late.rnx" + there,
+                 "given_late.rnx: has epochs from 2010-11-17T15:00:00 to 2010-11-17T15:01:00, none near those of "
+                 "given.rnx, 2010-11-17T13:00:00 to 2010-11-17T13:01:00, expected a base that observed at the same "
+                 "time");
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav --systems G --base given_r.rnx" + there,
+                 "given_r.rnx: has no satellite in common with given.rnx from 2010-11-17T13:00:00 to "
+                 "2010-11-17T13:01:00, expected a base near by that observed the same systems and bands");
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav --base given_base.rnx",
+                 "--base: stands alone, expected both");
+  expect_mistake("gnss solve --obs given.rnx --nav given.nav" + there, "--base-position: stands alone, expected both");
 }
 
 TEST_F(GnssSolveTest, MistakesWordForWord) {

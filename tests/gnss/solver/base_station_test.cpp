@@ -70,6 +70,57 @@ TEST_F(BaseStationTest, WhatBothSeeIsTakenAwayWhateverTheBasesClockDoes) {
   }
 }
 
+// 2026-11-26: the base's clock was left in the differences. The ranges of a rover with a filter then drifted by the
+// rover's clock less the base's, here 0.6 m/s, its Dopplers by the rover's alone, 3 m/s, and the filter was 4 m off.
+// Now the base's clock does not matter, nor where it steps by a millisecond or a satellite rises at the base.
+TEST_F(BaseStationTest, AFilterFindsItsOwnClockInRangesAndDopplers) {
+  const auto constellation = make_broadcast(navigation_);
+  const auto drifting = [&](const std::string& name, const Eigen::Vector3d& p_E, double drift, double step_s,
+                            double mask_deg) {
+    const GpsTime first = kSyntheticNoon + 30.0;
+    ObservationWriter writer(
+        {.first = first, .approx_position_E = p_E, .bands = {{GnssSystem::kGps, {1}}, {GnssSystem::kGlonass, {1}}}});
+    std::string text = writer.header();
+    for (int k = 0; k < 120; ++k) {
+      SyntheticReceiver receiver{*constellation, mask_deg};
+      receiver.drift = drift;
+      receiver.clock_s = drift * k + (k / 40) * step_s;
+      auto epoch = receiver.at(first + 1.0 * k, p_E, Eigen::Vector3d::Zero());
+      add_common(k, epoch);
+      text += writer.epoch(epoch);
+    }
+    return *parse_observation_file(text, name);
+  };
+  const auto rover = drifting("rover.rnx", kRover, 1e-8, 0.0, 5.0);
+  const BaseRecording base{drifting("base.rnx", kBase, 8e-9, 1e-3, 12.0), kBase};
+  auto config = plain();
+  config.estimator = Estimator::kKalman;
+  const auto r = solve(rover, &base, config);
+  ASSERT_TRUE(r.ok()) << r.error().str();
+  for (const auto& e : r->epochs) {
+    ASSERT_EQ(e.fix.status, FixStatus::kDifferential) << e.fix.reason;
+    EXPECT_EQ(e.excluded, 0);
+    EXPECT_LT((e.fix.p_A_E - kRover).norm(), 0.005);  // rounding of ranges, as above
+    EXPECT_LT(e.fix.v_A_E.norm(), 0.005);             // of Dopplers to 1 mHz: 0.2 mm/s, times the gain
+  }
+}
+
+// The median of the first system's differences, from all; so an outlier moves nothing, and an even number takes the
+// middle of two.
+TEST(TakeOutClockTest, IsTheMedianOfTheFirstSystem) {
+  BaseDifferences::Epoch epoch{kSyntheticNoon, {}};
+  EXPECT_EQ(take_out_clock(epoch), 0.0);
+  const SatelliteId g1{GnssSystem::kGps, 1}, g2{GnssSystem::kGps, 2}, r1{GnssSystem::kGlonass, 1};
+  epoch.satellites = {{r1, {7.0, 1, 0.5}}};
+  EXPECT_EQ(take_out_clock(epoch), 7.0);
+  epoch.satellites = {{g1, {100.0, 1, 0.5}}, {g2, {103.0, 1, 0.5}}, {r1, {90.0, 1, 0.5}}};
+  EXPECT_EQ(take_out_clock(epoch), 101.5);
+  EXPECT_EQ(epoch.satellites[g1].m, -1.5);
+  EXPECT_EQ(epoch.satellites[r1].m, -11.5);
+  epoch.satellites = {{g1, {1.0, 1, 0.5}}, {g2, {2.0, 1, 0.5}}, {{GnssSystem::kQzss, 1}, {1e4, 1, 0.5}}};
+  EXPECT_EQ(take_out_clock(epoch), 2.0) << "QZSS keeps the time of GPS";
+}
+
 // A base every 60 s serves epochs within the age only; the others have no fix, and say why.
 TEST_F(BaseStationTest, DifferencesAgeAndThenThereIsNoFix) {
   const auto rover = file("rover.rnx", kRover, 30.0, 10.0, 12, add_common);
