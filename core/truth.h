@@ -39,7 +39,8 @@ struct GnssObservationTruth {
   double troposphere_m = 0.0;        ///< (*) residual after the receiver's correction
   double ephemeris_m = 0.0;          ///< (*) orbit and satellite clock, residual
   double noise_m = 0.0;              ///< (*) thermal code noise; of the combination, where two frequencies are combined
-  double base_m = 0.0;               ///< (*) the base station's own error, in a differential correction
+  double base_m = 0.0;               ///< (*) the base station's own error, and of a simulated one what is left of its
+                                     ///< clock, the same for all satellites, in a differential correction
   double phase_centre_m = 0.0;       ///< (*) offset and variation of the antenna's phase centre
   double ionosphere_delay_m = 0.0;   ///< what acts on the pseudorange, before correction
   double troposphere_delay_m = 0.0;  ///< the same

@@ -36,6 +36,9 @@ struct PseudorangeParts {
   std::vector<std::string> warnings;
 };
 
+/// Builds what tracks signals, channels, link, locks and clock, as the configuration names it; an Error names the key.
+Status add_tracking(const GnssConfig& config, std::uint64_t seed, std::uint64_t noise_seed, PseudorangeParts& parts);
+
 /// Builds the models that the configuration names; an Error names the key.
 Result<PseudorangeParts> make_pseudorange_parts(const SensorSetup& at);
 

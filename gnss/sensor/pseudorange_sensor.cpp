@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "canyon/core/units.h"
 #include "canyon/gnss/receiver/modes/receiver_fix.h"
 #include "canyon/gnss/satellites/transmission.h"
+#include "canyon/gnss/sensor/base_receiver.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sensor/pseudorange_parts.h"
 #include "canyon/gnss/sensor/satellites_in_view.h"
@@ -32,10 +34,13 @@ namespace {
 /// delays add move a satellite by 0.1 mm along the line of sight.
 class PseudorangeSensor final : public GnssSensor {
  public:
-  PseudorangeSensor(const GnssConfig& config, const LocalFrame& frame, PseudorangeParts parts)
+  /// `base`: of modes that need one, else null.
+  PseudorangeSensor(const GnssConfig& config, const LocalFrame& frame, PseudorangeParts parts,
+                    std::unique_ptr<BaseReceiver> base)
       : config_(config),
         frame_(frame),
         parts_(std::move(parts)),
+        base_(std::move(base)),
         in_view_(parts_.constellation, frame, config.mask_deg * kDegree),
         first_("gnss.", config, parts_),
         second_("gnss.second.", config, parts_) {
@@ -53,7 +58,7 @@ class PseudorangeSensor final : public GnssSensor {
     CANYON_CHECK(p_A_W.allFinite() && v_A_W.allFinite(), "antenna at ", p_A_W.transpose(), ", velocity ",
                  v_A_W.transpose());
     begin_epoch(index);
-    Epoch epoch{t, Horizon(frame_.to_E(p_A_W)), {}, {}};
+    Epoch epoch{t, Horizon(frame_.to_E(p_A_W)), {}, {}, corrections_at(t)};
     GnssOutput& out = epoch.out;
     out.truth.t = t;
     out.truth.p_A_E = frame_.to_E(p_A_W);
@@ -84,7 +89,23 @@ class PseudorangeSensor final : public GnssSensor {
     Horizon horizon;
     ReceivingAntenna antenna;
     GnssOutput out;
+    const BaseReceiver::Sent* from_base;  ///< null: no base, or nothing of it that is young enough
   };
+
+  const BaseReceiver::Sent* corrections_at(GpsTime t) {
+    const BaseReceiver::Sent* newest = base_ != nullptr ? base_->arrived(t) : nullptr;
+    constexpr double kRounding_s = 1e-6;
+    return newest != nullptr && t - newest->t <= parts_.mode->base()->age_s + kRounding_s ? newest : nullptr;
+  }
+
+  /// Why there is no fix, of a receiver that its base has left alone.
+  std::string alone(GpsTime t) {
+    const BaseReceiver::Sent* newest = base_->arrived(t);
+    if (newest == nullptr) return "no corrections of the base yet";
+    char text[64];
+    std::snprintf(text, sizeof text, "no corrections of the base for %.0f s", t - newest->t);
+    return text;
+  }
 
   void begin_epoch(std::int64_t index) {
     ++counters_.epochs;
@@ -92,6 +113,7 @@ class PseudorangeSensor final : public GnssSensor {
       first_.restart();
       second_.restart();
       if (filter_) filter_->reset();
+      if (base_ != nullptr) base_->restart();
       if (smoothing_) smoothing_.emplace(config_.position.smoothing_s);
     }
     last_index_ = index;
@@ -149,6 +171,7 @@ class PseudorangeSensor final : public GnssSensor {
     std::vector<Correction> corrections;
     PositionSolution solution;
     out.fix = compute_fix(receiver, epoch.t, out.epoch, inputs, corrections, &solution);
+    if (base_ != nullptr && epoch.from_base == nullptr) out.fix.reason = alone(epoch.t);
     counters_.delays_computed += static_cast<std::int64_t>(corrections.size()) * parts_.mode->asks(leave_out);
     out.range_gain = solution.ok ? solution.range_gain : kNaN;
     for (std::size_t k = 0; k < corrections.size(); ++k)
@@ -259,6 +282,8 @@ class PseudorangeSensor final : public GnssSensor {
     truth.ambiguity_cycles = first.ambiguity_cycles;
     CorrectionInput input{sight.sv, epoch.t,           sight.view, {},       sight.signal.range_m,
                           acting,   from_l1 * from_l1, {},         leave_out};
+    if (epoch.from_base != nullptr)
+      input.base = base_->correction(*epoch.from_base, sight.sv, band, epoch.out.truth.p_A_E);
     if (second.tracked) {
       o.second.band = other_band;
       o.second.pseudorange_m = second.pseudorange_m;
@@ -295,6 +320,7 @@ class PseudorangeSensor final : public GnssSensor {
   GnssConfig config_;
   LocalFrame frame_;
   PseudorangeParts parts_;
+  std::unique_ptr<BaseReceiver> base_;
   SatellitesInView in_view_;
   SignalTracker first_, second_;
   std::optional<PvtFilter> filter_;
@@ -309,9 +335,20 @@ class PseudorangeSensor final : public GnssSensor {
 }  // namespace
 
 Result<std::unique_ptr<GnssSensor>> make_pseudorange_sensor(const ModelParameters&, const SensorSetup& at) {
-  CANYON_TRY(PseudorangeParts parts, make_pseudorange_parts(at));
+  SensorSetup from = at;
+  CANYON_TRY(const auto mode, at.config.mode.make("gnss.mode", ReceiverModeSetup{}));
+  std::optional<GnssConfig> of_base;
+  if (mode->base() != nullptr) {
+    CANYON_TRY(of_base, BaseReceiver::configuration(at.config, *mode->base()));
+    from.start = at.start - BaseReceiver::lead_s(*of_base, *mode->base());
+  }
+  CANYON_TRY(PseudorangeParts parts, make_pseudorange_parts(from));
+  std::unique_ptr<BaseReceiver> base;
+  if (of_base) {
+    CANYON_TRY(base, BaseReceiver::make(from, *of_base, *mode->base(), parts));
+  }
   return std::unique_ptr<GnssSensor>(
-      std::make_unique<PseudorangeSensor>(at.config, at.scene.frame(), std::move(parts)));
+      std::make_unique<PseudorangeSensor>(at.config, at.scene.frame(), std::move(parts), std::move(base)));
 }
 
 }  // namespace canyon::gnss

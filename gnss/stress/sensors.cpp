@@ -291,6 +291,7 @@ std::vector<StressCase> sensor_cases() {
   rows.add("sensors/error_free_of_three_systems",
            [] { return budget(std::string(kErrorFree) + "mode = \"single_uncorrected\"\nsystems = \"GEC\"\n", true); });
   rows.add("sensors/dgps_as_it_is", [] { return budget("", false); });
+  rows.add("sensors/beside_a_simulated_base", [] { return budget("mode = \"dgps_base\"\n", false); });
   rows.add("sensors/single_of_all_systems", [] { return budget("mode = \"single\"\nsystems = \"GREC\"\n", false); });
   rows.add("sensors/dual_frequency", [] { return budget("mode = \"dual\"\nsystems = \"GE\"\n", false); });
   rows.of({StressGroup::kGeometry, "the budget of a pseudorange in a street, and how a fix weighs its ranges",
@@ -302,6 +303,7 @@ std::vector<StressCase> sensor_cases() {
   rows.add("sensors/street_of_two_frequencies",
            [] { return street_budget("mode = \"dual\"\nsystems = \"G\"\nmultipath_rule = \"correlator\"\n", true); });
   rows.add("sensors/street_beside_a_base", [] { return street_budget("mode = \"dgps\"\n", true); });
+  rows.add("sensors/street_beside_a_simulated_base", [] { return street_budget("mode = \"dgps_base\"\n", true); });
   rows.of({StressGroup::kData, "noise of the simple receivers",
            "a direction that prefers the poles, an axis of another frame, epochs that hang together",
            "mean, mean square and lag per axis of W: 5 sigma of 2000 epochs", "of the bound"});
@@ -324,6 +326,7 @@ std::vector<StressCase> sensor_cases() {
   rows.add("sensors/pseudoranges_again", [] { return repeated(""); }).add("sensors/filtered_again", [] {
     return repeated("estimator = \"kalman\"\n");
   });
+  rows.add("sensors/beside_a_base_again", [] { return repeated("mode = \"dgps_base\"\nsmoothing_s = 20\n"); });
   rows.of({StressGroup::kData, "keys of a receiver that contradict one another", "a guard the wrong way round",
            "refused, and equal ends taken", "wrong"});
   rows.add("sensors/contradictions", contradictions);

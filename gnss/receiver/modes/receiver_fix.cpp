@@ -78,11 +78,14 @@ void correct(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at
     // The difference of two frequencies tells the ionosphere, but not without their noise.
     const bool two = inputs[i].two.has_value(), lost = receiver.mode.dual_frequency() && !two;
     const double gain = two ? inputs[i].two->gain : 0.0, modelled_m = corrections[i].modelled.ionosphere_m;
+    const std::optional<BaseCorrection>& base = inputs[i].base;
     o.sigma_m = receiver.weighting.sigma_m({.system = o.sv.system,
                                             .elevation_rad = view.elevation_rad,
                                             .cn0_dbhz = o.cn0_dbhz,
-                                            .ionosphere_m = two || lost ? 0.0 : modelled_m,
-                                            .code_factor = two ? std::hypot(1.0 + gain, gain) : 1.0});
+                                            .ionosphere_m = two || lost || base ? 0.0 : modelled_m,
+                                            .code_factor = two ? std::hypot(1.0 + gain, gain) : 1.0,
+                                            .differential = base.has_value()});
+    if (base) o.sigma_m = std::hypot(o.sigma_m, base->sigma_m);
     // Among satellites that measure their ionosphere, one that models it must not count for more: models remove about
     // half (IS-GPS-200N 20.3.3.5.2.5), so as much as is subtracted is left.
     if (lost) o.sigma_m = std::hypot(o.sigma_m, modelled_m);
@@ -165,10 +168,29 @@ void snapshot_fix(const PositionSolution& solution, FixStatus status, double max
   fill_velocity(epoch, rates, max_gdop, fix);
 }
 
-}  // namespace
+/// As seen from an antenna at `at_E`, once corrections are done: v_E in E of the time of reception.
+void turn_velocities(const Eigen::Vector3d& at_E, std::span<const RangeMeasurement> ranges, GnssEpoch& epoch) {
+  for (std::size_t i = 0; i < ranges.size(); ++i)
+    epoch.observations[i].v_E =
+        turned_by_earth(epoch.observations[i].v_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
+}
 
-GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
-                    std::vector<Correction>& corrections, PositionSolution* last) {
+/// Completes observations that no fix may use; their sigma is not known.
+void complete_unused(const ReceiverParts& receiver, GpsTime t, const Eigen::Vector3d& at_E, GnssEpoch& epoch,
+                     std::span<CorrectionInput> inputs, std::vector<Correction>& corrections) {
+  std::vector<RateMeasurement> rates;
+  std::vector<double> smoothed_m;
+  std::vector<RangeMeasurement> ranges =
+      satellites_from_pseudoranges(epoch, receiver.constellation, inputs, receiver.smoothing, smoothed_m, rates);
+  corrections.assign(epoch.observations.size(), {});
+  correct(receiver, t, at_E, epoch, inputs, smoothed_m, corrections, ranges);
+  turn_velocities(at_E, ranges, epoch);
+  for (GnssObservation& o : epoch.observations) o.sigma_m = kNaN;
+}
+
+/// The fix of ranges all of which may be used.
+GnssFix fix_of_all(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
+                   std::vector<Correction>& corrections, PositionSolution* last) {
   auto& observations = epoch.observations;
   CANYON_CHECK(inputs.size() == observations.size(), inputs.size(), " inputs for ", observations.size(),
                " observations");
@@ -194,8 +216,7 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
     if (solution.ok) at_E = solution.p_E;
   }
 
-  for (std::size_t i = 0; i < observations.size(); ++i)
-    observations[i].v_E = turned_by_earth(observations[i].v_E, (ranges[i].p_E - at_E).norm() / kSpeedOfLight);
+  turn_velocities(at_E, ranges, epoch);
 
   // Carriers are trusted in proportion to codes, 5 cm/s where the code is trusted to 0.5 m: what weakens or bends one
   // does so to the other.
@@ -220,6 +241,47 @@ GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, 
   }
   withhold(receiver.output, epoch, fix);
   if (last != nullptr) *last = std::move(solution);
+  return fix;
+}
+
+/// Some of an epoch's observations, and which.
+struct Part {
+  std::vector<std::size_t> index;
+  GnssEpoch epoch;
+  std::vector<CorrectionInput> inputs;
+  std::vector<Correction> corrections;
+
+  void add(std::size_t i, const GnssObservation& o, const CorrectionInput& input) {
+    index.push_back(i);
+    epoch.observations.push_back(o);
+    inputs.push_back(input);
+  }
+  void put_back(GnssEpoch& all, std::span<CorrectionInput> all_inputs, std::vector<Correction>& all_corrections) const {
+    for (std::size_t k = 0; k < index.size(); ++k) {
+      all.observations[index[k]] = epoch.observations[k];
+      all_inputs[index[k]] = inputs[k];
+      all_corrections[index[k]] = corrections[k];
+    }
+  }
+};
+
+}  // namespace
+
+GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
+                    std::vector<Correction>& corrections, PositionSolution* last) {
+  const auto usable = [&](const CorrectionInput& in) { return receiver.mode.base() == nullptr || in.base.has_value(); };
+  if (std::all_of(inputs.begin(), inputs.end(), usable))
+    return fix_of_all(receiver, t, epoch, inputs, corrections, last);
+  Part with, without;
+  with.epoch.t = without.epoch.t = epoch.t;
+  for (std::size_t i = 0; i < inputs.size(); ++i)
+    (usable(inputs[i]) ? with : without).add(i, epoch.observations[i], inputs[i]);
+  const GnssFix fix = fix_of_all(receiver, t, with.epoch, with.inputs, with.corrections, last);
+  const Eigen::Vector3d at_E = fix.status == FixStatus::kNone ? receiver.guess_E : fix.p_A_E;
+  complete_unused(receiver, t, at_E, without.epoch, without.inputs, without.corrections);
+  corrections.assign(inputs.size(), {});
+  with.put_back(epoch, inputs, corrections);
+  without.put_back(epoch, inputs, corrections);
   return fix;
 }
 

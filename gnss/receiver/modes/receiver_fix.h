@@ -46,7 +46,8 @@ struct ReceiverParts {
 /// `t` and not the receiver clock's reading epoch.t: a receiver corrects its own time tag with the clock that it
 /// solves. With a filter the fix is the filter's: it begins with a least squares of its own, and once it runs it is
 /// given all satellites, few or many, whatever the epoch's own solution made of them, and tests each against what it
-/// expects.
+/// expects. In a mode that needs a base, ranges that it does not correct are completed, with a sigma that is NaN, and
+/// not used; `last` is then of the others alone.
 GnssFix compute_fix(const ReceiverParts& receiver, GpsTime t, GnssEpoch& epoch, std::span<CorrectionInput> inputs,
                     std::vector<Correction>& corrections, PositionSolution* last = nullptr);
 

@@ -51,6 +51,11 @@ std::unique_ptr<ReceiverMode> make_dgps_paper(const ModelParameters&, const Rece
   return std::make_unique<DgpsPaper>();
 }
 
+void base_parameters(ModelParameters& section) {
+  section.add<DgpsParameters>();
+  section.add<BaseStationParameters>();
+}
+
 constexpr ModelRow<MakeReceiverMode> kModes[] = {
     {"single", make_single,
      "stand-alone: subtracts an ionosphere model and a standard troposphere (residual atmosphere)",
@@ -68,6 +73,9 @@ constexpr ModelRow<MakeReceiverMode> kModes[] = {
      {make_dgps, dgps_needs},
      "differential: what the base station sees is subtracted, residuals grow with the baseline (residual atmosphere)",
      parameters_of<DgpsParameters>},
+    {"dgps_base", make_base,
+     "differential: the base station is simulated too, and its corrections subtracted (residual atmosphere)",
+     base_parameters},
     {"dgps_paper",
      {make_dgps_paper, dgps_paper_needs},
      "the paper's differential mode: only the troposphere acts, in full (raw atmosphere)"},

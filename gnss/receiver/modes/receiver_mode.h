@@ -4,6 +4,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+
+#include <Eigen/Core>
 
 #include "canyon/core/messages.h"
 #include "canyon/core/model_table.h"
@@ -41,6 +44,14 @@ struct FrequencyDifference {
   double multipath_m = 0.0;  ///< and what is multipath
 };
 
+/// What a base tells of one satellite, and how it came about.
+struct BaseCorrection {
+  double m = 0.0;            ///< what the base's range was off, beside the modelled troposphere and its clock
+  double sigma_m = 0.0;      ///< of its code
+  double distance_km = 0.0;  ///< from the rover's antenna
+  RangeDelays acting;        ///< of m, what acted on the base's range; of the troposphere what the model left
+};
+
 /// One satellite at one epoch, for the mode.
 struct CorrectionInput {
   SatelliteId sv;
@@ -52,7 +63,10 @@ struct CorrectionInput {
   double ionosphere_from_l1 = 1.0;         ///< delay there per delay at L1: (L1 / carrier)^2
   std::optional<FrequencyDifference> two;  ///< none: only the first signal is tracked
   DelayOmissions leave_out{};
+  std::optional<BaseCorrection> base{};  ///< none: there is no base, or it tells nothing of the satellite
 };
+
+struct BaseStationParameters;
 
 /// Mode of operation: which errors act on the range, and which of them the receiver removes.
 class ReceiverMode {
@@ -65,6 +79,8 @@ class ReceiverMode {
   virtual int asks(const DelayOmissions&) const { return 0; }
   virtual FixStatus status() const = 0;
   virtual bool dual_frequency() const { return false; }
+  /// The base without whose corrections a range is not used; null: none is needed.
+  virtual const BaseStationParameters* base() const { return nullptr; }
   /// Does it correct for the atmosphere, so that a residual is left, or do the raw delays act?
   virtual bool corrects_atmosphere() const = 0;
 };
@@ -93,7 +109,7 @@ void visit(FieldVisitor& f, SingleFrequencyParameters& c);
 double modelled_ionosphere_m(SingleFrequencyParameters::Ionosphere correction, const ReceiverModeSetup& at,
                              const CorrectionInput& in);
 
-/// Keys of mode dgps.
+/// Keys of mode dgps. Mode dgps_base takes the gradients and the scale.
 struct DgpsParameters {
   double baseline_km = 5.0;                     ///< distance of the base station
   double ionosphere_gradient_mm_per_km = 2.0;   ///< 1-sigma of the vertical delay's difference to the base
@@ -102,9 +118,20 @@ struct DgpsParameters {
 };
 void visit(FieldVisitor& f, DgpsParameters& c);
 
+/// Keys of mode dgps_base beside those.
+struct BaseStationParameters {
+  Eigen::Vector3d place_m{-3000.0, 4000.0, 20.0};  ///< of its antenna, in W
+  std::string receiver = "survey_multi";           ///< a receiver of the catalogue, or a file
+  double rate_hz = 1.0;
+  double latency_s = 1.0;  ///< from the base's measuring to the rover's use
+  double age_s = 30.0;     ///< older corrections are not used
+};
+void visit(FieldVisitor& f, BaseStationParameters& c);
+
 std::unique_ptr<ReceiverMode> make_single(const ModelParameters& own, const ReceiverModeSetup& at);
 std::unique_ptr<ReceiverMode> make_dual(const ModelParameters& own, const ReceiverModeSetup& at);
 std::unique_ptr<ReceiverMode> make_dgps(const ModelParameters& own, const ReceiverModeSetup& at);
+std::unique_ptr<ReceiverMode> make_base(const ModelParameters& own, const ReceiverModeSetup& at);
 StateDelayNeeds dgps_needs;
 
 }  // namespace canyon::gnss

@@ -73,6 +73,23 @@ TEST_F(GnssVerbsTest, SimulationWithoutErrorsFindsTheTruthInAStreetToo) {
   EXPECT_LT(json["rms_3d_m"].get<double>(), 1e-5);  // as above
 }
 
+// A base that errs by nothing, and one whose receiver has noise: the switch is the base's own.
+TEST_F(GnssVerbsTest, SimulationBesideABaseThatIsSimulated) {
+  write("base.toml", "base = \"vicksburg\"\n[scene]\nempty = true\n[gnss]\nmode = \"dgps_base\"\n");
+  const auto rms_m = [&](const std::string& errors) {
+    EXPECT_EQ(canyon("gnss simulate --scene base.toml --at 32.35,-90.88,60 --duration 20 --json --errors " + errors), 0)
+        << read("stderr");
+    const auto json = nlohmann::json::parse(read("stdout"));
+    EXPECT_EQ(json["fixes"], 21);
+    return json["rms_3d_m"].get<double>();
+  };
+  EXPECT_LT(rms_m("none"), 1e-5);  // as without a base
+  EXPECT_GT(rms_m("base_station"), 1e-3);
+  write("bad.toml", "base = \"vicksburg\"\n[gnss]\nmode = \"dgps_base\"\nbase_receiver = \"m9\"\n");
+  expect_mistake("gnss simulate --scene bad.toml --at 32.35,-90.88,60",
+                 "gnss.base_receiver: no receiver \"m9\" in the catalogue, expected \"m8\"?");
+}
+
 TEST_F(GnssVerbsTest, SimulationAlongAWay) {
   std::string way = "gps_week,sow,lat_deg,lon_deg,h_m\n";
   for (int k = 0; k <= 10; ++k)
