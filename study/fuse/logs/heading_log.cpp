@@ -7,36 +7,38 @@
 namespace canyon::study {
 namespace {
 
-enum Target { kWeek = TimedLogLayout::kWeek, kTime = TimedLogLayout::kTime, kHeading, kSigma, kTargets };
-constexpr KnownColumn kColumns[] = {
-    {"gps_week", Quantity::kPlain, kWeek},
-    {"week", Quantity::kPlain, kWeek},
-    {"sow", Quantity::kTime, kTime},
-    {"t", Quantity::kTime, kTime},
-    {"time", Quantity::kTime, kTime},
-    {"heading", Quantity::kAngle, kHeading, "deg"},
-    {"yaw", Quantity::kAngle, kHeading, "deg"},
-    {"sigma", Quantity::kAngle, kSigma, "deg"},
-    {"sd", Quantity::kAngle, kSigma, "deg"},
-    {"sigma_heading", Quantity::kAngle, kSigma, "deg"},
-    {"sd_heading", Quantity::kAngle, kSigma, "deg"},
+struct HeadingColumn {
+  enum : int { kWeek = TimedLogLayout::kWeek, kTime = TimedLogLayout::kTime, kHeading, kSigma, kTargets };
+};
+constexpr KnownColumn kHeadingColumns[] = {
+    {"gps_week", Quantity::kPlain, HeadingColumn::kWeek},
+    {"week", Quantity::kPlain, HeadingColumn::kWeek},
+    {"sow", Quantity::kTime, HeadingColumn::kTime},
+    {"t", Quantity::kTime, HeadingColumn::kTime},
+    {"time", Quantity::kTime, HeadingColumn::kTime},
+    {"heading", Quantity::kAngle, HeadingColumn::kHeading, "deg"},
+    {"yaw", Quantity::kAngle, HeadingColumn::kHeading, "deg"},
+    {"sigma", Quantity::kAngle, HeadingColumn::kSigma, "deg"},
+    {"sd", Quantity::kAngle, HeadingColumn::kSigma, "deg"},
+    {"sigma_heading", Quantity::kAngle, HeadingColumn::kSigma, "deg"},
+    {"sd_heading", Quantity::kAngle, HeadingColumn::kSigma, "deg"},
 };
 
 }  // namespace
 
 Result<HeadingLog> read_heading_log(const std::string& path, const FuseHeadingConfig& config) {
-  CANYON_TRY(TimedLog in, TimedLog::open(path, {.columns = kColumns,
-                                                .targets = kTargets,
+  CANYON_TRY(TimedLog in, TimedLog::open(path, {.columns = kHeadingColumns,
+                                                .targets = HeadingColumn::kTargets,
                                                 .expected = "columns t_s (or sow), heading_deg and sigma_deg",
                                                 .key = "heading.columns",
                                                 .columns_given = config.columns}));
-  in.lacking = [](const TimedLog& log) { return log.has(kHeading) ? nullptr : "no heading"; };
+  in.lacking = [](const TimedLog& log) { return log.has(HeadingColumn::kHeading) ? nullptr : "no heading"; };
   HeadingLog out;
   while (true) {
     CANYON_TRY(const bool more, in.next());
     if (!more) break;
-    CANYON_TRY(const double heading_rad, in.number(kHeading));
-    CANYON_TRY(double sigma_rad, in.number(kSigma));
+    CANYON_TRY(const double heading_rad, in.number(HeadingColumn::kHeading));
+    CANYON_TRY(double sigma_rad, in.number(HeadingColumn::kSigma));
     if (!std::isfinite(heading_rad)) {
       in.pass_over();
       continue;
