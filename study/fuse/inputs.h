@@ -16,8 +16,8 @@ namespace canyon::study {
 
 /// Names of the files that `canyon fuse` reads; empty: none.
 struct FuseFiles {
-  std::string imu, gnss, odometer, heading, poses, truth;
-  std::vector<std::string> navigation;  ///< RINEX: then `gnss` holds observations
+  std::string imu, gnss, odometer = {}, heading = {}, poses = {}, truth = {};
+  std::vector<std::string> navigation = {};  ///< RINEX: then `gnss` holds observations
 };
 
 /// A reference solution, of the point that `[truth] of` names, turned to forward-left-up in E.

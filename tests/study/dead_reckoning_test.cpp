@@ -50,7 +50,7 @@ TEST_F(DeadReckoningTest, ARecordingHoldsIncrements) {
   const auto recording = read(resting_csv(300, true), {.forward_right_down = true, .gps_week = 2100});
   ASSERT_TRUE(recording.ok()) << recording.error().str();
   ASSERT_EQ(recording->samples.size(), 300u);
-  EXPECT_EQ(recording->gaps, 0u);
+  EXPECT_EQ(recording->gaps.count, 0u);
   EXPECT_FALSE(recording->kf_gins);
   EXPECT_EQ(recording->samples[0].t, GpsTime::from_week_sow(2100, 0.01));
   for (const ImuSample& s : recording->samples) {

@@ -11,18 +11,18 @@ namespace {
 
 using namespace testing;
 
-const std::string kBare = "filter = \"naive\"", kVehicle = "filter = \"vehicle\"";
+const std::string kNaive = "filter = \"naive\"", kVehicle = "filter = \"vehicle\"";
 /// The control: what it is without its way back.
 const std::string kWithoutWayBack = kVehicle + "\nlost_after_s = 0";
 /// Three sigma of the filter with sound fixes, three axes: 0.5 m each after filtering.
-constexpr double kSound_m = 3.0;
+constexpr double kSoundFixes_m = 3.0;
 
 struct Three {
   Worst bare, vehicle, without_way_back;
 };
 
 Three drive_all(const char* what, const Fault& fault, double seconds = 180.0) {
-  Three out{drive(kBare, fault, seconds), drive(kVehicle, fault, seconds, Carries::kWheelsToo),
+  Three out{drive(kNaive, fault, seconds), drive(kVehicle, fault, seconds, Carries::kWheelsToo),
             drive(kWithoutWayBack, fault, seconds, Carries::kWheelsToo)};
   std::printf("%s: naive %.1f m at most, %.2f m at the end; vehicle %.2f, %.2f; without a way back %.2f, %.2f; %s\n",
               what, out.bare.off_m, out.bare.final_m, out.vehicle.off_m, out.vehicle.final_m,
@@ -32,19 +32,19 @@ Three drive_all(const char* what, const Fault& fault, double seconds = 180.0) {
 
 TEST(VehicleFaults, NoneIsWhatTheyAreMeasuredAgainst) {
   const Three r = drive_all("no fault", {});
-  EXPECT_LT(r.vehicle.off_m, kSound_m);
+  EXPECT_LT(r.vehicle.off_m, kSoundFixes_m);
   EXPECT_EQ(r.vehicle.incidents.text(), "");
 }
 
 TEST(VehicleFaults, OneFixInFiveIsAnywhere) {
   const Three r = drive_all("one in five", one_in_five_anywhere());
-  EXPECT_GT(r.bare.off_m, 10.0 * kSound_m);
-  EXPECT_LT(r.vehicle.off_m, kSound_m);
+  EXPECT_GT(r.bare.off_m, 10.0 * kSoundFixes_m);
+  EXPECT_LT(r.vehicle.off_m, kSoundFixes_m);
 }
 
 TEST(VehicleFaults, FixesFreezeForTenSeconds) {
   const Three r = drive_all("frozen", frozen_for_ten_seconds());
-  EXPECT_LT(r.vehicle.off_m, kSound_m);
+  EXPECT_LT(r.vehicle.off_m, kSoundFixes_m);
   EXPECT_EQ(r.vehicle.incidents.count(Trouble::kFrozen), 19);  // the first of twenty is one
 }
 
@@ -58,7 +58,7 @@ TEST(VehicleFaults, LatencyNobodyDeclared) {
                            late_by_200_ms(), 180.0, Carries::kWheelsToo);
   std::printf("  with state time_offset %.2f m at most, %.2f m at the end\n", told.off_m, told.final_m);
   EXPECT_LT(told.off_m, r.vehicle.off_m);
-  EXPECT_LT(told.final_m, kSound_m);
+  EXPECT_LT(told.final_m, kSoundFixes_m);
 }
 
 TEST(VehicleFaults, TwiceIsOnce) {
@@ -70,10 +70,10 @@ TEST(VehicleFaults, TwiceIsOnce) {
 
 TEST(VehicleFaults, InReverseAndNotANumber) {
   const Three back = drive_all("in reverse", two_in_reverse()), nan = drive_all("not a number", not_a_number());
-  EXPECT_LT(back.vehicle.off_m, kSound_m);
+  EXPECT_LT(back.vehicle.off_m, kSoundFixes_m);
   EXPECT_EQ(back.vehicle.incidents.count(Trouble::kReversed), 180);
   EXPECT_EQ(back.vehicle.incidents.count(Trouble::kGap), 180);
-  EXPECT_LT(nan.vehicle.off_m, kSound_m);
+  EXPECT_LT(nan.vehicle.off_m, kSoundFixes_m);
   EXPECT_EQ(nan.vehicle.incidents.count(Trouble::kNotFinite), 180 + 90 + 60 - 30);
 }
 
@@ -99,8 +99,8 @@ TEST(VehicleFaults, WithoutATimelineItEndsAsNaiveDoes) {
 TEST(VehicleFaults, FiveMinutesOfBadFixes) {
   const Three r = drive_all("five minutes of bad fixes", bad_until(30000), 310.0);
   EXPECT_LT(r.vehicle.off_m, r.bare.off_m);
-  EXPECT_LT(r.vehicle.final_m, kSound_m);
-  EXPECT_GT(r.without_way_back.final_m, 10.0 * kSound_m);
+  EXPECT_LT(r.vehicle.final_m, kSoundFixes_m);
+  EXPECT_GT(r.without_way_back.final_m, 10.0 * kSoundFixes_m);
 }
 
 // 2026-11-25: it needed minutes to come back: 118 m off ten seconds after the last bad fix, 42 m five minutes later.
@@ -109,9 +109,9 @@ TEST(VehicleFaultsNightly, AnHourOfBadFixes) {
   const Three r = drive_all("an hour of bad fixes", bad_until(360000), 3610.0),
               later = drive_all("the same 5 minutes later", bad_until(360000), 3900.0);
   EXPECT_LT(r.vehicle.off_m, r.bare.off_m);
-  EXPECT_LT(r.vehicle.final_m, kSound_m);
-  EXPECT_LT(later.vehicle.final_m, kSound_m);
-  EXPECT_GT(r.without_way_back.final_m, 10.0 * kSound_m);
+  EXPECT_LT(r.vehicle.final_m, kSoundFixes_m);
+  EXPECT_LT(later.vehicle.final_m, kSoundFixes_m);
+  EXPECT_GT(r.without_way_back.final_m, 10.0 * kSoundFixes_m);
 }
 
 }  // namespace
