@@ -22,11 +22,10 @@ class SlowVehicle : public testing::PseudorangeSensorTest {
  protected:
   Errors drive(bool memory) {
     GnssConfig config;
-    testing::set_keys(config,
-                      std::string("[gnss]\npaths = \"specular2\"\ndiffraction = \"wedge\"\nscatter = \"directive\"\n"
-                                  "clutter = \"street\"\nmultipath_rule = \"correlator\"\nrate_hz = 10\n"
-                                  "code_loop_hz = 0.25\ncode_loop_memory = ") +
-                          (memory ? "true" : "false"));
+    testing::set_keys(config, std::string("paths = \"specular2\"\ndiffraction = \"wedge\"\nscatter = \"directive\"\n"
+                                          "clutter = \"street\"\nmultipath_rule = \"correlator\"\nrate_hz = 10\n"
+                                          "code_loop_hz = 0.25\ncode_loop_memory = ") +
+                                  (memory ? "true" : "false"));
     const auto sensor = make(config);
     Errors errors;
     const Eigen::Vector3d v(0.0, kSpeed_m_s, 0.0);
