@@ -114,7 +114,9 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
   counters_.pcl_objects += result.pcl_objects;
   const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
   const auto surfaces = result.surfaces.value_or(lidar::RegistrationResult::Surfaces{result.X_TS, result.covariance});
-  const lidar::PosePrior alone{surfaces.X_TS, surfaces.covariance + floor};
+  // A method that does not say how sure it is counts for as much as what was predicted.
+  const bool says = surfaces.covariance.allFinite();
+  const lidar::PosePrior alone{surfaces.X_TS, (says ? surfaces.covariance : predicted.covariance) + floor};
   // Whether it contradicts what was predicted is judged with all that is known of its errors.
   if (result.status == lidar::RegistrationStatus::kBeyondPrior && agree(alone, predicted))
     keyframe.status = lidar::RegistrationStatus::kConverged;
