@@ -12,6 +12,7 @@
 #include "canyon/fusion/consistency.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/tests/fusion/driven_truth.h"
+#include "canyon/tests/fusion/nees_bands.h"
 
 namespace canyon::fusion {
 namespace {
@@ -175,8 +176,7 @@ class BiasWorld {
 class MatchedBiases : public ::testing::TestWithParam<Kept> {};
 
 TEST_P(MatchedBiases, EveryBlockIsAsFarOffAsItSays) {
-  std::map<std::string, std::array<ConsistencyMean, kBiasEpochs>> means;
-  std::map<std::string, int> degrees;
+  testing::BlockNees nees(kBiasEpochs);
   for (int run = 0; run < kBiasRuns; ++run) {
     BiasWorld world(static_cast<std::uint64_t>(run) + 1, GetParam());
     ErrorStateFilter filter = world.filter();
@@ -185,24 +185,11 @@ TEST_P(MatchedBiases, EveryBlockIsAsFarOffAsItSays) {
       const Eigen::MatrixXd P = filter.covariance();
       for (const auto& [name, part] : world.errors(filter)) {
         const auto n = part.error.size();
-        degrees[name] = static_cast<int>(n);
-        means[name][static_cast<std::size_t>(epoch)].add(
-            normalized_squared(part.error, P.block(part.at, part.at, n, n)), degrees[name]);
+        nees.add(name, epoch, normalized_squared(part.error, P.block(part.at, part.at, n, n)), static_cast<int>(n));
       }
     }
   }
-  // 20 epochs of 6 or 7 blocks: one false alarm in eight tries at 1e-3 each, so the seeds are fixed.
-  for (const auto& [name, epochs] : means) {
-    const int dof = degrees[name];
-    const Band band = mean_chi_square_band(dof, kBiasRuns, 1e-3);
-    std::printf("%-15s NEES per state", name.c_str());
-    for (const ConsistencyMean& mean : epochs) {
-      std::printf(" %.2f", mean.per_state());
-      EXPECT_TRUE(band.contains(mean.per_state() * dof))
-          << name << ": " << mean.per_state() << " in " << band.low / dof << " .. " << band.high / dof;
-    }
-    std::printf("\n");
-  }
+  nees.expect_in_bands(kBiasRuns);
 }
 
 INSTANTIATE_TEST_SUITE_P(States, MatchedBiases, ::testing::Values(Kept::kApart, Kept::kMerged),

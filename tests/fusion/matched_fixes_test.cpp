@@ -1,6 +1,5 @@
 // Fixes whose errors last over a way, and grow with what the fixes say of themselves, and velocities whose errors last
 // too: the filter is as far off as it says.
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -13,6 +12,7 @@
 #include "canyon/fusion/states/velocity_error.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/tests/fusion/driven_truth.h"
+#include "canyon/tests/fusion/nees_bands.h"
 
 namespace canyon::fusion {
 namespace {
@@ -148,8 +148,7 @@ class FixWorld {
 };
 
 TEST(MatchedFixes, EveryBlockIsAsFarOffAsItSays) {
-  std::map<std::string, std::array<ConsistencyMean, kFixEpochs>> means;
-  std::map<std::string, int> degrees;
+  testing::BlockNees nees(kFixEpochs);
   for (int run = 0; run < kFixRuns; ++run) {
     FixWorld world(static_cast<std::uint64_t>(run) + 1);
     ErrorStateFilter filter = world.filter();
@@ -158,23 +157,11 @@ TEST(MatchedFixes, EveryBlockIsAsFarOffAsItSays) {
       const Eigen::MatrixXd P = filter.covariance();
       for (const auto& [name, error] : world.errors(filter)) {
         const int from = FixWorld::at(filter, name), size = static_cast<int>(error.size());
-        degrees[name] = size;
-        means[name][static_cast<std::size_t>(epoch)].add(normalized_squared(error, P.block(from, from, size, size)),
-                                                         size);
+        nees.add(name, epoch, normalized_squared(error, P.block(from, from, size, size)), size);
       }
     }
   }
-  // 20 epochs of 6 blocks: one false alarm in ten tries at 1e-3 each, so the seeds are fixed.
-  for (const auto& [name, epochs] : means) {
-    const int dof = degrees[name];
-    const Band band = mean_chi_square_band(dof, kFixRuns, 1e-3);
-    std::printf("%-15s NEES per state", name.c_str());
-    for (const ConsistencyMean& mean : epochs) {
-      std::printf(" %.2f", mean.per_state());
-      EXPECT_TRUE(band.contains(mean.per_state() * dof)) << name << ": " << mean.per_state() * dof;
-    }
-    std::printf("\n");
-  }
+  nees.expect_in_bands(kFixRuns);
 }
 
 TEST(FixErrorParameters, AreARootOfTheCovariance) {

@@ -11,6 +11,7 @@
 #include "canyon/fusion/states/receiver_clock.h"
 #include "canyon/fusion/stress/at_rest.h"
 #include "canyon/tests/fusion/driven_truth.h"
+#include "canyon/tests/fusion/nees_bands.h"
 
 namespace canyon::fusion {
 namespace {
@@ -187,8 +188,7 @@ double squared(const World::Errors& e, const Eigen::MatrixXd& P) {
 }
 
 TEST(MatchedRanges, EveryBlockIsAsFarOffAsItSays) {
-  std::map<std::string, std::array<ConsistencyMean, kRangeEpochs>> means;
-  std::map<std::string, int> degrees;
+  testing::BlockNees nees(kRangeEpochs);
   for (int run = 0; run < kRangeRuns; ++run) {
     World world(static_cast<std::uint64_t>(run) + 1);
     ErrorStateFilter filter = world.filter();
@@ -205,23 +205,11 @@ TEST(MatchedRanges, EveryBlockIsAsFarOffAsItSays) {
       }
       errors["all"] = all;
       for (const auto& [name, error] : errors) {
-        degrees[name] = static_cast<int>(error.value.size());
-        means[name][static_cast<std::size_t>(epoch)].add(squared(error, P), degrees[name]);
+        nees.add(name, epoch, squared(error, P), static_cast<int>(error.value.size()));
       }
     }
   }
-  // 20 epochs of 7 blocks: one false alarm in seven tries at 1e-3 each, so the seeds are fixed.
-  for (const auto& [name, epochs] : means) {
-    const int dof = degrees[name];
-    const Band band = mean_chi_square_band(dof, kRangeRuns, 1e-3);
-    std::printf("%-15s NEES per state", name.c_str());
-    for (const ConsistencyMean& mean : epochs) {
-      std::printf(" %.2f", mean.per_state());
-      EXPECT_TRUE(band.contains(mean.per_state() * dof))
-          << name << ": " << mean.per_state() << " in " << band.low / dof << " .. " << band.high / dof;
-    }
-    std::printf("\n");
-  }
+  nees.expect_in_bands(kRangeRuns);
 }
 
 TEST(SatelliteSlots, WhoComesTakesThePlaceOfWhoHasGoneForTheLongest) {

@@ -1,6 +1,7 @@
 #include "canyon/mission/mapping/mapper.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 #include <Eigen/LU>
@@ -269,6 +270,26 @@ TEST_F(MapperTest, RegistrationAndPriorAreWeighedByTheirCovariances) {
   const double registered = fused + 3.0 + 0.3;
   fused = registered + (6.0 - registered) * P_Z / (P_Z + P_Y);
   EXPECT_NEAR(keyframe->X_WL_registered.p.x(), fused, 1e-12);
+}
+
+// 2026-11-26: PCL's own methods do not say how sure they are; a covariance of no number made a place of no number, and
+// ended the run at its second keyframe.
+TEST_F(MapperTest, AMethodThatDoesNotSayHowSureItIsCountsAsThePrediction) {
+  config_.alignment_floor_m = 0.02;
+  config_.prior_correlation_s = 10.0;
+  config_.motion_floor_deg_s = config_.motion_floor_m_s = 0.0;
+  motion_covariance_ = diagonal(0.01, 0.1);
+  script_.error = at(0.3);
+  script_.result.covariance.setConstant(std::numeric_limits<double>::quiet_NaN());
+  Mapper mapper = this->mapper();
+  offer(mapper, 0.0, at(0));
+  const Keyframe* keyframe = offer(mapper, 0.5, at(3));
+  EXPECT_EQ(keyframe->status, lidar::RegistrationStatus::kConverged);
+  const double P_Z = 0.04 + 0.01 + 4e-4, P_Y = 0.04 * 10.0 / 0.5;  // before, as predicted, floor
+  EXPECT_NEAR(keyframe->X_WL_registered.p.x(), 3.3 - 0.3 * P_Z / (P_Z + P_Y), 1e-12);
+  EXPECT_TRUE(keyframe->covariance.allFinite());
+  ASSERT_TRUE(keyframe->aligned);
+  EXPECT_TRUE(keyframe->aligned->covariance.allFinite());
 }
 
 // The same for attitude: about z, with the vehicle turning in place.
