@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 """Blockage, reflections and drift of `high`, each there or not: the full factorial in the closed loop, seeds paired.
 
-    study/factorial.py --seeds 1-100             prints the tables of docs/fidelity.md
+    study/factorial.py --seeds 1-100             prints shares, effects and interactions
     study/factorial.py --seeds 1-100 --keep DIR  keeps finished seeds there, and goes on where an earlier call ended
     study/factorial.py --base high_aided --seeds 1-20
 
 Without blockage satellites that a clear sky would show are received, without reflections echoes leave no error, without drift the inertial
 sensor has none. An effect is the difference of the shares of success with a source and without it, over all settings of the other two; an
 interaction of two is half the difference of one's effect with and without the other, and of three likewise. Intervals: 95 % of 10,000 bootstrap draws of whole seeds, all eight
-runs of one together. Beside them single remedies: a gate, an odometer with the filter that uses it, a better unit, another receiver, truth as pose.
+runs of one together. With --remedies single ones beside them: a gate, an odometer with the filter that uses it, a better unit, another receiver, truth as pose.
 """
 import argparse
 import concurrent.futures
@@ -118,23 +118,27 @@ def report(seeds, remedies):
     print(f"\nOf {len(runs)} runs {sum(run['outcome'] == 'collision' for run in runs)} collide, {seen} with what had stood in the scans for over a second.")
 
 
+def seeds_of(text):
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--canyon", type=pathlib.Path, default=ROOT / "build/release/bin/canyon")
-    parser.add_argument("--seeds", default="1-20", metavar="FIRST-LAST")
+    parser.add_argument("--seeds", type=seeds_of, default=seeds_of("1-20"), metavar="FIRST-LAST")
     parser.add_argument("--base", default="high", help="fidelity whose sources are taken away")
     parser.add_argument("--remedies", action="store_true", help="the single remedies too")
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()
-    first, _, last = options.seeds.partition("-")
     remedies = REMEDIES if options.remedies else {}
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
         (folder / f"{options.base}.toml").write_text(mission(options.base, remedies))
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            seeds = list(pool.map(lambda seed: outcomes(options, folder, remedies, seed), range(int(first), int(last or first) + 1)))
+            seeds = list(pool.map(lambda seed: outcomes(options, folder, remedies, seed), options.seeds))
     report(seeds, remedies)
 
 
