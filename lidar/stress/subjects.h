@@ -25,7 +25,11 @@ std::vector<StressCase> volley_cases();
 std::vector<StressCase> map_figure_cases();
 std::vector<StressCase> aligner_cases();
 std::vector<StressCase> placement_cases();
-std::vector<StressCase> beam_cases();
+std::vector<StressCase> seen_through_cases();
+std::vector<StressCase> shaken_beam_cases();
+std::vector<StressCase> driven_meanwhile_cases();
+std::vector<StressCase> kept_room_cases();
+std::vector<StressCase> scan_drive_cases();
 std::vector<StressCase> unsaid_setting_cases();
 
 }  // namespace canyon::lidar
