@@ -151,6 +151,8 @@ std::string Scene::hash() const {
                              m.itu_d,
                              m.thickness_m,
                              m.roughness_m,
+                             m.scatter_coefficient,
+                             static_cast<double>(m.scatter_lobe),
                              m.reflectance(850.0),
                              m.reflectance(905.0),
                              m.reflectance(1550.0),

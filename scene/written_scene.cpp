@@ -103,6 +103,8 @@ std::string materials_text(const std::vector<Material>& materials) {
     out += std::string("rf_absorbing = ") + (m.rf_absorbing ? "true" : "false") + "\n";
     line("thickness_m", m.thickness_m);
     line("roughness_m", m.roughness_m);
+    line("scatter_coefficient", m.scatter_coefficient);
+    line("scatter_lobe", m.scatter_lobe);
     line("lidar_reflectance", m.lidar_reflectance);
     line("lidar_reflectance_850", m.reflectance(850.0));
     line("lidar_reflectance_1550", m.reflectance(1550.0));

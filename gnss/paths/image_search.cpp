@@ -231,7 +231,7 @@ class ImageSearch {
       const scene::Material& material = scene_.scene().materials()[f.material];
       Bounce& b = bounces[k - 1 - j];
       b = bounce_off(material, incoming_W, f.normal_W, p_.roughness_m, waves_.carrier_hz(satellite));
-      b.factor *= mirror_factor(f.normal_W, p_.scattered_share);
+      b.factor *= mirror_factor(f.normal_W, p_.scattered_share.of(material));
       if (p_.finite_facets) {
         const double cos_incidence = std::clamp(-incoming_W.dot(f.normal_W), 0.0, 1.0);
         const double distance_m = (points_W[j] - images_W_[j]).norm();

@@ -143,8 +143,9 @@ class Launching final : public PathModel {
       const scene::Facet& f = scene.scene().facets().facets()[*facet];
       const Eigen::Vector3d from_W = j == 0 ? p_A_W : ray.points_W[j - 1];
       Bounce& b = bounces[last - j];
-      b = bounce_off(scene.scene().materials()[f.material], incoming_W, ray.normals_W[j], p_.roughness_m, carrier_hz);
-      b.factor *= mirror_factor(ray.normals_W[j], p_.scattered_share);
+      const scene::Material& material = scene.scene().materials()[f.material];
+      b = bounce_off(material, incoming_W, ray.normals_W[j], p_.roughness_m, carrier_hz);
+      b.factor *= mirror_factor(ray.normals_W[j], p_.scattered_share.of(material));
       if (p_.finite_facets) {
         const double cosine = std::clamp(-incoming_W.dot(ray.normals_W[j]), 0.0, 1.0);
         const double before_m = j == 0 ? 0.0 : (ray.points_W[0] - p_A_W).norm();

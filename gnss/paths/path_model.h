@@ -4,6 +4,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "canyon/gnss/paths/diffraction/fresnel.h"
 #include "canyon/gnss/paths/path_omissions.h"
 #include "canyon/gnss/paths/plane_waves.h"
+#include "canyon/scene/surfaces/material.h"
 
 namespace canyon::scene {
 class SceneAt;
@@ -71,14 +73,24 @@ class PathModel {
                      std::span<SignalPaths> out, GnssCounters& counters) const = 0;
 };
 
+/// Which share of the power that an upright wall gives back goes elsewhere than a mirror's (scatter/scatter.h).
+struct ScatteredShare {
+  bool scatters = false;
+  std::optional<double> coefficient;  ///< S of all walls; else each material's own
+
+  double of(const scene::Material& material) const {
+    const double s = scatters ? coefficient.value_or(material.scatter_coefficient) : 0.0;
+    return s * s;
+  }
+};
+
 /// What is worth finding. The defaults suit a receiver that tracks 45 dB-Hz at the zenith down to 25 dB-Hz.
 struct PathParameters {
   double cutoff_m = 45.0;          ///< visible satellites: later reflections do not matter. Blocked ones have no limit
   double weakest_db = -20.0;       ///< visible satellites: weaker fields (relative to free direct) do not matter
   double weakest_nlos_db = -20.0;  ///< blocked satellites: weaker fields are not tracked
   double roughness_m = 0.0;        ///< standard deviation of the surfaces' height, for the Rayleigh factor
-  /// Share of the power given back by upright walls that goes elsewhere than a mirror's (scatter/scatter.h).
-  double scattered_share = 0.0;
+  ScatteredShare scattered_share{};
   /// A facet smaller than its first Fresnel zone reflects less than an infinite one (finite_facet_factor). Off: every
   /// facet reflects like an infinite one.
   bool finite_facets = true;

@@ -56,7 +56,7 @@ Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& con
   limits.roughness_m = config.surface_roughness_m;
   CANYON_TRY(auto scatter, config.scatter.make("gnss.scatter", limits));
   limits.scattered_share = scatter->scattered_share();
-  if (limits.scattered_share == 0.0) scatter = nullptr;
+  if (!limits.scattered_share.scatters) scatter = nullptr;
   CANYON_TRY(auto clutter, config.clutter.make("gnss.clutter", limits));
   if (!clutter->acts()) clutter = nullptr;
   CANYON_TRY(auto paths, config.paths.make("gnss.paths", limits));

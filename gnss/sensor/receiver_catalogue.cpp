@@ -27,6 +27,7 @@ constexpr const char* kAlways[] = {
     "correlator_spacing_chips",
     "front_end_mhz",
     "code_loop_hz",
+    "code_loop_memory",
     "carrier_loop_hz",
     "integration_ms",
     "tracking_threshold_dbhz",

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "canyon/core/check.h"
 #include "canyon/core/earth/local_frame.h"
@@ -8,6 +9,7 @@
 #include "canyon/gnss/satellites/transmission.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 #include "canyon/gnss/sky_view.h"
+#include "canyon/gnss/solver/position_solver.h"
 #include "canyon/scene/scene.h"
 
 namespace canyon::gnss {
@@ -65,6 +67,7 @@ class SatelliteCountSensor final : public GnssSensor {
     out.fix.satellites = satellites;
     out.fix.p_A_E = out.truth.p_A_E + frame_.R_EW() * (sigma_m * noise_.normal3(static_cast<std::uint64_t>(index)));
     out.fix.covariance_E = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
+    out.fix.dop = dilution(out.truth);
     return out;
   }
 
@@ -73,6 +76,21 @@ class SatelliteCountSensor final : public GnssSensor {
   std::vector<std::string> warnings() const override { return source_.warnings; }
 
  private:
+  /// Of the satellites in sight, for whoever reads it: the noise does not.
+  static Dop dilution(const GnssTruth& truth) {
+    const Eigen::Matrix3d R_E_enu = Horizon(truth.p_A_E).R_E_enu();
+    std::vector<Eigen::Vector3d> lines_E;
+    std::vector<GnssSystem> systems;
+    for (const GnssObservationTruth& s : truth.satellites) {
+      if (!s.line_of_sight) continue;
+      const double level = std::cos(s.elevation_rad);
+      lines_E.push_back(R_E_enu * Eigen::Vector3d(level * std::sin(s.azimuth_rad), level * std::cos(s.azimuth_rad),
+                                                  std::sin(s.elevation_rad)));
+      systems.push_back(s.sv.system);
+    }
+    return dilution_of_precision(lines_E, systems, R_E_enu);
+  }
+
   /// Fills in the truth records of the satellites above the mask; the number of those in sight.
   int count(GnssTruth& truth, const Eigen::Vector3d& p_A_W, const scene::SceneAt& scene) {
     const Horizon horizon(truth.p_A_E);

@@ -27,6 +27,11 @@ void visit(FieldVisitor& f, Material& m) {
   f.flag("rf_absorbing", m.rf_absorbing, "blocks radio and reflects none");
   f.number("thickness_m", m.thickness_m, {0.0, 100.0}, "of the slab that radio meets; 0: nothing comes through");
   f.number("roughness_m", m.roughness_m, {0.0, 10.0}, "standard deviation of the surface's height, for radio");
+  f.number("scatter_coefficient", m.scatter_coefficient, {0.0, 0.95},
+           "of an upright wall: radio field scattered over field given back");
+  std::int64_t lobe = m.scatter_lobe;
+  f.integer("scatter_lobe", lobe, {1, 20}, "exponent of the lobe that it is scattered into");
+  m.scatter_lobe = static_cast<int>(lobe);
   f.number("lidar_reflectance", m.lidar_reflectance, {0.0, 1.0}, "diffuse reflectance at 905 nm");
   const auto other = [&](const char* key, std::optional<double>& value, const char* doc) {
     double filled = value.value_or(m.lidar_reflectance);

@@ -22,6 +22,10 @@ struct Material {
   bool rf_absorbing = false;  ///< reflects nothing (for studies; "absorber")
   double thickness_m = 0.0;   ///< of the slab that radio meets; 0: so thick that nothing comes through
   double roughness_m = 0.0;   ///< standard deviation of the surface's height, for radio
+  /// Of an upright wall: field that it scatters over field that it gives back, and the exponent of the lobe that this
+  /// goes into (gnss/paths/scatter/).
+  double scatter_coefficient = 0.4;
+  int scatter_lobe = 3;
 
   double lidar_reflectance = 0.3;  ///< diffuse (Lambertian) reflectance at 905 nm, 0..1
   /// The same at 850 and 1550 nm; none: as at 905 nm.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
@@ -18,15 +19,16 @@ namespace canyon::gnss {
 namespace {
 
 struct DirectiveParameters {
-  double coefficient = 0.4;
-  std::int64_t lobe = 4;
+  std::optional<double> coefficient;
+  std::int64_t lobe = 0;
   double tile_m = 8.0;
   double reach_m = 150.0;
 };
 void visit(FieldVisitor& f, DirectiveParameters& c) {
-  f.number("scatter_coefficient", c.coefficient, {0.0, 0.95},
-           "scatter directive: S, field scattered over field given back; 0.4 is assumed for all walls");
-  f.integer("scatter_lobe", c.lobe, {1, 20}, "scatter directive: exponent of the lobe; 4 is assumed");
+  f.optional_number("scatter_coefficient", c.coefficient, -1.0, {0.0, 0.95},
+                    "scatter directive: S, field scattered over field given back, of all walls; -1 = each material's");
+  f.integer("scatter_lobe", c.lobe, {0, 20},
+            "scatter directive: exponent of the lobe of all walls; 0 = each material's");
   f.number("scatter_tile_m", c.tile_m, {1.0, 50.0}, "scatter directive: walls are cut into squares of this side");
   f.number("scatter_reach_m", c.reach_m, {10.0, 1000.0}, "scatter directive: walls farther away do not count");
 }
@@ -56,6 +58,37 @@ class ReturnTable {
   std::array<double, kNodes> nodes_;
 };
 
+/// What a material gives back, and where to it is scattered.
+struct Scattering {
+  Scattering(const scene::Material& material, double share_of_power, int exponent, double carrier_hz)
+      : table(material, carrier_hz), share(share_of_power), lobe{exponent} {
+    for (std::size_t i = 0; i < kNodes; ++i)
+      integral_sr_[i] = lobe.integral_sr(static_cast<double>(i) / static_cast<double>(kNodes - 1));
+    // Between two neighbours of these nodes, of which the table's are some, either function is straight.
+    static_assert((kNodes - 1) % (ReturnTable::kNodes - 1) == 0);
+    for (std::size_t i = 0; i + 1 < kNodes; ++i) {
+      const double from = static_cast<double>(i) / static_cast<double>(kNodes - 1);
+      const double to = static_cast<double>(i + 1) / static_cast<double>(kNodes - 1);
+      most = std::max(
+          most, share * std::max(table.at(from), table.at(to)) * to / std::min(integral_sr_[i], integral_sr_[i + 1]));
+    }
+  }
+  double integral_sr(double cosine) const {
+    const double x = cosine * static_cast<double>(kNodes - 1);
+    const auto i = std::min(static_cast<std::size_t>(x), kNodes - 2);
+    return integral_sr_[i] + (x - static_cast<double>(i)) * (integral_sr_[i + 1] - integral_sr_[i]);
+  }
+
+  ReturnTable table;
+  double share;  ///< S^2
+  DirectiveLobe lobe;
+  double most = 0.0;  ///< of S^2 G^2 cos(incidence) over the lobe's integral
+
+ private:
+  static constexpr std::size_t kNodes = 257;
+  std::array<double, kNodes> integral_sr_;
+};
+
 /// Each tile of a wall that is lit scatters S^2 of what the wall gives back, G^2 of the power that falls on it, into
 /// the lobe about its mirror's direction; the mirrors are left sqrt(1 - S^2) of their field. At the antenna, r away,
 /// relative to the free direct signal:
@@ -65,22 +98,20 @@ class ReturnTable {
 /// the last term because a tile nearby is no point. Both ways are tested for obstacles at the tile's middle, as a share
 /// of the field that changes evenly with place and direction (PointSight): a tile of 8 m comes out of a shadow by and
 /// by. Fields fade out towards the reach (its last fifth), and over 6 dB above a tenth of the weakest field that
-/// matters, so that nothing starts or ends at once. Foliage and what moves are not looked at.
+/// matters, so that nothing starts or ends at once. S and the lobe are the material's. Foliage and what moves are not
+/// looked at.
 class DirectiveScatter final : public ScatterModel {
  public:
   DirectiveScatter(const DirectiveParameters& own, const PathParameters& p)
-      : own_(own),
-        lobe_{static_cast<int>(own.lobe)},
-        weakest_(std::pow(10.0, std::min(p.weakest_db, p.weakest_nlos_db) / 20.0)) {
-    for (std::size_t i = 0; i < lobe_sr_.size(); ++i)
-      lobe_sr_[i] = lobe_.integral_sr(static_cast<double>(i) / static_cast<double>(lobe_sr_.size() - 1));
-  }
+      : own_(own), weakest_(std::pow(10.0, std::min(p.weakest_db, p.weakest_nlos_db) / 20.0)) {}
 
-  double scattered_share() const override { return own_.coefficient * own_.coefficient; }
+  ScatteredShare scattered_share() const override {
+    return {.scatters = own_.coefficient != 0.0, .coefficient = own_.coefficient};
+  }
 
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
-    if (waves.empty() || own_.coefficient == 0.0) return;
+    if (waves.empty() || !scattered_share().scatters) return;
     const FacadeTiles& tiles = tiles_of(scene.scene());
     const SightPool::Loan sight = sights_.borrow(scene.scene());
     thread_local Bright bright;
@@ -106,7 +137,7 @@ class DirectiveScatter final : public ScatterModel {
   struct Bright {
     std::vector<Seen> tiles;
     std::vector<std::vector<std::uint32_t>> of_wave;  ///< places in `tiles`, in their order
-    std::vector<double> most_returned;                ///< by material, of all waves
+    std::vector<double> most_scattered;               ///< by material, of all waves
     std::vector<std::uint32_t> near;
     WaveAxes axes;
     NearWaves waves;
@@ -115,7 +146,7 @@ class DirectiveScatter final : public ScatterModel {
 
   /// Most tiles send less than counts towards the antenna, whatever hides them. The power above is no more than
   ///
-  ///   S^2 A / (r^2 + A / (2 pi)) x most of G^2 cos(incidence) / (integral of the lobe) x ((1 + cos psi) / 2)^exponent,
+  ///   A / (r^2 + A / (2 pi)) x most of S^2 G^2 cos(incidence) / (integral of the lobe) x ((1 + cos psi) / 2)^exponent,
   ///
   /// and cos psi is the direction's projection on the way to the antenna as the wall mirrors it: what may count comes
   /// from a cone about that.
@@ -131,13 +162,13 @@ class DirectiveScatter final : public ScatterModel {
       const double approach_m = way_W.dot(tile.normal_W);
       if (approach_m >= 0.0) continue;
       const double r2_m2 = way_W.squaredNorm();
-      const double power =
-          scattered_share() * out.most_returned[tile.material] * tile.area_m2 / (r2_m2 + tile.area_m2 / (2.0 * kPi));
+      const double power = out.most_scattered[tile.material] * tile.area_m2 / (r2_m2 + tile.area_m2 / (2.0 * kPi));
       if (!(power > faint2)) continue;
       const double r_m = std::sqrt(r2_m2), fade = std::min(5.0 * (1.0 - r_m / own_.reach_m), 1.0);
       if (fade <= 0.0 || r_m < 1e-3) continue;
       const Eigen::Vector3d to_W = way_W / r_m;
-      const double least = 2.0 * std::pow(faint2 / power, 1.0 / lobe_.exponent) - 1.0;
+      const double least =
+          2.0 * std::pow(faint2 / power, 1.0 / exponent(scene.scene().materials()[tile.material])) - 1.0;
       out.axes.add(to_W - 2.0 * (approach_m / r_m) * tile.normal_W, 1.0 + kConeSlack, least - kConeSlack);
       out.tiles.push_back({i, &tile, to_W, r_m, fade});
     }
@@ -146,19 +177,19 @@ class DirectiveScatter final : public ScatterModel {
     keep_paired(waves.size(), out);
   }
 
-  /// No tile beyond it counts. Fills in what materials give back at most.
+  /// No tile beyond it counts. Fills in what materials scatter at most.
   double largest_reach_m(const PlaneWaves& waves, const scene::SceneAt& scene, double faint2, Bright& out) const {
     double most = 0.0;
-    out.most_returned.assign(scene.scene().materials().size(), 0.0);
-    for (std::size_t i = 0; i < out.most_returned.size(); ++i) {
+    out.most_scattered.assign(scene.scene().materials().size(), 0.0);
+    for (std::size_t i = 0; i < out.most_scattered.size(); ++i) {
       for (std::size_t k = 0; k < waves.size(); ++k) {
         if (k > 0 && waves.carrier_hz(k) == waves.carrier_hz(k - 1)) continue;
-        out.most_returned[i] =
-            std::max(out.most_returned[i], returned(scene, static_cast<std::uint16_t>(i), waves.carrier_hz(k)).most);
+        out.most_scattered[i] =
+            std::max(out.most_scattered[i], scattering(scene, static_cast<std::uint16_t>(i), waves.carrier_hz(k)).most);
       }
-      most = std::max(most, out.most_returned[i]);
+      most = std::max(most, out.most_scattered[i]);
     }
-    return (1.0 + 1e-6) * own_.tile_m * std::sqrt(scattered_share() * most / faint2);
+    return (1.0 + 1e-6) * own_.tile_m * std::sqrt(most / faint2);
   }
 
   /// Of the tiles those that a wave stands to, and for each wave its own.
@@ -195,9 +226,9 @@ class DirectiveScatter final : public ScatterModel {
       const double excess_m = one.r_m * (1.0 - one.to_W.dot(s));
       // The mirror's direction is 2 (n.s) n - s; the tile scatters towards -to.
       const double cos_psi = one.to_W.dot(s) - 2.0 * cosine * tile.normal_W.dot(one.to_W);
-      const double power = scattered_share() * returned(scene, tile.material, waves.carrier_hz(k)).table.at(cosine) *
-                           tile.area_m2 * cosine * lobe_.at(cos_psi) /
-                           (lobe_sr(cosine) * (one.r_m * one.r_m + tile.area_m2 / (2.0 * kPi)));
+      const Scattering& wall = scattering(scene, tile.material, waves.carrier_hz(k));
+      const double power = wall.share * wall.table.at(cosine) * tile.area_m2 * cosine * wall.lobe.at(cos_psi) /
+                           (wall.integral_sr(cosine) * (one.r_m * one.r_m + tile.area_m2 / (2.0 * kPi)));
       const double amplitude = std::sqrt(power);
       const double kept = one.fade * std::clamp(amplitude / faint - 1.0, 0.0, 1.0);
       if (kept == 0.0) continue;
@@ -209,63 +240,42 @@ class DirectiveScatter final : public ScatterModel {
     }
   }
 
-  double lobe_sr(double cosine) const {
-    const double x = cosine * static_cast<double>(lobe_sr_.size() - 1);
-    const auto i = std::min(static_cast<std::size_t>(x), lobe_sr_.size() - 2);
-    return lobe_sr_[i] + (x - static_cast<double>(i)) * (lobe_sr_[i + 1] - lobe_sr_[i]);
-  }
-
   /// Of the scene, made when it is first met; a sensor serves one.
   const FacadeTiles& tiles_of(const scene::Scene& scene) const {
     const std::scoped_lock lock(mutex_);
     if (scene_ != &scene) {
       tiles_ = std::make_unique<FacadeTiles>(scene, own_.tile_m);
-      returns_.clear();
+      scatterings_.clear();
       scene_ = &scene;
     }
     return *tiles_;
   }
 
-  /// What a material gives back, and the most of that times cos(incidence) over the lobe's integral.
-  struct Returned {
-    ReturnTable table;
-    double most = 0.0;
-  };
-
-  /// Between two neighbours of its nodes, of which the other table's are some, either function is straight.
-  double most_of(const ReturnTable& table) const {
-    static_assert((kLobeNodes - 1) % (ReturnTable::kNodes - 1) == 0);
-    double most = 0.0;
-    for (std::size_t i = 0; i + 1 < kLobeNodes; ++i) {
-      const double from = static_cast<double>(i) / static_cast<double>(kLobeNodes - 1);
-      const double to = static_cast<double>(i + 1) / static_cast<double>(kLobeNodes - 1);
-      most = std::max(most, std::max(table.at(from), table.at(to)) * to / std::min(lobe_sr_[i], lobe_sr_[i + 1]));
-    }
-    return most;
+  int exponent(const scene::Material& material) const {
+    return own_.lobe > 0 ? static_cast<int>(own_.lobe) : material.scatter_lobe;
   }
 
   /// At the carrier, rounded to 50 MHz.
-  const Returned& returned(const scene::SceneAt& scene, std::uint16_t material, double carrier_hz) const {
+  const Scattering& scattering(const scene::SceneAt& scene, std::uint16_t material, double carrier_hz) const {
     const std::scoped_lock lock(mutex_);
     const std::pair key(material, std::lround(carrier_hz / 50e6));
-    auto at = returns_.find(key);
-    if (at == returns_.end()) {
-      const ReturnTable table(scene.scene().materials()[material], 50e6 * static_cast<double>(key.second));
-      at = returns_.emplace(key, Returned{table, most_of(table)}).first;
+    auto at = scatterings_.find(key);
+    if (at == scatterings_.end()) {
+      const scene::Material& m = scene.scene().materials()[material];
+      at =
+          scatterings_.try_emplace(key, m, scattered_share().of(m), exponent(m), 50e6 * static_cast<double>(key.second))
+              .first;
     }
     return at->second;
   }
 
   DirectiveParameters own_;
-  DirectiveLobe lobe_;
   double weakest_;
-  static constexpr std::size_t kLobeNodes = 257;
-  std::array<double, kLobeNodes> lobe_sr_;
   mutable SightPool sights_;
   mutable std::mutex mutex_;
   mutable const scene::Scene* scene_ = nullptr;
   mutable std::unique_ptr<FacadeTiles> tiles_;
-  mutable std::map<std::pair<std::uint16_t, long>, Returned> returns_;
+  mutable std::map<std::pair<std::uint16_t, long>, Scattering> scatterings_;
 };
 
 }  // namespace

@@ -9,7 +9,7 @@ class Mirrors final : public ScatterModel {
  public:
   void trace(const Eigen::Vector3d&, const PlaneWaves&, const scene::SceneAt&, std::span<SignalPaths>,
              GnssCounters&) const override {}
-  double scattered_share() const override { return 0.0; }
+  ScatteredShare scattered_share() const override { return {}; }
 };
 
 std::unique_ptr<ScatterModel> make_no_scatter(const PathParameters&) {

@@ -14,8 +14,9 @@ class ScatterModel {
   /// `out` has line_of_sight; adds echoes, not sorted.
   virtual void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
                      std::span<SignalPaths> out, GnssCounters& counters) const = 0;
-  /// Share of the power that a wall gives back which is scattered; the rest is the mirror's. 0: trace() adds nothing.
-  virtual double scattered_share() const = 0;
+  /// Share of the power that walls give back which is scattered; the rest is the mirrors'. None scatters: trace() adds
+  /// nothing.
+  virtual ScatteredShare scattered_share() const = 0;
 };
 
 using MakeScatterModel =

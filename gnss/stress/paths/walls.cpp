@@ -132,10 +132,10 @@ StressFigure tiles_of_walls() {
 }
 
 /// In the middle of its street an antenna gets from each tile S^2 G^2 A cos(incidence) lobe(psi) / (integral of the
-/// lobe (r^2 + A / (2 pi))) of power, half into either hand, as far as both ways are in sight, fading out over the
-/// reach's last fifth and over 6 dB above a tenth of the weakest. G^2 by its own incidence: from a table of 64 steps,
-/// whose straight pieces are off by the eighth of a second difference, 3e-3 at grazing incidence, and of the lobe's
-/// 1e-4; of the carrier rounded to 50 MHz 1e-3.
+/// lobe (r^2 + A / (2 pi))) of power, S and lobe the material's if they are not given (-1 and 0), half into either
+/// hand, as far as both ways are in sight, fading out over the reach's last fifth and over 6 dB above a tenth of the
+/// weakest. G^2 by its own incidence: from a table of 64 steps, whose straight pieces are off by the eighth of a second
+/// difference, 3e-3 at grazing incidence, and of the lobe's 1e-4; of the carrier rounded to 50 MHz 1e-3.
 StressFigure scattered_fields(double coefficient, int lobe_exponent, double weakest_db, double reach_m) {
   Looks looks;
   const auto street = walled_street();
@@ -150,7 +150,11 @@ StressFigure scattered_fields(double coefficient, int lobe_exponent, double weak
   PathParameters p;
   p.weakest_db = weakest_db, p.weakest_nlos_db = weakest_db + 3.0;
   const auto model = make_directive_scatter(own, p);
-  looks.near(model->scattered_share(), coefficient * coefficient, 1e-12);
+  const bool of_materials = coefficient < 0.0;
+  for (const scene::Material& m : street->materials()) {
+    const double s = of_materials ? m.scatter_coefficient : coefficient;
+    looks.near(model->scattered_share().of(m), s * s, 1e-12);
+  }
   const double weakest = std::pow(10.0, weakest_db / 20.0);
   const FacadeTiles tiles(*street, 6.0);
   PointSight sight(*street);
@@ -181,9 +185,11 @@ StressFigure scattered_fields(double coefficient, int lobe_exponent, double weak
         const Vector3d in(std::sqrt(1.0 - cosine * cosine), 0.0, -cosine), u = way / r;
         const Bounce b = bounce_off(street->materials()[tile.material], in, Vector3d::UnitZ(), 0.0, hz[k]);
         const double G2 = 0.5 * (std::norm(b.coefficients.te) + std::norm(b.coefficients.tm));
-        const DirectiveLobe lobe{lobe_exponent};
+        const scene::Material& wall = street->materials()[tile.material];
+        const double S = of_materials ? wall.scatter_coefficient : coefficient;
+        const DirectiveLobe lobe{of_materials ? wall.scatter_lobe : lobe_exponent};
         const double cos_psi = (2.0 * cosine * tile.normal_W - sky[k]).dot(-u);
-        const double power = coefficient * coefficient * G2 * tile.area_m2 * cosine * lobe.at(cos_psi) /
+        const double power = S * S * G2 * tile.area_m2 * cosine * lobe.at(cos_psi) /
                              (lobe.integral_sr(cosine) * (r * r + tile.area_m2 / (2.0 * kPi)));
         const double fade = std::clamp((reach_m - r) / (0.2 * reach_m), 0.0, 1.0) *
                             std::clamp(std::sqrt(power) / (0.1 * weakest) - 1.0, 0.0, 1.0);
@@ -404,7 +410,8 @@ std::vector<StressCase> wall_cases() {
            .unit = "of the bound"});
   rows.add("walls/scattered_in_full", [] { return scattered_fields(0.4, 4, -80.0, 150.0); })
       .add("walls/scattered_narrowly", [] { return scattered_fields(0.7, 11, -46.0, 150.0); })
-      .add("walls/scattered_within_a_reach", [] { return scattered_fields(0.5, 2, -70.0, 30.0); });
+      .add("walls/scattered_within_a_reach", [] { return scattered_fields(0.5, 2, -70.0, 30.0); })
+      .add("walls/scattered_as_each_material_does", [] { return scattered_fields(-1.0, 0, -70.0, 150.0); });
   rows.of({.group = group,
            .mechanism = "clutter between walls",
            .why = "a share of sight for its square, light from the wrong side of the street, time in other cells",

@@ -53,7 +53,7 @@ StressFigure keys_as_they_come() {
   const PathParameters p;
   is(p.cutoff_m, 45.0), is(p.weakest_db, -20.0), is(p.weakest_nlos_db, -20.0), is(p.combine_all_m, 30.0),
       is(p.leaning_reach_m, 1000.0);
-  is(p.launched_rays, 20000.0), is(p.scattered_share, 0.0), is(p.roughness_m, 0.0);
+  is(p.launched_rays, 20000.0), is(p.scattered_share.scatters ? 1.0 : 0.0, 0.0), is(p.roughness_m, 0.0);
   const PositionSolverParameters s;
   is(s.max_gdop, 100.0), is(s.false_alarm, 1e-3), is(s.max_exclusions, 8.0), is(RangeMeasurement{}.sigma_m, 1.0);
   const RangeErrorParameters e;

@@ -40,7 +40,7 @@ base_receiver="survey_multi"; base_rate_hz=1; base_latency_s=1; base_age_s=30; i
 vtec_tecu=12; ionex_file=""; troposphere="saastamoinen_niell"; pressure_hpa=1022; temperature_c=12.8;
 relative_humidity=0.8; weather_height_m=0; ephemeris_error="gauss_markov"; ephemeris_sigma_m=1;
 ephemeris_tau_s=3600; sp3_files=[]; antex_file=""; receiver_clock="tcxo"; paths="specular1"; launched_rays=20000;
-diffraction="none"; scatter="none"; scatter_coefficient=0.4; scatter_lobe=4; scatter_tile_m=8; scatter_reach_m=150;
+diffraction="none"; scatter="none"; scatter_coefficient=-1; scatter_lobe=0; scatter_tile_m=8; scatter_reach_m=150;
 clutter="none"; clutter_environment="suburban"; clutter_shaded_scale=1; clutter_echo_db=0;
 clutter_moving_share=0.2; clutter_coherence_s=2; clutter_cell_m=8; clutter_reach_m=80; clutter_street=0;
 ground_reflection=false; surface_roughness_m=0; multipath_rule="paper_first_return"; cutoff_ns=150;

@@ -44,9 +44,10 @@ TEST(Scatter, EnergyIsKept) {
   for (const char* name : {"concrete", "brick", "glass", "metal"}) {
     const auto material =
         std::find_if(materials.begin(), materials.end(), [&](const scene::Material& m) { return m.name == name; });
-    for (const int exponent : {1, 2, 3, 4, 8}) {
+    const ScatteredShare own{.scatters = true, .coefficient = std::nullopt};
+    for (const int exponent : {1, 2, 3, 4, 8, material->scatter_lobe}) {
       for (const double incidence_rad : {0.0, 0.5, 1.1, 1.5}) {
-        const double cosine = std::cos(incidence_rad), share = 0.16;
+        const double cosine = std::cos(incidence_rad), share = own.of(*material);
         const DirectiveLobe lobe{exponent};
         const Bounce b =
             bounce_off(*material, {std::sin(incidence_rad), 0.0, -cosine}, Eigen::Vector3d::UnitZ(), 0.0, kL1Hz);
@@ -59,6 +60,8 @@ TEST(Scatter, EnergyIsKept) {
       }
     }
   }
+  EXPECT_EQ(ScatteredShare{}.of(materials.front()), 0.0);
+  EXPECT_EQ((ScatteredShare{.scatters = true, .coefficient = 0.5}.of(materials.front())), 0.25);
   EXPECT_EQ(mirror_factor(Eigen::Vector3d::UnitZ(), 0.16), 1.0);  // roofs and the ground stay mirrors
 }
 
@@ -71,10 +74,13 @@ TEST(Scatter, LobesIntegralInClosedForm) {
 }
 
 std::vector<SignalPaths> trace(const scene::Scene& scene, const Eigen::Vector3d& p_W,
-                               const std::vector<Eigen::Vector3d>& s, const char* paths, bool scatter) {
+                               const std::vector<Eigen::Vector3d>& s, const char* paths, bool scatter,
+                               const char* keys = "") {
   PropagationConfig config;
   config.paths.name = paths;
   config.scatter.name = scatter ? "directive" : "none";
+  const auto node = ConfigNode::parse(keys, "keys");
+  CANYON_CHECK(node && read_fields(&*node, "gnss", [&config](FieldVisitor& f) { visit(f, config); }).ok(), keys);
   PathParameters limits;
   limits.weakest_db = limits.weakest_nlos_db = -40.0;
   const auto model = *make_propagation(config, limits);
@@ -109,7 +115,8 @@ TEST(Scatter, MeanPowerIsTheIntegralOverTheWall) {
   double mean = 0.0;
   int places = 0;
   for (double y = -750.0; y < 750.0; y += 1.0, ++places)
-    mean += scattered_power(trace(*scene, {0.0, y, 2.0}, {s}, "visibility", true)[0]);
+    mean += scattered_power(
+        trace(*scene, {0.0, y, 2.0}, {s}, "visibility", true, "scatter_coefficient = 0.4\nscatter_lobe = 4")[0]);
   mean /= places;
   const DirectiveLobe lobe{4};
   const double cosine = s.x(), step = 0.5;

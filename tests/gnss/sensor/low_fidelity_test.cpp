@@ -74,7 +74,13 @@ TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
     EXPECT_EQ(static_cast<std::size_t>(n), o.truth.satellites.size());
     const double sigma_m = (12.0 - std::min(n - 4, 8)) / 3.0;  // 12 m at four, 4 m at twelve, three sigmas each
     EXPECT_NEAR(std::sqrt(o.fix.covariance_E(0, 0)), sigma_m, 1e-12);
-    EXPECT_TRUE(std::isnan(o.fix.dop.gdop));
+    Eigen::MatrixXd H(n, 4);
+    for (int i = 0; i < n; ++i) {
+      const auto& s = o.truth.satellites[static_cast<std::size_t>(i)];
+      const double level = std::cos(s.elevation_rad);
+      H.row(i) << level * std::sin(s.azimuth_rad), level * std::cos(s.azimuth_rad), std::sin(s.elevation_rad), 1.0;
+    }
+    EXPECT_NEAR(o.fix.dop.gdop, std::sqrt((H.transpose() * H).inverse().trace()), 1e-9);
   }
   constexpr int kN = 4000;
   double square = 0.0, claimed = 0.0;

@@ -46,9 +46,9 @@ TEST(ReceiverCatalogue, WhatIsMissingAndWhatContradictsIsToldAtOnce) {
       "= \"single\"; contradictory: front_end_mhz = 1.5 with the main lobes of G, 2.046 MHz, expected every figure "
       "of a receiver, each with its source or \"assumed\"");
   EXPECT_EQ(refusal(changed("m8", "integration_ms = 20.0", "integration_ms = 40.0") + "carrier_lop_hz = 3\n"),
-            "mine.toml:111: carrier_lop_hz: is not a figure of a receiver, expected \"carrier_loop_hz\"?");
+            "mine.toml:114: carrier_lop_hz: is not a figure of a receiver, expected \"carrier_loop_hz\"?");
   EXPECT_EQ(refusal(changed("phone", "integration_ms = 20.0", "integration_ms = 40.0")),
-            "mine.toml:46: carrier_loop_hz: contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected "
+            "mine.toml:49: carrier_loop_hz: contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected "
             "figures of one receiver");
 }
 
