@@ -23,6 +23,8 @@ constexpr const char *kFix = "fix_x_m,fix_y_m,fix_z_m,sigma_e_m,sigma_n_m,sigma_
 constexpr MayBeAbsent kRows[] = {
     {"gnss", kFix, "status", "none", "no fix"},
     {"gnss", kDops, "status", "none", "no fix"},
+    {"gnss", kDops, "satellites", "1,2,3,4,5,6",
+     "too few for a place and a clock of each system: a fix that the receiver's own filter bridges"},
     {"gnss", kDops, "satellites", "", "a GNSS model that makes fixes without satellites"},
     {"gnss", kCounts, "satellites", "", "the same"},
     {"gnss", "multipath_max_m", "satellites", "", "the same"},

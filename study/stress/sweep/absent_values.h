@@ -10,7 +10,7 @@ struct MayBeAbsent {
   const char* file;    ///< "summary.json", "manifest.json", or of epochs/RUN_gnss.csv "gnss"
   const char* values;  ///< columns or keys, with commas between
   const char* when;    ///< column of the same row, or key of the same object, that says so; "": at any time
-  const char* is;      ///< what it then reads; "": nothing (null); "=KEY": the same as that other one
+  const char* is;  ///< what it then reads; "": nothing (null); "=KEY": the same as that other one; "1,2": one of these
   const char* why;
 };
 

@@ -53,7 +53,8 @@ bool may_miss(std::string_view kind, std::string_view value, Read&& read) {
     const auto values = pieces(row.values, ',');
     if (row.file != kind || std::ranges::find(values, value) == values.end()) return false;
     if (*row.when == '\0') return true;
-    return same(read(row.when), *row.is == '=' ? read(row.is + 1) : std::string(row.is));
+    const std::string is = *row.is == '=' ? read(row.is + 1) : std::string(row.is), found = read(row.when);
+    return std::ranges::any_of(pieces(is, ','), [&](std::string_view one) { return same(found, one); });
   });
 }
 

@@ -77,6 +77,12 @@ TEST(FiniteResults, CloudsAndPagesToo) {
   EXPECT_EQ(not_finite_in_results(folder.path().string()), "a.pcd: a point that is not finite");
 }
 
+std::string with_or(std::string_view values) {
+  std::string text;
+  for (const char c : values) text += c == ',' ? " or " : std::string(1, c);
+  return text;
+}
+
 /// The rows in Markdown.
 std::string absent_list() {
   std::string text = "| file | values | where | because |\n|---|---|---|---|\n";
@@ -91,7 +97,7 @@ std::string absent_list() {
       text += "`" + std::string(row.when) + "` " +
               (is.empty()            ? "is absent"
                : is.starts_with('=') ? "= `" + std::string(is.substr(1)) + "`"
-                                     : "= " + std::string(is));
+                                     : "= " + with_or(is));
     text += std::string(" | ") + row.why + " |\n";
   }
   return text;
