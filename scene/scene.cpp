@@ -86,6 +86,11 @@ const EdgeIndex& Scene::edges() const {
   return edges_;
 }
 
+const FacadeIndex& Scene::facades() const {
+  std::call_once(facades_once_, [this] { facades_ = FacadeIndex(*this); });
+  return facades_;
+}
+
 bool Scene::facets_built() const {
   return facets_built_.load(std::memory_order_acquire);
 }
@@ -156,6 +161,9 @@ std::string Scene::hash() const {
                              m.reflectance(850.0),
                              m.reflectance(905.0),
                              m.reflectance(1550.0),
+                             m.lidar_slope_deg,
+                             m.lidar_spread,
+                             m.lidar_grain_m,
                              m.lidar_specular,
                              m.lidar_specular_lobe_deg,
                              m.lidar_retro_1_sr,

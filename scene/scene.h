@@ -15,6 +15,7 @@
 #include "canyon/core/earth/local_frame.h"
 #include "canyon/scene/city/street_graph.h"
 #include "canyon/scene/surfaces/edge.h"
+#include "canyon/scene/surfaces/facade.h"
 #include "canyon/scene/surfaces/facet.h"
 #include "canyon/scene/surfaces/foliage_index.h"
 #include "canyon/scene/surfaces/material.h"
@@ -104,6 +105,9 @@ class Scene {
   static constexpr double kMinEdge_m = 0.5;
   const EdgeIndex& edges() const;
 
+  /// Facets that are walls of buildings, by triangle; built on first use, and facets() with them. Thread-safe.
+  const FacadeIndex& facades() const;
+
   /// Height of the terrain (ObjectKind::kTerrain only) at x, y in W and its upward unit normal; nullopt outside.
   struct Ground {
     double height_m = 0.0;
@@ -131,6 +135,8 @@ class Scene {
   mutable std::once_flag facets_once_;
   mutable std::atomic<bool> facets_built_{false};
   mutable FacetIndex facets_;
+  mutable std::once_flag facades_once_;
+  mutable FacadeIndex facades_;
   mutable std::once_flag edges_once_;
   mutable EdgeIndex edges_;
   mutable std::atomic<bool> edges_built_{false};

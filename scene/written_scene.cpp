@@ -108,6 +108,9 @@ std::string materials_text(const std::vector<Material>& materials) {
     line("lidar_reflectance", m.lidar_reflectance);
     line("lidar_reflectance_850", m.reflectance(850.0));
     line("lidar_reflectance_1550", m.reflectance(1550.0));
+    line("lidar_slope_deg", m.lidar_slope_deg);
+    line("lidar_spread", m.lidar_spread);
+    line("lidar_grain_m", m.lidar_grain_m);
     line("lidar_specular", m.lidar_specular);
     line("lidar_specular_lobe_deg", m.lidar_specular_lobe_deg);
     line("lidar_retro_1_sr", m.lidar_retro_1_sr);

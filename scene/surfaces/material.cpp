@@ -7,6 +7,7 @@
 #include "canyon/core/config/config.h"
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
+#include "canyon/core/output/printed.h"
 #include "canyon/core/process/embedded.h"
 
 namespace canyon::scene {
@@ -42,6 +43,10 @@ void visit(FieldVisitor& f, Material& m) {
   other("lidar_reflectance_1550", m.lidar_reflectance_1550, "diffuse reflectance at 1550 nm; else as at 905 nm");
   f.number("lidar_slope_deg", m.lidar_slope_deg, {0.0, 60.0},
            "standard deviation of the slope of matt facets, for [lidar] reflection = \"rough\"");
+  f.number(
+      "lidar_spread", m.lidar_spread, {0.0, 0.3},
+      "relative standard deviation of the diffuse reflectance within a surface, for [lidar] brightness = \"varied\"");
+  f.number("lidar_grain_m", m.lidar_grain_m, {0.01, 100.0}, "size of its lighter and darker places");
   f.number("lidar_specular", m.lidar_specular, {0.0, 1.0}, "share of the light reflected as by a mirror");
   f.number("lidar_specular_lobe_deg", m.lidar_specular_lobe_deg, {0.001, 45.0},
            "standard deviation of the mirror's slope");
@@ -78,6 +83,10 @@ double Material::reflectance(double wavelength_nm) const {
   return lidar_reflectance + s * (at_1550 - lidar_reflectance);
 }
 
+double Material::widest() const {
+  return lidar_spread * std::sqrt(3.0 * 27.0 / 8.0);
+}
+
 Result<std::vector<Material>> parse_materials(std::string_view toml, const std::string& file_name) {
   CANYON_TRY(const ConfigNode root, ConfigNode::parse(toml, file_name));
   MaterialFile file;
@@ -97,6 +106,13 @@ Result<std::vector<Material>> parse_materials(std::string_view toml, const std::
     const double diffuse =
         std::max({m.lidar_reflectance, m.lidar_reflectance_850.value_or(0.0), m.lidar_reflectance_1550.value_or(0.0)});
     const double share = diffuse + m.lidar_specular + m.lidar_transmittance;
+    const double brightest = diffuse * (1.0 + m.widest());
+    if (share <= 1.0 + 1e-9 && brightest + m.lidar_specular + m.lidar_transmittance > 1.0 + 1e-9)
+      return mistake("lidar_spread",
+                     "with " + number_text(m.lidar_spread) + " the brightest place reflects " +
+                         printed("%.4f", brightest) + " beside specular " + number_text(m.lidar_specular) +
+                         " and transmittance " + number_text(m.lidar_transmittance),
+                     "no more light than comes in");
     if (share > 1.0 + 1e-9)
       return mistake("lidar_reflectance",
                      "reflectance " + number_text(diffuse) + ", specular " + number_text(m.lidar_specular) +

@@ -31,7 +31,10 @@ struct Material {
   /// The same at 850 and 1550 nm; none: as at 905 nm.
   std::optional<double> lidar_reflectance_850, lidar_reflectance_1550;
   double lidar_slope_deg = 0.0;  ///< standard deviation of the matt facets' slope (Oren & Nayar 1994); 0: Lambertian
-  double lidar_specular = 0.0;   ///< share of the light that is reflected as by a mirror, 0..1
+  /// Standard deviation of the diffuse reflectance from place to place of one surface, relative to its mean, 0..0.3,
+  /// and how far apart places are that have nothing to do with one another: for [lidar] brightness = "varied".
+  double lidar_spread = 0.0, lidar_grain_m = 0.5;
+  double lidar_specular = 0.0;           ///< share of the light that is reflected as by a mirror, 0..1
   double lidar_specular_lobe_deg = 2.0;  ///< standard deviation of the mirror's slope
   /// Coefficient of retroreflection R_A, cd/(lx m^2), that is 1/sr: light sent back to where it came from. A white
   /// Lambertian surface has 1/pi.
@@ -43,6 +46,10 @@ struct Material {
   std::complex<double> permittivity(double frequency_hz) const;
   /// Diffuse reflectance at a wavelength: linear between 850, 905 and 1550 nm, constant outside.
   double reflectance(double wavelength_nm) const;
+  /// The brightest and the darkest place of a surface differ from its mean by so much, relative to it: 3.18 spreads,
+  /// since noise that is interpolated linearly between the corners of cubes has (2/3)^3 of their variance, and theirs
+  /// is that of a uniform distribution, a third of its half width's square.
+  double widest() const;
 };
 
 void visit(FieldVisitor& f, Material& m);

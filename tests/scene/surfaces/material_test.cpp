@@ -207,6 +207,11 @@ TEST(Materials, MistakesAreNamedWithTheirLine) {
       message("[[material]]\nname = \"a\"\nlidar_reflectance = 0.7\nlidar_transmittance = 0.4\n"),
       "my.toml:3: material[1].lidar_reflectance: reflectance 0.7, specular 0 and transmittance 0.4 make more than "
       "1, expected no more light than comes in");
+  EXPECT_EQ(message("[[material]]\nname = \"a\"\nlidar_reflectance = 0.8\nlidar_spread = 0.1\n"),
+            "my.toml:4: material[1].lidar_spread: with 0.1 the brightest place reflects 1.0546 beside "
+            "specular 0 and transmittance 0, expected no more light than comes in");
+  EXPECT_EQ(message("[[material]]\nname = \"a\"\nlidar_spread = 0.4\n"),
+            "my.toml:3: material[1].lidar_spread: 0.4 is out of range, expected a number from 0 to 0.3");
   EXPECT_EQ(message(""), "my.toml: material: no material, expected at least one [[material]] table");
   EXPECT_NE(message("[[material]\n").find("my.toml:1: not valid TOML"), std::string::npos)
       << "the rest is the parser's";
