@@ -372,6 +372,21 @@ BENCHMARK_CAPTURE(
     cost_of, radiometric, [](Config& c) { c.detector.name = "radiometric"; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(
+    cost_of, varied, [](Config& c) { c.texture.brightness = canyon::lidar::Brightness::kVaried; }, 0)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(
+    cost_of, windows, [](Config& c) { c.texture.windows = canyon::lidar::Windows::kLattice; }, 0)
+    ->UseManualTime();
+/// The beam of the fidelity `high`.
+BENCHMARK_CAPTURE(
+    cost_of, high,
+    [](Config& c) {
+      c.detector.name = "radiometric";
+      c.texture = {canyon::lidar::Brightness::kVaried, canyon::lidar::Windows::kLattice};
+    },
+    0)
+    ->UseManualTime();
+BENCHMARK_CAPTURE(
     cost_of, dual_returns, [](Config& c) { c.report.returns = canyon::lidar::ReturnMode::kDual; }, 0)
     ->UseManualTime();
 BENCHMARK_CAPTURE(

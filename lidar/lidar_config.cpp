@@ -27,6 +27,7 @@ void visit(FieldVisitor& f, LidarConfig& c) {
   visit(f, c.ego);
   f.number("wavelength_nm", c.wavelength_nm, {300, 2500}, "wavelength of the lasers");
   visit(f, c.signal);
+  visit(f, c.texture);
   f.group("weather", c.weather, "what is in the air");
   f.choice("deskew", c.deskew, deskewing_names(),
            "by whose motion within a revolution scans are deskewed: the filter's prediction alone, its estimates with "

@@ -7,6 +7,7 @@
 #include "canyon/lidar/beam/echo_model.h"
 #include "canyon/lidar/beam/see_through.h"
 #include "canyon/lidar/beam/signal.h"
+#include "canyon/lidar/beam/texture/texture.h"
 #include "canyon/lidar/beam/weather.h"
 #include "canyon/lidar/ego_mask.h"
 #include "canyon/lidar/receiver/crosstalk.h"
@@ -33,6 +34,7 @@ struct LidarConfig {
   WeatherConfig weather;
   CrosstalkConfig crosstalk;
   SignalConfig signal;
+  TextureConfig texture;
   ModelChoice<detectors> detector{"ideal"};
   ReportConfig report;
   EgoConfig ego;

@@ -60,7 +60,7 @@ class VolleyScanner final : public Scanner {
     const FiringPattern::Sweep sweep = pattern_.sweep(index);
     const Eigen::Vector3d origin_W = ray_origin(truth, scene);
     const SweepMotion motion = motion_of(t, truth, sweep, origin_W);
-    const Surfaces surfaces(scene, config_.wavelength_nm, config_.signal.reflection);
+    const Surfaces surfaces(scene, config_.wavelength_nm, config_.signal.reflection, config_.texture);
     const std::size_t volleys = volleys_of(sweep);
     const std::size_t most = sweep.cycles * pattern_.lasers() * report_.most_returns();
     out.scan.points.resize(most);
@@ -313,7 +313,8 @@ class VolleyScanner final : public Scanner {
       scene::SceneAt then = scene;
       then.set_instances(
           moving(volley.first_s + 0.5 * static_cast<double>(volley.cycles) * volley.step_s - config_.latency_s));
-      model_->trace(volley, then, Surfaces(then, config_.wavelength_nm, config_.signal.reflection), echoes);
+      model_->trace(volley, then, Surfaces(then, config_.wavelength_nm, config_.signal.reflection, config_.texture),
+                    echoes);
     } else {
       model_->trace(volley, scene, surfaces, echoes);
     }

@@ -20,6 +20,10 @@ bool in_a_crown(std::uint32_t triangle, const scene::SceneAt& scene) {
   return std::any_of(passages.begin(), passages.end(), [](const auto& p) { return p.enter_m < p.leave_m; });
 }
 
+Eigen::Vector3d place_along(const scene::Ray& ray, float range_m) {
+  return ray.origin + double{range_m} * ray.direction.cast<double>();
+}
+
 bool is_crown_leaf(std::uint32_t triangle, const scene::SceneAt::Surface& surface, const scene::SceneAt& scene,
                    const Surfaces& surfaces) {
   return !surface.moving && surface.material == surfaces.foliage() &&
@@ -71,10 +75,11 @@ void SeeThrough::follow(const Shot& shot, const scene::HitPacket& first, std::si
     const scene::SceneAt::Surface surface = scene.surface(triangle);
     const bool passed = leaves_ && is_crown_leaf(triangle, surface, scene, surfaces);
     if (!passed) {
-      out.push_back({{range_m, cosine, surface.material, surface.object},
-                     light * surfaces.of_material(surface.material, cosine)});
-      const float through =
-          panes_ && surfaces.transparent(surface.material) ? surfaces.transmittance(surface.material, cosine) : 0.0f;
+      Echo echo = surfaces.echo_at(triangle, range_m, cosine, place_along(shot.ray, range_m));
+      echo.reflectivity *= light;
+      out.push_back(echo);
+      const std::uint16_t material = echo.truth.material;
+      const float through = panes_ && surfaces.transparent(material) ? surfaces.transmittance(material, cosine) : 0.0f;
       light *= through * through;
       if (light < kDark) return;
     }

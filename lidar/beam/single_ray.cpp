@@ -12,7 +12,7 @@ class SingleRay final : public EchoModel {
     hits.resize(volley.packets());
     scene.trace(volley.rays, hits, volley.origin_W);
     const std::span<EchoPacket> echoes = out.start(volley.packets());
-    for (std::size_t p = 0; p < hits.size(); ++p) surfaces.echoes(hits[p], echoes[p]);
+    for (std::size_t p = 0; p < hits.size(); ++p) surfaces.echoes(volley.rays[p], hits[p], volley.origin_W, echoes[p]);
     if (see_through_.any()) follow_all(volley, hits, scene, surfaces, out);
   }
   std::size_t rays_per_shot() const override { return 1; }

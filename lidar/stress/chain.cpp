@@ -128,8 +128,8 @@ StressFigure special_light() {
         hits.range_m[i] = 5.0f + static_cast<float>(i);
       }
       EchoPacket echoes{};
-      surfaces.echoes(hits, echoes);
-      surfaces.reflectivities(hits, many);
+      surfaces.echoes({}, hits, Vector3d::Zero(), echoes);
+      surfaces.reflectivities({}, hits, Vector3d::Zero(), many);
       for (std::size_t i = 0; i < EchoPacket::kShots; ++i) {
         const float one = i == 13 ? 0.0f : surfaces.reflectivity(hits.triangle[i], cosine);
         worst.look(many[i] == one && (i == 13 || echoes.reflectivity[i] == one) ? 0.0 : kInfinity, 1.0);
@@ -139,7 +139,7 @@ StressFigure special_light() {
               1.0);
       }
       for (std::uint32_t& triangle : hits.triangle) triangle = 2 * k;
-      surfaces.reflectivities(hits, many);
+      surfaces.reflectivities({}, hits, Vector3d::Zero(), many);
       worst.look(many[3] == surfaces.reflectivity(2 * k, hits.cos_incidence[3]) ? 0.0 : kInfinity, 1.0);
     }
   }

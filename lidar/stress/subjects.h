@@ -30,6 +30,7 @@ std::vector<StressCase> shaken_beam_cases();
 std::vector<StressCase> driven_meanwhile_cases();
 std::vector<StressCase> kept_room_cases();
 std::vector<StressCase> scan_drive_cases();
+std::vector<StressCase> texture_cases();
 std::vector<StressCase> unsaid_setting_cases();
 
 }  // namespace canyon::lidar

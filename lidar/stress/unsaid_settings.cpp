@@ -25,6 +25,7 @@ StressFigure unsaid_settings() {
                R"("range_bias_m":0.0,"range_noise_m":0.02,"angle_noise_deg":0.0,"latency_s":0.0,"crosstalk":0.0,)"
                R"("ego_min_m":[0.0,0.0,0.0],"ego_max_m":[0.0,0.0,0.0],"wavelength_nm":905.0,"pulse_m":0.75,)"
                R"("range_at_10_percent_m":50.0,"full_overlap_m":5.0,"reflection":"lambertian",)"
+               R"("brightness":"uniform","windows":"none",)"
                R"("weather":{"rain_mm_h":0.0,"rain_law":"marshall_palmer","fog_visibility_m":0.0,)"
                R"("fog_law":"kruse","snow_mm_h":0.0,"snow_law":"wet","dust_visibility_m":0.0,)"
                R"("false_returns":true},"deskew":"prediction","blinded":false})")

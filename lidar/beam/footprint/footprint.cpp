@@ -54,13 +54,14 @@ class Footprint final : public EchoModel {
       for (std::size_t k = 0; k < kBeams; ++k) {
         const std::size_t shot = begin + k;
         EchoPacket& packet = first[shot / Volley::kLanes];
-        const auto whole = see_through_.any() ? std::nullopt : one_echo(hits[k], scene, surfaces);
+        const auto whole = see_through_.any() ? std::nullopt : one_echo(rays[k], hits[k], volley.origin_W, surfaces);
         packet.set(shot % Volley::kLanes, whole.value_or(Echo{}));
         if (whole) continue;
         glints.clear();
         for (std::size_t i = 0; i < FootprintOffsets::kRays; ++i) {
           if (!see_through_.any()) {
-            if (hits[k].triangle[i] != scene::Hit::kMiss) glints.push_back(surfaces.echo(hits[k], i));
+            if (hits[k].triangle[i] != scene::Hit::kMiss)
+              glints.push_back(surfaces.echo(rays[k], hits[k], i, volley.origin_W));
           } else if (rays[k].max_m[i] >= 0) {
             see_through_.follow(
                 {ray_of(rays[k], i, volley.origin_W), static_cast<std::uint32_t>(Volley::laser_of(shot)),
@@ -84,16 +85,16 @@ class Footprint final : public EchoModel {
   }
 
   /// The most frequent case, quickly: all that the sub-rays met lies within a pulse's length, or they met nothing.
-  std::optional<Echo> one_echo(const scene::HitPacket& hits, const scene::SceneAt& scene,
-                               const Surfaces& surfaces) const {
+  std::optional<Echo> one_echo(const scene::RayPacket& rays, const scene::HitPacket& hits,
+                               const Eigen::Vector3d& origin_W, const Surfaces& surfaces) const {
     float reflectivity[kSubRays];
-    surfaces.reflectivities(hits, reflectivity);
+    surfaces.reflectivities(rays, hits, origin_W, reflectivity);
     GlintSum sum;
     sum_glints(hits, reflectivity, overlap_m2_, sum);
     if (sum.brightest == kSubRays) return Echo{};
     if (sum.farthest_m - sum.nearest_m > pulse_m_) return std::nullopt;
-    const auto surface = scene.surface(hits.triangle[sum.brightest]);
-    return echo_of(sum, surface.object, surface.material);
+    const auto brightest = surfaces.echo(rays, hits, static_cast<std::size_t>(sum.brightest), origin_W).truth;
+    return echo_of(sum, brightest.object, brightest.material);
   }
 
   /// Glints as the echoes of a shot.

@@ -19,7 +19,7 @@ constexpr Quantile kStudent[] = {{1, 636.619}, {2, 31.598}, {3, 12.924}, {4, 8.6
                                  {6, 5.959},   {7, 5.408},  {8, 5.041},  {10, 4.587}, {12, 4.318},
                                  {15, 4.073},  {20, 3.850}, {30, 3.646}, {60, 3.460}, {120, 3.373}};
 constexpr double kNormal = 3.2905;  // the same of the normal distribution
-constexpr double kMost = 1e3;       // of a sigma of millimetres: open
+constexpr double kWidest = 1e3;     // of a sigma of millimetres: open
 
 }  // namespace
 
@@ -54,7 +54,7 @@ Matrix6d widened_by_witnesses(const Matrix6d& covariance, const CovarianceSums& 
   Eigen::MatrixXd more = Eigen::MatrixXd::Zero(S.rows(), S.cols());
   for (Eigen::Index k = 0; k < S.cols(); ++k) {
     const Eigen::VectorXd u = eigen.eigenvectors().col(k);
-    const double wider = std::min(student_over_normal(witnesses(sums, C * A.solve(u)) - 1.0), kMost);
+    const double wider = std::min(student_over_normal(witnesses(sums, C * A.solve(u)) - 1.0), kWidest);
     more += (wider * wider - 1.0) * std::max(0.0, eigen.eigenvalues()[k]) * u * u.transpose();
   }
   return covariance + C * more * C.transpose();
