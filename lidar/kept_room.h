@@ -20,9 +20,9 @@ struct KeptRoom {
   double clear_m = 0.0, above_ground_m = 0.0, ground_rise = 0.0;
 };
 
-/// Whether a shot's return depends on nothing that lies beyond it: one ray a beam, a detector without memory of
-/// strength, clear air, nothing that is looked through, and a head whose firings begin with the revolution. Else a
-/// scanner follows every shot to the end, whatever is kept.
+/// Whether a shot's return depends on nothing that lies beyond it: one ray a beam, a detector that judges each
+/// echo by itself, clear air, nothing that is looked through, and a head whose firings begin with the revolution. Else
+/// a scanner follows every shot to the end, whatever is kept.
 bool follows_shots_alone(const LidarConfig& config);
 
 }  // namespace canyon::lidar

@@ -64,8 +64,9 @@ bool follows_shots_alone(const LidarConfig& c) {
   const WeatherConfig& w = c.weather;
   const bool clear_air =
       w.rain_mm_h <= 0.0 && w.fog_visibility_m <= 0.0 && w.snow_mm_h <= 0.0 && w.dust_visibility_m <= 0.0;
-  return c.model.name == "single_ray" && c.detector.name == "ideal" && c.see_through == Transparent{} && clear_air &&
-         c.crosstalk.probability <= 0.0 && c.azimuth_steps != 0 && c.latency_s == 0.0;
+  return c.model.name == "single_ray" && (c.detector.name == "ideal" || c.detector.name == "radiometric") &&
+         c.see_through == Transparent{} && clear_air && c.crosstalk.probability <= 0.0 && c.azimuth_steps != 0 &&
+         c.latency_s == 0.0;
 }
 
 Result<std::unique_ptr<Scanner>> make_scanner(const LidarConfig& config, std::uint64_t seed) {

@@ -258,8 +258,8 @@ class VolleyScanner final : public Scanner {
     constexpr double kOrigin_m = 0.2;
     const double arm_m = X_BL_.p.norm() + kOrigin_m;
     const double slack_m = room.moved_m + room.turned_rad * arm_m + kOrigin_m;
-    const double noise_m =
-        10.0 * (config_.range_noise_m + config_.report.range_bias_m) + config_.report.range_quantum_m;
+    const double noise_m = 10.0 * (config_.range_noise_m + config_.report.range_bias_m + detector_->weakest_edge_m()) +
+                           detector_->most_short_m() + config_.report.range_quantum_m;
     const Eigen::Vector3d up_L = X_BL_.R.conjugate() * Eigen::Vector3d::UnitZ();
     std::int64_t not_fired = 0;
     for (std::size_t i = 0; i < Volley::kLanes; ++i) {

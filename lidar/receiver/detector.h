@@ -19,6 +19,8 @@ class Detector {
   virtual void detect(const Volley& volley, Echoes& echoes) const = 0;
   /// 1-sigma of what the faintest detected echo's edge adds to the range noise, m.
   virtual double weakest_edge_m() const { return 0.0; }
+  /// The most that a range reads short beside its noise, m.
+  virtual double most_short_m() const { return 0.0; }
 };
 
 /// `[lidar] detector`.

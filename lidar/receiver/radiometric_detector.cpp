@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "canyon/core/process/vector_clones.h"
 #include "canyon/lidar/lidar_config.h"
 
 namespace canyon::lidar {
@@ -16,6 +18,37 @@ void visit(FieldVisitor& f, RadiometricParameters& c) {
   f.number("saturation", c.saturation, {1, 1e9}, "signal over threshold from which the receiver clips (radiometric)");
   f.number("saturation_walk_m", c.saturation_walk_m, {0, 10},
            "how much a clipped range reads short, for every factor of ten (radiometric)");
+}
+
+/// What the loop over a packet needs.
+struct Receiver {
+  double range_at_10_percent_m, least_m, threshold_snr, pulse_m, sigma_m;
+};
+
+CANYON_VECTOR_CLONES void receive(const Receiver& receiver, const double* signal_normals, const double* range_normals,
+                                  EchoPacket& echoes, double* signals) {
+  const Receiver r = receiver;
+  const double faintest_edge_m = 2.0 * r.threshold_snr;
+  float measured_m[EchoPacket::kShots], intensity[EchoPacket::kShots];
+  double sent[EchoPacket::kShots];
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) {
+    const double range_m = echoes.range_m[i];
+    const double ratio = r.range_at_10_percent_m / (range_m > r.least_m ? range_m : r.least_m);
+    const double gain = 10.0 * ratio * ratio;  // signal_gain()
+    const double signal = static_cast<double>(echoes.reflectivity[i]) * gain;
+    const double received = signal + signal_normals[i] / r.threshold_snr;
+    const double edge_m = r.pulse_m / (faintest_edge_m * (signal > 1.0 ? signal : 1.0));
+    const double sigma_m = std::sqrt(r.sigma_m * r.sigma_m + edge_m * edge_m);
+    const double timed_m = range_m + sigma_m * range_normals[i];
+    const double share = received / gain;
+    const bool detected = (range_m < std::numeric_limits<double>::infinity()) & (received > 1.0);
+    measured_m[i] = detected ? static_cast<float>(timed_m) : 0.0f;
+    intensity[i] = detected ? static_cast<float>(share < 1.0 ? share : 1.0) : 0.0f;
+    sent[i] = detected ? signal : 0.0;
+  }
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) echoes.measured_m[i] = measured_m[i];
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) echoes.intensity[i] = intensity[i];
+  for (std::size_t i = 0; i < EchoPacket::kShots; ++i) signals[i] = sent[i];
 }
 
 /// The radar equation of a target that fills the beam: received energy is proportional to apparent reflectivity /
@@ -46,31 +79,35 @@ class RadiometricDetector final : public Detector {
     for (std::size_t k = 0; k < echoes.layers(); ++k) {
       fill_shot_normals(range_noise_, volley, k, range_normals);
       fill_shot_normals(signal_noise_, volley, k, signal_normals);
-      const double *range_normal = range_normals.data(), *signal_normal = signal_normals.data();
-      for (EchoPacket& packet : echoes.layer(k))
-        for (std::size_t lane = 0; lane < Volley::kLanes; ++lane)
-          detect(packet, lane, *signal_normal++, *range_normal++);
+      const Receiver receiver{signal_.range_at_10_percent_m, std::max(signal_.full_overlap_m, 0.01), p_.threshold_snr,
+                              signal_.pulse_m, sigma_m_};
+      std::size_t shot = 0;
+      for (EchoPacket& packet : echoes.layer(k)) {
+        double signals[EchoPacket::kShots];
+        receive(receiver, signal_normals.data() + shot, range_normals.data() + shot, packet, signals);
+        if (p_.saturation_walk_m > 0.0) clip(signals, range_normals.data() + shot, packet);
+        shot += Volley::kLanes;
+      }
     }
   }
 
   double weakest_edge_m() const override { return signal_.pulse_m / (2.0 * p_.threshold_snr); }
+  double most_short_m() const override {
+    constexpr double kBrightest = 1e40;  // signal of any single-precision reflectivity
+    return p_.saturation_walk_m * std::log10(kBrightest / p_.saturation);
+  }
 
  private:
-  void detect(EchoPacket& echoes, std::size_t lane, double signal_normal, double range_normal) const {
-    echoes.measured_m[lane] = 0;
-    echoes.intensity[lane] = 0;
-    const float range_m = echoes.range_m[lane];
-    if (range_m == Echo{}.truth.range_m) return;
-    const double gain = signal_gain(signal_, range_m);
-    const double signal = echoes.reflectivity[lane] * gain;
-    const double received = signal + signal_normal / p_.threshold_snr;
-    if (!(received > 1.0)) return;
-    const double edge_m = signal_.pulse_m / (2.0 * p_.threshold_snr * std::max(signal, 1.0));
-    const double sigma_m = std::sqrt(sigma_m_ * sigma_m_ + edge_m * edge_m);
-    double measured_m = range_m + sigma_m * range_normal;
-    if (signal > p_.saturation) measured_m -= p_.saturation_walk_m * std::log10(signal / p_.saturation);
-    echoes.measured_m[lane] = static_cast<float>(measured_m);
-    echoes.intensity[lane] = static_cast<float>(std::clamp(received / gain, 0.0, 1.0));
+  /// Ranges of echoes beyond saturation.
+  void clip(const double* signals, const double* range_normals, EchoPacket& echoes) const {
+    for (std::size_t i = 0; i < EchoPacket::kShots; ++i) {
+      if (!(signals[i] > p_.saturation)) continue;
+      const double edge_m = signal_.pulse_m / (2.0 * p_.threshold_snr * std::max(signals[i], 1.0));
+      const double sigma_m = std::sqrt(sigma_m_ * sigma_m_ + edge_m * edge_m);
+      const double measured_m = static_cast<double>(echoes.range_m[i]) + sigma_m * range_normals[i];
+      echoes.measured_m[i] =
+          static_cast<float>(measured_m - p_.saturation_walk_m * std::log10(signals[i] / p_.saturation));
+    }
   }
 
   RadiometricParameters p_;
