@@ -34,10 +34,14 @@ VerbAction declare(Arguments& arguments) {
               "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
               "over first")
       .default_shown();
-  arguments.option("--filters", options->filters,
-                   "each run with each of these, with commas between: naive, vehicle; GNSS by IMU by filter");
-  arguments.flag("--no-2x2", options->no_two_by_two,
-                 "leave out the runs with the GNSS of the first fidelity and the IMU of the second, and the reverse");
+  arguments.option(
+      "--filters", options->filters,
+      "each run with each of these, with commas between: naive, vehicle; with --seeds or --open-loop GNSS by IMU "
+      "by filter");
+  arguments.flag(
+      "--no-2x2", options->no_two_by_two,
+      "with --seeds or --open-loop, which have them: leave out the runs with the GNSS of the first fidelity and "
+      "the IMU of the second, and the reverse");
   return [options]() -> Result<int> {
     CANYON_TRY(const auto file, load_mission(options->mission));
     const std::vector<std::string> fidelities = split_list(options->fidelities);
@@ -45,7 +49,9 @@ VerbAction declare(Arguments& arguments) {
     const std::vector<std::string> filters =
         options->filters.empty() ? std::vector<std::string>() : split_list(options->filters);
     for (const std::string& filter : filters) CANYON_TRY_STATUS(choose(fusion::filter_sets(), filter, "--filters"));
-    const bool square = !options->no_two_by_two && fidelities.size() > 1;
+    // One closed loop of each says nothing of what the GNSS does and what the IMU: each goes where its errors lead it.
+    const bool judged = options->loop.open_loop || options->figures.seeds;
+    const bool square = judged && !options->no_two_by_two && fidelities.size() > 1;
     return drive_and_report(options->mission, options->loop, options->figures, options->leave_out, file,
                             study::plan_runs(fidelities, square, filters), options->why);
   };

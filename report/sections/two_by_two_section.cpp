@@ -30,7 +30,11 @@ std::string cell(const Results& results, const TwoByTwo& table, std::size_t row,
   std::string out = "<td>";
   if (const auto i = run_of(results, table, table.gnss[row], table.imu[column]))
     out += "<p>" + run_tag(results.runs, *i) + "</p>";
-  if (!results.open_loop && row < table.outcome.size()) {
+  if (const double* successes = cell_of(table, "successes", row, column); successes && results.over_seeds) {
+    if (std::isfinite(*successes))
+      out += "<p class=\"outcome\">" + show_count(*successes) + " of " + show_count(results.over_seeds->count) +
+             " seeds succeed</p>";
+  } else if (!results.open_loop && row < table.outcome.size()) {
     const std::string& outcome = table.outcome[row][column];
     const bool good = outcome == "success";
     out += outcome.empty()
@@ -110,8 +114,11 @@ std::string two_by_two_section(const Results& results) {
   const bool filters = results.two_by_two.size() > 1;
   const std::string title = filters ? "GNSS, IMU or filter?" : "GNSS or IMU?";
   if (results.two_by_two.empty()) {
-    return section("two-by-two", title, {},
-                   note("The mixed runs (GNSS of one fidelity, IMU of another) were not made."));
+    return section(
+        "two-by-two", title, {},
+        note("What the GNSS does and what the IMU, one drive of each cannot tell: each goes where its own errors "
+             "lead it. compare --seeds 20 drives with the one of either fidelity and the other of the other, and "
+             "compare --open-loop lays them on one true motion."));
   }
   std::string says, body;
   for (const TwoByTwo& table : results.two_by_two) {
@@ -122,8 +129,9 @@ std::string two_by_two_section(const Results& results) {
     body += square(results, table);
   }
   says +=
-      results.open_loop
-          ? (filters ? "All runs are on one true motion." : "All four runs are on one true motion.")
+      results.open_loop ? (filters ? "All runs are on one true motion." : "All four runs are on one true motion.")
+      : results.over_seeds
+          ? "Medians over " + show_count(results.over_seeds->count) + " seeds; the chart shows the first."
           : std::string("Each run drove by itself: these are ") + (filters ? "separate" : "four") +
                 " drives, and part of the difference may be where each of them went (compare --open-loop takes that "
                 "away).";

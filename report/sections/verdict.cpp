@@ -70,10 +70,25 @@ std::string success_sentence(const Run& run, const Mission& mission) {
   return text + ".";
 }
 
+/// What its LIDAR knew of the thing that was hit.
+std::string seen_words(const Run& run) {
+  const double in_scans_s = run.figure("hit_in_scans_s"), range_m = run.figure("hit_last_range_m"),
+               ago_s = run.figure("hit_last_seen_s");
+  if (!std::isfinite(in_scans_s)) return {};
+  if (!std::isfinite(range_m) || !std::isfinite(ago_s)) return ", which no scan of its LIDAR had shown,";
+  const std::string ahead = show_quantity(range_m, "m", 2);
+  // A sweep takes a tenth of a second: what the last ones showed was in view to the end.
+  constexpr double kToTheEnd_s = 0.3;
+  return ago_s <= kToTheEnd_s
+             ? ", seen by its LIDAR for the last " + show_quantity(in_scans_s, "s", 2) + ", in the end " + ahead +
+                   " off,"
+             : ", last seen by its LIDAR " + ahead + " off, " + show_quantity(ago_s, "s", 2) + " before,";
+}
+
 std::string failure_sentence(const Run& run, const Mission& mission) {
   const std::string& kind = run.failure ? run.failure->kind : run.outcome;
   std::string text = (kind == "stopped" ? " " : " failed: it ");
-  text += run.failure ? failure_words(*run.failure) : outcome_words(kind);
+  text += run.failure ? failure_words(*run.failure) + seen_words(run) : outcome_words(kind);
   std::string where;
   if (run.failure) {
     const Failure& f = *run.failure;

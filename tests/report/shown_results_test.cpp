@@ -1,5 +1,6 @@
 // What the page shows of results, and of what they lack.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <regex>
 
@@ -176,8 +177,44 @@ TEST_F(ShownResults, WithoutEpochsAndCloudsItSaysSo) {
   EXPECT_THAT(html, HasSubstr("Run low: the results hold no prior and registered map cloud with points."));
   EXPECT_THAT(html,
               HasSubstr("Run high is not drawn: the results hold no keyframes of it (epochs/high_keyframes.csv)."));
-  EXPECT_THAT(html, HasSubstr("The mixed runs (GNSS of one fidelity, IMU of another) were not made."));
+  EXPECT_THAT(html, HasSubstr("one drive of each cannot tell"));
   EXPECT_THAT(html, HasSubstr("<dt>Canyon version</dt><dd><span class=\"undefined\">not recorded</span>"));
+}
+
+TEST_F(ShownResults, WhatItsLidarKnewOfTheThingThatWasHit) {
+  const auto with = [&](double in_scans_s, double range_m, double ago_s) {
+    edit_json(file("summary.json"), [&](auto& summary) {
+      auto& run = summary["runs"][1];
+      run["failure"]["kind"] = "collision", run["failure"]["detail"] = "hit vehicle 350";
+      const auto number = [](double v) {
+        return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json();
+      };
+      run["hit_in_scans_s"] = number(in_scans_s), run["hit_last_range_m"] = number(range_m);
+      run["hit_last_seen_s"] = number(ago_s);
+    });
+    return section(page(), "verdict");
+  };
+  const double none = std::nan("");
+  EXPECT_THAT(with(1.4, 4.2, 0.05),
+              HasSubstr("hit a parked car (vehicle 350), seen by its LIDAR for the last 1.4\xC2\xA0s, "
+                        "in the end 4.2\xC2\xA0m off, after "));
+  EXPECT_THAT(with(0.3, 2.0, 1.5),
+              HasSubstr("(vehicle 350), last seen by its LIDAR 2.0\xC2\xA0m off, 1.5\xC2\xA0s before, after "));
+  EXPECT_THAT(with(0.0, none, none), HasSubstr("(vehicle 350), which no scan of its LIDAR had shown, after "));
+  EXPECT_THAT(with(none, none, none), HasSubstr("(vehicle 350) after "));
+}
+
+TEST_F(ShownResults, TheTwoByTwoOverSeedsSaysHowManySucceed) {
+  edit_json(file("summary.json"), [](auto& summary) {
+    summary["two_by_two"] = {{"gnss", {"low", "high"}},
+                             {"imu", {"low", "high"}},
+                             {"successes", {{3, 2}, {1, 0}}},
+                             {"position_error_rms_m", {{0.1, 0.2}, {3.0, 4.0}}}};
+    summary["seeds"] = {1, 2, 3};
+  });
+  const std::string html = section(page(), "two-by-two");
+  EXPECT_THAT(html, HasSubstr("2 of 3 seeds succeed"));
+  EXPECT_THAT(html, HasSubstr("Medians over 3 seeds"));
 }
 
 // 2026-11-22: the page said "within 3 m" whatever the mission asked for.

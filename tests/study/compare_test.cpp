@@ -139,6 +139,14 @@ TEST_F(CompareTest, JsonHasTheContractsKeysAndNoNaN) {
   EXPECT_TRUE(json["runs"][1]["gdop_median"].is_number());
   EXPECT_EQ(json.dump().find("NaN"), std::string::npos);
   EXPECT_FALSE(json["two_by_two"].is_null());
+  Results more = *results_;
+  more.further_seeds = {more.summaries, more.summaries};
+  const auto square = summary_json(more)["two_by_two"];
+  EXPECT_FALSE(square.contains("outcome"));
+  EXPECT_EQ(square["position_error_rms_m"], json["two_by_two"]["position_error_rms_m"]);
+  for (std::size_t g = 0; g < 2; ++g)
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_EQ(square["successes"][g][i], json["two_by_two"]["outcome"][g][i] == "success" ? 3 : 0);
 }
 
 TEST_F(CompareTest, TableHasOneColumnPerRunAndARatio) {
