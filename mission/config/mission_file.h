@@ -41,7 +41,7 @@ class MissionFile {
   /// That each name is one of fidelities() and none is given twice; `option` is named in the error.
   Status check_fidelities(const std::vector<std::string>& names, const std::string& option) const;
   Result<MissionConfig> resolve(const std::string& fidelity) const;
-  /// Sensors of two fidelities mixed: GNSS (and all else) of `gnss`, IMU and initial alignment of `imu`.
+  /// Sensors of two fidelities mixed: GNSS (and all else, the LIDAR too) of `gnss`, IMU and initial alignment of `imu`.
   Result<MissionConfig> resolve_mixed(const std::string& gnss, const std::string& imu) const;
 
   /// Points an Error without a place at the line where its key was set for a run (as resolve_mixed), or at the file. Of
