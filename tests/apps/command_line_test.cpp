@@ -31,7 +31,8 @@ using testing::kMission;
 TEST_F(CommandLineTest, CompareWritesACompleteDirectoryAndOneJsonObject) {
   ASSERT_EQ(canyon("compare mission.toml --fidelities low,high --out out --json"), 0) << read("stderr");
   const auto json = nlohmann::json::parse(read("stdout"));  // exactly one object: anything else does not parse
-  EXPECT_EQ(json["runs"].size(), 4U);
+  EXPECT_EQ(json["runs"].size(), 2U) << "one closed loop of each says nothing of which sensor it was";
+  EXPECT_TRUE(json["two_by_two"].is_null());
   EXPECT_EQ(json["seed"], 1);
   EXPECT_EQ(json["results_dir"], "out");
   EXPECT_EQ(json["hash"].get<std::string>().size(), 64U);
@@ -112,6 +113,16 @@ TEST_F(CommandLineTest, SeveralSeedsGiveSharesAndDifferences) {
   EXPECT_THAT(table, HasSubstr("  position error, RMS, m"));
   EXPECT_THAT(table, ::testing::Not(HasSubstr("GDOP")));
   EXPECT_THAT(table, HasSubstr("0 of 3"));
+}
+
+TEST_F(CommandLineTest, MixedRunsAreMadeOnOneTrueMotionAndOverSeeds) {
+  ASSERT_EQ(canyon("compare mission.toml --open-loop --fidelities low,high --out out --json"), 0) << read("stderr");
+  EXPECT_EQ(nlohmann::json::parse(read("stdout"))["runs"].size(), 4U);
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low,high --seeds 2 --out given_seeds --json"), 0)
+      << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(json["runs"].size(), 8U);
+  EXPECT_EQ(json["two_by_two"]["successes"], (nlohmann::json{{0, 0}, {0, 0}}));
 }
 
 TEST_F(CommandLineTest, SeedsInAnOpenLoopMeetOneTrueMotion) {

@@ -149,7 +149,6 @@ StressFigure tiles_one_by_one(double elevation_deg) {
       found += echo.copolar * std::polar(1.0, -kStreetNumber * echo.excess_m);
 
     const FacadeTiles tiles(*city, 8.0);
-    const DirectiveLobe lobe{4};
     Field expected = 0.0;
     double whole = 0.0;
     for (const FacadeTile& tile : tiles.tiles()) {
@@ -158,11 +157,14 @@ StressFigure tiles_one_by_one(double elevation_deg) {
       if (cosine <= 0.0 || tile.normal_W.dot(from_W) >= 0.0) continue;
       const double fade = std::min(5.0 * (1.0 - r_m / 150.0), 1.0);
       const double detour_m = r_m + (s.dot(p_W) - s.dot(tile.center_W));
-      const Bounce b = bounce_off(city->materials()[tile.material], {std::sqrt(1.0 - cosine * cosine), 0.0, -cosine},
-                                  Vector3d::UnitZ(), 0.0, kL1Hz);
+      const scene::Material& wall = city->materials()[tile.material];
+      const DirectiveLobe lobe{wall.scatter_lobe};
+      const Bounce b =
+          bounce_off(wall, {std::sqrt(1.0 - cosine * cosine), 0.0, -cosine}, Vector3d::UnitZ(), 0.0, kL1Hz);
       const double given_back = 0.5 * (std::norm(b.coefficients.te) + std::norm(b.coefficients.tm));
       const Vector3d mirror = 2.0 * cosine * tile.normal_W - s;
-      const double power = 0.16 * given_back * tile.area_m2 * cosine * lobe.at(-mirror.dot(from_W) / r_m) /
+      const double power = std::pow(wall.scatter_coefficient, 2) * given_back * tile.area_m2 * cosine *
+                           lobe.at(-mirror.dot(from_W) / r_m) /
                            (lobe.integral_sr(cosine) * (r_m * r_m + tile.area_m2 / (2.0 * kPi)));
       const double amplitude = fade * std::sqrt(0.5 * power);
       expected += amplitude * tile.phase * std::polar(1.0, -kStreetNumber * detour_m);
