@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/file_hash.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
-#include "canyon/core/math/median.h"
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
@@ -50,39 +50,33 @@ Json waypoints_json(const mission::MissionConfig& config) {
   return out;
 }
 
-/// One figure of a run, over its seeds where there are several: the median, or how many succeed.
-Json over_its_seeds(const RunSummary& run, const std::string& key, const Results& results) {
+/// A figure of a run: with several seeds its median over them, or of closed loops how many succeed.
+Json figure_of(const RunSummary& run, const std::string& key, const Results& results, const OverSeeds* seeds) {
+  if (seeds == nullptr) return run_json(run)[key];
   const auto k = static_cast<std::size_t>(&run - results.summaries.data());
-  std::vector<const RunSummary*> all{&run};
-  for (const auto& runs : results.further_seeds) all.push_back(&runs[k]);
-  if (key == "outcome") return run_json(run)[key];
-  if (key == "successes")
-    return run.open_loop ? Json(nullptr) : Json(std::ranges::count_if(all, [](const RunSummary* one) {
-      return one->outcome == mission::Outcome::kSuccess;
-    }));
-  std::vector<double> values;
-  for (const RunSummary* one : all)
-    if (const Json value = run_json(*one)[key]; value.is_number()) values.push_back(value.get<double>());
-  return values.empty() ? Json(nullptr) : number(median(std::move(values)));
+  if (key == "successes") return seeds->open_loop ? Json(nullptr) : Json(seeds->shares[k].success);
+  for (const FigureOverSeeds& row : seeds->figures[k])
+    if (row.figure->key == key) return number(row.median.value);
+  return nullptr;
 }
 
-Json square_json(const TwoByTwo& square, const Results& results) {
+Json square_json(const TwoByTwo& square, const Results& results, const OverSeeds* seeds) {
   Json out{{"gnss", square.levels}, {"imu", square.levels}};
-  for (const char* key : {results.further_seeds.empty() ? "outcome" : "successes", "position_error_rms_m",
+  for (const char* key : {seeds == nullptr ? "outcome" : "successes", "position_error_rms_m",
                           "registration_error_rms_m", "map_error_prior_rms_m"}) {
     out[key] = Json::array();
     for (const auto& row : square.runs)
-      out[key].push_back({over_its_seeds(*row[0], key, results), over_its_seeds(*row[1], key, results)});
+      out[key].push_back({figure_of(*row[0], key, results, seeds), figure_of(*row[1], key, results, seeds)});
   }
   return out;
 }
 
 /// The 2 x 2 of GNSS and IMU, and where the filter is a third factor one of each.
-void add_squares(const Results& results, Json& out) {
+void add_squares(const Results& results, const OverSeeds* seeds, Json& out) {
   const std::vector<TwoByTwo> squares = two_by_two(results.summaries);
-  out["two_by_two"] = squares.empty() ? Json(nullptr) : square_json(squares.front(), results);
+  out["two_by_two"] = squares.empty() ? Json(nullptr) : square_json(squares.front(), results, seeds);
   for (const TwoByTwo& square : squares)
-    if (!square.filter.empty()) out["two_by_two_by_filter"][square.filter] = square_json(square, results);
+    if (!square.filter.empty()) out["two_by_two_by_filter"][square.filter] = square_json(square, results, seeds);
 }
 
 /// Which loop the figures are of; in an open one what they say of two runs epoch by epoch.
@@ -261,8 +255,12 @@ Json summary_json(const Results& results) {
       cpu_s += summary.cpu_s;
     }
   out["figures"] = figure_descriptions();
-  if (!results.further_seeds.empty()) write_over_seeds(over_seeds(runs_by_seed(results)), out);
-  add_squares(results, out);
+  std::optional<OverSeeds> seeds;
+  if (!results.further_seeds.empty()) {
+    seeds = over_seeds(runs_by_seed(results));
+    write_over_seeds(*seeds, out);
+  }
+  add_squares(results, seeds ? &*seeds : nullptr, out);
   out["loop"] = loop_json(results);
   out["timing"] = {{"wall_s", results.wall_s},
                    {"cpu_s", cpu_s},
