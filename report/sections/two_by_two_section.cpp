@@ -117,8 +117,8 @@ std::string two_by_two_section(const Results& results) {
     return section(
         "two-by-two", title, {},
         note("What the GNSS does and what the IMU, one drive of each cannot tell: each goes where its own errors "
-             "lead it. compare --seeds 20 drives with the one of either fidelity and the other of the other, and "
-             "compare --open-loop lays them on one true motion."));
+             "lead it. compare --seeds 20 also drives with the GNSS of one fidelity and the IMU of the "
+             "other, and compare --open-loop lays all four on one true motion."));
   }
   std::string says, body;
   for (const TwoByTwo& table : results.two_by_two) {
@@ -135,6 +135,7 @@ std::string two_by_two_section(const Results& results) {
           : std::string("Each run drove by itself: these are ") + (filters ? "separate" : "four") +
                 " drives, and part of the difference may be where each of them went (compare --open-loop takes that "
                 "away).";
+  says += " Everything but the IMU and the first attitude goes with the GNSS, so the LIDAR does.";
   return section("two-by-two", title, escape_html(says), body);
 }
 
