@@ -301,8 +301,14 @@ void MissionRun::compare(const NavRow& row, const Eigen::Vector3d& v_WB_W_true) 
 
 Status MissionRun::record_epoch(const Due& due) {
   const KinematicState truth = truth_at(due.t);
-  NavRow row{due.t,         truth.X_WB, truth.v_WB_W.head<2>().norm(), {}, command_, answers_.next_waypoint + 1,
-             answers_.state};
+  NavRow row{due.t,
+             truth.X_WB,
+             truth.v_WB_W.head<2>().norm(),
+             {},
+             command_,
+             answers_.next_waypoint + 1,
+             answers_.state,
+             scorer_.encounters().phantom_now};
   return localizer_.once_at(due.t, [this, row, v_WB_W_true = truth.v_WB_W]() mutable -> Status {
     row.estimate = localizer_.estimate();
     if (config_.run.record_covariance) row.covariance = localizer_.body_covariance();
@@ -331,6 +337,10 @@ Status MissionRun::map_scan(const std::shared_ptr<const LidarScan>& deskewed, co
   if (lidar::registers(config_.registration)) localizer_.begin_motion();
   last_keyframe_X_WB_ = config_.run.truth_as_guess ? X_WB_true : now.X_WB;
   CANYON_TRY_STATUS(keyframes_.take({deskewed, now, motion, X_WB_true, source_->now().distance_m}));
+  if (fusion::measures_with(config_.fusion, "map_pose") && keyframes_.last().in_map) {
+    CANYON_TRY_STATUS(localizer_.update(*keyframes_.last().in_map));
+    follow_correction();
+  }
   return fusion::measures_with(config_.fusion, "relative_pose") ? aid_by_map() : Ok{};
 }
 

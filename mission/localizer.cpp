@@ -91,6 +91,12 @@ Status Localizer::update(const RelativePose& since_clone) {
   return aid(by_its_clock);
 }
 
+Status Localizer::update(const PoseInMap& pose) {
+  PoseInMap by_its_clock = pose;
+  by_its_clock.t = filter_.nav_state().t;
+  return aid(by_its_clock);
+}
+
 Status Localizer::update(const GnssEpoch& epoch) {
   GnssEpoch by_its_clock = epoch;
   by_its_clock.t.ns += filter_.nav_state().t.ns - at_.ns;

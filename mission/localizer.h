@@ -46,6 +46,8 @@ class Localizer {
   Status update(const GnssEpoch& epoch);
   /// Where the vehicle was when take_clone() was last called, by registration; at the time of at().
   Status update(const RelativePose& since_clone);
+  /// Where the vehicle is in a map that was there before; at the time of at().
+  Status update(const PoseInMap& pose);
   /// From now on the filter's clone, if it carries one, holds the present pose.
   void take_clone();
   /// By what the estimate has been corrected since this was last asked, if it was: it is now this times what was

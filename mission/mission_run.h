@@ -58,6 +58,7 @@ class MissionRun {
     ImuNoise imu_noise;  ///< that the filter is told
     std::unique_ptr<lidar::Scanner> scanner;
     std::unique_ptr<lidar::Registration> registration;
+    std::shared_ptr<const lidar::PreparedCloud> prior_map;
     std::unique_ptr<Autonomy> autonomy;
     bool open_loop = false;
     Recorder* recorder = nullptr;

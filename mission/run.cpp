@@ -85,7 +85,8 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       schedule_(mission.start, rates_of(config)),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
-      keyframes_(config_, std::move(parts.registration), !omissions_.maps, boundaries_, clock, recorder_) {
+      keyframes_(config_, std::move(parts.registration), std::move(parts.prior_map), !omissions_.maps, boundaries_,
+                 clock, recorder_) {
   CANYON_CHECK(open_loop_ || !omissions_.autonomy, "nobody drives");
   gnss_->leave_out(omissions_.ranges);
   record_.config = config;
@@ -128,6 +129,7 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   CANYON_TRY(parts.imu_noise, noise_told_to_filter(config));
   CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
   CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
+  CANYON_TRY(parts.prior_map, lidar::make_prior_map(config.registration, *parts.registration));
   parts.autonomy =
       given.autonomy ? std::move(given.autonomy) : make_autonomy(config.autonomy, mission.prior, mission.start);
   parts.open_loop = tape != nullptr;
@@ -235,6 +237,7 @@ void MissionRun::count_work() {
   counters["filter_updates"] = localizer_.updates();
   const Mapper::Counters& mapper = keyframes_.counters();
   counters["keyframes_registered"] = mapper.alignments;
+  counters["keyframes_in_prior_map"] = mapper.found_in_map;
   counters["registration_iterations"] = mapper.iterations;
   counters["registration_correspondences"] = mapper.correspondences;
   counters["pcl_objects"] = mapper.pcl_objects;

@@ -15,7 +15,7 @@ struct ReadMap {
   std::vector<Eigen::Vector3f> points;
   std::int64_t not_finite = 0;  ///< that were left out
 };
-/// Binary PCD with x, y and z, as a run writes its maps.
+/// Any cloud that read_cloud() reads, of places in W; what is 1e7 m away or more is left out with what is not finite.
 Result<ReadMap> read_map(const std::string& path);
 
 }  // namespace canyon::lidar

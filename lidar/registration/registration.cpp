@@ -1,5 +1,6 @@
 #include "canyon/lidar/registration/registration.h"
 
+#include "canyon/lidar/files/map_files.h"
 #include "canyon/lidar/registration/engine/engine_registration.h"
 #include "canyon/lidar/registration/registration_methods.h"
 
@@ -62,6 +63,12 @@ void visit(FieldVisitor& f, RegistrationConfig& c) {
   f.number("motion_floor_deg_s", c.motion_floor_deg_s, {1e-6, 1000}, "likewise of its turn");
   f.number("prior_correlation_s", c.prior_correlation_s, {0, 1e6},
            "how long the error of the filter's pose stays alike: so long it counts as one piece of knowledge");
+  f.file("prior_map", c.prior_map, "",
+         "points of a map that was there before, in W (PCD, PLY, LAS, .bin): each keyframe is registered onto it too");
+  f.number("prior_map_sigma_m", c.prior_map_sigma_m, {1e-6, 100}, "1-sigma of that map's own places, per axis");
+  f.number("prior_map_sigma_deg", c.prior_map_sigma_deg, {1e-6, 10}, "likewise of its attitude");
+  f.number("prior_map_correlation_m", c.prior_map_correlation_m, {0, 1e6},
+           "how far on the map's error stays alike: so far it counts as one piece of knowledge");
 }
 
 ModelTable<RegistrationMethod> registration_methods() {
@@ -81,6 +88,13 @@ Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig
   if (row->make.make != nullptr) return row->make.make(config.method.own);
   return Error{"", 0, "registration.method", '"' + config.method.name + "\" was not compiled in",
                std::string("a build with ") + row->make.build_option + "=ON"};
+}
+
+Result<std::shared_ptr<const PreparedCloud>> make_prior_map(const RegistrationConfig& config,
+                                                            const Registration& registration) {
+  if (config.prior_map.empty()) return std::shared_ptr<const PreparedCloud>();
+  CANYON_TRY(const ReadMap map, read_map(config.prior_map));
+  return registration.prepare(map.points);
 }
 
 }  // namespace canyon::lidar

@@ -48,6 +48,11 @@ struct RegistrationConfig {
   double motion_floor_m_s = 0.5;
   double motion_floor_deg_s = 0.1;
   double prior_correlation_s = 10.0;
+  // A map that was there before: mission/mapping/mapper.h.
+  std::string prior_map;  ///< file of points in W; "": none
+  double prior_map_sigma_m = 0.05;
+  double prior_map_sigma_deg = 0.05;
+  double prior_map_correlation_m = 50.0;
 };
 void visit(FieldVisitor& f, RegistrationConfig& c);
 /// False with a method that believes the prior pose: nothing is then known of registered keyframes and their map.
@@ -127,5 +132,8 @@ class Registration {
 };
 
 Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig& config);
+/// The map that `config` names, in W; nullptr where it names none. Errors: as of read_map() (lidar/files/map_files.h).
+Result<std::shared_ptr<const PreparedCloud>> make_prior_map(const RegistrationConfig& config,
+                                                            const Registration& registration);
 
 }  // namespace canyon::lidar

@@ -31,9 +31,14 @@ class Reference final : public Autonomy {
         tracker_(part(own.tracker.model, vehicle_)),
         speed_(part(own.speed.model)),
         recovery_(part(own.recovery.model)),
-        self_check_(model_row(self_checks(), own.self_check.model.name).make.make(own.self_check.model.own)) {}
+        self_check_(model_row(self_checks(), own.self_check.model.name).make.make(own.self_check.model.own)) {
+    if (own.memory_by == "wheel") counted_.emplace();
+  }
 
-  void count(const OdometerSample& sample) override { self_check_->count(sample); }
+  void count(const OdometerSample& sample) override {
+    self_check_->count(sample);
+    if (counted_) *counted_ = {counted_->way_m + sample.speed_m_s * sample.dt_s, sample.speed_m_s};
+  }
 
   void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
     self_check_->see(scan, X_WL, estimate);
@@ -53,7 +58,8 @@ class Reference final : public Autonomy {
 
   DriveCommand drive(const NavEstimate& estimate) override {
     const bool stands = driver_.update(estimate);
-    frame_.follow(estimate, estimate.t - standing_since_ > halting_s());
+    frame_.follow(estimate, estimate.t - standing_since_ > halting_s(), counted_);
+    if (counted_) counted_->way_m = 0.0;
     const DriveCommand command = decide(estimate.t, stands);
     steering_rad_ = steered_rad(steering_rad_, command.curvature_1_m, estimate.t - last_drive_, vehicle_);
     last_drive_ = estimate.t;
@@ -145,6 +151,7 @@ class Reference final : public Autonomy {
   GpsTime last_drive_ = start_;
   RouteDriver driver_;
   LocalFrame frame_;
+  std::optional<LocalFrame::Counted> counted_;  ///< since the frame last followed; none: it goes by the estimate
   std::unique_ptr<Perception> perception_;
   std::unique_ptr<LaneReference> lane_;
   std::unique_ptr<LocalPlanner> planner_;
@@ -167,12 +174,14 @@ void visit(FieldVisitor& f, ReferenceParameters& c) {
   f.group("speed", c.speed, "reference: how fast");
   f.group("recovery", c.recovery, "reference: what it does where no way is free");
   f.group("self_check", c.self_check, "reference: whether it believes its estimate");
+  f.choice("memory_by", c.memory_by, {"estimate", "wheel"},
+           "reference: whose speed tells it how far it has come from what it has seen; wheel = an odometer of its own");
 }
 
 bool counts_wheel(const AutonomyConfig& config) {
   if (config.model.name != "reference") return false;
   const auto& own = config.model.own.get<ReferenceParameters>();
-  return model_row(self_checks(), own.self_check.model.name).make.counts;
+  return own.memory_by == "wheel" || model_row(self_checks(), own.self_check.model.name).make.counts;
 }
 
 std::unique_ptr<Autonomy> make_reference(const ModelParameters& own, const AutonomyConfig& config,

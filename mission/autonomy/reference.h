@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "canyon/mission/autonomy/autonomy.h"
 #include "canyon/mission/autonomy/perception/lane_reference.h"
@@ -33,10 +34,11 @@ struct ReferenceParameters {
   PartChoice<speed_rules> speed{ModelChoice<speed_rules>("stopping_distance")};
   PartChoice<recoveries> recovery{ModelChoice<recoveries>("back_up")};
   PartChoice<self_checks> self_check{ModelChoice<self_checks>("none")};
+  std::string memory_by = "estimate";  ///< whose speed what it has seen moves by: "estimate" or "wheel"
 };
 void visit(FieldVisitor& f, ReferenceParameters& c);
 
-/// Whether it is a reference autonomy with a part that wants an odometer.
+/// Whether it is a reference autonomy that wants an odometer.
 bool counts_wheel(const AutonomyConfig& config);
 
 /// The reference autonomy, in parts that can be exchanged one by one: perception of what blocks the way, where the lane

@@ -82,12 +82,24 @@ Status check_measurements(const MissionConfig& config) {
     return Error{.key = config.fusion.measurements.empty() ? "fusion.filter" : "fusion.measurements",
                  .what = "the filter measures with ranges, and gnss.model \"" + config.gnss.model.name + "\" has none",
                  .expected = "gnss.model = \"pseudorange\""};
-  for (const char* name : {"heading", "map_pose"}) {
-    if (!fusion::measures_with(config.fusion, name)) continue;
+  if (fusion::measures_with(config.fusion, "heading"))
     return Error{.key = "fusion.measurements",
-                 .what = std::string("\"") + name + "\" is of recordings, a mission has no such sensor",
+                 .what = "\"heading\" is of recordings, a mission has no such sensor",
                  .expected = "measurements without it"};
-  }
+  return Ok{};
+}
+
+/// A prior map is registered onto, and the filter's pose in it comes from that.
+Status check_prior_map(const MissionConfig& config) {
+  const bool given = !config.registration.prior_map.empty();
+  if (given && !lidar::registers(config.registration))
+    return Error{.key = "registration.prior_map",
+                 .what = "with method \"" + config.registration.method.name + "\" nothing is registered onto a map",
+                 .expected = "another registration.method"};
+  if (!given && fusion::measures_with(config.fusion, "map_pose"))
+    return Error{.key = "fusion.measurements",
+                 .what = "\"map_pose\" is the pose in a map that was there before, and there is none",
+                 .expected = "a registration.prior_map"};
   return Ok{};
 }
 
@@ -149,6 +161,7 @@ Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_grip(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_measurements(config));
+  CANYON_TRY_STATUS(check_prior_map(config));
   return check_seeing(config.autonomy, config.lidar.rate_hz);
 }
 

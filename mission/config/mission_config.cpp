@@ -92,7 +92,8 @@ AidingSensors aiding_sensors(const MissionConfig& config) {
 }
 
 bool takes_registered_poses(const MissionConfig& config) {
-  return config.autonomy.map == MapPose::kRegistered || fusion::measures_with(config.fusion, "relative_pose");
+  return config.autonomy.map == MapPose::kRegistered || fusion::measures_with(config.fusion, "relative_pose") ||
+         fusion::measures_with(config.fusion, "map_pose");
 }
 
 Result<ImuNoise> noise_told_to_filter(const MissionConfig& config) {

@@ -3,6 +3,7 @@
 #include "canyon/core/check.h"
 #include "canyon/core/files/files.h"
 #include "canyon/inertial/imu_model.h"
+#include "canyon/lidar/files/map_files.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/mission/config/consistency.h"
 #include "canyon/mission/config/mission_file.h"
@@ -58,7 +59,8 @@ Status check_sensors(const MissionConfig& config, const PreparedMission& mission
   CANYON_TRY_STATUS(inertial::make_imu(config.imu, seed, scene.frame()));
   CANYON_TRY_STATUS(noise_told_to_filter(config));
   CANYON_TRY_STATUS(lidar::make_scanner(config.lidar, seed));
-  CANYON_TRY_STATUS(lidar::make_registration(config.registration));
+  CANYON_TRY(const auto registration, lidar::make_registration(config.registration));
+  if (!config.registration.prior_map.empty()) CANYON_TRY_STATUS(lidar::read_map(config.registration.prior_map));
   return Ok{};
 }
 

@@ -10,21 +10,17 @@ namespace {
 // A scan is a megabyte, and one more makes nobody wait less.
 constexpr std::size_t kMostWaiting = 2;
 
-/// Whether the autonomy or the filter are told where keyframes were placed.
-bool loop_reads(const MissionConfig& config) {
-  return config.autonomy.map == MapPose::kRegistered || fusion::measures_with(config.fusion, "relative_pose");
-}
-
 }  // namespace
 
-Keyframes::Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration, bool maps_made,
+Keyframes::Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration,
+                     std::shared_ptr<const lidar::PreparedCloud> prior_map, bool maps_made,
                      const Boundaries& boundaries, PartClock& clock, Recorder& recorder)
     : X_BL_(lidar::sensor_in_body(config.lidar)),
-      at_once_(loop_reads(config)),
+      at_once_(takes_registered_poses(config)),
       boundaries_(boundaries),
       clock_(clock),
       recorder_(recorder),
-      mapper_(config.registration, std::move(registration), X_BL_),
+      mapper_(config.registration, std::move(registration), X_BL_, std::move(prior_map)),
       maps_(config.run, maps_made, lidar::registers(config.registration), clock),
       work_(kMostWaiting) {}
 
@@ -58,6 +54,7 @@ Result<KeyframeRow> Keyframes::placed_row(const Scan& scan, const Pose& X_LL_tru
                   .rms_m = keyframe.rms_m,
                   .overlap = keyframe.overlap,
                   .open = keyframe.open,
+                  .map_status = keyframe.map_status,
                   .prior_covariance = keyframe.prior_covariance,
                   .covariance = keyframe.covariance,
                   .placed = keyframe.placed,

@@ -25,8 +25,9 @@ class Keyframes {
     double distance_m = 0.0;  ///< truly driven by then
   };
   /// All that is given by reference outlives it. `recorder` is asked by the thread of take() and finish() alone.
-  Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration, bool maps_made,
-            const Boundaries& boundaries, PartClock& clock, Recorder& recorder);
+  Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration,
+            std::shared_ptr<const lidar::PreparedCloud> prior_map, bool maps_made, const Boundaries& boundaries,
+            PartClock& clock, Recorder& recorder);
 
   /// Whether a scan there would become a keyframe, if it has returns.
   bool wants(const NavEstimate& estimate) const { return mapper_.wants(estimate); }

@@ -48,8 +48,8 @@ Matrix6d diagonal(double rotation_rad, double translation_m) {
 }  // namespace
 
 Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration,
-               const Pose& X_BL)
-    : config_(config), registration_(std::move(registration)), X_BL_(X_BL) {}
+               const Pose& X_BL, std::shared_ptr<const lidar::PreparedCloud> prior_map)
+    : config_(config), registration_(std::move(registration)), X_BL_(X_BL), prior_map_(std::move(prior_map)) {}
 
 bool Mapper::wants(const NavEstimate& estimate) const {
   if (!chosen_) return true;
@@ -90,11 +90,30 @@ const Keyframe& Mapper::place(const LidarScan& scan, const NavEstimate& estimate
     }
     submap_.push_back({cloud, X_OL});
     while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
+    if (prior_map_) find_in_map(*cloud, keyframe);
   }
   last_ = keyframe;
   has_last_ = true;
   correction_ = keyframe.X_WL_registered * keyframe.X_WL_prior.inverse();
   return last_;
+}
+
+Mapper::Alignment Mapper::aligned(const lidar::PreparedCloud& cloud,
+                                  std::span<const lidar::Registration::Placed> targets, const lidar::PosePrior& given,
+                                  const Matrix6d& floor) {
+  lidar::RegistrationResult result = registration_->align_with_prior(cloud, targets, given);
+  ++counters_.alignments;
+  counters_.iterations += result.iterations;
+  counters_.correspondences += result.correspondences;
+  counters_.pcl_objects += result.pcl_objects;
+  const auto surfaces = result.surfaces.value_or(lidar::RegistrationResult::Surfaces{result.X_TS, result.covariance});
+  // A method that does not say how sure it is counts for as much as what was known before.
+  const bool says = surfaces.covariance.allFinite();
+  const lidar::PosePrior alone{surfaces.X_TS, (says ? surfaces.covariance : given.covariance) + floor};
+  // Whether it contradicts what was known is judged with all that is known of its errors.
+  if (result.status == lidar::RegistrationStatus::kBeyondPrior && agree(alone, given))
+    result.status = lidar::RegistrationStatus::kConverged;
+  return {std::move(result), alone};
 }
 
 lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted,
@@ -103,24 +122,13 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
   const Pose X_LO = submap_.back().X_OL.inverse();
   std::vector<lidar::Registration::Placed> targets;
   for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LO * placed.X_OL});
-  const lidar::RegistrationResult result = registration_->align_with_prior(cloud, targets, predicted);
+  const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
+  const auto [result, alone] = aligned(cloud, targets, predicted, floor);
   keyframe.status = result.status;
   keyframe.iterations = result.iterations;
   keyframe.rms_m = result.rms_m;
   keyframe.overlap = result.overlap;
-  ++counters_.alignments;
-  counters_.iterations += result.iterations;
-  counters_.correspondences += result.correspondences;
-  counters_.pcl_objects += result.pcl_objects;
-  const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
-  const auto surfaces = result.surfaces.value_or(lidar::RegistrationResult::Surfaces{result.X_TS, result.covariance});
-  // A method that does not say how sure it is counts for as much as what was predicted.
-  const bool says = surfaces.covariance.allFinite();
-  const lidar::PosePrior alone{surfaces.X_TS, (says ? surfaces.covariance : predicted.covariance) + floor};
-  // Whether it contradicts what was predicted is judged with all that is known of its errors.
-  if (result.status == lidar::RegistrationStatus::kBeyondPrior && agree(alone, predicted))
-    keyframe.status = lidar::RegistrationStatus::kConverged;
-  if (keyframe.status != lidar::RegistrationStatus::kConverged) return predicted;
+  if (result.status != lidar::RegistrationStatus::kConverged) return predicted;
   if (result.surfaces) keyframe.open = static_cast<int>(result.open.size());
   const Pose X_LB = X_BL_.inverse();
   keyframe.aligned = RelativePose{.source = keyframe.t,
@@ -129,6 +137,28 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
                                   .covariance = moved(alone.covariance, X_LB)};
   // Those who know the surfaces alone leave it to the mapper, who knows their floor, to weigh them with the prediction.
   return result.surfaces ? together(predicted, alone) : alone;
+}
+
+void Mapper::find_in_map(const lidar::PreparedCloud& cloud, Keyframe& keyframe) {
+  // In the frame of where the keyframe is taken to be, where numbers stay small.
+  const Pose X_WL = keyframe.X_WL_registered;
+  const lidar::Registration::Placed map{prior_map_, X_WL.inverse()};
+  constexpr double kLeast_m = 0.1;
+  const double way_m = has_last_ ? (X_WL.inverse() * last_.X_WL_registered).p.norm() : config_.prior_map_correlation_m;
+  const double alike = std::max(1.0, config_.prior_map_correlation_m / std::max(way_m, kLeast_m));
+  const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m) +
+                         alike * diagonal(config_.prior_map_sigma_deg * kDegree, config_.prior_map_sigma_m);
+  const lidar::PosePrior known{Pose{}, keyframe.covariance};
+  const auto [result, alone] = aligned(cloud, {&map, 1}, known, floor);
+  keyframe.map_status = result.status;
+  if (result.status != lidar::RegistrationStatus::kConverged) return;
+  ++counters_.found_in_map;
+  const Pose X_LB = X_BL_.inverse();
+  keyframe.in_map =
+      PoseInMap{.t = keyframe.t, .X_WB = X_WL * alone.X_TS * X_LB, .covariance = moved(alone.covariance, X_LB)};
+  const lidar::PosePrior fused = result.surfaces ? together(known, alone) : alone;
+  keyframe.X_WL_registered = X_WL * fused.X_TS;
+  keyframe.covariance = fused.covariance;
 }
 
 void Mapper::fuse(const lidar::PosePrior& moved_by, Keyframe& keyframe) const {

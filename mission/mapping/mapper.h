@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -28,6 +29,8 @@ struct Keyframe {
   Matrix6d prior_covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_prior
   Matrix6d covariance = Matrix6d::Constant(kNaN);        ///< of X_WL_registered
   std::optional<RelativePose> aligned;  ///< B in B at the keyframe before, by the alignment alone, where it converged
+  std::optional<lidar::RegistrationStatus> map_status;  ///< of the alignment onto the prior map; none: there is no map
+  std::optional<PoseInMap> in_map;                      ///< B by that alignment alone, where it converged
 };
 
 /// Chooses keyframes, registers each onto the ones before it, and fuses the result with the filter's pose.
@@ -48,6 +51,11 @@ struct Keyframe {
 /// keyframe that could not be aligned begins a new submap, for where it stands beside the surfaces before it is not
 /// known. Both measured in `high`, docs/registration.md.
 ///
+/// With a prior map (in W) each keyframe is then registered onto that as well, from where the above puts it, with the
+/// covariance that this has; the pose that the map gives is weighed with it likewise, and the next keyframe carries on
+/// from there. How far the map itself is off is as good as the same from one keyframe to the next: the covariance of
+/// that is enlarged by prior_map_correlation_m / (way since the last keyframe). What the map says alone is in_map.
+///
 /// Where the three constants of [registration] come from. alignment_floor_m and _deg: the covariance of an alignment
 /// knows its residuals, not what biases it (correspondences, the sensor: Brossard, Bonnabel and Barrau 2020, "A new
 /// approach to 3D ICP covariance estimation"). 0.02 m is the range noise of the built-in LIDAR; 0.05 degrees are as
@@ -62,7 +70,9 @@ struct Keyframe {
 /// and 11 s in its low one.
 class Mapper {
  public:
-  Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration, const Pose& X_BL);
+  /// `prior_map` in W, made by that registration; nullptr: there is none.
+  Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration, const Pose& X_BL,
+         std::shared_ptr<const lidar::PreparedCloud> prior_map = nullptr);
 
   /// Offers a deskewed scan (in L at its stamp) with the filter's estimate at that time, and the motion of B since the
   /// last keyframe by prediction alone, which the alignment begins from: what fixes have corrected since is not motion.
@@ -78,7 +88,7 @@ class Mapper {
 
   /// Work done.
   struct Counters {
-    std::int64_t alignments = 0, iterations = 0, correspondences = 0, pcl_objects = 0;
+    std::int64_t alignments = 0, found_in_map = 0, iterations = 0, correspondences = 0, pcl_objects = 0;
   };
   const Counters& counters() const { return counters_; }
 
@@ -95,10 +105,20 @@ class Mapper {
   lidar::PosePrior align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted, Keyframe& keyframe);
   /// Fuses where that puts the keyframe with its prior.
   void fuse(const lidar::PosePrior& moved_by, Keyframe& keyframe) const;
+  /// Fuses that with where the prior map puts it.
+  void find_in_map(const lidar::PreparedCloud& cloud, Keyframe& keyframe);
+  /// One alignment. What the surfaces say, with their floor, and the prior that was `given`; nothing unless converged.
+  struct Alignment {
+    lidar::RegistrationResult result;  ///< its status is that of both
+    lidar::PosePrior alone;
+  };
+  Alignment aligned(const lidar::PreparedCloud& cloud, std::span<const lidar::Registration::Placed> targets,
+                    const lidar::PosePrior& given, const Matrix6d& floor);
 
   lidar::RegistrationConfig config_;
   std::unique_ptr<lidar::Registration> registration_;
   Pose X_BL_;
+  std::shared_ptr<const lidar::PreparedCloud> prior_map_;
   std::optional<Pose> chosen_;  ///< the last keyframe's prior
   std::deque<Placed> submap_;
   Keyframe last_;

@@ -133,7 +133,7 @@ const char* const kKeyframeColumns =
     "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
     "status,"
     "iterations,rms_m,error_roll_deg,error_pitch_deg,error_yaw_deg,sigma_e_m,sigma_n_m,sigma_u_m,sigma_roll_deg,"
-    "sigma_pitch_deg,sigma_yaw_deg,nees,step_error_m,step_error_deg,step_nees,overlap,open_directions";
+    "sigma_pitch_deg,sigma_yaw_deg,nees,step_error_m,step_error_deg,step_nees,overlap,open_directions,map_status";
 
 namespace {
 
@@ -164,7 +164,8 @@ void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run) {
   const double placed = row.placed ? 1.0 : kNaN;
   csv.number(placed * step.p.norm(), 4).number(placed * so3_log(step.R).norm() / kDegree, 4);
   csv.number(row.placed ? nees(row.placed->X_TS, row.X_LL_true, row.placed->covariance) : kNaN, 3);
-  csv.number(row.overlap, 4).number(row.open ? *row.open : kNaN, 0).end_row();
+  csv.number(row.overlap, 4).number(row.open ? *row.open : kNaN, 0).word(row.map_status ? word(row.map_status) : "");
+  csv.end_row();
 }
 
 const char* const kImuColumns = "t_ns,dt_s,gx_rad,gy_rad,gz_rad,ax_m_s,ay_m_s,az_m_s,lost";

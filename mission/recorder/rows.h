@@ -21,6 +21,7 @@ struct NavRow {
   DriveCommand command;
   int waypoint = 0;  ///< 1-based number of the waypoint the autonomy heads for
   AutonomyState state = AutonomyState::kBlind;
+  bool phantom = false;  ///< it finds no way where the true body would have one ([success] phantom_free_m)
   /// As of fusion::ErrorStateFilter::body_covariance(); where it is to be recorded.
   std::optional<Eigen::Matrix<double, 9, 9>> covariance = {};
 };
@@ -48,6 +49,7 @@ struct KeyframeRow {
   double rms_m = kNaN;
   double overlap = kNaN;                                 ///< share of the points that were matched
   std::optional<int> open;                               ///< directions that the surfaces leave open
+  std::optional<lidar::RegistrationStatus> map_status;   ///< onto the prior map; none: there is no such map
   Matrix6d prior_covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_prior
   Matrix6d covariance = Matrix6d::Constant(kNaN);        ///< of X_WL_registered
   /// Since the keyframe before, as the map took it and as it was; none: not registered.

@@ -29,6 +29,7 @@ class Encounters {
     int phantoms = 0;               ///< times that the autonomy found no way with phantom_free_m of its lane truly free
     /// Times that something lay on the arc driven, nearer than the vehicle can stop, and it was not slowed down.
     int missed_obstacles = 0;
+    bool phantom_now = false;  ///< when last looked
   };
   const Numbers& numbers() const { return numbers_; }
 

@@ -58,7 +58,7 @@ std::vector<Need> reader_needs(const mission::MissionConfig& config, const missi
     needs.push_back(!maps.empty() ? read_by(kRegistration, maps)
                     : by_autonomy ? read_by(kRegistration, "the autonomy ([autonomy] map = \"registered\")")
                     : registered_poses
-                        ? read_by(kRegistration, "the filter ([fusion] map_aiding)")
+                        ? read_by(kRegistration, "the filter ([fusion] map_aiding or map_pose)")
                         : unread(kRegistration, "no output, and neither autonomy nor filter, takes the poses"));
   needs.push_back(maps.empty() ? unread(kMaps, "no output has a map") : read_by(kMaps, maps));
   if (maps.empty() && !aligned)

@@ -4,15 +4,16 @@
 
 namespace canyon::mission {
 
-void LocalFrame::follow(const NavEstimate& estimate, bool stands) {
+void LocalFrame::follow(const NavEstimate& estimate, bool stands, const std::optional<Counted>& counted) {
   const double dt_s = started_ ? estimate.t - t_ : 0.0;
   body_.yaw_rad = yaw_pitch_roll(estimate.X_WB.R).yaw_rad;
   const Eigen::Vector2d u = body_.forward();
-  const double speed = u.dot(estimate.v_WB_W.head<2>());
+  const double speed = counted ? counted->speed_m_s : u.dot(estimate.v_WB_W.head<2>());
   const double mean = started_ ? 0.5 * (speed_ + speed) : speed;
-  if (!stands) {
-    body_.p_m += dt_s * mean * u;
-    driven_ += std::abs(dt_s * mean);
+  if (counted || !stands) {
+    const double way_m = counted ? counted->way_m : dt_s * mean;
+    body_.p_m += way_m * u;
+    driven_ += std::abs(way_m);
   }
   speed_ = speed;
   to_W_ = estimate.X_WB.p.head<2>() - body_.p_m;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "canyon/core/messages.h"
 #include "canyon/mission/autonomy/known_vehicle.h"
 
@@ -8,11 +10,16 @@ namespace canyon::mission {
 /// The frame O that the autonomy remembers its surroundings in: level, with W's axes as believed, and an origin that no
 /// correction of the estimate moves. In it the vehicle goes where its estimated speed and attitude take it, forwards
 /// along its own axis, since a wheel rolls where it points: a fix that moves the estimate by metres then leaves what
-/// was seen where it stands. While the vehicle is known to stand it does not go at all.
+/// was seen where it stands. While the vehicle is known to stand it does not go at all. Where its wheel is counted,
+/// that tells the way instead: an estimated speed that is wrong moves what is remembered.
 class LocalFrame {
  public:
+  /// By a wheel: since the last call, and now; negative in reverse.
+  struct Counted {
+    double way_m = 0.0, speed_m_s = 0.0;
+  };
   /// Once the estimate is of another time than the last; `stands`: the autonomy has it stopped for long enough.
-  void follow(const NavEstimate& estimate, bool stands);
+  void follow(const NavEstimate& estimate, bool stands, const std::optional<Counted>& counted = {});
 
   PlanPose body() const { return body_; }
   double speed_m_s() const { return speed_; }            ///< along the body, negative in reverse

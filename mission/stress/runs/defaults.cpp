@@ -99,6 +99,7 @@ method="gicp"; leaf_m=0.5; max_correspondence_m=1; max_iterations=20; kernel="ge
 start_correspondence_m=4; covariance="calibrated"; point_sigma_m=0.02; range_bias_m=0.01; least_overlap=0.2;
 submap_keyframes=10; keyframe_distance_m=2; keyframe_angle_deg=10; alignment_floor_m=0.02;
 alignment_floor_deg=0.05; motion_floor_m_s=0.5; motion_floor_deg_s=0.1; prior_correlation_s=10;
+prior_map=""; prior_map_sigma_m=0.05; prior_map_sigma_deg=0.05; prior_map_correlation_m=50;
 [autonomy]
 model="reference"; perception.model="ground_grid"; perception.cell_m=0.2; perception.half_size_m=30;
 perception.obstacle_step_m=0.3; perception.clear_height_m=2.2; perception.max_slope=0.12; perception.min_hits=2;
@@ -111,7 +112,7 @@ tracker.lookahead_s=0.8; tracker.lookahead_min_m=2.5; tracker.lookahead_max_m=5;
 tracker.softening_m_s=1; speed.model="stopping_distance"; speed.reaction_s=0.3; speed.stop_margin_m=0.5;
 speed.assumed_seen_m=8; recovery.model="back_up"; recovery.wait_s=2; recovery.way_m=6; recovery.speed_m_s=1;
 self_check.model="none"; self_check.false_alarm=1e-04; self_check.window_s=20; self_check.course_share=0.01;
-self_check.doubt_sigma_m=5; self_check.lost_after_s=12; self_check.speed_m_s=2; max_offset_m=3.5; clearance_m=1;
+self_check.doubt_sigma_m=5; self_check.lost_after_s=12; self_check.speed_m_s=2; memory_by="estimate"; max_offset_m=3.5; clearance_m=1;
 grid.cell_m=0.25; grid.half_size_m=25; grid.memory_s=6; grid.obstacle_step_m=0.4; grid.max_obstacle_height_m=2.2;
 grid.min_depth_m=-2.5; grid.min_hits=3; choice.horizon_m=18; choice.stop_margin_m=3; choice.comfort_clearance_m=2;
 choice.blocked_cost_1_m=4; choice.closeness_cost_1_m2=1; choice.offset_cost_1_m=0.6; choice.change_cost_1_m=0.8;

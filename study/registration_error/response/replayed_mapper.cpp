@@ -114,6 +114,7 @@ Result<MethodClouds> prepare_clouds(const RecordedKeyframes& recorded, lidar::Re
   out.config.keyframe_distance_m = 0.0;  // what was recorded is a keyframe, wherever an error puts it
   if (!lidar::registers(out.config)) return out;
   CANYON_TRY(const auto registration, lidar::make_registration(out.config));
+  CANYON_TRY(out.prior_map, lidar::make_prior_map(out.config, *registration));
   for (const RecordedKeyframe& keyframe : recorded.keyframes) {
     throw_if_cancelled();
     std::vector<Eigen::Vector3f> points;
@@ -130,7 +131,7 @@ PlacedSums replay_mapper(const RecordedKeyframes& recorded, const std::vector<st
   auto registration = lidar::make_registration(method.config);
   CANYON_CHECK(registration.ok(), "a method that made its clouds");
   mission::Mapper mapper(method.config, std::make_unique<ReadyClouds>(*std::move(registration), method, stretch.first),
-                         X_BL);
+                         X_BL, method.prior_map);
   PlacedSums sums;
   for (std::size_t k = stretch.first; k < stretch.end; ++k) {
     throw_if_cancelled();

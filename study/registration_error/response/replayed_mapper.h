@@ -30,6 +30,7 @@ DisturbedKeyframe disturbed_keyframe(const RecordedKeyframes& recorded, const St
 struct MethodClouds {
   lidar::RegistrationConfig config;
   std::vector<std::shared_ptr<const lidar::PreparedCloud>> clouds;  ///< by keyframe; empty where nothing is registered
+  std::shared_ptr<const lidar::PreparedCloud> prior_map;            ///< nullptr: none
 };
 Result<MethodClouds> prepare_clouds(const RecordedKeyframes& recorded, lidar::RegistrationConfig config,
                                     const std::string& method);

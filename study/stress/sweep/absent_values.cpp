@@ -35,6 +35,7 @@ constexpr MayBeAbsent kRows[] = {
     {"keyframes", kRegistered, "status", "not_registered", "`[registration] method = \"none\"`"},
     {"keyframes", "step_error_m,step_error_deg,step_nees", "status", "not_registered",
      "no keyframe before it to be registered to"},
+    {"keyframes", "map_status", "", "", "there is no `[registration] prior_map`"},
     {"keyframes", "overlap,open_directions", "", "", "the own methods alone tell them, of what they matched"},
     {"keyframes", "rms_m", "iterations", "0", "nothing was matched"},
     {"keyframes", "rms_m", "status", "too_little_overlap", "less was matched than determines a pose"},

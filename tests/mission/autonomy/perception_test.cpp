@@ -143,6 +143,25 @@ TEST(GroundGrid, ErrorsOfTheEstimatesHeightNeverMatter) {
 }
 
 // A fix moves the estimate by 2 m: what was seen stays where it stands, and the route moves.
+// 2026-11-27: a filter had a standing vehicle drive at 0.7 m/s, and what its LIDAR could not see any more moved on.
+TEST(LocalFrame, AWheelKeepsItWhereItIs) {
+  LocalFrame frame;
+  NavEstimate estimate;
+  estimate.X_WB.R = rotation_from({0.5 * kPi, 0.0, 0.0});
+  for (int k = 0; k <= 100; ++k) {
+    estimate.t = GpsTime{} + 0.1 * k;
+    estimate.v_WB_W = {0.3, 0.7, 0.0};
+    // It stands for five seconds, and then goes back by 0.02 m each time.
+    frame.follow(estimate, false, LocalFrame::Counted{k > 50 ? -0.02 : 0.0, k > 50 ? -0.2 : 0.0});
+    if (k == 50) {
+      EXPECT_EQ(frame.body().p_m, Eigen::Vector2d(0.0, 0.0));
+    }
+  }
+  EXPECT_LT((frame.body().p_m - Eigen::Vector2d(0.0, -1.0)).norm(), 1e-12);
+  EXPECT_EQ(frame.speed_m_s(), -0.2);
+  EXPECT_NEAR(frame.driven_m(), 1.0, 1e-12);
+}
+
 TEST(LocalFrame, AJumpOfTheEstimateDoesNotMoveIt) {
   LocalFrame frame;
   NavEstimate estimate;

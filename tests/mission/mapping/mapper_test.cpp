@@ -326,6 +326,54 @@ TEST_F(MapperTest, TheFiltersCovarianceIsMovedToTheLidar) {
   EXPECT_LT(so3_log(keyframe->X_WL_registered.R.conjugate() * expected.R).norm(), 1e-12);
 }
 
+// A map that was there before says z, the filter y: one axis by hand. The map's own error, the same from one keyframe
+// to the next, counts as much as the way since the last one is short.
+TEST_F(MapperTest, APriorMapIsWeighedWithWhatWasKnownBefore) {
+  config_.alignment_floor_m = 0.02;
+  config_.prior_map_sigma_m = 0.1;
+  config_.prior_map_correlation_m = 50.0;
+  script_.error = at(0.3);
+  Mapper mapper(config_, std::make_unique<ScriptedRegistration>(script_), at(0),
+                std::make_shared<lidar::PreparedCloud>());
+  const double surfaces = 1e-4 + 4e-4, y = 0.04;
+  script_.result.surfaces = {at(0.3), script_.result.covariance};
+  Keyframe keyframe = *offer(mapper, 0.0, at(7));
+  // The map lies where the keyframe is taken to be, seen from there.
+  ASSERT_EQ(script_.targets_X_TC.size(), 1U);
+  EXPECT_LT((script_.targets_X_TC[0].p - at(-7).p).norm(), 1e-12);
+  EXPECT_NEAR(script_.prior_covariance(3, 3), y, 1e-12);
+  EXPECT_EQ(keyframe.map_status, lidar::RegistrationStatus::kConverged);
+  const double z = surfaces + 0.01;
+  EXPECT_NEAR(keyframe.X_WL_registered.p.x(), 7.0 + 0.3 * y / (y + z), 1e-12);
+  EXPECT_NEAR(keyframe.covariance(3, 3), y * z / (y + z), 1e-12);
+  ASSERT_TRUE(keyframe.in_map);
+  EXPECT_NEAR(keyframe.in_map->X_WB.p.x(), 7.3, 1e-12);
+  EXPECT_NEAR(keyframe.in_map->covariance(3, 3), z, 1e-12);
+
+  // Five metres on: ten times the map's variance.
+  const Pose before = keyframe.X_WL_registered;
+  script_.result.surfaces.reset();
+  keyframe = *offer(mapper, 100.0, at(12));
+  ASSERT_TRUE(keyframe.in_map);
+  const double way_m = keyframe.in_map->X_WB.p.x() - 0.3 - before.p.x();
+  EXPECT_NEAR(keyframe.in_map->covariance(3, 3), surfaces + 0.01 * 50.0 / way_m, 1e-12);
+  EXPECT_EQ(mapper.counters().found_in_map, 2);
+}
+
+TEST_F(MapperTest, WhereThePriorMapGivesNothingAllStaysAsItWas) {
+  Mapper alone = mapper();
+  Mapper with_map(config_, std::make_unique<ScriptedRegistration>(script_), at(0),
+                  std::make_shared<lidar::PreparedCloud>());
+  script_.result.status = lidar::RegistrationStatus::kTooLittleOverlap;
+  const Keyframe expected = *offer(alone, 0.0, at(7), at(7));
+  const Keyframe keyframe = *offer(with_map, 0.0, at(7), at(7));
+  EXPECT_EQ(keyframe.map_status, lidar::RegistrationStatus::kTooLittleOverlap);
+  EXPECT_FALSE(keyframe.in_map);
+  EXPECT_EQ(keyframe.X_WL_registered.p, expected.X_WL_registered.p);
+  EXPECT_EQ(keyframe.covariance, expected.covariance);
+  EXPECT_EQ(with_map.counters().found_in_map, 0);
+}
+
 TEST_F(MapperTest, TheCorrectionTakesThePriorToTheRegisteredPose) {
   const Pose X_BL{rotation_from({0.3, 0.1, -0.2}), {0.3, 0.1, 1.8}};
   script_.error = {rotation_from({0.02, 0.01, -0.01}), {0.2, -0.1, 0.05}};
