@@ -18,6 +18,10 @@ ModelTable<EventKind> event_kinds() {
       {"fix_lost", EventKind::kFixLost, "no fix"},
       {"unlikely_fix", EventKind::kUnlikelyFix, "the filter takes a fix whose innovation is beyond its 99.9 % bound"},
       {"overconfident", EventKind::kOverconfident, "the position is off by more than three of the filter's own sigma"},
+      {"map_doubled", EventKind::kMapDoubled,
+       "keyframes less than 10 m apart are placed by errors that differ by more than 0.5 m: what both see stands "
+       "twice"},
+      {"phantom", EventKind::kPhantom, "the autonomy finds no way, where the true body would have one"},
       {"stopped", EventKind::kStopped, "the autonomy stands before something, or sees nothing"},
   };
   return kRows;
@@ -67,8 +71,30 @@ Status RunEvents::epoch(const mission::NavRow& row) {
     const double square = error_B.dot(covariance_B.inverse() * error_B);
     if (square > bound) see(EventKind::kOverconfident, row.t, std::sqrt(square / bound));
   }
+  if (row.phantom) see(EventKind::kPhantom, row.t, 1.0);
   if (row.state == mission::AutonomyState::kBlocked || row.state == mission::AutonomyState::kBlind)
     see(EventKind::kStopped, row.t, 1.0);
+  return Ok{};
+}
+
+Status RunEvents::keyframe(const mission::KeyframeRow& row) {
+  if (!started_) start_ = row.t;
+  started_ = true;
+  const Placed now{row.X_WL_true.p, row.X_WL_registered.p - row.X_WL_true.p};
+  const auto cell = [](double x) { return static_cast<int>(std::floor(x / kSameSurfaces_m)); };
+  const int x = cell(now.p_W.x()), y = cell(now.p_W.y());
+  double apart_m = 0.0;
+  for (int i = x - 1; i <= x + 1; ++i) {
+    for (int j = y - 1; j <= y + 1; ++j) {
+      const auto there = placed_.find({i, j});
+      if (there == placed_.end()) continue;
+      for (const Placed& before : there->second)
+        if ((before.p_W - now.p_W).norm() < kSameSurfaces_m)
+          apart_m = std::max(apart_m, (before.off_W - now.off_W).norm());
+    }
+  }
+  if (apart_m > kDoubled_m) see(EventKind::kMapDoubled, row.t, apart_m);
+  placed_[{x, y}].push_back(now);
   return Ok{};
 }
 
@@ -85,7 +111,7 @@ double chain_start_s(const std::vector<Event>& events, double failed_s) {
   std::vector<Event> by_end = events;
   std::stable_sort(by_end.begin(), by_end.end(), [](const Event& a, const Event& b) { return a.to_s > b.to_s; });
   for (const Event& event : by_end) {
-    if (event.kind == EventKind::kStopped || event.from_s >= failed_s) continue;
+    if (event.kind == EventKind::kStopped || event.kind == EventKind::kPhantom || event.from_s >= failed_s) continue;
     if (event.to_s < start_s - kGap_s) break;
     start_s = std::min(start_s, event.from_s);
   }

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "canyon/core/model_table.h"
 #include "canyon/mission/recorder/recorder.h"
@@ -11,7 +15,16 @@ namespace canyon::study {
 
 /// What may lead to a failure, as seen on one run. A new one is one value here, one row of event_kinds(), and where
 /// RunEvents sees it.
-enum class EventKind { kDilutionJump, kHiddenSignals, kFixLost, kUnlikelyFix, kOverconfident, kStopped };
+enum class EventKind {
+  kDilutionJump,
+  kHiddenSignals,
+  kFixLost,
+  kUnlikelyFix,
+  kOverconfident,
+  kMapDoubled,
+  kPhantom,
+  kStopped
+};
 /// Name in results, and what it is.
 ModelTable<EventKind> event_kinds();
 
@@ -20,7 +33,7 @@ struct Event {
   EventKind kind = EventKind::kDilutionJump;
   double from_s = 0.0, to_s = 0.0;
   double size = 0.0;  ///< the largest of it: change of GDOP; hidden signals tracked; fixes lost; NIS over its 99.9 %
-                      ///< bound; position error over its own 3 sigma; commands asking to stand, as a share: 1
+                      ///< bound; position error over its own 3 sigma; m between the two copies; epochs: 1
 };
 
 /// Sees a run's events as it goes. Two of a kind that are less than kEventGap_s apart are one.
@@ -28,6 +41,7 @@ class RunEvents final : public mission::Recorder {
  public:
   Status gnss(const mission::GnssRow& row) override;
   Status epoch(const mission::NavRow& row) override;
+  Status keyframe(const mission::KeyframeRow& row) override;
 
   /// By time of their beginning.
   std::vector<Event> events() const;
@@ -35,16 +49,25 @@ class RunEvents final : public mission::Recorder {
  private:
   void see(EventKind kind, GpsTime t, double size);
 
+  /// Where keyframes truly were, and how far off they were placed.
+  struct Placed {
+    Eigen::Vector3d p_W, off_W;
+  };
+
   std::vector<Event> events_;
+  std::map<std::pair<int, int>, std::vector<Placed>> placed_;  ///< by cells of kSameSurfaces_m
   bool started_ = false, had_fix_ = true;
   GpsTime start_;
   double last_gdop_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 inline constexpr double kEventGap_s = 2.0;
+/// Keyframes so near one another meet the same surfaces, which stand twice in a map that places them so differently.
+inline constexpr double kSameSurfaces_m = 10.0, kDoubled_m = 0.5;
 
 /// The beginning of the last chain of events before a failure: from it backwards, as long as no gap of over 10 s parts
-/// one from the next, and at most 60 s. Standing still is no part of it: it follows from others. `failed_s` without
+/// one from the next, and at most 60 s. Standing still, before what there is or is
+/// not, is no part of it: it follows from others. `failed_s` without
 /// any: 10 s before it.
 double chain_start_s(const std::vector<Event>& events, double failed_s);
 

@@ -33,6 +33,10 @@ std::string words(const Event& event) {
       return std::string("the filter takes fixes whose innovation is up to ") + size + " times its 99.9 % bound";
     case EventKind::kOverconfident:
       return std::string("the position is off by up to ") + size + " times what the filter thinks possible (3 sigma)";
+    case EventKind::kMapDoubled:
+      return std::string("the map has the same surfaces up to ") + size + " m apart";
+    case EventKind::kPhantom:
+      return "the autonomy finds no way, and there is one";
     case EventKind::kStopped:
       return "the autonomy stands";
   }

@@ -54,6 +54,44 @@ TEST(RunEvents, OneIsOverconfidentBeyondTheEllipsoidOf3Sigma) {
   EXPECT_NEAR(events.events()[0].size, 3.8 / 3.7636, 1e-3);
 }
 
+mission::KeyframeRow keyframe_at(double t_s, double x_m, const Eigen::Vector3d& off_W) {
+  mission::KeyframeRow row;
+  row.t = GpsTime{} + t_s;
+  row.X_WL_true.p = {x_m, 0.0, 2.0};
+  row.X_WL_registered.p = row.X_WL_true.p + off_W;
+  return row;
+}
+
+// The map's error may wander with the way; what counts is that the same place has two.
+TEST(RunEvents, AMapIsDoubledWhereTheSamePlaceIsPutTwice) {
+  RunEvents events;
+  for (int k = 0; k < 50; ++k) ASSERT_TRUE(events.keyframe(keyframe_at(k, 2.0 * k, {0.04 * k, 0, 0})).ok());
+  EXPECT_TRUE(events.events().empty()) << "10 m on the error has changed by 0.2 m";
+  ASSERT_TRUE(events.keyframe(keyframe_at(60.0, 98.0, {1.96, 0.0, 0.45})).ok());
+  EXPECT_TRUE(events.events().empty());
+  ASSERT_TRUE(events.keyframe(keyframe_at(63.0, 9.0, {1.96, 0.0, 0.0})).ok());
+  ASSERT_EQ(events.events().size(), 1u);
+  EXPECT_EQ(events.events()[0].kind, EventKind::kMapDoubled);
+  EXPECT_EQ(events.events()[0].from_s, 63.0);
+  EXPECT_NEAR(events.events()[0].size, 1.96, 1e-12) << "of the keyframe at 0 m";
+}
+
+TEST(RunEvents, APhantomIsSeenAndIsNoBeginningOfAChain) {
+  RunEvents events;
+  for (int k = 0; k < 20; ++k) {
+    mission::NavRow row;
+    row.t = GpsTime{} + 0.5 * k;
+    row.state = mission::AutonomyState::kDriving;
+    row.phantom = k >= 8 && k < 12;
+    ASSERT_TRUE(events.epoch(row).ok());
+  }
+  ASSERT_EQ(events.events().size(), 1u);
+  EXPECT_EQ(events.events()[0].kind, EventKind::kPhantom);
+  EXPECT_EQ(events.events()[0].from_s, 4.0);
+  EXPECT_EQ(events.events()[0].to_s, 5.5);
+  EXPECT_EQ(chain_start_s(events.events(), 30.0), 20.0);
+}
+
 TEST(ChainStart, GoesBackOverGapsOfTenSecondsAndNoFurtherThanAMinute) {
   const auto event = [](double from_s, double to_s, EventKind kind = EventKind::kFixLost) {
     return Event{kind, from_s, to_s, 1.0};
