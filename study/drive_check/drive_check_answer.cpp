@@ -7,6 +7,7 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/core/units.h"
 #include "canyon/study/drive_check/drive_check.h"
+#include "canyon/study/drive_check/drive_distributions.h"
 
 namespace canyon::study {
 namespace {
@@ -120,6 +121,8 @@ Json drive_check_json(const DriveCheck& check) {
            {"measured", side_json(check.measured.figures)},
            {"figures", Json::array()}};
   for (const DriveRow& row : kRows) out["figures"].push_back(Json{{"key", row.key}, {"label", row.label}});
+  out["distributions"] = drive_distributions_json(drive_distributions(check.simulated.epochs, check.simulated.fixes),
+                                                  drive_distributions(check.measured.epochs, check.measured.fixes));
   if (!check.measured.spread.empty()) out["measured_interval"] = spread_json(check.measured.spread);
   if (!check.simulated.spread.empty()) {
     out["simulated_draws"] = spread_json(check.simulated.spread);

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
+#include "canyon/study/drive_check/drive_distributions.h"
 
 namespace canyon::study {
 namespace {
@@ -43,6 +46,27 @@ TEST(DriveFigures, CountsByHandOfTwoEpochs) {
   EXPECT_EQ(f.hidden_positive_share, 0.5);
   EXPECT_EQ(f.hidden_rate_m_s[0], 1.5);
   EXPECT_EQ(f.cn0_in_sight_dbhz[1], 45.0);
+}
+
+TEST(DriveFigures, DistributionsAreWhatTheQuantilesAreOf) {
+  std::vector<DriveEpoch> epochs(2);
+  epochs[0] = {kFiguresStart, {signal(kOne, true, 50.0, -1.0), signal(kTwo, false, 30.0, 40.0, -2.0)}};
+  epochs[1] = {kFiguresStart + 1.0, {signal(kOne, true, 40.0, kNaN), signal(kTwo, false, 41.0, -10.0, 1.0)}};
+  const auto one = drive_distributions(epochs, {{3.0, 0.0}, {}, {1.0, 0.0}});
+  const auto none = drive_distributions({}, {});
+  const Json out = drive_distributions_json(one, none);
+  EXPECT_EQ(out["cn0_in_sight_dbhz"]["simulated"]["count"], 2);
+  EXPECT_EQ(out["in_sight_error_m"]["simulated"]["count"], 1) << "what is no number is not counted";
+  const Json& hidden = out["hidden_error_m"]["simulated"]["percentiles"];
+  ASSERT_EQ(hidden.size(), 101U);
+  for (const int percent : {0, 5, 50, 95, 100})
+    EXPECT_DOUBLE_EQ(hidden[static_cast<std::size_t>(percent)].get<double>(),
+                     drive_quantile({40.0, -10.0}, 0.01 * percent));
+  const Json& fixes = out["fix_horizontal_error_m"]["simulated"]["percentiles"];
+  EXPECT_EQ(fixes[50], 3.0);
+  EXPECT_TRUE(fixes[51].is_null() && fixes[100].is_null()) << "an instant without a fix is the worst";
+  EXPECT_EQ(out["hidden_error_m"]["measured"]["count"], 0);
+  EXPECT_TRUE(out["hidden_error_m"]["measured"]["percentiles"].empty());
 }
 
 // A first-order Gauss-Markov process of 4 s in each of 60 satellites: the estimate is within 4 sigma of exp(-lag / 4
