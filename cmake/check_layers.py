@@ -45,7 +45,7 @@ LIBRARIES = [
     ("oneTBB", r"(tbb|oneapi)/", ["core/*.cpp"]),
     ("OpenSSL", r"openssl/", ["core/*.cpp"]),
     ("zlib", r"zlib\.h", ["core/*.cpp", "report/*.cpp"]),
-    ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp", "scene/*.cpp"]),
+    ("nlohmann-json", r"nlohmann/", ["core/*.cpp", "mission/*.cpp", "study/*.cpp", "report/*.cpp", "apps/*.cpp", "scene/*.cpp", "lidar/*.cpp"]),
     ("CLI11", r"CLI/", ["apps/*.cpp"]),
     ("Ceres", r"ceres/", ["inertial/*ceres_*.cpp", "inertial/*ceres_*.h", "fusion/smoothing/graph/ceres_*.cpp", "fusion/smoothing/pose_graph/ceres_*.cpp"]),
     ("assimp", r"assimp/", ["scene/importers/assimp.cpp"]),

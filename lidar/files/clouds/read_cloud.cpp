@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "canyon/core/files/files.h"
+#include "canyon/lidar/ouster/recording.h"
 #include "canyon/lidar/velodyne/packet.h"
 #include "canyon/lidar/velodyne/packet_reader.h"
 #include "canyon/lidar/velodyne/pcap.h"
@@ -55,7 +56,26 @@ Result<CloudPlaces> read_bin_cloud(const std::string& path, const std::string& b
   return out;
 }
 
+namespace {
+
+Result<CloudPlaces> read_ouster_cloud(const std::string& path, const std::string& metadata_path) {
+  CANYON_TRY(const ouster::Metadata metadata, ouster::read_metadata(metadata_path));
+  CANYON_TRY(const auto frames, ouster::read_frames(path, metadata));
+  // The first one that is whole: a capture may begin within one.
+  const auto whole = std::find_if(frames.begin(), frames.end(), [&metadata](const ouster::Frame& frame) {
+    return frame.columns >= metadata.columns_per_frame;
+  });
+  CloudPlaces out;
+  for (const ouster::Return& r : (whole == frames.end() ? frames.front() : *whole).returns) out.points.push_back(r.p_m);
+  if (out.points.empty()) return Error{path, 0, "", "holds no return", "a cloud of points"};
+  return out;
+}
+
+}  // namespace
+
 Result<CloudPlaces> read_capture_cloud(const std::string& path) {
+  if (const std::string metadata = ouster::metadata_path(path); !metadata.empty())
+    return read_ouster_cloud(path, metadata);
   CANYON_TRY(const velodyne::Capture capture, velodyne::read_pcap(path));
   if (!capture.warning.empty()) return Error{path, 0, "", capture.warning, "a whole capture"};
   CloudPlaces out;
@@ -73,7 +93,8 @@ Result<CloudPlaces> read_capture_cloud(const std::string& path) {
     if (turned_deg >= 360.0) break;
   }
   if (out.points.empty())
-    return Error{path, 0, "", "holds no return of a sensor that is known", "packets of a VLP-16 or HDL-32E"};
+    return Error{path, 0, "", "holds no return of a sensor that is known",
+                 "packets of a VLP-16 or HDL-32E, or of an Ouster sensor with its JSON beside"};
   return out;
 }
 
