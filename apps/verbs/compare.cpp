@@ -31,7 +31,8 @@ VerbAction declare(Arguments& arguments) {
       .within(std::int64_t{2}, std::int64_t{100'000});
   arguments
       .option("--fidelities", options->fidelities,
-              "runs to compare, with commas between: low, high, paper, or the mission file's own; ratios are second "
+              "runs to compare, with commas between: low, paper, high, high_aided, modern, or the mission file's own; "
+              "ratios are second "
               "over first")
       .default_shown();
   arguments.option(

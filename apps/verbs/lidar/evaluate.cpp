@@ -79,7 +79,7 @@ Result<int> run(const Options& options) {
 VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_common(arguments, options->common);
-  arguments.option("map", options->map, "a map in the scene's frame, binary PCD").required().type("MAP.pcd");
+  arguments.option("map", options->map, "a map in the scene's frame: PCD, PLY, LAS or .bin").required().type("MAP");
   declare_lidar_drive(arguments, options->drive);
   arguments.option("--estimate", options->estimate,
                    "estimated poses of the vehicle, compared with --trajectory (TUM, .kitti or .csv)");

@@ -34,8 +34,16 @@ Result<lidar::RegistrationConfig> registration_config(const Options& o) {
                     "\nmax_iterations = " + std::to_string(o.iterations) + "\n";
   CANYON_TRY(const auto node, ConfigNode::parse(text, "options"));
   lidar::RegistrationConfig config;
-  CANYON_TRY_STATUS(read_config(&node, "registration", config));
-  return config;
+  const Status read = read_config(&node, "registration", config);
+  if (read) return config;
+  Error error = read.error();
+  for (const char* name : {"method", "covariance", "kernel"}) {
+    if (error.key != std::string("registration.") + name) continue;
+    error.file = std::string("--") + name;
+    error.line = 0;
+    error.key.clear();
+  }
+  return error;
 }
 
 Result<lidar::PosePrior> prior_of(const Options& o) {

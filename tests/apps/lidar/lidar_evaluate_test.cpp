@@ -99,7 +99,7 @@ TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {
   write("given_empty.pcd", pcd({}));
   EXPECT_EQ(canyon("lidar evaluate given_missing.pcd --scene given.obj"), 2);
   EXPECT_EQ(canyon("lidar evaluate given.txt --scene given.obj"), 2);
-  refused("given_empty.pcd --scene given.obj", "given_empty.pcd: holds no finite point, expected a map");
+  refused("given_empty.pcd --scene given.obj", "given_empty.pcd: holds no points, expected a cloud of points");
   refused("given.pcd --scene given.obj --estimate given.txt",
           "command line: --estimate without the true way, expected --trajectory FILE");
   EXPECT_EQ(canyon("lidar error-budget mission.toml --fidelity hihg"), 2);
