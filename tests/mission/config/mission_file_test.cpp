@@ -98,7 +98,8 @@ TEST(MissionFileMessages, MalformedToml) {
 
 TEST(MissionFileMessages, UnknownBase) {
   EXPECT_EQ(message("base = \"atlantis\"\n"),
-            "my.toml:1: base: string \"atlantis\" is not a built-in mission, expected one of first_stop, vicksburg");
+            "my.toml:1: base: string \"atlantis\" is not a built-in mission, expected one of first_corner, first_stop, "
+            "vicksburg");
 }
 
 // 2026-11-22: each of these ran.
