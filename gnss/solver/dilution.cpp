@@ -15,7 +15,10 @@ Dop from_design(const Eigen::MatrixXd& H, bool clock) {
   // Singular values instead of the normal equations: these would lose half the digits, and coplanar geometries their
   // GDOP.
   const SingularValues svd(H);
-  const Eigen::MatrixXd scaled = svd.V * svd.values.cwiseInverse().asDiagonal();
+  // One that is rounding is 0: a dilution of 1e16 is no number of anything.
+  const double rounding = static_cast<double>(H.rows()) * std::numeric_limits<double>::epsilon() * svd.values(0);
+  const Eigen::VectorXd values = (svd.values.array() > rounding).select(svd.values, 0.0);
+  const Eigen::MatrixXd scaled = svd.V * values.cwiseInverse().asDiagonal();
   // A singular value of 0 exactly: what has no part in its direction comes out as 0 * infinity.
   const auto infinite = [](double v) { return std::isnan(v) ? std::numeric_limits<double>::infinity() : v; };
   const Eigen::VectorXd variance = scaled.rowwise().squaredNorm().unaryExpr(infinite);

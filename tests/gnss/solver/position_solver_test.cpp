@@ -1,11 +1,13 @@
 #include "canyon/gnss/solver/position_solver.h"
 
 #include <cmath>
+#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "canyon/core/earth/earth.h"
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/tests/gnss/solver/solver_sky.h"
@@ -236,6 +238,20 @@ TEST(Dop, ClosedForm) {
     EXPECT_NEAR(dop.tdop, std::sqrt((1.0 + 3.0 * s * s) / det), 1e-11);
     EXPECT_NEAR(dop.pdop, std::hypot(dop.hdop, dop.vdop), 1e-12);
     EXPECT_NEAR(dop.gdop, std::hypot(dop.pdop, dop.tdop), 1e-12);
+  }
+}
+
+// 2026-11-27: four satellites of one system and one of another, two of them in one place in the sky, had a GDOP of 2e16
+// and not none; twenty runs were lost to it when their largest could not be read back from the results.
+TEST(Dop, OfNoGeometryIsNoNumber) {
+  for (const double turn_deg : {0.0, 17.0, 123.0}) {
+    const Eigen::Matrix3d R = so3_exp({0.3 * turn_deg * kDegree, 0.1, turn_deg * kDegree}).toRotationMatrix();
+    const Eigen::Vector3d up = R * Eigen::Vector3d(0.3, 0.2, 0.9).normalized();
+    const std::vector<Eigen::Vector3d> lines{up, R * Eigen::Vector3d(0.8, 0.0, 0.6), R * Eigen::Vector3d(0.0, 0.8, 0.6),
+                                             up, R * Eigen::Vector3d(-0.6, 0.0, 0.8)};
+    const std::vector<GnssSystem> systems{GnssSystem::kGps, GnssSystem::kGps, GnssSystem::kGps, GnssSystem::kGps,
+                                          GnssSystem::kGlonass};
+    EXPECT_EQ(dilution_of_precision(lines, systems, R).gdop, std::numeric_limits<double>::infinity()) << turn_deg;
   }
 }
 
