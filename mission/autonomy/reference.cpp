@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "canyon/mission/autonomy/perception/local_frame.h"
 #include "canyon/mission/autonomy/route_driver.h"
@@ -32,12 +33,15 @@ class Reference final : public Autonomy {
         speed_(part(own.speed.model)),
         recovery_(part(own.recovery.model)),
         self_check_(model_row(self_checks(), own.self_check.model.name).make.make(own.self_check.model.own)) {
-    if (own.memory_by == "wheel") counted_.emplace();
+    if (own.memory_by == "wheel") wheel_.emplace(Wheel{.t = start});
   }
 
   void count(const OdometerSample& sample) override {
     self_check_->count(sample);
-    if (counted_) *counted_ = {counted_->way_m + sample.speed_m_s * sample.dt_s, sample.speed_m_s};
+    if (!wheel_) return;
+    wheel_->way_m += sample.speed_m_s * sample.dt_s;
+    wheel_->speed_m_s = sample.speed_m_s;
+    wheel_->t = sample.t;
   }
 
   void see(const LidarScan& scan, const Pose& X_WL, const NavEstimate& estimate) override {
@@ -58,8 +62,7 @@ class Reference final : public Autonomy {
 
   DriveCommand drive(const NavEstimate& estimate) override {
     const bool stands = driver_.update(estimate);
-    frame_.follow(estimate, estimate.t - standing_since_ > halting_s(), counted_);
-    if (counted_) counted_->way_m = 0.0;
+    frame_.follow(estimate, estimate.t - standing_since_ > halting_s(), counted(estimate.t));
     const DriveCommand command = decide(estimate.t, stands);
     steering_rad_ = steered_rad(steering_rad_, command.curvature_1_m, estimate.t - last_drive_, vehicle_);
     last_drive_ = estimate.t;
@@ -73,6 +76,13 @@ class Reference final : public Autonomy {
  private:
   /// After so long without being asked to go, it stands.
   double halting_s() const { return config_.cruise_m_s / vehicle_.max_deceleration_m_s2 + 1.0; }
+
+  std::optional<LocalFrame::Counted> counted(GpsTime t) {
+    if (!wheel_) return std::nullopt;
+    const double now_m = wheel_->way_m + (t - wheel_->t) * wheel_->speed_m_s;
+    return LocalFrame::Counted{now_m - std::exchange(wheel_->told_m, now_m), wheel_->speed_m_s,
+                               vehicle_.counted_wheel_left_m};
+  }
 
   MovingBody moving() const { return {frame_.body(), frame_.speed_m_s(), steering_rad_}; }
 
@@ -151,7 +161,13 @@ class Reference final : public Autonomy {
   GpsTime last_drive_ = start_;
   RouteDriver driver_;
   LocalFrame frame_;
-  std::optional<LocalFrame::Counted> counted_;  ///< since the frame last followed; none: it goes by the estimate
+  /// What the odometer has counted; none: the frame goes by the estimate.
+  struct Wheel {
+    GpsTime t;  ///< of its last sample
+    double way_m = 0.0, speed_m_s = 0.0;
+    double told_m = 0.0;  ///< of that way, and of what has been reckoned on from it, to the frame
+  };
+  std::optional<Wheel> wheel_;
   std::unique_ptr<Perception> perception_;
   std::unique_ptr<LaneReference> lane_;
   std::unique_ptr<LocalPlanner> planner_;

@@ -67,7 +67,7 @@ void visit(FieldVisitor& f, MissionConfig& c) {
   f.group("gnss", c.gnss, "the GNSS receiver and its errors");
   f.group("imu", c.imu, "the inertial sensor and its errors");
   f.group("odometer", c.odometer,
-          "the wheel's encoder, where the filter measures with one or the autonomy checks itself by it");
+          "the wheel's encoder, where the filter measures with one or the autonomy goes or checks itself by it");
   f.group("barometer", c.barometer, "static pressure at the IMU, where the filter measures with it");
   f.group("magnetometer", c.magnetometer, "the Earth's field along the IMU's axes, where the filter measures with it");
   f.group("lidar", c.lidar, "the LIDAR");

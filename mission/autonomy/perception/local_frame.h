@@ -14,9 +14,10 @@ namespace canyon::mission {
 /// that tells the way instead: an estimated speed that is wrong moves what is remembered.
 class LocalFrame {
  public:
-  /// By a wheel: since the last call, and now; negative in reverse.
+  /// By a wheel: since the last call, and now; negative in reverse. It rolls beside B's axis.
   struct Counted {
     double way_m = 0.0, speed_m_s = 0.0;
+    double left_m = 0.0;  ///< how far to the left of it
   };
   /// Once the estimate is of another time than the last; `stands`: the autonomy has it stopped for long enough.
   void follow(const NavEstimate& estimate, bool stands, const std::optional<Counted>& counted = {});

@@ -142,7 +142,6 @@ TEST(GroundGrid, ErrorsOfTheEstimatesHeightNeverMatter) {
     EXPECT_EQ(drifting.blocked().all()[i], steady.blocked().all()[i]);
 }
 
-// A fix moves the estimate by 2 m: what was seen stays where it stands, and the route moves.
 // 2026-11-27: a filter had a standing vehicle drive at 0.7 m/s, and what its LIDAR could not see any more moved on.
 TEST(LocalFrame, AWheelKeepsItWhereItIs) {
   LocalFrame frame;
@@ -162,6 +161,24 @@ TEST(LocalFrame, AWheelKeepsItWhereItIs) {
   EXPECT_NEAR(frame.driven_m(), 1.0, 1e-12);
 }
 
+// A quarter turn to the left about a point 5 m off: a wheel 0.8 m to the left goes 4.2 / 5 of B's way.
+TEST(LocalFrame, AWheelBesideTheAxisGoesAnotherWay) {
+  LocalFrame frame;
+  NavEstimate estimate;
+  constexpr int kSteps = 900;
+  const double step_rad = 0.5 * kPi / kSteps;
+  for (int k = 0; k <= kSteps; ++k) {
+    estimate.t = GpsTime{} + 0.01 * k;
+    estimate.X_WB.R = rotation_from({step_rad * k, 0.0, 0.0});
+    frame.follow(estimate, false, LocalFrame::Counted{k > 0 ? 4.2 * step_rad : 0.0, 420.0 * step_rad, 0.8});
+  }
+  // To the left end of each step's chord: first order of its angle.
+  EXPECT_LT((frame.body().p_m - Eigen::Vector2d(5.0, 5.0)).norm(), 5.0 * step_rad);
+  EXPECT_NEAR(frame.driven_m(), 2.5 * kPi, 1e-9);
+  EXPECT_NEAR(frame.speed_m_s(), 500.0 * step_rad, 1e-9);
+}
+
+// A fix moves the estimate by 2 m: what was seen stays where it stands, and the route moves.
 TEST(LocalFrame, AJumpOfTheEstimateDoesNotMoveIt) {
   LocalFrame frame;
   NavEstimate estimate;
