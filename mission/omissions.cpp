@@ -13,7 +13,10 @@ bool can_leave_out(const MissionConfig& config, const Omissions& omissions) {
 
 MissionConfig without(MissionConfig config, const Omissions& omissions) {
   CANYON_CHECK(can_leave_out(config, omissions), "what is left out is read");
-  if (omissions.registration) config.registration.method.name = "none";
+  if (omissions.registration) {
+    config.registration.method.name = "none";
+    config.registration.prior_map.clear();
+  }
   return config;
 }
 

@@ -93,7 +93,7 @@ Result<std::unique_ptr<Registration>> make_registration(const RegistrationConfig
 Result<std::shared_ptr<const PreparedCloud>> make_prior_map(const RegistrationConfig& config,
                                                             const Registration& registration) {
   if (config.prior_map.empty()) return std::shared_ptr<const PreparedCloud>();
-  CANYON_TRY(const ReadMap map, read_map(config.prior_map));
+  CANYON_TRY(const ReadMap map, read_prior_map(config.prior_map));
   return registration.prepare(map.points);
 }
 

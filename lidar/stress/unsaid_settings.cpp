@@ -43,7 +43,8 @@ StressFigure unsaid_settings() {
                R"("covariance":"calibrated","point_sigma_m":0.02,"range_bias_m":0.01,"least_overlap":0.2,)"
                R"("submap_keyframes":10,"keyframe_distance_m":2.0,"keyframe_angle_deg":10.0,)"
                R"("alignment_floor_m":0.02,"alignment_floor_deg":0.05,"motion_floor_m_s":0.5,)"
-               R"("motion_floor_deg_s":0.1,"prior_correlation_s":10.0})")
+               R"("motion_floor_deg_s":0.1,"prior_correlation_s":10.0,"prior_map":"","prior_map_sigma_m":0.05,)"
+               R"("prior_map_sigma_deg":0.05,"prior_map_correlation_m":50.0})")
                ? 0
                : 1;
   return {1.0 * wrong, 0.0};

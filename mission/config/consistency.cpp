@@ -100,6 +100,10 @@ Status check_prior_map(const MissionConfig& config) {
     return Error{.key = "fusion.measurements",
                  .what = "\"map_pose\" is the pose in a map that was there before, and there is none",
                  .expected = "a registration.prior_map"};
+  if (fusion::measures_with(config.fusion, "map_pose") && config.autonomy.map == MapPose::kRegistered)
+    return Error{.key = "autonomy.map, fusion.measurements",
+                 .what = "the filter has \"map_pose\", and the registered map would move its estimate once more",
+                 .expected = "autonomy.map = \"prior\", or measurements without it"};
   return Ok{};
 }
 

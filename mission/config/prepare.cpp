@@ -32,6 +32,7 @@ Status plan(const MissionConfig& config, const scene::Site& site, PreparedMissio
   CANYON_TRY_STATUS(check_places(config, site));
   CANYON_TRY(mission.prior, plan_route(config.autonomy, site.streets, config.vehicle.start_m));
   mission.prior.vehicle = known_vehicle(config.vehicle);
+  mission.prior.vehicle.counted_wheel_left_m = config.odometer.wheel_m.y();
   CANYON_TRY_STATUS(check_route(config, mission.prior));
   std::vector<double> stops{mission.prior.route.length_m()};
   double holds_s = 0.0;
@@ -59,8 +60,8 @@ Status check_sensors(const MissionConfig& config, const PreparedMission& mission
   CANYON_TRY_STATUS(inertial::make_imu(config.imu, seed, scene.frame()));
   CANYON_TRY_STATUS(noise_told_to_filter(config));
   CANYON_TRY_STATUS(lidar::make_scanner(config.lidar, seed));
-  CANYON_TRY(const auto registration, lidar::make_registration(config.registration));
-  if (!config.registration.prior_map.empty()) CANYON_TRY_STATUS(lidar::read_map(config.registration.prior_map));
+  CANYON_TRY_STATUS(lidar::make_registration(config.registration));
+  if (!config.registration.prior_map.empty()) CANYON_TRY_STATUS(lidar::read_prior_map(config.registration.prior_map));
   return Ok{};
 }
 

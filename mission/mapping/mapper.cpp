@@ -102,7 +102,6 @@ Mapper::Alignment Mapper::aligned(const lidar::PreparedCloud& cloud,
                                   std::span<const lidar::Registration::Placed> targets, const lidar::PosePrior& given,
                                   const Matrix6d& floor) {
   lidar::RegistrationResult result = registration_->align_with_prior(cloud, targets, given);
-  ++counters_.alignments;
   counters_.iterations += result.iterations;
   counters_.correspondences += result.correspondences;
   counters_.pcl_objects += result.pcl_objects;
@@ -124,6 +123,7 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
   for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LO * placed.X_OL});
   const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
   const auto [result, alone] = aligned(cloud, targets, predicted, floor);
+  ++counters_.alignments;
   keyframe.status = result.status;
   keyframe.iterations = result.iterations;
   keyframe.rms_m = result.rms_m;
@@ -140,7 +140,7 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
 }
 
 void Mapper::find_in_map(const lidar::PreparedCloud& cloud, Keyframe& keyframe) {
-  // In the frame of where the keyframe is taken to be, where numbers stay small.
+  // In the frame of where the keyframe is taken to be, so that the prior is no turn and no way.
   const Pose X_WL = keyframe.X_WL_registered;
   const lidar::Registration::Placed map{prior_map_, X_WL.inverse()};
   constexpr double kLeast_m = 0.1;
@@ -152,6 +152,11 @@ void Mapper::find_in_map(const lidar::PreparedCloud& cloud, Keyframe& keyframe) 
   const auto [result, alone] = aligned(cloud, {&map, 1}, known, floor);
   keyframe.map_status = result.status;
   if (result.status != lidar::RegistrationStatus::kConverged) return;
+  // Methods that make no use of the prior do not look whether they contradict it.
+  if (!agree(alone, known)) {
+    keyframe.map_status = lidar::RegistrationStatus::kBeyondPrior;
+    return;
+  }
   ++counters_.found_in_map;
   const Pose X_LB = X_BL_.inverse();
   keyframe.in_map =

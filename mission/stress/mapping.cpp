@@ -199,6 +199,66 @@ StressFigure keyframes(const std::string& kind) {
   return looks.figure();
 }
 
+/// Keyframes in a map that was there before: what it says, with its own error as alike as the way is short, weighed
+/// with what was known, and alone for the filter. Conditioning as above.
+StressFigure in_prior_map(bool surfaces) {
+  Looks looks;
+  lidar::RegistrationConfig config;
+  config.method.name = "gicp";
+  Told told;
+  told.answer.status = lidar::RegistrationStatus::kConverged;
+  told.answer.covariance = spread_of(3, 1e-3, 0.01);
+  if (surfaces) told.answer.surfaces = lidar::RegistrationResult::Surfaces{{}, spread_of(4, 2e-3, 0.02)};
+  told.off = Pose::exp((Vector6d() << -1e-3, 2e-3, 1e-3, -0.02, 0.03, 0.01).finished());
+  const Pose X_BL{rotation_from({.yaw_rad = -0.3, .pitch_rad = 0.05, .roll_rad = 0.02}), {0.4, 0.2, 1.7}};
+  Mapper mapper(config, std::make_unique<ToldRegistration>(told), X_BL, std::make_shared<lidar::PreparedCloud>());
+  const GpsTime start = GpsTime::from_week_sow(1600, 10.0);
+  Pose before;
+  const auto alike = [&](const Pose& a, const Pose& b, double bound) {
+    looks.near((a.p - b.p).norm(), 0.0, bound);
+    looks.near((a.R.toRotationMatrix() - b.R.toRotationMatrix()).norm(), 0.0, bound);
+  };
+  const auto same = [&](const Matrix6d& a, const Matrix6d& b) { looks.near((a - b).norm() / b.norm(), 0.0, 1e-9); };
+  for (int k = 0; k < 6; ++k) {
+    NavEstimate estimate;
+    estimate.t = start + 0.8 * k;
+    // Once it turns where it stands, and once it goes farther than the map's error stays alike.
+    estimate.X_WB = {rotation_from({.yaw_rad = 0.3 * k, .pitch_rad = 0.01, .roll_rad = 0.02}),
+                     {k < 3    ? 3.0 * k
+                      : k == 3 ? 6.0
+                               : 70.0 + 3.0 * k,
+                      0.2 * k, 0.0}};
+    estimate.pose_covariance = spread_of(40 + static_cast<std::uint64_t>(k), 5e-3, 0.2);
+    LidarScan scan;
+    scan.t = estimate.t;
+    scan.points.resize(5);
+    const Keyframe* found = mapper.offer(scan, estimate, {scan.t, scan.t, Pose{}, spread_of(50, 2e-3, 0.03)});
+    if (found == nullptr || !found->in_map || told.targets.size() != 1) return {kInfinity, 1.0};
+    const Pose known = told.targets[0].inverse();
+    alike(told.asked.X_TS, Pose{}, 1e-15);
+    if (k == 0) {
+      alike(known, estimate.X_WB * X_BL, 1e-12);
+      same(told.asked.covariance, in_frame(estimate.pose_covariance, X_BL));
+    }
+    const double way_m = (known.p - before.p).norm();
+    const double times = k == 0 || way_m > 50.0 ? 1.0 : 50.0 / (way_m > 0.1 ? way_m : 0.1);
+    const Matrix6d floor = floors(config.alignment_floor_deg, config.alignment_floor_m) +
+                           times * floors(config.prior_map_sigma_deg, config.prior_map_sigma_m);
+    const lidar::PosePrior alone = surfaces ? lidar::PosePrior{told.off * Pose::exp(Vector6d::Constant(2e-3)),
+                                                               told.answer.surfaces->covariance + floor}
+                                            : lidar::PosePrior{told.off, told.answer.covariance + floor};
+    const lidar::PosePrior fused = surfaces ? both_of({Pose{}, told.asked.covariance}, alone) : alone;
+    alike(found->X_WL_registered, known * fused.X_TS, 1e-9);
+    same(found->covariance, fused.covariance);
+    alike(found->in_map->X_WB, known * alone.X_TS * X_BL.inverse(), 1e-9);
+    same(found->in_map->covariance, in_frame(alone.covariance, X_BL.inverse()));
+    looks.right(found->in_map->t == scan.t && found->map_status == lidar::RegistrationStatus::kConverged);
+    before = found->X_WL_registered;
+  }
+  looks.right(mapper.counters().found_in_map == 6 && mapper.counters().alignments == 5);
+  return looks.figure();
+}
+
 }  // namespace
 
 std::vector<StressCase> mapping_cases() {
@@ -211,6 +271,9 @@ std::vector<StressCase> mapping_cases() {
        .unit = "of the bound"});
   for (const char* kind : {"converged", "surfaces", "failed"})
     rows.add(std::string("mapping/keyframes_") + kind, [name = std::string(kind)] { return keyframes(name); });
+  rows.add("mapping/in_a_prior_map", [] { return in_prior_map(false); }).add("mapping/in_a_prior_map_by_surfaces", [] {
+    return in_prior_map(true);
+  });
   return rows.take();
 }
 

@@ -105,6 +105,10 @@ TEST_F(PriorMap, WhatContradictsItself) {
                         "none, expected a registration.prior_map"));
   EXPECT_THAT(refusal("[registration]\nmethod = \"gicp\"\nprior_map = \"none.pcd\"\n"),
               HasSubstr("registration.prior_map: \"none.pcd\" cannot be read (No such file or directory)"));
+  EXPECT_THAT(refusal(onto_map() + "[autonomy]\nmap = \"registered\"\n[fusion]\nmeasurements = [\"position\", "
+                                   "\"map_pose\"]\n"),
+              HasSubstr("autonomy.map, fusion.measurements: the filter has \"map_pose\", and the registered map would "
+                        "move its estimate once more, expected autonomy.map = \"prior\", or measurements without it"));
   const std::string broken = folder_.file("broken.pcd");
   std::ofstream(broken) << "VERSION 0.7\n";
   EXPECT_THAT(refusal("[registration]\nmethod = \"gicp\"\nprior_map = \"" + broken + "\"\n"), HasSubstr(broken));
