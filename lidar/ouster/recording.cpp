@@ -21,10 +21,12 @@ namespace {
 constexpr std::size_t kPacketHeader = 32, kPacketFooter = 32, kColumnHeader = 12, kPixel = 4;
 constexpr double kRangeStep_m = 0.008;
 
-/// A section as firmware 2 has it, or the same keys at the top.
-const nlohmann::json* find(const nlohmann::json& document, const char* section, const char* key) {
-  for (const nlohmann::json* in : {document.contains(section) ? &document[section] : nullptr, &document})
-    if (in != nullptr && in->is_object() && in->contains(key)) return &(*in)[key];
+/// In whatever section it stands: firmware and recorders differ in these, and in whether there are any.
+const nlohmann::json* find(const nlohmann::json& document, const char* key) {
+  if (!document.is_object()) return nullptr;
+  if (document.contains(key)) return &document[key];
+  for (const nlohmann::json& section : document)
+    if (section.is_object() && section.contains(key)) return &section[key];
   return nullptr;
 }
 
@@ -79,11 +81,10 @@ Result<Metadata> read_metadata(const std::string& path) {
     return Error{path, 0, key, "is missing or wrong", expected};
   };
   Metadata out;
-  if (const auto* profile = find(document, "data_format", "udp_profile_lidar");
-      profile == nullptr || *profile != "RNG15_RFL8_NIR8")
+  if (const auto* profile = find(document, "udp_profile_lidar"); profile == nullptr || *profile != "RNG15_RFL8_NIR8")
     return missing("udp_profile_lidar", "\"RNG15_RFL8_NIR8\", the low-bandwidth profile");
   const auto count = [&document](const char* key, int most) {
-    const auto* value = find(document, "data_format", key);
+    const auto* value = find(document, key);
     const bool good = value != nullptr && value->is_number_integer() && *value >= 1 && *value <= most;
     return good ? value->get<int>() : 0;
   };
@@ -93,17 +94,15 @@ Result<Metadata> read_metadata(const std::string& path) {
   if (out.columns_per_packet == 0) return missing("columns_per_packet", "a number of columns");
   const auto pixels = static_cast<std::size_t>(count("pixels_per_column", 256));
   if (pixels == 0) return missing("pixels_per_column", "a number of pixels");
-  if (!numbers(find(document, "beam_intrinsics", "beam_altitude_angles"), out.elevation_deg) ||
-      out.elevation_deg.size() != pixels)
+  if (!numbers(find(document, "beam_altitude_angles"), out.elevation_deg) || out.elevation_deg.size() != pixels)
     return missing("beam_altitude_angles", "degrees, one for each pixel of a column");
-  if (!numbers(find(document, "beam_intrinsics", "beam_azimuth_angles"), out.azimuth_deg) ||
-      out.azimuth_deg.size() != pixels)
+  if (!numbers(find(document, "beam_azimuth_angles"), out.azimuth_deg) || out.azimuth_deg.size() != pixels)
     return missing("beam_azimuth_angles", "degrees, one for each pixel of a column");
-  const auto* out_mm = find(document, "beam_intrinsics", "lidar_origin_to_beam_origin_mm");
+  const auto* out_mm = find(document, "lidar_origin_to_beam_origin_mm");
   if (out_mm == nullptr || !out_mm->is_number()) return missing("lidar_origin_to_beam_origin_mm", "millimetres");
   out.origin_out_m = 1e-3 * out_mm->get<double>();
   std::vector<double> T;
-  if (!numbers(find(document, "lidar_intrinsics", "lidar_to_sensor_transform"), T) || T.size() != 16)
+  if (!numbers(find(document, "lidar_to_sensor_transform"), T) || T.size() != 16)
     return missing("lidar_to_sensor_transform", "16 numbers, millimetres");
   for (int i = 0; i < 16; ++i)
     out.lidar_to_sensor(i / 4, i % 4) = T[static_cast<std::size_t>(i)] * (i % 4 == 3 && i < 12 ? 1e-3 : 1.0);
@@ -122,7 +121,10 @@ Result<std::vector<Frame>> read_frames(const std::string& path, const Metadata& 
     const std::string_view bytes = datagram.payload;
     if (bytes.size() != packet_bytes) continue;
     const int id = static_cast<int>(number(bytes, 2, 2));
-    auto frame = std::find_if(frames.begin(), frames.end(), [id](const Frame& f) { return f.id == id; });
+    // Among the last few: the number begins anew after 65535.
+    constexpr std::ptrdiff_t kMixed = 4;
+    const auto recent = frames.end() - std::min<std::ptrdiff_t>(kMixed, std::ssize(frames));
+    auto frame = std::find_if(recent, frames.end(), [id](const Frame& f) { return f.id == id; });
     if (frame == frames.end()) frame = frames.insert(frames.end(), Frame{.id = id, .columns = 0, .returns = {}});
     for (std::size_t k = 0; k < columns; ++k) {
       const std::size_t at = kPacketHeader + k * column_bytes;
@@ -153,7 +155,9 @@ std::string metadata_path(const std::string& capture_path) {
   std::string stem = capture.stem().string();
   while (true) {
     const std::filesystem::path candidate = capture.parent_path() / (stem + ".json");
-    if (std::filesystem::exists(candidate)) return candidate.string();
+    // There may be a JSON of something else.
+    const auto text = read_text_file(candidate.string());
+    if (text && text->find("beam_altitude_angles") != std::string::npos) return candidate.string();
     const std::size_t end = stem.rfind('_');
     if (end == std::string::npos) return "";
     stem.resize(end);

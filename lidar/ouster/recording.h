@@ -40,8 +40,8 @@ struct Frame {
 /// left out. Errors: as of read_pcap(), a capture cut off, one without a packet of such a sensor.
 Result<std::vector<Frame>> read_frames(const std::string& path, const Metadata& metadata);
 
-/// The metadata that goes with a capture: "a_b_c.pcap" has "a_b_c.json", else "a_b.json", else "a.json"; "" where none
-/// is there.
+/// The metadata that goes with a capture: "a_b_c.pcap" has "a_b_c.json", else "a_b.json", else "a.json", of those that
+/// tell of such a sensor; "" where none is there.
 std::string metadata_path(const std::string& capture_path);
 
 }  // namespace canyon::lidar::ouster

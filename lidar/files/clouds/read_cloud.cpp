@@ -28,7 +28,8 @@ Result<CloudPlaces> read_known(const std::string& path, const std::string& bytes
   if (bytes.starts_with("LASF")) return read_las_cloud(path, bytes);
   if (is_capture(bytes)) return read_capture_cloud(path);
   if (path.ends_with(".bin")) return read_bin_cloud(path, bytes);
-  return Error{path, 0, "", "is no cloud of a known form", "PCD, PLY, LAS, .bin or a Velodyne capture"};
+  return Error{path, 0, "", "is no cloud of a known form",
+               "PCD, PLY, LAS, .bin or a capture of a Velodyne or Ouster sensor"};
 }
 
 }  // namespace
@@ -61,12 +62,12 @@ namespace {
 Result<CloudPlaces> read_ouster_cloud(const std::string& path, const std::string& metadata_path) {
   CANYON_TRY(const ouster::Metadata metadata, ouster::read_metadata(metadata_path));
   CANYON_TRY(const auto frames, ouster::read_frames(path, metadata));
-  // The first one that is whole: a capture may begin within one.
-  const auto whole = std::find_if(frames.begin(), frames.end(), [&metadata](const ouster::Frame& frame) {
-    return frame.columns >= metadata.columns_per_frame;
-  });
+  // The first that is as full as any: a capture may begin within a turn, and packets may be lost.
+  const auto fullest =
+      std::max_element(frames.begin(), frames.end(),
+                       [](const ouster::Frame& a, const ouster::Frame& b) { return a.columns < b.columns; });
   CloudPlaces out;
-  for (const ouster::Return& r : (whole == frames.end() ? frames.front() : *whole).returns) out.points.push_back(r.p_m);
+  for (const ouster::Return& r : fullest->returns) out.points.push_back(r.p_m);
   if (out.points.empty()) return Error{path, 0, "", "holds no return", "a cloud of points"};
   return out;
 }

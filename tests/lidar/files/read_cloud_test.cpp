@@ -128,8 +128,9 @@ TEST_F(ReadCloud, PcdOfTextAndOfOtherTypes) {
 
 TEST_F(ReadCloud, WhatIsWrongIsSaid) {
   EXPECT_EQ(refusal("a.ply", ""), "a.ply: is empty, expected a cloud of points");
-  EXPECT_EQ(refusal("a.txt", "1 2 3\n"),
-            "a.txt: is no cloud of a known form, expected PCD, PLY, LAS, .bin or a Velodyne capture");
+  EXPECT_EQ(
+      refusal("a.txt", "1 2 3\n"),
+      "a.txt: is no cloud of a known form, expected PCD, PLY, LAS, .bin or a capture of a Velodyne or Ouster sensor");
   EXPECT_EQ(refusal("a.bin", "123"), "a.bin: is 3 bytes long, expected records of 16: x, y, z, intensity");
   EXPECT_EQ(refusal("a.ply", ply_header("ascii", "float") + "1 1 -2 3\n"),
             "a.ply: the file holds 1 points, expected 3 as its header says");
