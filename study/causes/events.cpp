@@ -111,7 +111,9 @@ double chain_start_s(const std::vector<Event>& events, double failed_s) {
   std::vector<Event> by_end = events;
   std::stable_sort(by_end.begin(), by_end.end(), [](const Event& a, const Event& b) { return a.to_s > b.to_s; });
   for (const Event& event : by_end) {
-    if (event.kind == EventKind::kStopped || event.kind == EventKind::kPhantom || event.from_s >= failed_s) continue;
+    const bool follows =
+        event.kind == EventKind::kStopped || event.kind == EventKind::kPhantom || event.kind == EventKind::kMapDoubled;
+    if (follows || event.from_s >= failed_s) continue;
     if (event.to_s < start_s - kGap_s) break;
     start_s = std::min(start_s, event.from_s);
   }

@@ -66,8 +66,8 @@ inline constexpr double kEventGap_s = 2.0;
 inline constexpr double kSameSurfaces_m = 10.0, kDoubled_m = 0.5;
 
 /// The beginning of the last chain of events before a failure: from it backwards, as long as no gap of over 10 s parts
-/// one from the next, and at most 60 s. Standing still, before what there is or is
-/// not, is no part of it: it follows from others. `failed_s` without
+/// one from the next, and at most 60 s. A map that is doubled and standing still, blocked or before a
+/// phantom, are no part of it: they follow from others. `failed_s` without
 /// any: 10 s before it.
 double chain_start_s(const std::vector<Event>& events, double failed_s);
 

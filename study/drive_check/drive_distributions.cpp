@@ -23,18 +23,11 @@ constexpr OfSignals kOfSignals[] = {
     {"hidden_rate_error_m_s", false, &DriveSignal::rate_error_m_s},
 };
 
-Json side_json(const std::vector<double>& sorted) {
+Json side_json(const std::vector<double>& values) {
   Json percentiles = Json::array();
-  const double last = static_cast<double>(sorted.size()) - 1.0;
-  for (int percent = 0; percent <= 100 && !sorted.empty(); ++percent) {
-    const double rank = 0.01 * percent * last;
-    const auto below = static_cast<std::size_t>(rank), above = std::min(below + 1, sorted.size() - 1);
-    const double share = rank - static_cast<double>(below);
-    // Not beside an infinite one that has no share in it.
-    percentiles.push_back(
-        or_null(share > 0.0 ? sorted[below] + share * (sorted[above] - sorted[below]) : sorted[below]));
-  }
-  return Json{{"count", sorted.size()}, {"percentiles", std::move(percentiles)}};
+  for (int percent = 0; percent <= 100 && !values.empty(); ++percent)
+    percentiles.push_back(or_null(drive_quantile(values, 0.01 * percent)));
+  return Json{{"count", values.size()}, {"percentiles", std::move(percentiles)}};
 }
 
 }  // namespace

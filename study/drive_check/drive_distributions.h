@@ -18,8 +18,8 @@ struct DriveDistribution {
 std::vector<DriveDistribution> drive_distributions(const std::vector<DriveEpoch>& epochs,
                                                    const std::vector<DriveFix>& fixes);
 
-/// By key: how many values each side has, and their percentiles 0 to 100, linear between ranks; null where infinite or
-/// of none.
+/// By key: how many values each side has, and their percentiles 0 to 100, linear between ranks; null where infinite,
+/// and no percentiles of none.
 Json drive_distributions_json(const std::vector<DriveDistribution>& simulated,
                               const std::vector<DriveDistribution>& measured);
 
