@@ -218,7 +218,7 @@ StressFigure in_prior_map(bool surfaces) {
     looks.near((a.p - b.p).norm(), 0.0, bound);
     looks.near((a.R.toRotationMatrix() - b.R.toRotationMatrix()).norm(), 0.0, bound);
   };
-  const auto same = [&](const Matrix6d& a, const Matrix6d& b) { looks.near((a - b).norm() / b.norm(), 0.0, 1e-9); };
+  const auto same = [&](const Matrix6d& a, const Matrix6d& b) { looks.near((a - b).norm() / b.norm(), 0.0, 1e-12); };
   for (int k = 0; k < 6; ++k) {
     NavEstimate estimate;
     estimate.t = start + 0.8 * k;
@@ -248,9 +248,9 @@ StressFigure in_prior_map(bool surfaces) {
                                                                told.answer.surfaces->covariance + floor}
                                             : lidar::PosePrior{told.off, told.answer.covariance + floor};
     const lidar::PosePrior fused = surfaces ? both_of({Pose{}, told.asked.covariance}, alone) : alone;
-    alike(found->X_WL_registered, known * fused.X_TS, 1e-9);
+    alike(found->X_WL_registered, known * fused.X_TS, 1e-12);
     same(found->covariance, fused.covariance);
-    alike(found->in_map->X_WB, known * alone.X_TS * X_BL.inverse(), 1e-9);
+    alike(found->in_map->X_WB, known * alone.X_TS * X_BL.inverse(), 1e-12);
     same(found->in_map->covariance, in_frame(alone.covariance, X_BL.inverse()));
     looks.right(found->in_map->t == scan.t && found->map_status == lidar::RegistrationStatus::kConverged);
     before = found->X_WL_registered;
