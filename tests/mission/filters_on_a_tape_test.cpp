@@ -2,7 +2,9 @@
 // docs/fusion.md say of them over twenty seeds, on three that no figure there is made of.
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "canyon/core/files/files.h"
 #include "canyon/mission/route_tape.h"
 #include "canyon/tests/mission/short_mission.h"
 
@@ -62,6 +64,15 @@ double median_of_three(double a, double b, double c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
 }
 
+/// Places once a second. Not tape_hash(): sines differ in their last bit from processor to processor.
+std::string hash_to_a_tenth_of_a_millimetre(const Tape& tape) {
+  std::string text;
+  for (std::size_t i = 0; i < tape.nodes.size(); i += 100) {
+    for (const double x : tape.nodes[i].motion.X_WB.p) text += std::to_string(std::llround(1e4 * x)) + ' ';
+  }
+  return sha256_hex(text);
+}
+
 TEST(FiltersOnATape, AVehiclesFilterKeepsWithinAMetreAndAHalf) {
   const MissionConfig config = route_config("low", 1);
   const auto mission = prepare(config, scenes());
@@ -69,7 +80,7 @@ TEST(FiltersOnATape, AVehiclesFilterKeepsWithinAMetreAndAHalf) {
   const auto tape = drive_route(config, *mission);
   ASSERT_TRUE(tape.ok()) << tape.error().str();
   // Another motion is another comparison: who changes vehicle, route or follower measures anew.
-  EXPECT_EQ(tape_hash(*tape), "e7390e10719219e42a1a06dbd16f7c3121604671cd226ed084e427501eb2b88c");
+  EXPECT_EQ(hash_to_a_tenth_of_a_millimetre(*tape), "501b5e1a03f684ecadeb23d1b0346a06cf7fe4e3dc94ae4d83af07659c90b333");
 
   Errors naive[3], vehicle[3];
   for (int k = 0; k < 3; ++k) {
