@@ -51,6 +51,16 @@ Status plan(const MissionConfig& config, const scene::Site& site, PreparedMissio
   return Ok{};
 }
 
+Status check_prior_map(const std::string& path) {
+  if (path.empty()) return Ok{};
+  const auto map = lidar::read_prior_map(path);
+  if (map) return Ok{};
+  const Error& wrong = map.error();
+  const std::string line = wrong.line > 0 ? "line " + std::to_string(wrong.line) + ": " : "";
+  return Error{
+      .key = "registration.prior_map", .what = '"' + path + "\" " + line + wrong.what, .expected = wrong.expected};
+}
+
 /// Builds every sensor once and throws it away: finds an unreadable navigation file or an unknown catalogue entry
 /// before any time is spent. Of the scene they need its frame.
 Status check_sensors(const MissionConfig& config, const PreparedMission& mission, const scene::Scene& scene) {
@@ -61,8 +71,7 @@ Status check_sensors(const MissionConfig& config, const PreparedMission& mission
   CANYON_TRY_STATUS(noise_told_to_filter(config));
   CANYON_TRY_STATUS(lidar::make_scanner(config.lidar, seed));
   CANYON_TRY_STATUS(lidar::make_registration(config.registration));
-  if (!config.registration.prior_map.empty()) CANYON_TRY_STATUS(lidar::read_prior_map(config.registration.prior_map));
-  return Ok{};
+  return check_prior_map(config.registration.prior_map);
 }
 
 /// The smallest bare city at the same place.

@@ -111,7 +111,8 @@ TEST_F(PriorMap, WhatContradictsItself) {
                         "move its estimate once more, expected autonomy.map = \"prior\", or measurements without it"));
   const std::string broken = folder_.file("broken.pcd");
   std::ofstream(broken) << "VERSION 0.7\n";
-  EXPECT_THAT(refusal("[registration]\nmethod = \"gicp\"\nprior_map = \"" + broken + "\"\n"), HasSubstr(broken));
+  EXPECT_THAT(refusal("[registration]\nmethod = \"gicp\"\nprior_map = \"" + broken + "\"\n"),
+              HasSubstr("registration.prior_map: \"" + broken + "\" "));
 }
 
 }  // namespace
