@@ -1,6 +1,6 @@
-// Packets and geometry: Ouster, "Software User Manual", firmware 2.3, sections "Lidar Data Format" (configurable data
-// packet, single return low data rate profile) and "Coordinate Frames and XYZ Calculation"; figures of bits as in the
-// Ouster SDK (BSD-3).
+// Packets and geometry: Ouster's sensor documentation, "Sensor Data" (static.ouster.dev/sensor-docs), sections
+// "Coordinate Frames and XYZ Calculation" and "RNG15_RFL8_NIR8 Return Profile". Offsets and bits are as remembered of
+// it; a recording confirms them: its packets' size to the byte, level ground, and scans that register onto one another.
 #include "canyon/lidar/ouster/recording.h"
 
 #include <algorithm>

@@ -123,9 +123,10 @@ double returned_by(bool rough, double height_m, double range_m, double range_at_
   return static_cast<double>(enough) / kPlaces;
 }
 
-// At 20 m the incidence is 84 degrees. What a Lambertian surface would have lost there altogether comes back by 90 %:
-// facets that are turned towards the sensor. The law of these is within a factor of 1.5 up to 30 m; beyond, what comes
-// back is by the sensor's own reflectivity no asphalt any more.
+// At 20 m the incidence is 84 degrees. Lambertian asphalt would be lost there altogether, and 90 % come back. Oren and
+// Nayar's law is within a factor of 1.5 up to 27.5 m; beyond 30 m what comes back is by the sensor's own reflectivity
+// no asphalt any more. 40 m for a Lambertian target of 10 % is what an early data sheet of the OS1, its 128 beams
+// included, says; 45 m, printed beside it, is as remembered of a later one.
 TEST(OusterScans, GroundComesBackFromWhereALambertianOneWouldNot) {
   CANYON_REAL_DATA(capture_path, "lidar/ouster/OS-1-128_v2.3.0_1024x10_lb_n3.pcap");
   CANYON_REAL_DATA(metadata_path, "lidar/ouster/OS-1-128_v2.3.0_1024x10.json");
@@ -154,8 +155,8 @@ TEST(OusterScans, GroundComesBackFromWhereALambertianOneWouldNot) {
     if (there_m > 20.0) {
       EXPECT_LT(1.5 * lambertian[1], share) << there_m;
     }
-    if (there_m > 10.0 && there_m < 30.0) {
-      EXPECT_LT(std::max(rough[1] / share, share / rough[1]), 1.5) << there_m;
+    if (there_m > 10.0 && there_m < 27.5) {
+      EXPECT_LT(std::max(rough[0] / share, share / rough[0]), 1.5) << there_m;
     }
   }
 }
