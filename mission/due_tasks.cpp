@@ -301,14 +301,8 @@ void MissionRun::compare(const NavRow& row, const Eigen::Vector3d& v_WB_W_true) 
 
 Status MissionRun::record_epoch(const Due& due) {
   const KinematicState truth = truth_at(due.t);
-  NavRow row{due.t,
-             truth.X_WB,
-             truth.v_WB_W.head<2>().norm(),
-             {},
-             command_,
-             answers_.next_waypoint + 1,
-             answers_.state,
-             scorer_.encounters().phantom_now};
+  NavRow row{due.t,          truth.X_WB,       truth.v_WB_W.head<2>().norm(), {}, command_, answers_.next_waypoint + 1,
+             answers_.state, scorer_.phantom()};
   return localizer_.once_at(due.t, [this, row, v_WB_W_true = truth.v_WB_W]() mutable -> Status {
     row.estimate = localizer_.estimate();
     if (config_.run.record_covariance) row.covariance = localizer_.body_covariance();

@@ -72,7 +72,7 @@ void Encounters::look(const KinematicState& truth, double speed_m_s, const Drive
 
   const bool finds_no_way = state == AutonomyState::kBlocked && command.speed_m_s <= 0.0;
   const bool phantom = finds_no_way && !meets(truth.X_WB, 0.0, phantom_free_m_);
-  numbers_.phantom_now = phantom;
+  phantom_now_ = phantom;
   numbers_.phantoms += phantom_.begins(phantom, truth.t) ? 1 : 0;
 
   const bool goes_on = speed_m_s > kSlow_m_s && command.speed_m_s > speed_m_s - kSlowing_m_s;

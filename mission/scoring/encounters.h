@@ -29,9 +29,10 @@ class Encounters {
     int phantoms = 0;               ///< times that the autonomy found no way with phantom_free_m of its lane truly free
     /// Times that something lay on the arc driven, nearer than the vehicle can stop, and it was not slowed down.
     int missed_obstacles = 0;
-    bool phantom_now = false;  ///< when last looked
   };
   const Numbers& numbers() const { return numbers_; }
+  /// Whether what it was last told of is a phantom.
+  bool phantom() const { return phantom_now_; }
 
  private:
   /// Times that something holds: a new one after a second without.
@@ -54,7 +55,7 @@ class Encounters {
   NearTriangles near_;
   Numbers numbers_;
   Times near_miss_, phantom_, missed_;
-  bool looked_ = false;
+  bool looked_ = false, phantom_now_ = false;
   GpsTime looked_at_;
   Eigen::Vector2d looked_from_{0, 0};
 };

@@ -67,6 +67,7 @@ class Scorer {
   const std::optional<Failure>& failure() const { return failure_; }
   const std::vector<WaypointScore>& waypoints() const { return waypoints_; }
   const Encounters::Numbers& encounters() const { return encounters_.numbers(); }
+  bool phantom() const { return encounters_.phantom(); }  ///< as of Encounters, now
   Outcome outcome() const { return failure_ ? failure_->kind : Outcome::kSuccess; }
 
  private:

@@ -57,23 +57,6 @@ Result<CloudPlaces> read_bin_cloud(const std::string& path, const std::string& b
   return out;
 }
 
-namespace {
-
-Result<CloudPlaces> read_ouster_cloud(const std::string& path, const std::string& metadata_path) {
-  CANYON_TRY(const ouster::Metadata metadata, ouster::read_metadata(metadata_path));
-  CANYON_TRY(const auto frames, ouster::read_frames(path, metadata));
-  // The first that is as full as any: a capture may begin within a turn, and packets may be lost.
-  const auto fullest =
-      std::max_element(frames.begin(), frames.end(),
-                       [](const ouster::Frame& a, const ouster::Frame& b) { return a.columns < b.columns; });
-  CloudPlaces out;
-  for (const ouster::Return& r : fullest->returns) out.points.push_back(r.p_m);
-  if (out.points.empty()) return Error{path, 0, "", "holds no return", "a cloud of points"};
-  return out;
-}
-
-}  // namespace
-
 Result<CloudPlaces> read_capture_cloud(const std::string& path) {
   if (const std::string metadata = ouster::metadata_path(path); !metadata.empty())
     return read_ouster_cloud(path, metadata);

@@ -19,5 +19,6 @@ Result<CloudPlaces> read_ply_cloud(const std::string& path, const std::string& b
 Result<CloudPlaces> read_las_cloud(const std::string& path, const std::string& bytes);
 Result<CloudPlaces> read_bin_cloud(const std::string& path, const std::string& bytes);
 Result<CloudPlaces> read_capture_cloud(const std::string& path);
+Result<CloudPlaces> read_ouster_cloud(const std::string& path, const std::string& metadata_path);
 
 }  // namespace canyon::lidar
