@@ -9,6 +9,7 @@
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/output/json.h"
 #include "canyon/core/process/parallel.h"
+#include "canyon/core/process/progress.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/study/stress/cases.h"
 #include "canyon/study/stress/stress_output.h"
@@ -94,6 +95,8 @@ Result<int> sweep(const Options& options) {
   } else {
     std::fputs(study::sweep_table(found).c_str(), stdout);
   }
+  std::fflush(stdout);
+  throw_if_cancelled();
   return found.failures.empty() ? 0 : 1;
 }
 

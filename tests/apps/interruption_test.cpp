@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "canyon/core/random/random.h"
 #include "canyon/tests/apps/command_line_fixture.h"
@@ -289,6 +290,17 @@ TEST_F(Interruption, TwoRequestsLeaveNoLitterEither) {
     EXPECT_THAT(leftovers(), ::testing::IsEmpty());
     EXPECT_EQ(processes_in(folder_.string()), 0);
   }
+}
+
+// 2026-11-26: a sweep of an hour and a half that was ended said nothing of what it had found.
+TEST_F(Interruption, ASweepTellsWhatItHasFound) {
+  const Ended ended = interrupted({"stress", "mission.toml", "--json"}, 15.0, SIGTERM);
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_THAT(leftovers(), ::testing::IsEmpty());
+  const auto found = nlohmann::json::parse(read("stdout"));
+  EXPECT_TRUE(found["interrupted"]);
+  EXPECT_GT(found["values_tried"].get<int>(), 0);
+  EXPECT_GT(found["not_tried"].get<int>(), 500);
 }
 
 TEST_F(Interruption, WhatAKilledRunLeftGoesWithTheNext) {

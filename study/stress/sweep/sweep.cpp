@@ -161,8 +161,9 @@ void count(const std::vector<Settings>& tried, const std::vector<Settings>& all,
   sweep.not_tried = static_cast<std::int64_t>(all.size() - tried.size());
 }
 
-Sweep summed_up(const std::vector<Settings>& settings, const std::map<std::size_t, TrialEnd>& ends) {
+Sweep summed_up(const std::vector<Settings>& settings, const std::map<std::size_t, TrialEnd>& ends, bool interrupted) {
   Sweep sweep;
+  sweep.interrupted = interrupted;
   std::vector<Settings> tried;
   for (const auto& [trial, end] : ends) {
     tried.push_back(settings[trial]);
@@ -208,13 +209,18 @@ Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOption
   const bool sound = ends.contains(0) && ends[0].what.empty() && !ends[0].refused;
   if (sound) trials.set_up_takes(ends[0].cpu_s);
   if (ends.contains(0) && ends[0].refused) ends[0].what = "is refused: " + ends[0].said;
-  std::size_t next = sound ? 1 : settings.size();
-  while (trials.running() > 0 || (next < settings.size() && budget.left_s() > 0.0)) {
-    while (next < settings.size() && budget.left_s() > 0.0 && trials.running() < static_cast<std::size_t>(threads()))
-      CANYON_TRY_STATUS(trials.start(next++));
-    wait();
+  try {
+    std::size_t next = sound ? 1 : settings.size();
+    while (trials.running() > 0 || (next < settings.size() && budget.left_s() > 0.0)) {
+      while (next < settings.size() && budget.left_s() > 0.0 && trials.running() < static_cast<std::size_t>(threads()))
+        CANYON_TRY_STATUS(trials.start(next++));
+      wait();
+    }
+  } catch (const Cancelled&) {
+    // Of an hour's trials what they have shown so far.
+    return summed_up(settings, ends, true);
   }
-  return summed_up(settings, ends);
+  return summed_up(settings, ends, false);
 }
 
 std::string sweep_table(const Sweep& sweep) {
@@ -223,7 +229,9 @@ std::string sweep_table(const Sweep& sweep) {
   text += std::to_string(sweep.keys_tried) + " keys with " + std::to_string(sweep.values_tried) + " values and " +
           std::to_string(sweep.pairs_tried) + " pairs: " + std::to_string(sweep.refused) + " refused, " +
           std::to_string(sweep.failures.size()) + " failed";
-  if (sweep.not_tried > 0) text += ", " + std::to_string(sweep.not_tried) + " not tried for lack of time";
+  if (sweep.not_tried > 0)
+    text += ", " + std::to_string(sweep.not_tried) + " not tried " +
+            (sweep.interrupted ? "before the interruption" : "for lack of time");
   if (!sweep.keys_not_tried.empty()) text += "\nno value of:";
   for (const std::string& key : sweep.keys_not_tried) text += " " + key;
   return text + "\n";

@@ -30,7 +30,8 @@ struct SweepFailure {
 struct Sweep {
   std::int64_t keys_tried = 0, values_tried = 0, pairs_tried = 0;
   std::int64_t refused = 0;                 ///< of all trials
-  std::int64_t not_tried = 0;               ///< for lack of time
+  std::int64_t not_tried = 0;               ///< for lack of time, or since it was interrupted
+  bool interrupted = false;                 ///< by the user: what had ended by then is here
   std::vector<std::string> keys_not_tried;  ///< of which no value has been, by itself
   std::vector<SweepFailure> failures;
 };
@@ -42,11 +43,13 @@ std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const Sw
 
 /// Drives the mission for some seconds as it stands, then with every one of them, each in a process of its own, as many
 /// side by side as there are processors. If the first fails or is refused, that is all that is found. An Error if there
-/// is no place for the trials' files. Throws Cancelled, and leaves nothing behind.
+/// is no place for the trials' files. Interrupted it gives what it has, if the first had ended, else throws Cancelled;
+/// it leaves nothing behind.
 Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options);
 
 std::string sweep_table(const Sweep& sweep);
-/// {keys_tried, values_tried, pairs_tried, refused, not_tried, keys_not_tried: [..], failures: [{settings, what}]}
+/// {keys_tried, values_tried, pairs_tried, refused, not_tried, interrupted, keys_not_tried: [..],
+/// failures: [{settings, what}]}
 nlohmann::ordered_json sweep_json(const Sweep& sweep);
 
 }  // namespace canyon::study

@@ -5,10 +5,13 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include <sys/stat.h>
+#include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/process/progress.h"
 #include "canyon/mission/config/mission_config.h"
 #include "canyon/tests/support/temporary_folder.h"
 
@@ -237,6 +240,28 @@ TEST_F(SweepTest, WhatHasNotEndedWithinTheBudgetIsNotTried) {
   ASSERT_EQ(found.keys_not_tried.size(), 1U);
   EXPECT_THAT(sweep_table(found),
               HasSubstr("1 not tried for lack of time\nno value of: " + found.keys_not_tried[0] + "\n"));
+}
+
+// 2026-11-26: a sweep of an hour and a half that was ended said nothing of what it had found.
+TEST_F(SweepTest, AnInterruptionTellsWhatHasBeenFound) {
+  std::thread user([this] {
+    const auto sleeps = [this] {
+      const auto calls = read_text_file(program_ + ".calls");
+      return calls.ok() && calls->find("model=\"sleep\"") != std::string::npos;
+    };
+    while (!sleeps()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    set_cancel_requested(true);
+  });
+  const Sweep found = sweep({"nan", "fine", "sleep", "crash"});
+  user.join();
+  set_cancel_requested(false);
+  EXPECT_TRUE(found.interrupted);
+  ASSERT_EQ(found.failures.size(), 1U);
+  EXPECT_EQ(found.failures[0].settings.front().second, "\"nan\"");
+  EXPECT_EQ(found.values_tried + found.not_tried, 4);
+  EXPECT_GE(found.not_tried, 2);
+  EXPECT_THAT(sweep_table(found), HasSubstr(" not tried before the interruption\n"));
+  EXPECT_TRUE(sweep_json(found)["interrupted"]);
 }
 
 TEST_F(SweepTest, NoPlaceForTemporaryFilesIsOneLine) {
