@@ -32,6 +32,8 @@ using stress::Looks;
 
 /// The documented keys of ground_grid.
 constexpr double kCell_m = 0.2, kHalf_m = 30.0, kObstacle_m = 0.3, kClear_m = 2.2, kMemory_s = 2.0, kHidden_m = 1.0;
+/// What is so much higher than the lowest beam passes is met.
+constexpr double kSurelyMet_m = 0.2;
 
 /// An account of cells that forgets nothing but what it must, in a map without borders.
 class AccountOfCells {
@@ -95,7 +97,7 @@ class AccountOfCells {
     for (auto& [key, cell] : cells_) {
       if (!cell.listed) continue;
       const Vector2d off = (middle(key) - body).cwiseAbs();
-      const bool faded = t_s - cell.last_s > kMemory_s && lowest_beam(key) < cell.top;
+      const bool faded = t_s - cell.last_s > kMemory_s && lowest_beam(key) + kSurelyMet_m < cell.top;
       if (cell.scans == 0 || off.x() > kHalf_m || off.y() > kHalf_m || faded || under(middle(key))) {
         cell.scans = 0, cell.top = 0.0, cell.foot = cell.listed = false;
         continue;

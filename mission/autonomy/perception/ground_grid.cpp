@@ -33,7 +33,7 @@ void visit(FieldVisitor& f, GroundGridParameters& c) {
   f.integer("persistence_scans", c.persistence_scans, {1, 20},
             "ground_grid: so many scans must show a thing in a cell before it blocks");
   f.number("memory_s", c.memory_s, {0.2, 600},
-           "ground_grid: what could be seen and was not for this long is forgotten; what the lowest beam passes over "
+           "ground_grid: what could be seen and was not for this long is forgotten; what the lowest beam may pass over "
            "stays");
   f.number("hidden_m", c.hidden_m, {0, 5},
            "ground_grid: by how much a thing seen only over the lowest beam may reach nearer unseen, as a car's boot "
@@ -45,6 +45,9 @@ constexpr double kRoom_m = 3.0;    // of the ground below and above the vehicle'
 constexpr int kMostEvidence = 20;  // scans
 constexpr int kBareScans = 4;      // of bare ground, one after the other, until a cell is free
 constexpr double kFoot_m = 0.25;   // a beam so near to the ground shows a thing's foot
+// The lowest beam meets for certain only what is so much higher than it passes: the ground there may lie so much lower
+// than the vehicle's plane, 3 m and 4 degrees off, and a bonnet falls as much towards its edge.
+constexpr double kMet_m = 0.2;
 
 /// A rolling grid in the local frame. Heights are never kept: each scan is judged by itself, against its own ground.
 class GroundGrid final : public Perception {
@@ -200,7 +203,8 @@ class GroundGrid final : public Perception {
       Cell& cell = cells_[i];
       const Eigen::Vector2d d = middle(cell) - body.p_m;
       const bool far = d.cwiseAbs().maxCoeff() > p_.half_size_m;
-      const bool faded = t_s_ - cell.last_s > p_.memory_s && lowest_beam_m(cell) < static_cast<double>(cell.top_m);
+      const bool would_be_met = lowest_beam_m(cell) + kMet_m < static_cast<double>(cell.top_m);
+      const bool faded = would_be_met && t_s_ - cell.last_s > p_.memory_s;
       if (cell.evidence > 0 && !far && !faded && !is_under(body, middle(cell))) {
         listed_[kept++] = i;
         continue;
