@@ -82,7 +82,8 @@ class Made:
         first = summary["mission"]["seed"] if summary.get("runs") else None
         for run in summary.get("runs", []):
             if run["seed"] == first:
-                self.values[run["fidelity"]] = run
+                parts = run.get("timing", {}).get("parts", [])
+                self.values[run["fidelity"]] = {**run, "part": {part["name"]: part["cpu_s"] for part in parts}}
         loop = summary.get("loop") or {}
         self.values["against"] = {pair["b"]: pair for pair in loop.get("paired_epochs", [])}
         self.values["share"] = {share["fidelity"]: share for share in summary.get("shares") or []}
