@@ -382,6 +382,7 @@ BENCHMARK_CAPTURE(
     cost_of, high,
     [](Config& c) {
       c.detector.name = "radiometric";
+      c.signal.reflection = canyon::lidar::MattReflection::kRough;
       c.texture = {canyon::lidar::Brightness::kVaried, canyon::lidar::Windows::kLattice};
     },
     0)

@@ -40,8 +40,10 @@ target_include_directories(canyon_flags INTERFACE $<BUILD_INTERFACE:${CMAKE_BINA
                                                   $<INSTALL_INTERFACE:include>)
 target_compile_features(canyon_flags INTERFACE cxx_std_20)
 # -ffp-contract=off: a result must not depend on whether the compiler found a fused multiply-add.
-# -fno-tree-*-vectorize: g++ 12 takes two conversions of a vector, to single precision and back, for none (tests/core/math/compiler_test.cpp).
-target_compile_options(canyon_flags INTERFACE -ffp-contract=off $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize> $<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-vectorize>
+# -fno-tree-*-vectorize: where two numbers side by side are converted to single precision and back, g++ 12 drops both conversions
+# (tests/core/math/compiler_test.cpp). Statements are never made vectors of, loops where a file is made for it: CANYON_VECTOR_LOOPS.
+target_compile_options(canyon_flags INTERFACE -ffp-contract=off $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>>
+                                              $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:-fno-tree-loop-vectorize>>
                                               $<BUILD_INTERFACE:-Wall> $<BUILD_INTERFACE:-Wextra> $<BUILD_INTERFACE:-Wpedantic>
                                               $<BUILD_INTERFACE:-Wshadow> $<BUILD_INTERFACE:-Wnon-virtual-dtor>)
 # oneTBB's target says so to whoever links it in a debug build; what shares a precompiled header with them must be told the same.
@@ -59,6 +61,8 @@ if(CANYON_SANITIZE)
   target_link_options(canyon_flags INTERFACE -fsanitize=${CANYON_SANITIZE})
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+# Of a file with loops over plain arrays.
+set(CANYON_VECTOR_LOOPS "-O3;$<$<CXX_COMPILER_ID:GNU>:-ftree-loop-vectorize>")
 
 # Parsing the standard library and Eigen is half of the time of most files, and joined files share it too. ccache knows no files
 # with precompiled headers; whoever builds the same tree again and again chooses it with -DCANYON_PRECOMPILED_HEADERS=OFF, which

@@ -45,8 +45,9 @@ constexpr double kRoom_m = 3.0;    // of the ground below and above the vehicle'
 constexpr int kMostEvidence = 20;  // scans
 constexpr int kBareScans = 4;      // of bare ground, one after the other, until a cell is free
 constexpr double kFoot_m = 0.25;   // a beam so near to the ground shows a thing's foot
-// The lowest beam meets for certain only what is so much higher than it passes: the ground there may lie so much lower
-// than the vehicle's plane, 3 m and 4 degrees off, and a bonnet falls as much towards its edge.
+// The lowest beam surely meets only what stands so much above where it passes by the vehicle's own plane. ASSUMPTION:
+// 0.2 m, by which a street tilted by 4 degrees against that plane differs from it 3 m off; it does not grow with the
+// distance, since farther off the ground itself is seen.
 constexpr double kMet_m = 0.2;
 
 /// A rolling grid in the local frame. Heights are never kept: each scan is judged by itself, against its own ground.

@@ -5,12 +5,15 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <set>
+
+#include <unistd.h>
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
@@ -180,6 +183,12 @@ std::string text_of(const Settings& settings) {
   return text;
 }
 
+/// At once: what has been found must not be lost, however the sweep ends.
+void tell(const Settings& settings, const std::string& what) {
+  const char* over_the_progress_bar = isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
+  std::fprintf(stderr, "%sfailed: %s: %s\n", over_the_progress_bar, text_of(settings).c_str(), what.c_str());
+}
+
 }  // namespace
 
 std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const SweepOptions& options) {
@@ -201,7 +210,10 @@ Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOption
   std::map<std::size_t, TrialEnd> ends;  // in the order of the settings, whatever ends first
   Progress progress("stress", static_cast<double>(settings.size()), options.show_progress);
   const auto wait = [&] {
-    if (auto [trial, end] = trials.wait(); end) ends[trial] = *end;
+    if (auto [trial, end] = trials.wait(); end) {
+      if (!end->what.empty()) tell(settings[trial], end->what);
+      ends[trial] = *end;
+    }
     progress.advance(1.0);
   };
   CANYON_TRY_STATUS(trials.start(0));
