@@ -31,7 +31,7 @@ if sys.argv[1] == "tradeoff":
     sys.exit(0)
 error = {error}
 runs = [{{"fidelity": "low", "seed": seed, "error_m": error + seed, "outcome": "success", "gdop": None,
-         "timing": {{"cpu_s": 3.25}}}} for seed in (1, 2)]
+         "timing": {{"cpu_s": 3.25, "parts": [{{"name": "GNSS", "cpu_s": 1.5}}]}}}} for seed in (1, 2)]
 out = pathlib.Path(sys.argv[sys.argv.index("--out") + 1])
 out.mkdir()
 (out / "summary.json").write_text(json.dumps({{
@@ -56,7 +56,7 @@ command = "one"
 paragraphs = ["closed loop", "2 x 2"]
 [text.cost]
 command = "one"
-text = "{low.timing.cpu_s} s"
+text = "{low.timing.cpu_s} s, {low.part.GNSS} of them for GNSS"
 timing = true
 [text.list]
 command = "list"
@@ -119,7 +119,7 @@ class Published(unittest.TestCase):
     def test_writes_numbers_blocks_and_lists_between_their_markers(self):
         self.assertEqual(self.call().returncode, 0)
         self.assertEqual(self.read("README.md"), """\
-It is <!-- canyon:number -->1.15 m, 2 of 2, 3.8, 2, 0.25, undefined, success<!-- /canyon:number --> off and takes <!-- canyon:cost -->3.25 s<!-- /canyon:cost -->.
+It is <!-- canyon:number -->1.15 m, 2 of 2, 3.8, 2, 0.25, undefined, success<!-- /canyon:number --> off and takes <!-- canyon:cost -->3.25 s, 1.5 of them for GNSS<!-- /canyon:cost -->.
 <!-- canyon:block -->
 ```
       low
