@@ -129,8 +129,9 @@ TEST(GroundGrid, WhatItsBeamsPassOverStays) {
   EXPECT_GE(clearance, 0.75 - 0.1);
 }
 
-// 2026-11-27: a bonnet whose top was 3 cm above where the lowest beam passes, by the vehicle's own plane, was forgotten,
-// and the vehicle drove into it. At 3.7 m that beam passes at 0.81 m; of what is 0.4 m high it sees none of the near end.
+// 2026-11-27: a bonnet whose top was 3 cm above where the lowest beam passes, by the vehicle's own plane, was
+// forgotten, and the vehicle drove into it. At 3.7 m that beam passes at 0.81 m; of what is 0.4 m high it sees none of
+// the near end.
 TEST(GroundGrid, WhatTheLowestBeamMayMissStays) {
   const auto kept = [](double seen_to_m, double then_to_m) {
     Eyes eyes;
