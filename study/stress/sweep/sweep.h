@@ -43,8 +43,8 @@ std::vector<Settings> sweep_settings(const std::vector<SweptKey>& keys, const Sw
 
 /// Drives the mission for some seconds as it stands, then with every one of them, each in a process of its own, as many
 /// side by side as there are processors. If the first fails or is refused, that is all that is found. An Error if there
-/// is no place for the trials' files. Interrupted it gives what it has, if the first had ended, else throws Cancelled;
-/// it leaves nothing behind.
+/// is no place for the trials' files. What fails is told on stderr at once. Interrupted it gives what it has, if the
+/// first had ended, else throws Cancelled; it leaves nothing behind.
 Result<Sweep> sweep_mission(const std::vector<SweptKey>& keys, const SweepOptions& options);
 
 std::string sweep_table(const Sweep& sweep);

@@ -33,14 +33,15 @@ TEST(Compiler, RoundsToSinglePrecisionWhereItIsAsked) {
   EXPECT_EQ(rounded(Eigen::Vector3d(tenth, 2.0 * tenth, tenth)), Eigen::Vector3d(x[0], x[1], x[0]));
 }
 
-#ifdef __x86_64__
-[[gnu::noinline, gnu::target("fma")]] double product_and_sum(const double* x) {
+#if defined(__x86_64__) && !defined(__clang__)
+/// By the one instruction for both where the processor has it; clang 14 makes no such choice
+/// (core/process/vector_clones.h).
+[[gnu::noinline, gnu::target_clones("fma", "default")]] double product_and_sum(const double* x) {
   return x[0] * x[1] + x[2];
 }
 
-// A product and a sum are rounded each by itself, where there is one instruction for both too.
+// A product and a sum are rounded each by itself.
 TEST(Compiler, ContractsNoProductAndSum) {
-  if (!__builtin_cpu_supports("fma")) GTEST_SKIP() << "a processor without fused multiply-add";
   volatile double given = 1.0 + std::ldexp(1.0, -30);
   const double x[3] = {given, given, -1.0 - std::ldexp(1.0, -29)};
   EXPECT_EQ(product_and_sum(x), 0.0);
