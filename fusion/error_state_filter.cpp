@@ -157,7 +157,7 @@ void ErrorStateFilter::predict(const ImuSample& imu) {
 
   strapdown_->advance(state_.nav, in);
   state_.nav.t = imu.t;
-  w_EU_U_ = in.dtheta_U / in.dt_s - state_.nav.R_EU.conjugate() * earth_rate_E();
+  w_EU_U_ = in.dtheta_U / in.dt_s - Wgs84::rate_rad_s * state_.nav.R_EU.toRotationMatrix().row(2).transpose();
   f_U_ = in.dv_U / in.dt_s;
   predicted_R_EU_ = state_.nav.R_EU;
   predicted_p_EU_E_ = state_.nav.p_EU_E;

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include <GeographicLib/Geocentric.hpp>
-#include <GeographicLib/NormalGravity.hpp>
 
 #include "canyon/core/units.h"
 
@@ -34,24 +33,6 @@ Eigen::Matrix3d rotation_E_from_enu(const Geodetic& g) {
   R.col(1) << -sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat;
   R.col(2) << cos_lat * cos_lon, cos_lat * sin_lon, sin_lat;
   return R;
-}
-
-Eigen::Vector3d gravity_E(const Eigen::Vector3d& p_E) {
-  Eigen::Vector3d g_E;
-  GeographicLib::NormalGravity::WGS84().U(p_E.x(), p_E.y(), p_E.z(), g_E.x(), g_E.y(), g_E.z());
-  return g_E;
-}
-
-Eigen::Matrix3d gravity_gradient_E(const Eigen::Vector3d& p_E) {
-  // Near the surface the third derivative is about 24 g / a^3 = 9e-19 1/(m s)^2: truncation at this step is 1.5e-15
-  // 1/s^2 and rounding 1e-16, of gradients of 1.5e-6 to 3e-6.
-  constexpr double kStepM = 100.0;
-  Eigen::Matrix3d gradient;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d step = kStepM * Eigen::Vector3d::Unit(axis);
-    gradient.col(axis) = (gravity_E(p_E + step) - gravity_E(p_E - step)) / (2.0 * kStepM);
-  }
-  return gradient;
 }
 
 }  // namespace canyon

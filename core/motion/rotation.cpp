@@ -7,8 +7,18 @@
 namespace canyon {
 namespace {
 
-/// Below this angle series are used. The terms left out are of relative size angle^4 / 1920 and smaller: under 1e-19.
-constexpr double kSmallAngleRad = 1e-4;
+/// Below this angle series are used, whose first term left out is below 1e-17.
+constexpr double kSmallAngleRad = 0.1, kSmallAngle2 = kSmallAngleRad * kSmallAngleRad;
+/// The same of series that are cut after their second term.
+constexpr double kTinyAngleRad = 1e-4;
+
+/// sin(sqrt(q)) / sqrt(q) and cos(sqrt(q)), q being at most kSmallAngle2.
+double small_sinc(double q) {
+  return 1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0))));
+}
+double small_cosine(double q) {
+  return 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+}
 
 /// Left Jacobian of SO(3), the V of SE(3): the translation of Exp(xi) is V(rotation) * translation.
 Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& v) {
@@ -18,7 +28,7 @@ Eigen::Matrix3d so3_left_jacobian(const Eigen::Vector3d& v) {
 Eigen::Matrix3d so3_left_jacobian_inverse(const Eigen::Vector3d& v) {
   const double angle = v.norm();
   double square_factor = 1.0 / 12.0 + angle * angle / 720.0;
-  if (angle >= kSmallAngleRad) {
+  if (angle >= kTinyAngleRad) {
     // (1 - (a/2) cot(a/2)) / a^2, which stays finite at a = pi.
     const double half = 0.5 * angle;
     square_factor = (1.0 - half * std::cos(half) / std::sin(half)) / (angle * angle);
@@ -36,10 +46,13 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
 }
 
 Eigen::Quaterniond so3_exp(const Eigen::Vector3d& rotation_vector) {
-  const double angle = rotation_vector.norm();
-  double w = 1.0 - angle * angle / 8.0;
-  double factor = 0.5 - angle * angle / 48.0;
-  if (angle >= kSmallAngleRad) {
+  const double angle2 = rotation_vector.squaredNorm();
+  double w = 0.0, factor = 0.0;
+  if (angle2 < kSmallAngle2) {
+    w = small_cosine(0.25 * angle2);
+    factor = 0.5 * small_sinc(0.25 * angle2);
+  } else {
+    const double angle = rotation_vector.norm();
     w = std::cos(0.5 * angle);
     factor = std::sin(0.5 * angle) / angle;
   }
@@ -51,7 +64,7 @@ Eigen::Vector3d so3_log(const Eigen::Quaterniond& q) {
   // q and -q are the same rotation: the one with w >= 0 has the angle in [0, pi].
   const double sign = q.w() < 0.0 ? -1.0 : 1.0;
   const double w = std::abs(q.w());
-  if (n < 0.5 * kSmallAngleRad * w) {
+  if (n < 0.5 * kTinyAngleRad * w) {
     const double ratio = n / w;
     return (sign * 2.0 / w) * (1.0 - ratio * ratio / 3.0) * q.vec();
   }
@@ -59,16 +72,20 @@ Eigen::Vector3d so3_log(const Eigen::Quaterniond& q) {
 }
 
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& v) {
-  const double angle = v.norm();
-  double linear = 0.5 - angle * angle / 24.0;
-  double square = 1.0 / 6.0 - angle * angle / 120.0;
-  if (angle >= kSmallAngleRad) {
-    const double half_sine = std::sin(0.5 * angle) / (0.5 * angle);
-    linear = 0.5 * half_sine * half_sine;  // (1 - cos a) / a^2 without cancellation
-    square = (angle - std::sin(angle)) / (angle * angle * angle);
+  // (1 - cos a) / a^2 without cancellation, and (a - sin a) / a^3, which loses half its digits long before its series
+  // does.
+  const double angle2 = v.squaredNorm();
+  double half_sine = 0.0, square = 0.0;
+  if (angle2 < kSmallAngle2) {
+    half_sine = small_sinc(0.25 * angle2);
+    square = 1.0 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0 * (1.0 - angle2 / 72.0 * (1.0 - angle2 / 110.0))));
+  } else {
+    const double angle = v.norm();
+    half_sine = std::sin(0.5 * angle) / (0.5 * angle);
+    square = (angle - std::sin(angle)) / (angle * angle2);
   }
   const Eigen::Matrix3d V = skew(v);
-  return Eigen::Matrix3d::Identity() - linear * V + square * V * V;
+  return Eigen::Matrix3d::Identity() - 0.5 * half_sine * half_sine * V + square * V * V;
 }
 
 YawPitchRoll yaw_pitch_roll(const Eigen::Quaterniond& R_WB) {

@@ -10,7 +10,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 
-/// SO(3) exponential of a rotation vector, rad; series below 1e-4 rad, exact elsewhere.
+/// SO(3) exponential of a rotation vector, rad; a series below 0.1 rad, to the last digit as elsewhere.
 Eigen::Quaterniond so3_exp(const Eigen::Vector3d& rotation_vector);
 /// Inverse of so3_exp, |result| <= pi.
 Eigen::Vector3d so3_log(const Eigen::Quaterniond& q);

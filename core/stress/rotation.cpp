@@ -147,7 +147,7 @@ std::vector<StressCase> rotation_cases() {
     return there_and_back({1e-300, 1e-160, 1e-100, 1e-30, 1e-16, 1e-8});
   });
   rows.of(branch).add("rotation/exp_log_around_the_series_end", [] {
-    return there_and_back({0.99e-4, 1e-4, 1.01e-4, 1e-3, 0.1, 1.0, 2.0});
+    return there_and_back({0.99e-4, 1e-4, 1.01e-4, 1e-3, 0.0999, 0.1, 0.1001, 1.0, 2.0});
   });
   rows.of(branch).add("rotation/exp_log_at_half_a_turn", [] {
     return there_and_back({kPi - 1e-3, kPi - 1e-8, kPi - 1e-12, kPi - 1e-15, kPi});

@@ -41,9 +41,13 @@ void JosephForm::correct(const Measurement& m, const Gain& K, const Measurement:
   // As two corrections of the rank of the measurement, from the left and from the right.
   add_outer(P_, -K, HP);
   Gain right = K.lazyProduct(m.R);
-  for (Eigen::Index k = 0; k < P_.cols(); ++k) {
+  int measured[kMostStates], count = 0;  // the columns of H that hold anything
+  for (int k = 0; k < m.H.cols(); ++k)
+    if (!m.H.col(k).isZero(0.0)) measured[count++] = k;
+  for (Eigen::Index j = 0; j < P_.rows(); ++j) {
+    const double* row = P_.data() + j * P_.cols();
     for (Eigen::Index i = 0; i < m.H.rows(); ++i)
-      if (m.H(i, k) != 0.0) right.col(i) -= m.H(i, k) * P_.col(k);
+      for (int n = 0; n < count; ++n) right(j, i) -= m.H(i, measured[n]) * row[measured[n]];
   }
   add_outer(P_, right, K.transpose());
   symmetrize(P_);

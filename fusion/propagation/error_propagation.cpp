@@ -12,8 +12,6 @@ using Index = ErrorIndex;
 constexpr int kMoving = Index::kMoving;
 constexpr int kMovingPadded = 12;
 
-using Matrix3 = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-
 void copy(const StepJacobian::Matrix& from, double* to) {
   std::copy(from.data(), from.data() + 9, to);
 }
@@ -49,8 +47,13 @@ void ErrorPropagation::set_interval(double dt_s) {
   if (dt_s == dt_s_) return;
   dt_s_ = dt_s;
   fades_ = false;
-  white_.setZero();
-  white_.topLeftCorner<3, 3>() = white_moments(dt_s);
+  Eigen::Matrix4d white = Eigen::Matrix4d::Zero();
+  white.topLeftCorner<3, 3>() = white_moments(dt_s);
+  for (int triad = 0; triad < 2; ++triad) {
+    const double per_sqrt_hz = (triad == 0 ? noise_.gyro : noise_.accel).white_per_sqrt_hz;
+    white_[triad] = {};
+    white_[triad].add(white, per_sqrt_hz * per_sqrt_hz);
+  }
   for (Group& group : groups_) {
     group.moments = MarkovMoments(dt_s, group.tau_s);
     for (const int state : group.states) {
@@ -85,11 +88,7 @@ void ErrorPropagation::set_step(ErrorState& state, const Increments& in, const S
   copy(jacobian.v_accel, step_.v_accel);
   copy(jacobian.v_gyro, step_.v_gyro);
 
-  for (int axis = 0; axis < 6; ++axis) {
-    const double white = (axis < 3 ? noise_.gyro : noise_.accel).white_per_sqrt_hz;
-    axes_[axis] = {};
-    axes_[axis].add(white_, white * white);
-  }
+  for (int axis = 0; axis < 6; ++axis) axes_[axis] = white_[axis < 3 ? 0 : 1];
   for (Group& group : groups_) group.terms.clear();
   for (const Feed& feed : state.feeds(in)) {
     Group& group = groups_[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(feed.state)])];
@@ -130,40 +129,53 @@ void ErrorPropagation::propagate(ErrorMatrix& P) {
   integrate(half_transposed_.data(), kMovingPadded, kMovingPadded);
   move_rows(step_, half_transposed_.data(), kMovingPadded, integrals_.data(), twice_.data(), kMovingPadded);
 
-  P.topLeftCorner<kMoving, kMoving>() = twice_.leftCols<kMoving>();
-  if (fades_) {
-    half_.rightCols(padded_ - kMoving).array().rowwise() *=
-        decay_.segment(kMoving, padded_ - kMoving).transpose().array();
-    scale_both(P.data() + kMoving * padded_ + kMoving, padded_, others, decay_.data() + kMoving);
-  }
-  P.block(0, kMoving, kMoving, others) = half_.middleCols(kMoving, others);
-  add_noise(P);
+  // Symmetric but for rounding: to the bit from here on.
   for (int i = 0; i < kMoving; ++i) {
-    for (int j = 0; j < i; ++j) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+    for (int j = 0; j < i; ++j) P(i, j) = P(j, i) = 0.5 * (twice_(i, j) + twice_(j, i));
+    P(i, i) = twice_(i, i);
   }
+  for (int i = 0; i < kMoving; ++i) {
+    const double* from = half_.data() + i * padded_;
+    double* to = P.data() + i * padded_;
+    for (int j = kMoving; j < size_; ++j) to[j] = decay_[j] * from[j];
+  }
+  if (fades_) scale_both(P.data() + kMoving * padded_ + kMoving, padded_, others, decay_.data() + kMoving);
+  add_noise(P);
   P.block(kMoving, 0, others, kMoving) = P.block(0, kMoving, kMoving, others).transpose();
 }
 
 void ErrorPropagation::add_noise(ErrorMatrix& P) {
-  const Matrix3 gyro(step_.theta_gyro), push(step_.v_gyro), force(step_.v_accel);
   // Of theta, v and p each axis of the gyroscopes moves gyro I_1, push I_2 and push I_3; the accelerometers' force I_1
   // of v and force I_2 of p.
-  for (int axis = 0; axis < 3; ++axis) {
-    const AxisNoise &g = axes_[axis], &a = axes_[3 + axis];
-    const Eigen::Vector3d t = gyro.col(axis), u = push.col(axis), f = force.col(axis);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        const double uu = u[i] * u[j], ff = f[i] * f[j], tu = t[i] * u[j];
-        P(Index::kTheta + i, Index::kTheta + j) += g.m11 * (t[i] * t[j]);
-        P(Index::kTheta + i, Index::kVelocity + j) += g.m12 * tu;
-        P(Index::kVelocity + j, Index::kTheta + i) += g.m12 * tu;
-        P(Index::kTheta + i, Index::kPosition + j) += g.m13 * tu;
-        P(Index::kPosition + j, Index::kTheta + i) += g.m13 * tu;
-        P(Index::kVelocity + i, Index::kVelocity + j) += g.m22 * uu + a.m11 * ff;
-        P(Index::kPosition + i, Index::kVelocity + j) += g.m23 * uu + a.m12 * ff;
-        P(Index::kVelocity + j, Index::kPosition + i) += g.m23 * uu + a.m12 * ff;
-        P(Index::kPosition + i, Index::kPosition + j) += g.m33 * uu + a.m22 * ff;
+  const double *t = step_.theta_gyro, *u = step_.v_gyro, *f = step_.v_accel;
+  for (int i = 0; i < 3; ++i) {
+    double* theta = P.data() + (Index::kTheta + i) * padded_;
+    double* p = P.data() + (Index::kPosition + i) * padded_;
+    double* v = P.data() + (Index::kVelocity + i) * padded_;
+    for (int j = 0; j < 3; ++j) {
+      double tt = 0.0, tv = 0.0, tp = 0.0, vt = 0.0, pt = 0.0, vv = 0.0, pv = 0.0, pp = 0.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const AxisNoise &g = axes_[axis], &a = axes_[3 + axis];
+        const int ti = 3 * i + axis, tj = 3 * j + axis;
+        const double tu = t[ti] * u[tj], ut = u[ti] * t[tj], uu = u[ti] * u[tj], ff = f[ti] * f[tj];
+        tt += g.m11 * (t[ti] * t[tj]);
+        tv += g.m12 * tu;
+        tp += g.m13 * tu;
+        vt += g.m12 * ut;
+        pt += g.m13 * ut;
+        vv += g.m22 * uu + a.m11 * ff;
+        pv += g.m23 * uu + a.m12 * ff;
+        pp += g.m33 * uu + a.m22 * ff;
       }
+      theta[Index::kTheta + j] += tt;
+      theta[Index::kPosition + j] += tp;
+      theta[Index::kVelocity + j] += tv;
+      p[Index::kTheta + j] += pt;
+      p[Index::kPosition + j] += pp;
+      p[Index::kVelocity + j] += pv;
+      v[Index::kTheta + j] += vt;
+      v[Index::kPosition + j] += pv;
+      v[Index::kVelocity + j] += vv;
     }
   }
   for (const Group& group : groups_) add_driven(P, group);
@@ -184,19 +196,21 @@ void ErrorPropagation::add_drift(ErrorMatrix& P) {
 void ErrorPropagation::add_driven(ErrorMatrix& P, const Group& group) {
   const Eigen::Matrix4d& m = group.moments.driven;
   for (const int state : group.states) P(state, state) += density_[state] * m(3, 3);
-  const Matrix3 gyro(step_.theta_gyro), push(step_.v_gyro), force(step_.v_accel);
   for (const FeedTerm& term : group.terms) {
     const double driven = term.rate * density_[term.state];
     if (driven == 0.0) continue;
+    const bool of_gyro = term.axis < 3;
+    const double* turns = step_.theta_gyro + term.axis % 3;
+    const double* pushes = (of_gyro ? step_.v_gyro : step_.v_accel) + term.axis % 3;
+    // Of a gyroscope the velocity takes the second integral, of an accelerometer the first.
+    const int of_v = of_gyro ? 1 : 0;
+    double* theta = P.data() + Index::kTheta * padded_ + term.state;
+    double* p = P.data() + Index::kPosition * padded_ + term.state;
+    double* v = P.data() + Index::kVelocity * padded_ + term.state;
     for (int i = 0; i < 3; ++i) {
-      if (term.axis < 3) {
-        P(Index::kTheta + i, term.state) += driven * m(0, 3) * gyro(i, term.axis);
-        P(Index::kVelocity + i, term.state) += driven * m(1, 3) * push(i, term.axis);
-        P(Index::kPosition + i, term.state) += driven * m(2, 3) * push(i, term.axis);
-      } else {
-        P(Index::kVelocity + i, term.state) += driven * m(0, 3) * force(i, term.axis - 3);
-        P(Index::kPosition + i, term.state) += driven * m(1, 3) * force(i, term.axis - 3);
-      }
+      if (of_gyro) theta[i * padded_] += driven * m(0, 3) * turns[3 * i];
+      v[i * padded_] += driven * m(of_v, 3) * pushes[3 * i];
+      p[i * padded_] += driven * m(of_v + 1, 3) * pushes[3 * i];
     }
   }
 }

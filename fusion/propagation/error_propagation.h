@@ -61,13 +61,12 @@ class ErrorPropagation {
   ImuNoise noise_;
   double dt_s_ = 0.0;
   bool fades_ = false;
-  Eigen::Matrix4d white_;
   Eigen::VectorXd decay_, mean_share_, density_;
   std::vector<Group> groups_;
   std::vector<int> group_of_;  // of each state
   std::vector<ErrorState::Integral> integrals_of_;
   StepCoefficients step_{};
-  AxisNoise axes_[6];
+  AxisNoise white_[2], axes_[6];  // of the triads' white noise alone, and of all that drives each axis
   // Scratch: integrals of the IMU's error; [theta, p, v] after the step; their transpose; and its [theta, p, v].
   ErrorMatrix integrals_, half_, half_transposed_, twice_;
 };

@@ -29,8 +29,9 @@ void move(NavState& state, const InertialStep& step, double dt_s, GravityFunctio
   const Eigen::Vector3d earth_rate = earth_rate_E();
   // E itself turns under U: a vector fixed in inertial space turns by -w_IE dt in E, half of it on average.
   const Eigen::Quaterniond half_turn = so3_exp(-0.5 * dt_s * earth_rate);
-  const Eigen::Vector3d dv_force = half_turn * (state.R_EU * step.dv_start_U);
-  const Eigen::Vector3d bend = half_turn * (state.R_EU * bend_start_U);
+  const Eigen::Quaterniond turned = half_turn * state.R_EU;
+  const Eigen::Matrix3d R = turned.toRotationMatrix();
+  const Eigen::Vector3d dv_force = R * step.dv_start_U, bend = R * bend_start_U;
 
   // Gravity and Coriolis at mid-interval; a first guess of the velocity there is enough, its error enters times w_IE
   // dt.
@@ -42,7 +43,7 @@ void move(NavState& state, const InertialStep& step, double dt_s, GravityFunctio
 
   state.p_EU_E += 0.5 * dt_s * (v + v_next) + bend;
   state.v_EU_E = v_next;
-  state.R_EU = (half_turn * half_turn * state.R_EU * so3_exp(step.rotation_U)).normalized();
+  state.R_EU = (half_turn * turned * so3_exp(step.rotation_U)).normalized();
   state.t = state.t + dt_s;
 }
 

@@ -4,8 +4,10 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <GeographicLib/NormalGravity.hpp>
 
 #include "canyon/core/earth/local_frame.h"
+#include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 
 namespace canyon {
@@ -117,6 +119,26 @@ TEST(Gravity, PointsAlongTheNormalOnTheEllipsoid) {
     const Eigen::Vector3d g_W = rotation_E_from_enu(g).transpose() * gravity_E(ecef_from_geodetic(g));
     EXPECT_LT(g_W.head<2>().norm(), 64 * kEps * 9.8) << lat;
     EXPECT_LT(g_W.z(), 0.0);
+  }
+}
+
+// From deep in the Earth to far out, poles and equator among it, and on both sides of where the closed form's series
+// begins: that of GeographicLib to ten roundings of what the sum is made of.
+TEST(Gravity, IsThatOfGeographicLib) {
+  const RandomStream random(1, "test.gravity");
+  std::uint64_t draw = 0;
+  for (const double r_m :
+       {1e5, 3e6, 6.19e6, 6.2e6, 6.21e6, 6.35e6, 6.3567e6, 6.37e6, 6.3782e6, 6.4e6, 1e7, 4.2e7, 1e9}) {
+    for (int i = 0; i < 1000; ++i) {
+      Eigen::Vector3d way = random.direction(0, draw++);
+      if (i % 10 == 0) way = Eigen::Vector3d(1e-9 * way.x(), 0.0, way.z() < 0.0 ? -1.0 : 1.0).normalized();
+      if (i % 10 == 1) way.z() *= 1e-12;
+      const Eigen::Vector3d p_E = r_m * way;
+      Eigen::Vector3d theirs;
+      GeographicLib::NormalGravity::WGS84().U(p_E.x(), p_E.y(), p_E.z(), theirs.x(), theirs.y(), theirs.z());
+      const double turning = Wgs84::rate_rad_s * Wgs84::rate_rad_s * p_E.head<2>().norm();
+      EXPECT_LT((gravity_E(p_E) - theirs).norm(), 10 * kEps * (theirs.norm() + 2 * turning)) << p_E.transpose();
+    }
   }
 }
 

@@ -15,9 +15,9 @@ namespace {
 constexpr double kRotationEps = std::numeric_limits<double>::epsilon();
 const RandomStream kRandom(1, "test.rotation");
 
-/// Angles through every branch: zero, the series, its border, ordinary ones, just under and at pi.
-const std::vector<double> kAngles = {0.0, 1e-300, 1e-12, 1e-8,       9.9e-5,     1.01e-4,     1e-3, 0.1,
-                                     1.0, 2.0,    3.0,   kPi - 1e-3, kPi - 1e-8, kPi - 1e-15, kPi};
+/// Angles through every branch: zero, the series, their borders, ordinary ones, just under and at pi.
+const std::vector<double> kAngles = {0.0,   1e-300, 1e-12, 1e-8, 9.9e-5, 1.01e-4,    1e-3,       0.03,        0.0999,
+                                     0.101, 0.2,    1.0,   2.0,  3.0,    kPi - 1e-3, kPi - 1e-8, kPi - 1e-15, kPi};
 
 TEST(Skew, IsTheCrossProduct) {
   const Eigen::Vector3d a(1, 2, 3), b(-4, 5, 0.5);
@@ -54,18 +54,25 @@ TEST(So3, LogInvertsExp) {
   }
 }
 
-TEST(So3, BranchesOfExpAndLogMeetSmoothly) {
-  const Eigen::Vector3d axis = Eigen::Vector3d(1, -2, 3).normalized();
-  const Eigen::Quaterniond below = so3_exp(axis * 1e-4 * (1 - 1e-9));
-  const Eigen::Quaterniond above = so3_exp(axis * 1e-4 * (1 + 1e-9));
-  EXPECT_LT((below.coeffs() - above.coeffs()).norm(), 1e-4 * 2e-9 + 4 * kRotationEps);
+// On either side of the series' ends, in long double: each component to two units of its last digit.
+TEST(So3, ExpAndItsJacobianHoldEveryDigit) {
+  for (const double angle : {1e-8, 9.99e-5, 1.001e-4, 1e-3, 0.05, 0.09999, 0.1000001, 0.3, 1.5}) {
+    const Eigen::Quaterniond q = so3_exp({angle, 0.0, 0.0});
+    const Eigen::Matrix3d J = so3_right_jacobian({angle, 0.0, 0.0});
+    const long double a = angle, half = 0.5L * a;
+    EXPECT_NEAR(q.w(), static_cast<double>(std::cos(half)), 2 * kRotationEps) << angle;
+    EXPECT_NEAR(q.x() / static_cast<double>(std::sin(half)), 1.0, 2 * kRotationEps) << angle;
+    const auto across = static_cast<double>(2.0L * std::sin(half) * std::sin(half) / a);
+    EXPECT_NEAR(J(1, 2) / across, 1.0, 4 * kRotationEps) << angle;
+    EXPECT_NEAR(J(1, 1), static_cast<double>(std::sin(a) / a), 2 * kRotationEps) << angle;
+  }
 }
 
 // Exp(v + d) = Exp(v) Exp(Jr d) + second order; the central difference leaves step^2 / 6 times a third derivative of
 // order 1.
 TEST(So3, RightJacobianByDifferences) {
   constexpr double step = 1e-5;
-  for (const double angle : {0.0, 1e-6, 9.9e-5, 1.01e-4, 1e-2, 0.7, 2.0, 3.1}) {
+  for (const double angle : {0.0, 1e-6, 9.9e-5, 1.01e-4, 1e-2, 0.0999, 0.1001, 0.7, 2.0, 3.1}) {
     for (std::uint64_t i = 0; i < 5; ++i) {
       const Eigen::Vector3d v = angle * kRandom.direction(2, i);
       Eigen::Matrix3d numerical;
@@ -143,7 +150,7 @@ Pose random_pose(std::uint64_t i, double angle) {
 // Independent of the closed form: Exp(xi) is the limit of (I + xi^ / n)^n; with 2^k steps by squaring of the Taylor sum
 // of eighth order, whose first neglected term is (|xi| / 2^k)^9 / 9!.
 TEST(Se3, ExpIsTheMatrixExponentialWithCoupledTranslation) {
-  for (const double angle : {0.0, 1e-9, 9.9e-5, 1.01e-4, 0.3, 2.0, 3.1}) {
+  for (const double angle : {0.0, 1e-9, 9.9e-5, 1.01e-4, 0.0999, 0.1001, 0.3, 2.0, 3.1}) {
     for (std::uint64_t i = 0; i < 10; ++i) {
       Vector6d xi;
       xi << angle * kRandom.direction(4, i), 5.0 * kRandom.direction(5, i);
