@@ -7,17 +7,21 @@
 namespace canyon {
 namespace {
 
-/// Below this angle series are used, whose first term left out is below 1e-17.
+/// Below this angle series are used, whose first term left out is below 1e-16 of the sum.
 constexpr double kSmallAngleRad = 0.1, kSmallAngle2 = kSmallAngleRad * kSmallAngleRad;
 /// The same of series that are cut after their second term.
 constexpr double kTinyAngleRad = 1e-4;
 
-/// sin(sqrt(q)) / sqrt(q) and cos(sqrt(q)), q being at most kSmallAngle2.
-double small_sinc(double q) {
-  return 1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0))));
+/// (a - sin a) / a^3 and cos a of q = a^2, which is at most kSmallAngle2.
+double small_sine_defect(double q) {
+  return 1.0 / 6.0 + q * (-1.0 / 120.0 + q * (1.0 / 5040.0 + q * (-1.0 / 362880.0 + q * (1.0 / 39916800.0))));
 }
 double small_cosine(double q) {
-  return 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+  return 1.0 + q * (-1.0 / 2.0 + q * (1.0 / 24.0 + q * (-1.0 / 720.0 + q * (1.0 / 40320.0 + q * (-1.0 / 3628800.0)))));
+}
+/// sin a / a
+double small_sinc(double q) {
+  return 1.0 - q * small_sine_defect(q);
 }
 
 /// Left Jacobian of SO(3), the V of SE(3): the translation of Exp(xi) is V(rotation) * translation.
@@ -72,13 +76,12 @@ Eigen::Vector3d so3_log(const Eigen::Quaterniond& q) {
 }
 
 Eigen::Matrix3d so3_right_jacobian(const Eigen::Vector3d& v) {
-  // (1 - cos a) / a^2 without cancellation, and (a - sin a) / a^3, which loses half its digits long before its series
-  // does.
+  // (1 - cos a) / a^2 = half_sine^2 / 2 without cancellation, and (a - sin a) / a^3, which cancels at small angles.
   const double angle2 = v.squaredNorm();
   double half_sine = 0.0, square = 0.0;
   if (angle2 < kSmallAngle2) {
     half_sine = small_sinc(0.25 * angle2);
-    square = 1.0 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0 * (1.0 - angle2 / 72.0 * (1.0 - angle2 / 110.0))));
+    square = small_sine_defect(angle2);
   } else {
     const double angle = v.norm();
     half_sine = std::sin(0.5 * angle) / (0.5 * angle);

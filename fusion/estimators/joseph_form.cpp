@@ -15,6 +15,8 @@ using Rows3 = Eigen::Matrix<double, kAtOnce, Eigen::Dynamic, Eigen::RowMajor, kA
 /// P += left right.
 void add_outer(ErrorMatrix& P, const Gain& left, const Measurement::Rows& right) {
   const Eigen::Index m = right.rows();
+  if (m == kAtOnce)  // as the kernel takes it
+    return add_products(P.data(), static_cast<int>(P.rows()), static_cast<int>(P.cols()), left.data(), right.data());
   Columns3 a(P.rows(), kAtOnce);
   Rows3 b(kAtOnce, P.cols());
   for (Eigen::Index from = 0; from < m; from += kAtOnce) {
@@ -41,13 +43,9 @@ void JosephForm::correct(const Measurement& m, const Gain& K, const Measurement:
   // As two corrections of the rank of the measurement, from the left and from the right.
   add_outer(P_, -K, HP);
   Gain right = K.lazyProduct(m.R);
-  int measured[kMostStates], count = 0;  // the columns of H that hold anything
-  for (int k = 0; k < m.H.cols(); ++k)
-    if (!m.H.col(k).isZero(0.0)) measured[count++] = k;
-  for (Eigen::Index j = 0; j < P_.rows(); ++j) {
-    const double* row = P_.data() + j * P_.cols();
+  for (Eigen::Index k = 0; k < P_.cols(); ++k) {
     for (Eigen::Index i = 0; i < m.H.rows(); ++i)
-      for (int n = 0; n < count; ++n) right(j, i) -= m.H(i, measured[n]) * row[measured[n]];
+      if (m.H(i, k) != 0.0) right.col(i) -= m.H(i, k) * P_.col(k);
   }
   add_outer(P_, right, K.transpose());
   symmetrize(P_);

@@ -6,7 +6,7 @@ namespace canyon::fusion {
 CANYON_VECTOR_CLONES void add_integrals(const FeedTerm* terms, int count, const double* carried, double dt_s,
                                         const double* __restrict errors, int stride, double* __restrict integrals,
                                         int width) {
-  alignas(64) double rates[6 * kMostStates];  // a register each
+  double rates[6 * kMostStates];
   bool fed[6] = {};
   for (int n = 0; n < count; ++n) {
     const double rate = terms[n].rate;
