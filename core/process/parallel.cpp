@@ -1,8 +1,10 @@
 #include "canyon/core/process/parallel.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -17,15 +19,10 @@
 namespace canyon {
 namespace {
 
-/// The arena our loops run in, and the process-wide limit that also binds what others (Embree) start on oneTBB.
+/// Where our loops run on `count` threads.
 struct Pool {
-  explicit Pool(int n)
-      : count(n),
-        limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(n)),
-        arena(n),
-        aside(n) {}
+  explicit Pool(int n) : count(n), arena(n), aside(n) {}
   int count;
-  tbb::global_control limit;
   tbb::task_arena arena;
   tbb::task_arena aside;  ///< of what is offered to idle threads, with its loops
 };
@@ -48,26 +45,44 @@ class InArena {
   tbb::task_arena* before_;
 };
 
-std::mutex pool_mutex;
-std::shared_ptr<Pool> current_pool;
+/// Lives as long as the process and is never destroyed, nor is any pool: at the exit a worker may still hold what was
+/// offered to it, in a pool whose number of threads may have been changed since.
+struct Pools {
+  std::mutex mutex;
+  std::map<int, Pool> by_count;
+  Pool* current = nullptr;
+  std::optional<tbb::global_control> limit;  ///< also binds what others (Embree) start on oneTBB
 
-std::shared_ptr<Pool> pool() {
-  const std::lock_guard lock(pool_mutex);
-  if (!current_pool) current_pool = std::make_shared<Pool>(all_cores());
-  return current_pool;
+  void change_to(int count) {
+    limit.reset();  // the old one must go first: the smallest of those alive counts
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+    current = &by_count.try_emplace(count, count).first->second;
+  }
+};
+
+Pools& pools() {
+  static Pools* const forever = new Pools;
+  return *forever;
+}
+
+Pool& pool() {
+  Pools& all = pools();
+  const std::lock_guard lock(all.mutex);
+  if (all.current == nullptr) all.change_to(all_cores());
+  return *all.current;
 }
 
 }  // namespace
 
 void set_threads(int threads) {
   CANYON_CHECK(threads >= 0 && threads <= 4096, "threads = ", threads);
-  const std::lock_guard lock(pool_mutex);
-  current_pool.reset();  // the old limit must go first: the smallest of those alive counts
-  current_pool = std::make_shared<Pool>(threads == 0 ? all_cores() : threads);
+  Pools& all = pools();
+  const std::lock_guard lock(all.mutex);
+  all.change_to(threads == 0 ? all_cores() : threads);
 }
 
 int threads() {
-  return pool()->count;
+  return pool().count;
 }
 
 void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std::size_t, std::size_t)>& body) {
@@ -82,13 +97,13 @@ void parallel_for(std::size_t n, std::size_t chunk, const std::function<void(std
     const InArena in(own);  // loops of the chunk stay in the room of this one
     body(i * chunk, i * chunk + std::min(chunk, n - i * chunk));
   };
-  const std::shared_ptr<Pool> keep = pool();
-  if (keep->count == 1 || chunks == 1) {
+  Pool& common = pool();
+  if (common.count == 1 || chunks == 1) {
     for (std::size_t i = 0; i < chunks; ++i) run_chunk(i);
     return;
   }
   // Isolated: a thread that waits for a nested loop takes up only that loop's chunks, never an unrelated one's.
-  (own != nullptr ? *own : keep->arena).execute([&] {
+  (own != nullptr ? *own : common.arena).execute([&] {
     tbb::this_task_arena::isolate([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, chunks, 1),
@@ -114,10 +129,10 @@ OwnRoom::~OwnRoom() {
 }
 
 void offer_to_idle(std::function<void()> work) {
-  const std::shared_ptr<Pool> keep = pool();
-  if (keep->count == 1) return;
-  keep->aside.enqueue([keep, work = std::move(work)] {
-    const InArena in(&keep->aside);
+  Pool& common = pool();
+  if (common.count == 1) return;
+  common.aside.enqueue([&common, work = std::move(work)] {
+    const InArena in(&common.aside);
     work();
   });
 }

@@ -1,7 +1,10 @@
 #include "canyon/core/process/parallel.h"
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <future>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -10,6 +13,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "canyon/core/check.h"
 
@@ -113,6 +117,41 @@ TEST_F(Parallel, ThreadsThatALoopWaitsForHaveRoomForLoopsOfTheirs) {
     waited_for.join();
   });
   EXPECT_EQ(done, 6 * 40 * 8);
+}
+
+// What is offered and not yet done stays where it was offered; the new number counts at once.
+TEST_F(Parallel, TheNumberChangesThoughAnIdleThreadHoldsWorkOfTheOldOne) {
+  set_threads(2);
+  std::promise<void> begun, let_go, ended;
+  offer_to_idle([&] {
+    begun.set_value();
+    let_go.get_future().wait();
+    ended.set_value();
+  });
+  begun.get_future().wait();
+  set_threads(3);
+  EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), 3u);
+  let_go.set_value();
+  ended.get_future().wait();
+}
+
+// 2026-11-27: the last to hold the pool destroyed it, be it a worker after the exit had begun: "pure virtual method
+// called", once in a hundred runs.
+TEST(ParallelDeathTest, AProcessMayEndWhileAnIdleThreadHoldsWork) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (int i = 0; i < 100; ++i) {
+    const auto end = [i] {
+      set_threads(2);
+      std::promise<void> begun;
+      offer_to_idle([&begun, i] {
+        begun.set_value();
+        std::this_thread::sleep_for(std::chrono::microseconds(10 * i));
+      });
+      begun.get_future().wait();
+      std::exit(0);
+    };
+    ASSERT_EXIT(end(), ::testing::ExitedWithCode(0), "") << i;
+  }
 }
 
 TEST_F(Parallel, ExceptionsReachTheCaller) {
