@@ -57,6 +57,9 @@ LIBRARIES = [
 # PCL's registration headers take 18 s and 1.4 GB per file.
 REGISTRATION_FILES_MAX = 3
 
+# What stands before a function whose loops are to be vectors, and the options that make it so.
+VECTOR_CLONES, VECTOR_LOOPS = "CANYON_VECTOR_CLONES", "CANYON_VECTOR_LOOPS"
+
 STANDARD = r"[a-z_0-9]+"
 EIGEN = r"(unsupported/)?Eigen/\w+"
 FORWARD_DECLARATIONS = r"nlohmann/json_fwd\.hpp"
@@ -151,6 +154,7 @@ class Tree:
                     self.check_angled(name, number, angled)
             if folder in FLOORS:
                 self.check_randomness(name)
+            self.check_vector_loops(name)
             if matches(name, BLIND_TO_TRUTH):
                 self.check_truth(name)
         self.check_registration_files()
@@ -209,6 +213,15 @@ class Tree:
             found = re.search(OTHER_RANDOMNESS, line)
             if found:
                 self.breach(name, number, f"{found[0]}: random numbers come from core/random/random.h")
+
+    def check_vector_loops(self, name):
+        """The compiler makes vectors of the loops of those files alone that are told to it."""
+        found = [number for number, line in enumerate(self.lines[name], 1) if line.startswith(VECTOR_CLONES)]
+        folder, _, within = name.partition("/")
+        lists = self.root / folder / "CMakeLists.txt"
+        told = re.findall(r"set_source_files_properties\(([^)]*)\)", lists.read_text(encoding="utf-8")) if lists.is_file() else []
+        if found and not any(VECTOR_LOOPS in call and within in call.split() for call in told):
+            self.breach(name, found[0], f"{VECTOR_CLONES} without {VECTOR_LOOPS} in {folder}/CMakeLists.txt: its loops stay scalar")
 
     def check_truth(self, name):
         """Breadth first through the includes, so that the shortest way to the truth is the one told."""

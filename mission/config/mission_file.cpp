@@ -115,7 +115,8 @@ bool is_of_a_place(const std::string& key) {
 }  // namespace
 
 Result<MissionFile> MissionFile::load(const std::string& path) {
-  if (path.empty()) return parse("base = \"" + std::string(kDefaultMission) + "\"\n", mission_key(kDefaultMission));
+  if (path.empty() || path == kDefaultMission)
+    return parse("base = \"" + std::string(kDefaultMission) + "\"\n", mission_key(kDefaultMission));
   CANYON_TRY(ConfigNode tree, ConfigNode::load(path));
   return from_tree(std::move(tree), path);
 }

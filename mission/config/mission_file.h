@@ -26,7 +26,7 @@ inline constexpr const char* kDefaultMission = "vicksburg";
 /// fidelities. All fidelities of the user's file are read and checked at once, whichever will be used.
 class MissionFile {
  public:
-  /// Reads a mission file; an empty path gives the built-in mission.
+  /// Reads a mission file; an empty path, or kDefaultMission, gives the built-in mission.
   static Result<MissionFile> load(const std::string& path);
   static Result<MissionFile> parse(std::string_view toml, const std::string& file_name);
 

@@ -168,6 +168,13 @@ class CheckLayers(unittest.TestCase):
             {"gnss/noise.cpp": "#include <random>\nstd::normal_distribution<double> noise; // std::mt19937\n"},
             "gnss/noise.cpp:2: std::normal_distribution: random numbers come from core/random/random.h")
 
+    # 2026-11-27: loops of gnss/ had stayed scalar since loops became vectors in files that are named alone.
+    def test_loops_that_are_to_be_vectors_are_told_to_the_compiler(self):
+        rows = {"gnss/rows.cpp": "\nCANYON_VECTOR_CLONES void sum(const double* from, double* to) {}\n"}
+        self.assert_breach(rows, "gnss/rows.cpp:2: CANYON_VECTOR_CLONES without CANYON_VECTOR_LOOPS in gnss/CMakeLists.txt: its loops stay scalar")
+        told = 'canyon_library(gnss)\nset_source_files_properties(rows.cpp PROPERTIES COMPILE_OPTIONS "${CANYON_VECTOR_LOOPS}")\n'
+        self.assertEqual(check({**rows, "gnss/CMakeLists.txt": told})[0], 0)
+
     def test_a_folder_links_what_it_may_include(self):
         self.assert_breach(
             {"gnss/CMakeLists.txt": "canyon_library(gnss LINK canyon_scene canyon_fusion)\n"},

@@ -1,49 +1,42 @@
 #include "canyon/gnss/paths/rows/near_waves.h"
 
 #include <algorithm>
-#include <limits>
+#include <bit>
 
 #include "canyon/core/process/vector_clones.h"
 
 namespace canyon::gnss {
 namespace {
 
-constexpr std::size_t kWaveRow = 8, kAxesAtOnce = 64;
+constexpr std::size_t kAxesAtOnce = 64, kWavesAtOnce = 32;
 
 struct AxisColumns {
   const float *x, *y, *z, *least;
-  std::size_t begin, end;
+  std::size_t count;
 };
 struct WaveColumns {
   const float *x, *y, *z;
-  std::size_t count;  ///< whole rows
+  std::size_t count;
 };
 
-/// Returns how many pairs it wrote; there is room for all.
-CANYON_VECTOR_CLONES std::size_t write_near(const AxisColumns& axes, const WaveColumns& waves, AxisAndWave* out) {
-  AxisAndWave* next = out;
-  for (std::size_t i = axes.begin; i < axes.end; ++i) {
-    const float x = axes.x[i], y = axes.y[i], z = axes.z[i], least = axes.least[i];
-    for (std::size_t begin = 0; begin < waves.count; begin += kWaveRow) {
-      std::uint32_t reaches[kWaveRow], any = 0;
-      for (std::size_t j = 0; j < kWaveRow; ++j) {
-        const float along = x * waves.x[begin + j] + y * waves.y[begin + j] + z * waves.z[begin + j];
-        reaches[j] = along >= least ? 1U : 0U;
-      }
-      for (std::size_t j = 0; j < kWaveRow; ++j) any |= reaches[j];
-      if (any == 0) continue;
-      for (std::size_t j = 0; j < kWaveRow; ++j)
-        if (reaches[j] != 0) *next++ = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(begin + j)};
+/// Bit k of `near[i]`: wave k comes from near axis i.
+CANYON_VECTOR_CLONES void write_near(const AxisColumns& axes, const WaveColumns& waves,
+                                     std::uint32_t* __restrict near) {
+  for (std::size_t i = 0; i < axes.count; ++i) near[i] = 0;
+  for (std::size_t k = 0; k < waves.count; ++k) {
+    const float x = waves.x[k], y = waves.y[k], z = waves.z[k];
+    const std::uint32_t bit = 1U << k;
+    for (std::size_t i = 0; i < axes.count; ++i) {
+      const float along = axes.x[i] * x + axes.y[i] * y + axes.z[i] * z;
+      near[i] |= along >= axes.least[i] ? bit : 0U;
     }
   }
-  return static_cast<std::size_t>(next - out);
 }
 
 }  // namespace
 
 void NearWaves::fill(std::span<const Eigen::Vector3d> directions_W) {
-  const std::size_t rows = (directions_W.size() + kWaveRow - 1) / kWaveRow;
-  for (auto* of : {&x_, &y_, &z_}) of->assign(rows * kWaveRow, std::numeric_limits<float>::quiet_NaN());
+  for (auto* of : {&x_, &y_, &z_}) of->resize(directions_W.size());
   for (std::size_t i = 0; i < directions_W.size(); ++i) {
     x_[i] = static_cast<float>(directions_W[i].x());
     y_[i] = static_cast<float>(directions_W[i].y());
@@ -52,14 +45,25 @@ void NearWaves::fill(std::span<const Eigen::Vector3d> directions_W) {
 }
 
 void NearWaves::find(const WaveAxes& axes, std::vector<AxisAndWave>& out) const {
-  thread_local std::vector<AxisAndWave> some;
-  some.resize(kAxesAtOnce * x_.size());
+  const std::size_t words = (x_.size() + kWavesAtOnce - 1) / kWavesAtOnce;
+  thread_local std::vector<std::uint32_t> near;
+  near.resize(words * kAxesAtOnce);
   out.clear();
   for (std::size_t begin = 0; begin < axes.size(); begin += kAxesAtOnce) {
-    const std::size_t count = write_near({axes.x.data(), axes.y.data(), axes.z.data(), axes.least.data(), begin,
-                                          std::min(begin + kAxesAtOnce, axes.size())},
-                                         {x_.data(), y_.data(), z_.data(), x_.size()}, some.data());
-    out.insert(out.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
+    const std::size_t count = std::min(kAxesAtOnce, axes.size() - begin);
+    for (std::size_t word = 0; word < words; ++word) {
+      const std::size_t first = word * kWavesAtOnce;
+      write_near(
+          {axes.x.data() + begin, axes.y.data() + begin, axes.z.data() + begin, axes.least.data() + begin, count},
+          {x_.data() + first, y_.data() + first, z_.data() + first, std::min(kWavesAtOnce, x_.size() - first)},
+          near.data() + word * kAxesAtOnce);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t word = 0; word < words; ++word)
+        for (std::uint32_t left = near[word * kAxesAtOnce + i]; left != 0; left &= left - 1)
+          out.push_back(
+              {static_cast<std::uint32_t>(begin + i),
+               static_cast<std::uint32_t>(word * kWavesAtOnce) + static_cast<std::uint32_t>(std::countr_zero(left))});
   }
 }
 

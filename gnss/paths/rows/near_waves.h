@@ -44,7 +44,7 @@ class NearWaves {
   void find(const WaveAxes& axes, std::vector<AxisAndWave>& out) const;
 
  private:
-  std::vector<float> x_, y_, z_;  ///< filled up to whole rows with what is near nothing
+  std::vector<float> x_, y_, z_;
 };
 
 }  // namespace canyon::gnss

@@ -16,20 +16,23 @@ Eigen::Vector3d direction(const RandomStream& draws, std::uint32_t i) {
 // Every pair that double precision finds, in order, and of those that it does not only what lies within rounding.
 TEST(NearWaves, FindsEveryPairThatDoublePrecisionFinds) {
   const RandomStream wave_draws(3, "near_waves.wave"), axis_draws(3, "near_waves.axis");
-  for (const std::size_t count : {std::size_t{1}, std::size_t{7}, std::size_t{40}, std::size_t{64}}) {
+  NearWaves near;  // the same for all: what it remembers is of the waves before
+  for (const std::size_t count : {64, 1, 7, 40, 65, 130}) {
     std::vector<Eigen::Vector3d> waves;
     for (std::uint32_t i = 0; i < count; ++i) waves.push_back(direction(wave_draws, i));
     std::vector<Eigen::Vector3d> axes;
     std::vector<double> least;
     WaveAxes columns;
-    for (std::uint32_t i = 0; i < 500; ++i) {
+    for (std::uint32_t i = 0; i < 3000; ++i) {
       const double length = std::pow(10.0, 4.0 * axis_draws.uniform(i, 3));
       axes.emplace_back(length * direction(axis_draws, i));
-      // Half of them at what one of the waves just reaches.
-      least.push_back(i % 2 == 0 ? axes.back().dot(waves[i % count]) : length * (2.0 * axis_draws.uniform(i, 4) - 1.0));
+      // At what one of the waves just reaches, in cones of any width, and in narrow ones.
+      const double share = axis_draws.uniform(i, 4);
+      least.push_back(i % 3 == 0   ? axes.back().dot(waves[i % count])
+                      : i % 3 == 1 ? length * (2.0 * share - 1.0)
+                                   : length * (1.0 - std::pow(10.0, -6.0 * share)));
       columns.add(axes.back(), length, least.back());
     }
-    NearWaves near;
     near.fill(waves);
     std::vector<AxisAndWave> found;
     near.find(columns, found);

@@ -24,6 +24,12 @@ TEST(MissionFile, BuiltInMissionHasElevenWaypointsOfWhichThreeAreMissionWaypoint
     EXPECT_EQ(config->autonomy.waypoints[i].is_mission(), i == 6 || i == 8 || i == 10) << i + 1;
 }
 
+TEST(MissionFile, TheBuiltInMissionHasAName) {
+  const auto named = MissionFile::load("vicksburg"), none = MissionFile::load("");
+  ASSERT_TRUE(named.ok() && none.ok());
+  EXPECT_EQ(named->resolve("low")->autonomy.waypoints.size(), none->resolve("low")->autonomy.waypoints.size());
+}
+
 TEST(MissionFile, LayersWinInTheirOrder) {
   // The user's [gnss] holds for every fidelity, the user's [fidelity.low.gnss] for that one, an option over all.
   MissionFile file = parse("base = \"vicksburg\"\n[gnss]\nrate_hz = 5.0\n[fidelity.low.gnss]\nrate_hz = 4.0\n");
