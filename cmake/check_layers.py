@@ -216,10 +216,11 @@ class Tree:
 
     def check_vector_loops(self, name):
         """The compiler makes vectors of the loops of those files alone that are told to it."""
-        found = [number for number, line in enumerate(self.lines[name], 1) if line.startswith(VECTOR_CLONES)]
+        found = [number for number, line in enumerate(self.lines[name], 1) if re.search(rf"\b{VECTOR_CLONES}\b", line) and not line.startswith("#")]
         folder, _, within = name.partition("/")
         lists = self.root / folder / "CMakeLists.txt"
-        told = re.findall(r"set_source_files_properties\(([^)]*)\)", lists.read_text(encoding="utf-8")) if lists.is_file() else []
+        text = re.sub(r"#.*", "", lists.read_text(encoding="utf-8")) if lists.is_file() else ""
+        told = re.findall(r"set_source_files_properties\(([^)]*)\)", text)
         if found and not any(VECTOR_LOOPS in call and within in call.split() for call in told):
             self.breach(name, found[0], f"{VECTOR_CLONES} without {VECTOR_LOOPS} in {folder}/CMakeLists.txt: its loops stay scalar")
 

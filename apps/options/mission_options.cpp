@@ -8,7 +8,9 @@ namespace canyon::apps {
 
 void declare_mission_choice(Arguments& arguments, MissionOptions& options) {
   declare_common(arguments, options.common);
-  arguments.option("mission", options.mission, "mission file (TOML); vicksburg, or nothing, is the built-in mission")
+  arguments
+      .option("mission", options.mission,
+              std::string("mission file (TOML); ") + mission::kDefaultMission + ", or nothing, is the built-in mission")
       .type("MISSION.toml");
   arguments.option("--seed", options.seed, "seed of every random stream; without it the mission's")
       .within(std::int64_t{0}, kLargestSeed);

@@ -73,7 +73,7 @@ Result<int> run_cases(Options options) {
 
 Result<int> sweep(const Options& options) {
   const std::string& name = options.what.front();
-  const std::string path = name == mission::kDefaultMission ? name : std::filesystem::absolute(name).string();
+  const std::string path = mission::is_built_in(name) ? name : std::filesystem::absolute(name).string();
   CANYON_TRY(const auto file, mission::MissionFile::load(path));
   const std::string fidelity = options.fidelity.empty() ? "high" : options.fidelity;
   CANYON_TRY_STATUS(file.check_fidelities({fidelity}, "--fidelity"));

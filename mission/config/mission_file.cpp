@@ -115,7 +115,7 @@ bool is_of_a_place(const std::string& key) {
 }  // namespace
 
 Result<MissionFile> MissionFile::load(const std::string& path) {
-  if (path.empty() || path == kDefaultMission)
+  if (is_built_in(path))
     return parse("base = \"" + std::string(kDefaultMission) + "\"\n", mission_key(kDefaultMission));
   CANYON_TRY(ConfigNode tree, ConfigNode::load(path));
   return from_tree(std::move(tree), path);

@@ -16,6 +16,12 @@ namespace canyon::mission {
 
 inline constexpr const char* kDefaultMission = "vicksburg";
 
+/// Whether the built-in mission is meant where a mission file is asked for: by its name, or by none. A file of that
+/// very name is ./vicksburg.
+inline bool is_built_in(const std::string& path) {
+  return path.empty() || path == kDefaultMission;
+}
+
 /// A mission as the user states it: one description, and fidelities that override parts of it.
 ///
 /// Layers, later ones win: the base mission (`base = "vicksburg"`, a built-in), the built-in fidelity, the user's
@@ -26,7 +32,7 @@ inline constexpr const char* kDefaultMission = "vicksburg";
 /// fidelities. All fidelities of the user's file are read and checked at once, whichever will be used.
 class MissionFile {
  public:
-  /// Reads a mission file; an empty path, or kDefaultMission, gives the built-in mission.
+  /// Reads a mission file, or the built-in mission (is_built_in).
   static Result<MissionFile> load(const std::string& path);
   static Result<MissionFile> parse(std::string_view toml, const std::string& file_name);
 

@@ -170,10 +170,14 @@ class CheckLayers(unittest.TestCase):
 
     # 2026-11-27: loops of gnss/ had stayed scalar since loops became vectors in files that are named alone.
     def test_loops_that_are_to_be_vectors_are_told_to_the_compiler(self):
-        rows = {"gnss/rows.cpp": "\nCANYON_VECTOR_CLONES void sum(const double* from, double* to) {}\n"}
-        self.assert_breach(rows, "gnss/rows.cpp:2: CANYON_VECTOR_CLONES without CANYON_VECTOR_LOOPS in gnss/CMakeLists.txt: its loops stay scalar")
-        told = 'canyon_library(gnss)\nset_source_files_properties(rows.cpp PROPERTIES COMPILE_OPTIONS "${CANYON_VECTOR_LOOPS}")\n'
-        self.assertEqual(check({**rows, "gnss/CMakeLists.txt": told})[0], 0)
+        rows = {"gnss/rows.cpp": "\nstatic CANYON_VECTOR_CLONES void sum(const double* from, double* to) {}\n"}
+        breach = "gnss/rows.cpp:2: CANYON_VECTOR_CLONES without CANYON_VECTOR_LOOPS in gnss/CMakeLists.txt: its loops stay scalar"
+        told = 'set_source_files_properties({} PROPERTIES COMPILE_OPTIONS "{}")\n'.format
+        loops = "${CANYON_VECTOR_LOOPS}"
+        self.assert_breach(rows, breach)
+        for text in (told("other.cpp", loops), told("rows.cpp", "-O3"), "# " + told("rows.cpp", loops)):
+            self.assert_breach({**rows, "gnss/CMakeLists.txt": text}, breach)
+        self.assertEqual(check({**rows, "gnss/CMakeLists.txt": told("rows.cpp", loops)})[0], 0)
 
     def test_a_folder_links_what_it_may_include(self):
         self.assert_breach(

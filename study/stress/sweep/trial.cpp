@@ -29,8 +29,7 @@ double shortest(const TrialSetup& setup, const Settings& settings) {
 }
 
 std::vector<std::string> command_line(const TrialSetup& setup, const Settings& settings) {
-  std::vector<std::string> words{setup.program, "run"};
-  if (!setup.mission.empty()) words.push_back(setup.mission);
+  std::vector<std::string> words{setup.program, "run", setup.mission};
   words.insert(words.end(), {"--fidelity", setup.fidelity, "--out", kResults, "--json", "--threads", "1"});
   for (const auto& [key, value] : settings) words.insert(words.end(), {"--set", key + "=" + value});
   // The last one counts: a limit that is tried is read, but no trial is longer than the others.

@@ -16,7 +16,7 @@ using Settings = std::vector<std::pair<std::string, std::string>>;
 /// How the program is called for one trial.
 struct TrialSetup {
   std::string program;       ///< canyon itself
-  std::string mission;       ///< its file; empty: the built-in one
+  std::string mission;       ///< its file, or the name of the built-in one
   std::string fidelity;      ///< that is driven
   double simulated_s = 3.0;  ///< at most, whatever time.limit_s is set to
   /// Of a trial; its CPU time is that of the mission as it stands, and this much for each simulated second.

@@ -42,7 +42,7 @@ Status check_read_back(const std::string& text, const Chosen& chosen, const std:
 }  // namespace
 
 Status check_writable(const std::string& path, const mission::MissionFile& file, const std::string& written_to) {
-  if (!path.empty()) CANYON_TRY_STATUS(check_folder(path, written_to));
+  if (!mission::is_built_in(path)) CANYON_TRY_STATUS(check_folder(path, written_to));
   for (const std::string& name : file.fidelities())
     if (name == kWrittenFidelity)
       return Error{.file = "--write",
@@ -54,7 +54,7 @@ Status check_writable(const std::string& path, const mission::MissionFile& file,
 Result<std::string> mission_with(const Chosen& chosen, const std::string& fidelity, const std::string& path,
                                  const std::string& written_to) {
   std::string text = std::string("base = \"") + mission::kDefaultMission + "\"\n";
-  if (!path.empty()) {
+  if (!mission::is_built_in(path)) {
     CANYON_TRY(text, read_text_file(path));
   }
   if (!text.empty() && text.back() != '\n') text += '\n';

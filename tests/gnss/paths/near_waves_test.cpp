@@ -17,7 +17,7 @@ Eigen::Vector3d direction(const RandomStream& draws, std::uint32_t i) {
 TEST(NearWaves, FindsEveryPairThatDoublePrecisionFinds) {
   const RandomStream wave_draws(3, "near_waves.wave"), axis_draws(3, "near_waves.axis");
   NearWaves near;  // the same for all: what it remembers is of the waves before
-  for (const std::size_t count : {64, 1, 7, 40, 65, 130}) {
+  for (const std::size_t count : {64, 1, 7, 31, 32, 33, 130}) {
     std::vector<Eigen::Vector3d> waves;
     for (std::uint32_t i = 0; i < count; ++i) waves.push_back(direction(wave_draws, i));
     std::vector<Eigen::Vector3d> axes;
@@ -51,6 +51,22 @@ TEST(NearWaves, FindsEveryPairThatDoublePrecisionFinds) {
     }
     EXPECT_EQ(at, found.size());
   }
+}
+
+TEST(NearWaves, NoWaveIsNearAnythingAndNoAxisNearAWave) {
+  WaveAxes columns;
+  columns.add(Eigen::Vector3d::UnitZ(), 1.0, -1.0);
+  NearWaves near;
+  near.fill({});
+  std::vector<AxisAndWave> found{{7, 7}};
+  near.find(columns, found);
+  EXPECT_TRUE(found.empty());
+  const std::vector<Eigen::Vector3d> waves(9, Eigen::Vector3d::UnitZ());
+  near.fill(waves);
+  columns.clear();
+  found.push_back({7, 7});
+  near.find(columns, found);
+  EXPECT_TRUE(found.empty());
 }
 
 TEST(NearWaves, AnAxisWithoutLengthIsNearAll) {

@@ -137,7 +137,7 @@ esac
     return *sweep_mission({key}, options(budget_s));
   }
   SweepOptions options(std::optional<double> budget_s = {}) const {
-    SweepOptions options{.setup = {.program = program_, .mission = "", .fidelity = "high"},
+    SweepOptions options{.setup = {.program = program_, .mission = "vicksburg", .fidelity = "high"},
                          .seed = 1,
                          .pairs = 0,
                          .budget_s = budget_s,

@@ -80,6 +80,7 @@ TEST(Question, AMissionThatHasAnAnswerIsRefusedBeforeAnythingIsMeasured) {
   const auto without = mission::MissionFile::parse("base = \"vicksburg\"\n", "my.toml");
   EXPECT_TRUE(check_writable("my.toml", *without, "answer.toml").ok());
   EXPECT_FALSE(check_writable("my.toml", *without, "elsewhere/answer.toml").ok());
+  EXPECT_TRUE(check_writable("vicksburg", *without, "elsewhere/answer.toml").ok());
 }
 
 TEST(Question, TheAnswersMissionIsReadAgain) {
@@ -88,6 +89,7 @@ TEST(Question, TheAnswersMissionIsReadAgain) {
   chosen.settings = {{"gnss.paths", "specular1"}, {"registration.leaf_m", "1"}, {"gnss.diffraction", "none"}};
   const auto text = mission_with(chosen, "high", "", "answer.toml");
   ASSERT_TRUE(text) << text.error().str();
+  EXPECT_EQ(*mission_with(chosen, "high", "vicksburg", "answer.toml"), *text);
   const auto file = mission::MissionFile::parse(*text, "answer.toml");
   ASSERT_TRUE(file) << file.error().str();
   const auto config = file->resolve("tradeoff");
