@@ -1,10 +1,10 @@
 #include "canyon/scene/scene.h"
 
 #include <algorithm>
-#include <cstring>
+#include <utility>
 
 #include "canyon/core/check.h"
-#include "canyon/core/files/files.h"
+#include "canyon/core/files/file_hash.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/scene/city/site.h"
 #include "canyon/scene/surfaces/triangle.h"
@@ -43,10 +43,10 @@ Extent extent_of(const Mesh& mesh) {
 }
 
 template <class T>
-void append_bytes(std::string& bytes, const T* values, std::size_t count) {
+void add_to(Sha256& hash, const T* values, std::size_t count) {
   const std::uint64_t n = count;
-  bytes.append(reinterpret_cast<const char*>(&n), sizeof n);
-  bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+  hash.add({reinterpret_cast<const char*>(&n), sizeof n});
+  hash.add({reinterpret_cast<const char*>(values), count * sizeof(T)});
 }
 
 /// Vectors that grew hold up to twice what they need, and a scene lives as long as its runs.
@@ -142,13 +142,11 @@ const Building* building_at(const std::vector<Building>& buildings, const Eigen:
 std::string Scene::hash() const {
   const Mesh& mesh = parts_.mesh;
   throw_if_cancelled();
-  std::string bytes;
-  bytes.reserve(mesh.vertices.size() * 12 + mesh.triangles.size() * 18 + parts_.objects.size() * 64 +
-                parts_.foliage.size() * 64 + 65536);
-  append_bytes(bytes, mesh.vertices.data(), mesh.vertices.size());
-  append_bytes(bytes, mesh.triangles.data(), mesh.triangles.size());
-  append_bytes(bytes, mesh.material.data(), mesh.material.size());
-  append_bytes(bytes, mesh.object.data(), mesh.object.size());
+  Sha256 sha;
+  add_to(sha, mesh.vertices.data(), mesh.vertices.size());
+  add_to(sha, mesh.triangles.data(), mesh.triangles.size());
+  add_to(sha, mesh.material.data(), mesh.material.size());
+  add_to(sha, mesh.object.data(), mesh.object.size());
   for (const Material& m : parts_.materials) {
     const double values[] = {m.itu_a,
                              m.itu_b,
@@ -169,23 +167,23 @@ std::string Scene::hash() const {
                              m.lidar_retro_1_sr,
                              m.lidar_transmittance,
                              m.rf_absorbing ? 1.0 : 0.0};
-    append_bytes(bytes, m.name.data(), m.name.size());
-    append_bytes(bytes, values, std::size(values));
+    add_to(sha, m.name.data(), m.name.size());
+    add_to(sha, values, std::size(values));
   }
   for (const SceneObject& o : parts_.objects) {
     const auto kind = static_cast<std::uint8_t>(o.kind);
-    append_bytes(bytes, o.name.data(), o.name.size());
-    append_bytes(bytes, &kind, 1);
+    add_to(sha, o.name.data(), o.name.size());
+    add_to(sha, &kind, 1);
   }
   for (const Foliage& f : parts_.foliage) {
-    append_bytes(bytes, f.center_W.data(), 3);
-    append_bytes(bytes, f.radii_m.data(), 3);
-    append_bytes(bytes, &f.leaf_density_m2_m3, 1);
+    add_to(sha, f.center_W.data(), 3);
+    add_to(sha, f.radii_m.data(), 3);
+    add_to(sha, &f.leaf_density_m2_m3, 1);
   }
   const Geodetic& origin = parts_.frame.origin();
   const double frame[] = {origin.lat_rad, origin.lon_rad, origin.h_m, parts_.undulation_m};
-  append_bytes(bytes, frame, std::size(frame));
-  return sha256_hex(bytes);
+  add_to(sha, frame, std::size(frame));
+  return std::move(sha).hex();
 }
 
 }  // namespace canyon::scene

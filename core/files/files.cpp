@@ -145,23 +145,30 @@ std::string hexadecimal(const unsigned char* digest) {
 
 }  // namespace
 
-Result<std::string> sha256_of_file(const std::string& path) {
-  const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-  CANYON_CHECK(context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1, "no SHA-256");
-  CANYON_TRY_STATUS(read_pieces(path, [&](std::string_view piece) {
-    CANYON_CHECK(EVP_DigestUpdate(context.get(), piece.data(), piece.size()) == 1, "no SHA-256");
-  }));
+Sha256::Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+  CANYON_CHECK(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1, "no SHA-256");
+}
+
+void Sha256::add(std::string_view bytes) {
+  CANYON_CHECK(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1, "no SHA-256");
+}
+
+std::string Sha256::hex() && {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  CANYON_CHECK(EVP_DigestFinal_ex(context.get(), digest.data(), nullptr) == 1, "no SHA-256");
+  CANYON_CHECK(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr) == 1, "no SHA-256");
   return hexadecimal(digest.data());
 }
 
+Result<std::string> sha256_of_file(const std::string& path) {
+  Sha256 hash;
+  CANYON_TRY_STATUS(read_pieces(path, [&hash](std::string_view piece) { hash.add(piece); }));
+  return std::move(hash).hex();
+}
+
 std::string sha256_hex(std::string_view bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned int size = 0;
-  const int done = EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr);
-  CANYON_CHECK(done == 1 && size == 32, "size = ", size);
-  return hexadecimal(digest.data());
+  Sha256 hash;
+  hash.add(bytes);
+  return std::move(hash).hex();
 }
 
 }  // namespace canyon
