@@ -19,7 +19,7 @@ struct WaveColumns {
   std::size_t count;
 };
 
-/// Bit k of `near[i]`: wave k comes from near axis i.
+/// Bit k of `near[i]`: wave k, of 32 at most, comes from near axis i.
 CANYON_VECTOR_CLONES void write_near(const AxisColumns& axes, const WaveColumns& waves,
                                      std::uint32_t* __restrict near) {
   for (std::size_t i = 0; i < axes.count; ++i) near[i] = 0;

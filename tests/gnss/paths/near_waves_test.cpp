@@ -16,7 +16,7 @@ Eigen::Vector3d direction(const RandomStream& draws, std::uint32_t i) {
 // Every pair that double precision finds, in order, and of those that it does not only what lies within rounding.
 TEST(NearWaves, FindsEveryPairThatDoublePrecisionFinds) {
   const RandomStream wave_draws(3, "near_waves.wave"), axis_draws(3, "near_waves.axis");
-  NearWaves near;  // the same for all: what it remembers is of the waves before
+  NearWaves near;  // filled anew, with fewer and with more
   for (const std::size_t count : {64, 1, 7, 31, 32, 33, 130}) {
     std::vector<Eigen::Vector3d> waves;
     for (std::uint32_t i = 0; i < count; ++i) waves.push_back(direction(wave_draws, i));
