@@ -30,8 +30,9 @@ struct CovarianceSums {
   std::int64_t matched = 0;
   std::vector<Vector6d> block_gradients;
   // What only the own engine sums up (engine/match_sums.h).
-  std::vector<Matrix6d> block_curvatures;    ///< A of each block
-  std::vector<Matrix6d> block_surfaces;      ///< H of each block
+  std::vector<Matrix6d> block_curvatures;  ///< A of each block
+  std::vector<Matrix6d> block_surfaces;    ///< H of each block
+  // These only where asked for.
   Matrix6d point_noise = Matrix6d::Zero();   ///< sum J^T M M J
   Vector6d common_range = Vector6d::Zero();  ///< sum J^T M p / |p|
 };

@@ -136,7 +136,7 @@ StressFigure sums_over_matches(const std::string& kernel, bool plane_to_plane_fo
   looks.near(found.weight / sum.weight, 1.0, share);
   looks.near(found.radius2 / sum.radius2, 1.0, 1e-12);
   looks.near(found.missed, missed / static_cast<double>(source->points.size()), share);
-  const CovarianceSums c = covariance_sums(matching, X, last, block_m);
+  const CovarianceSums c = covariance_sums(matching, X, last, block_m, true);
   alike(looks, c.A, sum.A, share);
   alike(looks, c.H, parts.H, share);
   alike(looks, c.N, parts.N, share);

@@ -1,5 +1,6 @@
 #include "canyon/lidar/voxels/voxel_map.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "canyon/core/check.h"
@@ -12,14 +13,31 @@ VoxelMap::VoxelMap(double leaf_m) : leaf_m_(leaf_m) {
 }
 
 bool VoxelMap::insert(const MapPoint& point) {
-  const auto voxel = voxel_coordinates(point.p_W, leaf_m_);
-  if (!voxel) {
-    ++out_of_reach_;
-    return false;
+  const std::size_t before = size();
+  insert(std::span(&point, 1));
+  return size() > before;
+}
+
+void VoxelMap::insert(std::span<const MapPoint> points) {
+  // What is looked for lies anywhere in tens of megabytes: some are asked for before the first is needed.
+  constexpr std::size_t kTogether = 16;
+  constexpr std::uint64_t kNone = ~0ULL;  // no key is
+  std::uint64_t keys[kTogether];
+  for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
+    const std::size_t count = std::min(kTogether, points.size() - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto voxel = voxel_coordinates(points[begin + k].p_W, leaf_m_);
+      keys[k] = voxel ? voxel_key(*voxel) : kNone;
+      if (voxel) voxels_.fetch(keys[k]);
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      if (keys[k] == kNone) {
+        ++out_of_reach_;
+      } else if (voxels_.insert(keys[k])) {
+        cloud_.push_back(points[begin + k]);
+      }
+    }
   }
-  if (!voxels_.insert(*voxel)) return false;
-  cloud_.push_back(point);
-  return true;
 }
 
 std::vector<Eigen::Vector3f> voxel_centroids(std::span<const Eigen::Vector3f> points, double leaf_m) {

@@ -16,7 +16,9 @@ class VoxelMap {
   /// `leaf_m` > 0: edge of a voxel.
   explicit VoxelMap(double leaf_m);
 
-  /// True if the point was kept. One that is not finite, or farther than 2^20 voxels from the origin, is only counted.
+  /// In order. One that is not finite, or farther than 2^20 voxels from the origin, is only counted.
+  void insert(std::span<const MapPoint> points);
+  /// True if the point was kept.
   bool insert(const MapPoint& point);
   std::int64_t out_of_reach() const { return out_of_reach_; }
 

@@ -12,8 +12,10 @@ namespace canyon::lidar {
 /// millions.
 class VoxelSet {
  public:
-  /// True if the voxel was not met before. It lies within +-2^20 voxels of the origin.
-  bool insert(const VoxelCoordinates& voxel);
+  /// True if the voxel was not met before; `key` is its voxel_key().
+  bool insert(std::uint64_t key);
+  /// Has the memory of where that will be looked for brought near.
+  void fetch(std::uint64_t key) const;
 
  private:
   /// Open addressing; kEmpty where there is no key.
@@ -21,6 +23,7 @@ class VoxelSet {
     std::vector<std::uint64_t> slots;
     std::size_t count = 0;
   };
+  static std::size_t slot_of(const Shard& shard, std::uint64_t hash);
   static bool put(Shard& shard, std::uint64_t key);
   static void grow(Shard& shard);
 

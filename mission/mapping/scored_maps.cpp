@@ -23,14 +23,20 @@ void ScoredMaps::add(const LidarScan& deskewed, const Keyframe& keyframe) {
   if (!prior_) return;
   if (++keyframes_ % kKeyframesToTidy == 0) give_back_free_memory();
   clock_.charge(Part::kScoring, [&] {
-    for (const LidarPoint& point : deskewed.points) {
-      const Eigen::Vector3f p_L(point.x, point.y, point.z);
-      if (p_L.squaredNorm() > range2_m2_) continue;
-      prior_->insert({(keyframe.X_WL_prior * p_L.cast<double>()).cast<float>(), point.intensity});
-      if (registered_)
-        registered_->insert({(keyframe.X_WL_registered * p_L.cast<double>()).cast<float>(), point.intensity});
-    }
+    add(deskewed, keyframe.X_WL_prior, *prior_);
+    if (registered_) add(deskewed, keyframe.X_WL_registered, *registered_);
   });
+}
+
+void ScoredMaps::add(const LidarScan& deskewed, const Pose& X_WL, lidar::VoxelMap& map) {
+  const Eigen::Matrix3d R = X_WL.R.toRotationMatrix();
+  placed_.clear();
+  for (const LidarPoint& point : deskewed.points) {
+    const Eigen::Vector3f p_L(point.x, point.y, point.z);
+    if (p_L.squaredNorm() > range2_m2_) continue;
+    placed_.push_back({(R * p_L.cast<double>() + X_WL.p).cast<float>(), point.intensity});
+  }
+  map.insert(placed_);
 }
 
 Status ScoredMaps::finish(const scene::SceneAt& scene, const Boundaries& boundaries, RunRecord& record,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "canyon/lidar/voxels/voxel_map.h"
 #include "canyon/mission/boundaries.h"
@@ -23,9 +24,12 @@ class ScoredMaps {
   Status finish(const scene::SceneAt& scene, const Boundaries& boundaries, RunRecord& record, Recorder& recorder);
 
  private:
+  void add(const LidarScan& deskewed, const Pose& X_WL, lidar::VoxelMap& map);
+
   float range2_m2_;
   PartClock& clock_;
   std::optional<lidar::VoxelMap> prior_, registered_;
+  std::vector<lidar::MapPoint> placed_;  // of one scan
   int keyframes_ = 0;
 };
 

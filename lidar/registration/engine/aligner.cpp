@@ -49,7 +49,8 @@ Aligner::Aligner(const PreparedCloud& source, const SurfaceTarget& target, Match
 const CovarianceSums& Aligner::sums_at(FoundPose& at) const {
   if (!at.sums) {
     at.sums =
-        covariance_sums(search_.matching_at(own_.max_correspondence_m), at.X, at.matches, kBlock_leaves * own_.leaf_m);
+        covariance_sums(search_.matching_at(own_.max_correspondence_m), at.X, at.matches, kBlock_leaves * own_.leaf_m,
+                        model_row(covariance_forms(), engine_.covariance).make.by_noise);
     at.sums->N *= kTiltsAlike;
   }
   return *at.sums;

@@ -59,12 +59,12 @@ Matrix6d guess_and_bias(const CovarianceCase& of) {
 }
 
 constexpr ModelRow<CovarianceForm> kForms[] = {
-    {"hessian", {hessian, false, false}, "every residual by itself: s^2 A^-1, known to be far too small"},
-    {"sandwich", {sandwich, false, false}, "from the residuals themselves, by blocks of the cloud"},
-    {"calibrated", {sandwich, false, true}, "the sandwich, wider where few blocks tell of a direction"},
-    {"censi", {censi, false, false}, "independent noise of the points alone, known to be too small"},
-    {"sampled", {sampled, false, false}, "bootstrap over blocks of the cloud"},
-    {"guess_and_bias", {guess_and_bias, true, false}, "where other guesses end, noise, and a bias of all ranges"},
+    {"hessian", {hessian, false, false, false}, "every residual by itself: s^2 A^-1, known to be far too small"},
+    {"sandwich", {sandwich, false, false, false}, "from the residuals themselves, by blocks of the cloud"},
+    {"calibrated", {sandwich, false, true, false}, "the sandwich, wider where few blocks tell of a direction"},
+    {"censi", {censi, false, false, true}, "independent noise of the points alone, known to be too small"},
+    {"sampled", {sampled, false, false, false}, "bootstrap over blocks of the cloud"},
+    {"guess_and_bias", {guess_and_bias, true, false, true}, "where other guesses end, noise, and a bias of all ranges"},
 };
 
 }  // namespace

@@ -21,6 +21,7 @@ struct CovarianceForm {
   Matrix6d (*gradient)(const CovarianceCase& of);
   bool restarts;      ///< needs them
   bool by_witnesses;  ///< widened by how few blocks tell of a direction (witnesses.h)
+  bool by_noise;      ///< of points or of ranges: asks for their sums
 };
 ModelTable<CovarianceForm> covariance_forms();
 

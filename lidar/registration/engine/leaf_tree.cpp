@@ -5,7 +5,12 @@
 #include <bit>
 #include <cstring>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include "canyon/core/check.h"
+#include "canyon/lidar/registration/engine/key_select.h"
 
 namespace canyon::lidar {
 namespace {
@@ -14,46 +19,6 @@ constexpr float kPadding_m = 1e18f;  // its square is finite in single precision
 // Sums of squares are rounded; a border must not hide a point that lies on it.
 constexpr float kBorder = 1.000001f;
 constexpr int kDeepest = 32;
-
-struct Entry {
-  float p[3];
-  std::uint32_t index;
-};
-
-struct Builder {
-  std::vector<Entry>& entries;
-  std::vector<float>& split;
-  std::vector<std::uint8_t>& axis;
-  std::vector<std::uint32_t>& leaf_begin;
-  std::uint32_t leaves;
-
-  void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
-    if (node >= leaves) {
-      leaf_begin[node - leaves] = begin;
-      return;
-    }
-    float low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-    for (std::uint32_t i = begin; i < end; ++i) {
-      for (int a = 0; a < 3; ++a) {
-        low[a] = i == begin ? entries[i].p[a] : std::min(low[a], entries[i].p[a]);
-        high[a] = i == begin ? entries[i].p[a] : std::max(high[a], entries[i].p[a]);
-      }
-    }
-    std::uint8_t widest = 0;
-    for (std::uint8_t a = 1; a < 3; ++a) {
-      if (high[a] - low[a] > high[widest] - low[widest]) widest = a;
-    }
-    const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(entries.begin() + begin, entries.begin() + middle, entries.begin() + end,
-                     [widest](const Entry& a, const Entry& b) {
-                       return a.p[widest] < b.p[widest] || (a.p[widest] == b.p[widest] && a.index < b.index);
-                     });
-    axis[node] = widest;
-    split[node] = entries[middle].p[widest];
-    build(2 * node, begin, middle);
-    build(2 * node + 1, middle, end);
-  }
-};
 
 /// Four numbers at once: what g++ and clang make of vectors on any machine.
 using Four = float __attribute__((vector_size(16)));
@@ -64,11 +29,71 @@ Four four_of(const float* from) {
   std::memcpy(&v, from, sizeof v);
   return v;
 }
-bool any(FourSigns signs) {
-  std::uint64_t half[2];
-  std::memcpy(half, &signs, sizeof half);
-  return (half[0] | half[1]) != 0;
+/// Bit k: sign k.
+std::uint32_t bits_of(FourSigns signs) {
+#ifdef __SSE2__
+  return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(signs)));
+#else
+  std::uint32_t bits = 0;
+  for (int k = 0; k < 4; ++k) bits |= signs[k] != 0 ? 1U << k : 0U;
+  return bits;
+#endif
 }
+
+/// A number that sorts by the coordinate, equal ones by the point.
+std::uint64_t key_of(float coordinate, std::uint32_t point) {
+  const auto bits = std::bit_cast<std::uint32_t>(coordinate);
+  const std::uint32_t sorting = (bits >> 31) != 0 ? ~bits : bits | 0x80000000U;
+  return static_cast<std::uint64_t>(sorting) << 32 | point;
+}
+std::uint32_t point_of(std::uint64_t key) {
+  return static_cast<std::uint32_t>(key);
+}
+
+/// Splits the points in halves along their widest axis until leaves are left. A key's point is known at any time.
+struct Builder {
+  const std::vector<Four>& places;
+  std::vector<std::uint64_t>& keys;
+  std::vector<std::uint64_t>& scratch;
+  std::vector<float>& split;
+  std::vector<std::uint8_t>& axis;
+  std::vector<std::uint32_t>& leaf_begin;
+  std::uint32_t leaves;
+
+  std::uint8_t widest(std::uint32_t begin, std::uint32_t end) const {
+    Four low = places[point_of(keys[begin])], high = low;
+    for (std::uint32_t i = begin + 1; i < end; ++i) {
+      const Four p = places[point_of(keys[i])];
+      low = p < low ? p : low;
+      high = p > high ? p : high;
+    }
+    std::uint8_t out = 0;
+    for (std::uint8_t a = 1; a < 3; ++a) {
+      if (high[a] - low[a] > high[out] - low[out]) out = a;
+    }
+    return out;
+  }
+
+  void build(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
+    if (node >= leaves) {
+      leaf_begin[node - leaves] = begin;
+      std::sort(keys.begin() + begin, keys.begin() + end,
+                [](std::uint64_t a, std::uint64_t b) { return point_of(a) < point_of(b); });
+      return;
+    }
+    const std::uint8_t along = widest(begin, end);
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t point = point_of(keys[i]);
+      keys[i] = key_of(places[point][along], point);
+    }
+    select_key(std::span(keys).subspan(begin, end - begin), middle - begin, scratch);
+    axis[node] = along;
+    split[node] = places[point_of(keys[middle])][along];
+    build(2 * node, begin, middle);
+    build(2 * node + 1, middle, end);
+  }
+};
 
 /// Squared distances of a whole bucket from a place. What stands after a shorter leaf are points as well, or padding.
 struct Bucket {
@@ -81,12 +106,18 @@ struct Bucket {
     const Four dx = four_of(x) - qx, dy = four_of(y) - qy, dz = four_of(z) - qz;
     return dx * dx + dy * dy + dz * dz;
   }
-  bool any_below(float limit) const { return any((first < limit) | (second < limit)); }
+  /// Bit k: that of place k is below the limit.
+  std::uint32_t below(float limit) const { return bits_of(first < limit) | bits_of(second < limit) << 4; }
   void put(float* squared_m) const {
     std::memcpy(squared_m, &first, sizeof first);
     std::memcpy(squared_m + 4, &second, sizeof second);
   }
 };
+
+/// As many bits, of a bucket.
+std::uint32_t first_of(std::uint32_t count) {
+  return (1U << count) - 1U;
+}
 
 /// A neighbour as one number that sorts by distance, then place.
 std::uint64_t rank_of(float squared_m, std::uint32_t at) {
@@ -115,10 +146,12 @@ struct RankedList {
 
 LeafTree::LeafTree(std::span<const Eigen::Vector3f> points) {
   if (points.empty()) return;
-  std::vector<Entry> entries(points.size());
+  std::vector<Four> places(points.size());
+  std::vector<std::uint64_t> keys(points.size()), scratch(points.size());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     CANYON_CHECK(points[i].allFinite(), "point ", i, ": ", points[i].transpose());
-    entries[i] = {{points[i].x(), points[i].y(), points[i].z()}, i};
+    places[i] = Four{points[i].x(), points[i].y(), points[i].z(), 0.0F};
+    keys[i] = i;
   }
   const auto n = static_cast<std::uint32_t>(points.size());
   leaves_ = std::bit_ceil((n + kBucket - 1) / kBucket);
@@ -126,16 +159,17 @@ LeafTree::LeafTree(std::span<const Eigen::Vector3f> points) {
   axis_.resize(leaves_);
   leaf_begin_.resize(leaves_ + 1);
   leaf_begin_[leaves_] = n;
-  Builder{entries, split_, axis_, leaf_begin_, leaves_}.build(1, 0, n);
+  Builder{places, keys, scratch, split_, axis_, leaf_begin_, leaves_}.build(1, 0, n);
   x_.assign(n + kBucket, kPadding_m);
   y_.assign(n + kBucket, kPadding_m);
   z_.assign(n + kBucket, kPadding_m);
   order_.resize(n);
   for (std::uint32_t i = 0; i < n; ++i) {
-    x_[i] = entries[i].p[0];
-    y_[i] = entries[i].p[1];
-    z_[i] = entries[i].p[2];
-    order_[i] = entries[i].index;
+    order_[i] = point_of(keys[i]);
+    const Four place = places[order_[i]];
+    x_[i] = place[0];
+    y_[i] = place[1];
+    z_[i] = place[2];
   }
 }
 
@@ -222,10 +256,12 @@ LeafTree::Nearest LeafTree::nearest(const Eigen::Vector3f& query, float squared_
   std::uint32_t at = kNone;
   const auto take = [&](std::uint32_t begin, std::uint32_t) {
     const Bucket bucket(&x_[begin], &y_[begin], &z_[begin], q[0], q[1], q[2]);
-    if (!bucket.any_below(best)) return;
+    std::uint32_t nearer = bucket.below(best);
+    if (nearer == 0) return;
     float squared_m[kBucket];
     bucket.put(squared_m);
-    for (std::uint32_t k = 0; k < kBucket; ++k) {
+    for (; nearer != 0; nearer &= nearer - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(nearer));
       if (squared_m[k] < best) {
         best = squared_m[k];
         at = begin + k;
@@ -248,10 +284,12 @@ LeafTree::NearestOfTwo LeafTree::nearest_from(const Eigen::Vector3f& query, floa
   }
   const auto take = [&](std::uint32_t begin, std::uint32_t end) {
     const Bucket bucket(&x_[begin], &y_[begin], &z_[begin], q[0], q[1], q[2]);
-    if (!bucket.any_below(others)) return;
+    std::uint32_t nearer = bucket.below(others) & first_of(end - begin);
+    if (nearer == 0) return;
     float squared_m[kBucket];
     bucket.put(squared_m);
-    for (std::uint32_t k = 0; k < end - begin; ++k) {
+    for (; nearer != 0; nearer &= nearer - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(nearer));
       if (!(squared_m[k] < others)) continue;
       if (squared_m[k] < best) {
         if (at != kNone) others = best;
@@ -277,11 +315,14 @@ std::size_t LeafTree::nearest(const Eigen::Vector3f& query, float squared_limit,
   RankedList list;
   const auto take = [&](std::uint32_t begin, std::uint32_t end) {
     const Bucket bucket(&x_[begin], &y_[begin], &z_[begin], q[0], q[1], q[2]);
-    if (!bucket.any_below(limit)) return;
+    std::uint32_t nearer = bucket.below(limit) & first_of(end - begin);
+    if (nearer == 0) return;
     float squared_m[kBucket];
     bucket.put(squared_m);
-    for (std::uint32_t k = 0; k < end - begin; ++k)
+    for (; nearer != 0; nearer &= nearer - 1) {
+      const auto k = static_cast<std::uint32_t>(std::countr_zero(nearer));
       if (squared_m[k] < limit) limit = list.take(rank_of(squared_m[k], begin + k), out.size(), limit);
+    }
   };
   visit(q, limit, take, [](float) {});
   for (std::size_t k = 0; k < list.count; ++k) out[k] = of_rank(list.ranks[k]);
@@ -307,11 +348,14 @@ void LeafTree::nearest_of_leaf(std::uint32_t leaf, float squared_limit, std::siz
   const auto take = [&](std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = 0; i < own; ++i) {
       const Bucket bucket(&x_[begin], &y_[begin], &z_[begin], x_[own_begin + i], y_[own_begin + i], z_[own_begin + i]);
-      if (!bucket.any_below(limit[i])) continue;
+      std::uint32_t nearer = bucket.below(limit[i]) & first_of(end - begin);
+      if (nearer == 0) continue;
       float squared_m[kBucket];
       bucket.put(squared_m);
-      for (std::uint32_t k = 0; k < end - begin; ++k)
+      for (; nearer != 0; nearer &= nearer - 1) {
+        const auto k = static_cast<std::uint32_t>(std::countr_zero(nearer));
         if (squared_m[k] < limit[i]) limit[i] = lists[i].take(rank_of(squared_m[k], begin + k), most, limit[i]);
+      }
     }
     widest = *std::max_element(limit, limit + own);
   };

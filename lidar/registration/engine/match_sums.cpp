@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "canyon/core/process/parallel.h"
+#include "canyon/lidar/registration/engine/turned.h"
 #include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {
@@ -74,8 +75,8 @@ struct Match {
         std::size_t at) {
     const Eigen::Vector3f& normal_S = matching.source->normals[i];
     p = matching.source->points[i].cast<double>();
-    d = R_ST * (place_T - matching.target->point(at).cast<double>());
-    n = R_ST * matching.target->normal(at).cast<double>();
+    d = turned(R_ST, place_T - matching.target->point(at).cast<double>());
+    n = turned(R_ST, matching.target->normal(at));
     m = normal_S.cast<double>();
     const double flat_m = m.isZero(0.0) ? 0.0 : 1.0 - kSurfaceThickness;
     information = matching.form(matching.target->flat(at), flat_m, n.dot(m));
@@ -120,7 +121,7 @@ void sum_part(const Matching& matching, const Pose& X_TS, std::size_t stride, st
   const double across_scale = kAcrossScale / (matching.width_m * matching.width_m);
   for (std::size_t k = begin; k < end; ++k) {
     const std::size_t i = k * stride;
-    const Eigen::Vector3d place = R * matching.source->points[i].cast<double>() + X_TS.p;
+    const Eigen::Vector3d place = turned(R, matching.source->points[i]) + X_TS.p;
     matching.target->find(place.cast<float>(), squared_reach, last[k]);
     if (last[k].matched == LeafTree::kNone) {
       part.missed += 1.0;
@@ -186,7 +187,7 @@ std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, 
   std::vector<double> missed(matches.size(), -1.0);
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (matches[i].matched == LeafTree::kNone) continue;
-    const Match match(matching, R_ST, R * matching.source->points[i].cast<double>() + X_TS.p, i, matches[i].matched);
+    const Match match(matching, R_ST, turned(R, matching.source->points[i]) + X_TS.p, i, matches[i].matched);
     missed[i] = std::min(1.0, across_scale * match.across_cost());
   }
   return missed;
@@ -209,26 +210,25 @@ double evidence_against(std::span<const double> a, std::span<const double> b, co
 }
 
 CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
-                               double block_m) {
+                               double block_m, bool of_noise) {
   const Eigen::Matrix3d R = X_TS.R.toRotationMatrix(), R_ST = R.transpose();
   const double across_scale = kAcrossScale / (matching.width_m * matching.width_m);
   CovarianceSums sums;
-  Upper across{}, tilted{}, noise{};
-  Isotropic along, tilted_all, noise_along;
+  Upper tilted{}, noise{};
+  Isotropic tilted_all, noise_along;
   std::vector<Upper> block_across;
   std::vector<Isotropic> block_along;
   VoxelIndex blocks(block_m);
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (matches[i].matched == LeafTree::kNone) continue;
-    const Match match(matching, R_ST, R * matching.source->points[i].cast<double>() + X_TS.p, i, matches[i].matched);
+    const Match match(matching, R_ST, turned(R, matching.source->points[i]) + X_TS.p, i, matches[i].matched);
     const double cost = match.information.along * match.d.squaredNorm() + match.across_cost();
     const double w = matching.kernel(across_scale * cost);
     const double trace = w * match.across_trace();
     const double tilt = 0.25 * (matching.source->tilt_variance[i] + matching.target->tilt_variance(matches[i].matched));
     Upper one{};
     match.add_across(one, w);
-    for (std::size_t k = 0; k < one.size(); ++k) across[k] += one[k], tilted[k] += tilt * one[k];
-    along.add(w * match.information.along, match.p);
+    for (std::size_t k = 0; k < one.size(); ++k) tilted[k] += tilt * one[k];
     tilted_all.add(tilt * trace, match.p);
     const Eigen::Vector3d across_d = w * match.across_d();
     sums.cost += w * match.across_cost();
@@ -252,6 +252,7 @@ CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::
     sums.block_gradients[block].tail<3>() += Md;
     for (std::size_t k = 0; k < one.size(); ++k) block_across[block][k] += one[k];
     block_along[block].add(w * match.information.along, match.p);
+    if (!of_noise) continue;
     // A range error common to all returns moves each along its own beam.
     const double range_m = match.p.norm();
     if (range_m > 0) {
@@ -274,13 +275,13 @@ CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::
     add_mixed(noise, w * w * nm, match.jn, match.jm);
     noise_along.add(w * w * f.along * f.along, match.p);
   }
-  sums.H = full(across);
-  sums.A = sums.H + along.matrix();
   sums.point_noise = full(noise) + noise_along.matrix();
   sums.N = tilted_all.matrix() - full(tilted);
   for (std::size_t b = 0; b < block_across.size(); ++b) {
     sums.block_surfaces.push_back(full(block_across[b]));
     sums.block_curvatures.push_back(sums.block_surfaces[b] + block_along[b].matrix());
+    sums.H += sums.block_surfaces[b];
+    sums.A += sums.block_curvatures[b];
   }
   return sums;
 }

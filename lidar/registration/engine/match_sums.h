@@ -48,8 +48,8 @@ std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, 
 double evidence_against(std::span<const double> a, std::span<const double> b, const PreparedCloud& source,
                         double block_m);
 
-/// The sums that the covariance is made of, of the matches of a round over all points.
+/// The sums that the covariance is made of, of the matches of a round over all points; those of noise if asked for.
 CovarianceSums covariance_sums(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
-                               double block_m);
+                               double block_m, bool of_noise);
 
 }  // namespace canyon::lidar

@@ -8,6 +8,7 @@
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/lidar/registration/engine/leaf_tree.h"
+#include "canyon/lidar/registration/engine/turned.h"
 #include "canyon/lidar/voxels/voxel_index.h"
 #include "canyon/lidar/voxels/voxel_map.h"
 
@@ -85,22 +86,29 @@ std::shared_ptr<const PreparedCloud> prepare_surfaces(std::span<const Eigen::Vec
 
 std::shared_ptr<const PreparedCloud> unite_surfaces(std::span<const PlacedCloud> clouds, double leaf_m) {
   PreparedCloud all;
+  std::size_t most = 0;
+  for (const PlacedCloud& each : clouds) most += each.cloud->points.size();
+  all.points.reserve(most);
+  all.normals.reserve(most);
+  all.tilt_variance.reserve(most);
   VoxelIndex voxels(leaf_m, 10000);
   for (std::size_t k = clouds.size(); k-- > 0;) {
     const PreparedCloud& cloud = *clouds[k].cloud;
     const std::uint32_t occupied = voxels.size();
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-      const Eigen::Vector3f p = (clouds[k].R * cloud.points[i].cast<double>() + clouds[k].p).cast<float>();
+      const Eigen::Vector3f p = (turned(clouds[k].R, cloud.points[i]) + clouds[k].p).cast<float>();
       const auto voxel = voxels.coordinates(p);
       if (!voxel || voxels.insert(*voxel) < occupied) continue;
       all.points.push_back(p);
-      all.normals.push_back((clouds[k].R * cloud.normals[i].cast<double>()).cast<float>());
+      all.normals.push_back(turned(clouds[k].R, cloud.normals[i]).cast<float>());
       all.tilt_variance.push_back(cloud.tilt_variance[i]);
     }
   }
   const auto out = std::make_shared<PreparedCloud>();
   out->points = std::move(all.points);
   put_in_order(*out);
+  out->normals.reserve(out->points.size());
+  out->tilt_variance.reserve(out->points.size());
   for (const std::uint32_t from : out->tree->order()) {
     out->normals.push_back(all.normals[from]);
     out->tilt_variance.push_back(all.tilt_variance[from]);
