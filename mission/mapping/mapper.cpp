@@ -45,11 +45,20 @@ Matrix6d diagonal(double rotation_rad, double translation_m) {
   return P;
 }
 
+/// Of the method, where it matches points.
+double leaf_m(const lidar::RegistrationConfig& config) {
+  return lidar::registers(config) ? config.method.own.get<lidar::MatchingParameters>().leaf_m : 1.0;
+}
+
 }  // namespace
 
 Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::Registration> registration,
                const Pose& X_BL, std::shared_ptr<const lidar::PreparedCloud> prior_map)
-    : config_(config), registration_(std::move(registration)), X_BL_(X_BL), prior_map_(std::move(prior_map)) {}
+    : config_(config),
+      registration_(std::move(registration)),
+      X_BL_(X_BL),
+      prior_map_(std::move(prior_map)),
+      submap_(leaf_m(config), static_cast<std::size_t>(config.submap_keyframes)) {}
 
 bool Mapper::wants(const NavEstimate& estimate) const {
   if (!chosen_) return true;
@@ -84,12 +93,11 @@ const Keyframe& Mapper::place(const LidarScan& scan, const NavEstimate& estimate
           moved(motion.covariance, X_BL_) +
               diagonal(config_.motion_floor_deg_s * kDegree * elapsed_s, config_.motion_floor_m_s * elapsed_s)};
       const lidar::PosePrior moved_by = align(*cloud, predicted, keyframe);
-      X_OL = submap_.back().X_OL * moved_by.X_TS;
+      X_OL = submap_.last() * moved_by.X_TS;
       fuse(moved_by, keyframe);
       if (keyframe.status != lidar::RegistrationStatus::kConverged) submap_.clear();
     }
-    submap_.push_back({cloud, X_OL});
-    while (submap_.size() > static_cast<std::size_t>(config_.submap_keyframes)) submap_.pop_front();
+    submap_.add(cloud, X_OL);
     if (prior_map_) find_in_map(*cloud, keyframe);
   }
   last_ = keyframe;
@@ -118,9 +126,7 @@ Mapper::Alignment Mapper::aligned(const lidar::PreparedCloud& cloud,
 lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted,
                                Keyframe& keyframe) {
   // In the frame of the last keyframe, where numbers stay small.
-  const Pose X_LO = submap_.back().X_OL.inverse();
-  std::vector<lidar::Registration::Placed> targets;
-  for (const Placed& placed : submap_) targets.push_back({placed.cloud, X_LO * placed.X_OL});
+  const auto targets = submap_.in(submap_.last().inverse());
   const Matrix6d floor = diagonal(config_.alignment_floor_deg * kDegree, config_.alignment_floor_m);
   const auto [result, alone] = aligned(cloud, targets, predicted, floor);
   ++counters_.alignments;

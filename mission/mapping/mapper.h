@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -11,6 +10,7 @@
 
 #include "canyon/core/messages.h"
 #include "canyon/lidar/registration/registration.h"
+#include "canyon/lidar/registration/submap.h"
 
 namespace canyon::mission {
 
@@ -96,11 +96,6 @@ class Mapper {
   const Pose& correction() const { return correction_; }
 
  private:
-  /// In a frame O of what was driven: L's poses as they followed from one another.
-  struct Placed {
-    std::shared_ptr<const lidar::PreparedCloud> cloud;
-    Pose X_OL;
-  };
   /// L since the keyframe before, by the surfaces where they tell, else as predicted.
   lidar::PosePrior align(const lidar::PreparedCloud& cloud, const lidar::PosePrior& predicted, Keyframe& keyframe);
   /// Fuses where that puts the keyframe with its prior.
@@ -120,7 +115,7 @@ class Mapper {
   Pose X_BL_;
   std::shared_ptr<const lidar::PreparedCloud> prior_map_;
   std::optional<Pose> chosen_;  ///< the last keyframe's prior
-  std::deque<Placed> submap_;
+  lidar::Submap submap_;        // in a frame O of what was driven: L's poses as they followed from one another
   Keyframe last_;
   bool has_last_ = false;
   Pose correction_;

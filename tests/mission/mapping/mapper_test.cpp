@@ -240,6 +240,18 @@ TEST_F(MapperTest, RegistersOntoTheLastKeyframesFromTheFiltersMotion) {
   EXPECT_EQ(script_.targets_X_TC.size(), 2U) << "the oldest keyframe left the submap";
 }
 
+TEST_F(MapperTest, ASubmapOfOneIsScanToScan) {
+  config_.submap_keyframes = 1;
+  Mapper mapper = this->mapper();
+  offer(mapper, 0.0, at(0));
+  for (int k = 1; k < 4; ++k) {
+    offer(mapper, k, at(3.0 * k));
+    ASSERT_EQ(script_.targets_X_TC.size(), 1U);
+    EXPECT_LT(script_.targets_X_TC[0].p.norm(), 1e-12) << "the keyframe before, in its own frame";
+    EXPECT_LT((script_.guess.p - Eigen::Vector3d(3, 0, 0)).norm(), 1e-12);
+  }
+}
+
 // One axis of the fusion by hand. Registration says z with variance P_Z = (keyframe before) + (alignment) + (floor),
 // the prior says y with the filter's variance times correlation time over time since the keyframe before; the fused
 // place is z + (y - z) P_Z / (P_Z + P_Y). Covariances are diagonal and the motion is along x, where no rotation
