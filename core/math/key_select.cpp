@@ -1,9 +1,9 @@
-#include "canyon/lidar/registration/engine/key_select.h"
+#include "canyon/core/math/key_select.h"
 
 #include <algorithm>
 #include <utility>
 
-namespace canyon::lidar {
+namespace canyon {
 namespace {
 
 using Key = std::uint64_t;
@@ -73,4 +73,4 @@ void select_key(std::span<Key> keys, std::size_t at, std::span<Key> scratch) {
   sort_few(first, n);
 }
 
-}  // namespace canyon::lidar
+}  // namespace canyon

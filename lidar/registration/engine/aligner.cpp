@@ -23,6 +23,8 @@ constexpr double kTellingBlock_leaves = 8.0;
 // A pull of the prior below this leaves no doubt of what the surfaces alone would have.
 constexpr double kNoPull_m = 0.03;
 constexpr double kNoPull_rad = 3e-3;
+// Of a guess that nothing is known of: what is half turned from where it ended explains that much more.
+constexpr double kFarBetter = 0.5;
 constexpr double kWellMatched = 0.9;  // of the points; fewer may be out of reach because the prior holds them there
 // Normals of neighbours err together (they share points), so that what they feign as curvature counts twice.
 constexpr double kTiltsAlike = 2.0;
@@ -184,6 +186,22 @@ std::vector<Aligner::Place> Aligner::places() {
   return out;
 }
 
+/// Whether nothing is known of the guess, many points have no match where it ended, and half turned about one of the
+/// source's axes, begun where the guess stood, far more is explained: a guess that was half turned ends on level ground
+/// or on one wall.
+bool Aligner::turned_is_far_better(const FoundPose& at, double overlap) {
+  if (search_.prior() || overlap > kAsWellMatched) return false;
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(Eigen::Vector3d::UnitZ()), Eigen::Vector3d(Eigen::Vector3d::UnitX()),
+        Eigen::Vector3d(Eigen::Vector3d::UnitY())}) {
+    FoundPose turned;
+    turned.X = Pose{at.X.R * so3_exp(kPi * axis), search_.guess().p};
+    search_.anew(turned, 20);
+    if (turned.equations.missed < kFarBetter * at.equations.missed) return true;
+  }
+  return false;
+}
+
 void Aligner::judge(const FoundPose& best, bool ambiguous, RegistrationResult& result) const {
   using Status = RegistrationStatus;
   result.status = Status::kConverged;
@@ -238,7 +256,7 @@ RegistrationResult Aligner::align() {
   result.rms_m = precision.rms_m;
   result.covariance = precision.covariance;
   if (prior) result.surfaces = {.X_TS = by_surfaces(at, best.open), .covariance = precision.covariance};
-  judge(at, ambiguous, result);
+  judge(at, ambiguous || turned_is_far_better(at, result.overlap), result);
   // Together: along open directions the prior's, in the others what both know.
   if (prior) result.covariance = prior->with(at.X, precision.covariance);
   if (!result.covariance.allFinite()) {

@@ -36,6 +36,7 @@ class Aligner {
   bool rivals(const Place& a, const Place& b) const;
   std::vector<Vector6d> restarts(const FoundPose& at);
   bool beyond_prior(const RegistrationResult& result) const;
+  bool turned_is_far_better(const FoundPose& at, double overlap);
   void judge(const FoundPose& best, bool ambiguous, RegistrationResult& result) const;
 
   const PreparedCloud& source_;

@@ -5,12 +5,8 @@
 #include <bit>
 #include <cstring>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 #include "canyon/core/check.h"
-#include "canyon/lidar/registration/engine/key_select.h"
+#include "canyon/core/math/key_select.h"
 
 namespace canyon::lidar {
 namespace {
@@ -32,7 +28,7 @@ Four four_of(const float* from) {
 /// Bit k: sign k.
 std::uint32_t bits_of(FourSigns signs) {
 #ifdef __SSE2__
-  return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(signs)));
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps(reinterpret_cast<Four>(signs)));
 #else
   std::uint32_t bits = 0;
   for (int k = 0; k < 4; ++k) bits |= signs[k] != 0 ? 1U << k : 0U;

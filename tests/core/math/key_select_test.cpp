@@ -1,4 +1,4 @@
-#include "canyon/lidar/registration/engine/key_select.h"
+#include "canyon/core/math/key_select.h"
 
 #include <algorithm>
 #include <numeric>
@@ -9,7 +9,7 @@
 
 #include "canyon/core/random/random.h"
 
-namespace canyon::lidar {
+namespace canyon {
 namespace {
 
 using Keys = std::vector<std::uint64_t>;
@@ -62,4 +62,4 @@ TEST(KeySelect, SortedKeysAndPivotsThatAreAlwaysBad) {
 }
 
 }  // namespace
-}  // namespace canyon::lidar
+}  // namespace canyon

@@ -9,6 +9,7 @@
 #include "canyon/core/files/pcd.h"
 #include "canyon/core/random/random.h"
 #include "canyon/lidar/files/cloud_files.h"
+#include "canyon/lidar/files/clouds/read_cloud.h"
 #include "canyon/lidar/files/scan_files.h"
 #include "canyon/tests/support/temporary_folder.h"
 
@@ -47,6 +48,23 @@ TEST_F(PclReader, ReadsOurCloudToTheBit) {
     std::memcpy(&error_m, raw.data.data() + i * raw.point_step + raw.fields[4].offset, 4);
     ASSERT_EQ(error_m, errors[i]);
   }
+}
+
+TEST_F(PclReader, WritesCompressedCloudsThatWeRead) {
+  const RandomStream random(2, "test.cloud");
+  pcl::PointCloud<pcl::PointXYZI> cloud;
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    pcl::PointXYZI p;
+    p.getVector3fMap() = (random.normal3(i) * 30.0).cast<float>();
+    p.intensity = static_cast<float>(i % 7);
+    cloud.push_back(p);
+  }
+  ASSERT_EQ(pcl::io::savePCDFileBinaryCompressed(path_, cloud), 0);
+  const auto read = read_cloud(path_);
+  ASSERT_TRUE(read.ok()) << read.error().str();
+  ASSERT_EQ(read->points.size(), cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    ASSERT_EQ(read->points[i], Eigen::Vector3f(cloud[i].getVector3fMap()).cast<double>()) << i;
 }
 
 TEST_F(PclReader, WritesWhatWeRead) {

@@ -106,6 +106,38 @@ TEST(Radiometric, ARetroreflectorSaturates) {
   }
 }
 
+// Oren and Nayar's equation 30 for any two directions, here the same: the code's form is its product with the cosine.
+TEST(Surfaces, ARoughSurfaceIsOrenAndNayars) {
+  const auto sent = [](double slope_rad, double in_rad, double out_rad, double azimuth_rad) {
+    const double s2 = slope_rad * slope_rad;
+    const double along = 1.0 - 0.5 * s2 / (s2 + 0.33), grazing = 0.45 * s2 / (s2 + 0.09);
+    return std::cos(in_rad) * (along + grazing * std::max(0.0, std::cos(azimuth_rad)) *
+                                           std::sin(std::max(in_rad, out_rad)) * std::tan(std::min(in_rad, out_rad)));
+  };
+  scene::SceneParts parts = testing::empty_parts();
+  for (const double slope_deg : {0.0, 10.0, 30.0, 45.0}) {
+    scene::Material rough;
+    rough.name = "rough " + std::to_string(slope_deg);
+    rough.lidar_reflectance = 0.3;
+    rough.lidar_slope_deg = slope_deg;
+    parts.materials.push_back(rough);
+  }
+  const auto first = static_cast<std::uint16_t>(parts.materials.size() - 4);
+  const scene::Scene scene(parts);
+  const scene::SceneAt at(scene);
+  const Surfaces rough(at, 905, MattReflection::kRough), matt(at, 905);
+  const double slopes_deg[] = {0.0, 10.0, 30.0, 45.0};
+  for (std::uint16_t k = 0; k < 4; ++k)
+    for (const double deg : {0.0, 10.0, 45.0, 80.0, 89.0}) {
+      const auto c = static_cast<float>(std::cos(deg * kDegree));
+      const auto of = static_cast<std::uint16_t>(first + k);
+      EXPECT_NEAR(rough.of_material(of, c), 0.3 * sent(slopes_deg[k] * kDegree, deg * kDegree, deg * kDegree, 0.0),
+                  1e-7)
+          << slopes_deg[k] << " " << deg;
+      EXPECT_FLOAT_EQ(matt.of_material(of, c), 0.3f * c);
+    }
+}
+
 TEST(Surfaces, AMirrorShinesOnlySquareToTheBeam) {
   scene::SceneParts parts = testing::empty_parts();
   scene::Material glossy;

@@ -313,5 +313,29 @@ TEST(OwnMethods, OddCloudsAndPriorsAreStatuses) {
   }
 }
 
+// A guess that is half turned, about the vertical or upside down, and nothing known of how good it is. A yard with
+// walls on two sides looks another one from there: right, or not converged, but no silent success.
+TEST(OwnMethods, AHalfTurnedGuessIsNoSilentSuccess) {
+  const auto yard = [](std::uint64_t number) {
+    return Walls(number)
+        .add({-8, -6, -2}, {16, 0, 0}, {0, 12, 0}, 6000)
+        .add({-8, -6, -2}, {16, 0, 0}, {0, 0, 4}, 3000)
+        .add({-8, -6, -2}, {0, 12, 0}, {0, 0, 4}, 3000)
+        .add({2, 1, -2}, {1.5, 0, 0}, {0, 0, 3}, 600)
+        .take();
+  };
+  const Points source = yard(41), target = yard(42);
+  for (const char* name : kOwnMethods) {
+    const auto method = own_method(name);
+    for (const Pose& guess : {offset(0, 0, 0, 180), Pose{so3_exp({kPi, 0, 0}), {0, 0, 0}}}) {
+      const auto r = place(*method, source, target, {guess});
+      const bool right = r.X_TS.p.norm() < 0.1 && so3_log(r.X_TS.R).norm() < 1.0 * kDegree;
+      EXPECT_TRUE(right || r.status != RegistrationStatus::kConverged)
+          << name << ": off by " << r.X_TS.p.norm() << " m, overlap " << r.overlap;
+    }
+    EXPECT_EQ(place(*method, source, target, {}).status, RegistrationStatus::kConverged) << name;
+  }
+}
+
 }  // namespace
 }  // namespace canyon::lidar
