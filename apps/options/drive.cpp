@@ -103,7 +103,7 @@ void declare_why_options(Arguments& arguments, WhyOptions& options) {
       "for each run that fails (of the first seed): its chain of events, and replays without each source of error, "
       "beside replays with other noise alone: which source's removal rescues the mission");
   arguments.option("--why-draws", options.draws, "replays with and without each source; without it 12")
-      .within(std::int64_t{6}, std::int64_t{10'000});
+      .within(std::int64_t{10}, std::int64_t{10'000});
 }
 
 namespace {

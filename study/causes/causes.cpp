@@ -11,10 +11,12 @@
 namespace canyon::study {
 namespace {
 
-/// What nobody looks at in a replay, where nothing is made of it.
-mission::Omissions unread(const mission::MissionConfig& config) {
+/// What nobody looks at in a replay, where nothing is made of it. The run whose events are told keeps its keyframes,
+/// as the map that they make is one of them.
+mission::Omissions unread(const mission::MissionConfig& config, bool told) {
   mission::Omissions omissions;
   omissions.maps = true;
+  if (told) return omissions;
   mission::Omissions more = omissions;
   more.registration = more.keyframes = true;
   return can_leave_out(config, more) ? more : omissions;
@@ -23,7 +25,7 @@ mission::Omissions unread(const mission::MissionConfig& config) {
 /// Drives one run of a comparison without recording anything but what `recorder` wants.
 Result<mission::RunRecord> drive(const Comparison& comparison, std::size_t run, mission::MissionConfig config,
                                  mission::Recorder* recorder, mission::LaterParts* later, Progress& progress) {
-  const mission::Omissions omissions = unread(config);
+  const mission::Omissions omissions = unread(config, recorder != nullptr);
   config.run.record_tape = false;
   config = without(std::move(config), omissions);
   if (later != nullptr) later->config = without(std::move(later->config), omissions);

@@ -18,16 +18,16 @@ class WhyTest : public CommandLineTest {};
 // No source of error is to blame for a mission that ends after four seconds whatever it believes.
 TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
   write("mission.toml", std::string(kMission) + "[lidar]\nblinded = true\n");  // its scans would be most of the time
-  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 6 --out out"), 0)
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --out out"), 0)
       << read("stderr");
   EXPECT_THAT(read("stdout"),
-              HasSubstr("Why low failed: navigation is not to blame. Told its true position it succeeds in none of 6 "
-                        "repeats, with nothing but the noise changed from 0.0 s on, in 0 of 6."));
+              HasSubstr("Why low failed: navigation is not to blame. Told its true position it succeeds in none of 10 "
+                        "repeats, with nothing but the noise changed from 0.0 s on, in 0 of 10."));
   const Json why = Json::parse(read("out/why.json"));
   ASSERT_EQ(why["failures"].size(), 1U);
   const Json& failure = why["failures"][0];
   EXPECT_EQ(failure["run"], "low");
-  EXPECT_EQ(failure["draws"], 6);
+  EXPECT_EQ(failure["draws"], 10);
   EXPECT_TRUE(failure["cause"].is_null());
   EXPECT_EQ(failure["removals"].size(), 8U);
   for (const Json& removal : failure["removals"]) {
@@ -37,7 +37,7 @@ TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
   }
   EXPECT_THAT(read("out/report.html"), HasSubstr("navigation is not to blame"));
   // The same question again, on another number of threads: the same answer.
-  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 6 --threads 1 --out again"), 0);
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --threads 1 --out again"), 0);
   EXPECT_EQ(read("again/why.json"), read("out/why.json"));
 }
 
@@ -48,8 +48,8 @@ TEST_F(WhyTest, Mistakes) {
                  "--why: an open loop has no outcome, expected no --open-loop beside it\n");
   expect_mistake("compare mission.toml --why --plan=none.plan --out out",
                  "--why: replays leave nothing out by a plan, expected no --plan beside it\n");
-  expect_mistake("compare mission.toml --why --why-draws 5 --out out",
-                 "--why-draws: \"5\", expected a whole number from 6 to 10000\n");
+  expect_mistake("compare mission.toml --why --why-draws 9 --out out",
+                 "--why-draws: \"9\", expected a whole number from 10 to 10000\n");
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 

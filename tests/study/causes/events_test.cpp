@@ -39,6 +39,23 @@ TEST(RunEvents, JumpsHiddenSignalsAndLostFixesAreSeenWhereTheyAre) {
   EXPECT_EQ(seen[2].from_s, 15.0);
 }
 
+// The 99.9 % bound of three dimensions is 16.266. What the filter refuses is no such event.
+TEST(RunEvents, AnAcceptedFixBeyondItsBoundIsUnlikely) {
+  RunEvents events;
+  double t_s = 0.0;
+  for (const auto& [nis, accepted] : {std::pair{16.2, true}, std::pair{32.532, false}, std::pair{32.532, true}}) {
+    mission::GnssRow row = fix_at(t_s += 10.0, 2.0);
+    row.update.dimension = 3;
+    row.update.nis = nis;
+    row.update.accepted = accepted;
+    ASSERT_TRUE(events.gnss(row).ok());
+  }
+  ASSERT_EQ(events.events().size(), 1u);
+  EXPECT_EQ(events.events()[0].kind, EventKind::kUnlikelyFix);
+  EXPECT_EQ(events.events()[0].from_s, 20.0) << "after the first";
+  EXPECT_NEAR(events.events()[0].size, 2.0, 1e-3);
+}
+
 TEST(RunEvents, OneIsOverconfidentBeyondTheEllipsoidOf3Sigma) {
   RunEvents events;
   for (const double error_m : {3.7, 3.8}) {  // chi-square of 3: 0.0027 is beyond 3.7636^2
