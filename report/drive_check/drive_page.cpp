@@ -118,8 +118,9 @@ Line distribution(std::size_t side, const std::vector<double>& sorted) {
   return line;
 }
 
-std::string distribution_chart(const Signals& signals, const char* id, const char* title, const char* unit,
-                               const char* column, double in_sight) {
+using BothSides = std::array<std::vector<double>, kSides.size()>;
+
+std::string distribution_chart(const BothSides& sorted, const char* id, const char* title, const char* unit) {
   Chart chart;
   chart.id = id;
   chart.title = title;
@@ -128,7 +129,7 @@ std::string distribution_chart(const Signals& signals, const char* id, const cha
   panel.height_px = 150;
   double low = 1e300, high = -1e300;
   for (std::size_t side = 0; side < kSides.size(); ++side) {
-    const auto values = signals.of(side, in_sight, column);
+    const std::vector<double>& values = sorted[side];
     if (values.empty()) continue;
     // A few outliers do not draw the rest together.
     low = std::min(low, values[values.size() / 200]);
@@ -137,20 +138,43 @@ std::string distribution_chart(const Signals& signals, const char* id, const cha
     chart.description +=
         std::string(kSides[side]) + ": median " + show_quantity(values[values.size() / 2], unit) + ". ";
   }
-  if (panel.lines.empty()) return note(std::string(title) + ": nothing was tracked.");
+  if (panel.lines.empty()) return note(std::string(title) + ": there is none.");
   chart.x = Axis::linear_rounded(low, std::max(high, low + 1e-3), 6);
   chart.panels.push_back(std::move(panel));
   return figure(draw(chart), escape_html(title));
 }
 
-std::string distributions_section(const Signals& signals) {
-  return section(
-      "distributions", "Distributions", {},
-      both_tags() +
-          distribution_chart(signals, "cn0-in-sight", "C/N0 of satellites in sight", "dB-Hz", "cn0_dbhz", 1.0) +
-          distribution_chart(signals, "cn0-hidden", "C/N0 of hidden satellites", "dB-Hz", "cn0_dbhz", 0.0) +
-          distribution_chart(signals, "error-in-sight", "Range error of satellites in sight", "m", "error_m", 1.0) +
-          distribution_chart(signals, "error-hidden", "Range error of hidden satellites", "m", "error_m", 0.0));
+/// Of a distribution that summary.json gives by its percentiles; those beyond what is finite are of no fix.
+BothSides percentiles(const JsonFields& f, const char* key) {
+  BothSides out;
+  for (std::size_t side = 0; side < kSides.size(); ++side) {
+    const JsonNode* const all = f.object("distributions").object(key).object(kSides[side]).find("percentiles");
+    if (all == nullptr || !all->is_array()) continue;
+    for (const JsonNode& one : *all)
+      if (one.is_number()) out[side].push_back(one.get<double>());
+  }
+  return out;
+}
+
+std::string distributions_section(const JsonFields& f, const Signals& signals) {
+  struct OfSignals {
+    const char *id, *title, *unit, *column;
+    double in_sight;
+  };
+  constexpr OfSignals kOfSignals[] = {
+      {"cn0-in-sight", "C/N0 of satellites in sight", "dB-Hz", "cn0_dbhz", 1.0},
+      {"cn0-hidden", "C/N0 of hidden satellites", "dB-Hz", "cn0_dbhz", 0.0},
+      {"error-in-sight", "Range error of satellites in sight", "m", "error_m", 1.0},
+      {"error-hidden", "Range error of hidden satellites", "m", "error_m", 0.0},
+      {"rate-in-sight", "Range-rate error of satellites in sight", "m/s", "rate_error_m_s", 1.0},
+      {"rate-hidden", "Range-rate error of hidden satellites", "m/s", "rate_error_m_s", 0.0},
+  };
+  std::string charts;
+  for (const OfSignals& row : kOfSignals)
+    charts += distribution_chart({signals.of(0, row.in_sight, row.column), signals.of(1, row.in_sight, row.column)},
+                                 row.id, row.title, row.unit);
+  charts += distribution_chart(percentiles(f, "fix_horizontal_error_m"), "fix-error", "Horizontal error of fixes", "m");
+  return section("distributions", "Distributions", {}, both_tags() + charts);
 }
 
 std::string satellites_section(const Signals& signals) {
@@ -206,10 +230,11 @@ Result<std::string> drive_page(const std::string& directory) {
   const JsonFields f(&file.root(), file, "", error);
   CANYON_TRY(const std::string csv, read_text_file(table));
   Signals signals;
-  CANYON_TRY(signals.table, parse_epoch_table(csv, table,
-                                              {.numbers = {"gps_week", "sow", "in_sight", "cn0_dbhz", "error_m"},
-                                               .texts = {"side", "satellite"},
-                                               .in_order = false}));
+  CANYON_TRY(signals.table,
+             parse_epoch_table(csv, table,
+                               {.numbers = {"gps_week", "sow", "in_sight", "cn0_dbhz", "error_m", "rate_error_m_s"},
+                                .texts = {"side", "satellite"},
+                                .in_order = false}));
   const std::string figures = figures_section(f);
   const double epochs = f.required_number("epochs");
   if (error) return *error;
@@ -223,7 +248,7 @@ Result<std::string> drive_page(const std::string& directory) {
       count_of(epochs, "epoch", "epochs") +
       ".</h1>\n<nav aria-label=\"Contents\"><a href=\"#figures\">Side by side</a> <a "
       "href=\"#distributions\">Distributions</a> <a href=\"#satellites\">Satellites</a></nav>\n</header>\n";
-  out += figures + distributions_section(signals) + satellites_section(signals);
+  out += figures + distributions_section(f, signals) + satellites_section(signals);
   return whole_page("Canyon: a recorded drive and its simulation", 2, out);
 }
 

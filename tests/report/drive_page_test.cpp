@@ -18,6 +18,8 @@ using ::testing::Not;
 constexpr const char* kSummary = R"({"epochs": 2, "reference_instants": 2,
  "simulated": {"fix_h50_m": 4.5, "hidden_error_m": [10, 84], "cn0_auc": null},
  "measured": {"fix_h50_m": 25.5, "hidden_error_m": [31, 122], "cn0_auc": 0.91},
+ "distributions": {"fix_horizontal_error_m": {"simulated": {"count": 2, "percentiles": [1.5, 4.5, null]},
+                                              "measured": {"count": 2, "percentiles": [15.0, 25.5, 70.0]}}},
  "figures": [{"key": "fix_h50_m", "label": "fix, 50 %"}, {"key": "hidden_error_m", "label": "|error| <hidden>"},
              {"key": "cn0_auc", "label": "AUC"}],
  "measured_interval": {"fix_h50_m": [20, 30], "hidden_error_m": [[25, 40], [90, 150]], "cn0_auc": [0.88, 0.93]},
@@ -53,6 +55,10 @@ TEST_F(DrivePage, ShowsBothSidesWithTheirIntervals) {
       HasSubstr("|error| &lt;hidden&gt;10.0 / 84.09.00 to 11.0 / 80.0 to 90.031.0 / 12225.0 to 40.0 / 90.0 to 150"));
   EXPECT_THAT(text, HasSubstr("CRPS 11.5\xC2\xA0m"));
   EXPECT_THAT(text, HasSubstr("R07"));
+  for (const char* title : {"C/N0 of satellites in sight, dB-Hz", "Range error of hidden satellites, m",
+                            "Range-rate error of hidden satellites, m/s", "Horizontal error of fixes, m"})
+    EXPECT_THAT(text, HasSubstr(title));
+  EXPECT_THAT(*page, HasSubstr("measured: median 25.5\xC2\xA0m."));
   EXPECT_THAT(*page, Not(HasSubstr("http")));
 }
 
