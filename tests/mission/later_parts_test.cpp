@@ -80,6 +80,40 @@ TEST(LaterParts, TheTruthAsHeightIsTheTruthFromThenOn) {
   EXPECT_GE(first_difference_s(plain, run), kFrom_s);
 }
 
+// At the first epoch after that moment the vehicle is still where it was: what else a range is off by is the same to
+// the bit, satellite by satellite, whatever of them has been taken away. Codes are not smoothed by the carrier: what
+// that leaves of a changing multipath counts as noise.
+TEST(LaterParts, TakingReflectionsAwayLeavesAllOtherErrorsAsTheyWere) {
+  const MissionConfig config = short_config("high", "high", "[time]\nlimit_s = 16.0\n[gnss]\nsmoothing_s = 0.0\n");
+  const RecordedRun plain = drive(config);
+  for (const bool healed : {true, false}) {
+    MissionConfig later = config;
+    later.gnss.tracking.multipath_scale = 0.0;
+    if (!healed) later.gnss.tracking.hidden_signals = gnss::HiddenSignals::kDropped;
+    const RecordedRun run = drive_later(config, {.config = later, .from_s = kFrom_s, .noise_seed = seed_of(config)});
+    ASSERT_EQ(plain.gnss_rows.size(), run.gnss_rows.size());
+    const auto first = std::find_if(plain.gnss_rows.begin(), plain.gnss_rows.end(),
+                                    [&](const GnssRow& row) { return is_later(row, plain); });
+    ASSERT_NE(first, plain.gnss_rows.end());
+    const GnssRow& without = run.gnss_rows[static_cast<std::size_t>(first - plain.gnss_rows.begin())];
+    ASSERT_EQ(first->truth.satellites.size(), without.truth.satellites.size());
+    int compared = 0, changed = 0;
+    for (std::size_t k = 0; k < first->truth.satellites.size(); ++k) {
+      const auto &was = first->truth.satellites[k], &is = without.truth.satellites[k];
+      ASSERT_EQ(was.sv, is.sv);
+      if (!was.tracked || !is.tracked) continue;
+      EXPECT_EQ(was.ephemeris_m, is.ephemeris_m) << was.sv.str();
+      EXPECT_EQ(was.ionosphere_m, is.ionosphere_m) << was.sv.str();
+      EXPECT_EQ(was.troposphere_m, is.troposphere_m) << was.sv.str();
+      EXPECT_EQ(was.noise_m, is.noise_m) << was.sv.str();
+      ++compared;
+      changed += was.multipath_m != is.multipath_m ? 1 : 0;
+    }
+    EXPECT_GT(compared, 1);
+    EXPECT_GT(changed, 0);
+  }
+}
+
 // A reflection's error is gone from then on, and healed satellites stay received.
 TEST(LaterParts, HealedReflectionsHaveNoErrorAndDroppedOnesAreNotReceived) {
   const MissionConfig config = driven();

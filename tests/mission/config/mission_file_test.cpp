@@ -120,6 +120,15 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
   EXPECT_EQ(told("[vehicle]\nwidth_m = 1.0\n"),
             "my.toml:5: vehicle.width_m: a track of 1.3 m under a body 1 m wide, expected vehicle.track_m not above "
             "vehicle.width_m");
+  EXPECT_EQ(told("[vehicle]\nheight_m = 0.5\nground_clearance_m = 0.6\n"),
+            "my.toml:6: vehicle.ground_clearance_m: a body 0.5 m high that begins 0.6 m above the ground, expected "
+            "vehicle.ground_clearance_m not above vehicle.height_m");
+  EXPECT_EQ(told("[vehicle]\nmodel = \"dynamic_bicycle\"\ntyre_friction = 0.2\n"),
+            "my.toml:6: vehicle.tyre_friction: the vehicle brakes with 3 m/s^2, its tyres hold 2.0 m/s^2, expected "
+            "vehicle.max_deceleration_m_s2 not above vehicle.tyre_friction times gravity");
+  EXPECT_EQ(told("[vehicle]\nmodel = \"dynamic_bicycle\"\ntyre_friction = 0.5\n[autonomy]\nlateral_m_s2 = 6.0\n"),
+            "my.toml:8: autonomy.lateral_m_s2: the autonomy plans turns with 6 m/s^2, its tyres hold 4.9 m/s^2, "
+            "expected autonomy.lateral_m_s2 not above vehicle.tyre_friction times gravity");
   EXPECT_EQ(told("[autonomy]\ncruise_m_s = 8.0\n"),
             "my.toml:5: autonomy.cruise_m_s: the autonomy plans with 8 m/s, the vehicle drives at most 6 m/s, expected "
             "autonomy.cruise_m_s not above vehicle.max_speed_m_s");
