@@ -90,6 +90,12 @@ TEST_F(GnssVerbsTest, SimulationBesideABaseThatIsSimulated) {
                  "gnss.base_receiver: no receiver \"m9\" in the catalogue, expected \"m8\"?");
 }
 
+TEST_F(GnssVerbsTest, AReceiverFileWithFiguresMissing) {
+  write("mine.toml", "name = \"mine\"\ndescription = \"d\"\nsystems = \"G\"\n");
+  expect_mistake("gnss simulate --at 32.35,-90.88,60 --receiver mine.toml",
+                 "mine.toml: mode: is missing, and so are mask_deg, receiver_clock");
+}
+
 TEST_F(GnssVerbsTest, SimulationAlongAWay) {
   std::string way = "gps_week,sow,lat_deg,lon_deg,h_m\n";
   for (int k = 0; k <= 10; ++k)
