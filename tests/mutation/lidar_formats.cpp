@@ -6,6 +6,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/pcd.h"
 #include "canyon/lidar/beam/beam_table.h"
+#include "canyon/lidar/files/clouds/read_cloud.h"
 #include "canyon/lidar/velodyne/packet_reader.h"
 #include "canyon/lidar/velodyne/pcap.h"
 #include "canyon/tests/mutation/format.h"
@@ -103,6 +104,35 @@ std::vector<Seed> clouds() {
           {.name = "c.pcd", .bytes = "SIZE\nTYPE\nCOUNT\n" + theirs, .fits = false}};
 }
 
+/// Walls on two sides of level ground.
+constexpr const char* kYard =
+    "v -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nv -20 20 6\nv 20 20 6\nv 20 -20 6\no ground\nf 1 2 3 4\no wall 1\n"
+    "f 4 3 6 5\nf 3 2 7 6\n";
+
+/// Of the forms that a cloud to be registered may have, beside PCD and captures.
+std::vector<Seed> clouds_to_register() {
+  std::string records(3 * 16, '\0');
+  for (std::size_t i = 0; i < 12; ++i) {
+    const float x = 0.5f * static_cast<float>(i) - 2.0f;
+    std::memcpy(records.data() + 4 * i, &x, sizeof x);
+  }
+  const std::string head =
+      "\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float intensity\nend_header\n";
+  std::vector<Seed> out{
+      {"a.bin", records},
+      {"a.ply", "ply\nformat binary_little_endian 1.0" + head + records},
+      {"b.ply", "ply\nformat ascii 1.0" + head + "-2 -1.5 -1 0.5\n0 0.5 1 1.5\n2 2.5 3 3.5\n"},
+      {"a.pcd",
+       "VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 1\n"
+       "POINTS 3\nDATA ascii\n-2 -1.5 -1 0.5\n0 0.5 1 1.5\n2 2.5 3 3.5\n"}};
+  static const std::vector<Seed> las = written_by_canyon({"lidar", "scan", "--scene", "yard.obj", "--at", "0,0,2,0",
+                                                          "--azimuth-steps", "12", "--format", "las", "--out", "scan"},
+                                                         {"scan/scan_000000.las"}, {{"yard.obj", kYard}});
+  for (const Seed& seed : las) out.push_back({"a.las", seed.bytes});
+  return out;
+}
+
 constexpr const char* kBeams =
     "# a made-up sensor\ncycle_us,50\nlaser,elevation_deg,azimuth_offset_deg,origin_up_mm,firing_us\n0,-10,0,0,0\n"
     "1,0,1.5,11,2.3\n2,5,-1.5,-11,4.6\n3,10,0,7,6.9\n";
@@ -111,11 +141,6 @@ constexpr const char* kBeamsWithOrigins =
     "0,-10,0,0,0,10,2\n1,0,1.5,11,2.3,20,-2\n";
 constexpr const char* kRosette =
     "rosette\nlasers,6\npoints_per_s,2400\nhead_hz,17.3\nswing_hz,21.1\nelevation_min_deg,-7\nelevation_max_deg,52\n";
-
-/// Walls on two sides of level ground.
-constexpr const char* kYard =
-    "v -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nv -20 20 6\nv 20 20 6\nv 20 -20 6\no ground\nf 1 2 3 4\no wall 1\n"
-    "f 4 3 6 5\nf 3 2 7 6\n";
 
 }  // namespace
 
@@ -139,6 +164,14 @@ std::vector<Format> lidar_formats() {
                  return std::vector<Seed>{{"rosette.csv", kRosette}};
                },
            .beside = yard},
+          {.name = "Cloud",
+           .command = {},
+           .read =
+               [](const std::string& path) {
+                 const auto cloud = lidar::read_cloud(path);
+                 return cloud ? 0 : status_of(cloud.error());
+               },
+           .seeds = clouds_to_register},
           {.name = "Pcap", .command = {}, .read = read_capture, .seeds = captures},
           {.name = "Pcd",
            .command = {},

@@ -141,6 +141,28 @@ TEST(ErrorBudget, SharesAddUpAndWhatIsOffHasNone) {
   EXPECT_EQ(json["keyframe"]["total_m2"], budget.budgets.front().figures[2].total);
 }
 
+// With registration the map and the keyframes are the registered ones, and where alignments begin is a source.
+TEST(ErrorBudget, OfRegisteredKeyframes) {
+  const mission::MissionConfig config = budget_config("[registration]\nmethod = \"gicp\"\n");
+  const Taped on = taped(config);
+  const ErrorBudget budget = budget_of(config, on);
+  EXPECT_TRUE(budget.registered);
+  for (const Budget& b : budget.budgets)
+    for (const BudgetFigure& f : b.figures) {
+      double sum = 0.0;
+      for (const SourceShare& s : f.shares) sum += s.share;
+      EXPECT_NEAR(sum, f.total - f.floor, 1e-12 * std::abs(f.total) + 1e-15) << f.key;
+      EXPECT_TRUE(share_of(f, "guess").acts);
+      EXPECT_EQ(share_of(f, "time_offset").share, 0.0);
+    }
+  mission::MissionConfig of_filter = config;
+  of_filter.registration.method.name = "none";
+  const BudgetFigure& registered = budget.budgets.front().figures[2];
+  const BudgetFigure& prior = budget_of(of_filter, on).budgets.front().figures[2];
+  EXPECT_EQ(registered.key, prior.key);
+  EXPECT_NE(registered.total, prior.total);
+}
+
 TEST(ErrorBudget, SameBitsForAnyNumberOfThreads) {
   const mission::MissionConfig config = budget_config();
   const Taped on = taped(config);
