@@ -50,9 +50,8 @@ Aligner::Aligner(const PreparedCloud& source, const SurfaceTarget& target, Match
 /// Of where `at` is; made once for each place.
 const CovarianceSums& Aligner::sums_at(FoundPose& at) const {
   if (!at.sums) {
-    at.sums =
-        covariance_sums(search_.matching_at(own_.max_correspondence_m), at.X, at.matches, kBlock_leaves * own_.leaf_m,
-                        model_row(covariance_forms(), engine_.covariance).make.by_noise);
+    at.sums = covariance_sums(search_.matching_at(own_.max_correspondence_m), at.X, at.matches, block_m(own_.leaf_m),
+                              model_row(covariance_forms(), engine_.covariance).make.by_noise);
     at.sums->N *= kTiltsAlike;
   }
   return *at.sums;

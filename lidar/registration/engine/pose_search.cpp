@@ -69,7 +69,7 @@ PoseSearch::PoseSearch(const PreparedCloud& source, const SurfaceTarget& target,
       guess_(prior.X_TS),
       prior_(PriorLaw::of(prior)),
       radius_m_(rms_radius(source)) {
-  if (prior_) blocks_ = count_blocks(source, kBlock_leaves * matching.leaf_m);
+  if (prior_) blocks_ = count_blocks(source, block_m(matching.leaf_m));
 }
 
 Matching PoseSearch::matching_at(double reach_m) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -27,8 +28,11 @@ struct Held {
   bool surfaces_alone = false;           ///< the prior has no other part
 };
 
-/// Errors are correlated over so many leaves: normals of neighbours share points.
-inline constexpr double kBlock_leaves = 16.0;
+/// Over which errors are correlated: normals of neighbours share points, and pieces of a surface are bent alike however
+/// fine they are thinned.
+inline double block_m(double leaf_m) {
+  return std::max(16.0 * leaf_m, 8.0);
+}
 
 /// Whether a motion leads to another place, not to the same once more.
 bool are_apart(const Vector6d& xi);

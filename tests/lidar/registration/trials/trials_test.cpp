@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/process/parallel.h"
-#include "canyon/core/units.h"
 #include "canyon/tests/lidar/registration/trials/tally.h"
 
 namespace canyon::lidar::trials {
@@ -132,34 +131,45 @@ TEST(TrialsNightly, CovarianceOfPlacesThatNothingIsCalibratedOn) {
   });
 }
 
-// Of places that leave no direction open: 5 cm and 0.2 degrees in 99 % of the pairs, whatever the sensor. Leaf as on
-// recorded pairs.
+// Of places that leave no direction open: 5 cm and 0.2 degrees in 99 % of the pairs, in what the result determines.
+// What few beams see of a street may leave a direction open that its surfaces do not; then that is said, and the prior
+// stands there. With 16 beams it takes 0.2 m and 0.5 degrees (docs/registration.md).
 TEST(TrialsNightly, PairsOfEveryBeamTable) {
-  const auto count = std::stoul(setting("CANYON_TRIALS_PER_CELL", "25"));
-  constexpr Sensor kAll[] = {{"vlp16", 1800},   {"hdl32e", 1800}, {"hdl64e", 1800}, {"os1_64", 1024},
-                             {"os1_128", 1024}, {"grid16", 1800}, {"mid360", 0}};
+  const auto count = std::stoul(setting("CANYON_TRIALS_PER_CELL", "50"));
+  struct Beams {
+    Sensor sensor;
+    bool few;
+  };
+  constexpr Beams kAll[] = {{{"vlp16", 1800}, true},   {{"grid16", 1800}, true},  {{"hdl32e", 1800}, false},
+                            {{"hdl64e", 1800}, false}, {{"os1_64", 1024}, false}, {{"os1_128", 1024}, false},
+                            {{"mid360", 0}, false}};
   const Ring near{"0-0.5 m 0-2 deg", 0.0, 0.5, 0.0, 2.0};
   Asked asked;
-  asked.leaf_m = 0.25;
-  int all = 0, all_within = 0;
-  for (const Place& place : places()) {
-    if (place.open_x || place.open_turn || place.period_m > 0.0) continue;
-    for (const Sensor& sensor : kAll) {
-      int within = 0, converged = 0;
+  asked.leaf_m = std::stod(setting("CANYON_TRIALS_LEAF", "0.5"));
+  const std::string sensor_only = setting("CANYON_TRIALS_SENSOR", "");
+  for (const auto& [sensor, few] : kAll) {
+    if (!sensor_only.empty() && sensor_only.find(sensor.name) == std::string::npos) continue;
+    int all = 0, within = 0, right = 0, silent = 0;
+    for (const Place& place : places()) {
+      if (place.open_x || place.open_turn || place.period_m > 0.0) continue;
+      int here = 0, open = 0;
       for (const Outcome& o : run_trials(asked, place, sensor, near, seed_or("5"), count)) {
-        const Vector6d& error = o.verdict.error;
-        within += error.tail<3>().norm() < 0.05 && error.head<3>().norm() < 0.2 * kDegree ? 1 : 0;
-        converged += o.verdict.converged ? 1 : 0;
+        const Verdict& v = o.verdict;
+        here += v.error_m < 0.05 && v.error_deg < 0.2 ? 1 : 0;
+        right += v.right ? 1 : 0;
+        silent += v.silent() ? 1 : 0;
+        open += v.closed < 6 ? 1 : 0;
       }
-      std::printf("%-12s %-8s within 0.05 m and 0.2 deg %3d of %zu, converged %3d\n", place.name, sensor.name, within,
-                  count, converged);
+      std::printf("%-8s %-12s within 0.05 m and 0.2 deg %3d of %zu, of which %3d have a direction open\n", sensor.name,
+                  place.name, here, count, open);
       std::fflush(stdout);
       all += static_cast<int>(count);
-      all_within += within;
+      within += here;
     }
+    std::printf("%-8s %d of %d, right to 0.2 m and 0.5 deg %d, silently wrong %d\n", sensor.name, within, all, right,
+                silent);
+    EXPECT_GE(few ? right : within, binomial_fewest(all, 0.99, kAlarm)) << sensor.name;
   }
-  std::printf("all: %d of %d\n", all_within, all);
-  EXPECT_GE(all_within, binomial_fewest(all, 0.99, kAlarm));
 }
 
 TEST(TrialsNightly, ASubsetFailsSilentlyNoMoreOftenThanPromised) {
