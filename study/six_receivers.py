@@ -67,7 +67,7 @@ def observe(options, folder, receiver, k):
 
 
 def simulate(options, folder, receiver, k):
-    """One run: its summary, and how far its fixes are off, (east, north) in the plane and in height."""
+    """One run: its summary, the (east, north) errors of its fixes, and how far they are off in height."""
     made = observe(options, folder, receiver, k)
     errors = errors_of(folder / f"{receiver}_{k}/fixes.csv", "enu")
     return json.loads(made.read_text(encoding="utf-8")), [(e, n) for e, n, _ in errors], [abs(u) for _, _, u in errors]
@@ -79,7 +79,7 @@ def errors_of(path, axes):
 
 
 def errors_beside(positions, truth):
-    """(east, north) errors of positions in E, where the truth has its times within a second."""
+    """(east, north) errors of positions in E, of one week, where the truth has its times within a second."""
     with open(truth, encoding="utf-8") as stream:
         way = [(float(row["sow"]), [float(row[f"{a}_m"]) for a in "xyz"]) for row in csv.DictReader(stream)]
     times = [t for t, _ in way]
@@ -176,15 +176,16 @@ def table(options, folder):
               f"the best suited of these {score:.2f} (`{name}`)")
 
 
-def run(description, work):
-    """The options of such a study, and work(options, folder)."""
+def run(description, work, beside=False):
+    """The options of such a study, --beside if it has that, and work(options, folder)."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     here = pathlib.Path(__file__).resolve().parent.parent
     parser.add_argument("--canyon", default=str(here / "build/release/bin/canyon"))
     parser.add_argument("--keep", metavar="DIR")
     parser.add_argument("--seeds", type=int, default=20, metavar="N")
     parser.add_argument("--jobs", type=int, default=2, metavar="N")
-    parser.add_argument("--beside", action="append", default=[], nargs=2, metavar=("POSITIONS", "TRUTH"))
+    if beside:
+        parser.add_argument("--beside", action="append", default=[], nargs=2, metavar=("POSITIONS", "TRUTH"))
     options = parser.parse_args()
     options.canyon = str(pathlib.Path(options.canyon).resolve())
     with tempfile.TemporaryDirectory() as temporary:
@@ -195,4 +196,4 @@ def run(description, work):
 
 
 if __name__ == "__main__":
-    sys.exit(run(__doc__, table))
+    sys.exit(run(__doc__, table, beside=True))

@@ -33,12 +33,14 @@ void leave(Column& column, const std::vector<std::size_t>& these) {
 
 void Submap::add(std::shared_ptr<const PreparedCloud> cloud, const Pose& X_OC) {
   Held held{.cloud = std::move(cloud), .own = nullptr, .X_OC = X_OC, .voxels = {}};
-  held.voxels = voxels_of(*held.cloud, X_OC, leaf_m_);
   if (held_.size() == most_) held_.pop_front();
-  VoxelIndex taken(leaf_m_, held.voxels.size());
-  for (const VoxelCoordinates& voxel : held.voxels)
-    if (voxel != kNowhere) taken.insert(voxel);
-  for (Held& older : held_) leave_out(taken, older);
+  if (leaf_m_ > 0.0) {
+    held.voxels = voxels_of(*held.cloud, X_OC, leaf_m_);
+    VoxelIndex taken(leaf_m_, held.voxels.size());
+    for (const VoxelCoordinates& voxel : held.voxels)
+      if (voxel != kNowhere) taken.insert(voxel);
+    for (Held& older : held_) leave_out(taken, older);
+  }
   held_.push_back(std::move(held));
 }
 

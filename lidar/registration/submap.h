@@ -14,10 +14,10 @@ namespace canyon::lidar {
 /// The last clouds of a way, as targets of a registration: what a newer cloud shows of a voxel of leaf_m takes the
 /// place of what older ones had there, once and for all, so that no alignment looks at all points of all clouds again.
 /// The voxels lie in a frame O of that way, in which the clouds are placed; farther than 2^20 of them from its origin
-/// nothing is thinned.
+/// nothing is thinned. Methods that unite what they are given thin the rest in the frame of the alignment.
 class Submap {
  public:
-  /// `leaf_m` > 0; the last `most` >= 1 clouds are kept.
+  /// The last `most` >= 1 clouds are kept. With leaf_m = 0 as they are: for methods that take all points of all clouds.
   Submap(double leaf_m, std::size_t most) : leaf_m_(leaf_m), most_(most) {}
 
   void add(std::shared_ptr<const PreparedCloud> cloud, const Pose& X_OC);
@@ -33,7 +33,7 @@ class Submap {
  private:
   struct Held {
     std::shared_ptr<const PreparedCloud> cloud;
-    std::shared_ptr<PreparedCloud> own;  ///< the same where something of it is gone, else nullptr
+    std::shared_ptr<PreparedCloud> own;  ///< `cloud`, as a copy that may be changed; nullptr until something is gone
     Pose X_OC;
     std::vector<VoxelCoordinates> voxels;  ///< of its points
   };

@@ -77,7 +77,7 @@ CovarianceSums sums_at(const PoseSearch& search, const Pose& X, double leaf_m, d
   std::vector<LastMatch> fresh;
   const Matching matching = search.matching_at(reach_m);
   normal_equations(matching, X, 1, fresh);
-  CovarianceSums out = covariance_sums(matching, X, fresh, 16.0 * leaf_m, true);
+  CovarianceSums out = covariance_sums(matching, X, fresh, block_m(leaf_m), true);
   out.N *= 2.0;
   return out;
 }

@@ -45,9 +45,10 @@ Matrix6d diagonal(double rotation_rad, double translation_m) {
   return P;
 }
 
-/// Of the method, where it matches points.
-double leaf_m(const lidar::RegistrationConfig& config) {
-  return lidar::registers(config) ? config.method.own.get<lidar::MatchingParameters>().leaf_m : 1.0;
+/// To which the submap is thinned. PCL's methods, as their users know them, take all points of all clouds.
+double submap_leaf_m(const lidar::RegistrationConfig& config) {
+  const bool own = lidar::registers(config) && !config.method.name.starts_with("pcl_");
+  return own ? config.method.own.get<lidar::MatchingParameters>().leaf_m : 0.0;
 }
 
 }  // namespace
@@ -58,7 +59,7 @@ Mapper::Mapper(const lidar::RegistrationConfig& config, std::unique_ptr<lidar::R
       registration_(std::move(registration)),
       X_BL_(X_BL),
       prior_map_(std::move(prior_map)),
-      submap_(leaf_m(config), static_cast<std::size_t>(config.submap_keyframes)) {}
+      submap_(submap_leaf_m(config), static_cast<std::size_t>(config.submap_keyframes)) {}
 
 bool Mapper::wants(const NavEstimate& estimate) const {
   if (!chosen_) return true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <nlohmann/json.hpp>
@@ -144,15 +145,22 @@ std::string distribution_chart(const BothSides& sorted, const char* id, const ch
   return figure(draw(chart), escape_html(title));
 }
 
-/// Of a distribution that summary.json gives by its percentiles; those beyond what is finite are of no fix.
+/// Of a distribution that summary.json gives by its percentiles over all instants, null where there is no fix: those
+/// are put at the farthest that is drawn, so that shares stay shares of all.
 BothSides percentiles(const JsonFields& f, const char* key) {
   BothSides out;
   for (std::size_t side = 0; side < kSides.size(); ++side) {
     const JsonNode* const all = f.object("distributions").object(key).object(kSides[side]).find("percentiles");
     if (all == nullptr || !all->is_array()) continue;
     for (const JsonNode& one : *all)
-      if (one.is_number()) out[side].push_back(one.get<double>());
+      out[side].push_back(one.is_number() ? one.get<double>() : std::numeric_limits<double>::infinity());
   }
+  double farthest = 0.0;
+  for (const std::vector<double>& values : out)
+    for (const double v : values)
+      if (std::isfinite(v)) farthest = std::max(farthest, v);
+  for (std::vector<double>& values : out)
+    std::replace(values.begin(), values.end(), std::numeric_limits<double>::infinity(), farthest);
   return out;
 }
 

@@ -11,8 +11,8 @@
 namespace canyon::study {
 namespace {
 
-/// What nobody looks at in a replay, where nothing is made of it. The run whose events are told keeps its keyframes,
-/// as the map that they make is one of them.
+/// What nobody looks at in a replay, where nothing is made of it. The run whose events are told keeps its keyframes, by
+/// which the event map_doubled is told; the map that would be scored is left out there too.
 mission::Omissions unread(const mission::MissionConfig& config, bool told) {
   mission::Omissions omissions;
   omissions.maps = true;

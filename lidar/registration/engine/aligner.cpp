@@ -23,7 +23,9 @@ constexpr double kTellingBlock_leaves = 8.0;
 // A pull of the prior below this leaves no doubt of what the surfaces alone would have.
 constexpr double kNoPull_m = 0.03;
 constexpr double kNoPull_rad = 3e-3;
-// Of a guess that nothing is known of: what is half turned from where it ended explains that much more.
+// Where nothing is known of a guess and less than kFew of the points found a match: half turned, at most this share of
+// what was missed is missed.
+constexpr double kFew = 0.8;
 constexpr double kFarBetter = 0.5;
 constexpr double kWellMatched = 0.9;  // of the points; fewer may be out of reach because the prior holds them there
 // Normals of neighbours err together (they share points), so that what they feign as curvature counts twice.
@@ -189,7 +191,7 @@ std::vector<Aligner::Place> Aligner::places() {
 /// source's axes, begun where the guess stood, far more is explained: a guess that was half turned ends on level ground
 /// or on one wall.
 bool Aligner::turned_is_far_better(const FoundPose& at, double overlap) {
-  if (search_.prior() || overlap > kAsWellMatched) return false;
+  if (search_.prior() || overlap > kFew) return false;
   for (const Eigen::Vector3d& axis :
        {Eigen::Vector3d(Eigen::Vector3d::UnitZ()), Eigen::Vector3d(Eigen::Vector3d::UnitX()),
         Eigen::Vector3d(Eigen::Vector3d::UnitY())}) {
@@ -255,7 +257,9 @@ RegistrationResult Aligner::align() {
   result.rms_m = precision.rms_m;
   result.covariance = precision.covariance;
   if (prior) result.surfaces = {.X_TS = by_surfaces(at, best.open), .covariance = precision.covariance};
-  judge(at, ambiguous || turned_is_far_better(at, result.overlap), result);
+  judge(at, ambiguous, result);
+  if (result.status == RegistrationStatus::kConverged && turned_is_far_better(at, result.overlap))
+    result.status = RegistrationStatus::kAmbiguous;
   // Together: along open directions the prior's, in the others what both know.
   if (prior) result.covariance = prior->with(at.X, precision.covariance);
   if (!result.covariance.allFinite()) {

@@ -100,6 +100,19 @@ TEST(Submap, ColumnsThatAMethodDoesNotFillStayEmpty) {
   EXPECT_EQ(placed[1].cloud, steps[1].cloud);
 }
 
+TEST(Submap, WithoutALeafAllCloudsStayAsTheyAre) {
+  const auto steps = way(3, true);
+  Submap submap(0.0, 2);
+  for (const Step& step : steps) submap.add(step.cloud, step.X_OC);
+  const auto placed = submap.in(Pose{});
+  ASSERT_EQ(placed.size(), 2u);
+  EXPECT_EQ(placed[0].cloud, steps[1].cloud);
+  EXPECT_EQ(placed[1].cloud, steps[2].cloud);
+  submap.clear();
+  submap.add(steps[0].cloud, Pose{});
+  EXPECT_EQ(submap.in(Pose{}).size(), 1u);
+}
+
 TEST(Submap, TooFarOutNothingIsThinned) {
   const auto steps = way(1, true);
   Submap submap(kLeaf_m, 10);

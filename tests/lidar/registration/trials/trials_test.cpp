@@ -169,6 +169,7 @@ TEST(TrialsNightly, PairsOfEveryBeamTable) {
     std::printf("%-8s %d of %d, right to 0.2 m and 0.5 deg %d, silently wrong %d\n", sensor.name, within, all, right,
                 silent);
     EXPECT_GE(few ? right : within, binomial_fewest(all, 0.99, kAlarm)) << sensor.name;
+    EXPECT_LE(silent, binomial_most(all, 0.005, kAlarm)) << sensor.name;
   }
 }
 
