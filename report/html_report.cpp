@@ -35,10 +35,11 @@ std::string run_boxes(const Results& results) {
   return boxes + "<div class=\"runbar\"><span class=\"runbar-title\">Show</span>\n" + labels + "</div>\n";
 }
 
-std::string contents(bool seeds, bool two_by_two) {
+std::string contents(bool seeds, bool loops, bool two_by_two) {
   return "<nav aria-label=\"Contents\"><a href=\"#verdict\">Verdict</a> " +
-         std::string(seeds ? "<a href=\"#seeds\">Over seeds</a> " : "") +
-         "<a href=\"#figures\">Figures</a> <a "
+         std::string(seeds ? "<a href=\"#seeds\">Over seeds</a> " : "") + "<a href=\"#figures\">Figures</a> " +
+         std::string(loops ? "<a href=\"#loops\">Both loops</a> " : "") +
+         "<a "
          "href=\"#scene-section\">From above</a> <a "
          "href=\"#errors\">Error</a> <a href=\"#filter\">Filter</a> <a href=\"#satellites\">Satellites</a> <a "
          "href=\"#multipath\">Multipath</a> <a "
@@ -53,9 +54,10 @@ std::string page(const Results& results) {
   std::string out = "<header>\n<p class=\"kicker\">Canyon \xC2\xB7 mission " + escape_html(results.mission.name) +
                     (results.mission.seed.empty() ? "" : " \xC2\xB7 seed " + escape_html(results.mission.seed)) +
                     "</p>\n<h1>" + escape_html(headline(results)) + "</h1>\n" +
-                    contents(results.over_seeds.has_value(), !two_by_two.empty()) + "</header>\n";
-  for (const auto part : {verdict_section, seeds_section, figures_section, scene_section, error_section, filter_section,
-                          satellites_section, multipath_section, maps_section, registration_section}) {
+                    contents(results.over_seeds.has_value(), results.beside.has_value(), !two_by_two.empty()) +
+                    "</header>\n";
+  for (const auto part : {verdict_section, seeds_section, figures_section, loops_section, scene_section, error_section,
+                          filter_section, satellites_section, multipath_section, maps_section, registration_section}) {
     throw_if_cancelled();
     out += part(results);
   }

@@ -53,6 +53,10 @@ Result<Comparison> prepare_comparison(const mission::MissionFile& file, const st
 /// there are the figures alone. The returned Results point into `comparison`, which must outlive them.
 Result<Results> compare(const Comparison& comparison, const std::string& directory, bool show_progress);
 
+/// Closed and open loop side by side, for a terminal: what each shows, and two columns per run, of the figures with
+/// these keys or of those that both have; over several seeds medians. `results` must have both.
+std::string both_loops_table(const Results& results, const std::vector<std::string>& keys = {});
+
 /// The terminal table: one column per run, and the ratio of the second to the first; of the figures with these keys
 /// (study/results/figures.h), which must be known, or of all.
 std::string comparison_table(const Results& results, const std::vector<std::string>& keys = {});

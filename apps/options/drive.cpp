@@ -21,6 +21,7 @@
 #include "canyon/study/results/over_seeds.h"
 #include "canyon/study/results/results.h"
 #include "canyon/study/seeds/further_seeds.h"
+#include "canyon/study/seeds/open_loop_beside.h"
 
 namespace canyon::apps {
 
@@ -71,9 +72,17 @@ void declare_loop_options(Arguments& arguments, LoopOptions& options) {
       .within(1e-3, 1e4);
 }
 
+void declare_both_loops(Arguments& arguments, LoopOptions& options) {
+  arguments.flag(
+      "--both-loops", options.both,
+      "each run drives by itself, and all are on one true motion too, as with --open-loop: both side by side");
+}
+
 Status check_loop_options(const LoopOptions& options) {
+  if (options.both && options.open_loop)
+    return Error{.file = "--both-loops", .what = "drives the closed loop too", .expected = "no --open-loop beside it"};
   const bool on_tape = !options.tape.tape.empty() || !options.tape.trajectory.empty();
-  if (!on_tape || options.open_loop) return Ok{};
+  if (!on_tape || options.open_loop || options.both) return Ok{};
   return Error{.file = options.tape.tape.empty() ? "--trajectory" : "--tape",
                .what = "is for open loops",
                .expected = "--open-loop beside it"};
@@ -129,6 +138,11 @@ void print_why(const std::vector<study::Explanation>& explanations) {
   }
 }
 
+Status check_plan(const PlanOptions& options, const LoopOptions& loop) {
+  if (options.plan.empty() || !loop.both) return Ok{};
+  return Error{.file = "--both-loops", .what = "a plan is for one loop", .expected = "no --plan beside it"};
+}
+
 Status follow_plan(const PlanOptions& options, study::Comparison& comparison) {
   if (options.plan.empty()) return Ok{};
   if (options.plan.ends_with(".toml"))
@@ -152,6 +166,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   CANYON_TRY_STATUS(study::choose_figures(keys, "--figures"));
   CANYON_TRY_STATUS(check_loop_options(loop));
   CANYON_TRY_STATUS(check_why(why, loop, leave_out));
+  CANYON_TRY_STATUS(check_plan(leave_out, loop));
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
   const std::string directory = output_directory(options, comparison.configs.front());
@@ -162,6 +177,10 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   if (figures.seeds)
     CANYON_TRY_STATUS(
         study::add_further_seeds(comparison, *figures.seeds - 1, staged.staging_path(), !options.common.json, results));
+  if (loop.both) {
+    CANYON_TRY(results.open_loop, study::drive_open_loop(comparison, loop.tape, figures.seeds.value_or(1),
+                                                         staged.staging_path(), !options.common.json));
+  }
   std::vector<study::Explanation> explanations;
   if (why.why) {
     CANYON_TRY(explanations,
@@ -192,6 +211,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   const std::string table = figures.seeds ? study::over_seeds_table(study::over_seeds(runs_by_seed(results)), keys)
                                           : study::comparison_table(results, keys);
   std::printf("%s\n", table.c_str());
+  if (results.open_loop) std::printf("%s\n", study::both_loops_table(results, keys).c_str());
   print_why(explanations);
   const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
   std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),

@@ -13,10 +13,13 @@ namespace canyon::apps {
 /// Options of the loop: without --open-loop each run drives by itself.
 struct LoopOptions {
   bool open_loop = false;
+  bool both = false;  ///< the open one beside the closed one; declared by who has several runs
   study::TapeChoice tape;
 };
 void declare_loop_options(Arguments& arguments, LoopOptions& options);
-/// A tape without --open-loop.
+/// --both-loops, which compare alone has.
+void declare_both_loops(Arguments& arguments, LoopOptions& options);
+/// A tape without an open loop, and --open-loop where both are asked for.
 Status check_loop_options(const LoopOptions& options);
 
 /// What of the figures is asked for.

@@ -21,6 +21,7 @@ VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_mission_options(arguments, options->mission);
   declare_loop_options(arguments, options->loop);
+  declare_both_loops(arguments, options->loop);
   declare_figures_option(arguments, options->figures);
   declare_plan_options(arguments, options->leave_out);
   declare_why_options(arguments, options->why);

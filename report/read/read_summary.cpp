@@ -218,6 +218,32 @@ OverSeeds read_over_seeds(const JsonFields& summary) {
   return out;
 }
 
+/// Those of the first seed; of the others over_seeds speaks.
+std::vector<Run> read_runs(const JsonFields& fields, const std::string& first_seed,
+                           const std::vector<Figure>& figures) {
+  std::vector<Run> runs;
+  for (const auto& [node, path] : fields.list("runs", true)) {
+    if (node->is_null()) fields.fail(node, path, "null", "an object");
+    const JsonFields run(node, fields.file(), path, fields.error());
+    if (run.has("seed") && run.digits("seed") != first_seed) continue;
+    runs.push_back(read_run(run, figures));
+    for (std::size_t i = 0; i + 1 < runs.size(); ++i) {
+      if (runs[i].fidelity == runs.back().fidelity)
+        fields.fail(node, path + ".fidelity", "'" + runs[i].fidelity + "' given twice", "each run once");
+    }
+  }
+  return runs;
+}
+
+LoopBeside read_beside(const JsonFields& fields, const std::string& first_seed, const std::vector<Figure>& figures) {
+  LoopBeside beside;
+  beside.loop = read_open_loop(fields);
+  beside.duration_s = fields.number("duration_s");
+  beside.runs = read_runs(fields, first_seed, figures);
+  if (fields.has("seeds")) beside.over_seeds = read_over_seeds(fields);
+  return beside;
+}
+
 }  // namespace
 
 Status read_summary(std::string_view json, const std::string& file, Results& results) {
@@ -230,18 +256,7 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   results.mission = read_mission(fields.object("mission"));
   results.scene = read_scene_facts(fields.object("scene"));
   results.figures = read_figure_list(fields);
-  for (const auto& [node, path] : fields.list("runs", true)) {
-    if (node->is_null()) fields.fail(node, path, "null", "an object");
-    const JsonFields run(node, tree, path, error);
-    // Runs of further seeds speak through what is said over all seeds.
-    if (run.has("seed") && run.digits("seed") != results.mission.seed) continue;
-    results.runs.push_back(read_run(run, results.figures));
-    for (std::size_t i = 0; i + 1 < results.runs.size(); ++i) {
-      if (results.runs[i].fidelity == results.runs.back().fidelity) {
-        fields.fail(node, path + ".fidelity", "'" + results.runs[i].fidelity + "' given twice", "each run once");
-      }
-    }
-  }
+  results.runs = read_runs(fields, results.mission.seed, results.figures);
   if (!error && results.runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
   if (fields.has("seeds")) results.over_seeds = read_over_seeds(fields);
   if (fields.has("two_by_two_by_filter")) {
@@ -255,6 +270,8 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   }
   if (fields.has("loop") && fields.object("loop").text("kind") == "open")
     results.open_loop = read_open_loop(fields.object("loop"));
+  if (fields.has("open_loop"))
+    results.beside = read_beside(fields.object("open_loop"), results.mission.seed, results.figures);
   results.hash = fields.text("hash");
   const JsonFields timing = fields.object("timing");
   results.wall_s = timing.number("wall_s");

@@ -186,11 +186,20 @@ struct OverSeeds {
   std::vector<std::pair<std::string, std::map<std::string, Median, std::less<>>>> medians;  ///< by fidelity
 };
 
+/// The same runs on one true motion, beside closed loops. Figures alone.
+struct LoopBeside {
+  OpenLoop loop;
+  double duration_s = 0.0;
+  std::vector<Run> runs;  ///< with the first seed
+  std::optional<OverSeeds> over_seeds;
+};
+
 struct Results {
   Mission mission;
   std::vector<Figure> figures;  ///< what the runs' figures are, in the order of the table
   std::optional<OverSeeds> over_seeds;
-  std::optional<OpenLoop> open_loop;
+  std::optional<OpenLoop> open_loop;  ///< where these results are of one
+  std::optional<LoopBeside> beside;   ///< where they are of closed loops, and the open one was driven as well
   SceneFacts scene;
   SceneDrawing drawing;
   MapGrid grid;  ///< over the scene; the clouds' cells

@@ -11,6 +11,7 @@ namespace canyon::report {
 std::string headline(const Results& results);            ///< the page's first line, plain text
 std::string verdict_section(const Results& results);     ///< a sentence per run
 std::string figures_section(const Results& results);     ///< the table
+std::string loops_section(const Results& results);       ///< empty where one loop alone was driven
 std::string scene_section(const Results& results);       ///< from above, and where it went wrong
 std::string error_section(const Results& results);       ///< position error against time
 std::string filter_section(const Results& results);      ///< does the filter know how wrong it is

@@ -21,11 +21,17 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// "completes the mission" or "fails after 213 s".
+/// A time limit of its own has ended it: neither success nor failure.
+bool was_stopped(const Run& run) {
+  return run.outcome == "stopped";
+}
+
+/// "completes the mission", "fails after 213 s" or "is stopped after 60 s".
 std::string present(const Run& run) {
   if (run.succeeded()) return "completes the mission";
   const double t_s = run.failure ? run.failure->t_s : run.figure("duration_s");
-  return std::isfinite(t_s) ? "fails after " + show_quantity(t_s, "s") : "fails";
+  return std::string(was_stopped(run) ? "is stopped" : "fails") +
+         (std::isfinite(t_s) ? " after " + show_quantity(t_s, "s") : "");
 }
 
 std::string signed_number(double v) {
@@ -162,12 +168,14 @@ std::string headline(const Results& results) {
     return capitalised(spoken(run.fidelity)) + " " + present(run) + ".";
   }
   const Run &a = runs[pure[0]], &b = runs[pure[1]];
-  if (a.succeeded() != b.succeeded()) {
+  if (a.succeeded() != b.succeeded() || was_stopped(a) != was_stopped(b)) {
     return capitalised(spoken(a.fidelity)) + " " + present(a) + "; " + spoken(b.fidelity) + " " + present(b) + ".";
   }
   const double ratio = b.figure("position_error_rms_m") / a.figure("position_error_rms_m");
-  std::string text = capitalised(spoken(a.fidelity)) + " and " + spoken(b.fidelity) + " both " +
-                     (a.succeeded() ? "complete the mission" : "fail");
+  std::string text = capitalised(spoken(a.fidelity)) + " and " + spoken(b.fidelity) +
+                     (was_stopped(a)  ? " are both stopped by their time limit"
+                      : a.succeeded() ? " both complete the mission"
+                                      : " both fail");
   if (std::isfinite(ratio)) {
     text += "; the position error is " + show_number(ratio) + " times as large in " + spoken(b.fidelity);
   }

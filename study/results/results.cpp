@@ -79,11 +79,10 @@ void add_squares(const Results& results, const OverSeeds* seeds, Json& out) {
     if (!square.filter.empty()) out["two_by_two_by_filter"][square.filter] = square_json(square, results, seeds);
 }
 
-/// Which loop the figures are of; in an open one what they say of two runs epoch by epoch.
-Json loop_json(const Results& results) {
-  if (!results.records.front().open_loop) return {{"kind", "closed"}};
+/// What errors of an open loop say of two runs epoch by epoch.
+Json paired_json(const std::vector<PairedErrors>& pairs) {
   Json paired = Json::array();
-  for (const PairedErrors& p : results.paired)
+  for (const PairedErrors& p : pairs)
     paired.push_back({{"a", p.a},
                       {"b", p.b},
                       {"epochs", p.epochs},
@@ -91,7 +90,23 @@ Json loop_json(const Results& results) {
                       {"low_m", number(p.low_m)},
                       {"high_m", number(p.high_m)},
                       {"worse_share", number(p.worse_share)}});
-  return {{"kind", "open"}, {"tape", results.tape_source}, {"paired_epochs", paired}};
+  return paired;
+}
+
+/// Which loop the figures are of.
+Json loop_json(const Results& results) {
+  if (!results.records.front().open_loop) return {{"kind", "closed"}};
+  return {{"kind", "open"}, {"tape", results.tape_source}, {"paired_epochs", paired_json(results.paired)}};
+}
+
+/// The open loop that stands beside closed ones.
+Json open_loop_json(const OpenLoopRuns& open) {
+  Json out{{"tape", open.tape_source}, {"duration_s", open.duration_s}, {"runs", Json::array()}};
+  for (const auto& runs : open.by_seed)
+    for (const RunSummary& run : runs) out["runs"].push_back(run_json(run));
+  out["paired_epochs"] = paired_json(open.paired);
+  if (open.by_seed.size() > 1) write_over_seeds(over_seeds(open.by_seed), out);
+  return out;
 }
 
 void remove_timing(Json& node) {
@@ -262,6 +277,7 @@ Json summary_json(const Results& results) {
   }
   add_squares(results, seeds ? &*seeds : nullptr, out);
   out["loop"] = loop_json(results);
+  if (results.open_loop) out["open_loop"] = open_loop_json(*results.open_loop);
   out["timing"] = {{"wall_s", results.wall_s},
                    {"cpu_s", cpu_s},
                    {"peak_memory_mb", results.peak_memory_mb},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,14 @@
 
 namespace canyon::study {
 
+/// The same runs on one true motion, beside closed loops: their figures alone.
+struct OpenLoopRuns {
+  std::string tape_source;
+  double duration_s = 0.0;
+  std::vector<std::vector<RunSummary>> by_seed;  ///< [seed][run], the mixed runs not among them
+  std::vector<PairedErrors> paired;              ///< every run against the first, of the first seed
+};
+
 /// What a results directory is made from (docs/results.md).
 struct Results {
   const mission::PreparedMission* mission = nullptr;  ///< scene, route and limits shared by the runs
@@ -24,7 +33,8 @@ struct Results {
   std::vector<PairedErrors> paired;   ///< every run against the first; of open loops alone
   /// The same runs with the seeds that follow, one element per seed: summaries are all that is kept of them.
   std::vector<std::vector<RunSummary>> further_seeds;
-  std::vector<Plan> plans;  ///< by run: what it left out; empty: no run left anything out
+  std::optional<OpenLoopRuns> open_loop;  ///< where both loops were asked for
+  std::vector<Plan> plans;                ///< by run: what it left out; empty: no run left anything out
   double wall_s = 0.0;
   double peak_memory_mb = 0.0;  ///< of the process, when the last run had ended
   int threads = 0;

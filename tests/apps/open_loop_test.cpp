@@ -54,6 +54,48 @@ TEST_F(OpenLoopTest, ARunOnItsOwnTapeIsThatRunBitForBit) {
   }
 }
 
+/// What does not depend on the machine.
+Json untimed(Json runs) {
+  for (Json& run : runs) run.erase("timing");
+  return runs;
+}
+
+TEST_F(OpenLoopTest, BothLoopsSideBySideAreEachByItself) {
+  const std::string compare = "compare mission.toml --fidelities low,high --no-2x2 --seeds 2 --json --out ";
+  Json both, open, closed;
+  for (auto [arguments, answer] :
+       {std::pair{"both --both-loops", &both}, std::pair{"open --open-loop", &open}, std::pair{"closed", &closed}}) {
+    ASSERT_EQ(canyon(compare + arguments), 0) << read("stderr");
+    *answer = Json::parse(read("stdout"));
+    for (Json& run : (*answer)["runs"]) run.erase("real_time_factor"), run.erase("cpu_s");
+  }
+  EXPECT_EQ(untimed(both["runs"]), untimed(closed["runs"]));
+  EXPECT_EQ(both["shares"], closed["shares"]);
+  EXPECT_EQ(both["loop"]["kind"], "closed");
+  const Json& beside = both["open_loop"];
+  EXPECT_EQ(untimed(beside["runs"]), untimed(open["runs"]));
+  EXPECT_EQ(beside["runs"].size(), 4U);
+  EXPECT_EQ(beside["paired_epochs"], open["loop"]["paired_epochs"]);
+  EXPECT_EQ(beside["tape"], open["loop"]["tape"]);
+  EXPECT_EQ(beside["duration_s"], 4.0);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_EQ(beside["over_seeds"][k]["figures"], open["over_seeds"][k]["figures"]) << k;
+  EXPECT_NE(both["runs"][1]["position_error_rms_m"], beside["runs"][1]["position_error_rms_m"]);
+
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low,high --no-2x2 --both-loops --out table"), 0);
+  EXPECT_THAT(read("stdout"),
+              ::testing::ContainsRegex("low, closed +open +high, closed +open\nboth loops, side by side"));
+  EXPECT_THAT(read("stdout"), ::testing::ContainsRegex("outcome +stopped +- +stopped +-\n"));
+  EXPECT_THAT(read("stdout"), HasSubstr("open: all on one true motion (the route, driven on truth, 4 s)"));
+  EXPECT_THAT(read("table/report.html"), HasSubstr("<h2 id=\"loops-h\">Closed and open loop</h2>"));
+}
+
+TEST_F(OpenLoopTest, BothLoopsRefuseWhatIsForOne) {
+  expect_refusal("--both-loops --open-loop",
+                 "--both-loops: drives the closed loop too, expected no --open-loop beside it");
+  expect_refusal("--both-loops --plan", "--both-loops: a plan is for one loop, expected no --plan beside it");
+}
+
 TEST_F(OpenLoopTest, SomebodysDriveIsTheTrueMotion) {
   write_drive("drive.tum", 51);
   ASSERT_EQ(

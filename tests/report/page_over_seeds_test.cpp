@@ -66,5 +66,55 @@ TEST_F(PageOverSeeds, AnOpenLoopHasNoShares) {
   EXPECT_THAT(seeds, HasSubstr("<td class=\"text\">position error, RMS</td><td>8.40\xC2\xA0m</td>"));
 }
 
+/// summary.json's open_loop: the same runs on one true motion.
+nlohmann::json beside(const nlohmann::json& closed) {
+  nlohmann::json out{{"tape", "a <drive>"},
+                     {"duration_s", 60.0},
+                     {"runs", closed},
+                     {"paired_epochs",
+                      {{{"a", "low"},
+                        {"b", "high"},
+                        {"epochs", 590},
+                        {"position_error_difference_m", 2.5},
+                        {"low_m", 1.5},
+                        {"high_m", 3.25},
+                        {"worse_share", 0.9}}}}};
+  for (auto& run : out["runs"]) {
+    run["outcome"] = nullptr;
+    run["failure"] = nullptr;
+    run["waypoints_reached"] = run["mission_waypoints_reached"] = nullptr;
+    run["position_error_rms_m"] = run["fidelity"] == "low" ? 0.25 : 2.75;
+  }
+  return out;
+}
+
+TEST_F(PageOverSeeds, ClosedAndOpenLoopStandSideBySide) {
+  EXPECT_EQ(section(page(), "loops"), "");
+  edit_json(file("summary.json"), [](auto& json) { json["open_loop"] = beside(json["runs"]); });
+  const std::string html = page(), loops = section(html, "loops");
+  EXPECT_THAT(html, HasSubstr("<a href=\"#loops\">Both loops</a>"));
+  EXPECT_THAT(loops, HasSubstr("on one true motion (a &lt;drive&gt;, 60.0\xC2\xA0s)"));
+  EXPECT_THAT(loops, HasSubstr("Epoch by epoch high errs by 2.50\xC2\xA0m more than low on it (95 % interval 1.50 to "
+                               "3.25\xC2\xA0m)."));
+  EXPECT_THAT(loops, ::testing::ContainsRegex("position error, RMS</th><td>[0-9.]+</td><td>0.250</td><td>[0-9.]+</td>"
+                                              "<td>2.75</td>"));
+  EXPECT_THAT(loops, Not(HasSubstr("waypoints reached")));  // nobody drove
+}
+
+TEST_F(PageOverSeeds, BothLoopsOverSeedsAreMedians) {
+  edit_json(file("summary.json"), [](auto& json) {
+    study::write_over_seeds(study::over_seeds(ten_seeds(false)), json);
+    json["open_loop"] = beside(json["runs"]);
+    auto open = ten_seeds(true);
+    for (auto& runs : open) runs[1].position_m.rms = 3.0;
+    study::write_over_seeds(study::over_seeds(open), json["open_loop"]);
+  });
+  const std::string loops = section(page(), "loops");
+  EXPECT_THAT(loops, HasSubstr("Medians over 10 seeds."));
+  EXPECT_THAT(loops, HasSubstr("10 of 10 succeed"));
+  EXPECT_THAT(loops, HasSubstr("1 of 10 succeed"));
+  EXPECT_THAT(loops, HasSubstr("position error, RMS</th><td>0.100</td><td>0.100</td><td>8.50</td><td>3.00</td>"));
+}
+
 }  // namespace
 }  // namespace canyon::report

@@ -65,6 +65,16 @@ TEST_F(ShownResults, TwoEqualOutcomesAreComparedByTheirErrors) {
                 "run high.</h1>"));
 }
 
+TEST_F(ShownResults, ARunThatItsTimeLimitStoppedHasNotFailed) {
+  edit_json(file("summary.json"), [](auto& json) {
+    for (auto& run : json["runs"]) run["outcome"] = "stopped", run["failure"] = nullptr;
+  });
+  EXPECT_THAT(page(),
+              HasSubstr("<h1>Run low and run high are both stopped by their time limit; the position error is "));
+  edit_json(file("summary.json"), [](auto& json) { json["runs"][0]["outcome"] = "collision"; });
+  EXPECT_THAT(page(), ::testing::ContainsRegex("<h1>Run low fails after [^;]+; run high is stopped after "));
+}
+
 // why.json beside the results: the verdict's section says it, and what it lacks or has too much of is one line.
 TEST_F(ShownResults, WhyARunFailedStandsWithItsVerdict) {
   store(file("why.json"), R"({"failures": [{"run": "high", "verdict": "cause: errors of the <inertial> sensor",
