@@ -107,6 +107,12 @@ Vector6d PoseSearch::step(const NormalEquations& e, const Pose& X, double dampin
   return -C * left.partialPivLu().solve(P * (C.transpose() * e.g) / k + dual * xi_0);
 }
 
+void PoseSearch::settle_nearly(const NormalEquations& equations, const Pose& X, FoundPose& at, const Held& how) const {
+  const Vector6d left = step(equations, X, kUndamped, how);
+  at.settled = left.tail<3>().norm() < kNearly_m && left.head<3>().norm() < kNearly_rad;
+  if (at.settled) at.last_step = left;
+}
+
 void PoseSearch::descend(const Stage& stage, FoundPose& at, const Held& how) {
   double damping = kUndamped, reach_m = stage.reach_m;
   bool compare = false;
@@ -140,14 +146,14 @@ void PoseSearch::descend(const Stage& stage, FoundPose& at, const Held& how) {
     const bool last_reach = reach_m <= own_.max_correspondence_m;
     compare = last_reach;
     if (last_reach && xi.tail<3>().norm() < stage.settled_m && xi.head<3>().norm() < stage.settled_rad) {
-      at.settled = damping < 1e-2;
+      // A step that damping alone makes small says nothing of how far it is.
+      if (damping < 1e-2)
+        at.settled = true;
+      else
+        settle_nearly(before, before_X, at, how);
       return;
     }
-    if (round + 1 == stage.rounds && last_reach) {
-      at.last_step = step(before, before_X, kUndamped, how);
-      at.settled = at.last_step.tail<3>().norm() < kNearly_m && at.last_step.head<3>().norm() < kNearly_rad;
-      if (!at.settled) at.last_step.setZero();
-    }
+    if (round + 1 == stage.rounds && last_reach) settle_nearly(before, before_X, at, how);
     reach_m = std::max(own_.max_correspondence_m, kShrinking * reach_m);
   }
 }

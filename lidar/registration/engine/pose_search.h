@@ -72,6 +72,8 @@ class PoseSearch {
   };
   void descend(const Stage& stage, FoundPose& at, const Held& how);
   Vector6d step(const NormalEquations& equations, const Pose& X, double damping, const Held& how) const;
+  /// Settled where the whole step from X, undamped, is one that may be left; it then stays as the last one.
+  void settle_nearly(const NormalEquations& equations, const Pose& X, FoundPose& at, const Held& how) const;
   std::vector<Pose> starts() const;
   std::size_t coarse_stride() const;
   double first_reach_m() const;
