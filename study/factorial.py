@@ -8,7 +8,7 @@
 Without blockage satellites that a clear sky would show are received, without reflections echoes leave no error, without drift the inertial
 sensor has none. An effect is the difference of the shares of success with a source and without it, over all settings of the other two; an
 interaction of two is half the difference of one's effect with and without the other, and of three likewise. Intervals: 95 % of 10,000 bootstrap draws of whole seeds, all eight
-runs of one together. With --remedies single ones beside them: a gate, an odometer with the filter that uses it, a better unit, another receiver, truth as pose.
+runs of one together. With --remedies single ones beside them: a gate, an odometer, the filter that knows the vehicle, both, a better unit, another receiver, truth as pose.
 """
 import argparse
 import concurrent.futures
@@ -25,6 +25,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 SOURCES = {"blockage": ("gnss", 'hidden_signals = "in_sight"'), "reflections": ("gnss", "multipath_scale = 0.0"), "drift": ("imu", 'errors = "none"')}
 REMEDIES = {"gate of 3 sigma": ("", "fusion", 'acceptance = "gate"\ngate_sigma = 3'),
             "unit of tactical grade": ("", "imu", 'sensor = "hg4930_class"'),
+            "odometer, same filter": ("", "fusion", 'states = ["biases", "gains", "wheel_scale"]\nmeasurements = ["position", "odometer"]'),
+            "`vehicle` filter, no odometer": ("", "fusion", 'filter = "vehicle"\nmeasurements = ["position", "velocity", "non_holonomic", "standstill"]'),
             "odometer, `vehicle` filter": ("high_aided", None, ""),
             "`modern`": ("modern", None, ""),
             "truth as pose": ("", "run", "truth_as_pose = true")}
