@@ -5,6 +5,7 @@
 
 #include "canyon/core/check.h"
 #include "canyon/lidar/sweep_motion.h"
+#include "canyon/lidar/turned.h"
 
 namespace canyon::lidar {
 namespace {
@@ -34,18 +35,22 @@ LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_
   // Lasers that run free may begin their first cycle a little before the period.
   const double first_s = scan.points.empty() ? 0.0 : double{scan.points.front().time_s};
   const SweepMotion sweep(motion, scan.t, std::min(-scan.period_s, first_s), 0.0, X_LW, X_BL);
-  out.points.reserve(scan.points.size());
-  std::size_t hint = 0;
-  for (LidarPoint point : scan.points) {
+  SweepMotion::Reader reader(sweep);
+  out.points = scan.points;
+  std::size_t kept = 0;
+  for (const LidarPoint& point : scan.points) {
     if (!sweep.covers(point.time_s)) continue;
     if (!is_finite(point)) continue;
-    const Eigen::Vector3d p = sweep.at(point.time_s, hint) * Eigen::Vector3d(point.x, point.y, point.z);
-    point.x = static_cast<float>(p.x());
-    point.y = static_cast<float>(p.y());
-    point.z = static_cast<float>(p.z());
-    point.time_s = 0;
-    out.points.push_back(point);
+    const SweepMotion::Placement X = reader.at(point.time_s);
+    const Eigen::Vector3d p = turned(X.R, Eigen::Vector3d(point.x, point.y, point.z)) + X.p;
+    LidarPoint& moved = out.points[kept++];
+    moved = point;
+    moved.x = static_cast<float>(p.x());
+    moved.y = static_cast<float>(p.y());
+    moved.z = static_cast<float>(p.z());
+    moved.time_s = 0;
   }
+  out.points.resize(kept);
   return out;
 }
 

@@ -14,8 +14,7 @@ using Numbers = Eigen::Matrix<double, 12, 1>;  // of a placement
 // What a chord between two nodes may be off the arc; and nodes are never closer than this.
 constexpr double kChordAngle_rad = 3e-8;
 constexpr double kChordWay_m = 1e-6;
-constexpr double kClosest_s = 5e-6;        // keeps them up to 5000 deg/s
-constexpr double kTimeTolerance_s = 1e-8;  // a point's time_s in single precision: 4 ns at 0.1 s
+constexpr double kClosest_s = 5e-6;  // keeps them up to 5000 deg/s
 
 /// A chord over h deviates from an arc of rate w by (w h)^2 / 8 in direction, and in place by the acceleration times
 /// h^2 / 8, which on a screw motion is w times the sensor's speed.
@@ -68,11 +67,6 @@ SweepMotion::SweepMotion(const Trajectory& motion, GpsTime stamp, double first_s
   }
 }
 
-bool SweepMotion::covers(double time_s) const {
-  return !nodes_.empty() && time_s >= nodes_.front().time_s - kTimeTolerance_s &&
-         time_s <= nodes_.back().time_s + kTimeTolerance_s;
-}
-
 std::size_t SweepMotion::before(double time_s, std::size_t& hint) const {
   if (hint + 1 >= nodes_.size() || time_s < nodes_[hint].time_s) {
     const auto next = std::upper_bound(nodes_.begin(), nodes_.end(), time_s,
@@ -91,6 +85,25 @@ SweepMotion::Placement SweepMotion::at(double time_s, std::size_t& hint) const {
   const Node& b = nodes_[hint + 1];
   const double s = (time_s - a.time_s) / (b.time_s - a.time_s);
   return {a.placement.R + s * (b.placement.R - a.placement.R), a.placement.p + s * (b.placement.p - a.placement.p)};
+}
+
+void SweepMotion::Reader::find(double time_s) {
+  CANYON_CHECK(motion_.covers(time_s), "time_s = ", time_s);
+  const auto& nodes = motion_.nodes_;
+  from_s_ = nodes.front().time_s;
+  to_s_ = nodes.back().time_s + kTimeTolerance_s;
+  if (nodes.size() == 1) {
+    stands_ = true;
+    from_ = nodes.front().placement;
+    return;
+  }
+  const Node& a = nodes[motion_.before(time_s, hint_)];
+  const Node& b = nodes[hint_ + 1];
+  from_s_ = a.time_s;
+  if (hint_ + 2 < nodes.size()) to_s_ = b.time_s;
+  length_s_ = b.time_s - a.time_s;
+  from_ = a.placement;
+  way_ = {b.placement.R - a.placement.R, b.placement.p - a.placement.p};
 }
 
 void SweepMotion::placements(double time_s, double step_s, std::size_t& hint, PlacementPacket& out) const {

@@ -137,12 +137,15 @@ Status MissionRun::take_scan(const Due& due) {
   if (withhold_s && due.t - mission_.start >= *withhold_s) return Ok{};
   if (!scan_is_wanted(due.t)) return Ok{};
 
-  lidar::LidarOutput output;
-  clock_.charge(Part::kLidar, [&] { fire(due, output); });
-  CANYON_TRY_STATUS(boundaries_.check(output));
+  clock_.charge(Part::kLidar, [&] { fire(due, fired_); });
+  CANYON_TRY_STATUS(boundaries_.check(fired_));
   ++record_.counters["lidar_scans"];
-  if (!open_loop_) clock_.charge(Part::kScoring, [&] { scorer_.scan(due.t, output.truth); });
-  return localizer_.once_at(due.t, [this, scan = std::move(output.scan)] { return use_scan(scan); });
+  if (!open_loop_) clock_.charge(Part::kScoring, [&] { scorer_.scan(due.t, fired_.truth); });
+  return localizer_.once_at(due.t, [this, scan = std::move(fired_.scan)]() mutable {
+    Status used = use_scan(scan);
+    fired_.scan = std::move(scan);  // its memory, for the next one
+    return used;
+  });
 }
 
 void MissionRun::fire(const Due& due, lidar::LidarOutput& output) {

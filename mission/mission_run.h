@@ -121,6 +121,7 @@ class MissionRun {
   std::unique_ptr<inertial::ImuModel> imu_;
   Aiding aiding_;
   std::unique_ptr<lidar::Scanner> scanner_;
+  lidar::LidarOutput fired_;             ///< what it gave last; memory for the next
   std::unique_ptr<LaterSensors> later_;  // null: none, or in use already
   fusion::RunEvidence evidence_;
   Localizer localizer_;

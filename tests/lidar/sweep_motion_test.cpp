@@ -45,6 +45,34 @@ TEST(SweepMotion, AnyOrderOfTimesGivesTheSame) {
   }
 }
 
+TEST(SweepMotion, AReaderGivesTheSameBits) {
+  Vector6d twist;
+  twist << 0.3, -0.5, 2.0, 15.0, 1.0, -0.5;
+  const SweepMotion sweep(testing::twisting(testing::pose_at(300, -200, 20, 60), twist), kStart, -0.1, 0.0, Pose{},
+                          testing::pose_at(0.3, 0.1, 1.8, 5));
+  SweepMotion::Reader reader(sweep);
+  std::size_t hint = 0;
+  const auto look = [&](double time_s) {
+    const auto placed = sweep.at(time_s, hint), read = reader.at(time_s);
+    EXPECT_EQ(placed.R, read.R) << time_s;
+    EXPECT_EQ(placed.p, read.p) << time_s;
+  };
+  for (int k = 0; k <= 20000; ++k) look(-0.1 + 5e-6 * k);                // ends and nodes among them
+  for (int k = 0; k <= 100; ++k) look(-0.1 * ((k * 37) % 101) / 100.0);  // to and fro
+  for (const double time_s : {-0.1 - 5e-9, 5e-9}) look(time_s);          // within the tolerance
+  EXPECT_THROW(reader.at(1e-6), ProgramError);
+  EXPECT_THROW(reader.at(-0.101), ProgramError);
+
+  Trajectory one;
+  one.append({kStart, testing::pose_at(1, 2, 3, 4)});
+  const SweepMotion standing(one, kStart, -0.1, 0.0, Pose{}, Pose{});
+  SweepMotion::Reader stands(standing);
+  hint = 0;
+  EXPECT_EQ(stands.at(0.0).R, standing.at(0.0, hint).R);
+  EXPECT_EQ(stands.at(-5e-9).p, standing.at(0.0, hint).p);
+  EXPECT_THROW(stands.at(-0.05), ProgramError);
+}
+
 TEST(SweepMotion, CoversWhatTheTrajectoryCovers) {
   Trajectory motion;
   motion.append({kStart - 0.06, Pose{}});

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "canyon/core/process/parallel.h"
-#include "canyon/lidar/registration/turned.h"
+#include "canyon/lidar/turned.h"
 #include "canyon/lidar/voxels/voxel_index.h"
 
 namespace canyon::lidar {

@@ -8,7 +8,7 @@
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/lidar/registration/engine/leaf_tree.h"
-#include "canyon/lidar/registration/turned.h"
+#include "canyon/lidar/turned.h"
 #include "canyon/lidar/voxels/voxel_index.h"
 #include "canyon/lidar/voxels/voxel_map.h"
 

@@ -107,6 +107,24 @@ class GroundGrid final : public Perception {
   }
   Eigen::Vector2d middle(const Cell& cell) const { return p_.cell_m * Eigen::Vector2d(cell.x + 0.5, cell.y + 0.5); }
 
+  /// slot() of cells within n of one, without dividing.
+  class Nearby {
+   public:
+    Nearby(std::int32_t x, std::int32_t y, int n) : n_(n), x_(x - n), y_(y - n), x_mod_(mod(x_)), y_mod_(mod(y_)) {}
+    std::size_t slot(std::int32_t x, std::int32_t y) const {
+      return static_cast<std::size_t>(wrapped(y - y_ + y_mod_)) * static_cast<std::size_t>(n_) +
+             static_cast<std::size_t>(wrapped(x - x_ + x_mod_));
+    }
+
+   private:
+    std::int32_t mod(std::int32_t v) const { return ((v % n_) + n_) % n_; }
+    std::int32_t wrapped(std::int32_t v) const {  // 0 <= v < 3 n
+      v -= v >= n_ ? n_ : 0;
+      return v - (v >= n_ ? n_ : 0);
+    }
+    std::int32_t n_, x_, y_, x_mod_, y_mod_;
+  };
+
   /// Returns about B within the room that it keeps, and how low the lowest beam looks.
   void gather(const LidarScan& scan, const Pose& X_OL, const Pose& X_OB) {
     const Eigen::Matrix3f R = X_OL.R.toRotationMatrix().cast<float>();
@@ -122,8 +140,11 @@ class GroundGrid final : public Perception {
       const float above = d.dot(up);
       if (above < low || above > high || std::abs(d.x()) > half || std::abs(d.y()) > half) continue;
       returns_.push_back({d.x(), d.y(), above});
-      const float across = std::hypot(d.x() - from_B.x(), d.y() - from_B.y());
-      const float drop = static_cast<float>(sensor_above_m_) - above;
+      const float drop = static_cast<float>(sensor_above_m_) - above, dx = d.x() - from_B.x(), dy = d.y() - from_B.y();
+      // Hardly a return is steeper than all before it: the root is for those that may be, to the last bit.
+      const double across2 = static_cast<double>(dx) * dx + static_cast<double>(dy) * dy;
+      if (!(drop > 0.0F) || static_cast<double>(drop) * drop < (1.0 - 1e-5) * steepest_ * steepest_ * across2) continue;
+      const float across = std::hypot(dx, dy);
       if (across > 1.0F) steepest_ = std::max(steepest_, static_cast<double>(drop / across));
     }
   }
@@ -132,9 +153,32 @@ class GroundGrid final : public Perception {
     seen_m_.fill(0.0F);
     touched_.clear();
     const auto step = static_cast<float>(p_.obstacle_step_m), clear = static_cast<float>(p_.clear_height_m);
-    for (const PlaneReturn& r : returns_) {
-      const float distance = std::sqrt(r.x_m * r.x_m + r.y_m * r.y_m);
-      const int sector = PolarGround::sector(r.x_m, r.y_m);
+    const Nearby nearby(cell_of(body_O.x()), cell_of(body_O.y()), n_);
+    // The cells lie all over memory: some are asked for ahead of their turn.
+    struct Told {
+      std::int32_t x, y;
+      std::size_t slot;
+      float above;
+      bool high;
+    };
+    std::array<Told, 16> told;
+    std::size_t waiting = 0;
+    const auto tell = [&] {
+      for (std::size_t k = 0; k < waiting; ++k) {
+        const Told& one = told[k];
+        Cell& cell = cell_at(one.x, one.y, one.slot);
+        if (!one.high) {
+          ++cell.ground;
+          continue;
+        }
+        ++cell.hits;
+        cell.top_m = std::max(cell.top_m, one.above);
+      }
+      waiting = 0;
+    };
+    for (std::size_t k = 0; k < returns_.size(); ++k) {
+      const PlaneReturn& r = returns_[k];
+      const auto [sector, distance] = ground_.polar()[k];
       float& seen = seen_m_[static_cast<std::size_t>(sector)];
       seen = std::max(seen, distance);
       const PolarGround::Height ground = ground_.at(sector, distance);
@@ -142,19 +186,16 @@ class GroundGrid final : public Perception {
       if (above > clear) continue;
       const bool high = above > step + ground.unsure_m;
       if (!high && above > 0.5F * step) continue;  // neither
-      Cell& cell = cell_at(body_O.x() + static_cast<double>(r.x_m), body_O.y() + static_cast<double>(r.y_m));
-      if (!high) {
-        ++cell.ground;
-        continue;
-      }
-      ++cell.hits;
-      cell.top_m = std::max(cell.top_m, above);
+      const std::int32_t x = cell_of(body_O.x() + static_cast<double>(r.x_m)),
+                         y = cell_of(body_O.y() + static_cast<double>(r.y_m));
+      told[waiting] = {x, y, nearby.slot(x, y), above, high};
+      __builtin_prefetch(&cells_[told[waiting].slot], 1);
+      if (++waiting == told.size()) tell();
     }
+    tell();
   }
 
-  Cell& cell_at(double x_m, double y_m) {
-    const std::int32_t x = cell_of(x_m), y = cell_of(y_m);
-    const std::size_t i = slot(x, y);
+  Cell& cell_at(std::int32_t x, std::int32_t y, std::size_t i) {
     Cell& cell = cells_[i];
     if (cell.x != x || cell.y != y) {
       const bool listed = cell.listed;

@@ -30,11 +30,14 @@ int PolarGround::sector(float x, float y) {
 
 void PolarGround::fit(const std::vector<PlaneReturn>& returns) {
   std::fill(lowest_.begin(), lowest_.end(), Lowest{kNone, 0.0F});
-  for (const PlaneReturn& r : returns) {
+  polar_.resize(returns.size());
+  for (std::size_t k = 0; k < returns.size(); ++k) {
+    const PlaneReturn& r = returns[k];
     const float distance = std::sqrt(r.x_m * r.x_m + r.y_m * r.y_m);
+    polar_[k] = {sector(r.x_m, r.y_m), distance};
     const int bin = static_cast<int>(distance / kWidth);
     if (bin >= bins_) continue;
-    Lowest& lowest = lowest_[slot(sector(r.x_m, r.y_m), bin)];
+    Lowest& lowest = lowest_[slot(polar_[k].sector, bin)];
     if (r.above_m < lowest.above_m) lowest = {r.above_m, distance};
   }
   for (int s = 0; s < kSectors; ++s) walk(s);

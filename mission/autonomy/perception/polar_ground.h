@@ -26,6 +26,12 @@ class PolarGround {
   PolarGround(const Rule& rule, double reach_m);
 
   void fit(const std::vector<PlaneReturn>& returns);
+  /// Where each of the returns lies that it was fitted to, in their order.
+  struct Polar {
+    int sector;
+    float distance_m;
+  };
+  const std::vector<Polar>& polar() const { return polar_; }
 
   /// The sector of a direction, all of about the same width.
   static int sector(float x, float y);
@@ -47,6 +53,7 @@ class PolarGround {
 
   Rule rule_;
   int bins_;
+  std::vector<Polar> polar_;
   std::vector<Lowest> lowest_;
   std::vector<float> height_, last_seen_;  ///< at the middle of each bin; where the ground of each sector ends
 };
