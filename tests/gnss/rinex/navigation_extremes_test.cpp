@@ -20,7 +20,7 @@ using testing::header_line;
 using testing::record;
 using testing::sample_ephemeris;
 
-const GpsTime kToe = GpsTime::from_calendar(2023, 3, 12, 2, 0, 0.0);
+const GpsTime kFileToe = GpsTime::from_calendar(2023, 3, 12, 2, 0, 0.0);
 
 std::string head4() {
   return header_line("     4.00           NAVIGATION DATA     M", "RINEX VERSION / TYPE") +
@@ -35,7 +35,7 @@ std::string rinex4_text() {
     for (const double v : values) line += fortran(v);
     return line + "\n";
   };
-  KeplerEphemeris gps = sample_ephemeris(1, kToe);
+  KeplerEphemeris gps = sample_ephemeris(1, kFileToe);
   gps.tgd_s = 5e-9;
   out += "> EPH G01 LNAV\n" + record(gps, true);
   out += "> ION G12 LNAV\n    2023 03 12 00 08 54" + fortran(1e-8) + fortran(2e-8) + fortran(-3e-8) + "\n" +
@@ -65,11 +65,11 @@ TEST(Rinex4, EveryKindOfRecord) {
   EXPECT_TRUE(file->warnings.empty()) << file->warnings.front();
   ASSERT_EQ(file->kepler.size(), 3u);
   EXPECT_EQ(file->kepler[0].message, NavigationMessage::kLnav);
-  EXPECT_EQ(file->kepler[0].toe, kToe);
-  EXPECT_EQ(file->kepler[0].transmitted, std::optional(kToe - 3600.0));
+  EXPECT_EQ(file->kepler[0].toe, kFileToe);
+  EXPECT_EQ(file->kepler[0].transmitted, std::optional(kFileToe - 3600.0));
   EXPECT_EQ(file->kepler[1].message, NavigationMessage::kD1);
-  EXPECT_EQ(file->kepler[1].toe, kToe + 14.0);
-  EXPECT_EQ(file->kepler[1].toc, kToe + 14.0);
+  EXPECT_EQ(file->kepler[1].toe, kFileToe + 14.0);
+  EXPECT_EQ(file->kepler[1].toc, kFileToe + 14.0);
   const KeplerEphemeris& cnav = file->kepler[2];
   EXPECT_EQ(cnav.message, NavigationMessage::kCnav);
   EXPECT_EQ(cnav.toe, GpsTime::from_calendar(2023, 3, 12, 1, 30, 0.0));
@@ -80,25 +80,25 @@ TEST(Rinex4, EveryKindOfRecord) {
   EXPECT_TRUE(cnav.healthy());                        // 1: L5 alone
   EXPECT_EQ(cnav.transmitted, std::optional(GpsTime::from_week_sow(2253, 6.0)));
 
-  const auto klobuchar = file->klobuchar_at(GnssSystem::kGps, kToe);
+  const auto klobuchar = file->klobuchar_at(GnssSystem::kGps, kFileToe);
   ASSERT_TRUE(klobuchar.has_value());
   EXPECT_THAT(klobuchar->alpha, ElementsAre(1e-8, 2e-8, -3e-8, 4e-8));
   EXPECT_THAT(klobuchar->beta, ElementsAre(1e5, 2e5, -3e5, 4e5));
-  EXPECT_FALSE(file->klobuchar_at(GnssSystem::kBeidou, kToe).has_value());
+  EXPECT_FALSE(file->klobuchar_at(GnssSystem::kBeidou, kFileToe).has_value());
   EXPECT_EQ(file->skipped_records,
             (std::map<std::string, int>{{"EOP G CNVX", 1}, {"ION E IFNV", 1}, {"STO E IFNV", 1}}));
   EXPECT_EQ(file->skipped(), "1 EOP G CNVX, 1 ION E IFNV, 1 STO E IFNV");
 }
 
 TEST(Rinex4, DamagedRecordsAreSkippedWithTheirLine) {
-  const std::string good = "> EPH G02 LNAV\n" + record(sample_ephemeris(2, kToe), true);
+  const std::string good = "> EPH G02 LNAV\n" + record(sample_ephemeris(2, kFileToe), true);
   const auto warnings_of = [&](const std::string& bad) {
     const auto file = parse_navigation_file(head4() + bad + good, "brd4.rnx");
     EXPECT_TRUE(file.ok());
     EXPECT_EQ(file->kepler.size(), 1u);
     return file->warnings;
   };
-  EXPECT_THAT(warnings_of("> EPH G01 LNAV\n" + record(sample_ephemeris(3, kToe), true)),
+  EXPECT_THAT(warnings_of("> EPH G01 LNAV\n" + record(sample_ephemeris(3, kFileToe), true)),
               ElementsAre("brd4.rnx:4: satellite \"G03\", expected G01; skipped"));
   EXPECT_THAT(
       warnings_of("> EPH G?? LNAV\nG01\n"),
@@ -114,12 +114,14 @@ TEST(Rinex4, DamagedRecordsAreSkippedWithTheirLine) {
 TEST(Klobuchar, TheLastGivenBeforeTheTime) {
   NavigationData data;
   const auto add = [&](GnssSystem system, double hours, double alpha) {
-    data.klobuchar.push_back({system, kToe + 3600.0 * hours, {{alpha, 0, 0, 0}, {}}});
+    data.klobuchar.push_back({system, kFileToe + 3600.0 * hours, {{alpha, 0, 0, 0}, {}}});
   };
   add(GnssSystem::kGps, 2.0, 2.0);
   add(GnssSystem::kGps, 0.0, 1.0);
   add(GnssSystem::kBeidou, 1.0, 9.0);
-  const auto at = [&](double hours) { return data.klobuchar_at(GnssSystem::kGps, kToe + 3600.0 * hours)->alpha[0]; };
+  const auto at = [&](double hours) {
+    return data.klobuchar_at(GnssSystem::kGps, kFileToe + 3600.0 * hours)->alpha[0];
+  };
   EXPECT_EQ(at(-1.0), 1.0);  // before all: the first
   EXPECT_EQ(at(1.9), 1.0);
   EXPECT_EQ(at(2.0), 2.0);
@@ -176,7 +178,7 @@ TEST(NavigationExtremes, TwoDaysTogether) {
 TEST(Contradictions, OneAgainstItsNeighbours) {
   std::vector<KeplerEphemeris> records;
   for (int k = 0; k < 5; ++k) {
-    KeplerEphemeris r = sample_ephemeris(1, kToe + 7200.0 * k);
+    KeplerEphemeris r = sample_ephemeris(1, kFileToe + 7200.0 * k);
     // The same ellipse, its mean anomaly and node carried on to each toe.
     const double a_m = r.sqrt_a * r.sqrt_a, dt_s = 7200.0 * k;
     r.m0_rad += (std::sqrt(3.986005e14 / (a_m * a_m * a_m)) + r.delta_n_rad_s) * dt_s;
@@ -203,9 +205,9 @@ TEST(Contradictions, OneAgainstItsNeighbours) {
 
 // A number that overflows in the orbit's evaluation is a damaged record, not an orbit and not a crash.
 TEST(NavigationExtremes, NumbersThatNoMessageCanHoldWordForWord) {
-  const std::string good = record(sample_ephemeris(2, kToe), true);
+  const std::string good = record(sample_ephemeris(2, kFileToe), true);
   const auto warning = [&](void (*change)(KeplerEphemeris&)) {
-    KeplerEphemeris r = sample_ephemeris(1, kToe);
+    KeplerEphemeris r = sample_ephemeris(1, kFileToe);
     change(r);
     const auto file = parse_navigation_file(header(true) + record(r, true) + good, "brdc.rnx");
     EXPECT_TRUE(file.ok());
@@ -226,7 +228,7 @@ TEST(NavigationExtremes, NumbersThatNoMessageCanHoldWordForWord) {
 }
 
 TEST(NavigationExtremes, SurvivesDamage) {
-  for (const std::string& good : {rinex4_text(), testing::navigation_text(kToe, 3, 2, true)}) {
+  for (const std::string& good : {rinex4_text(), testing::navigation_text(kFileToe, 3, 2, true)}) {
     const auto read = [](const std::string& bad) {
       const auto file = parse_navigation_file(bad, "damaged.rnx");
       if (!file.ok()) {
@@ -236,17 +238,17 @@ TEST(NavigationExtremes, SurvivesDamage) {
       const auto constellation = make_broadcast(*file);
       for (const SatelliteId sv : constellation->satellites())
         for (const double s : {-3600.0, 0.0, 1800.0, 7200.0})
-          if (const auto state = constellation->state(sv, kToe + s)) {
+          if (const auto state = constellation->state(sv, kFileToe + s)) {
             // A place and a clock that a receiver can work with, whatever the file says.
             EXPECT_LT(state->p_E.norm(), 2e8);
             EXPECT_LT(state->v_E.norm(), 2e5);
             EXPECT_LT(std::abs(state->clock_s), 1.1);
             EXPECT_LT(std::abs(state->clock_rate), 1e-6);
-            transmission_from_pseudorange(*constellation, sv, kToe + s, 2e7);
+            transmission_from_pseudorange(*constellation, sv, kFileToe + s, 2e7);
           }
-      const auto k = file->klobuchar_at(GnssSystem::kGps, kToe);
+      const auto k = file->klobuchar_at(GnssSystem::kGps, kFileToe);
       if (k) {
-        EXPECT_LT(klobuchar_delay_m(*k, kToe, 0.5, 0.5, 0.5, 0.5), 1e9);
+        EXPECT_LT(klobuchar_delay_m(*k, kFileToe, 0.5, 0.5, 0.5, 0.5), 1e9);
       }
     };
     testing::for_each_truncation(good, read);
