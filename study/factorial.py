@@ -54,9 +54,11 @@ def mission(base, remedies):
 def outcomes(options, folder, remedies, seed):
     """Outcome of each fidelity with that seed."""
     kept = folder / f"{options.base}-{seed}.json"
+    labels = {f"r{k}": label for k, label in enumerate(remedies)}
     names = [name_of(there) for there in itertools.product((False, True), repeat=3)] + [f"r{k}" for k in range(len(remedies))]
+    # Kept by label: the list of remedies may grow in between.
     found = json.loads(kept.read_text()) if kept.exists() else {}
-    missing = [name for name in names if name not in found]
+    missing = [name for name in names if labels.get(name, name) not in found]
     if missing:
         out = folder / f"run-{options.base}-{seed}"
         done = subprocess.run([options.canyon, "compare", folder / f"{options.base}.toml", "--seed", str(seed), "--fidelities", ",".join(missing), "--no-2x2",
@@ -65,10 +67,10 @@ def outcomes(options, folder, remedies, seed):
             sys.exit(f"seed {seed}: {done.stderr[-1000:]}")
         for run in json.loads(done.stdout)["runs"]:
             seen = (run["failure"] or {}).get("seen")
-            found[run["fidelity"]] = {"outcome": run["outcome"], "seen_s": seen["in_scans_s"] if seen else None}
+            found[labels.get(run["fidelity"], run["fidelity"])] = {"outcome": run["outcome"], "seen_s": seen["in_scans_s"] if seen else None}
         kept.write_text(json.dumps(found))
         subprocess.run(["rm", "-rf", out], check=True)
-    return {name: found[name] for name in names}
+    return {name: found[labels.get(name, name)] for name in names}
 
 
 def wilson(successes, n, z=1.959963984540054):

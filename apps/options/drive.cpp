@@ -34,10 +34,14 @@ void print_json(const study::Results& results, const std::vector<study::Explanat
                 const std::string& directory, const std::string& hash) {
   nlohmann::ordered_json out = study::summary_json(results);
   // The contract's figures of cost stand beside the others, not under `timing`.
-  for (auto& run : out["runs"]) {
-    run["real_time_factor"] = run["timing"]["real_time_factor"];
-    run["cpu_s"] = run["timing"]["cpu_s"];
-  }
+  const auto show_cost = [](nlohmann::ordered_json& runs) {
+    for (auto& run : runs) {
+      run["real_time_factor"] = run["timing"]["real_time_factor"];
+      run["cpu_s"] = run["timing"]["cpu_s"];
+    }
+  };
+  show_cost(out["runs"]);
+  if (results.open_loop) show_cost(out["open_loop"]["runs"]);
   if (!explanations.empty()) out["why"] = study::why_json(explanations)["failures"];
   out["seed"] = out["mission"]["seed"];
   out["results_dir"] = directory;
@@ -48,9 +52,12 @@ void print_json(const study::Results& results, const std::vector<study::Explanat
 /// Each warning once, however many runs met it.
 void print_warnings(const study::Results& results) {
   std::set<std::string> told;
-  for (const auto& record : results.records)
-    for (const auto& warning : record.warnings)
+  const auto tell = [&told](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
       if (told.insert(warning).second) print_warning(warning);
+  };
+  for (const auto& record : results.records) tell(record.warnings);
+  if (results.open_loop) tell(results.open_loop->warnings);
 }
 
 }  // namespace
@@ -75,7 +82,8 @@ void declare_loop_options(Arguments& arguments, LoopOptions& options) {
 void declare_both_loops(Arguments& arguments, LoopOptions& options) {
   arguments.flag(
       "--both-loops", options.both,
-      "each run drives by itself, and all are on one true motion too, as with --open-loop: both side by side");
+      "each run drives by itself, and all but the mixed ones are on one true motion too, as with --open-loop: both "
+      "side by side");
 }
 
 Status check_loop_options(const LoopOptions& options) {
@@ -172,14 +180,20 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   const std::string directory = output_directory(options, comparison.configs.front());
   CANYON_TRY(auto staged, StagedDirectory::create(directory, options.force));
   if (loop.open_loop) CANYON_TRY_STATUS(study::choose_tape(loop.tape, comparison));
+  std::optional<study::Comparison> beside;
+  if (loop.both) {
+    CANYON_TRY(beside, study::open_loop_beside(comparison, loop.tape));
+  }
   CANYON_TRY_STATUS(follow_plan(leave_out, comparison));
   CANYON_TRY(auto results, study::compare(comparison, staged.staging_path(), !options.common.json));
   if (figures.seeds)
     CANYON_TRY_STATUS(
         study::add_further_seeds(comparison, *figures.seeds - 1, staged.staging_path(), !options.common.json, results));
-  if (loop.both) {
-    CANYON_TRY(results.open_loop, study::drive_open_loop(comparison, loop.tape, figures.seeds.value_or(1),
-                                                         staged.staging_path(), !options.common.json));
+  if (beside) {
+    CANYON_TRY(results.open_loop,
+               study::drive_open_loop(*beside, figures.seeds.value_or(1), staged.staging_path(), !options.common.json));
+    results.wall_s += results.open_loop->wall_s;
+    results.peak_memory_mb = study::peak_memory_mb();
   }
   std::vector<study::Explanation> explanations;
   if (why.why) {

@@ -66,6 +66,20 @@ std::string table(const Results& results) {
          "</tbody></table></div>\n";
 }
 
+/// By how much one run errs more than another, or less.
+std::string compared(const PairedErrors& pair, bool of_several_seeds) {
+  if (!std::isfinite(pair.difference_m)) return {};
+  const bool less = pair.difference_m < 0.0;
+  const double low_m = less ? -pair.high_m : pair.low_m, high_m = less ? -pair.low_m : pair.high_m;
+  std::string says = " Epoch by epoch " + escape_html(pair.b) + " errs by " +
+                     show_quantity(std::abs(pair.difference_m), "m") + (less ? " less than " : " more than ") +
+                     escape_html(pair.a) + " on it";
+  if (of_several_seeds) says += ", with the first seed";
+  if (std::isfinite(low_m + high_m))
+    says += " (95 % interval " + show_number(low_m) + " to " + show_quantity(high_m, "m") + ")";
+  return says + ".";
+}
+
 }  // namespace
 
 std::string loops_section(const Results& results) {
@@ -77,12 +91,7 @@ std::string loops_section(const Results& results) {
       escape_html(beside.loop.tape) + ", " + show_quantity(beside.duration_s, "s") +
       "): it shows what sensors and filter err on one way, and nothing of what that would lead to.";
   if (beside.over_seeds) says += " Medians over " + show_count(beside.over_seeds->count) + " seeds.";
-  for (const PairedErrors& pair : beside.loop.paired)
-    says += " Epoch by epoch " + escape_html(pair.b) + " errs by " + show_quantity(pair.difference_m, "m") +
-            " more than " + escape_html(pair.a) + " on it" +
-            (std::isfinite(pair.low_m + pair.high_m)
-                 ? " (95 % interval " + show_number(pair.low_m) + " to " + show_quantity(pair.high_m, "m") + ")."
-                 : ".");
+  for (const PairedErrors& pair : beside.loop.paired) says += compared(pair, beside.over_seeds.has_value());
   return section("loops", "Closed and open loop", says, table(results));
 }
 

@@ -269,6 +269,9 @@ Json summary_json(const Results& results) {
       out["runs"].push_back(run_json(summary));
       cpu_s += summary.cpu_s;
     }
+  if (results.open_loop)
+    for (const auto& runs : results.open_loop->by_seed)
+      for (const RunSummary& summary : runs) cpu_s += summary.cpu_s;
   out["figures"] = figure_descriptions();
   std::optional<OverSeeds> seeds;
   if (!results.further_seeds.empty()) {

@@ -22,6 +22,8 @@ struct OpenLoopRuns {
   double duration_s = 0.0;
   std::vector<std::vector<RunSummary>> by_seed;  ///< [seed][run], the mixed runs not among them
   std::vector<PairedErrors> paired;              ///< every run against the first, of the first seed
+  std::vector<std::string> warnings;             ///< of the first seed's runs
+  double wall_s = 0.0;
 };
 
 /// What a results directory is made from (docs/results.md).

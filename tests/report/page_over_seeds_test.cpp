@@ -101,6 +101,21 @@ TEST_F(PageOverSeeds, ClosedAndOpenLoopStandSideBySide) {
   EXPECT_THAT(loops, Not(HasSubstr("waypoints reached")));  // nobody drove
 }
 
+TEST_F(PageOverSeeds, ARunThatErrsLessInTheOpenLoopIsSaidToErrLess) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["open_loop"] = beside(json["runs"]);
+    auto& pair = json["open_loop"]["paired_epochs"][0];
+    pair["position_error_difference_m"] = -2.5, pair["low_m"] = -3.25, pair["high_m"] = -1.5;
+  });
+  EXPECT_THAT(section(page(), "loops"), HasSubstr("Epoch by epoch high errs by 2.50\xC2\xA0m less than low on it (95 % "
+                                                  "interval 1.50 to 3.25\xC2\xA0m)."));
+  edit_json(file("summary.json"), [](auto& json) {
+    for (const char* key : {"position_error_difference_m", "low_m", "high_m"})
+      json["open_loop"]["paired_epochs"][0][key] = nullptr;
+  });
+  EXPECT_THAT(section(page(), "loops"), Not(HasSubstr("Epoch by epoch")));
+}
+
 TEST_F(PageOverSeeds, BothLoopsOverSeedsAreMedians) {
   edit_json(file("summary.json"), [](auto& json) {
     study::write_over_seeds(study::over_seeds(ten_seeds(false)), json);
@@ -111,6 +126,7 @@ TEST_F(PageOverSeeds, BothLoopsOverSeedsAreMedians) {
   });
   const std::string loops = section(page(), "loops");
   EXPECT_THAT(loops, HasSubstr("Medians over 10 seeds."));
+  EXPECT_THAT(loops, HasSubstr("more than low on it, with the first seed (95 % interval"));
   EXPECT_THAT(loops, HasSubstr("10 of 10 succeed"));
   EXPECT_THAT(loops, HasSubstr("1 of 10 succeed"));
   EXPECT_THAT(loops, HasSubstr("position error, RMS</th><td>0.100</td><td>0.100</td><td>8.50</td><td>3.00</td>"));

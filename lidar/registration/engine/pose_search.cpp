@@ -19,7 +19,7 @@ constexpr double kSettled_rad = 2e-5;
 constexpr double kCoarse_m = 5e-3;
 constexpr double kCoarse_rad = 5e-4;
 // Matches that change to and fro keep a solution moving; the step that is left then counts as an error, up to half of
-// what a closed direction may have.
+// what a closed direction may have, nearly.
 constexpr double kNearly_m = 0.03;
 constexpr double kNearly_rad = 1.5e-3;
 constexpr double kUndamped = 1e-7;

@@ -40,11 +40,12 @@ void visit(FieldVisitor& f, GroundGridParameters& c) {
            "before its cabin");
 }
 
-constexpr int kEnough = 100;       // returns of a scan; fewer count as none
-constexpr double kRoom_m = 3.0;    // of the ground below and above the vehicle's plane within the grid
-constexpr int kMostEvidence = 20;  // scans
-constexpr int kBareScans = 4;      // of bare ground, one after the other, until a cell is free
-constexpr double kFoot_m = 0.25;   // a beam so near to the ground shows a thing's foot
+constexpr int kEnough = 100;         // returns of a scan; fewer count as none
+constexpr double kFarthest_m = 1e7;  // an estimate beyond it has no cell: their numbers are of 32 bits
+constexpr double kRoom_m = 3.0;      // of the ground below and above the vehicle's plane within the grid
+constexpr int kMostEvidence = 20;    // scans
+constexpr int kBareScans = 4;        // of bare ground, one after the other, until a cell is free
+constexpr double kFoot_m = 0.25;     // a beam so near to the ground shows a thing's foot
 // The lowest beam surely meets only what stands so much above where it passes by the vehicle's own plane. ASSUMPTION:
 // 0.2 m, by which a street tilted by 4 degrees against that plane differs from it 3 m off; it does not grow with the
 // distance, since farther off the ground itself is seen.
@@ -71,6 +72,7 @@ class GroundGrid final : public Perception {
 
   bool see(const LidarScan& scan, const Pose& X_OL, const Pose& X_OB, double t_s) override {
     if (static_cast<int>(scan.points.size()) < kEnough) return false;
+    if (!(X_OB.p.head<2>().cwiseAbs().maxCoeff() < kFarthest_m)) return false;
     ++scan_;
     t_s_ = t_s;
     gather(scan, X_OL, X_OB);
