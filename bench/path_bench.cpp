@@ -160,13 +160,15 @@ std::vector<Eigen::Vector3d> shibuya_way(const canyon::scene::Scene& scene) {
 /// As a receiver of 28 dB-Hz meets it on the way, every 2.5 m (5 m/s, 2 Hz): what a drive remembers from epoch to epoch
 /// counts. Second order, with what else is named.
 void drive(benchmark::State& state, const canyon::scene::Scene& scene, const std::vector<Eigen::Vector3d>& points,
-           const std::vector<Eigen::Vector3d>& sky, const char* diffraction, const char* scatter, const char* clutter) {
+           const std::vector<Eigen::Vector3d>& sky, const char* diffraction, const char* scatter, const char* clutter,
+           bool borders = false) {
   const canyon::scene::SceneAt at(scene);
   canyon::gnss::PropagationConfig config;
   config.paths.name = "specular2";
   config.diffraction.name = diffraction;
   config.scatter.name = scatter;
   config.clutter.name = clutter;
+  config.reflection_borders = borders;
   canyon::gnss::PathParameters p;
   p.weakest_nlos_db = -17.0;
   const auto tracer = *make_propagation(config, p);
@@ -189,9 +191,10 @@ void drive(benchmark::State& state, const canyon::scene::Scene& scene, const std
   state.counters["echoes"] = echoes / epochs;
 }
 
-void channel(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter) {
+void channel(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter,
+             bool borders = false) {
   const canyon::scene::Scene& scene = city(extent_of(state));
-  drive(state, scene, way_of(street_points(scene)), satellites(), diffraction, scatter, clutter);
+  drive(state, scene, way_of(street_points(scene)), satellites(), diffraction, scatter, clutter, borders);
 }
 
 /// 45 satellites: as many as five systems show at once in the open.
@@ -233,8 +236,12 @@ BENCHMARK_CAPTURE(model, all, "specular1", "double_knife_edge", true)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(channel, mirrors, "none", "none", "none")->Name("channel/mirrors")->Arg(1000);
 BENCHMARK_CAPTURE(channel, wedge, "wedge", "none", "none")->Name("channel/wedge")->Arg(1000);
+BENCHMARK_CAPTURE(channel, borders, "wedge", "none", "none", true)->Name("channel/wedge+borders")->Arg(1000);
 BENCHMARK_CAPTURE(channel, scatter, "wedge", "directive", "none")->Name("channel/wedge+directive")->Arg(1000);
 BENCHMARK_CAPTURE(channel, street, "wedge", "directive", "street")->Name("channel/wedge+directive+street")->Arg(1000);
+BENCHMARK_CAPTURE(channel, street_borders, "wedge", "directive", "street", true)
+    ->Name("channel/wedge+directive+street+borders")
+    ->Arg(1000);
 BENCHMARK_CAPTURE(channel, scatter_wide, "wedge", "directive", "none")->Name("channel/wedge+directive")->Arg(5200);
 BENCHMARK(bare_rays_in_shibuya)->Name("shibuya/bare_rays")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(channel_in_shibuya, scatter, "wedge", "directive", "none")->Name("shibuya/wedge+directive");

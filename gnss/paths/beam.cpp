@@ -4,8 +4,12 @@
 
 namespace canyon::gnss {
 
-Beam::Beam(const Eigen::Vector3d& apex, const scene::Facet& facet) : apex_W(apex) {
-  const auto& c = facet.rectangle_W;
+Beam::Beam(const Eigen::Vector3d& apex, const scene::Facet& facet, double wider_m) : apex_W(apex) {
+  auto c = facet.rectangle_W;
+  if (wider_m > 0.0) {
+    const Eigen::Vector3d u = wider_m * (c[1] - c[0]).normalized(), v = wider_m * (c[3] - c[0]).normalized();
+    c[0] -= u + v, c[1] += u - v, c[2] += u + v, c[3] += v - u;
+  }
   const Eigen::Vector3d middle_W = 0.25 * (c[0] + c[1] + c[2] + c[3]) - apex;
   for (std::size_t k = 0; k < 4; ++k) {
     const Eigen::Vector3d n = (c[k] - apex).cross(c[(k + 1) % 4] - apex);

@@ -8,12 +8,12 @@
 
 namespace canyon::gnss {
 
-/// The pyramid from an apex through a facet's bounding rectangle.
+/// The pyramid from an apex through a facet's bounding rectangle, its sides so much farther out.
 struct Beam {
   Eigen::Vector3d apex_W;
   std::array<Eigen::Vector3d, 4> inward_W;  ///< unit normals of its sides; all zero if the apex lies in the plane
 
-  Beam(const Eigen::Vector3d& apex_W, const scene::Facet& facet);
+  Beam(const Eigen::Vector3d& apex_W, const scene::Facet& facet, double wider_m = 0.0);
 
   /// False only if the whole ball lies outside of one side.
   bool may_meet(const Eigen::Vector3d& center_W, double radius_m) const {

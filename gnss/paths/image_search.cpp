@@ -7,6 +7,8 @@
 
 #include "canyon/gnss/paths/beam.h"
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/gnss/paths/diffraction/mirror_borders.h"
 #include "canyon/gnss/paths/rows/facet_rows.h"
 #include "canyon/gnss/paths/rows/near_waves.h"
 #include "canyon/gnss/paths/skyline.h"
@@ -26,7 +28,8 @@ struct Workspace {
   std::vector<AxisAndWave> pairs;
   FacetRows rows;
   std::vector<std::uint32_t> first, near;
-  std::vector<std::uint32_t> last;  ///< facets at the end of sequences that are looked at together
+  std::vector<std::uint32_t> alone, sorted;  ///< facets that mirror beside their borders, by themselves
+  std::vector<std::uint32_t> last;           ///< facets at the end of sequences that are looked at together
   std::array<std::vector<std::uint32_t>, SignalPath::kMaxReflections> met;
 };
 
@@ -34,8 +37,9 @@ struct Workspace {
 /// antenna mirrored at f1 ... fk; the way over them to satellite s is the straight line from image k towards s, folded.
 class ImageSearch {
  public:
-  ImageSearch(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
-              const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters, Workspace& work)
+  ImageSearch(int order, const PathParameters& p, double largest_nu, const Eigen::Vector3d& p_A_W,
+              const PlaneWaves& waves, const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters,
+              Workspace& work)
       : order_(order),
         p_(p),
         antenna_W_(p_A_W),
@@ -48,14 +52,20 @@ class ImageSearch {
         weakest_(std::pow(10.0, p.weakest_db / 20.0)),
         weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)),
         reach_per_area_(p.finite_facets ? 1.0 / (waves.shortest_wavelength_m() * std::min(weakest_, weakest_nlos_))
-                                        : std::numeric_limits<double>::infinity()) {}
+                                        : std::numeric_limits<double>::infinity()),
+        bend_m_(largest_detour_m(largest_nu, waves.longest_wavelength_m())) {}
 
   void run() {
+    work_.alone.clear();
     work_.waves.fill(waves_.directions_W());
     choose_facets();
     for (const std::uint32_t id : work_.first) {
       sequence_[0] = id;
-      extend(1, antenna_W_);
+      extend(1, antenna_W_, order_);
+    }
+    for (const std::uint32_t id : work_.alone) {
+      sequence_[0] = id;
+      extend(1, antenna_W_, 1);
     }
   }
 
@@ -69,19 +79,35 @@ class ImageSearch {
     } else {
       double lowest = 1.0;
       for (const Eigen::Vector3d& s : waves_.directions_W()) lowest = std::min(lowest, s.z());
-      index.mirrors(antenna_W_, std::asin(std::clamp(lowest, 0.0, 1.0)), reach_per_area_, p_.leaning_reach_m, ids);
-      if (order_ > 1) add_near(index, ids);
+      lowest = std::asin(std::clamp(lowest, 0.0, 1.0));
+      index.mirrors(antenna_W_, lowest, reach_per_area_, p_.leaning_reach_m, ids);
+      if (order_ > 1 || bend_m_ > 0.0) add_near(index, ids);
+      if (bend_m_ > 0.0) add_alone(index, lowest);
     }
-    std::erase_if(ids, [&](std::uint32_t i) { return scene_.scene().materials()[facets_[i].material].rf_absorbing; });
+    const auto absorbs = [&](std::uint32_t i) { return scene_.scene().materials()[facets_[i].material].rf_absorbing; };
+    std::erase_if(ids, absorbs);
     if (order_ > 1) work_.rows.fill(facets_);
 
     std::vector<std::uint32_t>& first = work_.first;
+    std::vector<std::uint32_t>& alone = work_.alone;
+    std::erase_if(alone, [&](std::uint32_t i) { return absorbs(i) || !in_reach(facets_[i], antenna_W_); });
     first.clear();
     for (const std::uint32_t i : ids)
       if (in_reach(facets_[i], antenna_W_)) first.push_back(i);
     if (p_.exhaustive) return;
     const Skyline skyline(antenna_W_, facets_, ids);
-    std::erase_if(first, [&](std::uint32_t i) { return skyline.hides(facets_[i]); });
+    for (std::vector<std::uint32_t>* of : {&first, &alone})
+      std::erase_if(*of, [&](std::uint32_t i) { return skyline.hides(facets_[i]); });
+  }
+
+  /// Walls lower than the lowest satellite, which so far away mirror it beside their borders.
+  void add_alone(const scene::FacetIndex& index, double lowest_rad) {
+    const double bend_rad = std::sqrt(2.0 * bend_m_ / p_.combine_all_m);
+    index.mirrors(antenna_W_, std::max(lowest_rad - bend_rad, 0.0), reach_per_area_, p_.leaning_reach_m, work_.alone);
+    work_.sorted = work_.rows.ids;
+    std::sort(work_.sorted.begin(), work_.sorted.end());
+    std::erase_if(work_.alone,
+                  [&](std::uint32_t i) { return std::binary_search(work_.sorted.begin(), work_.sorted.end(), i); });
   }
 
   void add_near(const scene::FacetIndex& index, std::vector<std::uint32_t>& ids) {
@@ -105,27 +131,27 @@ class ImageSearch {
     return distance_m * distance_m <= reach_per_area_ * f.area_m2 * to_plane_m;
   }
 
-  /// The sequence has `count` facets; `before_W` is the image before the last.
-  void extend(int count, const Eigen::Vector3d& before_W) {
+  /// The sequence has `count` facets, and may have `most`; `before_W` is the image before the last.
+  void extend(int count, const Eigen::Vector3d& before_W, int most) {
     const auto k = static_cast<std::size_t>(count);
     const scene::Facet& last = facets_[sequence_[k - 1]];
     const Eigen::Vector3d image_W = mirrored(last, before_W);
     images_W_[k - 1] = image_W;
     work_.last.assign(1, sequence_[k - 1]);
     satellites(count, before_W);
-    if (count == order_) return;
+    if (count == most) return;
 
     std::vector<std::uint32_t>& met = work_.met[k];
-    work_.rows.meet(last, Beam(image_W, last), met);
+    work_.rows.meet(last, Beam(image_W, last, beside_m(last, image_W)), met);
     std::erase_if(met, [&](std::uint32_t id) { return id == sequence_[k - 1] || !in_reach(facets_[id], image_W); });
-    if (count + 1 == order_) {
+    if (count + 1 == most) {
       work_.last = met;
-      satellites(order_, image_W);
+      satellites(most, image_W);
       return;
     }
     for (const std::uint32_t id : met) {
       sequence_[k] = id;
-      extend(count + 1, image_W);
+      extend(count + 1, image_W, most);
     }
   }
 
@@ -166,12 +192,17 @@ class ImageSearch {
     Eigen::Vector3d axis_W = Eigen::Vector3d::Zero();
     double least = 0.0;
   };
-  static Cone cone_of(const scene::Facet& f, const Eigen::Vector3d& image_W) {
+  Cone cone_of(const scene::Facet& f, const Eigen::Vector3d& image_W) const {
     const Eigen::Vector3d to_center_W = f.center_W - image_W;
-    const double distance_m = to_center_W.norm();
-    if (distance_m <= f.radius_m) return {};
-    const double sine = f.radius_m / distance_m;
+    const double distance_m = to_center_W.norm(), radius_m = f.radius_m + beside_m(f, image_W);
+    if (distance_m <= radius_m) return {};
+    const double sine = radius_m / distance_m;
     return {to_center_W / distance_m, std::sqrt(1.0 - sine * sine) - 1e-5};
+  }
+
+  /// How far from a facet, across the way, a wave may pass that its borders still send on.
+  double beside_m(const scene::Facet& f, const Eigen::Vector3d& image_W) const {
+    return bend_m_ > 0.0 ? std::sqrt(2.0 * bend_m_ * ((f.center_W - image_W).norm() + f.radius_m)) : 0.0;
   }
 
   void try_satellite(int count, std::size_t satellite) {
@@ -181,11 +212,19 @@ class ImageSearch {
     const bool visible = out_[satellite].line_of_sight;
     if (visible && excess_m > p_.cutoff_m) return;
     std::array<Eigen::Vector3d, SignalPath::kMaxReflections> points_W;
-    if (!fold(k, s, points_W)) return;
+    std::array<bool, SignalPath::kMaxReflections> held;
+    if (!fold(k, s, points_W, held)) return;
     SignalPath path = field(k, satellite, points_W);
-    const double amplitude2 = std::norm(path.copolar) + std::norm(path.crosspolar);
     const double least = visible ? weakest_ : weakest_nlos_;
-    if (!(amplitude2 > 0.0) || amplitude2 < least * least) return;
+    const auto too_weak = [&](double most) {
+      const double amplitude2 = most * most * (std::norm(path.copolar) + std::norm(path.crosspolar));
+      return !(amplitude2 > 0.0) || amplitude2 < least * least;
+    };
+    if (too_weak(p_.reflection_borders ? std::pow(kMostMirrored, k) : 1.0)) return;
+    if (p_.reflection_borders) {
+      end_at_borders(k, satellite, least, held, points_W, path);
+      if (too_weak(1.0)) return;
+    }
     path.excess_m = excess_m;
     if (!clear_way(k, s, points_W, path)) return;
     path.arrival_W = (points_W[0] - antenna_W_).normalized();
@@ -195,10 +234,10 @@ class ImageSearch {
     ++counters_.reflected_paths;
   }
 
-  /// The reflection points, from the satellite's end back to the antenna. False if one lies outside of its facet, or a
-  /// facet would be met from behind.
-  bool fold(std::size_t k, const Eigen::Vector3d& s,
-            std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W) const {
+  /// The reflection points, from the satellite's end back to the antenna, and does the facet hold each. False if one
+  /// lies outside of its facet, or too far outside where borders send on, or a facet would be met from behind.
+  bool fold(std::size_t k, const Eigen::Vector3d& s, std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W,
+            std::array<bool, SignalPath::kMaxReflections>& held) const {
     Eigen::Vector3d towards_W = s;  // direction of travel away from the antenna, after the reflection at hand
     for (std::size_t j = k; j-- > 0;) {
       const scene::Facet& f = facets_[sequence_[j]];
@@ -208,7 +247,9 @@ class ImageSearch {
       const double way_m = (f.offset_m - f.normal_W.dot(from_W)) / cos_incidence;
       if (way_m <= 0.0) return false;
       points_W[j] = from_W + way_m * towards_W;
-      if ((points_W[j] - f.center_W).squaredNorm() > f.radius_m * f.radius_m * (1.0 + 1e-12)) return false;
+      // Across the way it lies at least cos_incidence times as far outside as in the plane.
+      const double reach_m = f.radius_m + beside_m(f, from_W) / cos_incidence;
+      if ((points_W[j] - f.center_W).squaredNorm() > reach_m * reach_m * (1.0 + 1e-12)) return false;
       if (j + 1 < k && f.normal_W.dot(points_W[j + 1]) <= f.offset_m) return false;
       if (j + 1 < k) {
         const scene::Facet& after = facets_[sequence_[j + 1]];
@@ -216,9 +257,33 @@ class ImageSearch {
       }
       towards_W -= 2.0 * cos_incidence * f.normal_W;
     }
-    for (std::size_t j = 0; j < k; ++j)
-      if (!scene::facet_contains(facets_[sequence_[j]], scene_.scene(), points_W[j])) return false;
+    for (std::size_t j = 0; j < k; ++j) {
+      held[j] = scene::facet_contains(facets_[sequence_[j]], scene_.scene(), points_W[j]);
+      if (!held[j] && !p_.reflection_borders) return false;
+    }
     return true;
+  }
+
+  /// What the facets' sizes leave of the field, which fades out over 3.5 dB above the weakest that is followed. A point
+  /// that a facet does not hold moves onto its border.
+  void end_at_borders(std::size_t k, std::size_t satellite, double least,
+                      const std::array<bool, SignalPath::kMaxReflections>& held,
+                      std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) const {
+    Eigen::Vector3d towards_W = waves_.direction_W(satellite);
+    const double full = std::sqrt(std::norm(path.copolar) + std::norm(path.crosspolar));
+    std::complex<double> share = 1.0;
+    for (std::size_t j = k; j-- > 0;) {
+      const scene::Facet& f = facets_[sequence_[j]];
+      const double enough = least / (full * std::pow(kMostMirrored, k - 1));
+      share *=
+          mirrored_share(f, held[j], {images_W_[j], towards_W, points_W[j], waves_.wavelength_m(satellite)}, enough);
+      if (share == 0.0) break;
+      if (!held[j]) points_W[j] = nearest_of_border(f, points_W[j]);
+      towards_W -= 2.0 * towards_W.dot(f.normal_W) * f.normal_W;
+    }
+    share *= std::clamp(2.0 * (std::abs(share) * full / least - 1.0), 0.0, 1.0);
+    path.copolar *= share;
+    path.crosspolar *= share;
   }
 
   SignalPath field(std::size_t k, std::size_t satellite,
@@ -232,7 +297,7 @@ class ImageSearch {
       Bounce& b = bounces[k - 1 - j];
       b = bounce_off(material, incoming_W, f.normal_W, p_.roughness_m, waves_.carrier_hz(satellite));
       b.factor *= mirror_factor(f.normal_W, p_.scattered_share.of(material));
-      if (p_.finite_facets) {
+      if (p_.finite_facets && !p_.reflection_borders) {
         const double cos_incidence = std::clamp(-incoming_W.dot(f.normal_W), 0.0, 1.0);
         const double distance_m = (points_W[j] - images_W_[j]).norm();
         b.factor *= finite_facet_factor(f.area_m2, cos_incidence, wavelength_m, distance_m);
@@ -283,6 +348,7 @@ class ImageSearch {
   std::span<SignalPaths> out_;
   GnssCounters& counters_;
   double weakest_, weakest_nlos_, reach_per_area_;
+  double bend_m_;  ///< longest detour over a border that sends on; 0 if none does
 
   std::array<std::uint32_t, SignalPath::kMaxReflections> sequence_;
   std::array<Eigen::Vector3d, SignalPath::kMaxReflections> images_W_;
@@ -290,11 +356,12 @@ class ImageSearch {
 
 }  // namespace
 
-void find_images(int order, const PathParameters& p, const Eigen::Vector3d& p_A_W, const PlaneWaves& waves,
-                 const scene::SceneAt& scene, std::span<SignalPaths> out, GnssCounters& counters) {
+void find_images(int order, const PathParameters& p, double largest_nu, const Eigen::Vector3d& p_A_W,
+                 const PlaneWaves& waves, const scene::SceneAt& scene, std::span<SignalPaths> out,
+                 GnssCounters& counters) {
   if (waves.empty()) return;
   thread_local Workspace work;
-  ImageSearch(order, p, p_A_W, waves, scene, out, counters, work).run();
+  ImageSearch(order, p, largest_nu, p_A_W, waves, scene, out, counters, work).run();
 }
 
 }  // namespace canyon::gnss

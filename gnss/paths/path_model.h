@@ -94,6 +94,9 @@ struct PathParameters {
   /// A facet smaller than its first Fresnel zone reflects less than an infinite one (finite_facet_factor). Off: every
   /// facet reflects like an infinite one.
   bool finite_facets = true;
+  /// A facet mirrors what Kirchhoff's integral over it gives (mirrored_share), beside its borders too, in place of that
+  /// factor and a sharp border. Of the image search alone.
+  bool reflection_borders = false;
   /// Ways with several reflections: within this distance of the antenna all facets are combined; beyond it, only those
   /// that FacetIndex::mirrors gives, which leaves out walls too low to be met by any way over vertical mirrors alone.
   double combine_all_m = 30.0;

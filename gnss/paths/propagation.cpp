@@ -48,12 +48,20 @@ void visit(FieldVisitor& f, PropagationConfig& c) {
   visit_choice(f, "scatter", c.scatter, "what walls send elsewhere than a mirror");
   visit_choice(f, "clutter", c.clutter, "what the street has and the scene lacks: poles, trees, vehicles, crowds");
   f.flag("ground_reflection", c.ground_reflection, "the terrain around the antenna reflects");
+  f.flag("reflection_borders", c.reflection_borders,
+         "specular1 to specular3: a mirror fades out beside its borders, as Kirchhoff's integral over it; else it ends "
+         "there");
   f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
            "standard deviation of the reflecting surfaces' height");
 }
 
+bool mirrors_fade(const PropagationConfig& c) {
+  return c.reflection_borders && c.paths.name.starts_with("specular");
+}
+
 Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits) {
   limits.roughness_m = config.surface_roughness_m;
+  limits.reflection_borders = mirrors_fade(config);
   CANYON_TRY(auto scatter, config.scatter.make("gnss.scatter", limits));
   limits.scattered_share = scatter->scattered_share();
   if (!limits.scattered_share.scatters) scatter = nullptr;

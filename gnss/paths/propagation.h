@@ -17,9 +17,13 @@ struct PropagationConfig {
   ModelChoice<scatter_models> scatter{"none"};
   ModelChoice<clutter_models> clutter{"none"};
   bool ground_reflection = false;
+  bool reflection_borders = false;
   double surface_roughness_m = 0.0;  ///< standard deviation of the reflecting surfaces' height
 };
 void visit(FieldVisitor& f, PropagationConfig& c);
+
+/// Do mirrors end by and by (PathParameters::reflection_borders)? Only those of the image search.
+bool mirrors_fade(const PropagationConfig& c);
 
 /// All of it. `limits`: what the receiver can notice; the roughness is the configuration's.
 Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits);

@@ -104,6 +104,7 @@ PathParameters path_limits(const GnssConfig& config) {
   PathParameters p;
   p.weakest_nlos_db = config.locks.tracking_threshold_dbhz - config.link.cn0_zenith_dbhz;
   p.weakest_db = std::min(p.weakest_db, p.weakest_nlos_db);
+  p.reflection_borders = mirrors_fade(config.propagation);
   return p;
 }
 

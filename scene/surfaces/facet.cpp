@@ -68,8 +68,11 @@ class Patch {
     for (const std::uint32_t seed : seeds) {
       if (taken[seed]) continue;
       throw_if_cancelled();
-      Facet facet = describe(grow(seed, taken));
-      if (facet.area_m2 >= min_area_m2) found.push_back(std::move(facet));
+      const std::vector<std::uint32_t> grown = grow(seed, taken);
+      Facet facet = describe(grown);
+      if (facet.area_m2 < min_area_m2) continue;
+      facet.borders = borders(grown, facet.normal_W);
+      found.push_back(std::move(facet));
     }
     std::sort(found.begin(), found.end(),
               [](const Facet& a, const Facet& b) { return a.triangles[0] < b.triangles[0]; });
@@ -82,6 +85,7 @@ class Patch {
     return a < b ? (a << 32) | b : (b << 32) | a;
   }
 
+  /// Indices of members, ascending.
   std::vector<std::uint32_t> grow(std::uint32_t seed, std::vector<bool>& taken) const {
     const Triangle first = Triangle::of(mesh_, members_[seed]);
     const Eigen::Vector3d normal = first.area_normal().normalized();
@@ -102,12 +106,34 @@ class Patch {
         grown.push_back(j);
       }
     }
-    for (std::uint32_t& i : grown) i = members_[i];
     std::sort(grown.begin(), grown.end());
     return grown;
   }
 
-  Facet describe(std::vector<std::uint32_t> triangles) const {
+  /// Sides of the triangles that they have once, in their order.
+  std::vector<FacetBorder> borders(const std::vector<std::uint32_t>& grown, const Eigen::Vector3d& normal_W) const {
+    std::unordered_map<std::uint64_t, int> times;
+    for (const std::uint32_t i : grown)
+      for (int k = 0; k < 3; ++k) ++times[edge(i, k)];
+    std::vector<FacetBorder> out;
+    for (const std::uint32_t i : grown) {
+      const Triangle t = Triangle::of(mesh_, members_[i]);
+      const std::array<Eigen::Vector3d, 3> corners{t.a, t.b, t.c};
+      const bool turns_left = t.area_normal().dot(normal_W) > 0.0;
+      for (int k = 0; k < 3; ++k) {
+        if (times[edge(i, k)] != 1) continue;
+        const Eigen::Vector3d &a = corners[static_cast<std::size_t>(k)],
+                              &b = corners[static_cast<std::size_t>((k + 1) % 3)];
+        out.push_back(turns_left ? FacetBorder{a, b} : FacetBorder{b, a});
+      }
+    }
+    return out;
+  }
+
+  Facet describe(const std::vector<std::uint32_t>& grown) const {
+    std::vector<std::uint32_t> triangles(grown.size());
+    std::transform(grown.begin(), grown.end(), triangles.begin(), [&](std::uint32_t i) { return members_[i]; });
+    std::sort(triangles.begin(), triangles.end());
     Facet facet;
     facet.material = mesh_.material[triangles[0]];
     facet.object = mesh_.object[triangles[0]];

@@ -9,6 +9,11 @@
 
 namespace canyon::scene {
 
+/// A straight piece of a facet's border; seen from outside the facet lies to its left.
+struct FacetBorder {
+  Eigen::Vector3d from_W, to_W;
+};
+
 /// A planar polygon (possibly with several triangles, possibly not convex) that reflects as one mirror.
 struct Facet {
   Eigen::Vector3d normal_W;  ///< unit, outward
@@ -25,6 +30,7 @@ struct Facet {
   std::array<Eigen::Vector3d, 4> rectangle_W;
   bool fills_rectangle = false;
   std::vector<std::uint32_t> triangles;  ///< indices into the mesh
+  std::vector<FacetBorder> borders;      ///< where triangles end that no other one of the facet continues
 };
 
 /// Planar facets of a scene and a spatial index over them.

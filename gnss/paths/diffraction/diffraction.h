@@ -39,7 +39,8 @@ std::unique_ptr<DiffractionModel> make_double_knife_edge(const PathParameters& p
 /// length (finite_edge_factor), both circular polarizations. All edges near a visible satellite's way add echoes too,
 /// that on the lit side take from the direct field; fields fade out over 3.5 dB above the weakest. The faces reflect as
 /// for the grazing angle of half the bend, which is the mirror's own at the border of its reflection and the same both
-/// ways. One edge only, of shadows: what edges make of reflections is finite_facet_factor.
+/// ways. One edge only, of shadows. With PathParameters::reflection_borders the terms of faces that mirror are left
+/// out: those borders are the image search's (mirror_borders.h).
 std::unique_ptr<DiffractionModel> make_wedge(const PathParameters& p);
 
 }  // namespace canyon::gnss

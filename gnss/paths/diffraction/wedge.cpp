@@ -1,5 +1,6 @@
 #include "canyon/gnss/paths/diffraction/wedge.h"
 
+#include <array>
 #include <cmath>
 
 #include "canyon/core/units.h"
@@ -30,9 +31,11 @@ Wave edge_integral(double nu, double u, const Wave& half) {
   const auto height = [nu](double v) { return nu / (v * v + nu * nu); };
   constexpr double kFar = 3.0;
   // Beyond, by parts from the end: two terms leave 1 / (pi u^2)^2 of what is left.
-  if (u > kFar)
-    return half - turn(u) * height(u) / Wave(0.0, kPi * u) *
-                      (1.0 - (1.0 / (u * u) + 2.0 / (u * u + nu * nu)) / Wave(0.0, kPi));
+  if (u > kFar) {
+    const Wave end = turn(u) * height(u);
+    const double next = (1.0 / (u * u) + 2.0 / (u * u + nu * nu)) / kPi;
+    return half - Wave(end.imag() / (kPi * u), -end.real() / (kPi * u)) * Wave(1.0, next);
+  }
   // The peak at nu << 1 in closed form, the rest, which is smooth, by Simpson's rule.
   const int steps = 2 * static_cast<int>(std::ceil(5.0 * u + 1.0));
   const double step = u / steps;
@@ -42,6 +45,24 @@ Wave edge_integral(double nu, double u, const Wave& half) {
     sum += weight * (turn(v) - 1.0) * height(v);
   }
   return sum * step / 3.0 + std::atan2(u, nu);
+}
+
+/// knife_edge_field without its turn by -pi nu^2 / 2, which is smooth, between places where it is known.
+Wave knife_edge_envelope(double nu) {
+  constexpr double kStep = 0.02, kLast = 10.0;
+  static const auto known = [] {
+    std::array<Wave, static_cast<std::size_t>(kLast / kStep) + 2> at;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const double x = kStep * static_cast<double>(i);
+      at[i] = knife_edge_field(x) * std::polar(1.0, 0.5 * kPi * x * x);
+    }
+    return at;
+  }();
+  // Of the asymptotic series (DLMF 7.12.2 and 7.12.3) the first terms leave 3e-5 of it.
+  if (nu >= kLast) return 0.5 * Wave(1.0, 1.0) * Wave(1.0 / (kPi * kPi * nu * nu * nu), -1.0 / (kPi * nu));
+  const double place = nu / kStep;
+  const auto i = static_cast<std::size_t>(place);
+  return known[i] + (place - static_cast<double>(i)) * (known[i + 1] - known[i]);
 }
 
 }  // namespace
@@ -65,6 +86,16 @@ WedgeBorders::WedgeBorders(const WedgeWay& w) : root_distance_(std::sqrt(w.dista
 
 Wave WedgeBorders::field(const Wave& face_0, const Wave& face_n) const {
   return scale_ * (shadow_ + (face_0 * mirror_0_ + face_n * mirror_n_)) / root_distance_;
+}
+
+Wave finite_edge_field(double nu, double u1, double u2) {
+  if (nu < 1e-6) return 0.5 * finite_edge_factor(nu, u1, u2);
+  const Wave half = kPi * knife_edge_envelope(nu) * std::polar(1.0, -0.5 * kPi * nu * nu);
+  const auto to = [&](double u) {
+    const Wave part = edge_integral(nu, std::abs(u), half);
+    return u < 0.0 ? -part : part;
+  };
+  return (to(u2) - to(u1)) / (2.0 * kPi);
 }
 
 Wave finite_edge_factor(double nu, double u1, double u2) {

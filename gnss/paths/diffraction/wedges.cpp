@@ -91,7 +91,8 @@ class Wedges final : public DiffractionModel {
   explicit Wedges(const PathParameters& p)
       : weakest_(std::pow(10.0, p.weakest_db / 20.0)),
         weakest_nlos_(std::pow(10.0, p.weakest_nlos_db / 20.0)),
-        largest_nu_(largest_knife_edge_nu(std::min(p.weakest_db, p.weakest_nlos_db) - kOverScreen_db)) {}
+        largest_nu_(largest_knife_edge_nu(std::min(p.weakest_db, p.weakest_nlos_db) - kOverScreen_db)),
+        reflection_borders_(p.reflection_borders) {}
 
   void trace(const Eigen::Vector3d& p_A_W, const PlaneWaves& waves, const scene::SceneAt& scene,
              std::span<SignalPaths> out, GnssCounters& counters) const override {
@@ -171,15 +172,20 @@ class Wedges final : public DiffractionModel {
     return way;
   }
 
-  static SignalPath field(const scene::Edge& edge, const WedgeMeeting& m, const WedgeWay& way,
-                          const Eigen::Vector3d& p_W, const Eigen::Vector3d& s, double carrier_hz,
-                          const scene::SceneAt& scene) {
+  SignalPath field(const scene::Edge& edge, const WedgeMeeting& m, const WedgeWay& way, const Eigen::Vector3d& p_W,
+                   const Eigen::Vector3d& s, double carrier_hz, const scene::SceneAt& scene) const {
     const auto& materials = scene.scene().materials();
     const Eigen::Vector3d from_W = edge.a_W + m.at_m * m.along_W;
     const double cosine = -s.dot(p_W - from_W) / m.distance_m;
     const double grazing_rad = 0.5 * std::acos(std::clamp(cosine, -1.0, 1.0));
-    const Fresnel one = mirror_of(materials[edge.material_1], grazing_rad, carrier_hz);
-    const Fresnel two = mirror_of(materials[edge.material_2], grazing_rad, carrier_hz);
+    Fresnel one = mirror_of(materials[edge.material_1], grazing_rad, carrier_hz);
+    Fresnel two = mirror_of(materials[edge.material_2], grazing_rad, carrier_hz);
+    // The borders of what such a face mirrors are the image search's.
+    const auto mirrors = [&](const Eigen::Vector3d& normal_W) {
+      return reflection_borders_ && normal_W.dot(s) > 0.0 && normal_W.dot(p_W - from_W) > 0.0;
+    };
+    if (mirrors(edge.normal_1_W)) one = {};
+    if (mirrors(edge.normal_2_W)) two = {};
     const WedgeBorders borders(way);
     const std::complex<double> soft = borders.field(one.te, two.te), hard = borders.field(one.tm, two.tm);
     SignalPath path;
@@ -201,6 +207,7 @@ class Wedges final : public DiffractionModel {
   }
 
   double weakest_, weakest_nlos_, largest_nu_;
+  bool reflection_borders_;
 };
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "canyon/core/units.h"
 #include "canyon/gnss/paths/bounce.h"
+#include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/gnss/paths/diffraction/mirror_borders.h"
 #include "canyon/gnss/paths/need/path_question.h"
 #include "canyon/gnss/paths/need/reflection_bound.h"
 
@@ -15,6 +17,7 @@ namespace canyon::gnss {
 namespace {
 
 constexpr double kShortestWave_m = 0.18;  // of L1 and G1, the highest carriers that are received, 0.187 m
+constexpr double kLongestWave_m = 0.26;   // of L5, the lowest, 0.255 m
 constexpr std::int64_t kMostTried = 2'000'000;
 constexpr double kRounding = 1e-6;
 
@@ -29,6 +32,9 @@ class Search {
     weakest_ = std::pow(10.0, std::min(q.limits.weakest_db, q.limits.weakest_nlos_db) / 20.0);
     reach_per_area_ =
         q.limits.finite_facets ? 1.0 / (kShortestWave_m * weakest_) : std::numeric_limits<double>::infinity();
+    if (q.limits.reflection_borders)
+      bend_m_ =
+          largest_detour_m(largest_border_nu(std::min(q.limits.weakest_db, q.limits.weakest_nlos_db)), kLongestWave_m);
     for (const scene::Material& material : q.scene.materials()) reflect_.emplace_back(material, q.limits.roughness_m);
   }
 
@@ -79,7 +85,7 @@ class Search {
   }
 
   bool satellite(const Ball& image, const scene::Facet& f) {
-    const Ball around{f.center_W, f.radius_m};
+    const Ball around{f.center_W, f.radius_m + beside_m(f, image)};
     for (auto seen = q_.sky.through(image, around); seen; seen = q_.sky.through(image, around, *seen + 1)) {
       const double left = left_of(q_.sky.directions[*seen].s_W);
       strongest_ = std::max(strongest_, left);
@@ -104,7 +110,11 @@ class Search {
       if (q_.limits.finite_facets) {
         const Ball& image = images_[static_cast<std::size_t>(k)];
         const double near_m = (f.center_W - image.center_W).norm() - f.radius_m - image.radius_m;
-        if (near_m > 0.0) left *= finite_facet_factor(f.area_m2, most, kShortestWave_m, near_m);
+        const double mirrored = q_.limits.reflection_borders ? kMostMirrored : 1.0;
+        if (near_m > 0.0)
+          left *= std::min(mirrored, f.area_m2 * most / (kShortestWave_m * near_m));
+        else
+          left *= mirrored;
       }
       towards_W -= 2.0 * cosine * f.normal_W;
     }
@@ -120,12 +130,19 @@ class Search {
     return distance_m <= 0.0 || distance_m * distance_m <= reach_per_area_ * f.area_m2 * to_plane_m;
   }
 
+  /// How far from a facet, across the way, a wave may pass that its borders still send on.
+  double beside_m(const scene::Facet& f, const Ball& image) const {
+    return std::sqrt(2.0 * bend_m_ * ((f.center_W - image.center_W).norm() + f.radius_m + image.radius_m));
+  }
+
   /// May a straight line from the ball behind `window` pass it and meet `f` in front of it?
-  static bool seen_through(const Ball& image, const scene::Facet& window, const scene::Facet& f) {
-    if (window.normal_W.dot(f.center_W) - window.offset_m < -f.radius_m) return false;
+  bool seen_through(const Ball& image, const scene::Facet& window, const scene::Facet& f) const {
+    const double f_wide_m = f.radius_m + beside_m(f, image);
+    if (window.normal_W.dot(f.center_W) - window.offset_m < -f_wide_m) return false;
     const Eigen::Vector3d a = window.center_W - image.center_W, b = f.center_W - image.center_W;
     const double a_m = a.norm(), b_m = b.norm();
-    const double a_wide_m = window.radius_m + image.radius_m, b_wide_m = f.radius_m + image.radius_m;
+    const double a_wide_m = window.radius_m + beside_m(window, image) + image.radius_m;
+    const double b_wide_m = f_wide_m + image.radius_m;
     if (a_m <= a_wide_m || b_m <= b_wide_m) return true;
     const double wide_rad = std::asin(a_wide_m / a_m) + std::asin(b_wide_m / b_m) + 1e-6;
     return wide_rad >= kPi || a.dot(b) >= std::cos(wide_rad) * a_m * b_m;
@@ -135,6 +152,7 @@ class Search {
   int order_;
   const std::vector<scene::Facet>& facets_;
   double weakest_ = 0.0, reach_per_area_ = 0.0;
+  double bend_m_ = 0.0;                   // longest detour over a border that sends on
   std::vector<ReflectionBound> reflect_;  // of each material
   std::array<Ball, SignalPath::kMaxReflections> images_;
   double strongest_ = 0.0;  // of what has been seen so far; in the end of what was found

@@ -10,6 +10,7 @@
 #include "canyon/gnss/paths/bounce.h"
 #include "canyon/gnss/paths/diffraction/fresnel.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/gnss/paths/diffraction/mirror_borders.h"
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/signal.h"
 #include "canyon/gnss/stress/subjects.h"
@@ -146,6 +147,46 @@ StressFigure factors() {
   return out;
 }
 
+/// A rectangle of z = 0 from (-wide, -deep) to (wide, deep) that faces up.
+scene::Facet rectangle(double wide_m, double deep_m) {
+  scene::Facet facet;
+  facet.normal_W = Eigen::Vector3d::UnitZ();
+  facet.area_m2 = 4.0 * wide_m * deep_m;
+  const std::array<Eigen::Vector3d, 4> corners{
+      Eigen::Vector3d(-wide_m, -deep_m, 0.0), {wide_m, -deep_m, 0.0}, {wide_m, deep_m, 0.0}, {-wide_m, deep_m, 0.0}};
+  for (std::size_t k = 0; k < 4; ++k) facet.borders.push_back({corners[k], corners[(k + 1) % 4]});
+  return facet;
+}
+
+/// Finite, and no more than kMostMirrored, on sides and corners, from within the plane, of needles; a figure counts
+/// what is not. Endless in all directions it is 1, and far beside it is nothing.
+StressFigure mirrors_at_their_ends() {
+  StressFigure out;
+  for (const double wide : {1e-9, 0.1, 5.0, 1e5}) {
+    for (const double deep : {1e-6, 3.0, 1e6}) {
+      const scene::Facet facet = rectangle(wide, deep);
+      for (const double depth : {0.0, 1e-9, 2.0, 1e7}) {
+        for (const double x : {0.0, wide, std::nextafter(wide, 1e9), 1e6}) {
+          for (const double grazing : {1e-9, 0.3, 0.5 * kPi}) {
+            const Eigen::Vector3d towards(std::cos(grazing), 0.0, std::sin(grazing)), at(x, deep, 0.0);
+            const Eigen::Vector3d image = at - depth / std::max(std::sin(grazing), 1e-12) * towards;
+            const Complex share = mirrored_share(facet, x <= wide, {image, towards, at, 0.19});
+            out.figure += std::isfinite(std::abs(share)) && std::abs(share) <= kMostMirrored ? 0.0 : 1.0;
+          }
+        }
+      }
+    }
+  }
+  const scene::Facet endless = rectangle(1e6, 1e6);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const auto at = [&](const scene::Facet& f, double x, bool holds) {
+    return mirrored_share(f, holds, {{x, 0, -10.0}, up, {x, 0, 0}, 0.19});
+  };
+  out.figure += std::abs(at(endless, 0.0, true) - 1.0) < 1e-3 ? 0.0 : 1.0;
+  out.figure += std::abs(at(rectangle(1.0, 1.0), 1e6, false)) < 1e-6 ? 0.0 : 1.0;
+  return out;
+}
+
 /// The field of bounces along a straight corner: every further one at the same two walls, with coefficients of a
 /// perfect conductor, keeps |field| = 1: rotations of phase do not lose power. 64 eps a bounce.
 StressFigure conductor_bounces() {
@@ -265,6 +306,10 @@ std::vector<StressCase> wave_cases() {
   rows.of({StressGroup::kGeometry, "facets without area, at no distance, endlessly rough",
            "0 / 0 and overflows of squares", "factors between 0 and 1", "outside"});
   rows.add("waves/factors_at_their_ends", factors);
+  rows.of({StressGroup::kGeometry, "mirrors endless, needles, met on a side, from their plane",
+           "sides that no way passes, 0 / 0 on a corner, fields of sides that do not cancel",
+           "finite, at most twice an endless mirror's; 1 and 0 at the ends", "outside"});
+  rows.add("waves/mirrors_at_their_ends", mirrors_at_their_ends);
   rows.of({StressGroup::kGeometry, "power over several reflections in turned planes",
            "phases between planes of incidence that are no rotation", "power 1 off conductors: 64 eps a bounce", ""});
   rows.add("waves/three_bounces_off_conductors", conductor_bounces);

@@ -34,6 +34,7 @@ StressFigure keys_as_they_come() {
   is(c.position.estimator_acceleration_m_s2, 2.0), is(c.position.smoothing_s, 0.0),
       is(c.position.accuracy_limit_m, 0.0);
   is(c.propagation.surface_roughness_m, 0.0), is(c.propagation.ground_reflection, 0.0);
+  is(c.propagation.reflection_borders, 0.0);
   const SineAntennaParameters sine;
   is(sine.horizon_loss_db, 7.0), is(sine.lhcp_rejection_db, 10.0);
   const LinkBudget link;

@@ -43,7 +43,7 @@ ephemeris_tau_s=3600; sp3_files=[]; antex_file=""; receiver_clock="tcxo"; paths=
 diffraction="none"; scatter="none"; scatter_coefficient=-1; scatter_lobe=0; scatter_tile_m=8; scatter_reach_m=150;
 clutter="none"; clutter_environment="suburban"; clutter_shaded_scale=1; clutter_echo_db=0;
 clutter_moving_share=0.2; clutter_coherence_s=2; clutter_cell_m=8; clutter_reach_m=80; clutter_street=0;
-ground_reflection=false; surface_roughness_m=0; multipath_rule="paper_first_return"; cutoff_ns=150;
+ground_reflection=false; reflection_borders=false; surface_roughness_m=0; multipath_rule="paper_first_return"; cutoff_ns=150;
 foliage_db_per_m=0.25; foliage_max_db=28; cn0_zenith_dbhz=45; antenna="sine"; antenna_horizon_loss_db=7;
 lhcp_rejection_db=10; antenna_phase_centre=false; modulation="auto"; second_frequency="L2";
 correlator="early_late"; discriminator="power"; correlator_spacing_chips=0.5; front_end_mhz=0; code_loop_hz=0.13;

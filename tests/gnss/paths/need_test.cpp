@@ -299,7 +299,7 @@ TEST(PathNeeds, WaysOverThreeWallsThatReflectTooLittleAreNotFound) {
 
 // Fields with a few houses: wherever the antenna is in the piece and whichever satellite is looked at, the search in
 // full and without what is not needed give the same, to the bit.
-void what_is_not_needed_is_never_found(const char* diffraction, StatePathNeeds* edges_need) {
+void what_is_not_needed_is_never_found(const char* diffraction, StatePathNeeds* edges_need, bool borders = false) {
   const RandomStream stream(11, "test.fields");
   int left_out = 0, found = 0;
   for (std::uint64_t k = 0; k < 60; ++k) {
@@ -310,7 +310,8 @@ void what_is_not_needed_is_never_found(const char* diffraction, StatePathNeeds* 
       field.box(at, at + size, stream.uniform(1, 15, 50 + house, k));
     }
     field.crown({stream.uniform(-40, 40, 60, k), stream.uniform(-40, 40, 61, k), 5.0}, 3.0);
-    const Asked asked(field, corridor({stream.uniform(-50, 50, 62, k), stream.uniform(-50, 50, 63, k)}));
+    Asked asked(field, corridor({stream.uniform(-50, 50, 62, k), stream.uniform(-50, 50, 63, k)}));
+    asked.limits.reflection_borders = borders;
     std::vector<Need> needs = specular_needs(2, asked.question());
     for (Need& need : edges_need(asked.question())) needs.push_back(need);
     PathParameters full, less;
@@ -320,6 +321,7 @@ void what_is_not_needed_is_never_found(const char* diffraction, StatePathNeeds* 
     PropagationConfig config;
     config.paths.name = "specular2";
     config.diffraction.name = diffraction;
+    config.reflection_borders = borders;
     const auto in_full = *make_propagation(config, full), reduced = *make_propagation(config, less);
     const scene::SceneAt scene(*asked.scene);
     std::vector<Eigen::Vector3d> satellites;
@@ -352,6 +354,10 @@ TEST(PathNeeds, WhatIsNotNeededIsNeverFound) {
 
 TEST(PathNeeds, WhatWedgesDoNotNeedIsNeverFound) {
   what_is_not_needed_is_never_found("wedge", wedge_needs);
+}
+
+TEST(PathNeeds, WhatFadingMirrorsDoNotNeedIsNeverFound) {
+  what_is_not_needed_is_never_found("wedge", wedge_needs, true);
 }
 
 }  // namespace

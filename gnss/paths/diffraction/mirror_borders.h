@@ -1,0 +1,34 @@
+#pragma once
+
+#include <complex>
+
+#include <Eigen/Core>
+
+#include "canyon/scene/surfaces/facet.h"
+
+namespace canyon::gnss {
+
+/// A plane wave from `towards_W` (unit) as an endless mirror in the facet's plane would send it to an antenna whose
+/// image is `image_W`; it meets the plane at `at_W`.
+struct MirroredWave {
+  Eigen::Vector3d image_W, towards_W, at_W;
+  double wavelength_m = 1.0;
+};
+
+/// What the facet mirrors of that wave, relative to what the endless mirror would: Kirchhoff's integral over the facet
+/// in Fresnel's approximation, as 1 if the facet holds `at_W` and 0 if not, less what each side of it makes (Maggi and
+/// Rubinowicz: finite_edge_factor, of a thin screen's edge, knife_edge_field). Half at a side, a quarter at a right
+/// corner, area x cos(incidence) / (wavelength x distance) of a small facet; continuous. Time factor exp(+j w t), phase
+/// of the mirrored way. Within 5e-3 for each side. 0 where it is surely weaker than `least`.
+std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const MirroredWave& wave,
+                                    double least = 0.0);
+/// |mirrored_share| is no more than this: 1.8 of a rectangle, 2 of a disc; zone plates are not built.
+inline constexpr double kMostMirrored = 2.0;
+
+/// Beside a side, beyond this nu of it (knife_edge_nu), what it makes is below `weakest_db` of an endless mirror.
+double largest_border_nu(double weakest_db);
+
+/// The point of the facet's border that is nearest to a point of its plane; that point if there is no border.
+Eigen::Vector3d nearest_of_border(const scene::Facet& facet, const Eigen::Vector3d& at_W);
+
+}  // namespace canyon::gnss
