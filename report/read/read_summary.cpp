@@ -232,15 +232,20 @@ std::vector<Run> read_runs(const JsonFields& fields, const std::string& first_se
         fields.fail(node, path + ".fidelity", "'" + runs[i].fidelity + "' given twice", "each run once");
     }
   }
+  if (!fields.error() && runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
   return runs;
 }
 
-LoopBeside read_beside(const JsonFields& fields, const std::string& first_seed, const std::vector<Figure>& figures) {
+LoopBeside read_beside(const JsonFields& fields, const std::string& first_seed, const std::vector<Figure>& figures,
+                       bool several_seeds) {
   LoopBeside beside;
   beside.loop = read_open_loop(fields);
   beside.duration_s = fields.number("duration_s");
   beside.runs = read_runs(fields, first_seed, figures);
   if (fields.has("seeds")) beside.over_seeds = read_over_seeds(fields);
+  if (beside.over_seeds.has_value() != several_seeds)
+    fields.fail(fields.find("seeds"), "seeds", several_seeds ? "missing" : "given",
+                several_seeds ? "as of the closed loop" : "none, as of the closed loop");
   return beside;
 }
 
@@ -257,7 +262,6 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   results.scene = read_scene_facts(fields.object("scene"));
   results.figures = read_figure_list(fields);
   results.runs = read_runs(fields, results.mission.seed, results.figures);
-  if (!error && results.runs.empty()) fields.fail(fields.find("runs"), "runs", "empty", "at least one run");
   if (fields.has("seeds")) results.over_seeds = read_over_seeds(fields);
   if (fields.has("two_by_two_by_filter")) {
     const JsonFields by_filter = fields.object("two_by_two_by_filter");
@@ -271,7 +275,8 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   if (fields.has("loop") && fields.object("loop").text("kind") == "open")
     results.open_loop = read_open_loop(fields.object("loop"));
   if (fields.has("open_loop"))
-    results.beside = read_beside(fields.object("open_loop"), results.mission.seed, results.figures);
+    results.beside =
+        read_beside(fields.object("open_loop"), results.mission.seed, results.figures, results.over_seeds.has_value());
   results.hash = fields.text("hash");
   const JsonFields timing = fields.object("timing");
   results.wall_s = timing.number("wall_s");

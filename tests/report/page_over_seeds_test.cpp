@@ -116,6 +116,18 @@ TEST_F(PageOverSeeds, ARunThatErrsLessInTheOpenLoopIsSaidToErrLess) {
   EXPECT_THAT(section(page(), "loops"), Not(HasSubstr("Epoch by epoch")));
 }
 
+TEST_F(PageOverSeeds, WhatIsWrongWithTheOtherLoopIsSaid) {
+  edit_json(file("summary.json"), [](auto& json) {
+    json["open_loop"] = beside(json["runs"]);
+    study::write_over_seeds(study::over_seeds(ten_seeds(true)), json["open_loop"]);
+  });
+  EXPECT_THAT(error(), ::testing::MatchesRegex(
+                           "summary.json:[0-9]+: open_loop.seeds: given, expected none, as of the closed loop"));
+  edit_json(file("summary.json"), [](auto& json) { json["open_loop"]["runs"] = nlohmann::json::array(); });
+  EXPECT_THAT(error(),
+              ::testing::MatchesRegex("summary.json:[0-9]+: open_loop.runs: empty, expected at least one run"));
+}
+
 TEST_F(PageOverSeeds, BothLoopsOverSeedsAreMedians) {
   edit_json(file("summary.json"), [](auto& json) {
     study::write_over_seeds(study::over_seeds(ten_seeds(false)), json);
