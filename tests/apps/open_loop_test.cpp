@@ -94,6 +94,15 @@ TEST_F(OpenLoopTest, BothLoopsSideBySideAreEachByItself) {
   EXPECT_THAT(read("table/report.html"), HasSubstr("<h2 id=\"loops-h\">Closed and open loop</h2>"));
 }
 
+TEST_F(OpenLoopTest, BothLoopsLeaveMixedRunsToTheClosedOne) {
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low,high --seeds 2 --both-loops --json --out out"), 0)
+      << read("stderr");
+  const Json both = Json::parse(read("stdout"));
+  EXPECT_EQ(both["runs"].size(), 8U);
+  ASSERT_EQ(both["open_loop"]["runs"].size(), 4U);
+  for (const Json& run : both["open_loop"]["runs"]) EXPECT_EQ(run["gnss"], run["imu"]);
+}
+
 TEST_F(OpenLoopTest, BothLoopsRefuseWhatIsForOne) {
   expect_refusal("--both-loops --open-loop",
                  "--both-loops: drives the closed loop too, expected no --open-loop beside it");

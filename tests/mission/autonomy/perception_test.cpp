@@ -111,6 +111,18 @@ TEST(GroundGrid, OneScanAloneBlocksNothing) {
   EXPECT_FALSE(eyes.blocked().all().empty());
 }
 
+// Cells have numbers of 32 bits.
+TEST(GroundGrid, AnEstimateBeyondAllCellsShowsNothing) {
+  const auto grid = model_row(perceptions(), "ground_grid").make(ReferenceParameters{}.perception.model.own, {});
+  const LidarScan scan = scan_from({0.0, 0.0}, car_at(12.0, 0.0), kSeenFrom);
+  const auto sees_at = [&](double x_m) {
+    const Pose X_OB{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
+    return grid->see(scan, {X_OB.R, X_OB.p + kMast_m * Eigen::Vector3d::UnitZ()}, X_OB, 0.1);
+  };
+  for (const double x_m : {0.0, 9.9e6, -9.9e6}) EXPECT_TRUE(sees_at(x_m)) << x_m;
+  for (const double x_m : {1e7, -1e7, 4.3e8, 1e12, 1e300, std::nan("")}) EXPECT_FALSE(sees_at(x_m)) << x_m;
+}
+
 TEST(GroundGrid, WhatDrivesAwayIsForgotten) {
   Eyes eyes;
   for (int k = 0; k < 10; ++k) eyes.see({0.0, 0.0}, car_at(12.0, 0.0));
