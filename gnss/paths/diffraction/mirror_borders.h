@@ -9,7 +9,7 @@
 namespace canyon::gnss {
 
 /// A plane wave from `towards_W` (unit) as an endless mirror in the facet's plane would send it to an antenna whose
-/// image is `image_W`; it meets the plane at `at_W`.
+/// image is `image_W`, behind the plane; it meets the plane at `at_W`. Places in W, m.
 struct MirroredWave {
   Eigen::Vector3d image_W, towards_W, at_W;
   double wavelength_m = 1.0;
@@ -25,7 +25,7 @@ std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const
 /// |mirrored_share| is no more than this: 1.8 of a rectangle, 2 of a disc; zone plates are not built.
 inline constexpr double kMostMirrored = 2.0;
 
-/// Beside a side, beyond this nu of it (knife_edge_nu), what it makes is below `weakest_db` of an endless mirror.
+/// Beyond this nu of a side (knife_edge_nu) what it makes is below `weakest_db` of an endless mirror's.
 double largest_border_nu(double weakest_db);
 
 /// The point of the facet's border that is nearest to a point of its plane; that point if there is no border.

@@ -47,6 +47,15 @@ Wave edge_integral(double nu, double u, const Wave& half) {
   return sum * step / 3.0 + std::atan2(u, nu);
 }
 
+/// From u1 to u2.
+Wave edge_integral(double nu, double u1, double u2, const Wave& half) {
+  const auto to = [&](double u) {
+    const Wave part = edge_integral(nu, std::abs(u), half);
+    return u < 0.0 ? -part : part;
+  };
+  return to(u2) - to(u1);
+}
+
 /// knife_edge_field without its turn by -pi nu^2 / 2, which is smooth, between places where it is known.
 Wave knife_edge_envelope(double nu) {
   constexpr double kStep = 0.02, kLast = 10.0;
@@ -91,21 +100,13 @@ Wave WedgeBorders::field(const Wave& face_0, const Wave& face_n) const {
 Wave finite_edge_field(double nu, double u1, double u2) {
   if (nu < 1e-6) return 0.5 * finite_edge_factor(nu, u1, u2);
   const Wave half = kPi * knife_edge_envelope(nu) * std::polar(1.0, -0.5 * kPi * nu * nu);
-  const auto to = [&](double u) {
-    const Wave part = edge_integral(nu, std::abs(u), half);
-    return u < 0.0 ? -part : part;
-  };
-  return (to(u2) - to(u1)) / (2.0 * kPi);
+  return edge_integral(nu, u1, u2, half) / (2.0 * kPi);
 }
 
 Wave finite_edge_factor(double nu, double u1, double u2) {
   if (nu < 1e-6) return 0.5 * ((u2 > 0.0 ? 1.0 : u2 < 0.0 ? -1.0 : 0.0) - (u1 > 0.0 ? 1.0 : u1 < 0.0 ? -1.0 : 0.0));
-  const Wave half = kPi * knife_edge_field(nu);  // from 0 to inf
-  const auto to = [&](double u) {
-    const Wave part = edge_integral(nu, std::abs(u), half);
-    return u < 0.0 ? -part : part;
-  };
-  return (to(u2) - to(u1)) / (2.0 * half);
+  const Wave half = kPi * knife_edge_field(nu);
+  return edge_integral(nu, u1, u2, half) / (2.0 * half);
 }
 
 }  // namespace canyon::gnss

@@ -88,6 +88,16 @@ TEST(MirroredShare, SidesAreFiniteEdges) {
             << nu << ", " << u1 << " to " << u1 + wide;
 }
 
+TEST(MirroredShare, BeyondItsLargestNuASideIsTooWeak) {
+  for (const double weakest_db : {-3.0, -20.0, -26.0, -40.0}) {
+    const double nu = largest_border_nu(weakest_db), weakest = std::pow(10.0, weakest_db / 20.0);
+    for (double beyond = 1.0; beyond < 20.0; beyond *= 1.01)
+      EXPECT_LE(std::abs(knife_edge_field(nu * beyond)), weakest) << weakest_db << " dB, nu " << nu * beyond;
+    if (weakest_db > -20.0) continue;
+    EXPECT_GT(std::abs(knife_edge_field(0.9 * nu)), weakest) << "it looks no farther than it must";
+  }
+}
+
 TEST(MirroredShare, NearestPointOfTheBorder) {
   const auto scene = plate(0, 0, 10, 6);
   const scene::Facet& facet = scene->facets().facets().at(0);
