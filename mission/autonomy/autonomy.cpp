@@ -47,8 +47,10 @@ void visit(FieldVisitor& f, AutonomyConfig& c) {
   f.number("corner_radius_m", c.corner_radius_m, {1, 100}, "radius of the planned turns");
   f.number("hold_s", c.hold_s, {0, 600}, "how long it looks at a building");
   f.number("blind_after_s", c.blind_after_s, {0.1, 60}, "stops when no scan with returns came for this long");
-  f.number("call_limit_s", c.call_limit_s, {0.1, 1e4},
-           "wall time after which one call of the autonomy counts as never returning; a sound one comes nowhere near");
+  f.number(
+      "call_limit_s", c.call_limit_s, {0.1, 1e4},
+      "wall time after which one call of the autonomy counts as never returning, without what the process is stopped "
+      "from outside; a sound one comes nowhere near");
   f.list("waypoint", c.waypoints, "places to drive through, in order");
 }
 

@@ -48,7 +48,7 @@ struct AutonomyConfig {
   double corner_radius_m = 6.5;
   double hold_s = 6.0;         ///< how long it looks at a building
   double blind_after_s = 0.5;  ///< stops when no scan with returns came for this long
-  double call_limit_s = 10.0;  ///< of wall time, for one call of the autonomy
+  double call_limit_s = 10.0;  ///< of wall time while the process is awake, for one call
   std::vector<Waypoint> waypoints;
 };
 void visit(FieldVisitor& f, AutonomyConfig& c);

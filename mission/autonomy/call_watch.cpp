@@ -15,9 +15,12 @@ namespace {
 
 }  // namespace
 
+CallWatch::CallWatch(double limit_s)
+    : limit_s_(limit_s), awake_(std::chrono::duration_cast<Time>(std::chrono::duration<double>(0.5 * limit_s))) {}
+
 std::optional<std::string> CallWatch::ask(const std::function<void()>& call) {
-  const Clock::time_point began = Clock::now();
-  since_.store(began.time_since_epoch().count());
+  const Time began = awake_.look();
+  since_.store(began.count());
   std::uint64_t turn = turn_.fetch_add(1) + 1;
   std::optional<std::string> wrong;
   std::exception_ptr pass_on;
@@ -37,14 +40,15 @@ std::optional<std::string> CallWatch::ask(const std::function<void()>& call) {
 }
 
 bool CallWatch::take_over() {
+  awake_.look();
   std::uint64_t turn = turn_.load();
   if (turn % 2 == 0 || turn == kTaken) return false;
-  const Clock::rep since = since_.load();  // of a later call, if this one has returned: then the turn is another
-  return over(Clock::time_point(Clock::duration(since))) && turn_.compare_exchange_strong(turn, kTaken);
+  const Time::rep since = since_.load();  // of a later call, if this one has returned: then the turn is another
+  return over(Time(since)) && turn_.compare_exchange_strong(turn, kTaken);
 }
 
-bool CallWatch::over(Clock::time_point since) const {
-  return std::chrono::duration<double>(Clock::now() - since).count() > limit_s_;
+bool CallWatch::over(Time since) {
+  return std::chrono::duration<double>(awake_.look() - since).count() > limit_s_;
 }
 
 std::string CallWatch::overtime() const {

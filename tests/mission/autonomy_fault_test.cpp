@@ -1,4 +1,8 @@
 // The autonomy is what is under test: whatever it does is a result of its own run.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <stdexcept>
 #include <thread>
@@ -8,7 +12,20 @@
 namespace canyon::mission::testing {
 namespace {
 
-enum class Fault { kNone, kThrows, kThrowsANumber, kThrowsWhenItSees, kThrowsWhenAsked, kNeverReturns };
+enum class Fault { kNone, kThrows, kThrowsANumber, kThrowsWhenItSees, kThrowsWhenAsked, kNeverReturns, kIsSuspended };
+
+/// Stops this process as a batch system does that suspends its jobs; another one wakes it.
+void suspend_for(unsigned seconds) {
+  const pid_t waker = fork();
+  if (waker == 0) {
+    sleep(seconds);
+    kill(getppid(), SIGCONT);
+    _exit(0);
+  }
+  ASSERT_GT(waker, 0);
+  raise(SIGSTOP);
+  waitpid(waker, nullptr, 0);
+}
 
 class FaultyDriver final : public Autonomy {
  public:
@@ -20,6 +37,7 @@ class FaultyDriver final : public Autonomy {
     if (left_-- > 0) return {1.0, 0.0};
     if (fault_ == Fault::kThrows) throw std::runtime_error("no idea");
     if (fault_ == Fault::kThrowsANumber) throw 7;
+    if (fault_ == Fault::kIsSuspended && left_ == -1) suspend_for(3);
     while (fault_ == Fault::kNeverReturns) std::this_thread::sleep_for(std::chrono::seconds(1));
     return {1.0, 0.0};
   }
@@ -76,6 +94,15 @@ TEST(AutonomyFault, ACallThatNeverReturnsEndsItsRunOnly) {
   EXPECT_GE(std::chrono::steady_clock::now() - before, std::chrono::milliseconds(500));
   // Another run is none the worse.
   EXPECT_EQ(drive_with(Fault::kNone, short_config("low", "low", kShort)).outcome, Outcome::kStopped);
+}
+
+// 2026-11-28: one of 300 runs failed since its batch had been suspended during a call for longer than the limit.
+TEST(AutonomyFault, ASuspendedProcessIsNoFault) {
+  const auto before = std::chrono::steady_clock::now();
+  const RecordedRun run = drive_with(Fault::kIsSuspended,
+                                     short_config("low", "low", "[time]\nlimit_s = 3.0\n[autonomy]\ncall_limit_s = 1"));
+  EXPECT_EQ(run.outcome, Outcome::kStopped) << (run.failure ? run.failure->detail : "");
+  EXPECT_GE(std::chrono::steady_clock::now() - before, std::chrono::seconds(3));
 }
 
 // Where the true motion is given, an autonomy decides nothing: the run goes on without it, and says so.
