@@ -1,6 +1,7 @@
 #include "canyon/mission/boundaries.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <initializer_list>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "canyon/core/config/text.h"
+#include "canyon/core/process/parallel.h"
 
 namespace canyon::mission {
 
@@ -157,16 +159,28 @@ namespace {
 /// Tens of thousands of returns, looked at together.
 bool all_pass(const lidar::LidarOutput& output) {
   constexpr float kAnyReturn_m = static_cast<float>(kReturn_m), kAny = std::numeric_limits<float>::max();
-  int wrong = 0;
-  for (const LidarPoint& p : output.scan.points)
-    for (const auto& [value, most] : {std::pair{p.x, kAnyReturn_m},
-                                      {p.y, kAnyReturn_m},
-                                      {p.z, kAnyReturn_m},
-                                      {p.intensity, kAny},
-                                      {p.time_s, kAny}})
-      wrong |= static_cast<int>(!(std::abs(value) <= most));  // NaN is wrong
-  for (const LidarPointTruth& t : output.truth)
-    for (const float value : {t.range_m, t.cos_incidence}) wrong |= static_cast<int>(!(std::abs(value) <= kAny));
+  constexpr std::size_t kChunk = 8192;
+  std::atomic<int> wrong = 0;
+  parallel_for(output.scan.points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    int bad = 0;
+    for (std::size_t k = begin; k < end; ++k) {
+      const LidarPoint& p = output.scan.points[k];
+      for (const auto& [value, most] : {std::pair{p.x, kAnyReturn_m},
+                                        {p.y, kAnyReturn_m},
+                                        {p.z, kAnyReturn_m},
+                                        {p.intensity, kAny},
+                                        {p.time_s, kAny}})
+        bad |= static_cast<int>(!(std::abs(value) <= most));  // NaN is wrong
+    }
+    wrong |= bad;
+  });
+  parallel_for(output.truth.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    int bad = 0;
+    for (std::size_t k = begin; k < end; ++k)
+      for (const float value : {output.truth[k].range_m, output.truth[k].cos_incidence})
+        bad |= static_cast<int>(!(std::abs(value) <= kAny));
+    wrong |= bad;
+  });
   return wrong == 0;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "canyon/core/process/parallel_keep.h"
 #include "canyon/mission/autonomy/perception/perception.h"
 #include "canyon/mission/autonomy/perception/polar_ground.h"
 
@@ -40,12 +41,13 @@ void visit(FieldVisitor& f, GroundGridParameters& c) {
            "before its cabin");
 }
 
-constexpr int kEnough = 100;         // returns of a scan; fewer count as none
-constexpr double kFarthest_m = 1e7;  // an estimate beyond it has no cell: their numbers are of 32 bits
-constexpr double kRoom_m = 3.0;      // of the ground below and above the vehicle's plane within the grid
-constexpr int kMostEvidence = 20;    // scans
-constexpr int kBareScans = 4;        // of bare ground, one after the other, until a cell is free
-constexpr double kFoot_m = 0.25;     // a beam so near to the ground shows a thing's foot
+constexpr std::size_t kGridChunk = 4096;  // returns
+constexpr int kEnough = 100;              // returns of a scan; fewer count as none
+constexpr double kFarthest_m = 1e7;       // an estimate beyond it has no cell: their numbers are of 32 bits
+constexpr double kRoom_m = 3.0;           // of the ground below and above the vehicle's plane within the grid
+constexpr int kMostEvidence = 20;         // scans
+constexpr int kBareScans = 4;             // of bare ground, one after the other, until a cell is free
+constexpr double kFoot_m = 0.25;          // a beam so near to the ground shows a thing's foot
 // The lowest beam surely meets only what stands so much above where it passes by the vehicle's own plane. ASSUMPTION:
 // 0.2 m, by which a street tilted by 4 degrees against that plane differs from it 3 m off; it does not grow with the
 // distance, since farther off the ground itself is seen.
@@ -102,6 +104,15 @@ class GroundGrid final : public Perception {
     Eigen::Vector2f to_sensor{0, 0};  ///< unit, when first seen
   };
 
+  /// What a return says of a cell.
+  struct Told {
+    std::int32_t x, y;
+    std::uint32_t slot;
+    float above_m;  ///< the ground; kGround: it is the ground's
+  };
+  static constexpr float kGround = -1.0F;
+  static constexpr std::size_t kAhead = 16;  // cells lie all over memory: they are asked for before their turn
+
   std::int32_t cell_of(double v_m) const { return static_cast<std::int32_t>(std::floor(v_m / p_.cell_m)); }
   std::size_t slot(std::int32_t x, std::int32_t y) const {
     const auto wrapped = [n = n_](std::int32_t v) { return static_cast<std::size_t>(((v % n) + n) % n); };
@@ -113,9 +124,8 @@ class GroundGrid final : public Perception {
   class Nearby {
    public:
     Nearby(std::int32_t x, std::int32_t y, int n) : n_(n), x_(x - n), y_(y - n), x_mod_(mod(x_)), y_mod_(mod(y_)) {}
-    std::size_t slot(std::int32_t x, std::int32_t y) const {
-      return static_cast<std::size_t>(wrapped(y - y_ + y_mod_)) * static_cast<std::size_t>(n_) +
-             static_cast<std::size_t>(wrapped(x - x_ + x_mod_));
+    std::uint32_t slot(std::int32_t x, std::int32_t y) const {
+      return static_cast<std::uint32_t>(wrapped(y - y_ + y_mod_) * n_ + wrapped(x - x_ + x_mod_));
     }
 
    private:
@@ -135,81 +145,77 @@ class GroundGrid final : public Perception {
     sensor_ = X_OL.p.head<2>();
     sensor_above_m_ = static_cast<double>(from_B.dot(up));
     const auto low = static_cast<float>(-kRoom_m), high = static_cast<float>(p_.clear_height_m + kRoom_m),
-               half = static_cast<float>(p_.half_size_m);
-    returns_.clear();
-    for (const LidarPoint& point : scan.points) {
-      const Eigen::Vector3f d = R * Eigen::Vector3f(point.x, point.y, point.z) + from_B;
-      const float above = d.dot(up);
-      if (above < low || above > high || std::abs(d.x()) > half || std::abs(d.y()) > half) continue;
-      returns_.push_back({d.x(), d.y(), above});
-      const float drop = static_cast<float>(sensor_above_m_) - above, dx = d.x() - from_B.x(), dy = d.y() - from_B.y();
-      // Hardly a return is steeper than all before it: the root is for those that may be, to the last bit.
-      const double across2 = static_cast<double>(dx) * dx + static_cast<double>(dy) * dy;
-      if (!(drop > 0.0F) || static_cast<double>(drop) * drop < (1.0 - 1e-5) * steepest_ * steepest_ * across2) continue;
-      const float across = std::hypot(dx, dy);
-      if (across > 1.0F) steepest_ = std::max(steepest_, static_cast<double>(drop / across));
-    }
+               half = static_cast<float>(p_.half_size_m), sensor_above = static_cast<float>(sensor_above_m_);
+    std::vector<double> steepest((scan.points.size() + kGridChunk - 1) / kGridChunk, steepest_);
+    parallel_keep(scan.points.size(), kGridChunk, returns_, [&](std::size_t begin, std::size_t end, PlaneReturn* kept) {
+      double& most = steepest[begin / kGridChunk];
+      for (std::size_t k = begin; k < end; ++k) {
+        const LidarPoint& point = scan.points[k];
+        const Eigen::Vector3f d = R * Eigen::Vector3f(point.x, point.y, point.z) + from_B;
+        const float above = d.dot(up);
+        if (above < low || above > high || std::abs(d.x()) > half || std::abs(d.y()) > half) continue;
+        *kept++ = {d.x(), d.y(), above};
+        const float drop = sensor_above - above, dx = d.x() - from_B.x(), dy = d.y() - from_B.y();
+        // Hardly a return is steeper than all before it: the root is for those that may be, to the last bit.
+        const double across2 = static_cast<double>(dx) * dx + static_cast<double>(dy) * dy;
+        if (!(drop > 0.0F) || static_cast<double>(drop) * drop < (1.0 - 1e-5) * most * most * across2) continue;
+        const float across = std::hypot(dx, dy);
+        if (across > 1.0F) most = std::max(most, static_cast<double>(drop / across));
+      }
+      return kept;
+    });
+    for (const double most : steepest) steepest_ = std::max(steepest_, most);
   }
 
   void sort_into_cells(const Eigen::Vector2d& body_O) {
     seen_m_.fill(0.0F);
-    touched_.clear();
-    const auto step = static_cast<float>(p_.obstacle_step_m), clear = static_cast<float>(p_.clear_height_m);
-    const Nearby nearby(cell_of(body_O.x()), cell_of(body_O.y()), n_);
-    // The cells lie all over memory: some are asked for ahead of their turn.
-    struct Told {
-      std::int32_t x, y;
-      std::size_t slot;
-      float above;
-      bool high;
-    };
-    std::array<Told, 16> told;
-    std::size_t waiting = 0;
-    const auto tell = [&] {
-      for (std::size_t k = 0; k < waiting; ++k) {
-        const Told& one = told[k];
-        Cell& cell = cell_at(one.x, one.y, one.slot);
-        if (!one.high) {
-          ++cell.ground;
-          continue;
-        }
-        ++cell.hits;
-        cell.top_m = std::max(cell.top_m, one.above);
-      }
-      waiting = 0;
-    };
-    for (std::size_t k = 0; k < returns_.size(); ++k) {
-      const PlaneReturn& r = returns_[k];
-      const auto [sector, distance] = ground_.polar()[k];
+    for (const auto& [sector, distance] : ground_.polar()) {
       float& seen = seen_m_[static_cast<std::size_t>(sector)];
       seen = std::max(seen, distance);
-      const PolarGround::Height ground = ground_.at(sector, distance);
-      const float above = r.above_m - ground.above_m;
-      if (above > clear) continue;
-      const bool high = above > step + ground.unsure_m;
-      if (!high && above > 0.5F * step) continue;  // neither
-      const std::int32_t x = cell_of(body_O.x() + static_cast<double>(r.x_m)),
-                         y = cell_of(body_O.y() + static_cast<double>(r.y_m));
-      told[waiting] = {x, y, nearby.slot(x, y), above, high};
-      __builtin_prefetch(&cells_[told[waiting].slot], 1);
-      if (++waiting == told.size()) tell();
     }
-    tell();
+    const auto step = static_cast<float>(p_.obstacle_step_m), clear = static_cast<float>(p_.clear_height_m);
+    const Nearby nearby(cell_of(body_O.x()), cell_of(body_O.y()), n_);
+    parallel_keep(returns_.size(), kGridChunk, told_, [&](std::size_t begin, std::size_t end, Told* kept) {
+      for (std::size_t k = begin; k < end; ++k) {
+        const PlaneReturn& r = returns_[k];
+        const auto [sector, distance] = ground_.polar()[k];
+        const PolarGround::Height ground = ground_.at(sector, distance);
+        const float above = r.above_m - ground.above_m;
+        if (above > clear) continue;
+        const bool high = above > step + ground.unsure_m;
+        if (!high && above > 0.5F * step) continue;  // neither
+        const std::int32_t x = cell_of(body_O.x() + static_cast<double>(r.x_m)),
+                           y = cell_of(body_O.y() + static_cast<double>(r.y_m));
+        *kept++ = {x, y, nearby.slot(x, y), high ? above : kGround};
+      }
+      return kept;
+    });
+    touched_.clear();
+    for (std::size_t k = 0; k < told_.size(); ++k) {
+      if (k + kAhead < told_.size()) __builtin_prefetch(&cells_[told_[k + kAhead].slot], 1);
+      Cell& cell = cell_at(told_[k]);
+      if (told_[k].above_m == kGround) {
+        ++cell.ground;
+        continue;
+      }
+      ++cell.hits;
+      cell.top_m = std::max(cell.top_m, told_[k].above_m);
+    }
   }
 
-  Cell& cell_at(std::int32_t x, std::int32_t y, std::size_t i) {
-    Cell& cell = cells_[i];
-    if (cell.x != x || cell.y != y) {
+  Cell& cell_at(const Told& told) {
+    Cell& cell = cells_[told.slot];
+    if (cell.x != told.x || cell.y != told.y) {
       const bool listed = cell.listed;
       cell = Cell{};
-      cell.x = x;
-      cell.y = y;
+      cell.x = told.x;
+      cell.y = told.y;
       cell.listed = listed;
     }
     if (cell.scan != scan_) {
       cell.scan = scan_;
       cell.hits = cell.ground = 0;
-      touched_.push_back(i);
+      touched_.push_back(told.slot);
     }
     return cell;
   }
@@ -301,6 +307,7 @@ class GroundGrid final : public Perception {
   double sensor_above_m_ = 0.0;
   double steepest_ = 0.0;  ///< drop over way of the lowest beam met so far
   std::vector<PlaneReturn> returns_;
+  std::vector<Told> told_;
   std::array<float, PolarGround::kSectors> seen_m_{};
   std::vector<std::size_t> touched_, listed_;
   std::vector<Eigen::Vector2d> places_;

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "canyon/core/process/parallel.h"
+
 namespace canyon::mission {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
+constexpr std::size_t kPolarChunk = 4096;  // returns
 constexpr float kWidth = static_cast<float>(PolarGround::kBin_m);
 
 }  // namespace
@@ -31,16 +34,22 @@ int PolarGround::sector(float x, float y) {
 void PolarGround::fit(const std::vector<PlaneReturn>& returns) {
   std::fill(lowest_.begin(), lowest_.end(), Lowest{kNone, 0.0F});
   polar_.resize(returns.size());
+  parallel_for(returns.size(), kPolarChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const PlaneReturn& r = returns[k];
+      polar_[k] = {sector(r.x_m, r.y_m), std::sqrt(r.x_m * r.x_m + r.y_m * r.y_m)};
+    }
+  });
   for (std::size_t k = 0; k < returns.size(); ++k) {
-    const PlaneReturn& r = returns[k];
-    const float distance = std::sqrt(r.x_m * r.x_m + r.y_m * r.y_m);
-    polar_[k] = {sector(r.x_m, r.y_m), distance};
+    const auto [sector, distance] = polar_[k];
     const int bin = static_cast<int>(distance / kWidth);
     if (bin >= bins_) continue;
-    Lowest& lowest = lowest_[slot(polar_[k].sector, bin)];
-    if (r.above_m < lowest.above_m) lowest = {r.above_m, distance};
+    Lowest& lowest = lowest_[slot(sector, bin)];
+    if (returns[k].above_m < lowest.above_m) lowest = {returns[k].above_m, distance};
   }
-  for (int s = 0; s < kSectors; ++s) walk(s);
+  parallel_for(kSectors, kSectors / 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) walk(static_cast<int>(s));
+  });
 }
 
 void PolarGround::walk(int sector) {
