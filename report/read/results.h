@@ -105,6 +105,8 @@ struct Run {
   /// False where each keyframe stayed where the filter had placed it: [registration] method "none".
   bool registers() const;
   bool succeeded() const { return outcome == "success"; }
+  /// A time limit of its own has ended it: neither success nor failure.
+  bool was_stopped() const { return outcome == "stopped"; }
   /// Both sensors of the run's own fidelity: not one of the mixed runs of the 2 x 2.
   bool is_pure() const { return gnss == imu; }
 };

@@ -43,6 +43,16 @@ std::string outcome_label(const std::string& outcome) {
   return out;
 }
 
+std::string outcome_class(const std::string& outcome) {
+  if (outcome == "success") return "good";
+  return outcome == "stopped" ? "neither" : "bad";
+}
+
+std::string outcome_mark(const std::string& outcome) {
+  if (outcome == "success") return "\xE2\x9C\x93";
+  return outcome == "stopped" ? "\xE2\x97\x8B" : "\xE2\x9C\x95";
+}
+
 std::optional<std::size_t> row_at(const EpochTable& table, double t_s) {
   if (table.rows == 0 || !std::isfinite(t_s)) return std::nullopt;
   const std::vector<double>& t = table["t_s"];

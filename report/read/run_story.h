@@ -15,6 +15,11 @@ std::string outcome_words(const std::string& outcome);
 std::string failure_words(const Failure& failure);
 /// "success" or the failure's kind with spaces, for tables.
 std::string outcome_label(const std::string& outcome);
+/// "good", "bad", or of a run that was stopped, which neither succeeded nor failed, "neither": the class of what shows
+/// it.
+std::string outcome_class(const std::string& outcome);
+/// The same as a mark: a tick, a cross, a circle.
+std::string outcome_mark(const std::string& outcome);
 
 /// Row of the epoch nearest to t; nullopt if the table is empty.
 std::optional<std::size_t> row_at(const EpochTable& table, double t_s);

@@ -65,9 +65,8 @@ class FiguresTable {
   std::string outcomes() const {
     return cells(
                [&](std::size_t k) {
-                 return std::string("<td class=\"outcome ") +
-                        (run(k).succeeded() ? "good\">\xE2\x9C\x93 " : "bad\">\xE2\x9C\x95 ") +
-                        escape_html(outcome_label(run(k).outcome)) + "</td>";
+                 return std::string("<td class=\"outcome ") + outcome_class(run(k).outcome) + "\">" +
+                        outcome_mark(run(k).outcome) + " " + escape_html(outcome_label(run(k).outcome)) + "</td>";
                },
                has_ratio() ? "<td></td>" : "") +
            "<td></td><td></td>";

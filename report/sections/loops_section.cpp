@@ -28,7 +28,8 @@ double value_in(const std::vector<Run>& runs, const std::optional<OverSeeds>& ov
 std::string outcome_in(const Results& results, const Run& run) {
   if (!results.over_seeds) return outcome_label(run.outcome);
   for (const SuccessShare& share : results.over_seeds->shares)
-    if (share.fidelity == run.fidelity) return show_count(share.success) + " of " + show_count(share.n) + " succeed";
+    if (share.fidelity == run.fidelity)
+      return share.n > 0 ? show_count(share.success) + " of " + show_count(share.n) + " succeed" : "all stopped";
   return {};
 }
 

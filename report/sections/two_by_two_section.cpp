@@ -36,11 +36,9 @@ std::string cell(const Results& results, const TwoByTwo& table, std::size_t row,
              " seeds succeed</p>";
   } else if (!results.open_loop && row < table.outcome.size()) {
     const std::string& outcome = table.outcome[row][column];
-    const bool good = outcome == "success";
-    out += outcome.empty()
-               ? "<p class=\"undefined\">no outcome</p>"
-               : std::string("<p class=\"outcome ") + (good ? "good\">\xE2\x9C\x93 " : "bad\">\xE2\x9C\x95 ") +
-                     escape_html(outcome_label(outcome)) + "</p>";
+    out += outcome.empty() ? "<p class=\"undefined\">no outcome</p>"
+                           : std::string("<p class=\"outcome ") + outcome_class(outcome) + "\">" +
+                                 outcome_mark(outcome) + " " + escape_html(outcome_label(outcome)) + "</p>";
   }
   out += "<dl>";
   for (const Figure& figure : results.figures) {

@@ -21,16 +21,11 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// A time limit of its own has ended it: neither success nor failure.
-bool was_stopped(const Run& run) {
-  return run.outcome == "stopped";
-}
-
 /// "completes the mission", "fails after 213 s" or "is stopped after 60 s".
 std::string present(const Run& run) {
   if (run.succeeded()) return "completes the mission";
   const double t_s = run.failure ? run.failure->t_s : run.figure("duration_s");
-  return std::string(was_stopped(run) ? "is stopped" : "fails") +
+  return std::string(run.was_stopped() ? "is stopped" : "fails") +
          (std::isfinite(t_s) ? " after " + show_quantity(t_s, "s") : "");
 }
 
@@ -168,12 +163,12 @@ std::string headline(const Results& results) {
     return capitalised(spoken(run.fidelity)) + " " + present(run) + ".";
   }
   const Run &a = runs[pure[0]], &b = runs[pure[1]];
-  if (a.succeeded() != b.succeeded() || was_stopped(a) != was_stopped(b)) {
+  if (a.succeeded() != b.succeeded() || a.was_stopped() != b.was_stopped()) {
     return capitalised(spoken(a.fidelity)) + " " + present(a) + "; " + spoken(b.fidelity) + " " + present(b) + ".";
   }
   const double ratio = b.figure("position_error_rms_m") / a.figure("position_error_rms_m");
   std::string text = capitalised(spoken(a.fidelity)) + " and " + spoken(b.fidelity) +
-                     (was_stopped(a)  ? " are both stopped by their time limit"
+                     (a.was_stopped() ? " are both stopped by their time limit"
                       : a.succeeded() ? " both complete the mission"
                                       : " both fail");
   if (std::isfinite(ratio)) {
@@ -238,7 +233,7 @@ std::string verdict_section(const Results& results) {
     const std::string sentence =
         run.succeeded() ? success_sentence(run, results.mission) : failure_sentence(run, results.mission);
     body += "<li class=\"verdict keep " + run_class(i) + (run.is_pure() ? "" : " mixed") +
-            "\"><p><span class=\"mark-of " + (run.succeeded() ? "good\">\xE2\x9C\x93" : "bad\">\xE2\x9C\x95") +
+            "\"><p><span class=\"mark-of " + outcome_class(run.outcome) + "\">" + outcome_mark(run.outcome) +
             "</span> <strong>" + escape_html(run.fidelity) + "</strong>" + escape_html(sentence) + "</p>";
     if (run.why) body += why_of(*run.why);
     if (const std::string more = circumstances(run); !more.empty())

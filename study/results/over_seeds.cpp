@@ -18,12 +18,18 @@ bool succeeded(const RunSummary& run) {
   return run.outcome == mission::Outcome::kSuccess;
 }
 
+/// A time limit of its own has ended it: whether it would have succeeded is not known.
+bool was_stopped(const RunSummary& run) {
+  return run.outcome == mission::Outcome::kStopped;
+}
+
 Share share_of(const Seeds& seeds, std::size_t run) {
   Share out{.fidelity = seeds.front()[run].name, .success = 0, .n = 0, .interval = {}, .outcomes = {}};
   for (const auto& runs : seeds) {
+    ++out.outcomes[mission::name(*runs[run].outcome)];
+    if (was_stopped(runs[run])) continue;
     ++out.n;
     out.success += succeeded(runs[run]) ? 1 : 0;
-    ++out.outcomes[mission::name(*runs[run].outcome)];
   }
   out.interval = wilson_interval(out.success, out.n);
   return out;
@@ -32,6 +38,7 @@ Share share_of(const Seeds& seeds, std::size_t run) {
 PairedDifference paired_success(const Seeds& seeds, std::size_t a, std::size_t b) {
   PairedCounts counts;
   for (const auto& runs : seeds) {
+    if (was_stopped(runs[a]) || was_stopped(runs[b])) continue;
     const bool in_a = succeeded(runs[a]), in_b = succeeded(runs[b]);
     ++(in_a ? (in_b ? counts.both : counts.only_a) : (in_b ? counts.only_b : counts.neither));
   }
@@ -41,7 +48,7 @@ PairedDifference paired_success(const Seeds& seeds, std::size_t a, std::size_t b
           .n = counts.n(),
           .difference = counts.difference(),
           .interval = paired_difference_interval(counts),
-          .p = mcnemar_exact_p(counts.only_a, counts.only_b)};
+          .p = counts.n() > 0 ? mcnemar_exact_p(counts.only_a, counts.only_b) : kNaN};
 }
 
 PairedDifference paired_figure(const Seeds& seeds, std::size_t a, std::size_t b, const Figure& figure) {

@@ -13,10 +13,10 @@
 /// What the same runs with several seeds say: how often they succeed, and how their figures are spread.
 namespace canyon::study {
 
-/// How often a run succeeds.
+/// How often a run succeeds. One that [time] limit_s stopped stands among the outcomes alone.
 struct Share {
   std::string fidelity;
-  int success = 0, n = 0;
+  int success = 0, n = 0;               ///< of how many that ended by themselves
   Interval interval;                    ///< Wilson's
   std::map<std::string, int> outcomes;  ///< how many seeds ended how
 };
@@ -25,7 +25,7 @@ struct Share {
 struct PairedDifference {
   std::string a, b;
   std::string figure;  ///< "success", or a figure's key
-  int n = 0;           ///< pairs in which both are defined
+  int n = 0;           ///< pairs in which both are defined; of success: ended by themselves
   /// Of success: share of b minus share of a with Newcombe's interval (paired_difference_interval) and McNemar's exact
   /// p. Of a figure: mean of b minus a with Student's interval, and p of the exact sign test (mcnemar_exact_p of how
   /// often b is the larger and the smaller one).
