@@ -8,6 +8,7 @@
 #include "canyon/gnss/paths/beam.h"
 #include "canyon/gnss/paths/bounce.h"
 #include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/gnss/paths/diffraction/leg_shadow.h"
 #include "canyon/gnss/paths/diffraction/mirror_borders.h"
 #include "canyon/gnss/paths/rows/facet_rows.h"
 #include "canyon/gnss/paths/rows/near_waves.h"
@@ -221,12 +222,14 @@ class ImageSearch {
       return !(amplitude2 > 0.0) || amplitude2 < least * least;
     };
     if (too_weak(p_.reflection_borders ? std::pow(kMostMirrored, k) : 1.0)) return;
-    if (p_.reflection_borders) {
-      end_at_borders(k, satellite, least, held, points_W, path);
-      if (too_weak(1.0)) return;
-    }
     path.excess_m = excess_m;
-    if (!clear_way(k, s, points_W, path)) return;
+    if (p_.reflection_borders) {
+      fade_at_borders(k, satellite, least, held, points_W, path);
+      if (path.copolar == 0.0 && path.crosspolar == 0.0) return;  // what has faded is weaker than `least`
+    } else if (!clear_way(nodes_of(k, points_W), k, s)) {
+      return;
+    }
+    add_foliage(nodes_of(k, points_W), k, s, path);
     path.arrival_W = (points_W[0] - antenna_W_).normalized();
     path.reflections = count;
     for (std::size_t j = 0; j < k; ++j) path.facets[j] = sequence_[j];
@@ -264,11 +267,11 @@ class ImageSearch {
     return true;
   }
 
-  /// What the facets' sizes leave of the field, which fades out over 3.5 dB above the weakest that is followed. A point
-  /// that a facet does not hold moves onto its border.
-  void end_at_borders(std::size_t k, std::size_t satellite, double least,
-                      const std::array<bool, SignalPath::kMaxReflections>& held,
-                      std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) const {
+  /// What the facets' sizes and what stands beside the legs leave of the field, which fades out over 3.5 dB above the
+  /// weakest that is followed. A point that a facet does not hold moves onto its border.
+  void fade_at_borders(std::size_t k, std::size_t satellite, double least,
+                       const std::array<bool, SignalPath::kMaxReflections>& held,
+                       std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) {
     Eigen::Vector3d towards_W = waves_.direction_W(satellite);
     const double full = std::sqrt(std::norm(path.copolar) + std::norm(path.crosspolar));
     std::complex<double> share = 1.0;
@@ -280,6 +283,25 @@ class ImageSearch {
       if (share == 0.0) break;
       if (!held[j]) points_W[j] = nearest_of_border(f, points_W[j]);
       towards_W -= 2.0 * towards_W.dot(f.normal_W) * f.normal_W;
+    }
+    const auto worth = [&] { return std::abs(share) * full * kMostLit >= least; };
+    const Nodes nodes_W = nodes_of(k, points_W);
+    // From the satellite's end, which is blocked most often.
+    for (std::size_t j = k + 1; j-- > 0 && worth();) {
+      MirroredLeg leg{.from_W = nodes_W[j],
+                      .towards_W = waves_.direction_W(satellite),
+                      .wavelength_m = waves_.wavelength_m(satellite)};
+      if (j < k) {
+        const Eigen::Vector3d way_W = nodes_W[j + 1] - nodes_W[j];
+        leg.length_m = way_W.norm();
+        leg.towards_W = way_W / leg.length_m;
+        leg.mirrors[1] = &facets_[sequence_[j]];
+      }
+      if (j > 0) {
+        leg.behind_m = (nodes_W[j] - images_W_[j - 1]).norm();
+        leg.mirrors[0] = &facets_[sequence_[j - 1]];
+      }
+      share *= leg_share(leg, least / (std::abs(share) * full), scene_, counters_);
     }
     share *= std::clamp(2.0 * (std::abs(share) * full / least - 1.0), 0.0, 1.0);
     path.copolar *= share;
@@ -311,15 +333,20 @@ class ImageSearch {
     return path;
   }
 
-  /// Tests every leg, and sums up what of it leads through foliage.
-  bool clear_way(std::size_t k, const Eigen::Vector3d& s,
-                 std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) {
-    std::array<Eigen::Vector3d, SignalPath::kMaxReflections + 1> nodes_W;
+  /// The antenna and the reflection points, a little before their facets.
+  using Nodes = std::array<Eigen::Vector3d, SignalPath::kMaxReflections + 1>;
+  Nodes nodes_of(std::size_t k, const std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W) const {
+    Nodes nodes_W;
     nodes_W[0] = antenna_W_;
     for (std::size_t j = 0; j < k; ++j) {
       const scene::Facet& f = facets_[sequence_[j]];
       nodes_W[j + 1] = points_W[j] + (kClearance_m + f.flatness_m) * f.normal_W;
     }
+    return nodes_W;
+  }
+
+  /// Is every leg free?
+  bool clear_way(const Nodes& nodes_W, std::size_t k, const Eigen::Vector3d& s) {
     // From the satellite's end, which is blocked most often.
     ++counters_.occlusion_rays;
     if (scene_.blocked_towards(nodes_W[k], s)) return false;
@@ -329,13 +356,17 @@ class ImageSearch {
       ++counters_.occlusion_rays;
       if (scene_.blocked_towards(nodes_W[j], leg_W / leg_m, leg_m)) return false;
     }
+    return true;
+  }
+
+  /// What of the way leads through foliage.
+  void add_foliage(const Nodes& nodes_W, std::size_t k, const Eigen::Vector3d& s, SignalPath& path) const {
     path.foliage_m = scene_.foliage_m(nodes_W[k], s);
     for (std::size_t j = 0; j < k; ++j) {
       const Eigen::Vector3d leg_W = nodes_W[j + 1] - nodes_W[j];
       const double leg_m = leg_W.norm();
       path.foliage_m += scene_.foliage_m(nodes_W[j], leg_W / leg_m, leg_m);
     }
-    return true;
   }
 
   int order_;

@@ -49,8 +49,8 @@ void visit(FieldVisitor& f, PropagationConfig& c) {
   visit_choice(f, "clutter", c.clutter, "what the street has and the scene lacks: poles, trees, vehicles, crowds");
   f.flag("ground_reflection", c.ground_reflection, "the terrain around the antenna reflects");
   f.flag("reflection_borders", c.reflection_borders,
-         "specular1 to specular3: a mirror fades out beside its borders, as Kirchhoff's integral over it; else it ends "
-         "there");
+         "specular1 to specular3: a mirror fades out beside its borders, as Kirchhoff's integral over it, and its ways "
+         "beside what stands in them; else both end sharply");
   f.number("surface_roughness_m", c.surface_roughness_m, {0.0, 1.0},
            "standard deviation of the reflecting surfaces' height");
 }
@@ -62,6 +62,9 @@ bool mirrors_fade(const PropagationConfig& c) {
 Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits) {
   limits.roughness_m = config.surface_roughness_m;
   limits.reflection_borders = mirrors_fade(config);
+  // Echoes that only a visible satellite's were followed down to would go at once where it goes out of sight.
+  if (limits.reflection_borders)
+    limits.weakest_db = limits.weakest_nlos_db = std::min(limits.weakest_db, limits.weakest_nlos_db);
   CANYON_TRY(auto scatter, config.scatter.make("gnss.scatter", limits));
   limits.scattered_share = scatter->scattered_share();
   if (!limits.scattered_share.scatters) scatter = nullptr;

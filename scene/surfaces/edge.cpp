@@ -96,6 +96,49 @@ void EdgeIndex::Square::add(const Edge& e) {
   for (const Eigen::Vector3d& p : {e.a_W, e.b_W}) {
     reach_m = std::max(reach_m, std::hypot(p.x() - x_m, p.y() - y_m));
     top_m = std::max(top_m, p.z());
+    bottom_m = std::min(bottom_m, p.z());
+  }
+}
+
+/// False where no edge of it can lie so near to the way.
+bool EdgeIndex::Square::meets(const Way& way, double detour_m) const {
+  const Eigen::Vector2d to_center = Eigen::Vector2d(x_m, y_m) - way.from_W.head<2>();
+  const double up_m = std::max(std::abs(top_m - way.from_W.z()), std::abs(bottom_m - way.from_W.z()));
+  const double farthest_m = std::hypot(to_center.norm() + reach_m, up_m);
+  const double beside_m = std::sqrt(2.0 * detour_m * (way.behind_m + farthest_m));
+  // The part of the way that is over the square, with what is beside it.
+  const double level = way.towards_W.head<2>().norm(), wide_m = reach_m + beside_m;
+  double first_m = 0.0, last_m = std::min(way.length_m, farthest_m + beside_m);
+  if (level > 1e-9) {
+    const Eigen::Vector2d ahead = way.towards_W.head<2>() / level;
+    const double along_m = ahead.dot(to_center), off2_m2 = to_center.squaredNorm() - along_m * along_m;
+    if (off2_m2 > wide_m * wide_m) return false;
+    first_m = std::max(first_m, (along_m - wide_m) / level);
+    last_m = std::min(last_m, (along_m + wide_m) / level);
+  } else if (to_center.squaredNorm() > wide_m * wide_m) {
+    return false;
+  }
+  if (first_m > last_m) return false;
+  const double z1_m = way.from_W.z() + first_m * way.towards_W.z(), z2_m = way.from_W.z() + last_m * way.towards_W.z();
+  return std::min(z1_m, z2_m) <= top_m + beside_m && std::max(z1_m, z2_m) >= bottom_m - beside_m;
+}
+
+void EdgeIndex::along(const Way& way, double detour_m, std::vector<std::uint32_t>& out) const {
+  out.clear();
+  const auto look = [&](const Block& block) {
+    for (std::size_t k = 0; k < block.edges.size(); ++k) {
+      const Eigen::Vector3d to_middle_W =
+          Eigen::Vector3d(block.middle_x_m[k], block.middle_y_m[k], block.middle_z_m[k]) - way.from_W;
+      const double half_m = block.half_m[k];
+      const double along_m = std::clamp(to_middle_W.dot(way.towards_W), 0.0, way.length_m);
+      const double wide_m = half_m + std::sqrt(2.0 * detour_m * (way.behind_m + along_m + half_m));
+      if ((to_middle_W - along_m * way.towards_W).squaredNorm() <= wide_m * wide_m) out.push_back(block.edges[k]);
+    }
+  };
+  for (const Tile& tile : tiles_) {
+    if (!tile.meets(way, detour_m)) continue;
+    for (const Block& block : tile.blocks)
+      if (block.meets(way, detour_m)) look(block);
   }
 }
 

@@ -36,12 +36,23 @@ class EdgeIndex {
   void shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m,
                std::vector<std::uint32_t>& out) const;
 
+  /// A straight way from a place, and how far in front of it what goes that way comes from.
+  struct Way {
+    Eigen::Vector3d from_W, towards_W;  ///< unit
+    double length_m;                    ///< may be infinite
+    double behind_m = 0.0;              ///< >= 0
+  };
+  /// Edges of which a point lies within sqrt(2 detour_m x distance from where the way comes from) of a way, in a fixed
+  /// order, and few others.
+  void along(const Way& way, double detour_m, std::vector<std::uint32_t>& out) const;
+
  private:
   /// A square of the ground and how far what lies in it reaches.
   struct Square {
     double x_m, y_m;
     double reach_m = 0.0;  ///< no edge of it comes farther from the center, horizontally
-    double top_m = -1e300;
+    double top_m = -1e300, bottom_m = 1e300;
+    bool meets(const Way& way, double detour_m) const;
     void add(const Edge& edge);
   };
   /// With what is asked of the edges whose middles lie in it, by columns, which are filled up to whole rows.

@@ -12,6 +12,9 @@
 
 namespace canyon::gnss {
 
+/// Of what is received no wave is longer: L5, the lowest carrier, has 0.2548 m.
+inline constexpr double kLongestWave_m = 0.26;
+
 /// What a model of propagation is asked: can its effects act on what an antenna receives that is carried along here?
 struct PathQuestion {
   const RouteSegment& segment;

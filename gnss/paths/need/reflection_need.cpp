@@ -17,7 +17,6 @@ namespace canyon::gnss {
 namespace {
 
 constexpr double kShortestWave_m = 0.18;  // of L1 and G1, the highest carriers that are received, 0.187 m
-constexpr double kLongestWave_m = 0.26;   // of L5, the lowest, 0.255 m
 constexpr std::int64_t kMostTried = 2'000'000;
 constexpr double kRounding = 1e-6;
 

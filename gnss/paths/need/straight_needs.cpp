@@ -12,8 +12,6 @@ namespace canyon::gnss {
 
 namespace {
 
-constexpr double kLongestWave_m = 0.26;  // of L5, the lowest carrier that is received, 0.2548 m
-
 template <class... Values>
 std::string text(const char* format, Values... values) {
   char out[200];

@@ -156,6 +156,24 @@ TEST(ReflectionBorders, TwoReflectionsAreContinuous) {
   EXPECT_GT(largest_step(*make_specular2(sharp), *scene, direction(275.0, 50.0)), 0.2);
 }
 
+// A box before the satellite's leg, before the antenna's, and over both.
+TEST(ReflectionBorders, ShadowsOverALegAreContinuous) {
+  PathParameters sharp = with_borders();
+  sharp.reflection_borders = false;
+  const auto mirror = WallScene().box({-22, -60, 0}, {-12, 60, 30});
+  for (const auto& [low, high] : {std::pair{Eigen::Vector3d(4, -3, 0), Eigen::Vector3d(8, 3, 20)},
+                                  {Eigen::Vector3d(-8, -1, 0), Eigen::Vector3d(-6, 1, 8)},
+                                  {Eigen::Vector3d(-8, -1, 0), Eigen::Vector3d(-6, 1, 12)}}) {
+    const auto scene = WallScene(mirror).box(low, high).build();
+    for (const double azimuth_deg : {90.0, 75.0}) {
+      const Eigen::Vector3d s = direction(azimuth_deg, 20.0);
+      EXPECT_LT(largest_step(*make_specular1(with_borders()), *scene, s), 0.07)
+          << low.transpose() << ", " << azimuth_deg;
+      EXPECT_GT(largest_step(*make_specular1(sharp), *scene, s), 0.2) << low.transpose() << ", " << azimuth_deg;
+    }
+  }
+}
+
 TEST(ReflectionBorders, WallsSideBySideAreOne) {
   const auto whole = WallScene().wall({-12, -9, 0}, {0, 18, 0}, {0, 0, 12}).build();
   const auto parts =

@@ -1,0 +1,114 @@
+#include "canyon/gnss/paths/diffraction/leg_shadow.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "canyon/gnss/paths/diffraction/edge_air.h"
+#include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/gnss/paths/diffraction/screen_edge.h"
+#include "canyon/scene/scene.h"
+#include "canyon/scene/surfaces/edge.h"
+
+namespace canyon::gnss {
+namespace {
+
+constexpr double kInPlane_m = 0.05;
+constexpr double kSame_m = 0.01;
+
+bool lies_in(const scene::Edge& edge, const scene::Facet* mirror) {
+  if (mirror == nullptr) return false;
+  const auto off_m = [&](const Eigen::Vector3d& p_W) { return std::abs(mirror->normal_W.dot(p_W) - mirror->offset_m); };
+  return off_m(edge.a_W) < kInPlane_m && off_m(edge.b_W) < kInPlane_m;
+}
+
+/// An edge that the leg passes.
+struct Passed {
+  const scene::Edge* edge;
+  Eigen::Vector3d point_W, along_W;  ///< where the way over it is shortest; unit
+  Eigen::Vector3d across_W;          ///< unit, across edge and leg, away from what throws the shadow
+  double lit_m;                      ///< how far along it the leg lies from the shadow's border; in the shadow below 0
+
+  Passed(const scene::Edge& e, double at_m, const MirroredLeg& leg) : edge(&e), along_W((e.b_W - e.a_W).normalized()) {
+    point_W = e.a_W + at_m * along_W;
+    across_W = along_W.cross(leg.towards_W).normalized();
+    if (across_W.dot(e.outward_W) < 0.0) across_W = -across_W;
+    lit_m = across_W.dot(leg.from_W - e.a_W);
+  }
+};
+
+/// Is the edge seen from both ends of the leg? What throws the shadow does not hide its own edge from within it: it is
+/// asked for from the shadow's border, beside the end.
+bool is_seen(const Passed& passed, const MirroredLeg& leg, const scene::SceneAt& scene, GnssCounters& counters) {
+  const Eigen::Vector3d at_W = passed.point_W + kOffEdge_m * passed.edge->outward_W;
+  const Eigen::Vector3d aside_W = std::max(kOffEdge_m - passed.lit_m, 0.0) * passed.across_W;
+  const auto sees = [&](const Eigen::Vector3d& end_W, const scene::Facet* mirror) {
+    Eigen::Vector3d way_W = end_W + aside_W - at_W;
+    if (mirror != nullptr) {
+      // Beside the end the mirror's plane may be nearer.
+      const double in_front_m = mirror->normal_W.dot(end_W) - mirror->offset_m;
+      const double here_m = mirror->normal_W.dot(at_W) - mirror->offset_m,
+                   there_m = here_m + mirror->normal_W.dot(way_W);
+      if (here_m <= in_front_m) return true;
+      if (there_m < in_front_m) way_W *= (here_m - in_front_m) / (here_m - there_m);
+    }
+    const double way_m = way_W.norm();
+    ++counters.occlusion_rays;
+    return !(way_m > 0.0) || !scene.blocked_towards(at_W, way_W / way_m, way_m);
+  };
+  if (!sees(leg.from_W, leg.mirrors[0])) return false;
+  if (std::isfinite(leg.length_m)) return sees(leg.from_W + leg.length_m * leg.towards_W, leg.mirrors[1]);
+  ++counters.occlusion_rays;
+  return !scene.blocked_towards(at_W, leg.towards_W);
+}
+
+bool is_clear(const MirroredLeg& leg, const scene::SceneAt& scene, GnssCounters& counters) {
+  ++counters.occlusion_rays;
+  return std::isfinite(leg.length_m) ? !scene.blocked_towards(leg.from_W, leg.towards_W, leg.length_m)
+                                     : !scene.blocked_towards(leg.from_W, leg.towards_W);
+}
+
+}  // namespace
+
+std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
+                               GnssCounters& counters) {
+  std::complex<double> share = is_clear(leg, scene, counters) ? 1.0 : 0.0;
+  // At a shadow's border an edge makes a half, which may not have faded.
+  const double weakest = std::clamp(0.5 * least, ScreenEdge::kLeast, 0.25);
+  const double detour_m = largest_detour_m(kFarEdgeField / weakest, leg.wavelength_m);
+  const scene::EdgeIndex& index = scene.scene().edges();
+  thread_local std::vector<std::uint32_t> near;
+  index.along({.from_W = leg.from_W, .towards_W = leg.towards_W, .length_m = leg.length_m, .behind_m = leg.behind_m},
+              detour_m, near);
+  const Eigen::Vector3d image_W = leg.from_W - leg.behind_m * leg.towards_W;
+  thread_local std::vector<Passed> before;
+  before.clear();
+  for (const std::uint32_t i : near) {
+    const scene::Edge& edge = index.edges()[i];
+    // An edge throws a shadow where the wave meets one of its faces alone.
+    if (edge.normal_1_W.dot(leg.towards_W) * edge.normal_2_W.dot(leg.towards_W) >= 0.0) continue;
+    if (lies_in(edge, leg.mirrors[0]) || lies_in(edge, leg.mirrors[1])) continue;
+    const ScreenEdge screen(edge.a_W, edge.b_W, image_W, leg.towards_W, leg.wavelength_m);
+    if (screen.most() <= weakest) continue;
+    const Passed passed(edge, screen.at_m(), leg);
+    const double ahead_m = (passed.point_W - leg.from_W).dot(leg.towards_W);
+    if (ahead_m <= 0.0 || ahead_m >= leg.length_m) continue;
+    // Two houses that share an edge have it twice.
+    const auto same = [&](const Passed& other) {
+      return (other.point_W - passed.point_W).squaredNorm() < kSame_m * kSame_m &&
+             std::abs(other.along_W.dot(passed.along_W)) > 0.999;
+    };
+    if (std::any_of(before.begin(), before.end(), same)) continue;
+    if (!is_seen(passed, leg, scene, counters) || !ends_in_air(edge, passed.point_W, scene)) continue;
+    before.push_back(passed);
+    // It fades out over half of what it is at most.
+    const double kept = std::min(screen.most() / weakest - 1.0, 1.0);
+    share += (passed.lit_m >= 0.0 ? -kept : kept) * screen.field();
+  }
+  return share;
+}
+
+}  // namespace canyon::gnss

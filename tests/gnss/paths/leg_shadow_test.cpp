@@ -1,0 +1,110 @@
+#include "canyon/gnss/paths/diffraction/leg_shadow.h"
+
+#include <cmath>
+#include <complex>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "canyon/gnss/paths/diffraction/knife_edge.h"
+#include "canyon/tests/gnss/paths/wall_scene.h"
+
+namespace canyon::gnss {
+namespace {
+
+using testing::WallScene;
+using Complex = std::complex<double>;
+
+constexpr double kShadowWave_m = 0.19;
+
+/// Straight up from a place, to a satellite.
+Complex share_upwards(const scene::Scene& scene, const Eigen::Vector3d& from, double least = 0.01) {
+  GnssCounters counters;
+  const MirroredLeg leg{.from_W = from, .towards_W = {0, 0, 1}, .wavelength_m = kShadowWave_m};
+  return leg_share(leg, least, scene::SceneAt(scene), counters);
+}
+
+/// The rectangle from (x1, y1) to (x2, y2) of z = 0.
+std::unique_ptr<scene::Scene> screen(double x1, double y1, double x2, double y2) {
+  return WallScene().wall({x1, y1, 0.0}, {x2 - x1, 0, 0}, {0, y2 - y1, 0}).build();
+}
+
+TEST(LegShadow, BesideALongEdgeItIsKnifeEdges) {
+  const auto scene = screen(-800, -800, 0, 800);
+  for (const double depth_m : {3.0, 20.0, 90.0}) {
+    for (double x = -2.0; x < 2.0; x += 0.11) {
+      const double detour_m = std::hypot(x, depth_m) - depth_m;
+      const Complex edge = knife_edge_field(2.0 * std::sqrt(detour_m / kShadowWave_m));
+      const Complex expected = x < 0.0 ? edge : 1.0 - edge;
+      EXPECT_NEAR(std::abs(share_upwards(*scene, {x, 0, -depth_m}) - expected), 0.0, 0.02) << x << ", " << depth_m;
+    }
+  }
+}
+
+// Babinet: what a screen leaves and what its opening would let through are the whole together.
+TEST(LegShadow, BehindARectangleItIsWhatTheRectangleWouldNotLetThrough) {
+  const double depth_m = 40.0, per_m = std::sqrt(2.0 / (kShadowWave_m * depth_m));
+  const auto slit = [&](double from, double to) {
+    return std::conj((fresnel_integral(to * per_m) - fresnel_integral(from * per_m)) / Complex(1.0, 1.0));
+  };
+  for (const double x : {-3.0, -1.7, -0.9, 0.01, 0.6}) {
+    for (const double y : {-2.0, -0.4, 0.02}) {
+      const auto scene = screen(x, y, x + 2.5, y + 3.0);
+      const Complex expected = 1.0 - slit(x, x + 2.5) * slit(y, y + 3.0);
+      EXPECT_NEAR(std::abs(share_upwards(*scene, {0, 0, -depth_m}) - expected), 0.0, 0.03) << x << ", " << y;
+    }
+  }
+}
+
+TEST(LegShadow, ThreeQuartersAreLeftAtACorner) {
+  EXPECT_NEAR(std::abs(share_upwards(*screen(1e-4, 1e-4, 600, 600), {0, 0, -20}) - 0.75), 0.0, 0.01);
+}
+
+TEST(LegShadow, IsContinuousAtTheBorderHoweverLittleMatters) {
+  const auto scene = screen(-800, -800, 0, 800);
+  for (const double least : {0.01, 0.2, 0.6, 1.2, 5.0})
+    EXPECT_NEAR(std::abs(share_upwards(*scene, {1e-4, 0, -20}, least) - share_upwards(*scene, {-1e-4, 0, -20}, least)),
+                0.0, 0.01)
+        << least;
+}
+
+TEST(LegShadow, WhatCannotMatterIsNotLookedAt) {
+  const auto scene = screen(-800, -800, 0, 800);
+  EXPECT_EQ(share_upwards(*scene, {2, 0, -20}, 1.0), 1.0);
+  EXPECT_EQ(share_upwards(*scene, {-2, 0, -20}, 1.0), 0.0);
+  EXPECT_EQ(share_upwards(*scene, {9, 0, -20}, 0.2), 1.0);
+  EXPECT_EQ(share_upwards(*scene, {0.5, 0, 20}), 1.0) << "it lies behind";
+}
+
+// From the image the way is straight: a roof's shadow is as wide as the whole way to it makes it.
+TEST(LegShadow, CountsTheWayBeforeTheMirror) {
+  const auto scene = screen(-800, -800, 0, 800);
+  GnssCounters counters;
+  for (const double x : {-1.0, -0.3, 0.4, 1.1}) {
+    const MirroredLeg leg{.from_W = {x, 0, -10},
+                          .towards_W = {0, 0, 1},
+                          .length_m = 60.0,
+                          .behind_m = 50.0,
+                          .wavelength_m = kShadowWave_m};
+    EXPECT_NEAR(std::abs(leg_share(leg, 0.01, scene::SceneAt(*scene), counters) - share_upwards(*scene, {x, 0, -60})),
+                0.0, 1e-9)
+        << x;
+  }
+}
+
+TEST(LegShadow, AMirrorsOwnEdgesAreNotItsLegs) {
+  const auto scene = WallScene().wall({-800, -800, 0}, {800, 0, 0}, {0, 1600, 0}).build();
+  GnssCounters counters;
+  MirroredLeg leg{.from_W = {0.2, 0, -1},
+                  .towards_W = {0, 0, 1},
+                  .length_m = 51.0,
+                  .behind_m = 19.0,
+                  .mirrors = {&scene->facets().facets().at(0), nullptr},
+                  .wavelength_m = kShadowWave_m};
+  EXPECT_EQ(leg_share(leg, 0.01, scene::SceneAt(*scene), counters), 1.0);
+  leg.mirrors[0] = nullptr;
+  EXPECT_GT(std::abs(leg_share(leg, 0.01, scene::SceneAt(*scene), counters) - 1.0), 0.1);
+}
+
+}  // namespace
+}  // namespace canyon::gnss
