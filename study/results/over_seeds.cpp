@@ -86,6 +86,10 @@ FigureOverSeeds figure_over(const Seeds& seeds, std::size_t run, const Figure& f
 
 }  // namespace
 
+std::string Share::text() const {
+  return n > 0 ? std::to_string(success) + " of " + std::to_string(n) : "all stopped";
+}
+
 std::vector<std::vector<RunSummary>> runs_by_seed(const Results& results) {
   std::vector<std::vector<RunSummary>> out{results.summaries};
   out.insert(out.end(), results.further_seeds.begin(), results.further_seeds.end());

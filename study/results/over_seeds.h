@@ -19,6 +19,9 @@ struct Share {
   int success = 0, n = 0;               ///< of how many that ended by themselves
   Interval interval;                    ///< Wilson's
   std::map<std::string, int> outcomes;  ///< how many seeds ended how
+
+  /// "3 of 20"; "all stopped" if none ended by itself.
+  std::string text() const;
 };
 
 /// Run b against run a, seed by seed.

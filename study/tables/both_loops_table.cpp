@@ -31,9 +31,7 @@ std::string both_loops_table(const Results& results, const std::vector<std::stri
     names.insert(names.end(), {open.fidelities[k] + ", closed", "open"});
     const RunSummary& first = results.summaries[i];
     const Share& share = closed.shares[i];
-    successes.push_back(several         ? std::to_string(share.success) + " of " + std::to_string(share.n)
-                        : first.outcome ? mission::name(*first.outcome)
-                                        : "-");
+    successes.push_back(several ? share.text() : first.outcome ? mission::name(*first.outcome) : "-");
     successes.emplace_back("-");
   }
   const auto of = [&](const Figure& figure, std::size_t column) {

@@ -43,8 +43,7 @@ std::string shares(const OverSeeds& found) {
     std::string outcomes;
     for (const auto& [kind, count] : share.outcomes)
       outcomes += (outcomes.empty() ? "" : ", ") + kind + " " + std::to_string(count);
-    table.line(share.fidelity, {std::to_string(share.success) + " of " + std::to_string(share.n),
-                                interval_text(share.interval, 2), outcomes});
+    table.line(share.fidelity, {share.text(), interval_text(share.interval, 2), outcomes});
   }
   return table.str();
 }

@@ -35,8 +35,8 @@ TEST_F(ReproduceTest, DrivesTheMissionToo) {
   const auto& share = mission["rows"][0];
   ASSERT_EQ(share["ours"].size(), 3u);
   EXPECT_EQ(share["ours"][0]["form"], "low");
-  // No run of two has a share that is known to less than Wilson's interval.
-  EXPECT_GT(share["ours"][0]["high"].get<double>() - share["ours"][0]["low"].get<double>(), 0.5);
+  // Its time limit stops every run: whether one would have succeeded is not known.
+  for (const char* what : {"value", "low", "high"}) EXPECT_TRUE(share["ours"][0][what].is_null()) << what;
   for (const auto& curve : mission["curves"]) EXPECT_GT(curve["x"].size(), 2u) << curve["name"];
   // Of localization five, and five of obstacles, ways and what is hit.
   EXPECT_EQ(json["parts"][6]["rows"].size(), 10u);
