@@ -284,10 +284,12 @@ class ImageSearch {
       if (!held[j]) points_W[j] = nearest_of_border(f, points_W[j]);
       towards_W -= 2.0 * towards_W.dot(f.normal_W) * f.normal_W;
     }
-    const auto worth = [&] { return std::abs(share) * full * kMostLit >= least; };
+    const auto worth = [&](std::size_t legs) {
+      return std::abs(share) * full * std::pow(kMostLit, static_cast<double>(legs)) >= least;
+    };
     const Nodes nodes_W = nodes_of(k, points_W);
     // From the satellite's end, which is blocked most often.
-    for (std::size_t j = k + 1; j-- > 0 && worth();) {
+    for (std::size_t j = k + 1; j-- > 0 && worth(j + 1);) {
       MirroredLeg leg{.from_W = nodes_W[j],
                       .towards_W = waves_.direction_W(satellite),
                       .wavelength_m = waves_.wavelength_m(satellite)};

@@ -1,5 +1,6 @@
 #include "canyon/mission/autonomy/call_watch.h"
 
+#include <algorithm>
 #include <exception>
 #include <thread>
 
@@ -9,6 +10,9 @@
 namespace canyon::mission {
 namespace {
 
+constexpr double kGap_s =
+    0.5;  // between two looks at most, or the process was stopped; the looker comes far more often
+
 [[noreturn]] void sleep_for_ever() {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(24));
 }
@@ -16,7 +20,8 @@ namespace {
 }  // namespace
 
 CallWatch::CallWatch(double limit_s)
-    : limit_s_(limit_s), awake_(std::chrono::duration_cast<Time>(std::chrono::duration<double>(0.5 * limit_s))) {}
+    : limit_s_(limit_s),
+      awake_(std::chrono::duration_cast<Time>(std::chrono::duration<double>(std::min(0.25 * limit_s, kGap_s)))) {}
 
 std::optional<std::string> CallWatch::ask(const std::function<void()>& call) {
   const Time began = awake_.look();

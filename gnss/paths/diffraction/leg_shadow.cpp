@@ -19,10 +19,11 @@ namespace {
 constexpr double kInPlane_m = 0.05;
 constexpr double kSame_m = 0.01;
 
-bool lies_in(const scene::Edge& edge, const scene::Facet* mirror) {
+/// In the mirror's plane, or behind it, where nothing hides what goes on before it.
+bool is_not_before(const scene::Edge& edge, const scene::Facet* mirror) {
   if (mirror == nullptr) return false;
-  const auto off_m = [&](const Eigen::Vector3d& p_W) { return std::abs(mirror->normal_W.dot(p_W) - mirror->offset_m); };
-  return off_m(edge.a_W) < kInPlane_m && off_m(edge.b_W) < kInPlane_m;
+  const auto before_m = [&](const Eigen::Vector3d& p_W) { return mirror->normal_W.dot(p_W) - mirror->offset_m; };
+  return before_m(edge.a_W) < kInPlane_m && before_m(edge.b_W) < kInPlane_m;
 }
 
 /// An edge that the leg passes.
@@ -39,6 +40,18 @@ struct Passed {
     lit_m = across_W.dot(leg.from_W - e.a_W);
   }
 };
+
+/// Two houses that share an edge have it twice. One that goes on where another ends is another, and so is one that
+/// looks the other way: what sheets side by side make where they meet cancels out.
+bool is_same(const Passed& one, const Passed& other) {
+  if ((other.point_W - one.point_W).squaredNorm() > kSame_m * kSame_m ||
+      std::abs(other.along_W.dot(one.along_W)) < 0.999)
+    return false;
+  if (other.across_W.dot(one.across_W) < 0.0) return false;
+  const auto at_m = [&](const Eigen::Vector3d& p_W) { return (p_W - one.edge->a_W).dot(one.along_W); };
+  const auto [first_m, last_m] = std::minmax({at_m(other.edge->a_W), at_m(other.edge->b_W)});
+  return std::min(last_m, at_m(one.edge->b_W)) - std::max(first_m, 0.0) > kSame_m;
+}
 
 /// Is the edge seen from both ends of the leg? What throws the shadow does not hide its own edge from within it: it is
 /// asked for from the shadow's border, beside the end.
@@ -90,18 +103,14 @@ std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene
     const scene::Edge& edge = index.edges()[i];
     // An edge throws a shadow where the wave meets one of its faces alone.
     if (edge.normal_1_W.dot(leg.towards_W) * edge.normal_2_W.dot(leg.towards_W) >= 0.0) continue;
-    if (lies_in(edge, leg.mirrors[0]) || lies_in(edge, leg.mirrors[1])) continue;
+    if (is_not_before(edge, leg.mirrors[0]) || is_not_before(edge, leg.mirrors[1])) continue;
     const ScreenEdge screen(edge.a_W, edge.b_W, image_W, leg.towards_W, leg.wavelength_m);
     if (screen.most() <= weakest) continue;
     const Passed passed(edge, screen.at_m(), leg);
     const double ahead_m = (passed.point_W - leg.from_W).dot(leg.towards_W);
     if (ahead_m <= 0.0 || ahead_m >= leg.length_m) continue;
-    // Two houses that share an edge have it twice.
-    const auto same = [&](const Passed& other) {
-      return (other.point_W - passed.point_W).squaredNorm() < kSame_m * kSame_m &&
-             std::abs(other.along_W.dot(passed.along_W)) > 0.999;
-    };
-    if (std::any_of(before.begin(), before.end(), same)) continue;
+    const auto known = [&](const Passed& other) { return is_same(passed, other); };
+    if (std::any_of(before.begin(), before.end(), known)) continue;
     if (!is_seen(passed, leg, scene, counters) || !ends_in_air(edge, passed.point_W, scene)) continue;
     before.push_back(passed);
     // It fades out over half of what it is at most.

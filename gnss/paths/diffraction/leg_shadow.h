@@ -24,9 +24,9 @@ struct MirroredLeg {
 
 /// What of the wave's field things beside the leg leave, relative to what came without them: 1 in the clear, 0 in the
 /// shadow, less or more by what the edges near the leg make (ScreenEdge): things are screens, as thick as they are.
-/// Half at the border of a shadow, and continuous there, corners included; where one thing hides another's edge it is
-/// not. Edges in the plane of a mirror are its own (mirrored_share). Things that move hide sharply. What is weaker than
-/// `least` is left out.
+/// Half at the border of a shadow, and continuous there, corners included; not where one thing hides another's edge,
+/// nor where a leg ends beside an edge. Edges in the plane of a mirror are its own (mirrored_share), those behind it
+/// are nobody's. Things that move hide sharply. What is weaker than `least` is left out.
 std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
                                GnssCounters& counters);
 /// |leg_share| of one straight edge is no more than this (1.17).

@@ -56,6 +56,16 @@ TEST(LegShadow, BehindARectangleItIsWhatTheRectangleWouldNotLetThrough) {
   }
 }
 
+TEST(LegShadow, AnEdgeInPiecesIsOne) {
+  const auto whole = screen(-800, -800, 0, 800);
+  const auto pieces =
+      WallScene().wall({-800, -800, 0}, {800, 0, 0}, {0, 800, 0}).wall({-800, 0, 0}, {800, 0, 0}, {0, 800, 0}).build();
+  for (const double y : {-3.0, -0.2, -0.008, -0.002, 0.0005, 0.004, 0.5})
+    for (const double x : {-0.6, 0.001, 0.4})
+      EXPECT_NEAR(std::abs(share_upwards(*pieces, {x, y, -20}) - share_upwards(*whole, {x, y, -20})), 0.0, 0.02)
+          << x << ", " << y;
+}
+
 TEST(LegShadow, ThreeQuartersAreLeftAtACorner) {
   EXPECT_NEAR(std::abs(share_upwards(*screen(1e-4, 1e-4, 600, 600), {0, 0, -20}) - 0.75), 0.0, 0.01);
 }
@@ -101,6 +111,10 @@ TEST(LegShadow, AMirrorsOwnEdgesAreNotItsLegs) {
                   .behind_m = 19.0,
                   .mirrors = {&scene->facets().facets().at(0), nullptr},
                   .wavelength_m = kShadowWave_m};
+  EXPECT_EQ(leg_share(leg, 0.01, scene::SceneAt(*scene), counters), 1.0);
+  // Nor is what stands behind another's plane.
+  const auto higher = WallScene().wall({0, -800, 1}, {900, 0, 0}, {0, 1600, 0}).build();
+  leg.mirrors[0] = &higher->facets().facets().at(0);
   EXPECT_EQ(leg_share(leg, 0.01, scene::SceneAt(*scene), counters), 1.0);
   leg.mirrors[0] = nullptr;
   EXPECT_GT(std::abs(leg_share(leg, 0.01, scene::SceneAt(*scene), counters) - 1.0), 0.1);
