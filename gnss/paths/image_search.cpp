@@ -217,11 +217,8 @@ class ImageSearch {
     if (!fold(k, s, points_W, held)) return;
     SignalPath path = field(k, satellite, points_W);
     const double least = visible ? weakest_ : weakest_nlos_;
-    const auto too_weak = [&](double most) {
-      const double amplitude2 = most * most * (std::norm(path.copolar) + std::norm(path.crosspolar));
-      return !(amplitude2 > 0.0) || amplitude2 < least * least;
-    };
-    if (too_weak(p_.reflection_borders ? std::pow(kMostMirrored, k) : 1.0)) return;
+    const double amplitude2 = std::norm(path.copolar) + std::norm(path.crosspolar);
+    if (!(amplitude2 > 0.0) || amplitude2 < least * least) return;
     path.excess_m = excess_m;
     if (p_.reflection_borders) {
       fade_at_borders(k, satellite, least, held, points_W, path);
@@ -241,6 +238,7 @@ class ImageSearch {
   /// lies outside of its facet, or too far outside where borders send on, or a facet would be met from behind.
   bool fold(std::size_t k, const Eigen::Vector3d& s, std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W,
             std::array<bool, SignalPath::kMaxReflections>& held) const {
+    std::array<double, SignalPath::kMaxReflections> outside_m;  // how far, in the facets' planes
     Eigen::Vector3d towards_W = s;  // direction of travel away from the antenna, after the reflection at hand
     for (std::size_t j = k; j-- > 0;) {
       const scene::Facet& f = facets_[sequence_[j]];
@@ -251,7 +249,8 @@ class ImageSearch {
       if (way_m <= 0.0) return false;
       points_W[j] = from_W + way_m * towards_W;
       // Across the way it lies at least cos_incidence times as far outside as in the plane.
-      const double reach_m = f.radius_m + beside_m(f, from_W) / cos_incidence;
+      outside_m[j] = beside_m(f, from_W) / cos_incidence;
+      const double reach_m = f.radius_m + outside_m[j];
       if ((points_W[j] - f.center_W).squaredNorm() > reach_m * reach_m * (1.0 + 1e-12)) return false;
       if (j + 1 < k && f.normal_W.dot(points_W[j + 1]) <= f.offset_m) return false;
       if (j + 1 < k) {
@@ -261,35 +260,43 @@ class ImageSearch {
       towards_W -= 2.0 * cos_incidence * f.normal_W;
     }
     for (std::size_t j = 0; j < k; ++j) {
-      held[j] = scene::facet_contains(facets_[sequence_[j]], scene_.scene(), points_W[j]);
-      if (!held[j] && !p_.reflection_borders) return false;
+      const scene::Facet& f = facets_[sequence_[j]];
+      held[j] = scene::facet_contains(f, scene_.scene(), points_W[j]);
+      if (held[j]) continue;
+      if (!p_.reflection_borders) return false;
+      if ((nearest_of_border(f, points_W[j]) - points_W[j]).squaredNorm() > outside_m[j] * outside_m[j]) return false;
     }
     return true;
   }
 
-  /// What the facets' sizes and what stands beside the legs leave of the field, which fades out over 3.5 dB above the
-  /// weakest that is followed. A point that a facet does not hold moves onto its border.
+  /// What the facets' sizes and what stands beside the legs leave of the field. It fades out over 3.5 dB above the
+  /// weakest that is followed, on the way too: what is too weak after one of them is not raised by the next. A point
+  /// that a facet does not hold moves onto its border.
   void fade_at_borders(std::size_t k, std::size_t satellite, double least,
                        const std::array<bool, SignalPath::kMaxReflections>& held,
                        std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) {
-    Eigen::Vector3d towards_W = waves_.direction_W(satellite);
     const double full = std::sqrt(std::norm(path.copolar) + std::norm(path.crosspolar));
     std::complex<double> share = 1.0;
-    for (std::size_t j = k; j-- > 0;) {
+    double enough = 0.0, kept = 1.0;  // what matters of what comes in
+    const auto passes = [&](const std::complex<double>& part) {
+      share *= part;
+      const double strength = std::abs(share) * full;
+      enough = std::max(least / strength, kFaintestBorder);
+      kept = std::min(kept, 2.0 * (strength / least - 1.0));
+      return kept > 0.0;
+    };
+    Eigen::Vector3d towards_W = waves_.direction_W(satellite);
+    bool followed = passes(1.0);
+    for (std::size_t j = k; followed && j-- > 0;) {
       const scene::Facet& f = facets_[sequence_[j]];
-      const double enough = least / (full * std::pow(kMostMirrored, k - 1));
-      share *=
-          mirrored_share(f, held[j], {images_W_[j], towards_W, points_W[j], waves_.wavelength_m(satellite)}, enough);
-      if (share == 0.0) break;
+      followed = passes(mirrored_share(
+          f, held[j], {images_W_[j], towards_W, points_W[j], waves_.wavelength_m(satellite)}, kFaintestBorder));
       if (!held[j]) points_W[j] = nearest_of_border(f, points_W[j]);
       towards_W -= 2.0 * towards_W.dot(f.normal_W) * f.normal_W;
     }
-    const auto worth = [&](std::size_t legs) {
-      return std::abs(share) * full * std::pow(kMostLit, static_cast<double>(legs)) >= least;
-    };
     const Nodes nodes_W = nodes_of(k, points_W);
     // From the satellite's end, which is blocked most often.
-    for (std::size_t j = k + 1; j-- > 0 && worth(j + 1);) {
+    for (std::size_t j = k + 1; followed && j-- > 0;) {
       MirroredLeg leg{.from_W = nodes_W[j],
                       .towards_W = waves_.direction_W(satellite),
                       .wavelength_m = waves_.wavelength_m(satellite)};
@@ -303,9 +310,9 @@ class ImageSearch {
         leg.behind_m = (nodes_W[j] - images_W_[j - 1]).norm();
         leg.mirrors[0] = &facets_[sequence_[j - 1]];
       }
-      share *= leg_share(leg, least / (std::abs(share) * full), scene_, counters_);
+      followed = passes(leg_share(leg, enough, scene_, counters_));
     }
-    share *= std::clamp(2.0 * (std::abs(share) * full / least - 1.0), 0.0, 1.0);
+    share *= followed ? kept : 0.0;
     path.copolar *= share;
     path.crosspolar *= share;
   }

@@ -55,16 +55,16 @@ void visit(FieldVisitor& f, PropagationConfig& c) {
            "standard deviation of the reflecting surfaces' height");
 }
 
-bool mirrors_fade(const PropagationConfig& c) {
-  return c.reflection_borders && c.paths.name.starts_with("specular");
+PathParameters with_borders(const PropagationConfig& c, PathParameters limits) {
+  limits.reflection_borders = c.reflection_borders && c.paths.name.starts_with("specular");
+  if (limits.reflection_borders)
+    limits.weakest_db = limits.weakest_nlos_db = std::min(limits.weakest_db, limits.weakest_nlos_db);
+  return limits;
 }
 
 Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits) {
   limits.roughness_m = config.surface_roughness_m;
-  limits.reflection_borders = mirrors_fade(config);
-  // Echoes that only a visible satellite's were followed down to would go at once where it goes out of sight.
-  if (limits.reflection_borders)
-    limits.weakest_db = limits.weakest_nlos_db = std::min(limits.weakest_db, limits.weakest_nlos_db);
+  limits = with_borders(config, std::move(limits));
   CANYON_TRY(auto scatter, config.scatter.make("gnss.scatter", limits));
   limits.scattered_share = scatter->scattered_share();
   if (!limits.scattered_share.scatters) scatter = nullptr;

@@ -22,8 +22,10 @@ struct PropagationConfig {
 };
 void visit(FieldVisitor& f, PropagationConfig& c);
 
-/// Do mirrors end by and by (PathParameters::reflection_borders)? Only those of the image search.
-bool mirrors_fade(const PropagationConfig& c);
+/// The limits, with mirrors that end by and by where they are asked for (PathParameters::reflection_borders; of the
+/// image search alone). Those of hidden satellites are the visible ones' then: an echo that was followed down to
+/// another strength would come or go at once where its satellite goes out of sight.
+PathParameters with_borders(const PropagationConfig& c, PathParameters limits);
 
 /// All of it. `limits`: what the receiver can notice; the roughness is the configuration's.
 Result<std::unique_ptr<PathModel>> make_propagation(const PropagationConfig& config, PathParameters limits);

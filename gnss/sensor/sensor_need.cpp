@@ -104,10 +104,7 @@ PathParameters path_limits(const GnssConfig& config) {
   PathParameters p;
   p.weakest_nlos_db = config.locks.tracking_threshold_dbhz - config.link.cn0_zenith_dbhz;
   p.weakest_db = std::min(p.weakest_db, p.weakest_nlos_db);
-  p.reflection_borders = mirrors_fade(config.propagation);
-  // Echoes that only a visible satellite's were followed down to would go at once where it goes out of sight.
-  if (p.reflection_borders) p.weakest_nlos_db = p.weakest_db;
-  return p;
+  return with_borders(config.propagation, std::move(p));
 }
 
 }  // namespace canyon::gnss

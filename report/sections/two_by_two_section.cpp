@@ -31,9 +31,12 @@ std::string cell(const Results& results, const TwoByTwo& table, std::size_t row,
   if (const auto i = run_of(results, table, table.gnss[row], table.imu[column]))
     out += "<p>" + run_tag(results.runs, *i) + "</p>";
   if (const double* successes = cell_of(table, "successes", row, column); successes && results.over_seeds) {
+    const double* ended = cell_of(table, "ended", row, column);
+    const double n = ended != nullptr ? *ended : results.over_seeds->count;
     if (std::isfinite(*successes))
-      out += "<p class=\"outcome\">" + show_count(*successes) + " of " + show_count(results.over_seeds->count) +
-             " seeds succeed</p>";
+      out += "<p class=\"outcome\">" +
+             (n > 0 ? show_count(*successes) + " of " + show_count(n) + " seeds succeed" : "all seeds stopped") +
+             "</p>";
   } else if (!results.open_loop && row < table.outcome.size()) {
     const std::string& outcome = table.outcome[row][column];
     out += outcome.empty() ? "<p class=\"undefined\">no outcome</p>"

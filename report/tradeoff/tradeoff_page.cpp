@@ -52,7 +52,8 @@ std::string outcome_table(const TradeoffSummary& t) {
   std::vector<std::vector<std::string>> rows;
   for (const TradeoffRun& run : t.runs)
     if (run.driven)
-      rows.push_back({run.fidelity, show_count(run.success) + " of " + show_count(run.seeds),
+      rows.push_back({run.fidelity,
+                      run.seeds > 0 ? show_count(run.success) + " of " + show_count(run.seeds) : "all stopped",
                       show_share(run.success_low) + "\xE2\x80\x93" + show_share(run.success_high), listed(run.outcomes),
                       show_number(run.mission_cpu_s)});
   if (rows.empty()) return "";

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kBlock_m = 50.0;
 constexpr double kTile_m = 2000.0;
-constexpr std::size_t kEdgeRow = 8;  // edges that are looked at together
+constexpr std::size_t kEdgeRow = 8;  // edges, or blocks, that are looked at together
+using Row = Eigen::Array<double, static_cast<int>(kEdgeRow), 1>;
 const double kFlat = std::cos(15.0 * kDegree);
 
 using Place = std::tuple<float, float, float>;
@@ -77,6 +78,11 @@ void add_edges(const Scene& scene, const std::vector<std::uint32_t>& members, do
   }
 }
 
+/// How far beside a straight way of this length the end of a bent one may lie that is longer by the detour.
+double bend_m(double along_m, double detour_m) {
+  return std::sqrt(detour_m * (2.0 * along_m + detour_m));
+}
+
 }  // namespace
 
 std::vector<Edge> convex_edges(const Scene& scene, double min_length_m) {
@@ -100,46 +106,68 @@ void EdgeIndex::Square::add(const Edge& e) {
   }
 }
 
-/// False where no edge of it can lie so near to the way.
-bool EdgeIndex::Square::meets(const Way& way, double detour_m) const {
+/// The blocks that the way comes near to; what it is over is its shadow on the ground, as far as it is low enough.
+template <class Take>
+void EdgeIndex::Tile::blocks_along(const Way& way, double detour_m, const Take& take) const {
   const Eigen::Vector2d to_center = Eigen::Vector2d(x_m, y_m) - way.from_W.head<2>();
   const double up_m = std::max(std::abs(top_m - way.from_W.z()), std::abs(bottom_m - way.from_W.z()));
-  const double farthest_m = std::hypot(to_center.norm() + reach_m, up_m);
-  const double beside_m = std::sqrt(2.0 * detour_m * (way.behind_m + farthest_m));
-  // The part of the way that is over the square, with what is beside it.
-  const double level = way.towards_W.head<2>().norm(), wide_m = reach_m + beside_m;
-  double first_m = 0.0, last_m = std::min(way.length_m, farthest_m + beside_m);
-  if (level > 1e-9) {
-    const Eigen::Vector2d ahead = way.towards_W.head<2>() / level;
-    const double along_m = ahead.dot(to_center), off2_m2 = to_center.squaredNorm() - along_m * along_m;
-    if (off2_m2 > wide_m * wide_m) return false;
-    first_m = std::max(first_m, (along_m - wide_m) / level);
-    last_m = std::min(last_m, (along_m + wide_m) / level);
-  } else if (to_center.squaredNorm() > wide_m * wide_m) {
-    return false;
+  const double farthest_m = std::sqrt(std::pow(to_center.norm() + reach_m, 2) + up_m * up_m);
+  const double rise = way.towards_W.z();
+  double first_m = 0.0, last_m = std::min(way.length_m, farthest_m), beside_m = 0.0;
+  for (int k = 0; k < 2; ++k) {  // no farther than it is low enough, no wider than it is so far
+    beside_m = bend_m(way.behind_m + last_m, detour_m);
+    const double over_m = top_m + beside_m - way.from_W.z(), under_m = bottom_m - beside_m - way.from_W.z();
+    if (std::abs(rise) < 1e-9) {
+      const double rounding_m = 1e-9 * last_m;
+      if (over_m < -rounding_m || under_m > rounding_m) return;
+      continue;
+    }
+    first_m = std::max(first_m, (rise > 0.0 ? under_m : over_m) / rise);
+    last_m = std::min(last_m, (rise > 0.0 ? over_m : under_m) / rise);
+    if (first_m > last_m) return;
   }
-  if (first_m > last_m) return false;
-  const double z1_m = way.from_W.z() + first_m * way.towards_W.z(), z2_m = way.from_W.z() + last_m * way.towards_W.z();
-  return std::min(z1_m, z2_m) <= top_m + beside_m && std::max(z1_m, z2_m) >= bottom_m - beside_m;
+  const Eigen::Vector2d from = way.from_W.head<2>() + first_m * way.towards_W.head<2>();
+  const Eigen::Vector2d over = (last_m - first_m) * way.towards_W.head<2>();
+  const double per_m2 = 1.0 / std::max(over.squaredNorm(), 1e-12);
+  for (std::size_t begin = 0; begin < blocks.size(); begin += kEdgeRow) {
+    const auto row = [begin](const std::vector<double>& column) {
+      return Eigen::Map<const Row>(column.data() + begin);
+    };
+    const Row dx_m = row(block_x_m) - from.x(), dy_m = row(block_y_m) - from.y();
+    const Row share = (per_m2 * (over.x() * dx_m + over.y() * dy_m)).max(0.0).min(1.0);
+    const Row off2_m2 = (dx_m - share * over.x()).square() + (dy_m - share * over.y()).square();
+    const Row wide_m = row(block_reach_m) + beside_m;
+    const std::size_t count = std::min(kEdgeRow, blocks.size() - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto at = static_cast<Eigen::Index>(k);
+      if (off2_m2[at] <= wide_m[at] * wide_m[at]) take(blocks[begin + k]);
+    }
+  }
 }
 
 void EdgeIndex::along(const Way& way, double detour_m, std::vector<std::uint32_t>& out) const {
   out.clear();
   const auto look = [&](const Block& block) {
-    for (std::size_t k = 0; k < block.edges.size(); ++k) {
-      const Eigen::Vector3d to_middle_W =
-          Eigen::Vector3d(block.middle_x_m[k], block.middle_y_m[k], block.middle_z_m[k]) - way.from_W;
-      const double half_m = block.half_m[k];
-      const double along_m = std::clamp(to_middle_W.dot(way.towards_W), 0.0, way.length_m);
-      const double wide_m = half_m + std::sqrt(2.0 * detour_m * (way.behind_m + along_m + half_m));
-      if ((to_middle_W - along_m * way.towards_W).squaredNorm() <= wide_m * wide_m) out.push_back(block.edges[k]);
+    for (std::size_t begin = 0; begin < block.edges.size(); begin += kEdgeRow) {
+      const auto row = [begin](const std::vector<double>& column) {
+        return Eigen::Map<const Row>(column.data() + begin);
+      };
+      const Row x_m = row(block.middle_x_m) - way.from_W.x(), y_m = row(block.middle_y_m) - way.from_W.y(),
+                z_m = row(block.middle_z_m) - way.from_W.z(), half_m = row(block.half_m);
+      const Row along_m =
+          (x_m * way.towards_W.x() + y_m * way.towards_W.y() + z_m * way.towards_W.z()).max(0.0).min(way.length_m);
+      const Row off2_m2 = (x_m - along_m * way.towards_W.x()).square() + (y_m - along_m * way.towards_W.y()).square() +
+                          (z_m - along_m * way.towards_W.z()).square();
+      const Row bent_m = (detour_m * (2.0 * (way.behind_m + along_m + half_m) + detour_m)).sqrt();
+      const Row wide_m = half_m + bent_m;
+      const std::size_t count = std::min(kEdgeRow, block.edges.size() - begin);
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto at = static_cast<Eigen::Index>(k);
+        if (off2_m2[at] <= wide_m[at] * wide_m[at]) out.push_back(block.edges[begin + k]);
+      }
     }
   };
-  for (const Tile& tile : tiles_) {
-    if (!tile.meets(way, detour_m)) continue;
-    for (const Block& block : tile.blocks)
-      if (block.meets(way, detour_m)) look(block);
-  }
+  for (const Tile& tile : tiles_) tile.blocks_along(way, detour_m, look);
 }
 
 void EdgeIndex::Block::take(const Edge& e, std::uint32_t index) {
@@ -162,6 +190,20 @@ void EdgeIndex::Block::fill_up() {
   }
 }
 
+void EdgeIndex::Tile::fill_up() {
+  for (Block& block : blocks) {
+    block.fill_up();
+    block_x_m.push_back(block.x_m);
+    block_y_m.push_back(block.y_m);
+    block_reach_m.push_back(block.reach_m);
+  }
+  const std::size_t rows = (blocks.size() + kEdgeRow - 1) / kEdgeRow;
+  for (auto* column : {&block_x_m, &block_y_m, &block_reach_m}) {
+    column->resize(rows * kEdgeRow, 0.0);
+    column->shrink_to_fit();
+  }
+}
+
 EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
   if (edges_.empty()) return;
   Eigen::Vector3d low = edges_[0].a_W;
@@ -177,8 +219,11 @@ EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
                     static_cast<int>((middle.x() - low.x()) / kTile_m));
     const auto [tile_at, new_tile] = tile_of.emplace(wide, tiles_.size());
     if (new_tile)
-      tiles_.push_back(
-          {{.x_m = low.x() + (wide.second + 0.5) * kTile_m, .y_m = low.y() + (wide.first + 0.5) * kTile_m}, {}});
+      tiles_.push_back({{.x_m = low.x() + (wide.second + 0.5) * kTile_m, .y_m = low.y() + (wide.first + 0.5) * kTile_m},
+                        {},
+                        {},
+                        {},
+                        {}});
     Tile& tile = tiles_[tile_at->second];
     const Cell place(static_cast<int>(std::floor(middle.y() / kBlock_m)),
                      static_cast<int>(std::floor(middle.x() / kBlock_m)));
@@ -190,8 +235,7 @@ EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
     tile.add(e);
     tile.blocks[at->second].take(e, i);
   }
-  for (Tile& tile : tiles_)
-    for (Block& block : tile.blocks) block.fill_up();
+  for (Tile& tile : tiles_) tile.fill_up();
 }
 
 template <class Take>
@@ -206,7 +250,6 @@ void EdgeIndex::find_shading(const Eigen::Vector3d& p_W, double elevation_rad, d
     return top_m + bend_m / cosine >= std::max(distance_m - square.reach_m, 0.0) * rise;
   };
   // The same of each edge, by rows, at its nearest.
-  using Row = Eigen::Array<double, static_cast<int>(kEdgeRow), 1>;
   const auto look = [&](const Block& block) {
     for (std::size_t begin = 0; begin < block.edges.size(); begin += kEdgeRow) {
       const auto row = [begin](const std::vector<double>& column) {

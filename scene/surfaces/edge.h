@@ -42,8 +42,8 @@ class EdgeIndex {
     double length_m;                    ///< may be infinite
     double behind_m = 0.0;              ///< >= 0
   };
-  /// Edges of which a point lies within sqrt(2 detour_m x distance from where the way comes from) of a way, in a fixed
-  /// order, and few others.
+  /// Edges at which what goes a way may bend with no larger detour, in a fixed order, and few others: a point of them
+  /// lies d on along the way from where it comes from, and within sqrt(2 detour_m d + detour_m^2) of it.
   void along(const Way& way, double detour_m, std::vector<std::uint32_t>& out) const;
 
  private:
@@ -52,7 +52,6 @@ class EdgeIndex {
     double x_m, y_m;
     double reach_m = 0.0;  ///< no edge of it comes farther from the center, horizontally
     double top_m = -1e300, bottom_m = 1e300;
-    bool meets(const Way& way, double detour_m) const;
     void add(const Edge& edge);
   };
   /// With what is asked of the edges whose middles lie in it, by columns, which are filled up to whole rows.
@@ -66,6 +65,10 @@ class EdgeIndex {
   /// Blocks of a large square, so that of a wide scene only what is near or high is looked at closely.
   struct Tile : Square {
     std::vector<Block> blocks;
+    std::vector<double> block_x_m, block_y_m, block_reach_m;  ///< of the blocks, filled up to whole rows
+    void fill_up();
+    template <class Take>
+    void blocks_along(const Way& way, double detour_m, const Take& take) const;
   };
   template <class Take>
   void find_shading(const Eigen::Vector3d& p_W, double elevation_rad, double detour_m, const Take& take) const;

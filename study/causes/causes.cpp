@@ -25,11 +25,17 @@ mission::Omissions unread(const mission::MissionConfig& config, bool told) {
 /// Drives one run of a comparison without recording anything but what `recorder` wants.
 Result<mission::RunRecord> drive(const Comparison& comparison, std::size_t run, mission::MissionConfig config,
                                  mission::Recorder* recorder, mission::LaterParts* later, Progress& progress) {
+  mission::PreparedMission mission = comparison.missions[run];
+  if (later != nullptr) {
+    // Whether a replay succeeds shows at its own end.
+    config.time.limit_s = later->config.time.limit_s = 0.0;
+    mission.time_limit_s = config.success.limit_factor * mission.nominal_s;
+  }
   const mission::Omissions omissions = unread(config, recorder != nullptr);
   config.run.record_tape = false;
   config = without(std::move(config), omissions);
   if (later != nullptr) later->config = without(std::move(later->config), omissions);
-  return run_mission(config, comparison.missions[run], &progress,
+  return run_mission(config, mission, &progress,
                      {.recorder = recorder, .autonomy = nullptr, .omissions = &omissions, .later = later});
 }
 
@@ -147,13 +153,11 @@ Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, 
   const auto each = (removals().size() + 1) * static_cast<std::size_t>(draws);
   const auto replays_s = [&](const std::vector<Failed>& of) {
     double sum_s = 0.0;
-    for (const Failed& f : of)
-      sum_s += static_cast<double>(each) *
-               std::min(comparison.missions[f.run].nominal_s, comparison.missions[f.run].time_limit_s);
+    for (const Failed& f : of) sum_s += static_cast<double>(each) * comparison.missions[f.run].nominal_s;
     return sum_s;
   };
   for (std::size_t i = 0; i < results.records.size(); ++i) {
-    if (!results.records[i].failure) continue;
+    if (!results.records[i].failure || results.records[i].outcome == mission::Outcome::kStopped) continue;
     Explanation explanation;
     explanation.run = comparison.plan[i].name;
     explanation.seed = comparison.configs[i].run.seed;

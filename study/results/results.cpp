@@ -50,11 +50,14 @@ Json waypoints_json(const mission::MissionConfig& config) {
   return out;
 }
 
-/// A figure of a run: with several seeds its median over them, or of closed loops how many succeed.
+/// A figure of a run: with several seeds its median over them, or of closed loops how many succeed, of how many ended.
 Json figure_of(const RunSummary& run, const std::string& key, const Results& results, const OverSeeds* seeds) {
   if (seeds == nullptr) return run_json(run)[key];
   const auto k = static_cast<std::size_t>(&run - results.summaries.data());
-  if (key == "successes") return seeds->open_loop ? Json(nullptr) : Json(seeds->shares[k].success);
+  if (key == "successes" || key == "ended") {
+    if (seeds->open_loop) return nullptr;
+    return key == "ended" ? seeds->shares[k].n : seeds->shares[k].success;
+  }
   for (const FigureOverSeeds& row : seeds->figures[k])
     if (row.figure->key == key) return number(row.median.value);
   return nullptr;
@@ -62,8 +65,10 @@ Json figure_of(const RunSummary& run, const std::string& key, const Results& res
 
 Json square_json(const TwoByTwo& square, const Results& results, const OverSeeds* seeds) {
   Json out{{"gnss", square.levels}, {"imu", square.levels}};
-  for (const char* key : {seeds == nullptr ? "outcome" : "successes", "position_error_rms_m",
-                          "registration_error_rms_m", "map_error_prior_rms_m"}) {
+  std::vector<const char*> keys{"position_error_rms_m", "registration_error_rms_m", "map_error_prior_rms_m"};
+  if (seeds == nullptr) keys.insert(keys.begin(), "outcome");
+  if (seeds != nullptr) keys.insert(keys.begin(), {"successes", "ended"});
+  for (const char* key : keys) {
     out[key] = Json::array();
     for (const auto& row : square.runs)
       out[key].push_back({figure_of(*row[0], key, results, seeds), figure_of(*row[1], key, results, seeds)});

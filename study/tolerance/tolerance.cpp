@@ -102,10 +102,13 @@ Result<ToleranceCurve> tolerance_curve(const mission::MissionFile& file, const s
   for (const auto& error : errors)
     if (error) return *error;
   for (std::size_t k = 0; k < sizes.size(); ++k) {
-    TolerancePoint point{.size = sizes[k], .n = static_cast<int>(n), .interval = {}};
+    TolerancePoint point{.size = sizes[k], .interval = {}};
     point.outcomes.assign(outcomes.begin() + static_cast<std::ptrdiff_t>(k * n),
                           outcomes.begin() + static_cast<std::ptrdiff_t>((k + 1) * n));
     point.success = static_cast<int>(std::count(point.outcomes.begin(), point.outcomes.end(), "success"));
+    // What [time] limit_s stopped has neither succeeded nor failed.
+    point.n =
+        static_cast<int>(n) - static_cast<int>(std::count(point.outcomes.begin(), point.outcomes.end(), "stopped"));
     point.interval = wilson_interval(point.success, point.n);
     curve.points.push_back(std::move(point));
   }
@@ -138,9 +141,11 @@ std::string tolerance_table(const ToleranceCurve& curve) {
     for (const std::string& outcome : others)
       ends += (ends.empty() ? "" : ", ") +
               std::to_string(std::count(point.outcomes.begin(), point.outcomes.end(), outcome)) + " " + outcome;
-    out += printed("%12g  %4d / %-3d  %.2f to %.2f    %s\n", point.size, point.success, point.n, point.interval.low,
-                   point.interval.high, ends.c_str());
+    const std::string interval = point.n > 0 ? printed("%.2f to %.2f", point.interval.low, point.interval.high) : "-";
+    out += printed("%12g  %4d / %-3d  %-14s  %s\n", point.size, point.success, point.n, interval.c_str(), ends.c_str());
   }
+  const auto ended = std::count_if(curve.points.begin(), curve.points.end(), [](const auto& p) { return p.n > 0; });
+  if (ended < 2) return out;  // nothing to compare
   out += curve.monotone() ? "Within their intervals, larger errors never succeed more often.\n"
                           : "A larger error succeeds more often than a smaller one, beyond their intervals.\n";
   return out;
@@ -148,9 +153,10 @@ std::string tolerance_table(const ToleranceCurve& curve) {
 
 std::string tolerance_csv(const ToleranceCurve& curve) {
   std::string out = "size,success,n,low,high\n";
-  for (const TolerancePoint& point : curve.points)
-    out +=
-        printed("%.9g,%d,%d,%.9g,%.9g\n", point.size, point.success, point.n, point.interval.low, point.interval.high);
+  for (const TolerancePoint& point : curve.points) {
+    out += printed("%.9g,%d,%d,", point.size, point.success, point.n);
+    out += point.n > 0 ? printed("%.9g,%.9g\n", point.interval.low, point.interval.high) : std::string(",\n");
+  }
   return out;
 }
 

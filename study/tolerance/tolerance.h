@@ -24,7 +24,7 @@ std::vector<double> usual_sizes(const std::string& disturbance);
 /// How often missions succeed with an error of that size.
 struct TolerancePoint {
   double size = 0.0;
-  int success = 0, n = 0;
+  int success = 0, n = 0;               ///< of how many that ended by themselves: not by [time] limit_s
   Interval interval;                    ///< Wilson's, of the share
   std::vector<std::string> outcomes{};  ///< by seed
 };

@@ -125,6 +125,7 @@ TEST_F(CommandLineTest, MixedRunsAreMadeOnOneTrueMotionAndOverSeeds) {
   const auto json = nlohmann::json::parse(read("stdout"));
   EXPECT_EQ(json["runs"].size(), 8U);
   EXPECT_EQ(json["two_by_two"]["successes"], (nlohmann::json{{0, 0}, {0, 0}}));
+  EXPECT_EQ(json["two_by_two"]["ended"], (nlohmann::json{{0, 0}, {0, 0}})) << "all are stopped";
 }
 
 TEST_F(CommandLineTest, SeedsInAnOpenLoopMeetOneTrueMotion) {

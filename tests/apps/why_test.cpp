@@ -15,9 +15,18 @@ using Json = nlohmann::json;
 
 class WhyTest : public CommandLineTest {};
 
-// No source of error is to blame for a mission that ends after four seconds whatever it believes.
+/// A vehicle that sees nothing, takes nothing for free, and so stands until it counts as stuck.
+std::string blind_mission() {
+  std::string text = kMission;
+  text.replace(text.find("limit_s = 4.0"), 13, "limit_s = 60.0");
+  return text +
+         "[autonomy.speed]\nassumed_seen_m = 0.0\n[success]\nstuck_after_s = 5.0\n"
+         "[lidar]\nblinded = true\n";
+}
+
+// No source of error is to blame for who does not drive whatever it believes.
 TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
-  write("mission.toml", std::string(kMission) + "[lidar]\nblinded = true\n");  // its scans would be most of the time
+  write("mission.toml", blind_mission());
   ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --out out"), 0)
       << read("stderr");
   EXPECT_THAT(read("stdout"),
@@ -39,6 +48,13 @@ TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
   // The same question again, on another number of threads: the same answer.
   ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --threads 1 --out again"), 0);
   EXPECT_EQ(read("again/why.json"), read("out/why.json"));
+}
+
+// What a time limit stopped has not failed, and is not asked about.
+TEST_F(WhyTest, AStoppedRunIsNotExplained) {
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --out out"), 0)
+      << read("stderr");
+  EXPECT_EQ(Json::parse(read("out/why.json"))["failures"].size(), 0U);
 }
 
 TEST_F(WhyTest, Mistakes) {

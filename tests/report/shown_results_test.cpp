@@ -226,6 +226,9 @@ TEST_F(ShownResults, TheTwoByTwoOverSeedsSaysHowManySucceed) {
   });
   const std::string html = section(page(), "two-by-two");
   EXPECT_THAT(html, HasSubstr("2 of 3 seeds succeed"));
+  edit_json(file("summary.json"), [](auto& summary) { summary["two_by_two"]["ended"] = {{3, 2}, {3, 0}}; });
+  EXPECT_THAT(section(page(), "two-by-two"), HasSubstr("2 of 2 seeds succeed"));
+  EXPECT_THAT(section(page(), "two-by-two"), HasSubstr("all seeds stopped"));
   EXPECT_THAT(html, HasSubstr("Medians over 3 seeds"));
 }
 

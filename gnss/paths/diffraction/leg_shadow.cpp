@@ -29,12 +29,14 @@ bool is_not_before(const scene::Edge& edge, const scene::Facet* mirror) {
 /// An edge that the leg passes.
 struct Passed {
   const scene::Edge* edge;
+  ScreenEdge screen;
   Eigen::Vector3d point_W, along_W;  ///< where the way over it is shortest; unit
   Eigen::Vector3d across_W;          ///< unit, across edge and leg, away from what throws the shadow
   double lit_m;                      ///< how far along it the leg lies from the shadow's border; in the shadow below 0
 
-  Passed(const scene::Edge& e, double at_m, const MirroredLeg& leg) : edge(&e), along_W((e.b_W - e.a_W).normalized()) {
-    point_W = e.a_W + at_m * along_W;
+  Passed(const scene::Edge& e, const ScreenEdge& s, const MirroredLeg& leg)
+      : edge(&e), screen(s), along_W((e.b_W - e.a_W).normalized()) {
+    point_W = e.a_W + s.at_m() * along_W;
     across_W = along_W.cross(leg.towards_W).normalized();
     if (across_W.dot(e.outward_W) < 0.0) across_W = -across_W;
     lit_m = across_W.dot(leg.from_W - e.a_W);
@@ -89,8 +91,7 @@ bool is_clear(const MirroredLeg& leg, const scene::SceneAt& scene, GnssCounters&
 std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
                                GnssCounters& counters) {
   std::complex<double> share = is_clear(leg, scene, counters) ? 1.0 : 0.0;
-  // At a shadow's border an edge makes a half, which may not have faded.
-  const double weakest = std::clamp(0.5 * least, ScreenEdge::kLeast, 0.25);
+  const double weakest = ScreenEdge::followed(least);
   const double detour_m = largest_detour_m(kFarEdgeField / weakest, leg.wavelength_m);
   const scene::EdgeIndex& index = scene.scene().edges();
   thread_local std::vector<std::uint32_t> near;
@@ -105,17 +106,23 @@ std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene
     if (edge.normal_1_W.dot(leg.towards_W) * edge.normal_2_W.dot(leg.towards_W) >= 0.0) continue;
     if (is_not_before(edge, leg.mirrors[0]) || is_not_before(edge, leg.mirrors[1])) continue;
     const ScreenEdge screen(edge.a_W, edge.b_W, image_W, leg.towards_W, leg.wavelength_m);
-    if (screen.most() <= weakest) continue;
-    const Passed passed(edge, screen.at_m(), leg);
+    if (screen.is_faded(weakest)) continue;
+    const Passed passed(edge, screen, leg);
     const double ahead_m = (passed.point_W - leg.from_W).dot(leg.towards_W);
     if (ahead_m <= 0.0 || ahead_m >= leg.length_m) continue;
-    const auto known = [&](const Passed& other) { return is_same(passed, other); };
-    if (std::any_of(before.begin(), before.end(), known)) continue;
+    // Of two that are the same the one that makes more stands for both.
+    const auto twin =
+        std::find_if(before.begin(), before.end(), [&](const Passed& other) { return is_same(passed, other); });
+    if (twin != before.end() && twin->screen.most() >= screen.most()) continue;
     if (!is_seen(passed, leg, scene, counters) || !ends_in_air(edge, passed.point_W, scene)) continue;
-    before.push_back(passed);
-    // It fades out over half of what it is at most.
-    const double kept = std::min(screen.most() / weakest - 1.0, 1.0);
-    share += (passed.lit_m >= 0.0 ? -kept : kept) * screen.field();
+    if (twin != before.end())
+      *twin = passed;
+    else
+      before.push_back(passed);
+  }
+  for (const Passed& passed : before) {
+    const std::complex<double> made = passed.screen.field(weakest);
+    share += passed.lit_m >= 0.0 ? -made : made;
   }
   return share;
 }

@@ -26,10 +26,9 @@ struct MirroredLeg {
 /// shadow, less or more by what the edges near the leg make (ScreenEdge): things are screens, as thick as they are.
 /// Half at the border of a shadow, and continuous there, corners included; not where one thing hides another's edge,
 /// nor where a leg ends beside an edge. Edges in the plane of a mirror are its own (mirrored_share), those behind it
-/// are nobody's. Things that move hide sharply. What is weaker than `least` is left out.
+/// are nobody's. Things that move hide sharply. Edges so far off that an endless one there would
+/// make no more than twice `least` (a half, if that is more) fade out.
 std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
                                GnssCounters& counters);
-/// |leg_share| of one straight edge is no more than this (1.17).
-inline constexpr double kMostLit = 1.2;
 
 }  // namespace canyon::gnss

@@ -15,24 +15,23 @@ std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const
   std::complex<double> share = holds ? 1.0 : 0.0;
   thread_local std::vector<ScreenEdge> sides;
   sides.clear();
-  double most = std::abs(share);
   for (const scene::FacetBorder& side : facet.borders)
-    most += sides.emplace_back(side.from_W, side.to_W, wave.image_W, wave.towards_W, wave.wavelength_m).most();
-  if (most < least) return 0.0;
+    sides.emplace_back(side.from_W, side.to_W, wave.image_W, wave.towards_W, wave.wavelength_m);
+  const double weakest = ScreenEdge::followed(least);
   for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (sides[i].most() <= ScreenEdge::kLeast) continue;
+    if (sides[i].is_faded(weakest)) continue;
     const scene::FacetBorder& side = facet.borders[i];
     const Eigen::Vector3d inward_W = facet.normal_W.cross(side.to_W - side.from_W);
     // On a side as facet_contains has it.
     const bool inner = inward_W.dot(wave.at_W - side.from_W) >= -1e-9 * inward_W.norm();
-    const std::complex<double> made = sides[i].field();
+    const std::complex<double> made = sides[i].field(weakest);
     share += inner ? -made : made;
   }
   return share;
 }
 
 double largest_border_nu(double weakest_db) {
-  return kFarEdgeField * std::pow(10.0, -weakest_db / 20.0);
+  return kFarEdgeField / std::max(std::pow(10.0, weakest_db / 20.0), kFaintestBorder);
 }
 
 Eigen::Vector3d nearest_of_border(const scene::Facet& facet, const Eigen::Vector3d& at_W) {

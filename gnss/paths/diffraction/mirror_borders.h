@@ -19,13 +19,16 @@ struct MirroredWave {
 /// in Fresnel's approximation, as 1 if the facet holds `at_W` and 0 if not, less what each side of it makes (Maggi and
 /// Rubinowicz: finite_edge_factor, of a thin screen's edge, knife_edge_field). Half at a side, a quarter at a right
 /// corner, area x cos(incidence) / (wavelength x distance) of a small facet; continuous. Time factor exp(+j w t), phase
-/// of the mirrored way. Within 5e-3 for each side. 0 where it is surely weaker than `least`.
+/// of the mirrored way. Within 5e-3 for each side, but for sides so far off that an endless edge there would make no
+/// more than twice `least` (a half, if that is more): they fade out.
 std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const MirroredWave& wave,
                                     double least = 0.0);
 /// |mirrored_share| is no more than this: 1.8 of a rectangle, 2 of a disc; zone plates are not built.
 inline constexpr double kMostMirrored = 2.0;
 
-/// Beyond this nu of a side (knife_edge_nu) what it makes is below `weakest_db` of an endless mirror's.
+/// What a border or an edge changes of an echo by less is not worth following: a twentieth, -26 dB.
+inline constexpr double kFaintestBorder = 0.05;
+/// Beyond this nu of a side (knife_edge_nu) what it makes is below `weakest_db` of an endless mirror's, or too faint.
 double largest_border_nu(double weakest_db);
 
 /// The point of the facet's border that is nearest to a point of its plane; that point if there is no border.

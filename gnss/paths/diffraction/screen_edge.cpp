@@ -40,11 +40,14 @@ ScreenEdge::ScreenEdge(const Eigen::Vector3d& a_W, const Eigen::Vector3d& b_W, c
   u2_ = (length_m - at_m) * per_m;
   most_ = largest_knife_edge_field(nu_) * largest_finite_edge_factor(nu_, u1_, u2_);
   at_m_ = std::clamp(at_m, 0.0, length_m);
+  // The detour grows with the square of how far along the edge one is from where it is least.
+  strength_ = largest_knife_edge_field(std::hypot(nu_, std::max({u1_, -u2_, 0.0})));
 }
 
-std::complex<double> ScreenEdge::field() const {
-  if (most_ <= kLeast) return 0.0;
-  return std::min(most_ / kLeast - 1.0, 1.0) * finite_edge_field(nu_, u1_, u2_);
+std::complex<double> ScreenEdge::field(double weakest) const {
+  if (is_faded(weakest)) return 0.0;
+  const double kept = std::min(most_ / kLeast - 1.0, 1.0) * std::min(strength_ / weakest - 1.0, 1.0);
+  return kept * finite_edge_field(nu_, u1_, u2_);
 }
 
 }  // namespace canyon::gnss

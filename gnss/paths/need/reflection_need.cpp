@@ -109,11 +109,11 @@ class Search {
       if (q_.limits.finite_facets) {
         const Ball& image = images_[static_cast<std::size_t>(k)];
         const double near_m = (f.center_W - image.center_W).norm() - f.radius_m - image.radius_m;
-        const double mirrored = q_.limits.reflection_borders ? kMostMirrored : 1.0;
-        if (near_m > 0.0)
-          left *= std::min(mirrored, f.area_m2 * most / (kShortestWave_m * near_m));
-        else
-          left *= mirrored;
+        // Beside its borders what fades out need not add up to so little.
+        if (q_.limits.reflection_borders)
+          left *= kMostMirrored;
+        else if (near_m > 0.0)
+          left *= std::min(1.0, f.area_m2 * most / (kShortestWave_m * near_m));
       }
       towards_W -= 2.0 * cosine * f.normal_W;
     }

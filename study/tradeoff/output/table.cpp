@@ -102,13 +102,15 @@ std::string outcome_table(const std::vector<MeasuredFidelity>& runs) {
     for (const auto& [outcome, count] : share.outcomes)
       how += (how.empty() ? "  " : ", ") + outcome + " " + std::to_string(count);
     table.line("  " + run.name,
-               {printed("%d of %d", share.success, share.n),
-                printed("%.0f-%.0f %%", 100.0 * share.interval.low, 100.0 * share.interval.high), three(cpu_s),
-                three(least_s), three(most_s)},
+               {share.text(),
+                share.n > 0 ? printed("%.0f-%.0f %%", 100.0 * share.interval.low, 100.0 * share.interval.high) : "-",
+                three(cpu_s), three(least_s), three(most_s)},
                how);
   }
-  return "The mission as a whole, closed loop, " + std::to_string(runs.front().outcomes->share.n) +
-         " seeds: outcomes against CPU time\n" + table.str() + "\n";
+  int seeds = 0;
+  for (const auto& [outcome, count] : runs.front().outcomes->share.outcomes) seeds += count;
+  return "The mission as a whole, closed loop, " + std::to_string(seeds) + " seeds: outcomes against CPU time\n" +
+         table.str() + "\n";
 }
 
 std::string chosen_text(const Chosen& chosen) {

@@ -66,6 +66,19 @@ TEST(LegShadow, AnEdgeInPiecesIsOne) {
           << x << ", " << y;
 }
 
+// Many short pieces each make little.
+TEST(LegShadow, AnEdgeInManyPiecesIsOneWhateverMatters) {
+  const auto whole = screen(-800, -50, 0, 50);
+  WallScene cut;
+  for (int k = -50; k < 50; ++k) cut.wall({-800, static_cast<double>(k), 0}, {800, 0, 0}, {0, 1, 0});
+  const auto pieces = cut.build();
+  for (const double least : {0.01, 0.1, 0.25})
+    for (double x = -4.0; x < 4.0; x += 0.17)
+      EXPECT_NEAR(std::abs(share_upwards(*pieces, {x, 0.3, -20}, least) - share_upwards(*whole, {x, 0.3, -20}, least)),
+                  0.0, 0.02 + 0.5 * least)
+          << x << ", " << least;
+}
+
 TEST(LegShadow, ThreeQuartersAreLeftAtACorner) {
   EXPECT_NEAR(std::abs(share_upwards(*screen(1e-4, 1e-4, 600, 600), {0, 0, -20}) - 0.75), 0.0, 0.01);
 }

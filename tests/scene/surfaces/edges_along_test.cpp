@@ -29,7 +29,8 @@ bool lies_near(const Edge& e, const EdgeIndex::Way& way, double detour_m) {
   for (int k = 0; k <= 200; ++k) {
     const Eigen::Vector3d p_W = e.a_W + k / 200.0 * (e.b_W - e.a_W) - way.from_W;
     const double along_m = std::clamp(p_W.dot(way.towards_W), 0.0, way.length_m);
-    if ((p_W - along_m * way.towards_W).squaredNorm() <= 2.0 * detour_m * (way.behind_m + along_m)) return true;
+    if ((p_W - along_m * way.towards_W).squaredNorm() <= detour_m * (2.0 * (way.behind_m + along_m) + detour_m))
+      return true;
   }
   return false;
 }

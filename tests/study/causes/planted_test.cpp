@@ -83,6 +83,10 @@ TEST(PlantedCauses, ACheapUnitWithoutFixesIsNamed) {
     const auto e = named(plant, seed);
     if (!e) continue;
     EXPECT_TRUE(is_right(plant, *e)) << told(plant, seed, *e);
+    // It drifts metres while it drives ten, so that what it passes stands twice in its map.
+    EXPECT_TRUE(std::any_of(e->events.begin(), e->events.end(), [](const Event& event) {
+      return event.kind == EventKind::kMapDoubled;
+    })) << told(plant, seed, *e);
     return;
   }
   FAIL() << "no seed fails";

@@ -56,5 +56,18 @@ TEST(Tolerance, WhoSteersByThePoseAloneTakesHeightAndNoStep) {
   EXPECT_THAT(unknown.error().str(), ::testing::HasSubstr("nearest is \"height_m\""));
 }
 
+TEST(Tolerance, StoppedMissionsCountForNothing) {
+  const auto file = mission::MissionFile::parse(
+      "base = \"vicksburg\"\n[run]\nname = \"stopped\"\n[time]\nlimit_s = 1.0\n[registration]\nmethod = \"none\"\n",
+      "stopped.toml");
+  ASSERT_TRUE(file.ok()) << file.error().str();
+  const auto curve = tolerance_curve(*file, "low", "height_m", {2.0}, 2, false);
+  ASSERT_TRUE(curve.ok()) << curve.error().str();
+  EXPECT_EQ(curve->points[0].n, 0);
+  EXPECT_THAT(tolerance_table(*curve), ::testing::HasSubstr("  0 / 0    -               2 stopped\n"));
+  EXPECT_EQ(tolerance_csv(*curve), "size,success,n,low,high\n2,0,0,,\n");
+  EXPECT_TRUE(tolerance_json(*curve)["points"][0]["low"].is_null());
+}
+
 }  // namespace
 }  // namespace canyon::study
