@@ -48,9 +48,10 @@ std::string shares(const Results& results) {
     for (const auto& [kind, count] : share.outcomes) outcomes.push_back(outcome_label(kind) + " " + show_count(count));
     body += "<tr><th scope=\"row\">" + tag_of(results, share.fidelity) + "</th><td>" +
             (share.n > 0 ? show_count(share.success) + " of " + show_count(share.n) : "all stopped") + "</td><td>" +
-            show_share(share.success / share.n) + "</td><td>" + show_share(share.interval.low) + " to " +
-            show_share(share.interval.high) + "</td><td class=\"share-cell\">" + share_bar(results, share) +
-            "</td><td class=\"text\">" + escape_html(listed(outcomes)) + "</td></tr>\n";
+            show_share(share.success / share.n) + "</td><td>" +
+            (share.n > 0 ? show_share(share.interval.low) + " to " : "") + show_share(share.interval.high) +
+            "</td><td class=\"share-cell\">" + share_bar(results, share) + "</td><td class=\"text\">" +
+            escape_html(listed(outcomes)) + "</td></tr>\n";
   }
   return "<h3>Share of success</h3>\n" + scrolled("Share of success over seeds", "shares", body + "</tbody>");
 }
