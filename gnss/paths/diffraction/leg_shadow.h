@@ -26,8 +26,8 @@ struct MirroredLeg {
 /// shadow, less or more by what the edges near the leg make (ScreenEdge): things are screens, as thick as they are.
 /// Half at the border of a shadow, and continuous there, corners included; not where one thing hides another's edge,
 /// nor where a leg ends beside an edge. Edges in the plane of a mirror are its own (mirrored_share), those behind it
-/// are nobody's. Things that move hide sharply. Edges so far off that an endless one there would
-/// make no more than twice `least` (a half, if that is more) fade out.
+/// are nobody's. Things that move hide sharply. Edges so far off that an endless one there would make no more than
+/// twice `least`, or a half if that is less, fade out.
 std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
                                GnssCounters& counters);
 

@@ -20,7 +20,7 @@ struct MirroredWave {
 /// Rubinowicz: finite_edge_factor, of a thin screen's edge, knife_edge_field). Half at a side, a quarter at a right
 /// corner, area x cos(incidence) / (wavelength x distance) of a small facet; continuous. Time factor exp(+j w t), phase
 /// of the mirrored way. Within 5e-3 for each side, but for sides so far off that an endless edge there would make no
-/// more than twice `least` (a half, if that is more): they fade out.
+/// more than twice `least`, or a half if that is less: they fade out.
 std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const MirroredWave& wave,
                                     double least = 0.0);
 /// |mirrored_share| is no more than this: 1.8 of a rectangle, 2 of a disc; zone plates are not built.

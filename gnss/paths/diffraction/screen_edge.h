@@ -18,22 +18,21 @@ class ScreenEdge {
              const Eigen::Vector3d& towards_W, double wavelength_m);
 
   double most() const { return most_; }  ///< |field()| is no more
-  /// What an endless edge makes at most whose way is as long as the shortest over this piece. By it pieces are left
-  /// out: those of one edge, and the sides of a small figure, which cancel out, go together.
-  double strength() const { return strength_; }
-  /// Fades out where the strength falls from twice the weakest to it, and in itself from 6e-3 to 3e-3; in a
-  /// microsecond, continuous.
+  /// Fades out where an endless edge, on a way as long as the shortest over this piece, would make from twice the
+  /// weakest down to it: pieces of one edge, and the sides of a small figure, which cancel out, go together. What is
+  /// faint in itself fades from 6e-3 to 3e-3. In a microsecond, continuous.
   std::complex<double> field(double weakest) const;
   /// Nothing is left of field() there.
   bool is_faded(double weakest) const { return most_ <= kLeast || strength_ <= weakest; }
   /// The weakest to follow where `least` matters. At a shadow's border an edge makes a half, which may not have faded.
-  static double followed(double least) { return std::min(least, 0.25); }
+  static double followed(double least) { return std::clamp(least, kLeast, 0.25); }
   /// Where the way over the edge is shortest, from its first end on; held within it. Of use where most() > 0.
   double at_m() const { return at_m_; }
 
  private:
   static constexpr double kLeast = 3e-3;
-  double nu_ = 0.0, u1_ = 0.0, u2_ = 0.0, most_ = 0.0, strength_ = 0.0, at_m_ = 0.0;
+  double nu_ = 0.0, u1_ = 0.0, u2_ = 0.0, most_ = 0.0, at_m_ = 0.0;
+  double strength_ = 0.0;  ///< what that endless edge makes at most
 };
 
 }  // namespace canyon::gnss
