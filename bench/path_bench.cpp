@@ -198,9 +198,10 @@ void channel(benchmark::State& state, const char* diffraction, const char* scatt
 }
 
 /// 45 satellites: as many as five systems show at once in the open.
-void channel_in_shibuya(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter) {
+void channel_in_shibuya(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter,
+                        bool borders = false) {
   if (const canyon::scene::Scene* scene = shibuya(state))
-    drive(state, *scene, shibuya_way(*scene), satellites(45), diffraction, scatter, clutter);
+    drive(state, *scene, shibuya_way(*scene), satellites(45), diffraction, scatter, clutter, borders);
 }
 
 void bare_rays_in_shibuya(benchmark::State& state) {
@@ -242,10 +243,18 @@ BENCHMARK_CAPTURE(channel, street, "wedge", "directive", "street")->Name("channe
 BENCHMARK_CAPTURE(channel, street_borders, "wedge", "directive", "street", true)
     ->Name("channel/wedge+directive+street+borders")
     ->Arg(1000);
+BENCHMARK_CAPTURE(channel, scatter_borders, "wedge", "directive", "none", true)
+    ->Name("channel/wedge+directive+borders")
+    ->Arg(1000)
+    ->Arg(5200);
 BENCHMARK_CAPTURE(channel, scatter_wide, "wedge", "directive", "none")->Name("channel/wedge+directive")->Arg(5200);
 BENCHMARK(bare_rays_in_shibuya)->Name("shibuya/bare_rays")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(channel_in_shibuya, scatter, "wedge", "directive", "none")->Name("shibuya/wedge+directive");
 BENCHMARK_CAPTURE(channel_in_shibuya, street, "wedge", "directive", "street")->Name("shibuya/wedge+directive+street");
+BENCHMARK_CAPTURE(channel_in_shibuya, scatter_borders, "wedge", "directive", "none", true)
+    ->Name("shibuya/wedge+directive+borders");
+BENCHMARK_CAPTURE(channel_in_shibuya, street_borders, "wedge", "directive", "street", true)
+    ->Name("shibuya/wedge+directive+street+borders");
 BENCHMARK_CAPTURE(model, launching, "launching", "none", false)
     ->Name("paths/launching")
     ->Arg(1000)

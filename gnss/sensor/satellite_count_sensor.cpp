@@ -66,7 +66,8 @@ class SatelliteCountSensor final : public GnssSensor {
     out.fix.status = FixStatus::kSingle;
     out.fix.satellites = satellites;
     out.fix.p_A_E = out.truth.p_A_E + frame_.R_EW() * (sigma_m * noise_.normal3(static_cast<std::uint64_t>(index)));
-    out.fix.covariance_E = sigma_m * sigma_m * Eigen::Matrix3d::Identity();
+    const double claimed_m = std::max(sigma_m, kLeastClaimed_m);
+    out.fix.covariance_E = claimed_m * claimed_m * Eigen::Matrix3d::Identity();
     out.fix.dop = dilution(out.truth);
     return out;
   }

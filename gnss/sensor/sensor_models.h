@@ -34,6 +34,10 @@ using MakeSensor = MakerAndNeed<Result<std::unique_ptr<GnssSensor>>(const ModelP
                                 const SensorNeeds>;
 ModelTable<MakeSensor> sensor_models();
 
+/// The least that a fix whose noise is a key claims, 1-sigma per axis: whoever weighs it needs a covariance with an
+/// inverse.
+inline constexpr double kLeastClaimed_m = 1e-3;
+
 /// truth_plus_isotropic: the fix is the truth plus an isotropic direction times U(min, max); see isotropic_sensor.cpp.
 Result<std::unique_ptr<GnssSensor>> make_isotropic_sensor(const ModelParameters& own, const SensorSetup& at);
 void isotropic_parameters(ModelParameters& section);

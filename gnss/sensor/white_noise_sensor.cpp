@@ -37,7 +37,8 @@ class WhiteNoiseSensor final : public GnssSensor {
     out.truth.v_A_E = frame_.R_EW() * v_A_W;
     out.fix.status = FixStatus::kSingle;
     out.fix.p_A_E = out.truth.p_A_E + frame_.R_EW() * sigma_m.cwiseProduct(noise_.normal3(sample));
-    out.fix.covariance_E = frame_.R_EW() * sigma_m.cwiseAbs2().asDiagonal() * frame_.R_EW().transpose();
+    const Eigen::Vector3d claimed_m = sigma_m.cwiseMax(kLeastClaimed_m);
+    out.fix.covariance_E = frame_.R_EW() * claimed_m.cwiseAbs2().asDiagonal() * frame_.R_EW().transpose();
     ++counters_.epochs;
     return out;
   }

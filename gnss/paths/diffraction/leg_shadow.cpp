@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -26,33 +28,36 @@ bool is_not_before(const scene::Edge& edge, const scene::Facet* mirror) {
   return before_m(edge.a_W) < kInPlane_m && before_m(edge.b_W) < kInPlane_m;
 }
 
-/// An edge that the leg passes.
+/// An edge that the leg passes, or several that overlap on one line.
 struct Passed {
   const scene::Edge* edge;
+  Eigen::Vector3d a_W, b_W;
   ScreenEdge screen;
   Eigen::Vector3d point_W, along_W;  ///< where the way over it is shortest; unit
   Eigen::Vector3d across_W;          ///< unit, across edge and leg, away from what throws the shadow
   double lit_m;                      ///< how far along it the leg lies from the shadow's border; in the shadow below 0
 
-  Passed(const scene::Edge& e, const ScreenEdge& s, const MirroredLeg& leg)
-      : edge(&e), screen(s), along_W((e.b_W - e.a_W).normalized()) {
-    point_W = e.a_W + s.at_m() * along_W;
+  Passed(const scene::Edge& e, const Eigen::Vector3d& from_W, const Eigen::Vector3d& to_W, const ScreenEdge& s,
+         const MirroredLeg& leg)
+      : edge(&e), a_W(from_W), b_W(to_W), screen(s), along_W((to_W - from_W).normalized()) {
+    point_W = a_W + s.at_m() * along_W;
     across_W = along_W.cross(leg.towards_W).normalized();
     if (across_W.dot(e.outward_W) < 0.0) across_W = -across_W;
-    lit_m = across_W.dot(leg.from_W - e.a_W);
+    lit_m = across_W.dot(leg.from_W - a_W);
   }
+  double length_m() const { return (b_W - a_W).norm(); }
 };
 
-/// Two houses that share an edge have it twice. One that goes on where another ends is another, and so is one that
+/// From where to where along the one both reach together, if they lie over one another on one line and look the same
+/// way: houses that share an edge have it twice. One that goes on where another ends is another, and so is one that
 /// looks the other way: what sheets side by side make where they meet cancels out.
-bool is_same(const Passed& one, const Passed& other) {
-  if ((other.point_W - one.point_W).squaredNorm() > kSame_m * kSame_m ||
-      std::abs(other.along_W.dot(one.along_W)) < 0.999)
-    return false;
-  if (other.across_W.dot(one.across_W) < 0.0) return false;
-  const auto at_m = [&](const Eigen::Vector3d& p_W) { return (p_W - one.edge->a_W).dot(one.along_W); };
-  const auto [first_m, last_m] = std::minmax({at_m(other.edge->a_W), at_m(other.edge->b_W)});
-  return std::min(last_m, at_m(one.edge->b_W)) - std::max(first_m, 0.0) > kSame_m;
+std::optional<std::pair<double, double>> reach_together_m(const Passed& one, const Passed& other) {
+  if (std::abs(other.along_W.dot(one.along_W)) < 0.999 || other.across_W.dot(one.across_W) < 0.0) return std::nullopt;
+  const Eigen::Vector3d a_W = other.a_W - one.a_W, b_W = other.b_W - one.a_W;
+  if (a_W.cross(one.along_W).norm() > kSame_m || b_W.cross(one.along_W).norm() > kSame_m) return std::nullopt;
+  const auto [first_m, last_m] = std::minmax({a_W.dot(one.along_W), b_W.dot(one.along_W)});
+  if (std::min(last_m, one.length_m()) - std::max(first_m, 0.0) <= kSame_m) return std::nullopt;
+  return std::pair{std::min(first_m, 0.0), std::max(last_m, one.length_m())};
 }
 
 /// Is the edge seen from both ends of the leg? What throws the shadow does not hide its own edge from within it: it is
@@ -107,15 +112,22 @@ std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene
     if (is_not_before(edge, leg.mirrors[0]) || is_not_before(edge, leg.mirrors[1])) continue;
     const ScreenEdge screen(edge.a_W, edge.b_W, image_W, leg.towards_W, leg.wavelength_m);
     if (screen.is_faded(weakest)) continue;
-    const Passed passed(edge, screen, leg);
+    Passed passed(edge, edge.a_W, edge.b_W, screen, leg);
     const double ahead_m = (passed.point_W - leg.from_W).dot(leg.towards_W);
     if (ahead_m <= 0.0 || ahead_m >= leg.length_m) continue;
-    // Of two that are the same the one that makes more stands for both.
-    const auto twin =
-        std::find_if(before.begin(), before.end(), [&](const Passed& other) { return is_same(passed, other); });
-    if (twin != before.end() && twin->screen.most() >= screen.most()) continue;
+    auto twin = before.begin();
+    std::optional<std::pair<double, double>> both_m;
+    while (twin != before.end() && !(both_m = reach_together_m(*twin, passed))) ++twin;
+    if (both_m) {
+      const auto [first_m, last_m] = *both_m;
+      if (last_m - first_m <= twin->length_m() + kSame_m) continue;
+      if (last_m - first_m > passed.length_m() + kSame_m) {
+        const Eigen::Vector3d a_W = twin->a_W + first_m * twin->along_W, b_W = twin->a_W + last_m * twin->along_W;
+        passed = Passed(edge, a_W, b_W, {a_W, b_W, image_W, leg.towards_W, leg.wavelength_m}, leg);
+      }
+    }
     if (!is_seen(passed, leg, scene, counters) || !ends_in_air(edge, passed.point_W, scene)) continue;
-    if (twin != before.end())
+    if (both_m)
       *twin = passed;
     else
       before.push_back(passed);

@@ -79,6 +79,31 @@ TEST(LegShadow, AnEdgeInManyPiecesIsOneWhateverMatters) {
           << x << ", " << least;
 }
 
+// Houses that share an edge have it twice. Whichever comes first, together they are one that reaches as far as both, at
+// every place of the leg. The second one here is a roof that rises from the first, whose sides the first hides.
+TEST(LegShadow, EdgesThatOverlapAreOne) {
+  const auto twins = [](double y1, double y2, bool roof_first) {
+    WallScene scene;
+    for (const bool roof : {roof_first, !roof_first}) {
+      if (roof)
+        scene.wall({0, y1, 0}, {0, y2 - y1, 0}, {-60, 0, 30});
+      else
+        scene.wall({-800, -2, 0}, {800, 0, 0}, {0, 4, 0});
+    }
+    return scene.build();
+  };
+  const auto alone = screen(-800, -2, 0, 2);
+  for (const auto& [y1, y2] : {std::pair{-0.7, 1.1}, std::pair{-1.5, 1.9}, std::pair{0.5, 5.0}}) {
+    const auto one = twins(y1, y2, true), other = twins(y1, y2, false);
+    for (const double y : {-3.0, -1.9, -0.5, 0.0, 1.0, 2.1, 4.0})
+      for (const double x : {-1.3, -0.4, -0.002}) {
+        const Complex expected = share_upwards(y2 > 2.0 ? *other : *alone, {x, y, -20});
+        EXPECT_NEAR(std::abs(share_upwards(*one, {x, y, -20}) - expected), 0.0, 1e-3) << x << ", " << y << ", " << y1;
+        EXPECT_NEAR(std::abs(share_upwards(*other, {x, y, -20}) - expected), 0.0, 1e-3) << x << ", " << y << ", " << y1;
+      }
+  }
+}
+
 TEST(LegShadow, ThreeQuartersAreLeftAtACorner) {
   EXPECT_NEAR(std::abs(share_upwards(*screen(1e-4, 1e-4, 600, 600), {0, 0, -20}) - 0.75), 0.0, 0.01);
 }

@@ -59,6 +59,22 @@ TEST(WhiteNoiseSensor, HasItsSigmas) {
   EXPECT_TRUE(one.epoch.observations.empty());
 }
 
+// 2026-11-28: a run with white_sigma_up_m = 0 ended in the filter's own check of what it is given.
+TEST(WhiteNoiseSensor, AFixWithoutNoiseStillHasACovarianceToWeighItBy) {
+  const auto open = WallScene().wall({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).build();
+  for (const auto& [model, keys] : {std::pair{"truth_plus_white", "white_sigma_m = 10000.0\nwhite_sigma_up_m = 0.0"},
+                                    std::pair{"truth_plus_white", "white_sigma_m = 0.0\nwhite_sigma_up_m = 0.0"},
+                                    std::pair{"satellite_count", "count_noise_max_m = 0.0\ncount_noise_min_m = 0.0"}}) {
+    GnssConfig c;
+    c.model.name = model;
+    testing::set_keys(c, keys);
+    const GnssOutput o =
+        make(c, *open)->measure(0, kLowStart, {5, 5, 2}, Eigen::Vector3d::Zero(), scene::SceneAt(*open));
+    ASSERT_NE(o.fix.status, FixStatus::kNone);
+    EXPECT_EQ(o.fix.covariance_E.llt().info(), Eigen::Success) << model << ": " << keys;
+  }
+}
+
 TEST(SatelliteCountSensor, NoiseFallsWithTheNumberInSight) {
   const auto open = WallScene().wall({0, 0, 0}, {1, 0, 0}, {0, 1, 0}).build();
   GnssConfig c;
