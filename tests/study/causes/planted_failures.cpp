@@ -124,10 +124,11 @@ const std::vector<Plant>& plants() {
         "autonomy.model = \"reference_2012\"\ngnss.model = \"truth_plus_white\"\ngnss.white_sigma_m = 0.05\n"
         "gnss.white_sigma_up_m = 6.0\nsuccess.stuck_after_s = 20.0\n"}},
       // One source without a switch: of the pose as a whole it can be said.
-      {"white fixes of metres",
+      {"fixes that err by ten metres and claim decimetres",
        {"navigation"},
        Kind::kNoSwitch,
-       {kPerfectUnit, kAligned, "gnss.model = \"truth_plus_white\"\ngnss.white_sigma_m = 12.0\n"}},
+       {kPerfectUnit, kAligned,
+        "gnss.model = \"truth_plus_isotropic\"\ngnss.isotropic_min_m = 6.0\ngnss.isotropic_max_m = 12.0\n"}},
       {"an ionosphere that nobody corrects",
        {"navigation"},
        Kind::kNoSwitch,
@@ -161,7 +162,8 @@ const std::vector<Plant>& plants() {
       {"blocked satellites and reflections: either is enough",
        {"buildings"},
        Kind::kTwoTogether,
-       {kReceiver, kThinIonosphere, kPerfectUnit, kAligned, "gnss.multipath_scale = 3.0\n"}},
+       {kReceiver, kThinIonosphere, kPerfectUnit, kAligned,
+        "gnss.multipath_scale = 3.0\ngnss.hidden_signals = \"dropped\"\n"}},
       // None: the true pose would not have helped.
       {"a street that is barred", {}, Kind::kNone, {kPerfectFixes, kPerfectUnit, kAligned, kBarrier}},
       {"a street that is barred, and fixes of a metre",
