@@ -73,7 +73,7 @@ max_gdop = 30.0
                                     "former");
   MissionConfig named = with(
       "[gnss]\nreceiver = \"snapshot_gps\"\ndiffraction = \"double_knife_edge\"\nscatter = \"none\"\n"
-      "clutter = \"none\"\n",
+      "clutter = \"none\"\nreflection_borders = false\n",
       "high");
   EXPECT_EQ(named.gnss.receiver, "snapshot_gps");
   named.gnss.receiver.clear();
