@@ -70,7 +70,7 @@ def main():
     parser.add_argument("--speeds", type=lambda text: [float(v) for v in text.split(",")], default=[0.1, 0.025], metavar="M_S,M_S")
     parser.add_argument("--directions", type=lambda text: text.split(","), default=["east", "north"])
     options = parser.parse_args()
-    rows = [row.split(";") for row in options.row] if options.row else [BARE, BARE + ["reflection_borders = true"]]
+    rows = [row.split(";") for row in options.row] if options.row else [BARE + ["reflection_borders = false"], BARE + ["reflection_borders = true"]]
     with tempfile.TemporaryDirectory() as scratch:
         for speed_m_s in options.speeds:
             print(f"{speed_m_s} m/s: one of a hundred, most (median over drives, largest), m; most, less than in the first row (mean, 95 %)")
