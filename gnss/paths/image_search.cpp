@@ -101,10 +101,9 @@ class ImageSearch {
       std::erase_if(*of, [&](std::uint32_t i) { return skyline.hides(facets_[i]); });
   }
 
-  /// Walls lower than the lowest satellite, which so far away mirror it beside their borders.
+  /// Walls lower than the lowest satellite, which mirror it beside their borders.
   void add_alone(const scene::FacetIndex& index, double lowest_rad) {
-    const double bend_rad = std::sqrt(2.0 * bend_m_ / p_.combine_all_m);
-    index.mirrors(antenna_W_, std::max(lowest_rad - bend_rad, 0.0), reach_per_area_, p_.leaning_reach_m, work_.alone);
+    index.mirrors(antenna_W_, lowest_rad, reach_per_area_, p_.leaning_reach_m, work_.alone, bend_m_);
     work_.sorted = work_.rows.ids;
     std::sort(work_.sorted.begin(), work_.sorted.end());
     std::erase_if(work_.alone,
@@ -277,22 +276,20 @@ class ImageSearch {
                        std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W, SignalPath& path) {
     const double full = std::sqrt(std::norm(path.copolar) + std::norm(path.crosspolar));
     std::complex<double> share = 1.0;
-    double enough = 0.0, kept = 1.0;  // what matters of what comes in
+    double needed = 0.0, kept = 1.0;  // what of what comes in is too weak, and matters
     const auto passes = [&](const std::complex<double>& part) {
       share *= part;
       const double strength = std::abs(share) * full;
-      enough = std::max(least / strength, kFaintestBorder);
+      needed = least / strength;
       kept = std::min(kept, 2.0 * (strength / least - 1.0));
       return kept > 0.0;
     };
-    Eigen::Vector3d towards_W = waves_.direction_W(satellite);
-    bool followed = passes(1.0);
+    const std::array<MirroredWave, SignalPath::kMaxReflections> mirrored = waves_at(k, satellite, points_W);
+    bool followed = passes(1.0) && may_pass(k, held, mirrored, needed);
     for (std::size_t j = k; followed && j-- > 0;) {
       const scene::Facet& f = facets_[sequence_[j]];
-      followed = passes(mirrored_share(
-          f, held[j], {images_W_[j], towards_W, points_W[j], waves_.wavelength_m(satellite)}, kFaintestBorder));
+      followed = passes(mirrored_share(f, held[j], mirrored[j], kFaintestBorder));
       if (!held[j]) points_W[j] = nearest_of_border(f, points_W[j]);
-      towards_W -= 2.0 * towards_W.dot(f.normal_W) * f.normal_W;
     }
     const Nodes nodes_W = nodes_of(k, points_W);
     // From the satellite's end, which is blocked most often.
@@ -310,11 +307,38 @@ class ImageSearch {
         leg.behind_m = (nodes_W[j] - images_W_[j - 1]).norm();
         leg.mirrors[0] = &facets_[sequence_[j - 1]];
       }
-      followed = passes(leg_share(leg, enough, scene_, counters_));
+      followed = passes(leg_share(leg, std::max(needed, kFaintestBorder), scene_, counters_, needed));
     }
     share *= followed ? kept : 0.0;
     path.copolar *= share;
     path.crosspolar *= share;
+  }
+
+  /// The wave as each facet meets it, where it meets the facet's plane.
+  std::array<MirroredWave, SignalPath::kMaxReflections> waves_at(
+      std::size_t k, std::size_t satellite,
+      const std::array<Eigen::Vector3d, SignalPath::kMaxReflections>& points_W) const {
+    std::array<MirroredWave, SignalPath::kMaxReflections> out;
+    Eigen::Vector3d towards_W = waves_.direction_W(satellite);
+    for (std::size_t j = k; j-- > 0;) {
+      const scene::Facet& f = facets_[sequence_[j]];
+      out[j] = {images_W_[j], towards_W, points_W[j], waves_.wavelength_m(satellite)};
+      towards_W -= 2.0 * towards_W.dot(f.normal_W) * f.normal_W;
+    }
+    return out;
+  }
+
+  /// Can the facets together mirror more than `needed`? First those beside whose borders it passes.
+  bool may_pass(std::size_t k, const std::array<bool, SignalPath::kMaxReflections>& held,
+                const std::array<MirroredWave, SignalPath::kMaxReflections>& mirrored, double needed) const {
+    double most = std::pow(kMostMirrored, static_cast<double>(k));
+    for (const bool holds : {false, true})
+      for (std::size_t j = k; j-- > 0;) {
+        if (held[j] != holds) continue;
+        most *= most_mirrored(facets_[sequence_[j]], holds, mirrored[j], kFaintestBorder) / kMostMirrored;
+        if (most <= needed) return false;
+      }
+    return true;
   }
 
   SignalPath field(std::size_t k, std::size_t satellite,

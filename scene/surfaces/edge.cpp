@@ -129,6 +129,9 @@ void EdgeIndex::Tile::blocks_along(const Way& way, double detour_m, const Take& 
   const Eigen::Vector2d from = way.from_W.head<2>() + first_m * way.towards_W.head<2>();
   const Eigen::Vector2d over = (last_m - first_m) * way.towards_W.head<2>();
   const double per_m2 = 1.0 / std::max(over.squaredNorm(), 1e-12);
+  // The way's height over the ground's point that is nearest to a block changes by this much per metre across it.
+  const double first_z_m = way.from_W.z() + first_m * rise, over_z_m = (last_m - first_m) * rise;
+  const double level_m = over.norm(), slope = level_m > 1e-6 ? std::abs(over_z_m) / level_m : 1e300;
   for (std::size_t begin = 0; begin < blocks.size(); begin += kEdgeRow) {
     const auto row = [begin](const std::vector<double>& column) {
       return Eigen::Map<const Row>(column.data() + begin);
@@ -137,10 +140,12 @@ void EdgeIndex::Tile::blocks_along(const Way& way, double detour_m, const Take& 
     const Row share = (per_m2 * (over.x() * dx_m + over.y() * dy_m)).max(0.0).min(1.0);
     const Row off2_m2 = (dx_m - share * over.x()).square() + (dy_m - share * over.y()).square();
     const Row wide_m = row(block_reach_m) + beside_m;
+    const Row z_m = first_z_m + share * over_z_m, apart_m = wide_m * slope + beside_m;
+    const Row room_m = apart_m + (row(block_top_m) - z_m).min(z_m - row(block_bottom_m));
     const std::size_t count = std::min(kEdgeRow, blocks.size() - begin);
     for (std::size_t k = 0; k < count; ++k) {
       const auto at = static_cast<Eigen::Index>(k);
-      if (off2_m2[at] <= wide_m[at] * wide_m[at]) take(blocks[begin + k]);
+      if (off2_m2[at] <= wide_m[at] * wide_m[at] && room_m[at] >= 0.0) take(blocks[begin + k]);
     }
   }
 }
@@ -196,9 +201,11 @@ void EdgeIndex::Tile::fill_up() {
     block_x_m.push_back(block.x_m);
     block_y_m.push_back(block.y_m);
     block_reach_m.push_back(block.reach_m);
+    block_top_m.push_back(block.top_m);
+    block_bottom_m.push_back(block.bottom_m);
   }
   const std::size_t rows = (blocks.size() + kEdgeRow - 1) / kEdgeRow;
-  for (auto* column : {&block_x_m, &block_y_m, &block_reach_m}) {
+  for (auto* column : {&block_x_m, &block_y_m, &block_reach_m, &block_top_m, &block_bottom_m}) {
     column->resize(rows * kEdgeRow, 0.0);
     column->shrink_to_fit();
   }
@@ -220,6 +227,8 @@ EdgeIndex::EdgeIndex(std::vector<Edge> edges) : edges_(std::move(edges)) {
     const auto [tile_at, new_tile] = tile_of.emplace(wide, tiles_.size());
     if (new_tile)
       tiles_.push_back({{.x_m = low.x() + (wide.second + 0.5) * kTile_m, .y_m = low.y() + (wide.first + 0.5) * kTile_m},
+                        {},
+                        {},
                         {},
                         {},
                         {},

@@ -66,6 +66,7 @@ class EdgeIndex {
   struct Tile : Square {
     std::vector<Block> blocks;
     std::vector<double> block_x_m, block_y_m, block_reach_m;  ///< of the blocks, filled up to whole rows
+    std::vector<double> block_top_m, block_bottom_m;
     void fill_up();
     template <class Take>
     void blocks_along(const Way& way, double detour_m, const Take& take) const;

@@ -49,9 +49,10 @@ class FacetIndex {
   /// `elevation`. So a wall must stand up above `elevation` seen from p, a roof must lie below. Those which meet this
   /// are listed, whichever way they face and whatever hides them, but none farther away than `reach_per_area_1_m` (may
   /// be infinite) times its area, and none that leans back, as pitched roofs do, farther away than `leaning_reach_m`
-  /// (nothing else limits those: the wave may come down from them level). Cost grows with what stands out.
+  /// (nothing else limits those: the wave may come down from them level). With `detour_m` those too over whose border
+  /// the wave may pass on a way that is longer by no more. Cost grows with what stands out.
   void mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m, double leaning_reach_m,
-               std::vector<std::uint32_t>& out) const;
+               std::vector<std::uint32_t>& out, double detour_m = 0.0) const;
 
  private:
   struct Cells {

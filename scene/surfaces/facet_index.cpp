@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -16,6 +17,8 @@ constexpr double kCell_m = 25.0;
 constexpr int kMaxCells = 400;  // per side; larger scenes get larger cells
 constexpr double kFacetBlock_m = 50.0;
 constexpr double kFacetTile_m = 2000.0;
+constexpr double kFirstRing_m = 32.0;  // how far a bend turns is asked for at this distance, and at its doubles
+constexpr std::size_t kRings = 12;
 
 // Classes of lean: upright; leaning over (its upper edge hangs forward); so far over that it faces nearly straight
 // down; and leaning back, by the degree.
@@ -34,6 +37,7 @@ std::size_t lean_class(double n_z) {
 /// Elevations from which a wave may arrive that a facet of one class of lean has mirrored.
 class Arrivals {
  public:
+  /// `elevation_rad` may lie below the horizontal: a wave from above it may have been bent that far.
   Arrivals(double elevation_rad, std::size_t lean) {
     double lowest_rad = elevation_rad, highest_rad = kPi - elevation_rad;
     if (lean == 0) lowest_rad -= 2.0 * std::asin(kUpright);
@@ -56,6 +60,33 @@ class Arrivals {
  private:
   std::optional<double> rise_, fall_;  // least tangents upward and downward, where such are asked for
   bool never_ = false;
+};
+
+/// Arrivals of all classes of lean by distance: a wave that passes over a border with a longer way turns the more the
+/// nearer that is. Made where they are asked for.
+class ArrivalsByDistance {
+ public:
+  ArrivalsByDistance(double elevation_rad, double detour_m) : elevation_rad_(elevation_rad), detour_m_(detour_m) {}
+
+  const std::vector<Arrivals>& from(double distance_m) {
+    std::size_t ring = 0;
+    if (detour_m_ > 0.0)
+      while (ring + 1 < kRings && distance_m >= std::ldexp(kFirstRing_m, static_cast<int>(ring))) ++ring;
+    std::vector<Arrivals>& arrivals = rings_[ring];
+    if (arrivals.empty()) {
+      double turn_rad = 0.0;  // the most at the ring's inner border; an angle is below its tangent
+      if (detour_m_ > 0.0)
+        turn_rad =
+            ring == 0 ? 0.5 * kPi : std::sqrt(2.0 * detour_m_ / std::ldexp(kFirstRing_m, static_cast<int>(ring) - 1));
+      for (std::size_t lean = 0; lean < kLeanClasses; ++lean)
+        arrivals.emplace_back(std::max(elevation_rad_ - turn_rad, -0.5 * kPi), lean);
+    }
+    return arrivals;
+  }
+
+ private:
+  double elevation_rad_, detour_m_;
+  std::array<std::vector<Arrivals>, kRings> rings_;
 };
 
 }  // namespace
@@ -158,21 +189,21 @@ void FacetIndex::near(const Eigen::Vector3d& p_W, double radius_m, std::vector<s
 }
 
 void FacetIndex::mirrors(const Eigen::Vector3d& p_W, double elevation_rad, double reach_per_area_1_m,
-                         double leaning_reach_m, std::vector<std::uint32_t>& out) const {
-  CANYON_CHECK(p_W.allFinite() && elevation_rad >= 0.0 && elevation_rad <= 0.5 * kPi, "p = ", p_W.transpose(),
-               ", elevation_rad = ", elevation_rad);
+                         double leaning_reach_m, std::vector<std::uint32_t>& out, double detour_m) const {
+  CANYON_CHECK(p_W.allFinite() && elevation_rad >= 0.0 && elevation_rad <= 0.5 * kPi && detour_m >= 0.0,
+               "p = ", p_W.transpose(), ", elevation_rad = ", elevation_rad, ", detour_m = ", detour_m);
   out.clear();
-  std::vector<Arrivals> arrivals;
-  for (std::size_t k = 0; k < kLeanClasses; ++k) arrivals.emplace_back(elevation_rad, k);
+  ArrivalsByDistance by_distance(elevation_rad, detour_m);
   // How far away a square's facets are at least; none if nothing of it can mirror.
   const auto within = [&](const Square& square) -> std::optional<double> {
     const double distance_m =
         std::max(Eigen::Vector2d(square.x_m - p_W.x(), square.y_m - p_W.y()).norm() - square.reach_m, 0.0);
-    const bool stands_out =
-        distance_m <= leaning_reach_m || arrivals[0].meet(-1e9, square.upright_top_m - p_W.z(), distance_m);
+    const bool stands_out = distance_m <= leaning_reach_m ||
+                            by_distance.from(distance_m)[0].meet(-1e9, square.upright_top_m - p_W.z(), distance_m);
     return stands_out && distance_m <= reach_per_area_1_m * square.area_m2 ? std::optional(distance_m) : std::nullopt;
   };
   const auto add = [&](const Block& block, double distance_m) {
+    const std::vector<Arrivals>& arrivals = by_distance.from(distance_m);
     for (const Block::Class& c : block.classes) {
       const Arrivals& a = arrivals[c.lean];
       if ((c.lean >= kLeansBack && distance_m > leaning_reach_m) || distance_m > reach_per_area_1_m * c.area_m2)

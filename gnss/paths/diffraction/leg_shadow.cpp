@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -91,10 +92,22 @@ bool is_clear(const MirroredLeg& leg, const scene::SceneAt& scene, GnssCounters&
                                      : !scene.blocked_towards(leg.from_W, leg.towards_W);
 }
 
+/// May the share be more than `needed`, which is what comes straight and what edges make at most, whether seen or not?
+bool may_exceed(double needed, double straight, std::span<const Passed> passed) {
+  double most = straight;
+  for (const Passed& one : passed) most += one.screen.most();
+  if (most > needed) return true;
+  // Two that are one may make more.
+  for (std::size_t i = 0; i < passed.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (reach_together_m(passed[j], passed[i])) return true;
+  return false;
+}
+
 }  // namespace
 
 std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
-                               GnssCounters& counters) {
+                               GnssCounters& counters, double needed) {
   std::complex<double> share = is_clear(leg, scene, counters) ? 1.0 : 0.0;
   const double weakest = ScreenEdge::followed(least);
   const double detour_m = largest_detour_m(kFarEdgeField / weakest, leg.wavelength_m);
@@ -103,8 +116,8 @@ std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene
   index.along({.from_W = leg.from_W, .towards_W = leg.towards_W, .length_m = leg.length_m, .behind_m = leg.behind_m},
               detour_m, near);
   const Eigen::Vector3d image_W = leg.from_W - leg.behind_m * leg.towards_W;
-  thread_local std::vector<Passed> before;
-  before.clear();
+  thread_local std::vector<Passed> all, before;
+  all.clear();
   for (const std::uint32_t i : near) {
     const scene::Edge& edge = index.edges()[i];
     // An edge throws a shadow where the wave meets one of its faces alone.
@@ -114,7 +127,11 @@ std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene
     if (screen.is_faded(weakest)) continue;
     Passed passed(edge, edge.a_W, edge.b_W, screen, leg);
     const double ahead_m = (passed.point_W - leg.from_W).dot(leg.towards_W);
-    if (ahead_m <= 0.0 || ahead_m >= leg.length_m) continue;
+    if (ahead_m > 0.0 && ahead_m < leg.length_m) all.push_back(passed);
+  }
+  if (!may_exceed(needed, share.real(), all)) return 0.0;
+  before.clear();
+  for (Passed& passed : all) {
     auto twin = before.begin();
     std::optional<std::pair<double, double>> both_m;
     while (twin != before.end() && !(both_m = reach_together_m(*twin, passed))) ++twin;
@@ -123,10 +140,10 @@ std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene
       if (last_m - first_m <= twin->length_m() + kSame_m) continue;
       if (last_m - first_m > passed.length_m() + kSame_m) {
         const Eigen::Vector3d a_W = twin->a_W + first_m * twin->along_W, b_W = twin->a_W + last_m * twin->along_W;
-        passed = Passed(edge, a_W, b_W, {a_W, b_W, image_W, leg.towards_W, leg.wavelength_m}, leg);
+        passed = Passed(*passed.edge, a_W, b_W, {a_W, b_W, image_W, leg.towards_W, leg.wavelength_m}, leg);
       }
     }
-    if (!is_seen(passed, leg, scene, counters) || !ends_in_air(edge, passed.point_W, scene)) continue;
+    if (!is_seen(passed, leg, scene, counters) || !ends_in_air(*passed.edge, passed.point_W, scene)) continue;
     if (both_m)
       *twin = passed;
     else

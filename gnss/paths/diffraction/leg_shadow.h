@@ -27,8 +27,9 @@ struct MirroredLeg {
 /// Half at the border of a shadow, and continuous there, corners included; not where one thing hides another's edge,
 /// nor where a leg ends beside an edge. Edges in the plane of a mirror are its own (mirrored_share), those behind it
 /// are nobody's. Things that move hide sharply. Edges so far off that an endless one there would make no more than
-/// twice `least`, or a half if that is less, fade out.
+/// twice `least`, or a half if that is less, fade out. Where it can be seen to be no more than `needed` before it is
+/// known, nothing.
 std::complex<double> leg_share(const MirroredLeg& leg, double least, const scene::SceneAt& scene,
-                               GnssCounters& counters);
+                               GnssCounters& counters, double needed = 0.0);
 
 }  // namespace canyon::gnss

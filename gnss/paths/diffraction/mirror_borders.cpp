@@ -3,28 +3,40 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "canyon/gnss/paths/diffraction/screen_edge.h"
 
 namespace canyon::gnss {
+namespace {
+
+ScreenEdge screen_of(const scene::FacetBorder& side, const MirroredWave& wave) {
+  return {side.from_W, side.to_W, wave.image_W, wave.towards_W, wave.wavelength_m};
+}
+
+}  // namespace
+
+double most_mirrored(const scene::Facet& facet, bool holds, const MirroredWave& wave, double least) {
+  const double weakest = ScreenEdge::followed(least);
+  double most = holds ? 1.0 : 0.0;
+  for (const scene::FacetBorder& side : facet.borders) {
+    const ScreenEdge screen = screen_of(side, wave);
+    if (!screen.is_faded(weakest)) most += screen.most();
+  }
+  return most;
+}
 
 std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const MirroredWave& wave, double least) {
   std::complex<double> share = holds ? 1.0 : 0.0;
-  thread_local std::vector<ScreenEdge> sides;
-  sides.clear();
-  for (const scene::FacetBorder& side : facet.borders)
-    sides.emplace_back(side.from_W, side.to_W, wave.image_W, wave.towards_W, wave.wavelength_m);
   const double weakest = ScreenEdge::followed(least);
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (sides[i].is_faded(weakest)) continue;
-    const scene::FacetBorder& side = facet.borders[i];
+  for (const scene::FacetBorder& side : facet.borders) {
+    const ScreenEdge screen = screen_of(side, wave);
+    if (screen.is_faded(weakest)) continue;
     const Eigen::Vector3d inward_W = facet.normal_W.cross(side.to_W - side.from_W);
     // On a side as facet_contains has it.
     const bool inner = inward_W.dot(wave.at_W - side.from_W) >= -1e-9 * inward_W.norm();
-    const std::complex<double> made = sides[i].field(weakest);
+    const std::complex<double> made = screen.field(weakest);
     share += inner ? -made : made;
   }
   return share;

@@ -23,7 +23,9 @@ struct MirroredWave {
 /// more than twice `least`, or a half if that is less: they fade out.
 std::complex<double> mirrored_share(const scene::Facet& facet, bool holds, const MirroredWave& wave,
                                     double least = 0.0);
-/// |mirrored_share| is no more than this: 1.8 of a rectangle, 2 of a disc; zone plates are not built.
+/// |mirrored_share| is no more than this, which is known in a fraction of its time.
+double most_mirrored(const scene::Facet& facet, bool holds, const MirroredWave& wave, double least = 0.0);
+/// Nor is it more than this: 1.8 of a rectangle, 2 of a disc; zone plates are not built.
 inline constexpr double kMostMirrored = 2.0;
 
 /// What a border or an edge changes of an echo by less is not worth following: a twentieth, -26 dB.

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
 #include "canyon/scene/city/city.h"
 #include "canyon/tests/scene/small_scenes.h"
 
@@ -135,6 +136,47 @@ TEST(Facets, NearIsTheSameAsTryingAll) {
   EXPECT_GT(total, 1000u);
   FacetIndex().near({0, 0, 0}, 10.0, found);
   EXPECT_TRUE(found.empty());
+}
+
+TEST(Facets, ThoseThatMirrorOverTheirBordersAreFound) {
+  CityConfig config;
+  config.extent_m = 2000.0;
+  config.terrain_cell_m = 20.0;
+  const Scene scene(make_city(config));
+  const auto& facets = scene.facets().facets();
+  const RandomStream stream(8, "test.over_borders");
+  std::size_t all = 0, needed = 0, listed = 0, sharp = 0;
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const Eigen::Vector3d p_W(stream.uniform(-900, 900, 0, i), stream.uniform(-900, 900, 1, i),
+                              i % 3 == 0 ? 30.0 : 2.0);
+    const double elevation_rad = i % 2 == 0 ? 0.09 : 0.3, detour_m = i % 4 < 2 ? 0.25 : 1.3;
+    std::vector<std::uint32_t> found;
+    scene.facets().mirrors(p_W, elevation_rad, 1e9, 1e9, found);
+    sharp += found.size();
+    scene.facets().mirrors(p_W, elevation_rad, 1e9, 1e9, found, detour_m);
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end());
+    listed += found.size();
+    all += facets.size();
+    for (std::uint32_t k = 0; k < facets.size(); ++k) {
+      const Facet& f = facets[k];
+      const double before_m = f.normal_W.dot(p_W) - f.offset_m;
+      if (before_m <= 0.0) continue;
+      const Eigen::Vector3d image_W = p_W - 2.0 * before_m * f.normal_W;
+      // To a corner of it, by the wave of all from above that elevation that makes the shortest detour there.
+      const bool sends = std::any_of(f.borders.begin(), f.borders.end(), [&](const FacetBorder& side) {
+        const Eigen::Vector3d way_W = side.from_W - image_W;
+        const double turn_rad = std::max(elevation_rad - std::asin(way_W.normalized().z()), 0.0);
+        return turn_rad < 0.5 * kPi && way_W.norm() * (1.0 - std::cos(turn_rad)) <= detour_m;
+      });
+      if (!sends) continue;
+      ++needed;
+      EXPECT_TRUE(std::binary_search(found.begin(), found.end(), k)) << "place " << i << ", facet " << k;
+    }
+  }
+  EXPECT_LT(sharp, listed);
+  EXPECT_LT(needed, listed);
+  EXPECT_LT(listed, all / 2);
 }
 
 TEST(Facets, AreBuiltOnceWhateverTheNumberOfThreads) {
