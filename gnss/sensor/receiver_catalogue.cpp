@@ -99,7 +99,7 @@ std::string quoted_word(const std::string& key, const std::string& word) {
 }
 
 /// Keys that cannot be a receiver's, with the nearest that can.
-Status check_names(const ConfigNode& sheet) {
+void unknown_names(const ConfigNode& sheet, std::vector<Error>& out) {
   const std::vector<std::string> keys = figure_keys();
   for (const auto& [key, node] : *sheet.table()) {
     if (key == "name" || key == "description" || has(keys, key)) continue;
@@ -108,11 +108,31 @@ Status check_names(const ConfigNode& sheet) {
     if (source) figure.resize(key.size() - kSourceSuffix.size());
     if (source && has(keys, figure)) continue;
     const std::string nearest = nearest_word(figure, keys);
-    return node.error(key, "is not a figure of a receiver",
-                      nearest.empty() ? "one of those that docs/gnss.md lists"
-                                      : "\"" + nearest + (source ? std::string(kSourceSuffix) : "") + "\"?");
+    out.push_back(node.error(key, "is not a figure of a receiver",
+                             nearest.empty() ? "one of those that docs/gnss.md lists"
+                                             : "\"" + nearest + (source ? std::string(kSourceSuffix) : "") + "\"?"));
   }
-  return Ok{};
+}
+
+/// Figures that are not what their keys take; all others are read into `config`.
+void wrong_values(const ConfigNode& figures, GnssConfig& config, std::vector<Error>& out) {
+  const Status all = read_config(&figures, "", config);
+  if (all.ok()) return;
+  // Of several mistakes the reader tells the topmost: each figure by itself tells its own.
+  const std::size_t before = out.size();
+  ConfigNode one = figures;
+  for (const auto& [key, node] : *figures.table()) {
+    one.value_ = ConfigNode::Table{{key, node}};
+    GnssConfig alone;
+    if (const Status read = read_config(&one, "", alone); !read.ok()) out.push_back(read.error());
+  }
+  if (out.size() == before) out.push_back(all.error());
+}
+
+void wrong_texts(const ConfigNode& sheet, std::vector<Error>& out) {
+  for (const char* key : {"name", "description"})
+    if (const ConfigNode* node = sheet.find(key); node != nullptr && text_at(sheet, key) == nullptr)
+      out.push_back(node->error(key, "found " + node->describe(), "a text"));
 }
 
 /// Figures that are not there though they must, and sources of those that are.
@@ -140,16 +160,17 @@ bool is_tracked(const GnssConfig& c, GnssSystem system) {
   return c.satellites.systems.find(system_letter(system)) != std::string::npos;
 }
 
-/// What cannot all be true of one receiver: figures in words, by the key of the first.
+/// What cannot all be true of one receiver.
 struct Contradiction {
-  std::string key, what;
+  std::vector<std::string> of;  ///< keys of the figures
+  std::string what;             ///< they in words
 };
 
 void figures_without_use(const ConfigNode& sheet, std::vector<Contradiction>& out) {
   for (const auto& row : conditionals()) {
     const std::string* word = text_at(sheet, row.word_of);
     if (sheet.find(row.key) != nullptr && word != nullptr && !has(row.words, *word))
-      out.push_back({row.key, std::string(row.key) + " with " + quoted_word(row.word_of, *word)});
+      out.push_back({{row.key, row.word_of}, std::string(row.key) + " with " + quoted_word(row.word_of, *word)});
   }
 }
 
@@ -160,15 +181,16 @@ void narrow_front_end(const GnssConfig& c, std::vector<Contradiction>& out) {
     const Modulation m = modulation_of(system, first_band(system));
     const double lobes_mhz = 1e-6 * (m == Modulation::kBoc11 ? 4.0 : 2.0) * chip_rate_hz(m);
     if (c.tracking.front_end_mhz < lobes_mhz)
-      out.push_back({"front_end_mhz", "front_end_mhz = " + number_text(c.tracking.front_end_mhz) +
-                                          " with the main lobes of " + system_letter(system) + ", " +
-                                          number_text(lobes_mhz) + " MHz"});
+      out.push_back({{"front_end_mhz", "systems"},
+                     "front_end_mhz = " + number_text(c.tracking.front_end_mhz) + " with the main lobes of " +
+                         system_letter(system) + ", " + number_text(lobes_mhz) + " MHz"});
   }
 }
 
 void impossible_numbers(const GnssConfig& c, std::vector<Contradiction>& out) {
   const auto clash = [&out](const char* key, double value, const char* with, double other) {
-    out.push_back({key, std::string(key) + " = " + number_text(value) + " with " + with + " = " + number_text(other)});
+    out.push_back(
+        {{key, with}, std::string(key) + " = " + number_text(value) + " with " + with + " = " + number_text(other)});
   };
   constexpr double kMostLoop = 0.5;  // B T, beyond which a loop that is updated every T is unstable
   const double T_ms = c.tracking.integration_ms;
@@ -180,47 +202,83 @@ void impossible_numbers(const GnssConfig& c, std::vector<Contradiction>& out) {
     clash("cn0_averaging_s", c.cn0_report.averaging_s, "integration_ms", T_ms);
   const double found_dbhz = c.locks.tracking_threshold_dbhz + c.locks.reacquisition_margin_db;
   if (found_dbhz >= c.link.cn0_zenith_dbhz)
-    out.push_back(
-        {"tracking_threshold_dbhz", "tracking_threshold_dbhz + reacquisition_margin_db = " + number_text(found_dbhz) +
-                                        " with cn0_zenith_dbhz = " + number_text(c.link.cn0_zenith_dbhz)});
+    out.push_back({{"tracking_threshold_dbhz", "reacquisition_margin_db", "cn0_zenith_dbhz"},
+                   "tracking_threshold_dbhz + reacquisition_margin_db = " + number_text(found_dbhz) +
+                       " with cn0_zenith_dbhz = " + number_text(c.link.cn0_zenith_dbhz)});
 }
 
 void clock_without_unknown(const GnssConfig& c, std::vector<Contradiction>& out) {
   if (c.position.solver.name != "trilateration") return;
   const std::string solver = quoted_word("solver", "trilateration") + " with ";
   if (c.receiver_clock.name != "none")
-    out.push_back({"solver", solver + quoted_word("receiver_clock", c.receiver_clock.name)});
+    out.push_back({{"solver", "receiver_clock"}, solver + quoted_word("receiver_clock", c.receiver_clock.name)});
   if (c.position.estimator == Estimator::kKalman)
-    out.push_back({"solver", solver + quoted_word("estimator", "kalman")});
+    out.push_back({{"solver", "estimator"}, solver + quoted_word("estimator", "kalman")});
 }
 
-std::vector<Contradiction> contradictions_in(const ConfigNode& sheet, const GnssConfig& c) {
+/// Of figures that are there and could be read; for others `config` has a default, which nobody wrote.
+std::vector<Contradiction> contradictions_in(const ConfigNode& sheet, const GnssConfig& config,
+                                             const std::vector<Error>& wrong) {
   std::vector<Contradiction> out;
   figures_without_use(sheet, out);
-  narrow_front_end(c, out);
-  impossible_numbers(c, out);
-  clock_without_unknown(c, out);
+  narrow_front_end(config, out);
+  impossible_numbers(config, out);
+  clock_without_unknown(config, out);
+  std::erase_if(out, [&](const Contradiction& c) {
+    return std::any_of(c.of.begin(), c.of.end(), [&](const std::string& key) {
+      return sheet.find(key) == nullptr ||
+             std::any_of(wrong.begin(), wrong.end(), [&](const Error& error) { return error.key == key; });
+    });
+  });
   return out;
 }
 
-/// All of it in one line; where nothing is missing, at the line of the first figure that contradicts.
-Status complete_and_possible(const ConfigNode& sheet, const GnssConfig& config) {
-  const std::vector<std::string> missing = missing_keys(sheet);
-  const std::vector<Contradiction> contradictions = contradictions_in(sheet, config);
-  if (missing.empty() && contradictions.empty()) return Ok{};
+/// All that is wrong with a sheet.
+struct Mistakes {
+  std::vector<Error> wrong;  ///< names and values, in the order of their lines
+  std::vector<std::string> missing;
+  std::vector<Contradiction> contradictions;
+
+  bool none() const { return wrong.empty() && missing.empty() && contradictions.empty(); }
+};
+
+std::string all_in_words(const Mistakes& m) {
   std::string what;
-  if (!missing.empty()) what = "is missing";
-  if (missing.size() > 1) what += ", and so are " + plain_list({missing.begin() + 1, missing.end()});
-  for (const auto& c : contradictions) what += (what.empty() ? "contradictory: " : "; contradictory: ") + c.what;
-  if (!missing.empty())
-    return sheet.error(missing.front(), what, "every figure of a receiver, each with its source or \"assumed\"");
-  const std::string& key = contradictions.front().key;
-  const ConfigNode* place = sheet.find(key);
-  return (place == nullptr ? sheet : *place).error(key, what, "figures of one receiver");
+  const auto add = [&what](const std::string& part) { what += (what.empty() ? "" : "; ") + part; };
+  for (std::size_t i = 0; i < m.wrong.size(); ++i) {
+    const Error& error = m.wrong[i];
+    const std::string place = i == 0 ? "" : "line " + std::to_string(error.line) + ": " + error.key + ": ";
+    add(place + error.what + " (expected " + error.expected + ")");
+  }
+  if (!m.missing.empty() && !m.wrong.empty()) add("missing: " + plain_list(m.missing));
+  if (!m.missing.empty() && m.wrong.empty())
+    add("is missing" + (m.missing.size() == 1
+                            ? std::string()
+                            : ", and so are " + plain_list({m.missing.begin() + 1, m.missing.end()})));
+  for (const Contradiction& c : m.contradictions) add("contradictory: " + c.what);
+  return what;
+}
+
+/// One line, at the place of the first that is wrong; else of the first figure that contradicts, unless some are
+/// missing.
+Error told_at_once(const ConfigNode& sheet, const Mistakes& m) {
+  if (m.wrong.size() == 1 && m.missing.empty() && m.contradictions.empty()) return m.wrong.front();
+  const std::string what = all_in_words(m), expected = m.missing.empty()
+                                                           ? "figures of one receiver"
+                                                           : "every figure of a receiver, each with its source or "
+                                                             "\"assumed\"";
+  if (!m.wrong.empty()) {
+    Error first = m.wrong.front();
+    first.what = what;
+    first.expected = expected;
+    return first;
+  }
+  if (!m.missing.empty()) return sheet.error(m.missing.front(), what, expected);
+  const std::string& key = m.contradictions.front().of.front();
+  return sheet.find(key)->error(key, what, expected);
 }
 
 Result<ReceiverSheet> sheet_from(const ConfigNode& sheet) {
-  CANYON_TRY_STATUS(check_names(sheet));
   ReceiverSheet out;
   out.figures.value_ = ConfigNode::Table{};
   out.figures.file_ = sheet.file_;
@@ -232,14 +290,17 @@ Result<ReceiverSheet> sheet_from(const ConfigNode& sheet) {
       out.sources.emplace_back(key, *source);
   }
   GnssConfig config;
-  CANYON_TRY_STATUS(read_config(&out.figures, "", config));
-
-  CANYON_TRY_STATUS(complete_and_possible(sheet, config));
-  for (auto& [field, into] : {std::pair{"name", &out.name}, std::pair{"description", &out.description}}) {
-    const std::string* text = text_at(sheet, field);
-    if (text == nullptr) return sheet.find(field)->error(field, "found " + sheet.find(field)->describe(), "a text");
-    *into = *text;
-  }
+  Mistakes mistakes;
+  unknown_names(sheet, mistakes.wrong);
+  wrong_texts(sheet, mistakes.wrong);
+  wrong_values(out.figures, config, mistakes.wrong);
+  std::stable_sort(mistakes.wrong.begin(), mistakes.wrong.end(),
+                   [](const Error& a, const Error& b) { return a.line < b.line; });
+  mistakes.missing = missing_keys(sheet);
+  mistakes.contradictions = contradictions_in(sheet, config, mistakes.wrong);
+  if (!mistakes.none()) return told_at_once(sheet, mistakes);
+  out.name = *text_at(sheet, "name");
+  out.description = *text_at(sheet, "description");
   return out;
 }
 

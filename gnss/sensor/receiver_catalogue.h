@@ -20,8 +20,9 @@ struct ReceiverSheet {
 std::vector<std::string> receiver_names();
 
 /// A built-in receiver by name, or a file if `receiver` ends in ".toml". Errors name the file; an unknown name is an
-/// error of `gnss.receiver` that names the nearest. All figures and sources that are missing, and all that contradict
-/// one another, are told at once.
+/// error of `gnss.receiver` that names the nearest. Keys that are no figure of a receiver, values that their keys do
+/// not take, figures and sources that are missing and figures that contradict one another are told at once, in one
+/// line.
 Result<ReceiverSheet> load_receiver(const std::string& receiver);
 Result<ReceiverSheet> parse_receiver(std::string_view toml, const std::string& file_name);
 

@@ -1,6 +1,9 @@
 // canyon gnss solve: as a user calls it, on files that canyon gnss simulate wrote.
+#include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,6 +34,31 @@ class GnssSolveTest : public testing::CommandLineTest {
         0)
         << read("stderr");
   }
+  /// The fields from one heading to another of every row of a table, as they stand there.
+  static std::string columns(const std::string& table, const std::string& first, const std::string& last) {
+    const auto fields_of = [](const std::string& line) {
+      std::istringstream in(line);
+      std::vector<std::string> out;
+      for (std::string field; std::getline(in, field, ',');) out.push_back(field);
+      return out;
+    };
+    std::istringstream lines(table);
+    std::string line, out;
+    std::getline(lines, line);
+    const std::vector<std::string> headings = fields_of(line);
+    const auto place = [&](const std::string& heading) {
+      const auto at = std::find(headings.begin(), headings.end(), heading);
+      EXPECT_NE(at, headings.end()) << heading;
+      return static_cast<std::size_t>(at - headings.begin());
+    };
+    const std::size_t begin = place(first), end = place(last) + 1;
+    while (std::getline(lines, line)) {
+      const std::vector<std::string> fields = fields_of(line);
+      for (std::size_t i = begin; i < std::min(end, fields.size()); ++i) out += fields[i] + ",";
+      out += "\n";
+    }
+    return out;
+  }
   static constexpr const char* kTruth = "--truth-ecef=-82834.0589,-5392805.4332,3393314.4988";
 };
 
@@ -55,6 +83,48 @@ TEST_F(GnssSolveTest, SolvesWhatWasSimulated) {
   EXPECT_THAT(read("dir/positions.csv"), HasSubstr(",single,"));
   // Without a truth there are no errors to tell: null, never 0.
   EXPECT_TRUE(nlohmann::json::parse(read("dir/summary.json"))["rms_3d_m"].is_null());
+}
+
+// The covariance that is reported moves no position; with a truth the summary says how honest it is.
+TEST_F(GnssSolveTest, ReportedCovarianceMovesNothingButItself) {
+  ASSERT_EQ(canyon("gnss simulate --force --at 32.35,-90.88,60 --duration 60 --errors noise --rinex-obs given.rnx "
+                   "--rinex-nav given.nav"),
+            0)
+      << read("stderr");
+  write("given.csv", "gps_week,sow,lat_deg,lon_deg,h_m\n1500,0,32.35,-90.88,60\n");
+  for (const std::string estimator : {"least_squares", "kalman"}) {
+    struct Solved {
+      nlohmann::json summary;
+      std::string positions, covariances;  ///< of all epochs, as they are written
+    };
+    const auto solved = [&](const std::string& reported) {
+      write("reported.toml", "ionosphere = \"none\"\ntroposphere = \"none\"\nshared_ionosphere = 0.0\nestimator = \"" +
+                                 estimator + "\"\nreported_covariance = \"" + reported + "\"\n");
+      EXPECT_EQ(canyon("gnss solve --force --obs given.rnx --nav given.nav --systems G --config reported.toml --truth "
+                       "given.csv --out positions.csv --json"),
+                0)
+          << read("stderr");
+      const std::string table = read("positions.csv");
+      return Solved{nlohmann::json::parse(read("stdout")), columns(table, "x_m", "z_m"),
+                    columns(table, "xx_m2", "zz_m2")};
+    };
+    Solved geometry = solved("geometry"), environment = solved("environment");
+    EXPECT_EQ(geometry.summary["solved"], 61) << estimator;
+    EXPECT_EQ(environment.positions, geometry.positions) << estimator;
+    EXPECT_NE(environment.covariances, geometry.covariances) << estimator;
+    for (Solved* one : {&geometry, &environment}) {
+      for (const char* key : {"ellipse_50_share", "ellipse_95_share", "ellipse_997_share", "beyond_3_sigma"}) {
+        ASSERT_TRUE(one->summary[key].is_number()) << estimator << " " << key;
+        EXPECT_GE(one->summary[key].get<double>(), 0.0) << estimator << " " << key;
+        EXPECT_LE(one->summary[key].get<double>(), 1.0) << estimator << " " << key;
+      }
+      EXPECT_TRUE(one->summary["horizontal_log_score"].is_number()) << estimator;
+    }
+    EXPECT_NE(environment.summary["horizontal_log_score"], geometry.summary["horizontal_log_score"]) << estimator;
+  }
+  // Without a truth nothing is said of it.
+  ASSERT_EQ(canyon("gnss solve --obs given.rnx --nav given.nav --systems G --config reported.toml --json"), 0);
+  EXPECT_FALSE(nlohmann::json::parse(read("stdout")).contains("ellipse_95_share"));
 }
 
 // What the simulated receiver said of the same observations: without errors both are at the same place, to the rounding

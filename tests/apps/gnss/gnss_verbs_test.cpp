@@ -1,5 +1,7 @@
 // canyon gnss ...: as a user calls it.
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -94,6 +96,32 @@ TEST_F(GnssVerbsTest, AReceiverFileWithFiguresMissing) {
   write("mine.toml", "name = \"mine\"\ndescription = \"d\"\nsystems = \"G\"\n");
   expect_mistake("gnss simulate --at 32.35,-90.88,60 --receiver mine.toml",
                  "mine.toml: mode: is missing, and so are mask_deg, receiver_clock");
+}
+
+// The catalogue's phone with an integration over which its carrier loop cannot be; then with a key misspelt as well.
+TEST_F(GnssVerbsTest, AReceiverFileWithFiguresThatContradict) {
+  std::ostringstream phone;
+  phone << std::ifstream(CANYON_SOURCE_DIR "/gnss/receivers/phone.toml").rdbuf();
+  std::string text = phone.str();
+  const auto exchange = [&text](const std::string& word, const std::string& by) {
+    const auto at = text.find(word);
+    ASSERT_NE(at, std::string::npos) << word;
+    text.replace(at, word.size(), by);
+  };
+  exchange("\nintegration_ms = 20.0\n", "\nintegration_ms = 40.0\n");
+  write("mine.toml", text);
+  const std::string simulate = "gnss simulate --at 32.35,-90.88,60 --receiver mine.toml";
+  expect_mistake(simulate, "contradictory");
+  EXPECT_EQ(read("stderr"),
+            "mine.toml:49: carrier_loop_hz: contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected "
+            "figures of one receiver\n");
+  exchange("\nmax_gdop = ", "\nmax_gdp = ");
+  write("mine.toml", text);
+  expect_mistake(simulate, "max_gdp");
+  EXPECT_EQ(read("stderr"),
+            "mine.toml:94: max_gdp: is not a figure of a receiver (expected \"max_gdop\"?); missing: max_gdop; "
+            "contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected every figure of a receiver, each "
+            "with its source or \"assumed\"\n");
 }
 
 TEST_F(GnssVerbsTest, SimulationAlongAWay) {
@@ -209,8 +237,9 @@ TEST_F(GnssVerbsTest, DriveCheckOfALogAndItsMistakes) {
   write("given_truth.csv", truth);
   expect_mistake("gnss drive-check --obs given.obs --truth given_truth.csv",
                  "command line: no navigation file given, expected --nav FILE of the day of the drive");
-  EXPECT_EQ(canyon("gnss drive-check --obs given.obs --nav given.nav"), 2);
-  EXPECT_THAT(read("stderr"), HasSubstr("--truth"));
+  expect_mistake("gnss drive-check --obs given.obs --nav given.nav", "--truth");
+  EXPECT_EQ(read("stderr"),
+            "canyon gnss drive-check: --truth is missing; canyon gnss drive-check --help shows an example\n");
   ASSERT_EQ(canyon("gnss simulate --trajectory given.csv --rate 1 --rinex-obs given.obs --rinex-nav given.nav"), 0);
   write("given_later.csv", "1610,307000,32.35,-90.88,60\n1610,307010,32.35,-90.88,60\n");
   expect_mistake("gnss drive-check --obs given.obs --nav given.nav --truth given_later.csv --scene vicksburg",
@@ -231,6 +260,53 @@ TEST_F(GnssVerbsTest, DriveCheckOfALogAndItsMistakes) {
     EXPECT_TRUE(json["measured"].contains(key)) << key;
   }
   EXPECT_THAT(read("check/signals.csv"), HasSubstr("\nmeasured,1610,306000.000,G"));
+}
+
+// A log of an open field, held against a street between tall houses of the built-in city. It lasts 50 s: what was
+// measured in other blocks of 20 s than a signal's own is what its forecast is scored against.
+TEST_F(GnssVerbsTest, DriveCheckOverDrawsAndItsPage) {
+  std::string way, truth;
+  for (int k = -1; k <= 51; ++k) {
+    const std::string place =
+        "1610," + std::to_string(306000 + k) + "," + std::to_string(32.35027 + 2e-5 * k) + ",-90.877728,75\n";
+    if (k >= 0 && k <= 50) way += place;
+    truth += place;
+  }
+  write("given.csv", way);
+  write("given_truth.csv", truth);
+  ASSERT_EQ(canyon("gnss simulate --trajectory given.csv --rate 1 --rinex-obs given.obs --rinex-nav given.nav"), 0)
+      << read("stderr");
+  ASSERT_EQ(canyon("gnss drive-check --obs given.obs --nav given.nav --truth given_truth.csv --scene vicksburg "
+                   "--draws 2 --json --out check"),
+            0)
+      << read("stderr");
+  const auto json = nlohmann::json::parse(read("stdout"));
+  EXPECT_EQ(nlohmann::json::parse(read("check/summary.json")), json);
+  EXPECT_EQ(json["epochs"], 51);
+  for (const char* key : {"simulated_draws", "measured_interval"}) {
+    EXPECT_EQ(json[key].size(), json["figures"].size()) << key;
+    EXPECT_EQ(json[key]["fix_h50_m"].size(), 2u) << key;
+    ASSERT_EQ(json[key]["hidden_error_m"].size(), 2u) << key;
+    for (const auto& low_high : json[key]["hidden_error_m"]) EXPECT_EQ(low_high.size(), 2u) << key;
+  }
+  EXPECT_EQ(json["score"]["draws"], 2);
+  EXPECT_GT(json["score"]["signals"].get<int>(), 100);
+  for (const char* key : {"foretold_share", "crps_simulation_m", "crps_blind_m", "crps_elevation_m"})
+    EXPECT_TRUE(json["score"][key].is_number()) << key;
+  for (const char* key : {"against_blind_m", "against_elevation_m"}) EXPECT_EQ(json["score"][key].size(), 2u) << key;
+  for (const char* side : {"simulated", "measured"}) {
+    for (const char* key : {"cn0_in_sight_dbhz", "cn0_hidden_dbhz", "in_sight_error_m", "hidden_error_m",
+                            "in_sight_rate_error_m_s", "hidden_rate_error_m_s", "fix_horizontal_error_m"}) {
+      const auto& of = json["distributions"][key][side];
+      EXPECT_GT(of["count"].get<int>(), 0) << key << " " << side;
+      EXPECT_EQ(of["percentiles"].size(), 101u) << key << " " << side;
+    }
+    EXPECT_EQ(json["distributions"]["fix_horizontal_error_m"][side]["count"], json["reference_instants"]) << side;
+  }
+  const std::string page = read("check/report.html");
+  for (const char* words : {"Distributions</h2>", "Range error of hidden satellites", "Horizontal error of fixes",
+                            "CRPS", "Each satellite over time</h2>", "tracked while hidden"})
+    EXPECT_THAT(page, HasSubstr(words));
 }
 
 }  // namespace

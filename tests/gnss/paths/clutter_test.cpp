@@ -138,6 +138,86 @@ TEST(StreetShading, LevelsAreTheLawsOwn) {
   }
 }
 
+/// The standard normal number at which the two states meet, by halving.
+double state_border(const TwoStateLaw::Elevation& e) {
+  double low = -5.0, high = 5.0;
+  for (int k = 0; k < 60; ++k) (below(0.5 * (low + high)) < e.shaded_share ? low : high) = 0.5 * (low + high);
+  return low;
+}
+
+/// How often the state changes along straight lines far apart, changes a metre: their mean and its standard error.
+struct StateChanges {
+  double mean_per_m, error_per_m;
+};
+/// Lines lead `heading_deg` from north, satellites stand all around. The level about the mean is that of one cell as
+/// large as all streets: it shifts the level at which the states meet, and no more.
+StateChanges state_changes(const TwoStateLaw& law, const TwoStateLaw::Elevation& e, double heading_deg,
+                           double moving_share, double speed_m_s) {
+  constexpr int kLines = 120, kSteps = 2800;  // of 1 m, a fourteenth of a cell: steps of half of it find as many
+  constexpr double kWorld = 1e12;
+  const StreetShading shading(law, {.spread_m = kWorld, .spread_rad = kWorld, .moving_share = moving_share}, 0, 1);
+  const double spread = LatticeNoise(0, "gnss.clutter.shade").at<4>({0.0, 0.0, 0.0, 0.0}, 1);
+  const double meet_db = law.mean_level_db(state_border(e), e.elevation_rad);
+  const double limit_db = meet_db + spread * law.spread_db(meet_db, e.elevation_rad);
+  const Eigen::Vector3d along = direction(heading_deg, 0.0);
+  double sum = 0.0, sum2 = 0.0;
+  for (int line = 0; line < kLines; ++line) {
+    const Eigen::Vector3d from(1e4 * line + 3.0, 8.0, 2.0), s = direction(17.0 * line, e.elevation_rad / kDegree);
+    const auto shaded = [&](int step) {
+      return shading.level_db(from + step * along, s, GpsTime{} + (1000.0 * line + step / speed_m_s)) < limit_db;
+    };
+    bool before = shaded(0);
+    double changes = 0.0;
+    for (int i = 1; i <= kSteps; ++i) {
+      const bool now = shaded(i);
+      changes += now != before ? 1.0 : 0.0;
+      before = now;
+    }
+    sum += changes / kLines;
+    sum2 += changes * changes / kLines;
+  }
+  return {sum / kSteps, std::sqrt((sum2 - sum * sum) / (kLines - 1)) / kSteps};
+}
+
+// States last about as long as the table says, not just as long: one cell of 14 m serves all elevations, and what moves
+// changes with the time that a vehicle takes. A normal field that turns by a quarter of a circle a cell passes z
+// exp(-z^2 / 2) / 2 times a cell, whatever its way of turning (Rice 1945). Where it turns in several coordinates at
+// once it is the root of the squares of their rates, and up to sqrt(6 / 5) of that where they do not turn fastest
+// together (root of the mean square of one's turning over its mean). All within four standard errors of 120 lines (1e-4
+// a comparison); against a change in each of the table's mean stretches it is what docs/gnss.md says.
+TEST(StreetShading, StatesChangeAboutAsOftenAsTheTableSays) {
+  struct Said {
+    double elevation_deg, by_place, at_5_m_s;  ///< times as often
+  };
+  const TwoStateLaw law("suburban", 1.0);
+  const ShadingScale scale;
+  for (const Said& said : {Said{20.0, 0.95, 1.1}, Said{30.0, 1.15, 1.3}, Said{45.0, 1.5, 1.7}, Said{60.0, 0.9, 1.0}}) {
+    const auto e = std::find_if(law.table().begin(), law.table().end(), [&](const TwoStateLaw::Elevation& one) {
+      return std::abs(one.elevation_rad / kDegree - said.elevation_deg) < 1e-9;
+    });
+    ASSERT_NE(e, law.table().end());
+    const double table_per_m = 2.0 / (e->good.mean_duration_m + e->bad.mean_duration_m);
+    const double z = state_border(*e), a_cell = 0.5 * std::exp(-0.5 * z * z);
+    const double by_place_per_m = a_cell / scale.state_m;
+    EXPECT_NEAR(by_place_per_m / table_per_m, said.by_place, 0.03) << said.elevation_deg;  // as rounded
+
+    const StateChanges along = state_changes(law, *e, 0.0, 0.0, 1.0);
+    EXPECT_NEAR(along.mean_per_m, by_place_per_m, 4.0 * along.error_per_m) << said.elevation_deg;
+    EXPECT_LT(along.error_per_m, 0.05 * by_place_per_m) << said.elevation_deg;  // so 4 of them tell 1 from 1.3
+    const auto expect_between = [&](const StateChanges& changes, double least_per_m) {
+      EXPECT_GT(changes.mean_per_m, least_per_m - 4.0 * changes.error_per_m) << said.elevation_deg;
+      EXPECT_LT(changes.mean_per_m, std::sqrt(1.2) * least_per_m + 4.0 * changes.error_per_m) << said.elevation_deg;
+    };
+    expect_between(state_changes(law, *e, 45.0, 0.0, 1.0), by_place_per_m);
+
+    const StateChanges driven = state_changes(law, *e, 0.0, scale.moving_share, 5.0);
+    expect_between(driven, a_cell * std::hypot(std::sqrt(1.0 - scale.moving_share) / scale.state_m,
+                                               std::sqrt(scale.moving_share) / (5.0 * scale.coherence_s)));
+    EXPECT_NEAR(driven.mean_per_m / table_per_m, said.at_5_m_s, 0.05 + 4.0 * driven.error_per_m / table_per_m)
+        << said.elevation_deg;  // as rounded
+  }
+}
+
 // The same street has the same static fade on every pass and for every seed; what moves has another.
 TEST(StreetShading, TheSameStreetFadesAlike) {
   const TwoStateLaw law("suburban", 1.0);

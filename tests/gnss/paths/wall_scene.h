@@ -44,14 +44,6 @@ class WallScene {
     return face(low, z, y, material_name).face(low + x, y, z, material_name);
   }
 
-  WallScene& crown(const Eigen::Vector3d& center, const Eigen::Vector3d& radii) {
-    parts_.foliage.push_back({center, radii});
-    return *this;
-  }
-
-  std::unique_ptr<scene::Scene> build() { return std::make_unique<scene::Scene>(parts_); }
-
- private:
   /// One more rectangle of the last object.
   WallScene& face(const Eigen::Vector3d& corner, const Eigen::Vector3d& edge_u, const Eigen::Vector3d& edge_v,
                   const std::string& material_name) {
@@ -68,6 +60,14 @@ class WallScene {
     return *this;
   }
 
+  WallScene& crown(const Eigen::Vector3d& center, const Eigen::Vector3d& radii) {
+    parts_.foliage.push_back({center, radii});
+    return *this;
+  }
+
+  std::unique_ptr<scene::Scene> build() { return std::make_unique<scene::Scene>(parts_); }
+
+ private:
   scene::SceneParts parts_;
 };
 

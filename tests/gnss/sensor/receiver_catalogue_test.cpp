@@ -1,7 +1,11 @@
 #include "canyon/gnss/sensor/receiver_catalogue.h"
 
+#include <set>
+#include <sstream>
+
 #include <gtest/gtest.h>
 
+#include "canyon/core/files/files.h"
 #include "canyon/core/process/embedded.h"
 #include "canyon/gnss/sensor/gnss_config.h"
 
@@ -50,6 +54,81 @@ TEST(ReceiverCatalogue, WhatIsMissingAndWhatContradictsIsToldAtOnce) {
   EXPECT_EQ(refusal(changed("phone", "integration_ms = 20.0", "integration_ms = 40.0")),
             "mine.toml:49: carrier_loop_hz: contradictory: carrier_loop_hz = 15 with integration_ms = 40, expected "
             "figures of one receiver");
+}
+
+// 2026-11-29: a misspelt key, or a value out of range, was told alone, and all else only when it was right.
+TEST(ReceiverCatalogue, WhatIsMisspeltOrOutOfRangeIsToldWithAllElse) {
+  std::string text = changed("m8", "mask_deg = 5.0", "mask_deg = 95.0");
+  EXPECT_EQ(refusal(text), "mine.toml:13: mask_deg: 95 is out of range, expected a number from 0 to 60");
+  const auto exchange = [&text](const std::string& word, const std::string& by) {
+    const auto at = text.find(word);
+    ASSERT_NE(at, std::string::npos) << word;
+    text.replace(at, word.size(), by);
+  };
+  exchange("max_gdop = ", "max_gdp = ");
+  exchange("estimator = \"kalman\"", "estimator = \"particles\"");
+  text += "colour = \"red\"\nsecond_frequency = \"L5\"\nsecond_frequency_source = \"a dream\"\n";
+  EXPECT_EQ(
+      refusal(text),
+      "mine.toml:13: mask_deg: 95 is out of range (expected a number from 0 to 60); line 67: estimator: unknown "
+      "name \"particles\" (expected one of \"least_squares\", \"kalman\"); line 88: max_gdp: is not a figure of a "
+      "receiver (expected \"max_gdop\"?); line 114: colour: is not a figure of a receiver (expected one of those "
+      "that docs/gnss.md lists); missing: max_gdop; contradictory: second_frequency with mode = \"single\", "
+      "expected every figure of a receiver, each with its source or \"assumed\"");
+  EXPECT_EQ(refusal(changed("m8", "name = \"m8\"", "name = 3")), "mine.toml:1: name: found integer 3, expected a text");
+  // What could not be read contradicts nothing: 60 ms would contradict the loop of 15 Hz.
+  EXPECT_EQ(refusal(changed("phone", "integration_ms = 20.0", "integration_ms = 60.0")),
+            "mine.toml:52: integration_ms: 60 is out of range, expected a number from 1 to 40");
+}
+
+/// Every figure that a sheet must or may have, out of what is missing of sheets that say as little as they can.
+std::set<std::string> all_figures() {
+  std::set<std::string> out;
+  for (const std::string mode : {"single", "dual", "dgps", "dgps_base"}) {
+    const auto sheet = parse_receiver("name = \"n\"\ndescription = \"d\"\nmode = \"" + mode +
+                                          "\"\nantenna = \"sine\"\nestimator = \"kalman\"\nraim = \"greedy\"\n"
+                                          "reported_covariance = \"environment\"\n",
+                                      "little.toml");
+    EXPECT_FALSE(sheet.ok());
+    if (sheet) continue;
+    out.insert(sheet.error().key);
+    const std::string before = "is missing, and so are ";
+    EXPECT_TRUE(sheet.error().what.starts_with(before)) << sheet.error().what;
+    std::istringstream words(sheet.error().what.substr(before.size()));
+    const std::string source = "_source";  // of those that the sheet has
+    for (std::string word; words >> word;) {
+      if (word.ends_with(',')) word.pop_back();
+      out.insert(word.ends_with(source) ? word.substr(0, word.size() - source.size()) : word);
+    }
+  }
+  return out;
+}
+
+/// Words in backquotes of a table of docs/gnss.md that look like keys.
+std::set<std::string> keys_in_table(const std::string& heading) {
+  std::set<std::string> out;
+  const auto page = read_text_file(CANYON_SOURCE_DIR "/docs/gnss.md");
+  EXPECT_TRUE(page.ok()) << page.error().str();
+  if (!page) return out;
+  const auto at = page->find(heading);
+  EXPECT_NE(at, std::string::npos) << heading;
+  if (at == std::string::npos) return out;
+  std::istringstream lines(page->substr(at));
+  for (std::string line; std::getline(lines, line) && line.starts_with("|");) {
+    std::istringstream parts(line);
+    std::string part;
+    for (int i = 0; std::getline(parts, part, '`'); ++i)
+      if (i % 2 == 1 && part.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos)
+        out.insert(part);
+  }
+  return out;
+}
+
+// An unknown figure sends its reader to docs/gnss.md, which lists what a sheet takes, and no more.
+TEST(ReceiverCatalogue, ThePageListsEveryFigure) {
+  const std::set<std::string> figures = all_figures();
+  EXPECT_GT(figures.size(), 40u);
+  EXPECT_EQ(keys_in_table("| where | figures of a receiver's file |"), figures);
 }
 
 TEST(ReceiverCatalogue, AnUnknownReceiverNamesTheNearest) {

@@ -20,12 +20,13 @@ using Errors = std::map<SatelliteId, std::map<std::int64_t, double>>;
 
 class SlowVehicle : public testing::PseudorangeSensorTest {
  protected:
+  /// With the channel of the fidelities high and modern.
   Errors drive(bool memory) {
     GnssConfig config;
-    testing::set_keys(config, std::string("paths = \"specular2\"\ndiffraction = \"wedge\"\nscatter = \"directive\"\n"
-                                          "clutter = \"street\"\nmultipath_rule = \"correlator\"\nrate_hz = 10\n"
-                                          "code_loop_hz = 0.25\ncode_loop_memory = ") +
-                                  (memory ? "true" : "false"));
+    const std::string keys =
+        "paths = \"specular2\"\nreflection_borders = true\ndiffraction = \"wedge\"\nscatter = \"directive\"\n"
+        "clutter = \"street\"\nmultipath_rule = \"correlator\"\nrate_hz = 10\ncode_loop_hz = 0.25\n";
+    testing::set_keys(config, keys + "code_loop_memory = " + (memory ? "true" : "false"));
     const auto sensor = make(config);
     Errors errors;
     const Eigen::Vector3d v(0.0, kSpeed_m_s, 0.0);

@@ -28,6 +28,7 @@ TEST(MissionReceivers, HighHasTheDgps2010InTheStreetAsMeasured) {
   const MissionConfig c = with("", "high");
   EXPECT_EQ(c.gnss.receiver, "dgps_2010");
   EXPECT_EQ(c.gnss.satellites.systems, "GR");
+  EXPECT_TRUE(c.gnss.propagation.reflection_borders);
   EXPECT_EQ(c.gnss.propagation.diffraction.name, "wedge");
   EXPECT_EQ(c.gnss.propagation.scatter.name, "directive");
   EXPECT_EQ(c.gnss.propagation.clutter.name, "street");
@@ -37,6 +38,7 @@ TEST(MissionReceivers, HighHasTheDgps2010InTheStreetAsMeasured) {
 TEST(MissionReceivers, ModernHasTheChannelOfHigh) {
   const MissionConfig high = with("", "high"), modern = with("", "modern");
   EXPECT_EQ(modern.gnss.propagation.paths.name, high.gnss.propagation.paths.name);
+  EXPECT_EQ(modern.gnss.propagation.reflection_borders, high.gnss.propagation.reflection_borders);
   EXPECT_EQ(modern.gnss.propagation.diffraction.name, high.gnss.propagation.diffraction.name);
   EXPECT_EQ(modern.gnss.propagation.scatter.name, high.gnss.propagation.scatter.name);
   EXPECT_EQ(modern.gnss.propagation.clutter.name, high.gnss.propagation.clutter.name);
