@@ -4,7 +4,7 @@ namespace canyon::mission {
 namespace {
 
 constexpr ModelRow<Outcome> kOutcomes[] = {
-    {"collision", Outcome::kCollision, "the body touches something; `detail` names it"},
+    {"collision", Outcome::kCollision, "the body touches something; `detail` names it, what kind of thing it is first"},
     {"left_scene", Outcome::kLeftScene, "a wheel is off the terrain"},
     {"stuck", Outcome::kStuck, "the vehicle stands for `[success] stuck_after_s` without looking at a building"},
     {"autonomy_fault", Outcome::kAutonomyFault,

@@ -6,6 +6,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/mission/autonomy/facade.h"
+#include "canyon/mission/scoring/told_failure.h"
 
 namespace canyon::mission {
 
@@ -104,7 +105,7 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
     return false;
   }
   if (const auto object = collision_->touched(truth)) {
-    fail(Outcome::kCollision, truth, "hit " + scene_.object(*object).name);
+    fail(Outcome::kCollision, truth, "hit " + name_with_kind(scene_, *object));
     failure_->seen = sightings_.of(*object, truth.t);
     return false;
   }

@@ -9,34 +9,6 @@
 
 namespace canyon::report {
 
-std::string outcome_words(const std::string& outcome) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kWords{
-      {{"success", "completed the mission"},
-       {"collision", "hit an obstacle"},
-       {"timeout", "ran out of time"},
-       {"stopped", "was stopped by the time limit it was given"},
-       {"missed_waypoint", "missed a waypoint"},
-       {"no_line_of_sight", "did not see its building of interest"},
-       {"stuck", "got stuck"},
-       {"left_scene", "left the scene"},
-       {"lost", "no longer knew where it was"},
-       {"autonomy_fault", "was ended by a fault of its autonomy's own"}}};
-  for (const auto& [kind, words] : kWords) {
-    if (kind == outcome) return std::string(words);
-  }
-  return "ended with \xE2\x80\x9C" + outcome_label(outcome) + "\xE2\x80\x9D";
-}
-
-std::string failure_words(const Failure& failure) {
-  if (failure.kind != "collision" || failure.detail.rfind("hit ", 0) != 0) return outcome_words(failure.kind);
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kThings{
-      {{"vehicle ", "a parked car"}, {"building ", "a building"}, {"tree ", "a tree"}, {"terrain", "the ground"}}};
-  const std::string thing = failure.detail.substr(4);
-  for (const auto& [begins, words] : kThings)
-    if (thing.rfind(begins, 0) == 0) return "hit " + std::string(words) + " (" + thing + ")";
-  return "hit \xE2\x80\x9C" + thing + "\xE2\x80\x9D";
-}
-
 std::string outcome_label(const std::string& outcome) {
   std::string out = outcome;
   std::replace(out.begin(), out.end(), '_', ' ');

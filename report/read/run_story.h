@@ -9,10 +9,6 @@
 /// What happened in a run, out of its epochs.
 namespace canyon::report {
 
-/// "completed the mission", "hit an obstacle", ...; an unknown kind with spaces for underscores.
-std::string outcome_words(const std::string& outcome);
-/// The same of a failure, with what was hit: "hit a parked car (vehicle 350)".
-std::string failure_words(const Failure& failure);
 /// "success" or the failure's kind with spaces, for tables.
 std::string outcome_label(const std::string& outcome);
 /// "good", "bad", or of a run that was stopped, which neither succeeded nor failed, "neither": the class of what shows

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "canyon/core/output/failure_words.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"

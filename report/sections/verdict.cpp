@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/core/output/failure_words.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/theme.h"
 #include "canyon/report/format.h"
@@ -71,25 +72,22 @@ std::string success_sentence(const Run& run, const Mission& mission) {
   return text + ".";
 }
 
-/// What its LIDAR knew of the thing that was hit.
-std::string seen_words(const Run& run) {
-  const double in_scans_s = run.figure("hit_in_scans_s"), range_m = run.figure("hit_last_range_m"),
-               ago_s = run.figure("hit_last_seen_s");
-  if (!std::isfinite(in_scans_s)) return {};
-  if (!std::isfinite(range_m) || !std::isfinite(ago_s)) return ", which no scan of its LIDAR had shown,";
-  const std::string ahead = show_quantity(range_m, "m", 2);
-  // A sweep takes a tenth of a second: what the last ones showed was in view to the end.
-  constexpr double kToTheEnd_s = 0.3;
-  return ago_s <= kToTheEnd_s
-             ? ", seen by its LIDAR for the last " + show_quantity(in_scans_s, "s", 2) + ", in the end " + ahead +
-                   " off,"
-             : ", last seen by its LIDAR " + ahead + " off, " + show_quantity(ago_s, "s", 2) + " before,";
+ToldFailure told_failure(const Run& run) {
+  return {run.failure->kind, run.failure->detail, run.figure("hit_in_scans_s"), run.figure("hit_last_range_m"),
+          run.figure("hit_last_seen_s")};
+}
+
+/// "hit a parked car (vehicle 350), seen by its LIDAR for the last 1.4 s, in the end 4.2 m off,"
+std::string failure_clause(const Run& run) {
+  const ToldFailure told = told_failure(run);
+  const std::string seen = sighting_words(told, "\xC2\xA0");
+  return failure_words(told) + seen + (seen.empty() ? "" : ",");
 }
 
 std::string failure_sentence(const Run& run, const Mission& mission) {
   const std::string& kind = run.failure ? run.failure->kind : run.outcome;
   std::string text = (kind == "stopped" ? " " : " failed: it ");
-  text += run.failure ? failure_words(*run.failure) + seen_words(run) : outcome_words(kind);
+  text += run.failure ? failure_clause(run) : outcome_words(kind);
   std::string where;
   if (run.failure) {
     const Failure& f = *run.failure;
@@ -116,7 +114,8 @@ std::string failure_sentence(const Run& run, const Mission& mission) {
 std::string circumstances(const Run& run) {
   if (!run.failure) return {};
   const Failure& f = *run.failure;
-  std::string text = f.detail;
+  // What was hit has been said.
+  std::string text = tells_what_was_hit(told_failure(run)) ? std::string() : f.detail;
   if (!text.empty()) text = capitalised(text) + (text.back() == '.' ? "" : ".");
   if (std::isfinite(f.x_m) && std::isfinite(f.y_m)) {
     text += (text.empty() ? "" : " ") + std::string("Where: ") + show_quantity(f.x_m, "m", 4) + " east and " +

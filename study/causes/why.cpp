@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/json_text.h"
+#include "canyon/mission/scoring/told_failure.h"
 #include "canyon/study/causes/causes.h"
 
 // Causes in words and as JSON.
@@ -19,26 +20,32 @@ std::string out_of(int count, int draws) {
   return std::to_string(count) + " of " + std::to_string(draws);
 }
 
+std::string satellites(int count) {
+  return std::to_string(count) + (count == 1 ? " satellite" : " satellites");
+}
+
 std::string words(const Event& event) {
   char size[32];
   std::snprintf(size, sizeof size, "%.1f", event.size);
   switch (event.kind) {
     case EventKind::kDilutionJump:
-      return std::string("GDOP jumps, by up to ") + size;
+      return std::string("range errors suddenly weigh more or less in the fix (GDOP jumps by up to ") + size + ")";
     case EventKind::kHiddenSignals:
-      return "fixes use up to " + std::to_string(static_cast<int>(event.size)) + " signals of hidden satellites";
+      return "fixes use signals that come by detours, at most of " + satellites(static_cast<int>(event.size)) +
+             " hidden from the antenna (NLOS)";
     case EventKind::kFixLost:
-      return "no fix";
+      return "satellites give no position (no fix)";
     case EventKind::kUnlikelyFix:
-      return std::string("the filter takes fixes whose innovation is up to ") + size + " times its 99.9 % bound";
+      return std::string("the filter believes fixes far from where it expected them (NIS up to ") + size +
+             " times its 99.9 % bound)";
     case EventKind::kOverconfident:
       return std::string("the position is off by up to ") + size + " times what the filter thinks possible (3 sigma)";
     case EventKind::kMapDoubled:
-      return std::string("the map has the same surfaces up to ") + size + " m apart";
+      return std::string("the map has the same surfaces twice, up to ") + size + " m apart";
     case EventKind::kPhantom:
-      return "the autonomy finds no way, and there is one";
+      return "the autonomy sees no way on, though there is one (phantom)";
     case EventKind::kStopped:
-      return "the autonomy stands";
+      return "the autonomy stands: something is in its way, or it sees nothing";
   }
   return {};
 }
@@ -69,7 +76,7 @@ std::vector<std::string> chain(const Explanation& e) {
     lines.push_back(seconds(event.from_s) + (event.to_s > event.from_s ? " to " + seconds(event.to_s) : std::string()) +
                     ": " + words(event));
   }
-  lines.push_back(seconds(e.failure.t_s) + ": " + name(e.failure.kind) + ", " + e.failure.detail);
+  lines.push_back(seconds(e.failure.t_s) + ": it " + failure_line(told_failure(e.failure)));
   return lines;
 }
 

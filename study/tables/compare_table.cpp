@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "canyon/mission/scoring/told_failure.h"
 #include "canyon/study/compare.h"
 #include "canyon/study/results/paired_errors.h"
 #include "canyon/study/results/verdict_json.h"
@@ -78,9 +79,8 @@ std::string comparison_table(const Results& results, const std::vector<std::stri
   std::string out = table.str();
   for (const RunSummary& run : results.summaries) {
     if (!run.failure) continue;
-    out += "\n" + run.name + ": " + mission::name(run.failure->kind) + " at " + fixed(run.failure->t_s, 1) + " s, x " +
-           fixed(run.failure->p_W.x(), 1) + " m, y " + fixed(run.failure->p_W.y(), 1) + " m (" + run.failure->detail +
-           ")";
+    out += "\n" + run.name + ", after " + fixed(run.failure->t_s, 1) + " s at x " + fixed(run.failure->p_W.x(), 1) +
+           " m, y " + fixed(run.failure->p_W.y(), 1) + " m: it " + failure_line(told_failure(*run.failure));
   }
   if (out.back() != '\n') out += "\n";
   for (const RunSummary& run : results.summaries)

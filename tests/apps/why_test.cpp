@@ -44,10 +44,33 @@ TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
     EXPECT_EQ(removal["p"], 1.0);
     EXPECT_EQ(removal["rescues"], false);
   }
+  EXPECT_THAT(read("stdout"), HasSubstr(" s: it got stuck (stood still for 5.0 s)\n"));
   EXPECT_THAT(read("out/report.html"), HasSubstr("navigation is not to blame"));
   // The same question again, on another number of threads: the same answer.
   ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --threads 1 --out again"), 0);
   EXPECT_EQ(read("again/why.json"), read("out/why.json"));
+}
+
+// A vehicle that follows its estimate alone, and one that stands across the street, twelve metres on. 2026-11-29: what
+// was said of it was "collision, hit car".
+TEST_F(WhyTest, ACollisionIsToldInTheSameWordsEverywhere) {
+  std::string text = kMission;
+  text.replace(text.find("limit_s = 4.0"), 13, "limit_s = 60.0");
+  text.replace(text.find("[autonomy]\n"), 11, "[autonomy]\nmodel = \"route_follower\"\n");
+  write("mission.toml", text +
+                            "[[scene.moving]]\nname = \"broken down\"\npath_m = [213.9, 45.0, 214.9, 45.0]\n"
+                            "start_s = 1e5\n");
+  ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --out out"), 0)
+      << read("stderr");
+  const std::string hit = "it hit another vehicle (broken down)";
+  EXPECT_THAT(read("stdout"), HasSubstr(" s: " + hit)) << "the chain";
+  EXPECT_THAT(read("stdout"), HasSubstr(" m: " + hit)) << "the table";
+  const Json failure = Json::parse(read("out/why.json"))["failures"][0];
+  EXPECT_EQ(failure["outcome"], "collision");
+  EXPECT_EQ(failure["detail"], "hit other vehicle broken down");
+  EXPECT_THAT(failure["chain"].back().get<std::string>(), HasSubstr(" s: " + hit + ", "));
+  EXPECT_THAT(read("out/report.html"), HasSubstr(" failed: " + hit + ", ")) << "the verdict";
+  EXPECT_THAT(read("out/report.html"), HasSubstr(" s: " + hit)) << "its chain";
 }
 
 // What a time limit stopped has not failed, and is not asked about.

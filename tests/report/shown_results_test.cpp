@@ -214,6 +214,7 @@ TEST_F(ShownResults, WhatItsLidarKnewOfTheThingThatWasHit) {
               HasSubstr("(vehicle 350), last seen by its LIDAR 2.0\xC2\xA0m off, 1.5\xC2\xA0s before, after "));
   EXPECT_THAT(with(0.0, none, none), HasSubstr("(vehicle 350), which no scan of its LIDAR had shown, after "));
   EXPECT_THAT(with(none, none, none), HasSubstr("(vehicle 350) after "));
+  EXPECT_THAT(with(none, none, none), Not(HasSubstr("Hit vehicle 350"))) << "said once, in words";
 }
 
 TEST_F(ShownResults, TheTwoByTwoOverSeedsSaysHowManySucceed) {

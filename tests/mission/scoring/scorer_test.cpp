@@ -1,5 +1,6 @@
 #include "canyon/mission/scoring/scorer.h"
 
+#include "canyon/mission/scoring/told_failure.h"
 #include "canyon/tests/mission/screened_house.h"
 #include "canyon/tests/mission/short_mission.h"
 
@@ -81,6 +82,42 @@ TEST_F(ScorerTest, DrivingIntoAHouseIsACollisionWithItsName) {
   EXPECT_TRUE(ended);
   EXPECT_EQ(scorer_.outcome(), Outcome::kCollision);
   EXPECT_EQ(scorer_.failure()->detail.substr(0, 4), "hit ");
+  const ToldFailure told = told_failure(*scorer_.failure());
+  EXPECT_EQ(told.kind, "collision");
+  EXPECT_EQ(told.in_scans_s, 0.0) << "nobody has scanned";
+  EXPECT_TRUE(std::isnan(told.last_range_m));
+}
+
+// What a thing is stands before its name, unless the name says it.
+TEST(NameWithKind, SaysWhatItIs) {
+  const auto scene = screened_house(3.0);
+  scene::SceneAt at(*scene);
+  EXPECT_EQ(name_with_kind(at, 0), "terrain ground");
+  EXPECT_EQ(name_with_kind(at, 1), "building house");
+  EXPECT_EQ(name_with_kind(at, 2), "wall screen");
+  const auto shape = [](scene::ObjectKind kind) {
+    scene::SceneParts parts;
+    parts.materials = scene::builtin_materials();
+    scene::MeshBuilder mesh(parts);
+    mesh.begin_object("box", kind);
+    mesh.box({0, 0, 1}, Eigen::Matrix3d::Identity(), {1, 1, 1}, mesh.material("concrete"));
+    return std::make_shared<const scene::RigidShape>("box", kind, std::move(parts.mesh));
+  };
+  at.set_instances({{shape(scene::ObjectKind::kVehicle), "car 1", {Eigen::Quaterniond::Identity(), {-10, 0, 0}}},
+                    {shape(scene::ObjectKind::kPerson), "person 2", {Eigen::Quaterniond::Identity(), {-20, 0, 0}}}});
+  EXPECT_EQ(name_with_kind(at, 3), "other vehicle car 1");
+  EXPECT_EQ(name_with_kind(at, 4), "person 2");
+}
+
+// The figures of summary.json and the words are made of the same sighting.
+TEST(ToldFailureOf, ACollisionHasWhatScansHadShown) {
+  Failure failure{.kind = Outcome::kCollision, .t_s = 8.1, .p_W = Eigen::Vector3d::Zero(), .detail = "hit vehicle 350"};
+  EXPECT_EQ(told_failure(failure).in_scans_s, 0.0);
+  failure.seen = Sighting{.range_m = 4.2, .stood_s = 1.4, .ago_s = 0.05};
+  EXPECT_EQ(failure_line(told_failure(failure)),
+            "hit a parked car (vehicle 350), seen by its LIDAR for the last 1.4 s, in the end 4.2 m off");
+  failure.kind = Outcome::kStuck, failure.detail = "stood still for 30.0 s", failure.seen.reset();
+  EXPECT_TRUE(std::isnan(told_failure(failure).in_scans_s));
 }
 
 TEST_F(ScorerTest, StandingStillWithoutReasonIsStuck) {

@@ -122,6 +122,43 @@ TEST(ChainStart, GoesBackOverGapsOfTenSecondsAndNoFurtherThanAMinute) {
   EXPECT_EQ(chain_start_s({event(101, 102)}, 100.0), 90.0) << "later than the failure";
 }
 
+// 2026-11-29: the last line said "collision, hit vehicle 350", and jargon stood without its meaning.
+TEST(Chain, IsToldInWordsThatNeedNoGlossary) {
+  Explanation e;
+  e.from_s = 1.0;
+  e.failure = {.kind = mission::Outcome::kCollision,
+               .t_s = 20.0,
+               .p_W = Eigen::Vector3d::Zero(),
+               .detail = "hit vehicle 350",
+               .seen = mission::Sighting{.range_m = 4.2, .stood_s = 1.4, .ago_s = 0.05}};
+  e.events = {{EventKind::kFixLost, 0.0, 0.5, 1.0},        {EventKind::kDilutionJump, 2.0, 3.0, 7.04},
+              {EventKind::kHiddenSignals, 3.0, 3.0, 1.0},  {EventKind::kHiddenSignals, 6.0, 6.5, 3.0},
+              {EventKind::kFixLost, 7.0, 7.0, 1.0},        {EventKind::kUnlikelyFix, 8.0, 8.0, 2.0},
+              {EventKind::kOverconfident, 9.0, 12.0, 1.3}, {EventKind::kMapDoubled, 10.0, 10.0, 0.64},
+              {EventKind::kPhantom, 11.0, 12.0, 1.0},      {EventKind::kStopped, 11.0, 13.0, 1.0},
+              {EventKind::kHiddenSignals, 21.0, 22.0, 2.0}};
+  EXPECT_EQ(chain(e),
+            (std::vector<std::string>{
+                "2.0 s to 3.0 s: range errors suddenly weigh more or less in the fix (GDOP jumps by up to 7.0)",
+                "3.0 s: fixes use signals that come by detours, at most of 1 satellite hidden from the antenna (NLOS)",
+                "6.0 s to 6.5 s: fixes use signals that come by detours, at most of 3 satellites hidden from the "
+                "antenna (NLOS)",
+                "7.0 s: satellites give no position (no fix)",
+                "8.0 s: the filter believes fixes far from where it expected them (NIS up to 2.0 times its 99.9 % "
+                "bound)",
+                "9.0 s to 12.0 s: the position is off by up to 1.3 times what the filter thinks possible (3 sigma)",
+                "10.0 s: the map has the same surfaces twice, up to 0.6 m apart",
+                "11.0 s to 12.0 s: the autonomy sees no way on, though there is one (phantom)",
+                "11.0 s to 13.0 s: the autonomy stands: something is in its way, or it sees nothing",
+                "20.0 s: it hit a parked car (vehicle 350), seen by its LIDAR for the last 1.4 s, in the end 4.2 m "
+                "off"}));
+  e.failure = {.kind = mission::Outcome::kMissedWaypoint,
+               .t_s = 20.0,
+               .p_W = Eigen::Vector3d::Zero(),
+               .detail = "goal: came within 5.3 m"};
+  EXPECT_EQ(chain(e).back(), "20.0 s: it missed a waypoint (goal: came within 5.3 m)");
+}
+
 TEST(Holm, StepsDownAsInHisPaper) {
   // Holm (1979): with 4 hypotheses the smallest p is held against 0.05 / 4, the next against 0.05 / 3, ... to the first
   // that is not below: 0.030 is over 0.05 / 2, and so 0.040 counts no more although it is below 0.05.
