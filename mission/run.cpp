@@ -127,7 +127,10 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   }
   CANYON_TRY(parts.imu, inertial::make_imu(config.imu, seed, mission.scene->frame()));
   CANYON_TRY(parts.imu_noise, noise_told_to_filter(config));
-  CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
+  parts.scanner = std::move(given.scanner);
+  if (parts.scanner == nullptr) {
+    CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
+  }
   CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
   CANYON_TRY(parts.prior_map, lidar::make_prior_map(config.registration, *parts.registration));
   parts.autonomy =

@@ -5,6 +5,7 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/core/result.h"
 #include "canyon/gnss/sensor/sensor.h"
+#include "canyon/lidar/scanner.h"
 #include "canyon/mission/autonomy/autonomy.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/omissions.h"
@@ -32,6 +33,8 @@ struct RunParts {
   const LaterParts* later = nullptr;
   /// Its receiver, as one that hands out what was measured on this tape before; null: made of the configuration.
   std::unique_ptr<gnss::GnssSensor> receiver = nullptr;
+  /// Its LIDAR, as one that adds what no model does; null: made of the configuration.
+  std::unique_ptr<lidar::Scanner> scanner = nullptr;
 };
 
 /// Drives one mission. The master step is the vehicle's own (Vehicle::kStep_ns); within it everything else is due at

@@ -7,7 +7,6 @@ namespace canyon::mission {
 
 namespace {
 
-constexpr double kStopTolerance_m = 0.4;  // along the route
 constexpr double kPassTolerance_m = 1.0;  // along the route
 constexpr double kTurnAround_1_m = 1.0;   // full lock when the path lies behind
 

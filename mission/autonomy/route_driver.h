@@ -4,6 +4,9 @@
 
 namespace canyon::mission {
 
+/// So far before a stop it halts, along the route: then it has come.
+inline constexpr double kStopTolerance_m = 0.4;
+
 /// Where along its route a vehicle is, at which waypoint it stands, how it steers and how fast the route itself lets it
 /// go: what every autonomy that keeps to the planned route shares. Knows nothing of obstacles.
 class RouteDriver {

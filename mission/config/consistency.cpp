@@ -7,7 +7,9 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/registration/registration.h"
+#include "canyon/mission/autonomy/reference.h"
 #include "canyon/mission/autonomy/reference_2012.h"
+#include "canyon/mission/autonomy/route_driver.h"
 #include "canyon/mission/motion/plan/dynamic_bicycle.h"
 
 namespace canyon::mission {
@@ -24,6 +26,33 @@ Status check_stop(double stop_s, const AutonomyConfig& autonomy) {
                          number_text(autonomy.hold_s) + " s",
                  .expected = "success.stop_s not above autonomy.hold_s"};
   return Ok{};
+}
+
+/// A halt must count where the autonomy makes it, however well it knows where it is.
+Status check_radius(double radius_m) {
+  if (radius_m >= kStopTolerance_m) return Ok{};
+  return Error{.key = "success.waypoint_radius_m",
+               .what = "a stop counts within " + number_text(radius_m) +
+                       " m of its waypoint, and the autonomy halts up to " + number_text(kStopTolerance_m) +
+                       " m before it",
+               .expected = "success.waypoint_radius_m of " + number_text(kStopTolerance_m) + " or more"};
+}
+
+/// Backing up must be possible, and come before the run has ended.
+Status check_recovery(const MissionConfig& config) {
+  if (config.autonomy.model.name != "reference") return Ok{};
+  const auto& recovery = config.autonomy.model.own.get<ReferenceParameters>().recovery.model;
+  if (recovery.name != "back_up") return Ok{};
+  if (config.vehicle.max_reverse_m_s <= 0.0)
+    return Error{.key = "vehicle.max_reverse_m_s, autonomy.recovery.model",
+                 .what = "the autonomy backs up where no way ahead is free, and the vehicle cannot",
+                 .expected = "a vehicle.max_reverse_m_s above 0, or autonomy.recovery.model = \"wait\""};
+  const double wait_s = back_up_wait_s(recovery.own), stuck_after_s = config.success.stuck_after_s;
+  if (wait_s < stuck_after_s) return Ok{};
+  return Error{.key = "autonomy.recovery.wait_s, success.stuck_after_s",
+               .what = "the autonomy stands for " + number_text(wait_s) +
+                       " s before it backs up, and counts as stuck " + "after " + number_text(stuck_after_s) + " s",
+               .expected = "autonomy.recovery.wait_s below success.stuck_after_s"};
 }
 
 /// `first` must not be above `second`; `what` says what it means that it is.
@@ -161,6 +190,8 @@ Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
 
 Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
+  CANYON_TRY_STATUS(check_radius(config.success.waypoint_radius_m));
+  CANYON_TRY_STATUS(check_recovery(config));
   CANYON_TRY_STATUS(check_body(config.vehicle));
   CANYON_TRY_STATUS(check_grip(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));

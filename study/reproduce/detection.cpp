@@ -3,75 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/core/units.h"
 #include "canyon/mission/autonomy/perception/perception.h"
 #include "canyon/mission/run.h"
+#include "canyon/study/reproduce/detections.h"
 
 namespace canyon::study {
 namespace {
-
-constexpr double kReach_m = 20.0;   // a direction in which nothing is nearer is free
-constexpr double kSame_m = 1.0;     // a thing held and a thing that stands are one within this
-constexpr double kBeside_m = 0.2;   // from a direction to the middle of a cell that lies in it
-constexpr double kNearest_m = 3.0;  // the vehicle's own body
-constexpr int kDirections = 41;     // 2 degrees apart
-
-double direction_rad(int k) {
-  return (2.0 * k - (kDirections - 1)) * kDegree;
-}
-
-/// Ranges to the first thing by direction, from B; kReach_m where there is none.
-using Ranges = std::vector<double>;
-
-struct Detections {
-  int directions = 0, phantoms = 0, things = 0, missed = 0, both = 0;
-  double squares_m2 = 0.0;
-
-  void add(const Ranges& held, const Ranges& truly) {
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      ++directions;
-      const bool thing = truly[k] < kReach_m;
-      things += thing ? 1 : 0;
-      phantoms += held[k] < truly[k] - kSame_m ? 1 : 0;
-      missed += thing && held[k] > truly[k] + kSame_m ? 1 : 0;
-      if (!thing || held[k] >= kReach_m) continue;
-      ++both;
-      squares_m2 += std::pow(held[k] - truly[k], 2);
-    }
-  }
-};
-
-Ranges held_by(const mission::Perception& perception, const Eigen::Vector2d& p, double yaw_rad) {
-  Ranges out(kDirections, kReach_m);
-  for (const Eigen::Vector2d& cell : perception.blocked().all()) {
-    const Eigen::Vector2d d = cell - p;
-    const double range_m = d.norm();
-    if (range_m < kNearest_m || range_m >= kReach_m) continue;
-    const double off_rad = std::remainder(std::atan2(d.y(), d.x()) - yaw_rad, 2.0 * kPi);
-    for (int k = 0; k < kDirections; ++k) {
-      double& nearest = out[static_cast<std::size_t>(k)];
-      if (std::abs(off_rad - direction_rad(k)) * range_m < kBeside_m) nearest = std::min(nearest, range_m);
-    }
-  }
-  return out;
-}
-
-Ranges true_ranges(const scene::SceneAt& scene, const Pose& X_WB) {
-  Ranges out(kDirections, kReach_m);
-  const double yaw_rad = yaw_pitch_roll(X_WB.R).yaw_rad;
-  for (int k = 0; k < kDirections; ++k) {
-    const double at = yaw_rad + direction_rad(k);
-    const Eigen::Vector3d direction(std::cos(at), std::sin(at), 0.0);
-    double& nearest = out[static_cast<std::size_t>(k)];
-    for (const double height_m : {0.6, 1.2, 1.8}) {
-      const Eigen::Vector3d from = X_WB.p + kNearest_m * direction + Eigen::Vector3d(0.0, 0.0, height_m);
-      const scene::Hit hit = scene.trace({from, direction.cast<float>(), static_cast<float>(kReach_m - kNearest_m)});
-      if (!hit.hit() || scene.object(scene.surface(hit.triangle).object).kind == scene::ObjectKind::kTerrain) continue;
-      nearest = std::min(nearest, kNearest_m + hit.range_m);
-    }
-  }
-  return out;
-}
 
 /// The autonomy of the configuration, and beside it a perception whose grid lies where the pose puts it.
 class Watch final : public mission::Autonomy {
@@ -94,7 +31,7 @@ class Watch final : public mission::Autonomy {
     next_s_ = t_s + 1.0;
     const double step_s = tape_.duration_s() / static_cast<double>(tape_.nodes.size() - 1);
     const auto node = std::min(tape_.nodes.size() - 1, static_cast<std::size_t>(std::lround(t_s / step_s)));
-    found_.add(held_by(*perception_, X_OB.p.head<2>(), yaw_pitch_roll(X_OB.R).yaw_rad),
+    found_.add(held_ranges(perception_->blocked().all(), X_OB.p.head<2>(), yaw_pitch_roll(X_OB.R).yaw_rad),
                true_ranges(scene_, tape_.nodes[node].motion.X_WB));
   }
   bool looks() const override { return true; }
@@ -147,10 +84,6 @@ Result<std::vector<DriveCommand>> commands_of(mission::MissionConfig config, con
   return commands.rows();
 }
 
-double share(int part, int whole) {
-  return whole > 0 ? static_cast<double>(part) / whole : kNaN;
-}
-
 }  // namespace
 
 Result<SeenAndPlanned> seen_and_planned(const mission::MissionConfig& config, const mission::PreparedMission& mission,
@@ -158,23 +91,12 @@ Result<SeenAndPlanned> seen_and_planned(const mission::MissionConfig& config, co
   Detections found, with_truth;
   CANYON_TRY(const auto asked, commands_of(config, mission, tape, false, found));
   CANYON_TRY(const auto on_truth, commands_of(config, mission, tape, true, with_truth));
-  SeenAndPlanned out;
-  out.phantom_share = share(found.phantoms, found.directions);
-  out.missed_share = share(found.missed, found.things);
-  if (found.both > 0) out.range_rms_m = std::sqrt(found.squares_m2 / found.both);
-  const std::size_t rows = std::min(asked.size(), on_truth.size());
-  double steering2 = 0.0, speed2 = 0.0;
-  const double wheelbase_m = config.vehicle.wheelbase_m;
-  for (std::size_t i = 0; i < rows; ++i) {
-    const auto angle = [&](const DriveCommand& c) { return std::atan(c.curvature_1_m * wheelbase_m) / kDegree; };
-    steering2 += std::pow(angle(asked[i]) - angle(on_truth[i]), 2);
-    speed2 += std::pow(asked[i].speed_m_s - on_truth[i].speed_m_s, 2);
-  }
-  if (rows > 0) {
-    out.steering_rms_deg = std::sqrt(steering2 / static_cast<double>(rows));
-    out.speed_rms_m_s = std::sqrt(speed2 / static_cast<double>(rows));
-  }
-  return out;
+  const CommandDifference difference = command_difference(asked, on_truth, config.vehicle.wheelbase_m);
+  return SeenAndPlanned{.phantom_share = found.phantom_share(),
+                        .missed_share = found.missed_share(),
+                        .range_rms_m = found.range_rms_m(),
+                        .steering_rms_deg = difference.steering_rms_deg,
+                        .speed_rms_m_s = difference.speed_rms_m_s};
 }
 
 }  // namespace canyon::study

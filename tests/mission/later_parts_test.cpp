@@ -1,4 +1,8 @@
 // What is taken away from some moment on leaves everything before it, and all other draws, as they were.
+#include <bit>
+
+#include "canyon/mission/route_tape.h"
+#include "canyon/study/causes/removals.h"
 #include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
@@ -111,6 +115,151 @@ TEST(LaterParts, TakingReflectionsAwayLeavesAllOtherErrorsAsTheyWere) {
     }
     EXPECT_GT(compared, 1);
     EXPECT_GT(changed, 0);
+  }
+}
+
+/// What whoever drives was shown and told.
+struct Heard {
+  std::vector<std::pair<double, std::uint64_t>> scans;  ///< time after the start, and the points' bits as a number
+  std::vector<std::pair<double, Eigen::Vector3d>> told;
+  std::vector<std::int64_t> ticks;
+};
+
+/// Drives nothing, as on a tape, and keeps what it hears.
+class Hearing final : public Autonomy {
+ public:
+  Hearing(GpsTime start, Heard& heard) : start_(start), heard_(heard) {}
+  void see(const LidarScan& scan, const Pose&, const NavEstimate&) override {
+    std::uint64_t bits = 14695981039346656037u;  // FNV-1a
+    for (const LidarPoint& point : scan.points)
+      for (const float value : {point.x, point.y, point.z, point.intensity})
+        bits = (bits ^ std::bit_cast<std::uint32_t>(value)) * 1099511628211u;
+    heard_.scans.emplace_back(scan.t - start_, bits);
+  }
+  void count(const OdometerSample& sample) override { heard_.ticks.push_back(sample.ticks); }
+  DriveCommand drive(const NavEstimate& estimate) override {
+    heard_.told.emplace_back(estimate.t - start_, estimate.X_WB.p);
+    return {};
+  }
+  AutonomyState state() const override { return AutonomyState::kDriving; }
+  int next_waypoint() const override { return 0; }
+
+ private:
+  GpsTime start_;
+  Heard& heard_;
+};
+
+struct HeardRun : RecordedRun, Heard {};
+
+/// On one true motion every sensor has the same to measure, whatever became of the estimate.
+HeardRun drive_on_tape(const MissionConfig& config, const PreparedMission& mission, const Tape& tape,
+                       const LaterParts& later) {
+  HeardRun run;
+  RunParts parts;
+  parts.tape = &tape;
+  parts.recorder = static_cast<MemoryRecorder*>(&run);
+  parts.autonomy = std::make_unique<Hearing>(mission.start, run);
+  parts.later = &later;
+  auto record = run_mission(config, mission, nullptr, std::move(parts));
+  EXPECT_TRUE(record.ok()) << (record.ok() ? "" : record.error().str());
+  static_cast<RunRecord&>(run) = *std::move(record);
+  return run;
+}
+
+/// Which draws of a run are another's, to the bit, and since when they are not; 1e9: all are.
+double first_other_imu_s(const HeardRun& a, const HeardRun& b) {
+  EXPECT_EQ(a.imu_samples.size(), b.imu_samples.size());
+  for (std::size_t i = 0; i < std::min(a.imu_samples.size(), b.imu_samples.size()); ++i)
+    if (a.imu_samples[i].dv_U != b.imu_samples[i].dv_U || a.imu_samples[i].dtheta_U != b.imu_samples[i].dtheta_U)
+      return a.imu_samples[i].t - a.start;
+  return 1e9;
+}
+double first_other_scan_s(const HeardRun& a, const HeardRun& b) {
+  EXPECT_EQ(a.scans.size(), b.scans.size());
+  for (std::size_t i = 0; i < std::min(a.scans.size(), b.scans.size()); ++i)
+    if (a.scans[i] != b.scans[i]) return a.scans[i].first;
+  return 1e9;
+}
+double first_other_told_s(const HeardRun& a, const HeardRun& b) {
+  EXPECT_EQ(a.told.size(), b.told.size());
+  for (std::size_t i = 0; i < std::min(a.told.size(), b.told.size()); ++i)
+    if (a.told[i] != b.told[i]) return a.told[i].first;
+  return 1e9;
+}
+/// Of the ranges: what reflects and what is received may be another, nothing else of them.
+double first_other_reception_s(const HeardRun& a, const HeardRun& b) {
+  double first_s = 1e9;
+  EXPECT_EQ(a.gnss_rows.size(), b.gnss_rows.size());
+  for (std::size_t i = 0; i < std::min(a.gnss_rows.size(), b.gnss_rows.size()); ++i) {
+    const auto &was = a.gnss_rows[i].truth.satellites, &is = b.gnss_rows[i].truth.satellites;
+    EXPECT_EQ(was.size(), is.size());
+    for (std::size_t k = 0; k < std::min(was.size(), is.size()); ++k) {
+      EXPECT_EQ(was[k].sv, is[k].sv);
+      if (was[k].tracked != is[k].tracked || was[k].multipath_m != is[k].multipath_m)
+        first_s = std::min(first_s, a.gnss_rows[i].fix.t - a.start);
+      if (!was[k].tracked || !is[k].tracked) continue;
+      EXPECT_EQ(was[k].range_m, is[k].range_m) << was[k].sv.str();
+      EXPECT_EQ(was[k].ephemeris_m, is[k].ephemeris_m) << was[k].sv.str();
+      EXPECT_EQ(was[k].ionosphere_m, is[k].ionosphere_m) << was[k].sv.str();
+      EXPECT_EQ(was[k].troposphere_m, is[k].troposphere_m) << was[k].sv.str();
+      EXPECT_EQ(was[k].noise_m, is[k].noise_m) << was[k].sv.str();
+    }
+  }
+  return first_s;
+}
+
+// Each source that `compare --why` takes away, taken away on one true motion: until then nothing changes, and from then
+// on nothing but what it is meant to. The odometer counts as ever.
+TEST(LaterParts, EveryRemovalLeavesAllOtherDrawsAsTheyWere) {
+  constexpr double kTaken_s = 5.0;
+  const MissionConfig config = short_config("high_aided", "high_aided",
+                                            "[time]\nlimit_s = 8.0\n[gnss]\nsmoothing_s = 0.0\n"
+                                            "[lidar]\nazimuth_steps = 600\ndeskew = \"none\"\n");
+  const auto mission = prepare(config, scenes());
+  ASSERT_TRUE(mission.ok());
+  const auto tape = drive_route(config, *mission);
+  ASSERT_TRUE(tape.ok()) << tape.error().str();
+  const LaterParts nothing{.config = config, .from_s = kTaken_s, .noise_seed = seed_of(config)};
+  const HeardRun plain = drive_on_tape(config, *mission, *tape, nothing);
+  ASSERT_GT(plain.imu_samples.size(), 700U);
+  ASSERT_GT(plain.scans.size(), 50U);
+  ASSERT_GT(plain.ticks.size(), 100U);
+  ASSERT_GT(plain.gnss_rows.size(), 10U);
+  for (const ModelRow<study::Removal>& row : study::removals()) {
+    SCOPED_TRACE(row.name);
+    const std::string name = row.name;
+    MissionConfig from_start = config;
+    LaterParts later = nothing;
+    row.make.remove(row.make.from_start ? from_start : later.config);
+    if (row.make.from_start) later.config = from_start;
+    const HeardRun run = drive_on_tape(from_start, *mission, *tape, later);
+    EXPECT_EQ(run.ticks, plain.ticks);
+
+    const double imu_s = first_other_imu_s(plain, run), reception_s = first_other_reception_s(plain, run),
+                 scan_s = first_other_scan_s(plain, run), told_s = first_other_told_s(plain, run);
+    const bool of_gnss =
+        name == "reflections_healed" || name == "reflections_dropped" || name == "blockage" || name == "buildings";
+    if (name == "imu") {
+      EXPECT_GT(imu_s, kTaken_s);
+      EXPECT_LT(imu_s, kTaken_s + 0.05) << "samples come at 100 Hz and more";
+    } else {
+      EXPECT_EQ(imu_s, 1e9);
+    }
+    if (of_gnss) {
+      EXPECT_GT(reception_s, kTaken_s);
+      EXPECT_LT(reception_s, 1e9) << "it must do something";
+    } else {
+      EXPECT_EQ(reception_s, 1e9);
+    }
+    if (name == "navigation") {
+      EXPECT_GE(scan_s, kTaken_s) << "put straight by the true motion from then on";
+    } else {
+      EXPECT_EQ(scan_s, 1e9);
+    }
+    EXPECT_LT(told_s, 1e9) << "the estimate must feel it";
+    if (!row.make.from_start) {
+      EXPECT_GE(told_s, kTaken_s - 1e-6);
+    }
   }
 }
 

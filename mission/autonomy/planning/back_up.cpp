@@ -89,6 +89,10 @@ std::unique_ptr<Recovery> make_back_up(const ModelParameters& own) {
   return std::make_unique<BackUp>(own.get<BackUpParameters>());
 }
 
+double back_up_wait_s(const ModelParameters& own) {
+  return own.get<BackUpParameters>().wait_s;
+}
+
 void back_up_parameters(ModelParameters& section) {
   section.add<BackUpParameters>();
 }

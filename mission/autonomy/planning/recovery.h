@@ -34,6 +34,7 @@ ModelTable<MakeRecovery> recoveries();
 
 /// Makers of the rows of the table in planning/recoveries.cpp, and their parameters, each in the file of its model.
 std::unique_ptr<Recovery> make_back_up(const ModelParameters& own);
+double back_up_wait_s(const ModelParameters& own);  ///< how long it stands before it backs up
 void back_up_parameters(ModelParameters& section);
 
 }  // namespace canyon::mission

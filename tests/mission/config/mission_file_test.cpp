@@ -177,6 +177,26 @@ TEST(MissionFileMessages, AStopThatTheAutonomyDoesNotMake) {
   EXPECT_EQ(message(std::string(kEmptyScene) + "[success]\nstop_s = 6.0\n"), "no mistake");
 }
 
+// 2026-11-29: accepted. It halts up to 0.4 m before the waypoint, where the halt did not count.
+TEST(MissionFileMessages, AStopThatDoesNotCountWhereItIsMade) {
+  EXPECT_EQ(message(std::string(kEmptyScene) + "[success]\nwaypoint_radius_m = 0.3\n"),
+            "my.toml:5: success.waypoint_radius_m: a stop counts within 0.3 m of its waypoint, and the autonomy halts "
+            "up to 0.4 m before it, expected success.waypoint_radius_m of 0.4 or more");
+}
+
+// 2026-11-29: accepted, and ended as "stuck" before anything had been tried, or went on backing up for ever on the
+// spot.
+TEST(MissionFileMessages, AWayBackThatCannotBeDriven) {
+  const auto told = [](const std::string& lines) { return message(std::string(kEmptyScene) + lines); };
+  EXPECT_EQ(told("[success]\nstuck_after_s = 10.0\n[autonomy.recovery]\nwait_s = 20.0\n"),
+            "my.toml:7: autonomy.recovery.wait_s: the autonomy stands for 20 s before it backs up, and counts as stuck "
+            "after 10 s, expected autonomy.recovery.wait_s below success.stuck_after_s");
+  EXPECT_EQ(told("[vehicle]\nmax_reverse_m_s = 0.0\n"),
+            "my.toml:5: vehicle.max_reverse_m_s: the autonomy backs up where no way ahead is free, and the vehicle "
+            "cannot, expected a vehicle.max_reverse_m_s above 0, or autonomy.recovery.model = \"wait\"");
+  EXPECT_EQ(told("[vehicle]\nmax_reverse_m_s = 0.0\n[autonomy.recovery]\nmodel = \"wait\"\n"), "no mistake");
+}
+
 // 2026-11-21: "3.2999999999999998 Hz".
 TEST(MissionFileMessages, NumbersAreShownAsTheyWereWritten) {
   EXPECT_EQ(message(std::string(kEmptyScene) + "[success]\nstop_s = 7.3\n"),
