@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
+#include "canyon/core/messages.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/tests/apps/command_line_fixture.h"
@@ -141,6 +142,39 @@ TEST_F(LidarRegisterTest, WhatCannotBeRegisteredIsAStatus) {
     EXPECT_TRUE(out["T_target_source"][0].is_number()) << name;
   }
   EXPECT_NE(answer("given_far.ply given_target.bin")["status"], "converged");
+}
+
+// Single precision is no finer than a millimetre there; the clouds are registered all the same. One far point is enough
+// to say so, once for each cloud, and doubles may be anywhere.
+TEST_F(LidarRegisterTest, FloatsBeyondTenKilometresAreWarnedOf) {
+  const Eigen::Vector3d origin(20000.0, -15000.0, 100.0);
+  std::vector<Eigen::Vector3d> target = yard(1, 20000), source = yard(2, 20000), near = target;
+  for (Eigen::Vector3d& p : target) p += origin;
+  for (Eigen::Vector3d& p : source) p = X_TS_.inverse() * p + origin;
+  near.emplace_back(0.0, 10001.0, 0.0);
+  write("given_far_target.bin", bin(target));
+  write("given_far_source.bin", bin(source));
+  write("given_far_source.ply", ply(source));
+  write("given_one_far.bin", bin(near));
+  const auto warning = [](const std::string& file) {
+    return "warning: " + file + ": coordinates in single precision beyond 10 km are no finer than 1 mm\n";
+  };
+
+  const Json out = answer("given_far_source.bin given_far_target.bin");
+  EXPECT_EQ(read("stderr"), warning("given_far_source.bin") + warning("given_far_target.bin"));
+  EXPECT_EQ(out["status"], "converged");
+  for (int i = 0; i < 3; ++i) {  // where the yard's middle comes to lie
+    double at = out["T_target_source"][4 * i + 3].get<double>();
+    for (int k = 0; k < 3; ++k) at += out["T_target_source"][4 * i + k].get<double>() * origin[k];
+    EXPECT_NEAR(at, origin[i] + X_TS_.translation()[i], 0.02) << i;  // as off() of the near ones
+  }
+
+  answer("given_far_source.ply given_far_target.bin");
+  EXPECT_EQ(read("stderr"), warning("given_far_target.bin"));
+  answer("given_source.ply given_one_far.bin");
+  EXPECT_EQ(read("stderr"), warning("given_one_far.bin"));
+  answer("given_source.ply given_target.bin");
+  EXPECT_EQ(read("stderr"), "");
 }
 
 TEST_F(LidarRegisterTest, WhatIsWrongIsSaidInOneLine) {

@@ -5,63 +5,22 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/beam/texture/value_noise.h"
 #include "canyon/lidar/ouster/recording.h"
 #include "canyon/scene/surfaces/material.h"
+#include "canyon/tests/lidar/ground_under.h"
 #include "canyon/tests/support/test_data.h"
 
 namespace canyon::lidar::ouster {
 namespace {
 
+using lidar::testing::ground_under;
+using lidar::testing::GroundPlane;
+
 constexpr double kBin_m = 2.5;
 constexpr std::size_t kBins = 24;
-
-struct Plane {
-  Eigen::Vector3d normal{0, 0, 1};
-  double below_m = 0.0;  ///< of the sensor's origin
-};
-
-/// Through what lies lower than 0.8 m under the origin within 10 m: drawn triples, the one that most lies on, and a
-/// least-squares plane of these.
-Plane ground_of(const Frame& frame) {
-  std::vector<Eigen::Vector3d> low;
-  for (const Return& r : frame.returns)
-    if (r.p_m.head<2>().norm() < 10.0 && r.p_m.z() < -0.8) low.push_back(r.p_m);
-  const RandomStream draws(1, "test.ground");
-  const auto one_of = [&](std::uint32_t n, std::uint64_t k) {
-    return low[static_cast<std::size_t>(draws.uniform(n, k) * static_cast<double>(low.size()))];
-  };
-  Plane best;
-  std::size_t most = 0;
-  const auto on = [](const Plane& plane, const Eigen::Vector3d& p, double within_m) {
-    return std::abs(plane.normal.dot(p) + plane.below_m) < within_m;
-  };
-  for (std::uint64_t k = 0; k < 300; ++k) {
-    const Eigen::Vector3d a = one_of(0, k);
-    Eigen::Vector3d n = (one_of(1, k) - a).cross(one_of(2, k) - a);
-    if (n.norm() < 1e-6) continue;
-    n = n.normalized() * (n.z() < 0.0 ? -1.0 : 1.0);
-    const Plane plane{n, -n.dot(a)};
-    const auto count = static_cast<std::size_t>(
-        std::count_if(low.begin(), low.end(), [&](const Eigen::Vector3d& p) { return on(plane, p, 0.05); }));
-    if (n.z() > 0.97 && count > most) most = count, best = plane;
-  }
-  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& p : low) {
-    if (!on(best, p, 0.06)) continue;
-    const Eigen::Vector3d row(p.x(), p.y(), 1.0);
-    A += row * row.transpose();
-    b += row * p.z();
-  }
-  const Eigen::Vector3d z = A.ldlt().solve(b);
-  const double length = std::hypot(1.0, z.head<2>().norm());
-  return {Eigen::Vector3d(-z.x(), -z.y(), 1.0) / length, -z.z() / length};
-}
 
 /// Shots that would meet the ground so far off, and how many came back from it.
 struct Counts {
@@ -71,7 +30,9 @@ struct Counts {
 
 /// A shot counts where nothing but ground, or nothing at all, was met by those below it in its direction.
 void count_ground(const Frame& frame, const Metadata& metadata, const std::vector<int>& shift, Counts& out) {
-  const Plane ground = ground_of(frame);
+  std::vector<Eigen::Vector3d> points;
+  for (const Return& r : frame.returns) points.push_back(r.p_m);
+  const GroundPlane ground = ground_under(points);
   const double height_m = ground.below_m + metadata.lidar_to_sensor(2, 3);  // of where beams begin
   out.height_m += height_m / 3.0;
   const auto pixels = metadata.elevation_deg.size();
@@ -91,8 +52,7 @@ void count_ground(const Frame& frame, const Metadata& metadata, const std::vecto
       const double there_m = falls > 1e-3 ? height_m / falls : 1e9;
       if (there_m >= kBin_m * kBins) break;
       const Return* r = met[pixel * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column)];
-      const bool is_ground =
-          r != nullptr && std::abs(ground.normal.dot(r->p_m) + ground.below_m) < 0.15 + 0.01 * r->range_m;
+      const bool is_ground = r != nullptr && std::abs(ground.height_m(r->p_m)) < 0.15 + 0.01 * r->range_m;
       if (r != nullptr && !is_ground) break;
       const auto bin = static_cast<std::size_t>(there_m / kBin_m);
       out.shots[bin] += 1.0;

@@ -1,11 +1,17 @@
 #include "canyon/study/registration_error/error_budget.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "canyon/core/motion/rotation.h"
 #include "canyon/core/process/parallel.h"
+#include "canyon/core/random/random.h"
+#include "canyon/core/units.h"
+#include "canyon/inertial/mounting.h"
 #include "canyon/mission/route_tape.h"
 #include "canyon/tests/mission/short_mission.h"
 
@@ -197,6 +203,81 @@ TEST(ErrorBudget, APlantedSourceHasTheLargestShareOfWhatItRaises) {
     if (other.source != "initial_attitude") {
       EXPECT_LT(other.share, share) << other.source;
     }
+}
+
+/// The first minute of the built-in mission, `low`.
+mission::MissionConfig first_minute(const std::string& extra) {
+  auto file = mission::MissionFile::parse("base = \"vicksburg\"", "test.toml");
+  EXPECT_TRUE(file.ok());
+  auto config = *file->resolve("low");
+  const auto tree = ConfigNode::parse("[time]\nlimit_s = 60.0\n" + extra, "extra.toml");
+  EXPECT_TRUE(tree.ok());
+  EXPECT_TRUE(read_config(&*tree, "", config).ok());
+  return config;
+}
+
+/// By how much a plant raises a mean square error on top of what the mission has, and by how much its source's share.
+struct RisenShare {
+  double rise = 0.0, share_rises = 0.0;
+};
+RisenShare risen_by(const mission::MissionConfig& before, const mission::MissionConfig& after,
+                    const std::string& source, const std::string& figure) {
+  auto prepared = mission::prepare(before, mission::testing::scenes());
+  EXPECT_TRUE(prepared.ok());
+  auto tape = mission::drive_route(before, *prepared);
+  EXPECT_TRUE(tape.ok());
+  while (tape->duration_s() > before.time.limit_s) tape->nodes.pop_back();
+  const auto add = [&](const mission::MissionConfig& config, double sign, RisenShare& out) {
+    const auto budget = make_error_budget(
+        config, *prepared, *tape, {.permutations = 8, .hidden = {HiddenRemoval::kHealed}, .show_progress = false});
+    ASSERT_TRUE(budget.ok()) << budget.error().str();
+    const auto& figures = budget->budgets.front().figures;
+    const auto of = std::find_if(figures.begin(), figures.end(), [&](const auto& f) { return f.key == figure; });
+    ASSERT_NE(of, figures.end());
+    std::printf("%s: mean square of %s %.5f, share of %s %.5f\n", sign > 0.0 ? "planted" : "before", figure.c_str(),
+                of->total, source.c_str(), share_of(*of, source).share);
+    out.rise += sign * of->total;
+    out.share_rises += sign * share_of(*of, source).share;
+  };
+  RisenShare out;
+  add(before, -1.0, out);
+  add(after, 1.0, out);
+  return out;
+}
+
+// What was asked for: a share within 10 % of the rise that the plant causes.
+constexpr double kPlantedWithin = 0.1;
+
+TEST(ErrorBudgetNightly, ScansStampedFiftyMillisecondsLateHaveTheShareThatTheyRaise) {
+  const RisenShare plant =
+      risen_by(first_minute(""), first_minute("[lidar]\nlatency_s = 0.05\n"), "time_offset", "map");
+  EXPECT_GT(plant.rise, 0.0);
+  EXPECT_NEAR(plant.share_rises, plant.rise, kPlantedWithin * plant.rise);
+}
+
+// The heading that the filter starts with is off by a degree: seeded draws are scaled to it. Fixes take it away.
+TEST(ErrorBudgetNightly, AHeadingThatStartsADegreeOffHasTheShareThatItRaises) {
+  mission::MissionConfig off = first_minute("");
+  const double drawn =
+      RandomStream(static_cast<std::uint64_t>(off.run.seed), "mission.initial_attitude").normal3(0).z();
+  off.run.initial_attitude_error_deg = {0.0, 0.0, 1.0 / std::abs(drawn)};
+  const RisenShare plant = risen_by(first_minute(""), off, "initial_attitude", "keyframe_yaw");
+  EXPECT_GT(plant.rise, 0.0);
+  EXPECT_NEAR(plant.share_rises, plant.rise, kPlantedWithin * plant.rise);
+}
+
+// No key turns the LIDAR against what is believed of it. What lasts as a bias of the heading is a unit that sits askew:
+// so much that it is turned by a degree about the vertical; about the other axes it sits as the same draws have it.
+TEST(ErrorBudgetNightly, AUnitAskewByADegreeOfYawHasTheShareThatItRaises) {
+  const std::string by_filter = "[registration]\nmethod = \"none\"\n";
+  mission::MissionConfig askew = first_minute(by_filter);
+  askew.imu.mounting_error_deg = 1.0;
+  const auto drawn = inertial::mounting(askew.imu, static_cast<std::uint64_t>(askew.run.seed));
+  ASSERT_TRUE(drawn);
+  askew.imu.mounting_error_deg = 1.0 / std::abs(so3_log(*drawn).z() / kDegree);
+  const RisenShare plant = risen_by(first_minute(by_filter), askew, "imu", "keyframe_yaw");
+  EXPECT_GT(plant.rise, 0.0);
+  EXPECT_NEAR(plant.share_rises, plant.rise, kPlantedWithin * plant.rise);
 }
 
 }  // namespace
