@@ -75,7 +75,7 @@ def outcomes(options, folder, remedies, seed):
 
 def wilson(successes, n, z=1.959963984540054):
     middle, half = (successes + z * z / 2) / (n + z * z), z * math.sqrt(successes * (n - successes) / n + z * z / 4) / (n + z * z)
-    return middle - half, middle + half
+    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def contrasts():

@@ -22,6 +22,8 @@ import subprocess
 import sys
 import tempfile
 
+from factorial import seeds_of, wilson
+
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 BOUND = 22.457744484825323  # 99.9 % of chi-square with 6 degrees of freedom
 FAR_M = 1.0
@@ -56,11 +58,6 @@ def ratio(rows):
     return rms([one[0] for one in both]) / rms([one[1] for one in both])
 
 
-def wilson(successes, n, z=1.959963984540054):
-    middle, half = (successes + z * z / 2) / (n + z * z), z * math.sqrt(successes * (n - successes) / n + z * z / 4) / (n + z * z)
-    return max(0.0, middle - half), min(1.0, middle + half)
-
-
 def report(fidelity, seeds):
     """A row of the table, and what the worst steps are. `seeds`: rows of keyframes by seed."""
     steps = [(seed, row) for seed, rows in seeds.items() for row in rows if row["step_nees"]]
@@ -81,11 +78,6 @@ def report(fidelity, seeds):
     seed, worst = max(unflagged, key=lambda one: float(one[1]["step_error_m"]))
     return (f"`{fidelity}`: the largest unflagged step is off by {float(worst['step_error_m']):.2f} m and {float(worst['step_error_deg']):.2f} deg (seed {seed}, {worst['t_s']} s, "
             f"overlap {worst['overlap']}, step_nees {worst['step_nees']}).")
-
-
-def seeds_of(text):
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1)
 
 
 def main():

@@ -21,8 +21,8 @@ struct MapEvent {
   double size = 0.0;  ///< change of GDOP; seconds without fix; most hidden signals; metres of the correction
 };
 
-/// Those of the fixes, out of what RunEvents saw. `first_s`: when its first row came, after the start; fixes come every
-/// `period_s`.
-std::vector<MapEvent> fix_events(const std::vector<Event>& seen, double first_s, double period_s);
+/// Those of the fixes, out of what RunEvents saw. `first_s` and `last_s`: when its first and its last row came, after
+/// the start; fixes come every `period_s`. A loss that lasts to the end is one without a return.
+std::vector<MapEvent> fix_events(const std::vector<Event>& seen, double first_s, double last_s, double period_s);
 
 }  // namespace canyon::study

@@ -18,7 +18,8 @@ double ErrorSeries::at(std::size_t series, double when_s) const {
 }
 
 Status SeriesRecorder::gnss(const mission::GnssRow& row) {
-  if (!first_fix_s_) first_fix_s_ = row.fix.t - start_;
+  last_fix_s_ = row.fix.t - start_;
+  if (!first_fix_s_) first_fix_s_ = last_fix_s_;
   return fixes_.gnss(row);
 }
 
@@ -42,7 +43,7 @@ Status SeriesRecorder::keyframe_input(const mission::KeyframeInput& input) {
 }
 
 ErrorSeries SeriesRecorder::take() {
-  series_.events = fix_events(fixes_.events(), first_fix_s_.value_or(0.0), gnss_period_s_);
+  series_.events = fix_events(fixes_.events(), first_fix_s_.value_or(0.0), last_fix_s_, gnss_period_s_);
   series_.events.insert(series_.events.end(), jumps_.events().begin(), jumps_.events().end());
   return std::move(series_);
 }

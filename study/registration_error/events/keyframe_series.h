@@ -52,6 +52,7 @@ class SeriesRecorder final : public mission::Recorder {
   double map_range_m_, gnss_period_s_;
   bool registers_;
   std::optional<double> first_fix_s_;
+  double last_fix_s_ = 0.0;  ///< both after the start
   RunEvents fixes_;
   EstimateJumps jumps_;
   Pose X_WL_prior_, X_WL_registered_;  ///< of the keyframe whose input follows

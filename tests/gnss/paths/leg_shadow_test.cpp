@@ -18,10 +18,11 @@ using Complex = std::complex<double>;
 constexpr double kShadowWave_m = 0.19;
 
 /// Straight up from a place, to a satellite.
-Complex share_upwards(const scene::Scene& scene, const Eigen::Vector3d& from, double least = 0.01) {
+Complex share_upwards(const scene::Scene& scene, const Eigen::Vector3d& from, double least = 0.01,
+                      double needed = 0.0) {
   GnssCounters counters;
   const MirroredLeg leg{.from_W = from, .towards_W = {0, 0, 1}, .wavelength_m = kShadowWave_m};
-  return leg_share(leg, least, scene::SceneAt(scene), counters);
+  return leg_share(leg, least, scene::SceneAt(scene), counters, needed);
 }
 
 /// The rectangle from (x1, y1) to (x2, y2) of z = 0.
@@ -54,6 +55,22 @@ TEST(LegShadow, BehindARectangleItIsWhatTheRectangleWouldNotLetThrough) {
       EXPECT_NEAR(std::abs(share_upwards(*scene, {0, 0, -depth_m}) - expected), 0.0, 0.03) << x << ", " << y;
     }
   }
+}
+
+// Left out is only what is too little.
+TEST(LegShadow, WhatIsMoreThanNeededIsTheSame) {
+  const auto scene = screen(-6, -4, 0, 9);
+  int left_out = 0;
+  for (double x = -4.0; x < 4.0; x += 0.17) {
+    const Complex whole = share_upwards(*scene, {x, 0.3, -50.0});
+    for (const double needed : {0.05, 0.3, 0.7, 0.99}) {
+      const Complex found = share_upwards(*scene, {x, 0.3, -50.0}, 0.01, needed);
+      const bool counts = std::abs(whole) > needed || found != 0.0;
+      EXPECT_EQ(found, counts ? whole : Complex(0.0)) << x << ", " << needed;
+      left_out += found == 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(left_out, 20) << "what is dark is not looked at closely";
 }
 
 TEST(LegShadow, AnEdgeInPiecesIsOne) {

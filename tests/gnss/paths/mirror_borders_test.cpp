@@ -84,6 +84,29 @@ TEST(MirroredShare, WhatIsLeftOutOfASmallPlateIsLittle) {
   }
 }
 
+TEST(MirroredShare, IsNoMoreThanTheMostThatIsSaidOfIt) {
+  double nearest = 10.0;
+  for (const double wide_m : {1.5, 3.0, 12.0, 40.0}) {
+    for (const double depth_m : {4.0, 60.0, 400.0}) {
+      for (double x = -3.0; x < 3.0; x += 0.23) {
+        const auto scene = plate(x, x - 0.4 * wide_m, x + wide_m, x + 0.7 * wide_m);
+        const scene::Facet& facet = scene->facets().facets().at(0);
+        const Eigen::Vector3d at = Eigen::Vector3d::Zero();
+        const MirroredWave wave{{0, 0, -depth_m}, {0, 0, 1}, at, kWave_m};
+        const bool holds = scene::facet_contains(facet, *scene, at);
+        for (const double least : {0.0, 0.05}) {
+          const double share = std::abs(mirrored_share(facet, holds, wave, least));
+          const double most = most_mirrored(facet, holds, wave, least);
+          EXPECT_LE(share, most + 1e-12) << wide_m << " m wide, " << depth_m << " m, " << x << ", " << least;
+          EXPECT_LE(share, kMostMirrored);
+          if (share > 0.1) nearest = std::min(nearest, most / share);
+        }
+      }
+    }
+  }
+  EXPECT_LT(nearest, 1.1) << "it says no more than it must";
+}
+
 TEST(MirroredShare, HasTheBordersOfItsFacetAlone) {
   const auto scene = WallScene().box({0, 0, 0}, {10, 20, 30}).build();
   for (const scene::Facet& facet : scene->facets().facets()) {

@@ -27,7 +27,7 @@ std::vector<MapEvent> events_of_fixes(double until_s, Gdop&& gdop, Hidden&& hidd
   RunEvents seen;
   for (double t_s = kFirstFix_s; t_s < until_s; t_s += kFixPeriod_s)
     EXPECT_TRUE(seen.gnss(fix_row(t_s, gdop(t_s), hidden(t_s))).ok());
-  return fix_events(seen.events(), kFirstFix_s, kFixPeriod_s);
+  return fix_events(seen.events(), kFirstFix_s, until_s - kFixPeriod_s, kFixPeriod_s);
 }
 int nothing_hidden(double) {
   return 0;
@@ -78,12 +78,19 @@ TEST(MapEvents, AFixOfASecondDoesNotEndALoss) {
   expect_event(events[1], MapEventKind::kFixBack, 12.0, 10.0, 12.0, 2.0);
 }
 
+TEST(MapEvents, ALossThatLastsToTheEndHasNoReturn) {
+  const std::vector<MapEvent> events = events_of_fixes(
+      20.0, [](double t_s) { return t_s < 17.0 ? 2.0 : 0.0; }, nothing_hidden);
+  ASSERT_EQ(events.size(), 1U);
+  expect_event(events[0], MapEventKind::kFixLost, 17.0, 17.0, 19.5, 3.0);
+}
+
 TEST(MapEvents, WhatAMissionFailsByMovesNoMap) {
   std::vector<Event> seen;
   for (const EventKind kind : {EventKind::kUnlikelyFix, EventKind::kOverconfident, EventKind::kMapDoubled,
                                EventKind::kPhantom, EventKind::kStopped})
     seen.push_back({kind, 1.0, 2.0, 3.0});
-  EXPECT_TRUE(fix_events(seen, kFirstFix_s, kFixPeriod_s).empty());
+  EXPECT_TRUE(fix_events(seen, kFirstFix_s, 20.0, kFixPeriod_s).empty());
 }
 
 }  // namespace
