@@ -50,12 +50,13 @@ class Reference final : public Autonomy {
     const Pose X_OB{estimate.X_WB.R, {body.p_m.x(), body.p_m.y(), 0.0}};
     const Pose X_OL{X_WL.R, X_WL.p - estimate.X_WB.p + X_OB.p};
     if (!perception_->see(scan, X_OL, X_OB, scan.t - start_)) return;
-    plan(body, estimate, scan.t - last_seen_);
+    plan(body, estimate, scan, X_OL, X_OB);
     last_seen_ = scan.t;
   }
 
   std::optional<KeptReturns> keeps() const override {
     KeptReturns keeps = perception_->keeps();
+    if (const auto more = lane_->keeps()) keeps = both(keeps, *more);
     if (const auto more = self_check_->keeps()) keeps = both(keeps, *more);
     return keeps;
   }
@@ -86,12 +87,13 @@ class Reference final : public Autonomy {
 
   MovingBody moving() const { return {frame_.body(), frame_.speed_m_s(), steering_rad_}; }
 
-  void plan(const PlanPose& body, const NavEstimate& estimate, double dt_s) {
+  void plan(const PlanPose& body, const NavEstimate& estimate, const LidarScan& scan, const Pose& X_OL,
+            const Pose& X_OB) {
     const Eigen::Vector2d to_W = estimate.X_WB.p.head<2>() - body.p_m;
     const double across_m2 = estimate.pose_covariance(4, 4);
     const double sigma_m = across_m2 > 0.0 ? std::sqrt(across_m2) : 0.0;
-    const double lane_m =
-        lane_->middle_m({driver_.route(), driver_.s_m(), to_W, body, sigma_m, dt_s, perception_->blocked()});
+    const double lane_m = lane_->middle_m({driver_.route(), driver_.s_m(), to_W, body, sigma_m, scan.t - last_seen_,
+                                           perception_->blocked(), &scan, &X_OL, &X_OB});
     MovingBody moving = this->moving();
     moving.pose = body;
     plan_ = planner_->plan(

@@ -189,6 +189,11 @@ Status check_seeing(const AutonomyConfig& autonomy, double lidar_hz) {
 }  // namespace
 
 Status check_consistency(const MissionConfig& config) {
+  CANYON_TRY_STATUS(
+      check_limit({"scene.kerb_height_m", config.scene.city.kerb_height_m, "vehicle.ground_clearance_m",
+                   config.vehicle.ground_clearance_m,
+                   "kerbs of " + number_text(config.scene.city.kerb_height_m) + " m under a body that begins " +
+                       number_text(config.vehicle.ground_clearance_m) + " m above the ground"}));
   CANYON_TRY_STATUS(check_stop(config.success.stop_s, config.autonomy));
   CANYON_TRY_STATUS(check_radius(config.success.waypoint_radius_m));
   CANYON_TRY_STATUS(check_recovery(config));

@@ -35,11 +35,21 @@ bool Encounters::is_thing(const NearTriangle& triangle) const {
   return scene_.object(scene_.surface(triangle.index).object).kind != scene::ObjectKind::kTerrain;
 }
 
+/// What is lower than the body, as a pavement is, is no thing to keep clear of. Of objects of known kinds all counts.
+bool Encounters::is_driven_over(const NearTriangle& triangle, const OrientedBox& body) const {
+  if (scene_.object(scene_.surface(triangle.index).object).kind != scene::ObjectKind::kOther) return false;
+  const Eigen::Vector3d up = body.X_WC.R * Eigen::Vector3d::UnitZ();
+  const scene::Triangle& t = triangle.corners;
+  const double underside_m = up.dot(body.X_WC.p) - body.half_m.z();
+  return std::max({up.dot(t.a), up.dot(t.b), up.dot(t.c)}) < underside_m;
+}
+
 double Encounters::clearance_m(const Pose& X_WB) {
   const OrientedBox body = body_box(vehicle_, X_WB);
   double least_m = kFar_m;
   for (const NearTriangle& triangle : near_.near(body.X_WC.p, body.radius_m() + kFar_m))
-    if (is_thing(triangle)) least_m = std::min(least_m, distance_m(body, triangle.corners));
+    if (is_thing(triangle) && !is_driven_over(triangle, body))
+      least_m = std::min(least_m, distance_m(body, triangle.corners));
   return least_m;
 }
 

@@ -4,6 +4,7 @@
 
 #include "canyon/core/truth.h"
 #include "canyon/mission/autonomy/autonomy.h"
+#include "canyon/mission/collision/body_box.h"
 #include "canyon/mission/collision/near_triangles.h"
 #include "canyon/mission/config/mission_config.h"
 #include "canyon/mission/motion/vehicle_config.h"
@@ -45,6 +46,7 @@ class Encounters {
     GpsTime last_;
   };
   bool is_thing(const NearTriangle& triangle) const;
+  bool is_driven_over(const NearTriangle& triangle, const OrientedBox& body) const;
   double clearance_m(const Pose& X_WB);
   /// Whether the body meets a thing on an arc of that length ahead.
   bool meets(const Pose& X_WB, double curvature_1_m, double way_m);

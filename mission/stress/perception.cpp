@@ -12,6 +12,7 @@
 #include "canyon/mission/autonomy/known_vehicle.h"
 #include "canyon/mission/autonomy/path.h"
 #include "canyon/mission/autonomy/perception/blocked_cells.h"
+#include "canyon/mission/autonomy/perception/kerb_rises.h"
 #include "canyon/mission/autonomy/perception/lane_reference.h"
 #include "canyon/mission/autonomy/perception/local_frame.h"
 #include "canyon/mission/autonomy/perception/polar_ground.h"
@@ -154,6 +155,39 @@ StressFigure seen_street(double turn_rad) {
   return looks.figure();
 }
 
+/// Sixteen rings, from 1.8 m, over a level street at any angle between two kerbs 6 m off: without noise each rise lies
+/// within the step across that it is looked for in, and a street without kerbs has none.
+StressFigure kerbs(double turn_rad, double height_m) {
+  Looks looks;
+  constexpr double kAbove_m = 1.8, kHalf_m = 6.0;
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
+  LidarScan scan;
+  for (int ring = 0; ring < 16; ++ring)
+    for (int step = 0; step < 900; ++step) {
+      const double e = (2 * ring - 15) * kDegree, a = step * 0.4 * kDegree;
+      const Eigen::Vector3d d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      if (d.z() >= 0.0) continue;
+      double way_m = kAbove_m / -d.z();
+      if (way_m * std::abs(d.y()) > kHalf_m) {
+        const double face_m = kHalf_m / std::abs(d.y());
+        way_m = (kAbove_m - height_m) / -d.z();
+        if (way_m < face_m) way_m = face_m;
+      }
+      const Eigen::Vector3f q = (turned * (way_m * d)).cast<float>();
+      scan.points.push_back({q.x(), q.y(), q.z(), 0.3F, 0.0F, static_cast<std::uint16_t>(ring), 0});
+    }
+  const Pose X_OL{Eigen::Quaterniond::Identity(), {37.0, -11.0, kAbove_m}};
+  const Vector2d u(std::cos(turn_rad), std::sin(turn_rad)), left(-u.y(), u.x());
+  int sides[2] = {0, 0};
+  for (const Vector2d& p : kerb_rises({.scan = scan, .X_OL = X_OL, .origin = X_OL.p.head<2>(), .along = u})) {
+    const double aside_m = left.dot(p - X_OL.p.head<2>());
+    looks.near(std::abs(aside_m), kHalf_m, 0.12);
+    ++sides[aside_m > 0.0 ? 0 : 1];
+  }
+  for (const int count : sides) looks.near(count >= 3 ? 1.0 : 0.0, height_m > 0.0 ? 1.0 : 0.0, 1e-12);
+  return looks.figure();
+}
+
 /// Of a house's walls the one that looks widest from a place, by its angle; 25 points evenly on it, 5 cm out.
 StressFigure facades() {
   Looks looks;
@@ -197,6 +231,8 @@ std::vector<StressCase> perception_cases() {
       .add("perception/facades", facades);
   for (const double turn : {0.0, 1.0, -2.5})
     rows.add("perception/seen_street_turned_by_" + stress::text(turn), [turn] { return seen_street(turn); });
+  for (const double height_m : {0.0, 0.08, 0.15})
+    rows.add("perception/kerbs_of_" + stress::text(height_m), [height_m] { return kerbs(0.7, height_m); });
   return rows.take();
 }
 

@@ -24,6 +24,9 @@ void visit(FieldVisitor& f, CityConfig& c) {
   f.number("terrain_cell_m", c.terrain_cell_m, {0.5, 20.0}, "edge of a terrain cell (two triangles)");
   f.number("block_m", c.block_m, kCityBlock_m, "mean distance from street to street");
   f.number("street_width_m", c.street_width_m, {11.0, 20.0}, "kerb to kerb");
+  f.number(
+      "kerb_height_m", c.kerb_height_m, {0.0, 0.3},
+      "by how much pavements are raised; 0: they are painted on the ground; the vehicle's wheels do not feel them");
   f.flag("empty", c.empty, "terrain and streets only: open sky");
   f.flag("absorbing", c.absorbing, "every surface absorbs radio: blockage without reflections");
 }
@@ -54,7 +57,8 @@ void paint_ground(const CityConfig& config, const city::Plan& plan, const MeshBu
 SceneCost predicted_cost(const CityConfig& config) {
   const double cells = std::max(1.0, std::round(config.extent_m / config.terrain_cell_m));
   const double area_km2 = 1e-6 * config.extent_m * config.extent_m;
-  return {2.0 * cells * cells + (config.empty ? 0.0 : kTrianglesPerKm2 * area_km2)};
+  const double pavements = config.kerb_height_m > 0.0 ? city::pavement_triangles(city::make_plan(config)) : 0.0;
+  return {2.0 * cells * cells + (config.empty ? 0.0 : kTrianglesPerKm2 * area_km2 + pavements)};
 }
 
 SceneParts make_city(const CityConfig& config) {
@@ -77,6 +81,7 @@ SceneParts make_city(const CityConfig& config) {
     city::add_trees(config, plan, terrain, parts);
     city::add_poles(config, plan, terrain, parts);
     city::add_garden_walls(config, plan, terrain, parts);
+    if (config.kerb_height_m > 0.0) city::add_pavements(config, plan, terrain, parts);
   }
   return parts;
 }

@@ -23,8 +23,9 @@ struct CityConfig {
   double terrain_cell_m = 2.0;
   double block_m = 90.0;  ///< street to street
   double street_width_m = 12.0;
-  bool empty = false;      ///< terrain and streets only: open sky
-  bool absorbing = false;  ///< every surface absorbs radio: blockage without reflections
+  double kerb_height_m = 0.0;  ///< by how much pavements are raised; 0: they are painted on the ground
+  bool empty = false;          ///< terrain and streets only: open sky
+  bool absorbing = false;      ///< every surface absorbs radio: blockage without reflections
 };
 void visit(FieldVisitor& f, CityConfig& c);
 

@@ -14,5 +14,8 @@ void add_trees(const CityConfig& config, const Plan& plan, const Terrain& terrai
 void add_poles(const CityConfig& config, const Plan& plan, const Terrain& terrain, SceneParts& parts);
 /// Garden walls along the sidewalk of blocks with houses, each with a gap for a gate.
 void add_garden_walls(const CityConfig& config, const Plan& plan, const Terrain& terrain, SceneParts& parts);
+/// Pavements, raised over the street, around every block; radio passes them by.
+void add_pavements(const CityConfig& config, const Plan& plan, const Terrain& terrain, SceneParts& parts);
+double pavement_triangles(const Plan& plan);
 
 }  // namespace canyon::scene::city

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
+#include "canyon/core/messages.h"
 #include "canyon/core/model_choice.h"
+#include "canyon/mission/autonomy/kept_returns.h"
 #include "canyon/mission/autonomy/path.h"
 #include "canyon/mission/autonomy/perception/blocked_cells.h"
 
@@ -17,6 +20,9 @@ struct LaneTask {
   double sigma_m = 0.0;  ///< 1-sigma of the estimate across the vehicle's axis, as the filter says
   double dt_s = 0.0;     ///< since the last time
   const BlockedCells& blocked;
+  const LidarScan* scan = nullptr;  ///< the last one, deskewed; null: none
+  const Pose* X_OL = nullptr;       ///< L as placed in O at its stamp
+  const Pose* X_OB = nullptr;       ///< B likewise
 };
 
 /// Where the lane's middle is: how far left of the route, which is known in W, while the vehicle is not. One-level
@@ -24,6 +30,8 @@ struct LaneTask {
 class LaneReference {
  public:
   virtual ~LaneReference() = default;
+  /// What it needs of the scans, if it looks at them itself.
+  virtual std::optional<KeptReturns> keeps() const { return std::nullopt; }
   virtual double middle_m(const LaneTask& task) = 0;
 };
 
@@ -34,5 +42,7 @@ ModelTable<MakeLaneReference> lane_references();
 /// model.
 std::unique_ptr<LaneReference> make_seen_street(const ModelParameters& own);
 void seen_street_parameters(ModelParameters& section);
+std::unique_ptr<LaneReference> make_seen_kerbs(const ModelParameters& own);
+void seen_kerbs_parameters(ModelParameters& section);
 
 }  // namespace canyon::mission

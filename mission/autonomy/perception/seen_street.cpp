@@ -4,69 +4,33 @@
 #include <vector>
 
 #include "canyon/mission/autonomy/perception/lane_reference.h"
+#include "canyon/mission/autonomy/perception/street_weight.h"
 
 namespace canyon::mission {
 namespace {
 
 struct SeenStreetParameters {
   double sigma_m = 1.0;
-  double narrowest_m = 5.0;
-  double widest_m = 25.0;
-  double window_m = 20.0;
-  double slew_m_s = 0.5;
-  double doubt_s = 3.0;
 };
 void visit(FieldVisitor& f, SeenStreetParameters& p) {
   f.number("sigma_m", p.sigma_m, {0.05, 20},
            "seen_street: 1-sigma of the middle of the free space as the street's, as cars park on one side");
-  f.number("narrowest_m", p.narrowest_m, {1, 50}, "seen_street: free space that is narrower is not the whole street");
-  f.number("widest_m", p.widest_m, {2, 120}, "seen_street: free space that is wider is no street");
-  f.number("window_m", p.window_m, {4, 60}, "seen_street: how far ahead it looks for both sides");
-  f.number("slew_m_s", p.slew_m_s, {0.01, 10}, "seen_street: how fast it moves the lane");
-  f.number(
-      "doubt_s", p.doubt_s, {0, 600},
-      "seen_street: after so long with a street where the estimate's own sigma cannot have it, the street is right");
 }
 
-constexpr double kStraight_1_m = 0.01;  // of the route, over the window
-constexpr double kSlice_m = 1.0;        // of the window
-constexpr std::size_t kFewest = 8;      // slices with both sides
-constexpr double kAlike_m = 2.0;        // within which the middle half of the slices must have their middles
-constexpr double kDoubt = 3.0;  // sigma beyond which the estimate is no longer believed to be as good as it says
+constexpr double kSlice_m = 1.0;    // of the window
+constexpr std::size_t kFewest = 8;  // slices with both sides
+constexpr double kAlike_m = 2.0;    // within which the middle half of the slices must have their middles
 
-/// The middle of the free space between what is seen left and right, weighed against the estimate by their variances. A
-/// middle that the estimate's own sigma cannot explain counts as that much estimate's error: filters that follow
-/// reflected signals are surer than right.
+/// The middle of the free space between what is seen left and right.
 class SeenStreet final : public LaneReference {
  public:
-  explicit SeenStreet(const SeenStreetParameters& p) : p_(p) {}
+  SeenStreet(const SeenStreetParameters& own, const StreetSidesParameters& p) : p_(p), weight_(p, own.sigma_m) {}
 
   double middle_m(const LaneTask& task) override {
-    const std::optional<double> seen = is_straight(task) ? seen_middle_m(task) : std::nullopt;
-    // Where nothing is seen, the route alone.
-    const double wanted = seen ? weight(*seen, task.sigma_m, task.dt_s) * *seen : 0.0;
-    const double most = p_.slew_m_s * task.dt_s;
-    middle_ += std::clamp(wanted - middle_, -most, most);
-    return middle_;
+    return weight_.middle_m(weight_.is_straight(task) ? seen_middle_m(task) : std::nullopt, task);
   }
 
  private:
-  double weight(double seen_m, double sigma_m, double dt_s) {
-    const double own2 = p_.sigma_m * p_.sigma_m;
-    double estimate2 = sigma_m * sigma_m;
-    const double expected2 = kDoubt * kDoubt * (own2 + estimate2);
-    doubted_s_ = seen_m * seen_m > expected2 ? doubted_s_ + dt_s : 0.0;
-    if (doubted_s_ > p_.doubt_s) estimate2 += seen_m * seen_m - expected2;
-    return estimate2 / (estimate2 + own2);
-  }
-
-  bool is_straight(const LaneTask& task) const {
-    for (double x = 0.0; x <= p_.window_m; x += 2.0)
-      if (std::abs(task.route.curvature(task.s_m + x)) > kStraight_1_m) return false;
-    const Eigen::Vector2d u = task.route.direction(task.s_m);
-    return u.dot(task.body.forward()) > 0.9;
-  }
-
   std::optional<double> seen_middle_m(const LaneTask& task) const {
     struct Slice {
       double left = 1e9, right = -1e9;
@@ -86,10 +50,8 @@ class SeenStreet final : public LaneReference {
         slice.right = std::max(slice.right, aside);
     }
     std::vector<double> middles;
-    for (const Slice& slice : slices) {
-      const double width = slice.left - slice.right;
-      if (width >= p_.narrowest_m && width <= p_.widest_m) middles.push_back(0.5 * (slice.left + slice.right));
-    }
+    for (const Slice& slice : slices)
+      if (const auto middle = weight_.between(slice.left, slice.right)) middles.push_back(*middle);
     if (middles.size() < kFewest) return std::nullopt;
     std::sort(middles.begin(), middles.end());
     const std::size_t n = middles.size();
@@ -97,18 +59,19 @@ class SeenStreet final : public LaneReference {
     return middles[n / 2];
   }
 
-  SeenStreetParameters p_;
-  double middle_ = 0.0, doubted_s_ = 0.0;
+  StreetSidesParameters p_;
+  StreetWeight weight_;
 };
 
 }  // namespace
 
 std::unique_ptr<LaneReference> make_seen_street(const ModelParameters& own) {
-  return std::make_unique<SeenStreet>(own.get<SeenStreetParameters>());
+  return std::make_unique<SeenStreet>(own.get<SeenStreetParameters>(), own.get<StreetSidesParameters>());
 }
 
 void seen_street_parameters(ModelParameters& section) {
   section.add<SeenStreetParameters>();
+  section.add<StreetSidesParameters>();
 }
 
 }  // namespace canyon::mission

@@ -17,7 +17,7 @@ file=""; more_files=[]; terrain=""; crs=""; heights="auto"; undulation_m=-1000; 
 ground_cell_m=5; margin_m=60; height_property=""; ground_property=""; storeys_property=""; storey_m=3;
 default_height_m=9; up_axis="auto"; wall_material="concrete"; roof_material="roofing"; ground_material="asphalt";
 materials=[]; streets="auto"; seed=2012; lat_deg=32.35; lon_deg=-90.88; extent_m=1000; base_height_m=60;
-slope_percent=3; hill_height_m=6; terrain_cell_m=2; block_m=90; street_width_m=12; empty=false; absorbing=false;
+slope_percent=3; hill_height_m=6; terrain_cell_m=2; block_m=90; street_width_m=12; kerb_height_m=0; empty=false; absorbing=false;
 max_triangles=20000000; moving=0 items; moving[].name=""; moving[].shape="car"; moving[].path_m=[];
 moving[].speed_m_s=8; moving[].start_s=0;
 [time]
@@ -104,7 +104,7 @@ prior_map=""; prior_map_sigma_m=0.05; prior_map_sigma_deg=0.05; prior_map_correl
 model="reference"; perception.model="ground_grid"; perception.cell_m=0.2; perception.half_size_m=30;
 perception.obstacle_step_m=0.3; perception.clear_height_m=2.2; perception.max_slope=0.12; perception.min_hits=2;
 perception.persistence_scans=2; perception.memory_s=2; perception.hidden_m=1; lane.model="seen_street";
-lane.sigma_m=1; lane.narrowest_m=5; lane.widest_m=25; lane.window_m=20; lane.slew_m_s=0.5; lane.doubt_s=3;
+lane.sigma_m=1; lane.narrowest_m=5; lane.widest_m=25; lane.window_m=20; lane.slew_m_s=0.5; lane.doubt_s=3; lane.kerb_sigma_m=0.15; lane.kerb_memory_m=20;
 planner.model="offsets"; planner.horizon_m=22; planner.max_offset_m=3.5; planner.clearance_m=0.3;
 planner.comfort_clearance_m=0.8; planner.blocked_cost_1_m=4; planner.closeness_cost_1_m2=1;
 planner.offset_cost_1_m=0.6; planner.change_share=0.5; planner.turning_cost_m=5; tracker.model="pure_pursuit";

@@ -7,52 +7,18 @@
 #include "canyon/mission/autonomy/perception/lane_reference.h"
 #include "canyon/mission/autonomy/perception/local_frame.h"
 #include "canyon/mission/autonomy/reference.h"
+#include "canyon/tests/mission/autonomy/box_scan.h"
 
 namespace canyon::mission {
 namespace {
 
 const GpsTime kSeenFrom = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
-constexpr double kMast_m = 1.8;
-
-/// A box with level faces in the world's axes; its lower corner and its upper one.
-struct Box {
-  Eigen::Vector3d low, high;
-};
+using testing::Box;
+using testing::kMast_m;
 
 /// A parked car of the built-in city, headed along x, by the middle of its ground: hull and cabin.
 std::vector<Box> car_at(double x, double y) {
   return {{{x - 2.25, y - 0.9, 0.2}, {x + 2.25, y + 0.9, 0.9}}, {{x - 1.4, y - 0.78, 0.9}, {x + 1.0, y + 0.78, 1.5}}};
-}
-
-/// What sixteen beams from -15 to 15 degrees see from `p`, 1.8 m over ground that rises by `slope` along x.
-LidarScan scan_from(const Eigen::Vector2d& p, const std::vector<Box>& boxes, GpsTime t, double slope = 0.0) {
-  LidarScan scan;
-  scan.t = t;
-  const Eigen::Vector3d from(p.x(), p.y(), slope * p.x() + kMast_m);
-  for (int ring = 0; ring < 16; ++ring) {
-    const double elevation = (2 * ring - 15) * kDegree;
-    for (int step = 0; step < 900; ++step) {
-      const double azimuth = step * 0.4 * kDegree;
-      const Eigen::Vector3d d(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                              std::sin(elevation));
-      double nearest = 80.0;
-      const double down = slope * d.x() - d.z();
-      if (down > 0.0) nearest = std::min(nearest, kMast_m / down);
-      for (const Box& box : boxes) {
-        double enter = 0.0, leave = 80.0;
-        for (int axis = 0; axis < 3; ++axis) {
-          const double a = (box.low[axis] - from[axis]) / d[axis], b = (box.high[axis] - from[axis]) / d[axis];
-          enter = std::max(enter, std::min(a, b));
-          leave = std::min(leave, std::max(a, b));
-        }
-        if (enter < leave) nearest = std::min(nearest, enter);
-      }
-      if (nearest >= 80.0) continue;
-      const Eigen::Vector3f q = (nearest * d).cast<float>();
-      scan.points.push_back({q.x(), q.y(), q.z(), 0.3F, 0.0F, static_cast<std::uint16_t>(ring), 0});
-    }
-  }
-  return scan;
 }
 
 /// A ground_grid, shown scans from places.
@@ -65,7 +31,7 @@ class Eyes {
     const Eigen::Quaterniond R(Eigen::AngleAxisd(-std::atan(slope), Eigen::Vector3d::UnitY()));
     const Pose X_OB{R, {p.x(), p.y(), height_m}};
     const Pose X_OL{Eigen::Quaterniond::Identity(), {p.x(), p.y(), height_m + kMast_m}};
-    EXPECT_TRUE(perception_->see(scan_from(p, boxes, kSeenFrom + t_s_, slope), X_OL, X_OB, t_s_));
+    EXPECT_TRUE(perception_->see(testing::box_scan(p, boxes, kSeenFrom + t_s_, slope), X_OL, X_OB, t_s_));
   }
   void wait(double s) { t_s_ += s; }
   const BlockedCells& blocked() const { return perception_->blocked(); }
@@ -114,7 +80,7 @@ TEST(GroundGrid, OneScanAloneBlocksNothing) {
 // Cells have numbers of 32 bits.
 TEST(GroundGrid, AnEstimateBeyondAllCellsShowsNothing) {
   const auto grid = model_row(perceptions(), "ground_grid").make(ReferenceParameters{}.perception.model.own, {});
-  const LidarScan scan = scan_from({0.0, 0.0}, car_at(12.0, 0.0), kSeenFrom);
+  const LidarScan scan = testing::box_scan({0.0, 0.0}, car_at(12.0, 0.0), kSeenFrom);
   const auto sees_at = [&](double x_m) {
     const Pose X_OB{Eigen::Quaterniond::Identity(), {x_m, 0.0, 0.0}};
     return grid->see(scan, {X_OB.R, X_OB.p + kMast_m * Eigen::Vector3d::UnitZ()}, X_OB, 0.1);
@@ -222,8 +188,9 @@ TEST(LocalFrame, AJumpOfTheEstimateDoesNotMoveIt) {
   EXPECT_NEAR(frame.driven_m(), 3.0, 1e-12) << "it is known to stand";
 }
 
-double middle_after(double seconds, double sigma_m, double wrong_by_m, double right_wall_m = -9.0) {
-  const auto lane = model_row(lane_references(), "seen_street").make(ReferenceParameters{}.lane.model.own);
+double middle_after(double seconds, double sigma_m, double wrong_by_m, double right_wall_m = -9.0,
+                    const char* model = "seen_street") {
+  const auto lane = model_row(lane_references(), model).make(ReferenceParameters{}.lane.model.own);
   const Path route({{0.0, 0.0}, {100.0, 0.0}}, 6.5);
   std::vector<Eigen::Vector2d> walls;
   for (double x = 0.0; x < 60.0; x += 0.2) {
@@ -249,6 +216,17 @@ TEST(SeenStreet, WeighsTheStreetAgainstTheEstimate) {
   EXPECT_GT(middle_after(30.0, 0.3, 6.0), 5.5);
   // Too wide for a street.
   EXPECT_EQ(middle_after(20.0, 3.0, 2.0, -20.0), 0.0);
+}
+
+// The same street, seen to be up to 6 m beside the route: with a sigma of 3 m nine tenths of that are the estimate's.
+TEST(RouteAsLane, StaysWhereTheSeenStreetMoves) {
+  for (const double wrong_by_m : {-6.0, -2.0, 2.0, 6.0}) {
+    EXPECT_NEAR(middle_after(20.0, 3.0, wrong_by_m), 0.9 * wrong_by_m, 1e-12);
+    for (const double seconds : {0.1, 2.0, 20.0})
+      for (const double sigma_m : {0.3, 3.0, 30.0})
+        EXPECT_EQ(middle_after(seconds, sigma_m, wrong_by_m, -9.0, "route"), 0.0)
+            << seconds << " " << sigma_m << " " << wrong_by_m;
+  }
 }
 
 }  // namespace

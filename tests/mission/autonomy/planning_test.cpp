@@ -1,9 +1,11 @@
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <gtest/gtest.h>
 
 #include "canyon/mission/autonomy/planning/local_planner.h"
+#include "canyon/mission/autonomy/planning/recovery.h"
 #include "canyon/mission/autonomy/planning/speed_rule.h"
 #include "canyon/tests/mission/autonomy/planning_parts.h"
 
@@ -182,6 +184,31 @@ TEST(SpeedRules, HaltWithinWhatIsFree) {
   task.seen_m = 100.0;
   task.curvature_1_m = bend;
   EXPECT_NEAR(rule->allowed_m_s(task), std::sqrt(1.2 / 0.25 + 2.0 * 1.5 * 0.5), 1e-12);
+}
+
+/// When something is done, and what, by a vehicle that stands before a wall with all room behind it, and whose plans
+/// lead nowhere; looked at every half second until the mission would count as stuck.
+std::optional<std::pair<double, DriveCommand>> done_before_a_wall(const char* recovery_name, bool should_drive_on) {
+  std::vector<Eigen::Vector2d> wall;
+  add_wall(wall, {4.0, -6.0}, {4.0, 6.0});
+  const BlockedCells blocked({0.0, 0.0}, wall);
+  const KnownVehicle vehicle;
+  const LocalPlan nowhere;
+  const auto recovery = model_row(recoveries(), recovery_name).make(defaults().recovery.model.own);
+  for (double t_s = 0.0; t_s <= 90.0; t_s += 0.5)
+    if (const auto command = recovery->act({t_s, should_drive_on, 0.0, nowhere, {}, {}, blocked, vehicle}))
+      return std::pair(t_s, *command);
+  return std::nullopt;
+}
+
+// "back_up" reverses at its 1 m/s once it has waited for its 2 s.
+TEST(Recoveries, WaitNeverReversesWhereBackUpDoes) {
+  const auto backed = done_before_a_wall("back_up", true);
+  ASSERT_TRUE(backed.has_value());
+  EXPECT_EQ(backed->first, 2.0);
+  EXPECT_EQ(backed->second.speed_m_s, -1.0);
+  EXPECT_FALSE(done_before_a_wall("wait", true).has_value());
+  for (const char* name : {"back_up", "wait"}) EXPECT_FALSE(done_before_a_wall(name, false).has_value()) << name;
 }
 
 /// Drives by plans that are made anew every half metre until the body is within half a metre of the lane's middle;

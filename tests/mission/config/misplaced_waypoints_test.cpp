@@ -7,6 +7,9 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
 #include "canyon/scene/city/site.h"
+#include "canyon/scene/mesh_builder.h"
+#include "canyon/scene/surfaces/material.h"
+#include "canyon/scene/written_scene.h"
 #include "canyon/tests/mission/config/mission_message.h"
 #include "canyon/tests/support/process_cpu.h"
 #include "canyon/tests/support/temporary_folder.h"
@@ -77,6 +80,50 @@ TEST(MissionFileMessages, AWayWithoutLength) {
   EXPECT_EQ(message(std::string(kEmptyScene) + "[vehicle]\nstart_m = " + here +
                     "\n[[autonomy.waypoint]]\nname = \"here\"\np_m = " + here + "\n"),
             "my.toml:6: autonomy.waypoint[1]: start and waypoints are one place, expected a way to drive");
+}
+
+/// Level ground with two streets along x, 30 m apart; `joined`: with a third between their eastern ends.
+scene::SceneParts two_streets(bool joined) {
+  scene::SceneParts parts;
+  parts.name = "two streets";
+  parts.materials = scene::builtin_materials();
+  scene::MeshBuilder mesh(parts);
+  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
+  mesh.quad({-80, -80, 0}, {80, -80, 0}, {80, 80, 0}, {-80, 80, 0}, mesh.material("asphalt"));
+  parts.streets.nodes_W = {{-40, 0}, {40, 0}, {-40, 30}, {40, 30}};
+  parts.streets.edges = {{0, 1, 8.0}, {2, 3, 8.0}};
+  if (joined) parts.streets.edges.push_back({1, 3, 8.0});
+  return parts;
+}
+
+TEST(MissionFileMessages, AWaypointThatNoStreetLeadsTo) {
+  const canyon::testing::TemporaryFolder folder;
+  const auto told = [&](bool joined) {
+    EXPECT_TRUE(scene::write_scene(two_streets(joined), folder.path().string()).ok());
+    return message("[scene]\nfile = \"" + folder.file("scene.json") +
+                       "\"\n[vehicle]\nstart_m = [-30.0, 0.0]\n[[autonomy.waypoint]]\nname = \"near\"\np_m = [0.0, "
+                       "0.0]\n[[autonomy.waypoint]]\nname = \"far\"\np_m = [0.0, 30.0]\n",
+                   "low");
+  };
+  EXPECT_EQ(
+      told(false),
+      "my.toml:8: autonomy.waypoint[2]: no street leads to waypoint \"far\", expected a waypoint that the streets "
+      "connect with the one before");
+  EXPECT_EQ(told(true), "no mistake");
+}
+
+// The vehicle heads east: its bumper is 2.2 m before its rear axle, and the car's back 2.25 m behind the car's middle.
+TEST(MissionFileMessages, AStartWhereSomethingStands) {
+  const auto told = [](const std::string& way) {
+    return message(std::string(kEmptyScene) + "[[scene.moving]]\nname = \"taxi\"\npath_m = " + way +
+                   "\n[vehicle]\nstart_m = [213.9, 60.0]\nstart_heading_deg = 90.0\n[[autonomy.waypoint]]\nname = "
+                   "\"north\"\np_m = [213.9, 150.0]\n");
+  };
+  EXPECT_EQ(told("[218.2, 60.0]"),
+            "my.toml:8: vehicle.start_m: (213.9, 60.0): the body touches taxi there, expected a place where it stands "
+            "free");
+  EXPECT_EQ(told("[218.5, 60.0]"), "no mistake");
+  EXPECT_EQ(told("[230.0, 60.0, 213.9, 60.0]"), "no mistake") << "it comes there later";
 }
 
 // 2026-11-22: the vehicle drove there, stopped, and only then was it told that it sees nothing.

@@ -123,6 +123,9 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
   EXPECT_EQ(told("[vehicle]\nheight_m = 0.5\nground_clearance_m = 0.6\n"),
             "my.toml:6: vehicle.ground_clearance_m: a body 0.5 m high that begins 0.6 m above the ground, expected "
             "vehicle.ground_clearance_m not above vehicle.height_m");
+  EXPECT_EQ(told("kerb_height_m = 0.25\n"),
+            "my.toml:4: scene.kerb_height_m: kerbs of 0.25 m under a body that begins 0.2 m above the ground, expected "
+            "scene.kerb_height_m not above vehicle.ground_clearance_m");
   EXPECT_EQ(told("[vehicle]\nmodel = \"dynamic_bicycle\"\ntyre_friction = 0.2\n"),
             "my.toml:6: vehicle.tyre_friction: the vehicle brakes with 3 m/s^2, its tyres hold 2.0 m/s^2, expected "
             "vehicle.max_deceleration_m_s2 not above vehicle.tyre_friction times gravity");

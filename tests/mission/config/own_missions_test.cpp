@@ -1,4 +1,4 @@
-// The missions of missions/ that bring a scene of their own.
+// The missions of missions/ that bring a scene of their own, and those that are the beginning of the built-in one.
 #include <cstdio>
 
 #include "canyon/tests/mission/short_mission.h"
@@ -19,15 +19,46 @@ MissionConfig own_mission(const std::string& name, const std::string& fidelity) 
   return *config;
 }
 
-// Each is read and checked, and its first twelve seconds are driven.
+/// It is checked, and its first twelve seconds are driven.
+void expect_begins_to_drive(const std::string& name, MissionConfig config) {
+  config.time.limit_s = 12.0;
+  const RecordedRun run = drive(config);
+  EXPECT_EQ(run.outcome, Outcome::kStopped) << name << ": " << (run.failure ? run.failure->detail : "");
+  EXPECT_GT(run.distance_m, 10.0) << name;
+}
+
 TEST(OwnMissions, EachBeginsToDrive) {
-  for (const char* name : kOwnMissions) {
-    MissionConfig config = own_mission(name, "low");
-    config.time.limit_s = 12.0;
-    const RecordedRun run = drive(config);
-    EXPECT_EQ(run.outcome, Outcome::kStopped) << name << ": " << (run.failure ? run.failure->detail : "");
-    EXPECT_GT(run.distance_m, 10.0) << name;
+  for (const char* name : kOwnMissions) expect_begins_to_drive(name, own_mission(name, "low"));
+}
+
+// At `high`, as their outcomes are told: the first five and the first seven waypoints, of which the last is looked at.
+TEST(OwnMissions, FirstCornerAndFirstStopBeginAsTheBuiltInMission) {
+  const MissionConfig whole = own_mission("vicksburg", "high");
+  for (const auto& [name, count] : {std::pair("first_corner", 5U), std::pair("first_stop", 7U)}) {
+    const MissionConfig config = own_mission(name, "high");
+    EXPECT_EQ(config.run.name, name);
+    ASSERT_EQ(config.autonomy.waypoints.size(), count) << name;
+    for (std::size_t i = 0; i < count; ++i) {
+      EXPECT_EQ(config.autonomy.waypoints[i].p_m, whole.autonomy.waypoints[i].p_m) << name << " " << i + 1;
+      EXPECT_EQ(config.autonomy.waypoints[i].observe, whole.autonomy.waypoints[i].observe) << name << " " << i + 1;
+      EXPECT_EQ(config.autonomy.waypoints[i].is_mission(), i == 6) << name << " " << i + 1;
+    }
+    expect_begins_to_drive(name, config);
   }
+}
+
+// Pavements raised, the lane between their kerbs.
+TEST(OwnMissions, TheBuiltInStreetWithKerbsBeginsToBeDriven) {
+  const auto file = MissionFile::parse(
+      "base = \"vicksburg\"\n[scene]\nkerb_height_m = 0.12\n[autonomy.lane]\nmodel = \"seen_kerbs\"\n", "kerbs.toml");
+  ASSERT_TRUE(file.ok()) << file.error().str();
+  auto config = file->resolve("low");
+  ASSERT_TRUE(config.ok()) << config.error().str();
+  config->registration.method.name = "none";
+  config->time.limit_s = 12.0;
+  const RecordedRun run = drive(*config);
+  EXPECT_EQ(run.outcome, Outcome::kStopped) << (run.failure ? run.failure->detail : "");
+  EXPECT_GT(run.distance_m, 10.0);
 }
 
 // Laps and passes are the paper's: 60 foot across, eight times round; 60 foot, ten times.
