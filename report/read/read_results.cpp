@@ -26,8 +26,9 @@ const EpochColumns kGnssColumns{{"t_s", "satellites", "tracked", "nlos", "gdop",
                                 {"status", "reason"}};
 const EpochColumns kSatelliteColumns{{"t_s", "elevation_deg", "line_of_sight", "tracked", "multipath_m"},
                                      {"satellite"}};
-const EpochColumns kKeyframeColumns{
-    {"t_s", "prior_error_m", "prior_error_up_m", "registered_error_m", "registered_error_up_m"}, {"status"}};
+const EpochColumns kKeyframeColumns{{"t_s", "prior_error_m", "prior_error_up_m", "registered_error_m",
+                                     "registered_error_up_m", "step_nees", "open_directions"},
+                                    {"status"}};
 
 /// A file that need not be there.
 Status read_epochs(const fs::path& path, const EpochColumns& columns, std::optional<EpochTable>& table) {

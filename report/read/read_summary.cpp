@@ -265,9 +265,11 @@ Status read_summary(std::string_view json, const std::string& file, Results& res
   if (fields.has("seeds")) results.over_seeds = read_over_seeds(fields);
   if (fields.has("two_by_two_by_filter")) {
     const JsonFields by_filter = fields.object("two_by_two_by_filter");
-    for (const auto& [filter, node] : by_filter.node()->items()) {
-      results.two_by_two.push_back(read_two_by_two(by_filter.object(filter)));
-      results.two_by_two.back().filter = filter;
+    if (by_filter.node() != nullptr) {  // else it is no object, which is told
+      for (const auto& [filter, node] : by_filter.node()->items()) {
+        results.two_by_two.push_back(read_two_by_two(by_filter.object(filter)));
+        results.two_by_two.back().filter = filter;
+      }
     }
   } else if (fields.has("two_by_two")) {
     results.two_by_two.push_back(read_two_by_two(fields.object("two_by_two")));

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/time_charts.h"
@@ -9,7 +11,10 @@
 namespace canyon::report {
 namespace {
 
-/// A panel per run: prior and registered pose error of each keyframe, and a lane of those that did not converge.
+// 99.9 % of chi-square with 6 degrees of freedom.
+constexpr double kStepBound = 22.457744484825323;
+
+/// A panel per run: prior and registered pose error of each keyframe, and a lane of those that could not be aligned.
 Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   const Run& run = results.runs[i];
   const EpochTable& keyframes = *run.keyframes;
@@ -21,7 +26,7 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   Line registered = column_line(results, i, keyframes, "registered_error_m");
   registered.name = "registered";
   panel.lines = {std::move(registered), std::move(prior)};
-  Lane failed{.run = i, .name = "registration did not converge"};
+  Lane failed{.run = i, .name = "could not be aligned"};
   double unconverged = 0;
   for (std::size_t k = 0; k < keyframes.rows; ++k) {
     const std::string& status = keyframes.text("status")[k];
@@ -33,9 +38,41 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   if (unconverged > 0) {
     panel.lanes.push_back(std::move(failed));
     panel.notes.push_back("Bars at the foot: " + count_of(unconverged, "keyframe", "keyframes") + " of " +
-                          show_count(static_cast<double>(keyframes.rows)) + " whose registration did not converge.");
+                          show_count(static_cast<double>(keyframes.rows)) + " that could not be aligned.");
   }
   return panel;
+}
+
+/// How keyframes ended, most frequent first; what of the converged steps is farther off than their own covariance has
+/// it; and how many do not determine every direction, where the method tells that.
+std::string endings(const EpochTable& k) {
+  std::map<std::string, double> count;
+  double steps = 0, beyond = 0, told = 0, open = 0;
+  for (std::size_t row = 0; row < k.rows; ++row) {
+    const std::string& status = k.text("status")[row];
+    if (status == "not_registered") continue;
+    ++count[status];
+    if (status != "converged") continue;
+    const double nees = k["step_nees"][row], directions = k["open_directions"][row];
+    if (std::isfinite(nees)) ++steps;
+    if (std::isfinite(directions)) ++told;
+    if (nees > kStepBound) ++beyond;
+    if (directions > 0.0) ++open;
+  }
+  if (count.empty()) return {};
+  std::vector<std::pair<double, std::string>> order;
+  for (const auto& [status, n] : count) order.emplace_back(n, status);
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string text = " They ended: ";
+  for (const auto& [n, status] : order)
+    text += (n == order.front().first && status == order.front().second ? "" : ", ") + escape_html(status) + ' ' +
+            show_count(n);
+  text += '.';
+  if (steps > 0)
+    text += " Of " + count_of(steps, "converged step", "converged steps") +
+            ", beyond their own 99.9 % bound: " + show_count(beyond) + '.';
+  if (told > 0) text += " Converged with a direction left open: " + show_count(open) + '.';
+  return text;
 }
 
 std::string improvement(const Results& results, std::size_t i) {
@@ -50,7 +87,7 @@ std::string improvement(const Results& results, std::size_t i) {
   }
   std::string text = run_tag(results.runs, i) + " " + count_of(static_cast<double>(k.rows), "keyframe", "keyframes");
   if (defined > 0) text += "; registration made the pose better in " + show_share(better / defined);
-  return text + ".";
+  return text + "." + endings(k);
 }
 
 }  // namespace

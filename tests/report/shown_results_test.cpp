@@ -126,6 +126,33 @@ TEST_F(ShownResults, WithoutRegistrationOneNoteStandsForThePanel) {
   EXPECT_THAT(section(page(), "maps"), Not(HasSubstr("hold no registered")));
 }
 
+TEST_F(ShownResults, TheRegistrationTellsHowKeyframesEnded) {
+  const std::string path = file("epochs/high_keyframes.csv");
+  std::string csv = load(path);
+  const std::string converged = ",converged,9,0.08,5,0";
+  std::size_t count = 0;
+  for (std::size_t at = csv.find(converged); at != std::string::npos; at = csv.find(converged, at + 1)) ++count;
+  ASSERT_GT(count, 2U);
+  csv.replace(csv.find(converged), converged.size(), ",converged,9,0.08,40,0");
+  csv.replace(csv.find(converged), converged.size(), ",converged,9,0.08,5,2");
+  csv.replace(csv.find(converged), converged.size(), ",ambiguous,9,0.08,,0");
+  store(path, csv);
+  const std::string registration = section(page(), "registration");
+  EXPECT_THAT(registration, HasSubstr("They ended: converged " + std::to_string(count - 1)));
+  EXPECT_THAT(registration, HasSubstr(", ambiguous 1"));
+  EXPECT_THAT(registration, HasSubstr(" Of " + std::to_string(count - 1) +
+                                      "\xC2\xA0"
+                                      "converged steps, beyond their own 99.9 % bound: 1. Converged with a direction "
+                                      "left open: 1."));
+  // PCL's methods tell of no directions; and words of a file are no page's text.
+  csv = std::regex_replace(csv, std::regex(",[0-9]\n"), ",\n");
+  csv = std::regex_replace(csv, std::regex("ambiguous"), "<b>");
+  store(path, csv);
+  const std::string plain = section(page(), "registration");
+  EXPECT_THAT(plain, Not(HasSubstr("left open: 1")));
+  EXPECT_THAT(plain, HasSubstr("&lt;b&gt; 1"));
+}
+
 TEST_F(ShownResults, AnErrorAtTheCapIsNotANumber) {
   edit_json(file("summary.json"), [](auto& json) {
     json["runs"][0]["map_error_p95_m"] = 5.0;

@@ -235,11 +235,11 @@ std::string SyntheticRun::satellites_csv() const {
 std::string SyntheticRun::keyframes_csv() const {
   std::ostringstream out;
   out << "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_"
-         "m,status,iterations,rms_m\n";
+         "m,status,iterations,rms_m,step_nees,open_directions\n";
   for (const Keyframe& k : keyframes_) {
     out << field(k.t_s) << ",14200," << field(k.p.x()) << "," << field(k.p.y()) << ",1.2," << field(k.prior.norm())
         << "," << field(k.prior.z()) << "," << field(k.registered.norm()) << "," << field(k.registered.z()) << ","
-        << (k.converged ? "converged" : "not_converged") << ",9,0.08\n";
+        << (k.converged ? "converged,9,0.08,5,0" : "not_converged,9,0.08,,0") << "\n";
   }
   return out.str();
 }
