@@ -1,5 +1,6 @@
 #include "canyon/mission/run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -284,9 +285,10 @@ Result<RunRecord> drive_watched(std::unique_ptr<MissionRun> whole, Progress* pro
     thrown = exception;
     changed.notify_one();
   });
-  constexpr std::chrono::milliseconds kLook(50);
+  // Several times within the limit, as the watch has it.
+  const std::chrono::duration<double> look(std::min(0.05, 0.1 * run.watch().limit_s()));
   std::unique_lock lock(mutex);
-  while (!changed.wait_for(lock, kLook, [&] { return driven || thrown; })) {
+  while (!changed.wait_for(lock, look, [&] { return driven || thrown; })) {
     if (!run.watch().take_over()) continue;
     driver.detach();
     [[maybe_unused]] const MissionRun* left_behind = whole.release();

@@ -36,10 +36,10 @@ VerbAction declare(Arguments& arguments) {
               "ratios are second "
               "over first")
       .default_shown();
-  arguments.option(
-      "--filters", options->filters,
-      "each run with each of these, with commas between: naive, vehicle; with --seeds or --open-loop GNSS by IMU "
-      "by filter");
+  arguments.option("--filters", options->filters,
+                   "each run with each of these, with commas between: naive, vehicle, tight; with --seeds or "
+                   "--open-loop GNSS by IMU "
+                   "by filter");
   arguments.flag(
       "--no-2x2", options->no_two_by_two,
       "with --seeds or --open-loop, which have them: leave out the runs with the GNSS of the first fidelity and "

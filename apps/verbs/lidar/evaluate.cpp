@@ -112,7 +112,8 @@ VerbAction declare(Arguments& arguments) {
 
 Verb lidar_evaluate_verb() {
   return {"lidar evaluate", "a map against the true surfaces of its scene, and its trajectory against the true way",
-          "canyon lidar evaluate results/first/clouds/high_map.pcd --scene my.toml --trajectory truth.tum", declare};
+          "canyon lidar evaluate results/first/clouds/high_registered.pcd --scene my.toml --trajectory truth.tum",
+          declare};
 }
 
 }  // namespace canyon::apps

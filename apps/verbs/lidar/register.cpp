@@ -131,7 +131,8 @@ Result<int> run(const Options& options) {
 VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_common(arguments, options->common);
-  arguments.option("source", options->source, "cloud that is moved: PCD, PLY, LAS, .bin or a Velodyne capture")
+  arguments
+      .option("source", options->source, "cloud that is moved: PCD, PLY, LAS, .bin, or a Velodyne or Ouster capture")
       .type("SOURCE")
       .required();
   arguments.option("target", options->target, "cloud that stays, likewise").type("TARGET").required();
