@@ -30,13 +30,14 @@ constexpr ModelRow<RegistrationMethod> kMethods[] = {
 
 constexpr ModelRow<RegistrationStatus> kStatuses[] = {
     {"converged", RegistrationStatus::kConverged, "a pose with its covariance"},
-    {"not_converged", RegistrationStatus::kNotConverged, "the rounds were used up"},
-    {"too_few_points", RegistrationStatus::kTooFewPoints, "fewer than 50 in a cloud, or matched"},
+    {"not_converged", RegistrationStatus::kNotConverged,
+     "it ended with more to go, or the prior leads off the surfaces"},
+    {"too_few_points", RegistrationStatus::kTooFewPoints, "fewer than 50 in a cloud; PCL's: or matched"},
     {"degenerate", RegistrationStatus::kDegenerate, "what was matched determines no pose"},
     {"diverged", RegistrationStatus::kDiverged, "guess or solution are not finite"},
     {"ambiguous", RegistrationStatus::kAmbiguous, "another pose within the prior fits about as well"},
     {"too_little_overlap", RegistrationStatus::kTooLittleOverlap, "most of the source has nothing to be matched to"},
-    {"beyond_prior", RegistrationStatus::kBeyondPrior, "outside of the prior's 99.9 % ellipsoid"},
+    {"beyond_prior", RegistrationStatus::kBeyondPrior, "outside of the 99.9 % ellipsoid of prior and result together"},
 };
 
 }  // namespace

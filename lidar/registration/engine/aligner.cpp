@@ -35,8 +35,8 @@ constexpr double kWidest_m = 0.2 / 3.0;
 constexpr double kWidest_rad = 0.5 / 3.0 * kDegree;
 constexpr double kProbability = 1e-3;
 constexpr int kMostOpenings = 6;  // each opens a direction
-// By how much what open directions lean by is above what scatter says of it, of variances: measured
-// (docs/registration.md).
+// By how much what open directions lean by is above what scatter says of it, of variances. ASSUMPTION: as for the
+// sandwich (docs/registration.md).
 constexpr double kLeaning = 1.5;
 
 }  // namespace

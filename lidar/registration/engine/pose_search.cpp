@@ -27,7 +27,7 @@ constexpr std::size_t kCoarsePoints = 1000;  // of which the coarse rounds make 
 constexpr double kShrinking = 0.6;           // of the reach, from round to round
 constexpr double kWorse = 1.01;              // a round that raises the cost by more is taken back
 constexpr double kFarthest_m = 1e8;          // farther than two clouds of 2^20 voxels can be apart
-// A start finds the right place from about this far (docs/registration.md).
+// A start finds the right place from about this far. ASSUMPTION, not measured.
 constexpr double kBasin_m = 1.5;
 constexpr double kBasin_rad = 8.0 * kDegree;
 constexpr int kMostStarts = 1200;

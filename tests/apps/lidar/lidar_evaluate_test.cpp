@@ -1,5 +1,7 @@
-// canyon lidar evaluate and canyon lidar error-budget: as a user calls them.
+// canyon lidar evaluate and canyon lidar close-loops: as a user calls them.
+#include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -92,6 +94,37 @@ TEST_F(LidarEvaluateTest, ATrajectoryLaidOverItsTruth) {
       << read("stderr");
   EXPECT_NEAR(Json::parse(read("stdout"))["trajectory"]["ate_rms_m"].get<double>(), 0.0, 1e-12);
   EXPECT_FALSE(read("given_aligned.kitti").empty());
+}
+
+// Ten seconds straight on, with few beams: a place that was left 5 m ago is taken for one that is come back to.
+TEST_F(LidarEvaluateTest, ClosedLoopsLeaveTheirFiles) {
+  const int status = canyon(
+      "lidar close-loops mission.toml --fidelity low --set time.limit_s=10 --set 'registration.method=\"gicp\"' --set "
+      "'lidar.beams=\"grid:8:-15:5\"' --set lidar.azimuth_steps=360 --least-way 5 --apart 2 --out given_closed --json");
+  if (read("stderr").find("CANYON_WITH_CERES") != std::string::npos) GTEST_SKIP() << "built without CANYON_WITH_CERES";
+  ASSERT_EQ(status, 0) << read("stderr");
+  Json out = Json::parse(read("stdout"));
+  EXPECT_EQ(out["fidelity"], "low");
+  EXPECT_GT(out["way_m"].get<double>(), 5.0);
+  const Json& closures = out["closures"];
+  EXPECT_GT(closures["closing"].get<int>(), 0);
+  EXPECT_EQ(closures["tried"], out["trials"].size());
+  for (const auto& [fewer, more] :
+       {std::pair{"believed", "closing"}, std::pair{"closing", "tried"}, std::pair{"beyond_bound", "closing"}})
+    EXPECT_LE(closures[fewer].get<int>(), closures[more].get<int>()) << fewer;
+  for (const Json& trial : out["trials"]) EXPECT_LT(trial["target"].get<int>(), trial["source"].get<int>());
+  for (const char* placed : {"prior", "registered", "smoothed", "closed"}) {
+    EXPECT_TRUE(out["placed"][placed]["keyframe_rms_m"].is_number()) << placed;
+    EXPECT_GT(out["placed"][placed]["map_points"].get<int>(), 0) << placed;
+  }
+  EXPECT_LE(out["graph"]["final_cost"].get<double>(), out["graph"]["initial_cost"].get<double>());
+
+  EXPECT_EQ(out["results_dir"], "given_closed");
+  out.erase("results_dir");
+  EXPECT_EQ(Json::parse(read("given_closed/summary.json")), out);
+  const std::string way = read("given_closed/closed.tum");
+  EXPECT_EQ(std::count(way.begin(), way.end(), '\n'), 1 + out["keyframes"].get<int>()) << "under a line of names";
+  EXPECT_TRUE(leftovers().empty());
 }
 
 TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {

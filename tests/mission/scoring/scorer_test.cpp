@@ -1,8 +1,12 @@
 #include "canyon/mission/scoring/scorer.h"
 
+#include <nlohmann/json.hpp>
+
 #include "canyon/mission/scoring/told_failure.h"
+#include "canyon/study/results/results.h"
 #include "canyon/tests/mission/screened_house.h"
 #include "canyon/tests/mission/short_mission.h"
+#include "canyon/tests/mission/summary_of.h"
 
 namespace canyon::mission::testing {
 namespace {
@@ -154,6 +158,46 @@ TEST(ScorerLimit, WhatTheUsersOwnLimitEndsIsStopped) {
   const std::string own = outcome_with("");
   EXPECT_EQ(own.rfind("timeout: not finished within ", 0), 0U) << own;
   EXPECT_EQ(outcome_with("[time]\nlimit_s = 9000.0"), own);
+}
+
+// Along x to 11 m in steps of half a metre. The autonomy takes "passed" for reached 2 m after it was nearest, at 1.5 m,
+// and "beside" 12 m after that, at 5 m; to "ahead" it comes neither in truth nor as it believes. 3-4-5 and 5-12-13:
+// exact.
+TEST(ScorerWaypoints, ReachedBelievedAndMissedAreThreeVerdicts) {
+  MissionConfig config;
+  config.autonomy.waypoints = {{"passed", {-10.0, 1.5}, ""}, {"beside", {-2.0, 5.0}, ""}, {"ahead", {18.0, 0.0}, ""}};
+  PreparedMission mission;
+  mission.scene = screened_house(0);
+  mission.time_limit_s = 60.0;
+  const scene::SceneAt scene(*mission.scene);
+  Scorer scorer(config, mission, scene);
+  KinematicState moving;
+  for (int k = 0; k <= 70; ++k) {
+    const double x_m = 0.5 * k - 24.0;
+    moving.t = mission.start + 0.1 * k;
+    moving.X_WB.p = {x_m, 0.0, 0.0};
+    EXPECT_TRUE(scorer.step(moving, 5.0, true, false)) << x_m;
+    scorer.follow(moving, 5.0, {5.0, 0.0}, AutonomyState::kDriving, x_m < -8.0 ? 0 : x_m < 10.0 ? 1 : 2);
+  }
+  RecordedRun run;
+  run.waypoints = scorer.waypoints();
+  ASSERT_EQ(run.waypoints.size(), 3U);
+  const double closest_m[] = {1.5, 5.0, 7.0};
+  const bool believed[] = {true, true, false};
+  const char* const verdict[] = {"reached", "believed", "missed"};
+  const study::RunSummary summary = summary_of(run);
+  const auto told = study::run_json(summary)["waypoints"];
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(run.waypoints[i].reached, i == 0) << verdict[i];
+    EXPECT_EQ(run.waypoints[i].believed, believed[i]) << verdict[i];
+    EXPECT_EQ(run.waypoints[i].closest_m, closest_m[i]) << verdict[i];
+    EXPECT_EQ(told[i]["verdict"].get<std::string>(), verdict[i]);
+  }
+  EXPECT_EQ(run.waypoints[0].believed_at_m, 2.5);
+  EXPECT_EQ(run.waypoints[1].believed_at_m, 13.0);
+  EXPECT_TRUE(told[2]["believed_at_m"].is_null());
+  EXPECT_EQ(summary.waypoints_reached, 1);
+  EXPECT_EQ(summary.believed_not_reached, 1);
 }
 
 /// A stop of 6 s at W's origin, before a house behind a screen of that height.

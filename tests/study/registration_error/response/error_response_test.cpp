@@ -56,6 +56,47 @@ TEST(ErrorResponse, PriorErrorsAreWhatWasLaid) {
   EXPECT_NEAR(curve_of(response, "none", "attitude_deg", "up").keyframe[0].prior_m, turned_m, 1e-9);
 }
 
+/// Keyframes half a second apart of a vehicle that turns, climbs and leans; a place that begins with the third.
+RecordedKeyframes winding_way() {
+  RecordedKeyframes out;
+  for (int k = 0; k < 6; ++k)
+    out.keyframes.push_back({.t = GpsTime{1'000'000'000'000'000'000} + 0.5 * k,
+                             .X_WB_true = {rotation_from({.yaw_rad = 0.3 * k, .pitch_rad = -0.1, .roll_rad = 0.05}),
+                                           {100.0 + k, -20.0 + 0.1 * k * k, 3.0 + 0.1 * k}},
+                             .distance_m = 1.0 * k,
+                             .scan = {},
+                             .pose_covariance = Matrix6d::Identity(),
+                             .motion_covariance = Matrix6d::Identity()});
+  return out;
+}
+
+/// After t seconds in the place the estimate is off by rate times t along the axis, level as the vehicle stood where
+/// the place began, and turned by nothing; before it by nothing at all. The prediction drifts as far.
+TEST(ErrorResponse, ARampIsItsRateTimesTheTimeSinceThePlaceBegan) {
+  const RecordedKeyframes recorded = winding_way();
+  const Stretch place{.first = 0, .begin = 2, .end = 6, .from_m = 0.0};
+  const double rate_m_s = 0.3, yaw = 0.3 * 2;
+  const Eigen::Vector3d axes_W[] = {{std::cos(yaw), std::sin(yaw), 0}, {-std::sin(yaw), std::cos(yaw), 0}, {0, 0, 1}};
+  constexpr double kRounding = 1e-13;  // some eps of 100 m
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const EstimateError ramp{&model_row(estimate_errors(), "ramp_m_s"), axis, rate_m_s};
+    Pose before;
+    for (std::size_t k = 0; k < recorded.keyframes.size(); ++k) {
+      const DisturbedKeyframe given = disturbed_keyframe(recorded, place, k, ramp, 1);
+      const Pose& truth = recorded.keyframes[k].X_WB_true;
+      const double t_s = k < place.begin ? 0.0 : 0.5 * static_cast<double>(k - place.begin);
+      const Eigen::Vector3d off = given.estimate.X_WB.p - truth.p - rate_m_s * t_s * axes_W[axis];
+      EXPECT_LT(off.norm(), kRounding) << axis_name(axis) << ' ' << k;
+      EXPECT_EQ(given.estimate.X_WB.R.coeffs(), truth.R.coeffs()) << axis_name(axis) << ' ' << k;
+      if (k > 0) {
+        EXPECT_LT((before * given.motion.X_TS.p - given.estimate.X_WB.p).norm(), 10 * kRounding)
+            << axis_name(axis) << ' ' << k;
+      }
+      before = given.estimate.X_WB;
+    }
+  }
+}
+
 /// Who believes the prior heals nothing, whatever the error.
 TEST(ErrorResponse, WithoutRegistrationNothingIsHealed) {
   const ErrorResponse response = respond({"latency_s"}, {0.1, 1.0}, {"none"});
