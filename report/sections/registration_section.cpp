@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "canyon/core/math/chi_square.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/time_charts.h"
 #include "canyon/report/format.h"
@@ -10,9 +11,6 @@
 
 namespace canyon::report {
 namespace {
-
-// 99.9 % of chi-square with 6 degrees of freedom.
-constexpr double kStepBound = 22.457744484825323;
 
 /// A panel per run: prior and registered pose error of each keyframe, and a lane of those that could not be aligned.
 Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
@@ -46,6 +44,7 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
 /// How keyframes ended, most frequent first; what of the converged steps is farther off than their own covariance has
 /// it; and how many do not determine every direction, where the method tells that.
 std::string endings(const EpochTable& k) {
+  const double bound = chi_square_threshold(1e-3, 6.0);
   std::map<std::string, double> count;
   double steps = 0, beyond = 0, told = 0, open = 0;
   for (std::size_t row = 0; row < k.rows; ++row) {
@@ -56,7 +55,7 @@ std::string endings(const EpochTable& k) {
     const double nees = k["step_nees"][row], directions = k["open_directions"][row];
     if (std::isfinite(nees)) ++steps;
     if (std::isfinite(directions)) ++told;
-    if (nees > kStepBound) ++beyond;
+    if (nees > bound) ++beyond;
     if (directions > 0.0) ++open;
   }
   if (count.empty()) return {};

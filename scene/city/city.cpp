@@ -26,7 +26,8 @@ void visit(FieldVisitor& f, CityConfig& c) {
   f.number("street_width_m", c.street_width_m, {11.0, 20.0}, "kerb to kerb");
   f.number(
       "kerb_height_m", c.kerb_height_m, {0.0, 0.3},
-      "by how much pavements are raised; 0: they are painted on the ground; the vehicle's wheels do not feel them");
+      "by how much pavements are raised; 0: they are painted on the ground; wheels do not feel them, and radio meets "
+      "their edges alone");
   f.flag("empty", c.empty, "terrain and streets only: open sky");
   f.flag("absorbing", c.absorbing, "every surface absorbs radio: blockage without reflections");
 }

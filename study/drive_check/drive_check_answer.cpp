@@ -8,6 +8,7 @@
 #include "canyon/core/units.h"
 #include "canyon/study/drive_check/drive_check.h"
 #include "canyon/study/drive_check/drive_distributions.h"
+#include "canyon/study/drive_check/drive_satellites.h"
 
 namespace canyon::study {
 namespace {
@@ -123,6 +124,7 @@ Json drive_check_json(const DriveCheck& check) {
   for (const DriveRow& row : kRows) out["figures"].push_back(Json{{"key", row.key}, {"label", row.label}});
   out["distributions"] = drive_distributions_json(drive_distributions(check.simulated.epochs, check.simulated.fixes),
                                                   drive_distributions(check.measured.epochs, check.measured.fixes));
+  out["satellites"] = drive_satellites_json(check.simulated.epochs, check.measured.epochs);
   if (!check.measured.spread.empty()) out["measured_interval"] = spread_json(check.measured.spread);
   if (!check.simulated.spread.empty()) {
     out["simulated_draws"] = spread_json(check.simulated.spread);

@@ -3,10 +3,7 @@
 import itertools
 import json
 import pathlib
-import stat
-import subprocess
 import sys
-import tempfile
 import tomllib
 import unittest
 
@@ -14,6 +11,7 @@ STUDY = pathlib.Path(__file__).resolve().parents[2] / "study"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(STUDY))
 import factorial  # noqa: E402
+from script_case import ScriptCase  # noqa: E402
 
 # Successes of four seeds by what is there: blockage, reflections, drift.
 TABLE = {"f000": 4, "f001": 4, "f010": 3, "f011": 2, "f100": 2, "f101": 1, "f110": 1, "f111": 0}
@@ -103,21 +101,8 @@ class Arithmetic(unittest.TestCase):
         self.assertEqual(tree["fidelity"]["r5"], {"base": "modern"})
 
 
-class Script(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.root = pathlib.Path(self.folder.name)
-        self.make_canyon(0)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def make_canyon(self, status):
-        (self.root / "canyon").write_text(CANYON.format(calls=self.root / "calls", status=status), encoding="utf-8")
-        (self.root / "canyon").chmod(stat.S_IRWXU)
-
-    def call(self, *arguments):
-        return subprocess.run([sys.executable, STUDY / "factorial.py", *arguments], capture_output=True, text=True, check=False)
+class Script(ScriptCase):
+    SCRIPT, PROGRAM = "factorial.py", CANYON
 
     def test_help(self):
         done = self.call("--help")

@@ -2,8 +2,6 @@
 """study/missions.py: its rows done by hand, what it does about data that are not there, and the whole of it with a program in canyon's place."""
 import json
 import pathlib
-import stat
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -12,6 +10,7 @@ STUDY = pathlib.Path(__file__).resolve().parents[2] / "study"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(STUDY))
 import missions  # noqa: E402
+from script_case import ScriptCase  # noqa: E402
 
 # Errs by as many metres as its seed says; of even seeds it is stuck.
 CANYON = '''#!/usr/bin/env python3
@@ -56,21 +55,8 @@ class Rows(unittest.TestCase):
                 self.assertEqual((file.parent / "data/town.gml").read_text(encoding="utf-8"), "houses")
 
 
-class Script(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.root = pathlib.Path(self.folder.name)
-        self.make_canyon(0)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
-    def make_canyon(self, status):
-        (self.root / "canyon").write_text(CANYON.format(calls=self.root / "calls", status=status), encoding="utf-8")
-        (self.root / "canyon").chmod(stat.S_IRWXU)
-
-    def call(self, *arguments):
-        return subprocess.run([sys.executable, STUDY / "missions.py", *arguments], capture_output=True, text=True, check=False)
+class Script(ScriptCase):
+    SCRIPT, PROGRAM = "missions.py", CANYON
 
     def test_help(self):
         done = self.call("--help")

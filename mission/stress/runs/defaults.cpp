@@ -104,7 +104,8 @@ prior_map=""; prior_map_sigma_m=0.05; prior_map_sigma_deg=0.05; prior_map_correl
 model="reference"; perception.model="ground_grid"; perception.cell_m=0.2; perception.half_size_m=30;
 perception.obstacle_step_m=0.3; perception.clear_height_m=2.2; perception.max_slope=0.12; perception.min_hits=2;
 perception.persistence_scans=2; perception.memory_s=2; perception.hidden_m=1; lane.model="seen_street";
-lane.sigma_m=1; lane.narrowest_m=5; lane.widest_m=25; lane.window_m=20; lane.slew_m_s=0.5; lane.doubt_s=3; lane.kerb_sigma_m=0.15; lane.kerb_memory_m=20;
+lane.sigma_m=1; lane.narrowest_m=5; lane.widest_m=25; lane.window_m=20; lane.slew_m_s=0.5; lane.doubt_s=3;
+lane.kerb_sigma_m=0.15; lane.kerb_memory_m=20;
 planner.model="offsets"; planner.horizon_m=22; planner.max_offset_m=3.5; planner.clearance_m=0.3;
 planner.comfort_clearance_m=0.8; planner.blocked_cost_1_m=4; planner.closeness_cost_1_m2=1;
 planner.offset_cost_1_m=0.6; planner.change_share=0.5; planner.turning_cost_m=5; tracker.model="pure_pursuit";

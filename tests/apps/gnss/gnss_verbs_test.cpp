@@ -303,6 +303,16 @@ TEST_F(GnssVerbsTest, DriveCheckOverDrawsAndItsPage) {
     }
     EXPECT_EQ(json["distributions"]["fix_horizontal_error_m"][side]["count"], json["reference_instants"]) << side;
   }
+  double tracked = 0.0;
+  for (const auto& of : json["satellites"]) {
+    if (!of.contains("measured")) continue;
+    for (const char* column : {"in_sight", "elevation_deg", "azimuth_deg", "cn0_dbhz", "error_m", "rate_error_m_s"})
+      EXPECT_EQ(of["measured"][column].size(), of["measured"]["sow"].size()) << column;
+    tracked += static_cast<double>(of["measured"]["sow"].size());
+  }
+  const double per_epoch =
+      json["measured"]["tracked_in_sight"].get<double>() + json["measured"]["tracked_hidden"].get<double>();
+  EXPECT_NEAR(tracked, per_epoch * json["epochs"].get<double>(), 1e-6) << "all that the figures count";
   const std::string page = read("check/report.html");
   for (const char* words : {"Distributions</h2>", "Range error of hidden satellites", "Horizontal error of fixes",
                             "CRPS", "Each satellite over time</h2>", "tracked while hidden"})

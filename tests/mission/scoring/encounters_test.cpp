@@ -1,5 +1,7 @@
 #include "canyon/mission/scoring/encounters.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "canyon/lidar/beam/no_surface.h"
@@ -51,6 +53,31 @@ TEST(Encounters, ANearMissIsCountedOnceAndTheClearanceIsTheSurfaces) {
   EXPECT_NEAR(far.clearance_min_m, 1.15, 1e-6);
   EXPECT_EQ(far.near_misses, 0);
   EXPECT_EQ(drive(Lane(9.0), 30.0, {5.0, 0.0}, AutonomyState::kDriving).clearance_min_m, Encounters::kFar_m);
+}
+
+/// A slab beside the way, from half a metre off, as a pavement or a low wall.
+double clearance_beside_m(double height_m, scene::ObjectKind kind) {
+  scene::SceneParts parts;
+  parts.materials = scene::builtin_materials();
+  scene::MeshBuilder mesh(parts);
+  mesh.begin_object("ground", scene::ObjectKind::kTerrain);
+  mesh.quad({-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}, 0);
+  mesh.begin_object("slab", kind);
+  mesh.box({20, 2.25, 0.5 * height_m}, Eigen::Matrix3d::Identity(), {10.0, 1.0, 0.5 * height_m}, 0);
+  const scene::Scene scene(std::move(parts));
+  const scene::SceneAt at(scene);
+  Encounters encounters(SuccessConfig{}, VehicleConfig{}, at);
+  for (double x_m = 0.0; x_m < 30.0; x_m += 0.05)
+    encounters.look(state_at(x_m, x_m / 5.0), 5.0, {5.0, 0.0}, AutonomyState::kDriving);
+  return encounters.numbers().clearance_min_m;
+}
+
+// The body begins 0.2 m above the ground: it passes over what is lower, and keeps clear of what is not. A part of a car
+// counts whatever its height.
+TEST(Encounters, WhatIsLowerThanTheBodyIsNoThing) {
+  EXPECT_EQ(clearance_beside_m(0.15, scene::ObjectKind::kOther), Encounters::kFar_m);
+  EXPECT_NEAR(clearance_beside_m(0.5, scene::ObjectKind::kOther), 0.5, 1e-6);
+  EXPECT_NEAR(clearance_beside_m(0.15, scene::ObjectKind::kVehicle), std::hypot(0.5, 0.05), 1e-6);
 }
 
 // From 5 m/s it stops within 4.2 m: who asks for no less speed nearer than that has missed the post.

@@ -9,6 +9,7 @@
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 #include "canyon/study/drive_check/drive_distributions.h"
+#include "canyon/study/drive_check/drive_satellites.h"
 
 namespace canyon::study {
 namespace {
@@ -67,6 +68,23 @@ TEST(DriveFigures, DistributionsAreWhatTheQuantilesAreOf) {
   EXPECT_TRUE(fixes[51].is_null() && fixes[100].is_null()) << "an instant without a fix is the worst";
   EXPECT_EQ(out["hidden_error_m"]["measured"]["count"], 0);
   EXPECT_TRUE(out["hidden_error_m"]["measured"]["percentiles"].empty());
+}
+
+TEST(DriveSatellites, EachStandsOverTimeOnBothSides) {
+  std::vector<DriveEpoch> simulated(2), measured(1);
+  simulated[0] = {kFiguresStart, {signal(kOne, true, 50.0, -1.0), signal(kTwo, false, 30.0, 40.1236, -2.0)}};
+  simulated[1] = {kFiguresStart + 1.0, {signal(kOne, false, 40.0, kNaN)}};
+  measured[0] = {kFiguresStart, {signal(kOne, true, 44.0, 2.0)}};
+  const Json out = drive_satellites_json(simulated, measured);
+  EXPECT_EQ(out.size(), 2U);
+  const Json& one = out[kOne.str()];
+  EXPECT_EQ(one["simulated"]["sow"][1].get<double>() - one["simulated"]["sow"][0].get<double>(), 1.0);
+  EXPECT_EQ(one["simulated"]["in_sight"], Json({true, false}));
+  EXPECT_EQ(one["simulated"]["cn0_dbhz"], Json({50.0, 40.0}));
+  EXPECT_TRUE(one["simulated"]["error_m"][1].is_null());
+  EXPECT_EQ(one["measured"]["error_m"], Json::array({2.0}));
+  EXPECT_EQ(out[kTwo.str()]["simulated"]["error_m"], Json::array({40.124}));
+  EXPECT_FALSE(out[kTwo.str()].contains("measured"));
 }
 
 // A first-order Gauss-Markov process of 4 s in each of 60 satellites: the estimate is within 4 sigma of exp(-lag / 4
