@@ -19,7 +19,7 @@ constexpr double kPlane_px = 420.0, kPage_px = 1000.0;  // of a drawing of place
 
 std::string shown_range(const PaperOurs& ours) {
   if (!std::isfinite(ours.low) || !std::isfinite(ours.high)) return "";
-  return show_number(ours.low) + "\xE2\x80\x93" + show_number(ours.high);
+  return show_number(ours.low) + " to " + show_number(ours.high);
 }
 
 /// A row a form of ours; the paper's number stands in the first.
@@ -126,12 +126,14 @@ std::string head(const PaperSummary& summary) {
     out += "<a href=\"#" + escape_html(part.name) + "\">" + escape_html(part.title.substr(0, part.title.find(':'))) +
            "</a> ";
   return out + "</nav>\n</header>\n<p class=\"intro\">" +
-         escape_html(
-             "Numbers are medians over " + show_count(summary.draws) + " draws with the least and the most of them" +
-             (summary.missions > 0.0
-                  ? "; of missions over " + show_count(summary.missions) + " seeds, shares with Wilson's 95 % interval"
-                  : std::string()) +
-             ". Bold: the form of ours that is nearest to the paper's number by ratio.") +
+         escape_html("Numbers are medians over " + show_count(summary.draws) +
+                     " draws with the least and the most of them" +
+                     (summary.missions > 0.0
+                          ? "; of missions over " + show_count(summary.missions) +
+                                " seeds with 95 % intervals: shares with Wilson's, medians between two of the seeds, "
+                                "differences with Student's"
+                          : std::string()) +
+                     ". Bold: the form of ours that is nearest to the paper's number by ratio.") +
          "</p>\n";
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "canyon/core/math/median.h"
 #include "canyon/study/reproduce/reproduction.h"
+#include "canyon/study/statistics/sample.h"
 
 namespace canyon::study {
 
@@ -17,6 +20,30 @@ inline Ours over_draws(std::string form, std::vector<double> values) {
   if (values.size() > 1) out.range = {*std::ranges::min_element(values), *std::ranges::max_element(values)};
   out.value = median(std::move(values));
   return out;
+}
+
+/// One form's figure over seeds.
+struct OverSeedsOf {
+  std::string form;
+  std::vector<double> values;  ///< one per seed; NaN: the figure has none there
+};
+
+/// A row of figures over the same seeds: of each form the median with its 95 % interval (median_interval: none for
+/// fewer than six), then the last form less the first, seed by seed: the mean with Student's.
+inline PaperRow over_seeds_row(std::string what, std::string unit, std::vector<OverSeedsOf> forms) {
+  PaperRow row{.what = std::move(what), .unit = std::move(unit), .ours = {}};
+  std::vector<double> differences;
+  for (std::size_t seed = 0; seed < forms.front().values.size(); ++seed)
+    differences.push_back(forms.back().values[seed] - forms.front().values[seed]);
+  std::erase_if(differences, [](double v) { return !std::isfinite(v); });
+  Ours difference{forms.back().form + " less " + forms.front().form, mean(differences), mean_interval(differences)};
+  for (OverSeedsOf& one : forms) {
+    std::erase_if(one.values, [](double v) { return !std::isfinite(v); });
+    const Interval interval = median_interval(one.values);
+    row.ours.push_back({std::move(one.form), one.values.empty() ? kNaN : median(std::move(one.values)), interval});
+  }
+  row.ours.push_back(std::move(difference));
+  return row;
 }
 
 }  // namespace canyon::study

@@ -13,7 +13,8 @@
 namespace canyon::study {
 
 /// What a form of our models gives for a number of the paper: the median over draws, and the least and the most of
-/// them, undefined of a single one; or a share of missions with its interval.
+/// them, undefined of a single one; or, of missions over seeds, a share, a median or a difference with its 95 %
+/// interval.
 struct Ours {
   std::string form;  ///< "as printed"
   double value = kNaN;

@@ -108,6 +108,23 @@ TEST(Reproduction, DrawsAreTheirMedianAndTheirEnds) {
   EXPECT_TRUE(std::isnan(over_draws("f", {kNaN}).value));
 }
 
+// Of six seeds the interval of the median is from the least to the most (2 / 2^6 = 3 %), and Student's of the
+// differences 2, 2, 2, 4, 4, 4 about their mean of 3 is 2.57058 sqrt(6 / 5 / 6) wide each way (t with 5 degrees of
+// freedom).
+TEST(OverSeedsRow, MediansAndTheDifferenceSeedBySeed) {
+  const PaperRow row = over_seeds_row(
+      "w", "m", {{"low", {1, 2, 3, 4, 5, 6}}, {"paper", {9, kNaN, 9, 9, 9, 9}}, {"high", {3, 4, 5, 8, 9, 10}}});
+  ASSERT_EQ(row.ours.size(), 4u);
+  EXPECT_EQ(row.ours[0].value, 3.5);
+  EXPECT_EQ(row.ours[0].range.low, 1.0);
+  EXPECT_EQ(row.ours[0].range.high, 6.0);
+  EXPECT_FALSE(row.ours[1].range.defined()) << "five seeds have it";
+  EXPECT_EQ(row.ours[3].form, "high less low");
+  EXPECT_DOUBLE_EQ(row.ours[3].value, 3.0);
+  EXPECT_NEAR(row.ours[3].range.low, 3.0 - 2.57058 * std::sqrt(0.2), 0.01);
+  EXPECT_NEAR(row.ours[3].range.high, 3.0 + 2.57058 * std::sqrt(0.2), 0.01);
+}
+
 TEST(Reproduction, IsToldAsTableAndJson) {
   Reproduction all{.ephemeris = "sky", .start = "2010", .draws = 1, .missions = 0, .parts = {}};
   all.parts.push_back(
