@@ -14,6 +14,10 @@
 #include "canyon/gnss/paths/diffraction/diffraction.h"
 #include "canyon/gnss/paths/path_model.h"
 #include "canyon/gnss/paths/propagation.h"
+#include "canyon/gnss/sensor/pseudorange_parts.h"
+#include "canyon/gnss/sensor/receiver_catalogue.h"
+#include "canyon/gnss/sensor/satellites_in_view.h"
+#include "canyon/gnss/signal.h"
 #include "canyon/scene/city/city.h"
 #include "canyon/scene/import.h"
 #include "canyon/scene/scene_at.h"
@@ -22,6 +26,7 @@ namespace {
 
 using canyon::gnss::GnssCounters;
 using canyon::gnss::PathModel;
+using canyon::gnss::PlaneWaves;
 using canyon::gnss::SignalPaths;
 
 const canyon::scene::Scene& city(double extent_m) {
@@ -157,44 +162,86 @@ std::vector<Eigen::Vector3d> shibuya_way(const canyon::scene::Scene& scene) {
   return way_of(corners);
 }
 
-/// As a receiver of 28 dB-Hz meets it on the way, every 2.5 m (5 m/s, 2 Hz): what a drive remembers from epoch to epoch
-/// counts. Second order, with what else is named.
+/// As a receiver meets it on the way, every 2.5 m (5 m/s, 2 Hz): what a drive remembers from epoch to epoch counts.
 void drive(benchmark::State& state, const canyon::scene::Scene& scene, const std::vector<Eigen::Vector3d>& points,
-           const std::vector<Eigen::Vector3d>& sky, const char* diffraction, const char* scatter, const char* clutter,
-           bool borders = false) {
+           const PathModel& tracer, const PlaneWaves& waves) {
   const canyon::scene::SceneAt at(scene);
+  std::vector<SignalPaths> out(waves.size());
+  GnssCounters counters;
+  // What is made once for a scene.
+  if (!points.empty()) tracer.trace(points[0], waves, at, out, counters);
+  counters = {};
+  std::size_t k = 0;
+  double echoes = 0.0;
+  for (auto _ : state) {
+    const std::size_t now = k++;
+    tracer.trace(points[now % points.size()], waves.at(waves.t() + 0.5 * static_cast<double>(now)), at, out, counters);
+    for (const SignalPaths& one : out) echoes += static_cast<double>(one.echoes.size());
+  }
+  const auto epochs = static_cast<double>(state.iterations());
+  state.counters["rays"] = static_cast<double>(counters.occlusion_rays) / epochs;
+  state.counters["echoes"] = echoes / epochs;
+  state.counters["signals"] = static_cast<double>(waves.size());
+  state.counters["buildings"] = static_cast<double>(scene.buildings().size());
+}
+
+/// Second order, with what else is named.
+canyon::gnss::PropagationConfig second_order(const char* diffraction, const char* scatter, const char* clutter,
+                                             bool borders) {
   canyon::gnss::PropagationConfig config;
   config.paths.name = "specular2";
   config.diffraction.name = diffraction;
   config.scatter.name = scatter;
   config.clutter.name = clutter;
   config.reflection_borders = borders;
+  return config;
+}
+
+/// Of a receiver of 28 dB-Hz, at L1.
+void drive(benchmark::State& state, const canyon::scene::Scene& scene, const std::vector<Eigen::Vector3d>& points,
+           const std::vector<Eigen::Vector3d>& sky, const char* diffraction, const char* scatter, const char* clutter,
+           bool borders) {
   canyon::gnss::PathParameters p;
   p.weakest_nlos_db = -17.0;
-  const auto tracer = *make_propagation(config, p);
-  std::vector<SignalPaths> out(sky.size());
-  GnssCounters counters;
-  // What is made once for a scene.
-  if (!points.empty()) tracer->trace(points[0], canyon::gnss::PlaneWaves(sky), at, out, counters);
-  counters = {};
-  std::size_t k = 0;
-  double echoes = 0.0;
-  for (auto _ : state) {
-    const std::size_t now = k++;
-    tracer->trace(points[now % points.size()],
-                  canyon::gnss::PlaneWaves(sky).at(canyon::GpsTime{} + 0.5 * static_cast<double>(now)), at, out,
-                  counters);
-    for (const SignalPaths& one : out) echoes += static_cast<double>(one.echoes.size());
-  }
-  const auto epochs = static_cast<double>(state.iterations());
-  state.counters["rays"] = static_cast<double>(counters.occlusion_rays) / epochs;
-  state.counters["echoes"] = echoes / epochs;
+  const auto tracer = *make_propagation(second_order(diffraction, scatter, clutter, borders), p);
+  drive(state, scene, points, *tracer, sky);
 }
 
 void channel(benchmark::State& state, const char* diffraction, const char* scatter, const char* clutter,
              bool borders = false) {
   const canyon::scene::Scene& scene = city(extent_of(state));
   drive(state, scene, way_of(street_points(scene)), satellites(), diffraction, scatter, clutter, borders);
+}
+
+/// All that `high` and `modern` ask of the channel, of a receiver of the catalogue and as its sensor asks it: down to
+/// what is tracked and as late as its correlator hears; all first signals and, of a receiver of two bands, all second
+/// ones in one search. The built-in satellites above its mask, as they stand when the built-in mission starts.
+void channel_of(benchmark::State& state, const char* receiver) {
+  const canyon::scene::Scene& scene = city(extent_of(state));
+  const auto points = way_of(street_points(scene));
+  const auto sheet = canyon::gnss::load_receiver(receiver);
+  canyon::gnss::GnssConfig config;
+  if (!sheet || !read_config(&sheet->figures, "", config)) return state.SkipWithError("the receiver cannot be read");
+  config.propagation = second_order("wedge", "directive", "street", true);
+  config.reception.multipath_rule.name = "correlator";
+  const auto start = canyon::GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+  const auto parts = *canyon::gnss::make_pseudorange_parts({config, 1, start, start + 3600.0, scene, 1});
+
+  const Eigen::Vector3d p_E = scene.frame().to_E(points.front());
+  canyon::gnss::SatellitesInView in_view(parts.constellation, scene.frame(), config.mask_deg * canyon::kDegree);
+  const auto sights = in_view.at(start, start, p_E, canyon::gnss::Horizon(p_E));
+  std::vector<Eigen::Vector3d> sky;
+  std::vector<double> carriers_hz;
+  const auto add = [&](const auto& band_of) {
+    for (const canyon::gnss::Sight& s : sights) {
+      sky.push_back(s.direction_W);
+      carriers_hz.push_back(s.carrier_hz(band_of(s.sv.system)));
+    }
+  };
+  add(canyon::gnss::first_band);
+  if (parts.mode->dual_frequency())
+    add([&](canyon::GnssSystem system) { return second_band(system, config.tracking.second_frequency); });
+  drive(state, scene, points, *parts.paths, PlaneWaves(sky, carriers_hz).at(start));
 }
 
 /// 45 satellites: as many as five systems show at once in the open.
@@ -217,10 +264,19 @@ void bare_rays_in_shibuya(benchmark::State& state) {
   }
 }
 
-// 100, 370 (the built-in city), 1000, 3000 and 10,000 buildings.
+// 370 (the built-in city), 1000, 3000 and 10,000 buildings.
+void larger_cities(benchmark::internal::Benchmark* b) {
+  for (const int extent_m : {1000, 1600, 2800, 5200}) b->Arg(extent_m);
+}
+
+// 240, and those.
 void cities(benchmark::internal::Benchmark* b) {
-  for (const int extent_m : {800, 1000, 1600, 2800, 5200}) b->Arg(extent_m);
-  b->Unit(benchmark::kMicrosecond);
+  b->Arg(800)->Apply(larger_cities)->Unit(benchmark::kMicrosecond);
+}
+
+// The ways are 606 to 644 epochs long: as much of each, for what a drive remembers grows along it.
+void whole_ways(benchmark::internal::Benchmark* b) {
+  b->Apply(larger_cities)->Iterations(600);
 }
 
 BENCHMARK(bare_rays)->Name("paths/bare_rays")->Apply(cities);
@@ -242,11 +298,12 @@ BENCHMARK_CAPTURE(channel, scatter, "wedge", "directive", "none")->Name("channel
 BENCHMARK_CAPTURE(channel, street, "wedge", "directive", "street")->Name("channel/wedge+directive+street")->Arg(1000);
 BENCHMARK_CAPTURE(channel, street_borders, "wedge", "directive", "street", true)
     ->Name("channel/wedge+directive+street+borders")
-    ->Arg(1000);
+    ->Apply(whole_ways);
 BENCHMARK_CAPTURE(channel, scatter_borders, "wedge", "directive", "none", true)
     ->Name("channel/wedge+directive+borders")
-    ->Arg(1000)
-    ->Arg(5200);
+    ->Apply(whole_ways);
+BENCHMARK_CAPTURE(channel_of, high, "dgps_2010")->Name("channel/high")->Arg(1000)->Iterations(600);
+BENCHMARK_CAPTURE(channel_of, modern, "f9p")->Name("channel/modern")->Arg(1000)->Iterations(600);
 BENCHMARK_CAPTURE(channel, scatter_wide, "wedge", "directive", "none")->Name("channel/wedge+directive")->Arg(5200);
 BENCHMARK(bare_rays_in_shibuya)->Name("shibuya/bare_rays")->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(channel_in_shibuya, scatter, "wedge", "directive", "none")->Name("shibuya/wedge+directive");
