@@ -33,10 +33,13 @@ TEST_F(ReproduceTest, DrivesTheMissionToo) {
   const auto& mission = json["parts"][5];
   EXPECT_EQ(mission["name"], "figures_8_to_10");
   const auto& share = mission["rows"][0];
-  ASSERT_EQ(share["ours"].size(), 3u) << "without shares no difference";
+  ASSERT_EQ(share["ours"].size(), 4u);
   EXPECT_EQ(share["ours"][0]["form"], "low");
+  EXPECT_EQ(share["ours"][3]["form"], "high less low");
   // Its time limit stops every run: whether one would have succeeded is not known.
-  for (const char* what : {"value", "low", "high"}) EXPECT_TRUE(share["ours"][0][what].is_null()) << what;
+  for (const auto& ours : share["ours"]) {
+    for (const char* what : {"value", "low", "high"}) EXPECT_TRUE(ours[what].is_null()) << ours["form"] << ' ' << what;
+  }
   for (const auto& curve : mission["curves"]) EXPECT_GT(curve["x"].size(), 2u) << curve["name"];
   // Of localization five, and five of obstacles, ways and what is hit.
   ASSERT_EQ(json["parts"][6]["rows"].size(), 10u);

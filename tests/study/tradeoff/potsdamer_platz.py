@@ -5,7 +5,7 @@ RECORDINGS is the folder gnss/urban_berlin of the shared recordings: what a u-bl
 2016-06-06 (smartLoc, TU Chemnitz, CC BY-SA 4.0), its surveyed way, and the buildings there (LoD2, Geoportal Berlin, dl-de/zero-2-0).
 Written to OUT: the buildings as GeoJSON, the truth as CSV, the description that names them, and city.toml, a mission of that
 scene with the same receiver as far as its maker tells, for `canyon gnss drive-check --scene OUT/city.toml`. street.toml is the
-same with wedges, scattering walls and clutter, and with a receiver that tracks down to the weakest signal that the log holds.
+same with wedges, scattering walls and clutter, and with a receiver that tracks down to the weakest signal compared with the log's.
 
 But for the gain and, in street.toml, the threshold nothing is fitted to the drive: the receiver is canyon's patch antenna on a car
 roof and its defaults for what is not said.
@@ -81,7 +81,7 @@ file = "buildings.geojson"
 undulation_m = {UNDULATION_M}
 
 # A u-blox of 2016 on a car's roof: patch antenna; a front end of some 4 MHz and half a chip are ASSUMPTIONS, for its data sheet does not
-# say. 49 dB-Hz at the zenith is what it reported of the highest satellite, G12 at 85 degrees (49 to 51).
+# say. 49 dB-Hz at the zenith lie between what it reported of G12 at 85 degrees (51 in the median) and of the others above 45 (38 to 44).
 [gnss]
 antenna = "patch"
 tracking_threshold_dbhz = 25.0
@@ -95,7 +95,7 @@ clutter = "none"
 file = "buildings.geojson"
 undulation_m = {UNDULATION_M}
 
-# The catalogue's u-blox of that time, with two figures that the log tells: its gain (above), and the weakest signal that it logs.
+# The catalogue's u-blox of that time, with two figures taken from the log: its gain (above), and the weakest signal above the mask of 10 degrees.
 [gnss]
 receiver = "m8"
 tracking_threshold_dbhz = 21.0
