@@ -35,9 +35,6 @@ constexpr double kWidest_m = 0.2 / 3.0;
 constexpr double kWidest_rad = 0.5 / 3.0 * kDegree;
 constexpr double kProbability = 1e-3;
 constexpr int kMostOpenings = 6;  // each opens a direction
-// By how much what open directions lean by is above what scatter says of it, of variances. ASSUMPTION: as for the
-// sandwich (docs/registration.md).
-constexpr double kLeaning = 1.5;
 
 }  // namespace
 
@@ -75,7 +72,8 @@ RegistrationPrecision Aligner::precision_at(FoundPose& at, const CovarianceForm&
   const auto& prior = search_.prior();
   if (open.empty() || !prior) return precision;
   precision.covariance = open.with_open(precision.covariance, kUnconstrainedSigma_m) +
-                         kLeaning * open.leaning(sums.block_surfaces, prior->covariance_at(at.X));
+                         product_over_normal(6 - static_cast<int>(open.open().size())) *
+                             open.leaning(sums.block_surfaces, prior->covariance_at(at.X));
   return precision;
 }
 

@@ -13,6 +13,9 @@ namespace {
 
 constexpr int kMostMoves = 30;  // each leaves a share of 1 - cos(turn / 2) and less
 constexpr double kHeld = 1e-9;
+// Quantile 0.999 of that product over the one of chi-square with so many degrees of freedom, from 1 to 5: 32.70 over
+// 10.83 and so on (the tail integrated over the first factor's density).
+constexpr double kProductOverNormal[] = {3.020, 3.454, 3.749, 3.980, 4.172};
 
 /// Of a covariance that may be singular: what is certain has no part in a regression.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
@@ -28,6 +31,10 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
 }
 
 }  // namespace
+
+double product_over_normal(int closed) {
+  return kProductOverNormal[std::clamp(closed, 1, 5) - 1];
+}
 
 OpenDirections::OpenDirections(double radius_m, std::vector<Vector6d> open) : open_(std::move(open)) {
   root_ << Eigen::Vector3d::Constant(radius_m), Eigen::Vector3d::Ones();

@@ -8,6 +8,13 @@
 
 namespace canyon::lidar {
 
+/// By how much the covariance of what leads off the surfaces along an open direction has to grow for its 99.9 %
+/// ellipsoid to be one, with so many closed directions, 1 to 5. That error is a product, of how far off the pose is
+/// along the open direction and of how much that leans; if both are normal, its square is chi-square with 1 degree of
+/// freedom times chi-square with `closed`, which has longer tails than a normal law of the same covariance: 3.02
+/// to 4.17.
+double product_over_normal(int closed);
+
 /// Directions of xi, source frame, measured where a rotation counts by what it moves at `radius_m`. The open ones are
 /// of length 1 and at right angles.
 class OpenDirections {

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "canyon/core/math/chi_square.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
 
@@ -104,6 +105,23 @@ TEST(OpenDirections, LeaningIsWhatTheBlocksScatter) {
 
 // 2026-11-26: what is open was held at the prior's own coordinates whatever the others had become. With a prior that is
 // 6 m and 25 deg off, a tilt was then several of its sigma off, and the covariance did not say so.
+// 400,000 draws: 400 of them lie beyond in the mean, with 20 as standard deviation; within four of these.
+TEST(OpenDirections, OfAProductOneInAThousandLiesBeyondItsBound) {
+  constexpr std::uint64_t kDraws = 400000;
+  const RandomStream random(41, "test.product");
+  for (int closed = 1; closed <= 5; ++closed) {
+    const double bound = product_over_normal(closed) * chi_square_threshold(1e-3, closed);
+    int beyond = 0;
+    for (std::uint64_t n = 0; n < kDraws; ++n) {
+      const double off = random.normal(0, n);
+      double leans = 0.0;
+      for (int c = 1; c <= closed; ++c) leans += std::pow(random.normal(static_cast<std::uint32_t>(c), n), 2);
+      beyond += off * off * leans > bound ? 1 : 0;
+    }
+    EXPECT_NEAR(beyond, 400, 80) << closed;
+  }
+}
+
 TEST(OpenDirections, WhatIsHeldErrsAsThePriorsCovarianceSaysThere) {
   Matrix6d P = Matrix6d::Zero();
   P.diagonal() << 0.008 * 0.008, 0.008 * 0.008, 0.43 * 0.43, 16, 16, 0.01;
