@@ -74,7 +74,7 @@ StressFigure open_directions_algebra(double radius_m) {
   // Of few blocks the bound, of many what they scatter.
   const Matrix6d few = drawn_positive(5);
   const Matrix6d bound = (along * U.transpose() * few * U).trace() / 9.0 * closed_by(few);
-  alike(looks, open.leaning(std::vector<Matrix6d>(9, root.asDiagonal() * few * root.asDiagonal() / 9.0), C),
+  alike(looks, open.leaning(std::vector<Matrix6d>(9, root.asDiagonal() * few * root.asDiagonal() / 9.0), C).covariance,
         unscaled(bound), 1e-10);
   std::vector<Matrix6d> blocks;
   Matrix6d sum = Matrix6d::Zero(), scatter = Matrix6d::Zero();
@@ -84,7 +84,7 @@ StressFigure open_directions_algebra(double radius_m) {
     sum += one;
     scatter += 30.0 / 24.0 * one * (U * along * U.transpose()) * one;
   }
-  alike(looks, open.leaning(blocks, C), unscaled(closed_by(sum) * scatter * closed_by(sum)), 1e-10);
+  alike(looks, open.leaning(blocks, C).covariance, unscaled(closed_by(sum) * scatter * closed_by(sum)), 1e-10);
   // Held where no move along its open directions makes it likelier.
   const Pose at{rotation_from({.yaw_rad = 0.4, .pitch_rad = 0.1, .roll_rad = -0.2}), {5.0, -3.0, 1.0}};
   const PriorLaw prior = *PriorLaw::of({.X_TS = at, .covariance = C});

@@ -71,9 +71,10 @@ RegistrationPrecision Aligner::precision_at(FoundPose& at, const CovarianceForm&
   precision.covariance += 4.0 * at.last_step * at.last_step.transpose();
   const auto& prior = search_.prior();
   if (open.empty() || !prior) return precision;
+  const Leaning leaning = open.leaning(sums.block_surfaces, prior->covariance_at(at.X));
+  const int closed = 6 - static_cast<int>(open.open().size());
   precision.covariance = open.with_open(precision.covariance, kUnconstrainedSigma_m) +
-                         product_over_normal(6 - static_cast<int>(open.open().size())) *
-                             open.leaning(sums.block_surfaces, prior->covariance_at(at.X));
+                         product_over_normal(leaning.directions, closed) * leaning.covariance;
   return precision;
 }
 

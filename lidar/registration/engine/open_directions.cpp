@@ -13,9 +13,10 @@ namespace {
 
 constexpr int kMostMoves = 30;  // each leaves a share of 1 - cos(turn / 2) and less
 constexpr double kHeld = 1e-9;
-// Quantile 0.999 of that product over the one of chi-square with so many degrees of freedom, from 1 to 5: 32.70 over
-// 10.83 and so on (the tail integrated over the first factor's density).
-constexpr double kProductOverNormal[] = {3.020, 3.454, 3.749, 3.980, 4.172};
+// Quantile 0.999 of chi-square with 1 to 3 degrees of freedom, over their number, times chi-square with 1 to 5, over
+// the quantile of the latter alone: 32.70 over 10.83 and so on (the tail integrated over the first factor's density).
+constexpr double kProductOverNormal[3][5] = {
+    {3.020, 3.454, 3.749, 3.980, 4.172}, {2.204, 2.452, 2.621, 2.753, 2.864}, {1.877, 2.057, 2.180, 2.276, 2.356}};
 
 /// Of a covariance that may be singular: what is certain has no part in a regression.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
@@ -32,8 +33,10 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& covariance) {
 
 }  // namespace
 
-double product_over_normal(int closed) {
-  return kProductOverNormal[std::clamp(closed, 1, 5) - 1];
+double product_over_normal(double open, int closed) {
+  const int of = std::clamp(closed, 1, 5) - 1, below = std::clamp(static_cast<int>(open), 1, 2) - 1;
+  const double beyond = std::clamp(open - (below + 1), 0.0, 1.0);
+  return (1.0 - beyond) * kProductOverNormal[below][of] + beyond * kProductOverNormal[below + 1][of];
 }
 
 OpenDirections::OpenDirections(double radius_m, std::vector<Vector6d> open) : open_(std::move(open)) {
@@ -127,8 +130,8 @@ Matrix6d OpenDirections::with_open(const Matrix6d& covariance, double sigma_m) c
   return root_.cwiseInverse().asDiagonal() * out * root_.cwiseInverse().asDiagonal();
 }
 
-Matrix6d OpenDirections::leaning(std::span<const Matrix6d> curvatures, const Matrix6d& prior) const {
-  Matrix6d out = Matrix6d::Zero();
+Leaning OpenDirections::leaning(std::span<const Matrix6d> curvatures, const Matrix6d& prior) const {
+  Leaning out;
   if (open_.empty() || open_.size() >= 6 || curvatures.empty()) return out;
   const Eigen::MatrixXd C = closed_scaled(), U = open_scaled();
   const auto scaled = [this](const Matrix6d& H) -> Matrix6d {
@@ -146,11 +149,16 @@ Matrix6d OpenDirections::leaning(std::span<const Matrix6d> curvatures, const Mat
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(along);
   const auto blocks = static_cast<double>(curvatures.size());
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(C.cols(), C.cols());
+  double squares = 0.0;
+  const auto add = [&](const Eigen::MatrixXd& one) {
+    sum += one;
+    squares += one.trace() * one.trace();
+  };
   for (Eigen::Index k = 0; k < along.cols(); ++k) {
     const Vector6d v = U * eigen.eigenvectors().col(k);
     const double variance = std::max(0.0, eigen.eigenvalues()[k]);
     if (curvatures.size() < kFewestBlocks) {
-      sum += variance * std::max(0.0, v.dot(H * v)) / blocks * closed;
+      add(variance * std::max(0.0, v.dot(H * v)) / blocks * closed);
       continue;
     }
     Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(C.cols(), C.cols());
@@ -158,9 +166,11 @@ Matrix6d OpenDirections::leaning(std::span<const Matrix6d> curvatures, const Mat
       const Eigen::VectorXd h = C.transpose() * (scaled(one) * v);
       scatter += blocks / (blocks - 6.0) * h * h.transpose();
     }
-    sum += variance * closed * scatter * closed;
+    add(variance * closed * scatter * closed);
   }
-  return root_.cwiseInverse().asDiagonal() * (C * sum * C.transpose()) * root_.cwiseInverse().asDiagonal();
+  if (squares > 0.0) out.directions = sum.trace() * sum.trace() / squares;
+  out.covariance = root_.cwiseInverse().asDiagonal() * (C * sum * C.transpose()) * root_.cwiseInverse().asDiagonal();
+  return out;
 }
 
 }  // namespace canyon::lidar

@@ -8,12 +8,18 @@
 
 namespace canyon::lidar {
 
-/// By how much the covariance of what leads off the surfaces along an open direction has to grow for its 99.9 %
-/// ellipsoid to be one, with so many closed directions, 1 to 5. That error is a product, of how far off the pose is
-/// along the open direction and of how much that leans; if both are normal, its square is chi-square with 1 degree of
-/// freedom times chi-square with `closed`, which has longer tails than a normal law of the same covariance: 3.02
-/// to 4.17.
-double product_over_normal(int closed);
+/// What open directions add to the others' uncertainty.
+struct Leaning {
+  Matrix6d covariance = Matrix6d::Zero();  ///< of xi
+  double directions = 1.0;                 ///< of how many open ones, as alike as Satterthwaite (1946) counts them
+};
+
+/// By how much a Leaning has to grow for its 99.9 % ellipsoid to be one, with so many closed directions, 1 to 5. The
+/// error is a product, of how far off the pose is along an open direction and of how much that leans. If both are
+/// normal, and `open` directions do alike, its square is chi-square with `open` degrees of freedom times chi-square
+/// with `closed`, which has longer tails than a normal law of the same covariance: 4.17 with one open and
+/// five closed, 2.18 with three of each. Between whole numbers of open ones linear; more than three count as three.
+double product_over_normal(double open, int closed);
 
 /// Directions of xi, source frame, measured where a rotation counts by what it moves at `radius_m`. The open ones are
 /// of length 1 and at right angles.
@@ -45,7 +51,7 @@ class OpenDirections {
   /// they were found. Along an open v the curvature H is what errors of the normals feign, so that v leans by
   /// H_cc^-1 H_cv, and how much that may be is told by how the blocks scatter about nothing: the sandwich again. With
   /// too few blocks for that, by the square's bound v^T H v / H_cc (Cauchy and Schwarz), a share of 1 / blocks of it.
-  Matrix6d leaning(std::span<const Matrix6d> curvatures, const Matrix6d& prior) const;
+  Leaning leaning(std::span<const Matrix6d> curvatures, const Matrix6d& prior) const;
 
  private:
   Eigen::MatrixXd open_scaled() const;

@@ -95,7 +95,7 @@ TEST(OpenDirections, LeaningIsWhatTheBlocksScatter) {
   }
   Matrix6d prior = Matrix6d::Identity() * 1e-4;
   prior(3, 3) = kSigma_m * kSigma_m;
-  const Matrix6d leans = open.leaning(blocks, prior);
+  const Matrix6d leans = open.leaning(blocks, prior).covariance;
   // sigma of the sum of as many, over the curvature of all.
   const double lean = std::sqrt(kBlocks * kBlocks / (kBlocks - 6.0)) * kCross / (kBlocks * kCurvature);
   EXPECT_NEAR(std::sqrt(leans(4, 4)), kSigma_m * lean, 1e-12);
@@ -103,25 +103,47 @@ TEST(OpenDirections, LeaningIsWhatTheBlocksScatter) {
   EXPECT_NEAR(leans(3, 3), 0.0, 1e-15);
 }
 
-// 2026-11-26: what is open was held at the prior's own coordinates whatever the others had become. With a prior that is
-// 6 m and 25 deg off, a tilt was then several of its sigma off, and the covariance did not say so.
+TEST(OpenDirections, DirectionsThatLeanAlikeAreCounted) {
+  const OpenDirections open(kRadius_m, {shift(1, 0, 0), shift(0, 1, 0)});
+  std::vector<Matrix6d> blocks(100, Matrix6d(Matrix6d::Identity() * 50.0));
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    blocks[b](3, 3) = blocks[b](4, 4) = 0.0;
+    blocks[b](3, 5) = blocks[b](5, 3) = b % 2 == 0 ? 0.5 : -0.5;
+    blocks[b](4, 5) = blocks[b](5, 4) = b % 4 < 2 ? 0.5 : -0.5;
+  }
+  Matrix6d prior = Matrix6d::Identity() * 1e-4;
+  prior(3, 3) = prior(4, 4) = 4.0;
+  EXPECT_NEAR(open.leaning(blocks, prior).directions, 2.0, 1e-9);
+  prior(4, 4) = 1.0;  // shares of 4 and 1: 25 over 17
+  EXPECT_NEAR(open.leaning(blocks, prior).directions, 25.0 / 17.0, 1e-9);
+  prior(4, 4) = 1e-12;
+  EXPECT_NEAR(open.leaning(blocks, prior).directions, 1.0, 1e-9);
+}
+
 // 400,000 draws: 400 of them lie beyond in the mean, with 20 as standard deviation; within four of these.
 TEST(OpenDirections, OfAProductOneInAThousandLiesBeyondItsBound) {
   constexpr std::uint64_t kDraws = 400000;
   const RandomStream random(41, "test.product");
-  for (int closed = 1; closed <= 5; ++closed) {
-    const double bound = product_over_normal(closed) * chi_square_threshold(1e-3, closed);
-    int beyond = 0;
-    for (std::uint64_t n = 0; n < kDraws; ++n) {
-      const double off = random.normal(0, n);
-      double leans = 0.0;
-      for (int c = 1; c <= closed; ++c) leans += std::pow(random.normal(static_cast<std::uint32_t>(c), n), 2);
-      beyond += off * off * leans > bound ? 1 : 0;
+  const auto square = [&random](int from, int to, std::uint64_t n) {
+    double sum = 0.0;
+    for (int k = from; k < to; ++k) sum += std::pow(random.normal(static_cast<std::uint32_t>(k), n), 2);
+    return sum;
+  };
+  for (int open = 1; open <= 3; ++open) {
+    for (int closed = 1; closed + open <= 6; ++closed) {
+      const double bound = product_over_normal(open, closed) * chi_square_threshold(1e-3, closed);
+      int beyond = 0;
+      for (std::uint64_t n = 0; n < kDraws; ++n)
+        beyond += square(0, open, n) / open * square(open, open + closed, n) > bound ? 1 : 0;
+      EXPECT_NEAR(beyond, 400, 80) << open << ' ' << closed;
     }
-    EXPECT_NEAR(beyond, 400, 80) << closed;
   }
+  EXPECT_EQ(product_over_normal(1.5, 3), 0.5 * (product_over_normal(1, 3) + product_over_normal(2, 3)));
+  EXPECT_EQ(product_over_normal(4, 2), product_over_normal(3, 2));
 }
 
+// 2026-11-26: what is open was held at the prior's own coordinates whatever the others had become. With a prior that is
+// 6 m and 25 deg off, a tilt was then several of its sigma off, and the covariance did not say so.
 TEST(OpenDirections, WhatIsHeldErrsAsThePriorsCovarianceSaysThere) {
   Matrix6d P = Matrix6d::Zero();
   P.diagonal() << 0.008 * 0.008, 0.008 * 0.008, 0.43 * 0.43, 16, 16, 0.01;
