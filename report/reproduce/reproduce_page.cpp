@@ -131,7 +131,7 @@ std::string head(const PaperSummary& summary) {
                      (summary.missions > 0.0
                           ? "; of missions over " + show_count(summary.missions) +
                                 " seeds with 95 % intervals: shares with Wilson's, medians between two of the seeds, "
-                                "differences with Student's"
+                                "differences of shares with Newcombe's, mean differences seed by seed with Student's"
                           : std::string()) +
                      ". Bold: the form of ours that is nearest to the paper's number by ratio.") +
          "</p>\n";

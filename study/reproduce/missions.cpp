@@ -13,6 +13,9 @@ namespace canyon::study {
 namespace {
 
 const std::vector<std::string> kFidelities{"low", "paper", "high"};
+constexpr const char* kOverSeeds =
+    "Each number is the median over the seeds that have it with its 95 % interval, which fewer than six do not have; "
+    "high less low is a mean difference, seed by seed, with Student's, and so not the difference of the medians.";
 
 /// The places of a run, one a second, and of its fixes.
 class Places final : public mission::Recorder {
@@ -157,7 +160,8 @@ Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, s
           "by itself; all else on the mission's own route, driven on truth, the same for all, over seeds.",
       .difference = {"The paper's scene, route and autonomy are not published.",
                      "Why missions fail is another question than how often: docs/paper.md and the README name what "
-                     "has been shown with a control."},
+                     "has been shown with a control.",
+                     kOverSeeds},
       .x_label = "East, m",
       .rows = {success_row(driven_closed), figure_row(driven_open, "error of the fixes, RMS", "m", "fix_error_rms_m"),
                figure_row(driven_open, "east error of the output, RMS", "m", "position_error_e_rms_m"),
@@ -175,8 +179,7 @@ Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, s
           "On the same route, open loop, over seeds: localization, registration of scans, the map made of them, what "
           "blocks the way in a grid that lies where the pose puts it, and what the autonomy asks for, against the same "
           "scans with the true pose.",
-      .difference = {"Each number is the median over seeds with its 95 % interval, which fewer than six seeds do not "
-                     "have; high less low is the mean difference, seed by seed, with Student's."},
+      .difference = {kOverSeeds},
       .x_label = "",
       .rows = {figure_row(driven_open, "localization: position error, RMS", "m", "position_error_rms_m"),
                figure_row(driven_open, "localization: yaw error, RMS", "deg", "attitude_error_yaw_rms_deg"),

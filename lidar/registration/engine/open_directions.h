@@ -14,11 +14,12 @@ struct Leaning {
   double directions = 1.0;                 ///< of how many open ones, as alike as Satterthwaite (1946) counts them
 };
 
-/// By how much a Leaning has to grow for its 99.9 % ellipsoid to be one, with so many closed directions, 1 to 5. The
-/// error is a product, of how far off the pose is along an open direction and of how much that leans. If both are
-/// normal, and `open` directions do alike, its square is chi-square with `open` degrees of freedom times chi-square
-/// with `closed`, which has longer tails than a normal law of the same covariance: 4.17 with one open and
-/// five closed, 2.18 with three of each. Between whole numbers of open ones linear; more than three count as three.
+/// By how much a Leaning has to grow for its 99.9 % ellipsoid of the closed directions, 1 to 5, to be one. The error is
+/// a product, of how far off the pose is along an open direction and of how much that leans. If both are normal, and
+/// `open` directions lean alike in all the closed ones, its square is chi-square with `open` degrees of freedom, over
+/// their number, times chi-square with `closed`, which has longer tails than a normal law of the same covariance: 4.17
+/// with one open and five closed, 2.18 with three of each. Between whole numbers of open ones linear (within 3 %); more
+/// than three count as three. Of the whole pose, whose open direction errs with it, 0.3 to 0.4 % then lie beyond.
 double product_over_normal(double open, int closed);
 
 /// Directions of xi, source frame, measured where a rotation counts by what it moves at `radius_m`. The open ones are

@@ -114,11 +114,10 @@ std::vector<double> reported_cn0_without_block(const std::vector<DriveEpoch>& dr
   return out;
 }
 
-// Two figures of the receiver were looked up in this drive (docs/gnss.md): the weakest signal, and the gain, from the
-// one satellite near the zenith, at 85 degrees. Neither hangs on a piece of the drive: they are the same, and the same
-// to the 1 dB in which C/N0 is logged, without 20 s from any epoch on and 5 s about them. The weakest is exact; it is
-// that of signals above the mask of 10 degrees, below it the log has weaker ones.
-TEST_F(BerlinDrive, ReceiverFiguresHangOnNoPieceOfTheDrive) {
+// What docs/gnss.md says of this drive: the weakest signal above the mask of 10 degrees (below it the log has weaker
+// ones), and what is reported of the one satellite near the zenith, at 85 degrees. Neither hangs on a piece of it: the
+// one is the same, the other to the 1 dB in which C/N0 is logged, without 20 s from any epoch on and 5 s about them.
+TEST_F(BerlinDrive, WeakestSignalAndZenithReadingHangOnNoPieceOfTheDrive) {
   gnss::GnssConfig receiver;
   receiver.propagation.paths.name = "visibility";  // as above
   check(receiver);
