@@ -79,8 +79,8 @@ RegistrationPrecision Aligner::precision_at(FoundPose& at, const CovarianceForm&
 }
 
 /// Finds the open directions where `at` is, takes it to the prior along them, and goes on with the others; again, as
-/// what is open shows the better the closer the surfaces are. Where fewer points then find a match, the surfaces do not
-/// leave it open: it stays where it was, unsettled. False: nothing is determined.
+/// what is open shows the better the closer the surfaces are. Where that leads off the surfaces, they do not leave it
+/// open: it stays where it was, unsettled. False: nothing is determined.
 bool Aligner::keep_open_at_prior(Place& place) {
   FoundPose& at = place.found;
   OpenDirections& open = place.open;
@@ -97,7 +97,8 @@ bool Aligner::keep_open_at_prior(Place& place) {
     FoundPose stays = at;
     at.X = search_.held(open, at.X);
     search_.refine(at, {.open = &open});
-    if (explains_less(at, stays)) {
+    const Matching matching = search_.matching_at(own_.max_correspondence_m);
+    if (share_still_on_surfaces(matching, at.X, at.matches, stays.matches) < kAsWellMatched) {
       at = std::move(stays);
       at.settled = false;
       return true;

@@ -193,6 +193,21 @@ std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, 
   return missed;
 }
 
+double share_still_on_surfaces(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
+                               std::span<const LastMatch> before) {
+  std::int64_t on_planes = 0, still = 0;
+  for (std::size_t i = 0; i < std::min(matches.size(), before.size()); ++i) {
+    const std::uint32_t was = before[i].matched;
+    if (was == LeafTree::kNone || matching.target->flat(was) == 0.0) continue;
+    ++on_planes;
+    const Eigen::Vector3d off =
+        X_TS * matching.source->points[i].cast<double>() - matching.target->point(was).cast<double>();
+    const double across_m = std::abs(matching.target->normal(was).cast<double>().dot(off));
+    if (matches[i].matched != LeafTree::kNone || across_m < matching.reach_m) ++still;
+  }
+  return on_planes > 0 ? static_cast<double>(still) / static_cast<double>(on_planes) : 1.0;
+}
+
 double evidence_against(std::span<const double> a, std::span<const double> b, const PreparedCloud& source,
                         double block_m) {
   std::vector<double> by_block;

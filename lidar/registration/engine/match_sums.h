@@ -43,6 +43,13 @@ NormalEquations normal_equations(const Matching& matching, const Pose& X_TS, std
 /// tells as little as a target that is sparse there.
 std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches);
 
+/// Of the points that `before` matches to planes, the share that lie on a surface at `X_TS` too: by a match of
+/// `matches`, or within reach of the plane that they were matched to. A plane may go on where the target's beams left a
+/// gap, as it does between rings on level ground; whether the surface of a point does that was matched to none, as
+/// those of a ring by itself are, nobody knows. 1 where there is no plane.
+double share_still_on_surfaces(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
+                               std::span<const LastMatch> before);
+
 /// By how many of its sigma pose b leaves more unexplained than a, over the points that both match, with cubes of edge
 /// `block_m` of the source as independent witnesses; 0 where they tell nothing.
 double evidence_against(std::span<const double> a, std::span<const double> b, const PreparedCloud& source,

@@ -16,6 +16,7 @@
 #include "canyon/lidar/files/clouds/read_cloud.h"
 #include "canyon/lidar/registration/cloud_pair.h"
 #include "canyon/lidar/registration/engine/engine_registration.h"
+#include "canyon/lidar/registration/engine/match_sums.h"
 #include "canyon/lidar/registration/engine/prior_law.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
 #include "canyon/tests/support/test_data.h"
@@ -238,16 +239,17 @@ TEST(OwnMethodsNightly, APriorThatTheCloudsContradictIsSaidToBe) {
   }
 }
 
-/// Two clouds of a shaft of 16 m: four walls and no floor, so that nothing tells of the height but their ends. What
-/// stands above the target's is pulled down to its edge by those points alone that are within 2 m of it, while all
-/// others have a neighbour level with them.
-RegistrationResult down_a_shaft(std::int64_t max_iterations, const PosePrior& prior) {
-  const auto shaft = [](std::uint64_t number) {
+/// Two clouds of a shaft of 16 m, or higher: four walls and no floor, so that nothing tells of the height but their
+/// ends. What stands above the target's is pulled down to its edge by those points alone that are within 2 m of it,
+/// while all others have a neighbour level with them.
+RegistrationResult down_a_shaft(std::int64_t max_iterations, const PosePrior& prior, int times = 1) {
+  const auto shaft = [times](std::uint64_t number) {
+    const double half_m = 8.0 * times;
     return Walls(number)
-        .add({-8, -6, -8}, {16, 0, 0}, {0, 0, 16}, 768)
-        .add({-8, 6, -8}, {16, 0, 0}, {0, 0, 16}, 768)
-        .add({-8, -6, -8}, {0, 12, 0}, {0, 0, 16}, 576)
-        .add({8, -6, -8}, {0, 12, 0}, {0, 0, 16}, 576)
+        .add({-8, -6, -half_m}, {16, 0, 0}, {0, 0, 2 * half_m}, 768 * times)
+        .add({-8, 6, -half_m}, {16, 0, 0}, {0, 0, 2 * half_m}, 768 * times)
+        .add({-8, -6, -half_m}, {0, 12, 0}, {0, 0, 2 * half_m}, 576 * times)
+        .add({8, -6, -half_m}, {0, 12, 0}, {0, 0, 2 * half_m}, 576 * times)
         .take();
   };
   RegistrationConfig config;
@@ -272,17 +274,70 @@ TEST(OwnMethods, WhatIsOnItsWayWhenTheRoundsAreUsedUpHasNotConverged) {
   EXPECT_EQ(down_a_shaft(1, {offset(0, 0, 0.3, 0)}).status, RegistrationStatus::kConverged);
 }
 
-// Open, it seems, is the height. But 9 m higher, where the prior has it, (16 - 9 + 2) / 16 of the points are matched,
-// in place of all: less than the 0.8 that an open direction must leave. It stays where it was, and says so.
-TEST(OwnMethods, APriorThatLeadsOffTheSurfacesHasNotConverged) {
+// The height is open. Of 64 m, 28 m higher, where the prior has it, (64 - 28 + 2) / 64 of the points are matched, but
+// walls may go on where nothing was seen.
+TEST(OwnMethods, WhereWallsMayGoOnAnOpenDirectionIsThePriors) {
   Matrix6d P = law(0.3, 1);
   P(5, 5) = 30.0 * 30.0;
-  const RegistrationResult r = down_a_shaft(200, {offset(0, 0, 9, 0), P});
-  EXPECT_EQ(r.status, RegistrationStatus::kNotConverged);
-  EXPECT_TRUE(r.X_TS.matrix().allFinite());
-  EXPECT_TRUE(r.covariance.allFinite());
-  EXPECT_LT(std::abs(r.X_TS.p.z()), 2.0) << "the reach: all points have found the walls";
-  EXPECT_GT(r.overlap, 0.8);
+  const RegistrationResult r = down_a_shaft(200, {offset(0, 0, 28, 0), P}, 4);
+  EXPECT_EQ(r.status, RegistrationStatus::kConverged);
+  ASSERT_EQ(r.open.size(), 1u);
+  EXPECT_NEAR(r.X_TS.p.z(), 28.0, 1e-3 * 30.0);
+  EXPECT_GT(std::sqrt(r.covariance(5, 5)), 0.9 * kUnconstrainedSigma_m);
+  EXPECT_LT(r.overlap, 0.7);
+}
+
+/// Every point's match, if the source is where X_TS has it.
+std::vector<LastMatch> matches_at(const Matching& matching, const Pose& X_TS) {
+  std::vector<LastMatch> found(matching.source->points.size());
+  const auto squared_m = static_cast<float>(matching.reach_m * matching.reach_m);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    matching.target->find((X_TS * matching.source->points[i].cast<double>()).cast<float>(), squared_m, found[i]);
+  return found;
+}
+
+double share_on_surfaces_moved(const Points& source, const Points& target, const Pose& moved_by) {
+  const auto method = own_method("gicp");
+  const auto s = method->prepare(source), t = method->prepare(target);
+  const auto surfaces = point_target(t);
+  const Matching matching{.source = s.get(), .target = surfaces.get(), .form = nullptr, .kernel = nullptr};
+  return share_still_on_surfaces(matching, moved_by, matches_at(matching, moved_by), matches_at(matching, Pose{}));
+}
+
+// 4 m along the room its floor and side walls are on their planes still, and the walls at its ends, 16 m apart, on
+// none: 192 + 128 of 416 m^2, the post left out, as thinned points are spread by area. Of ground of 40 m a quarter has
+// a match 30 m on, and all of it its plane.
+TEST(OwnMethods, WhatIsStillOnASurfaceIsSeenByItsPlane) {
+  EXPECT_DOUBLE_EQ(share_on_surfaces_moved(closed_room(1), closed_room(2), Pose{}), 1.0);
+  EXPECT_NEAR(share_on_surfaces_moved(closed_room(1), closed_room(2), offset(4, 0, 0, 0)), 320.0 / 416.0, 0.05);
+  EXPECT_GT(share_on_surfaces_moved(level_ground(1), level_ground(2), offset(30, 0, 0, 0)), 0.99);
+  EXPECT_LT(share_on_surfaces_moved(long_corridor(1), long_corridor(2), offset(0, 3, 0, 0)), 0.7);
+}
+
+/// Level ground 2 m below as 16 beams from -1 to -31 degrees see it: rings metres apart, but for the nearest.
+Points rings_on_level_ground(std::uint64_t number) {
+  const RandomStream draws(number, "test.rings");
+  Points points;
+  std::uint64_t k = 0;
+  for (int beam = 0; beam < 16; ++beam) {
+    const double radius_m = 2.0 / std::tan((1.0 + 2.0 * beam) * kDegree);
+    for (int azimuth = 0; azimuth < 720; ++azimuth, ++k) {
+      const double a = azimuth * 0.5 * kDegree;
+      points.emplace_back(
+          Eigen::Vector3d(radius_m * std::cos(a), radius_m * std::sin(a), -2.0 + 0.01 * draws.normal(0, k))
+              .cast<float>());
+    }
+  }
+  return points;
+}
+
+// Rings fit one another best where the sensor stood; a metre beside, where the prior has it, many points are farther
+// from any ring than matches reach. That they lie on the same ground all the same is seen by its planes (2026-11-29:
+// three of four such guesses were not_converged).
+TEST(OwnMethods, RingsOnLevelGroundLeaveItOpen) {
+  const PosePrior prior{offset(1.2, -0.9, 0.05, 3), law(1, 3)};
+  for (const char* name : {"point_to_plane", "gicp"})
+    expect_prior_along(name, rings_on_level_ground(1), rings_on_level_ground(2), prior, {2, 3, 4});
 }
 
 TEST(OwnMethods, SwappedCloudsAgree) {

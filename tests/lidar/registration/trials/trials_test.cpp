@@ -1,20 +1,17 @@
 // Silent failures and honest covariance of the own methods, by simulated trials. What the figures mean stands in
 // docs/registration.md.
 #include <cstdio>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
 #include "canyon/core/process/parallel.h"
 #include "canyon/tests/lidar/registration/trials/tally.h"
+#include "canyon/tests/support/setting.h"
 
 namespace canyon::lidar::trials {
 namespace {
 
-std::string setting(const char* name, const char* otherwise) {
-  const char* value = std::getenv(name);
-  return value != nullptr ? value : otherwise;
-}
+using canyon::testing::setting;
 
 /// One line per trial, where CANYON_TRIALS_CSV names a file.
 class Lines {
