@@ -108,8 +108,9 @@ class ChartWriter {
   }
 
   void draw_line(const PlotArea& area, const Line& line) {
+    const std::size_t buckets = line.whole ? std::max<std::size_t>(line.x.size(), 1) : kBuckets;
     out_ += "<path class=\"line " + run_class(line.run) + style_class(line.style) + "\" data-name=\"" +
-            escape_html(line.name) + "\" d=\"" + line_path(area, line, kBuckets) + "\"/>\n";
+            escape_html(line.name) + "\" d=\"" + line_path(area, line, buckets) + "\"/>\n";
   }
 
   void draw_mark(const Mark& mark, int height_px) {

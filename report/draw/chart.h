@@ -17,6 +17,8 @@ struct Line {
   std::string name = {};  ///< in the read-out: "high", "high, prior"
   std::vector<double> x = {}, y = {};
   enum class Style { kNormal, kThin, kStep, kPoints } style = Style::kNormal;
+  bool whole =
+      false;  ///< every point is drawn, and x may come and go; else thinned out along x (report/draw/decimate.h)
 };
 
 /// The area between two lines.

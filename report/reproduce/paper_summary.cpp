@@ -17,8 +17,15 @@ std::vector<T> read_each(const JsonFields& from, const char* key, Read read) {
   return out;
 }
 
+std::vector<std::string> texts(const JsonFields& f, const char* key) {
+  std::vector<std::string> out;
+  for (const auto& [node, place] : f.list(key))
+    if (node->is_string()) out.push_back(node->get<std::string>());
+  return out;
+}
+
 PaperOurs read_ours(const JsonFields& f) {
-  return {f.required_text("form"), f.number("value"), f.number("low"), f.number("high")};
+  return {f.required_text("form"), f.number("value"), f.number("low"), f.number("high"), f.number("n")};
 }
 
 PaperNumber read_number(const JsonFields& f) {
@@ -38,21 +45,20 @@ PaperLine read_line(const JsonFields& f) {
           .name = f.required_text("name"),
           .x = f.numbers("x", size),
           .y = f.numbers("y", size),
-          .points = f.flag("points")};
+          .points = f.flag("points"),
+          .from_above = f.flag("from_above"),
+          .labels = texts(f, "labels")};
 }
 
 PaperSection read_section(const JsonFields& f) {
-  PaperSection out{.name = f.required_text("name"),
-                   .title = f.required_text("title"),
-                   .paper_says = f.text("paper_says"),
-                   .made = f.text("made"),
-                   .x_label = f.text("x_label"),
-                   .difference = {},
-                   .rows = read_each<PaperNumber>(f, "rows", read_number),
-                   .curves = read_each<PaperLine>(f, "curves", read_line)};
-  for (const auto& [node, place] : f.list("difference"))
-    if (node->is_string()) out.difference.push_back(node->get<std::string>());
-  return out;
+  return {.name = f.required_text("name"),
+          .title = f.required_text("title"),
+          .paper_says = f.text("paper_says"),
+          .made = f.text("made"),
+          .x_label = f.text("x_label"),
+          .difference = texts(f, "difference"),
+          .rows = read_each<PaperNumber>(f, "rows", read_number),
+          .curves = read_each<PaperLine>(f, "curves", read_line)};
 }
 
 }  // namespace

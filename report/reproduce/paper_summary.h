@@ -12,7 +12,7 @@ namespace canyon::report {
 
 struct PaperOurs {
   std::string form;
-  double value = kNaN, low = kNaN, high = kNaN;
+  double value = kNaN, low = kNaN, high = kNaN, n = kNaN;
 };
 
 struct PaperNumber {
@@ -24,7 +24,8 @@ struct PaperNumber {
 struct PaperLine {
   std::string panel, unit, name;
   std::vector<double> x, y;
-  bool points = false;
+  bool points = false, from_above = false;
+  std::vector<std::string> labels;  ///< of the first points; empty: none
 };
 
 struct PaperSection {

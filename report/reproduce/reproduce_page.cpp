@@ -15,11 +15,16 @@ namespace canyon::report {
 namespace {
 
 constexpr std::size_t kColours = 6;
-constexpr double kPlane_px = 420.0, kPage_px = 1000.0;  // of a drawing of places: to scale on a page so wide
+// Of a drawing from above: to scale on a page so wide, and as high as it wants within these.
+constexpr double kPage_px = 1000.0, kLeastHigh_px = 420.0, kMostHigh_px = 640.0;
 
-std::string shown_range(const PaperOurs& ours) {
-  if (!std::isfinite(ours.low) || !std::isfinite(ours.high)) return "";
-  return show_number(ours.low) + " to " + show_number(ours.high);
+/// "0.9 to 1.8, n = 20": empty of a single value.
+std::string shown_spread(const PaperOurs& ours) {
+  std::string out;
+  if (std::isfinite(ours.low) && std::isfinite(ours.high))
+    out = show_number(ours.low) + " to " + show_number(ours.high);
+  if (ours.n > 1.0) out += (out.empty() ? "n = " : ", n = ") + show_count(ours.n);
+  return out;
 }
 
 /// A row a form of ours; the paper's number stands in the first.
@@ -33,7 +38,7 @@ std::string number_rows(const PaperNumber& number) {
     out += "<tr><th scope=\"row\">" + once(escape_html(number.what + (number.unit.empty() ? "" : ", " + number.unit))) +
            "</th><td>" + once(show_number(number.paper)) + "</td><td>" + once(show_number(number.real)) +
            "</td><td class=\"text\">" + escape_html(ours.form) + "</td><td>" + (near ? "<b>" + value + "</b>" : value) +
-           "</td><td>" + shown_range(ours) + "</td><td>" +
+           "</td><td>" + shown_spread(ours) + "</td><td>" +
            (near ? "\xC3\x97 " + show_number(number.ratio) : std::string()) + "</td></tr>\n";
   }
   return out;
@@ -51,11 +56,14 @@ std::string number_table(const PaperSection& part) {
 
 /// Both axes so that a metre is as long upright as across, on a page of the usual width.
 void draw_to_scale(Chart& chart, Panel& panel, const Extremes& x, const Extremes& y) {
-  const double scale = std::max({(x.max - x.min) / kPage_px, (y.max - y.min) / kPlane_px, 1e-9}) * 1.08;
+  const double wide_m = std::max(x.max - x.min, 1e-6), high_m = std::max(y.max - y.min, 1e-6);
+  panel.height_px = static_cast<int>(std::clamp(kPage_px * high_m / wide_m, kLeastHigh_px, kMostHigh_px));
+  const double high_px = panel.height_px;
+  const double scale = std::max(wide_m / kPage_px, high_m / high_px) * 1.08;
   const double mx = 0.5 * (x.min + x.max), my = 0.5 * (y.min + y.max);
   chart.x = Axis::linear(mx - 0.5 * scale * kPage_px, mx + 0.5 * scale * kPage_px, 9);
-  panel.y = Axis::linear(my - 0.5 * scale * kPlane_px, my + 0.5 * scale * kPlane_px);
-  panel.height_px = static_cast<int>(kPlane_px);
+  chart.x_label = "East, m (north is up)";
+  panel.y = Axis::linear(my - 0.5 * scale * high_px, my + 0.5 * scale * high_px);
 }
 
 Extremes extremes_along_x(const std::vector<Line>& lines) {
@@ -73,7 +81,20 @@ std::string names_of(const Panel& panel) {
   return out + "</p>\n";
 }
 
-/// One drawing a panel: each has its own lines, and those that are places are to scale.
+/// The curve as the panel's next line, with the words beside its points.
+void add_line(const PaperLine& curve, Panel& panel) {
+  const std::size_t colour = panel.lines.size() % kColours;
+  for (std::size_t i = 0; i < std::min({curve.labels.size(), curve.x.size(), curve.y.size()}); ++i)
+    panel.labels.push_back({.run = colour, .x = curve.x[i], .y = curve.y[i], .text = curve.labels[i]});
+  panel.lines.push_back({.run = colour,
+                         .name = curve.name,
+                         .x = curve.x,
+                         .y = curve.y,
+                         .style = curve.points ? Line::Style::kPoints : Line::Style::kNormal,
+                         .whole = curve.from_above});
+}
+
+/// One drawing a panel: each has its own lines, and those from above are to scale.
 std::string drawings(const PaperSection& part) {
   std::vector<std::string> names;
   for (const PaperLine& line : part.curves)
@@ -81,14 +102,12 @@ std::string drawings(const PaperSection& part) {
   std::string out;
   for (std::size_t k = 0; k < names.size(); ++k) {
     Panel panel{.title = names[k]};
+    bool to_scale = false;
     for (const PaperLine& line : part.curves) {
-      if (line.panel != names[k]) continue;
+      if (line.panel != names[k] || line.x.empty()) continue;
       panel.unit = line.unit;
-      panel.lines.push_back({.run = panel.lines.size() % kColours,
-                             .name = line.name,
-                             .x = line.x,
-                             .y = line.y,
-                             .style = line.points ? Line::Style::kPoints : Line::Style::kNormal});
+      to_scale = line.from_above;
+      add_line(line, panel);
     }
     const Extremes x = extremes_along_x(panel.lines), y = extremes_of(panel.lines);
     if (!x.drawn || !y.drawn) continue;
@@ -101,7 +120,7 @@ std::string drawings(const PaperSection& part) {
                 .panels = {},
                 .marks = {}};
     panel.y = Axis::linear_rounded(y.min, y.max);
-    if (names[k] == "North") draw_to_scale(chart, panel, x, y);
+    if (to_scale) draw_to_scale(chart, panel, x, y);
     const std::string legend = names_of(panel);
     chart.panels.push_back(std::move(panel));
     out += legend + figure(draw(chart), escape_html(part.title));
@@ -126,14 +145,15 @@ std::string head(const PaperSummary& summary) {
     out += "<a href=\"#" + escape_html(part.name) + "\">" + escape_html(part.title.substr(0, part.title.find(':'))) +
            "</a> ";
   return out + "</nav>\n</header>\n<p class=\"intro\">" +
-         escape_html("Numbers are medians over " + show_count(summary.draws) +
-                     " draws with the least and the most of them" +
+         escape_html("Numbers are medians over " + count_of(summary.draws, "draw", "draws") +
+                     " with the least and the most of them" +
                      (summary.missions > 0.0
-                          ? "; of missions over " + show_count(summary.missions) +
-                                " seeds with 95 % intervals: shares with Wilson's, medians between two of the seeds, "
+                          ? "; of missions over " + count_of(summary.missions, "seed", "seeds") +
+                                " with 95 % intervals: shares with Wilson's, medians between two of the seeds, "
                                 "differences of shares with Newcombe's, mean differences seed by seed with Student's"
                           : std::string()) +
-                     ". Bold: the form of ours that is nearest to the paper's number by ratio.") +
+                     "; n is their number, three a draw where three gyroscopes drift. Bold: the form of ours that is "
+                     "nearest to the paper's number by ratio.") +
          "</p>\n";
 }
 

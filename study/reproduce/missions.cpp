@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "canyon/core/process/parallel.h"
-#include "canyon/mission/run.h"
 #include "canyon/study/reproduce/detection.h"
 #include "canyon/study/reproduce/draws.h"
+#include "canyon/study/reproduce/mission_drawings.h"
 #include "canyon/study/reproduce/parts.h"
 #include "canyon/study/results/over_seeds.h"
 #include "canyon/study/seeds/further_seeds.h"
@@ -16,45 +16,6 @@ const std::vector<std::string> kFidelities{"low", "paper", "high"};
 constexpr const char* kOverSeeds =
     "Each number is the median over the seeds that have it with its 95 % interval, which fewer than six do not have; "
     "high less low is a mean difference, seed by seed, with Student's, and so not the difference of the medians.";
-
-/// The places of a run, one a second, and of its fixes.
-class Places final : public mission::Recorder {
- public:
-  explicit Places(const LocalFrame& frame) : frame_(frame) {}
-  Status epoch(const mission::NavRow& row) override {
-    if (!first_) first_ = row.t;
-    if (row.t - *first_ < next_s_) return Ok{};
-    next_s_ += 1.0;
-    add(truth_, row.X_WB_true.p);
-    add(output_, row.estimate.X_WB.p);
-    return Ok{};
-  }
-  Status gnss(const mission::GnssRow& row) override {
-    if (row.fix.status != FixStatus::kNone) add(fixes_, frame_.to_W(row.fix.p_A_E));
-    return Ok{};
-  }
-
-  struct Track {
-    std::vector<double> x, y;
-  };
-  const Track& truth() const { return truth_; }
-  const Track& output() const { return output_; }
-  const Track& fixes() const { return fixes_; }
-
- private:
-  static void add(Track& track, const Eigen::Vector3d& p_W) {
-    track.x.push_back(p_W.x());
-    track.y.push_back(p_W.y());
-  }
-  LocalFrame frame_;
-  std::optional<GpsTime> first_;
-  double next_s_ = 0.0;
-  Track truth_, output_, fixes_;
-};
-
-PaperCurve curve_of(const char* panel, std::string name, const Places::Track& track, bool points = false) {
-  return {.panel = panel, .unit = "m", .name = std::move(name), .x = track.x, .y = track.y, .points = points};
-}
 
 /// All values of a figure of one run over the seeds.
 std::vector<double> values_of(const Results& results, std::size_t run, const char* key) {
@@ -81,10 +42,10 @@ PaperRow success_row(const Results& closed) {
   PaperRow row{.what = "share of missions that succeed", .unit = "", .ours = {}};
   const OverSeeds over = over_seeds(runs_by_seed(closed));
   for (const Share& share : over.shares)
-    row.ours.push_back({share.fidelity, static_cast<double>(share.success) / share.n, share.interval});
+    row.ours.push_back({share.fidelity, static_cast<double>(share.success) / share.n, share.interval, share.n});
   for (const PairedDifference& pair : over.paired)
     if (pair.figure == "success" && pair.b == kFidelities.back())
-      row.ours.push_back({pair.b + " less " + pair.a, pair.difference, pair.interval});
+      row.ours.push_back({pair.b + " less " + pair.a, pair.difference, pair.interval, pair.n});
   return row;
 }
 
@@ -123,20 +84,6 @@ Result<std::vector<PaperRow>> seen_and_planned_rows(const Comparison& open, std:
   return rows;
 }
 
-/// The open loop's first seed again, with its places.
-Status add_tracks(const Comparison& open, PaperPart& part) {
-  for (std::size_t i = 0; i < kFidelities.size(); ++i) {
-    Places places(open.missions[i].scene->frame());
-    CANYON_TRY_STATUS(
-        mission::run_mission(open.configs[i], open.missions[i], nullptr,
-                             {.tape = &*open.tape, .recorder = &places, .autonomy = nullptr, .omissions = nullptr}));
-    if (i == 0) part.curves.push_back(curve_of("North", "true path", places.truth()));
-    part.curves.push_back(curve_of("North", kFidelities[i] + ", output", places.output()));
-    if (i > 0) part.curves.push_back(curve_of("North", kFidelities[i] + ", fixes", places.fixes(), true));
-  }
-  return Ok{};
-}
-
 }  // namespace
 
 Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, std::int64_t seeds,
@@ -157,18 +104,20 @@ Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, s
           "in height.",
       .made =
           "The built-in mission: a city of the paper's size at its place. Shares of missions each of which drives "
-          "by itself; all else on the mission's own route, driven on truth, the same for all, over seeds.",
+          "by itself; all else on the mission's own route, driven on truth, the same for all, over seeds. Drawn: the "
+          "first seed on that route; fixes are the antenna's, which is mounted above the vehicle's own point.",
       .difference = {"The paper's scene, route and autonomy are not published.",
                      "Why missions fail is another question than how often: docs/paper.md and the README name what "
                      "has been shown with a control.",
                      kOverSeeds},
-      .x_label = "East, m",
+      .x_label = "Time, s",
       .rows = {success_row(driven_closed), figure_row(driven_open, "error of the fixes, RMS", "m", "fix_error_rms_m"),
                figure_row(driven_open, "east error of the output, RMS", "m", "position_error_e_rms_m"),
                figure_row(driven_open, "north error of the output, RMS", "m", "position_error_n_rms_m"),
                figure_row(driven_open, "height error of the output, RMS", "m", "position_error_up_rms_m")},
-      .curves = {}};
-  CANYON_TRY_STATUS(add_tracks(open, mission));
+      .curves = scene_curves(open.configs.front(), open.missions.front())};
+  CANYON_TRY(auto tracks, track_curves(open));
+  for (PaperCurve& curve : tracks) mission.curves.push_back(std::move(curve));
   CANYON_TRY(auto seen_rows, seen_and_planned_rows(open, seeds));
 
   PaperPart algorithms{

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "canyon/scene/flat_ground.h"
+#include "canyon/study/reproduce/from_above.h"
 #include "canyon/study/reproduce/paper_receiver.h"
 
 namespace canyon::study {
@@ -23,17 +24,17 @@ Result<CircleOffsets> offsets_on_circle(const gnss::GnssConfig& config, GpsTime 
                         }};
   CANYON_TRY(const auto outputs, measured(config, 1, start, circle));
   CircleOffsets out;
-  out.places = {.panel = "North", .unit = "m", .name = name, .x = {}, .y = {}, .points = true};
+  std::vector<Eigen::Vector3d> places_W;
   for (const gnss::GnssOutput& o : outputs) {
     if (o.fix.status == FixStatus::kNone)
       return Error{.what = "no position on the paper's circle: " + o.fix.reason,
                    .expected = "navigation data with at least four satellites above 18 deg"};
     out.mean_m += (o.fix.p_A_E - o.truth.p_A_E).norm() / kPoints;
     out.pdop += o.fix.dop.pdop / kPoints;
-    const Eigen::Vector3d p_W = scene::flat_ground().frame().to_W(o.fix.p_A_E);
-    out.places.x.push_back(p_W.x());
-    out.places.y.push_back(p_W.y());
+    places_W.push_back(scene::flat_ground().frame().to_W(o.fix.p_A_E));
   }
+  out.places = from_above("Fig. 1: positions on the circle, from above", name, places_W);
+  out.places.points = true;
   return out;
 }
 
@@ -116,7 +117,7 @@ Result<PaperPart> range_error_part(const PaperSky& sky) {
                      "A clock takes up what ranges have in common, most of the satellites' error: the paper's "
                      "positions cannot have had one.",
                      "The fourth row is no offset by a range error: beside it stand dilutions of this geometry."},
-      .x_label = "East, m",
+      .x_label = "",
       .rows = {},
       .curves = {}};
   CANYON_TRY(CircleOffsets truth, offsets_on_circle(error_free_receiver(sky, kRaw, kRanges), sky.start, "no error"));

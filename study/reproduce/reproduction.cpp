@@ -14,7 +14,8 @@ Json json_of(const Ours& ours) {
   return {{"form", ours.form},
           {"value", or_null(ours.value)},
           {"low", or_null(ours.range.low)},
-          {"high", or_null(ours.range.high)}};
+          {"high", or_null(ours.range.high)},
+          {"n", ours.n}};
 }
 
 Json json_of(const PaperRow& row) {
@@ -38,8 +39,8 @@ Json numbers(const std::vector<double>& values) {
 }
 
 Json json_of(const PaperCurve& curve) {
-  return {{"panel", curve.panel},   {"unit", curve.unit},    {"name", curve.name},
-          {"points", curve.points}, {"x", numbers(curve.x)}, {"y", numbers(curve.y)}};
+  return {{"panel", curve.panel},           {"unit", curve.unit},     {"name", curve.name},    {"points", curve.points},
+          {"from_above", curve.from_above}, {"labels", curve.labels}, {"x", numbers(curve.x)}, {"y", numbers(curve.y)}};
 }
 
 Json json_of(const PaperPart& part) {
@@ -60,15 +61,21 @@ std::string shown(double value) {
   return std::isfinite(value) ? printed("%.3g", value) : "-";
 }
 
+/// "  (0.9 to 1.8, n = 20)"; of a single value nothing.
+std::string shown_spread(const Ours& one) {
+  std::string out;
+  if (one.range.defined()) out = shown(one.range.low) + " to " + shown(one.range.high);
+  if (one.n > 1) out += (out.empty() ? "n = " : ", n = ") + std::to_string(one.n);
+  return out.empty() ? out : "  (" + out + ")";
+}
+
 std::string table_of(const PaperRow& row) {
   std::string out = printed("  %-46s", (row.what + (row.unit.empty() ? "" : ", " + row.unit)).c_str());
   if (std::isfinite(row.paper)) out += printed(" paper %9s", shown(row.paper).c_str());
   if (std::isfinite(row.real)) out += printed("  its real sensor %9s", shown(row.real).c_str());
   out += "\n";
   for (const Ours& one : row.ours) {
-    out += printed("    %-44s       %9s", one.form.c_str(), shown(one.value).c_str());
-    if (one.range.defined()) out += "  (" + shown(one.range.low) + " to " + shown(one.range.high) + ")";
-    out += "\n";
+    out += printed("    %-44s       %9s", one.form.c_str(), shown(one.value).c_str()) + shown_spread(one) + "\n";
   }
   return out;
 }
@@ -93,13 +100,13 @@ nlohmann::ordered_json reproduction_json(const Reproduction& reproduction) {
 
 std::string reproduction_csv(const Reproduction& reproduction) {
   const auto number = [](double v) { return std::isfinite(v) ? printed("%.9g", v) : std::string(); };
-  std::string out = "part,what,unit,paper,real,form,value,low,high\n";
+  std::string out = "part,what,unit,paper,real,form,value,low,high,n\n";
   for (const PaperPart& part : reproduction.parts)
     for (const PaperRow& row : part.rows)
       for (const Ours& one : row.ours)
         out += part.name + ",\"" + row.what + "\"," + row.unit + "," + number(row.paper) + "," + number(row.real) +
                ",\"" + one.form + "\"," + number(one.value) + "," + number(one.range.low) + "," +
-               number(one.range.high) + "\n";
+               number(one.range.high) + "," + std::to_string(one.n) + "\n";
   return out;
 }
 

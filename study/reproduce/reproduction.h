@@ -19,6 +19,7 @@ struct Ours {
   std::string form;  ///< "as printed"
   double value = kNaN;
   Interval range;
+  std::int64_t n = 1;  ///< of so many values: draws (three each where three gyroscopes drift), or seeds that have it
 };
 
 /// One number of the paper with ours beside it.
@@ -30,12 +31,14 @@ struct PaperRow {
   std::vector<Ours> ours;
 };
 
-/// One line of a drawing.
+/// One line of a drawing, or its points.
 struct PaperCurve {
   std::string panel, unit;  ///< panels are drawn over one another, in the order in which they first occur
   std::string name;
   std::vector<double> x, y;  ///< NaN cuts it
   bool points = false;
+  bool from_above = false;               ///< x is east and y north, m: the panel is drawn to scale
+  std::vector<std::string> labels = {};  ///< a word beside each point; empty: none
 };
 
 /// A table of the paper, or figures that belong together.
@@ -45,7 +48,7 @@ struct PaperPart {
   std::string paper_says;               ///< the paper's own account
   std::string made;                     ///< how ours are made
   std::vector<std::string> difference;  ///< what differs, and why as far as it is known
-  std::string x_label;
+  std::string x_label;                  ///< of panels that are not seen from above
   std::vector<PaperRow> rows;
   std::vector<PaperCurve> curves;
 };

@@ -1,4 +1,6 @@
 // `canyon reproduce` as it is typed.
+#include <map>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +15,42 @@ using ::testing::Not;
 
 class ReproduceTest : public CommandLineTest {};
 
+/// Figure 8 has the scene: the mission's one waypoint, at which it looks, and buildings' closed outlines. Figures 9 and
+/// 10 have every track twice, from above and as heights at the same instants; of what is no fix one a second.
+void expect_drawings(const nlohmann::json& curves) {
+  std::map<std::string, nlohmann::json> scene, above, height;
+  for (const auto& curve : curves) {
+    const auto panel = curve["panel"].get<std::string>();
+    auto& of = panel.find("Fig. 8") == 0 ? scene : curve["from_above"].get<bool>() ? above : height;
+    of[curve["name"].get<std::string>()] = curve;
+  }
+  EXPECT_EQ(scene["mission waypoints"]["labels"], nlohmann::json::array({"house"}));
+  EXPECT_EQ(scene["mission waypoints"]["x"], nlohmann::json::array({213.9}));
+  EXPECT_EQ(scene["mission waypoints"]["y"], nlohmann::json::array({150.0}));
+  EXPECT_GT(scene["planned route"]["x"].size(), 2u);
+  const auto &x = scene["buildings"]["x"], &y = scene["buildings"]["y"];
+  std::size_t outlines = 0;
+  for (std::size_t first = 0, i = 0; i < x.size(); ++i) {
+    if (!x[i].is_null()) continue;
+    ASSERT_GT(i, first + 3) << "three corners, and the first again";
+    EXPECT_TRUE(x[i - 1] == x[first] && y[i - 1] == y[first]) << first;
+    ++outlines;
+    first = i + 1;
+  }
+  EXPECT_GT(outlines, 272u) << "there is a building 273";
+
+  ASSERT_EQ(height.size(), 6u);
+  ASSERT_EQ(above.size(), height.size());
+  for (const auto& [name, heights] : height) {
+    EXPECT_GT(heights["x"].size(), 2u) << name;
+    EXPECT_EQ(heights["x"].size(), above[name]["x"].size()) << name;
+    if (heights["points"].get<bool>()) continue;
+    // The first epoch comes a tenth of a second after the start.
+    for (std::size_t i = 0; i < heights["x"].size(); ++i)
+      EXPECT_EQ(heights["x"][i], i == 0 ? 0.1 : static_cast<double>(i)) << name;
+  }
+}
+
 TEST_F(ReproduceTest, WritesThePageAndTheNumbers) {
   ASSERT_EQ(canyon("reproduce --draws 1 --out paper"), 0) << read("stderr");
   EXPECT_THAT(read("stdout"), HasSubstr("Table 1 and Fig. 1"));
@@ -22,6 +60,9 @@ TEST_F(ReproduceTest, WritesThePageAndTheNumbers) {
   EXPECT_THAT(read("paper/summary.json"), HasSubstr("\"name\": \"table_2\""));
   EXPECT_THAT(read("paper/paper.csv"), HasSubstr("table_1,\"ionosphere\",m,4.73,,\"as printed, ranges alone, raw\","));
   const std::string page = read("paper/report.html");
+  EXPECT_THAT(page, HasSubstr("Numbers are medians over 1\xC2\xA0"
+                              "draw with"));
+  EXPECT_THAT(page, HasSubstr("Fig. 6: circle of 30 ft, eight loops, from above"));
   EXPECT_EQ(canyon("report paper"), 0) << read("stderr");
   EXPECT_EQ(read("paper/report.html"), page);
 }
@@ -40,7 +81,7 @@ TEST_F(ReproduceTest, DrivesTheMissionToo) {
   for (const auto& ours : share["ours"]) {
     for (const char* what : {"value", "low", "high"}) EXPECT_TRUE(ours[what].is_null()) << ours["form"] << ' ' << what;
   }
-  for (const auto& curve : mission["curves"]) EXPECT_GT(curve["x"].size(), 2u) << curve["name"];
+  expect_drawings(mission["curves"]);
   // Of localization five, and five of obstacles, ways and what is hit.
   ASSERT_EQ(json["parts"][6]["rows"].size(), 10u);
   int have = 0;

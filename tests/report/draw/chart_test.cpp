@@ -36,6 +36,20 @@ TEST(Chart, GapsCutTheLineAndLonePointsAreDots) {
   EXPECT_THAT(draw(one_line({0, 1, 2, 3, 4}, {0, 0, NAN, 50, NAN})), HasSubstr("d=\"M0 50 100 50 M300 25 300.1 25\""));
 }
 
+// A track from above comes back over its own x: of ten thousand places on a line to and fro none is left out.
+TEST(Chart, WholeLinesMayComeAndGo) {
+  std::vector<double> x, y;
+  for (int i = 0; i < 10'000; ++i) {
+    x.push_back(i % 20 < 10 ? i % 20 : 20 - i % 20);
+    y.push_back(50);
+  }
+  Chart chart = one_line(x, y);
+  chart.panels[0].lines[0].whole = true;
+  const std::string html = draw(chart);
+  const std::string path = html.substr(html.find("d=\"M0 25"));
+  EXPECT_EQ(std::count(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(path.find('"', 3)), ' '), 19'999);
+}
+
 TEST(Chart, StepsGoAcrossFirst) {
   Chart chart = one_line({0, 5, 10}, {0, 100, 50});
   chart.panels[0].lines[0].style = Line::Style::kStep;
