@@ -1,30 +1,48 @@
-// Whatever the city, the sensors and the autonomy's parts: a run ends in an outcome.
+// Whatever the city, the sensors and the autonomy's parts: a run ends in an outcome, and not by any truth.
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "canyon/core/motion/rotation.h"
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
+#include "canyon/mission/autonomy/reference.h"
 #include "canyon/mission/boundaries.h"
+#include "canyon/tests/mission/poisoned_truth.h"
 #include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
 namespace {
 
+/// Registration and the planner that searches take their time: by day drives have the usual parts alone.
+enum class PartsDrawn { kUsual, kAll };
+
+/// What only some of all drives have: each of them one in ten at least.
+const std::set<std::string>& rarer_parts() {
+  static const std::set<std::string> parts{"high_aided",      "box",        "kerbs",        "seen_kerbs",
+                                           "dynamic_bicycle", "skid_steer", "registration", "hybrid_a_star"};
+  return parts;
+}
+
 /// A short drive through a small city of its own, with sensors, filter, things that move and parts of the autonomy
 /// drawn at random, bad ones among them.
 class RandomDrive {
  public:
-  explicit RandomDrive(std::uint64_t number) : stream_(number, "tests.random_scenes") {
-    const char* fidelities[] = {"low", "high", "paper", "modern"};
-    config_ = short_config(fidelities[one_of(4)], fidelities[one_of(4)], "[time]\nlimit_s = 12.0");
+  RandomDrive(std::uint64_t number, PartsDrawn parts) : stream_(number, "tests.random_scenes") {
+    const char* fidelities[] = {"low", "high", "paper", "modern", "high_aided"};
+    const std::size_t known = parts == PartsDrawn::kAll ? 5 : 4;
+    const std::string imu = fidelities[one_of(known)], gnss = fidelities[one_of(known)];
+    if (gnss == "high_aided") rarer_.insert(gnss);
+    config_ = short_config(gnss, imu, "[time]\nlimit_s = 12.0");
     config_.run.seed = static_cast<std::int64_t>(number);
     draw_scene(number);
     draw_sensors();
     draw_autonomy();
+    if (parts == PartsDrawn::kAll) draw_rarer_parts();
     draw_places();
   }
   const MissionConfig& config() const { return config_; }
+  const std::set<std::string>& rarer() const { return rarer_; }  ///< those of rarer_parts() that it has
 
  private:
   double between(double low, double high) { return stream_.uniform(low, high, 0, draws_++); }
@@ -73,6 +91,30 @@ class RandomDrive {
     ASSERT_TRUE(status.ok()) << status.error().str();
   }
 
+  bool rarely(const char* part, double n) {
+    if (!once_in(n)) return false;
+    rarer_.insert(part);
+    return true;
+  }
+
+  void draw_rarer_parts() {
+    if (rarely("box", 4)) config_.success.collision.name = "box";
+    if (rarely("kerbs", 4)) config_.scene.city.kerb_height_m = between(0.05, 0.2);
+    if (rarely("dynamic_bicycle", 6)) {
+      config_.vehicle.model.name = "dynamic_bicycle";
+    } else if (rarely("skid_steer", 6)) {
+      config_.vehicle.model.name = "skid_steer";
+    }
+    if (rarely("registration", 8)) {
+      config_.registration.method.name = lidar::RegistrationConfig{}.method.name;
+      if (once_in(2)) config_.autonomy.map = MapPose::kRegistered;
+    }
+    if (config_.autonomy.model.name != "reference") return;  // the only one with these parts
+    auto& parts = config_.autonomy.model.own.get<ReferenceParameters>();
+    if (rarely("hybrid_a_star", 4)) parts.planner.model.name = "hybrid_a_star";
+    if (rarely("seen_kerbs", 4)) parts.lane.model.name = "seen_kerbs";
+  }
+
   void draw_places() {
     const auto scene = scenes_.get(config_.scene);
     ASSERT_TRUE(scene.ok());
@@ -104,21 +146,25 @@ class RandomDrive {
   std::uint64_t draws_ = 0;
   SceneCache scenes_;
   MissionConfig config_;
+  std::set<std::string> rarer_;
 };
 
-/// Empty where all is well.
-std::string wrong_with(const MissionConfig& config, const PreparedMission& prepared) {
-  RecordedRun run;
+/// Drives it into `run`; empty where all is well. With `poisoned` its truth is, and the returns are counted there.
+std::string wrong_with(const MissionConfig& config, const PreparedMission& prepared, RecordedRun& run,
+                       int* poisoned = nullptr) {
   RunParts parts;
   parts.recorder = &run;
   Omissions unread;
-  unread.maps = unread.keyframes = unread.unkept_rays = true;
+  unread.maps = true;
+  unread.keyframes = unread.unkept_rays = !lidar::registers(config.registration);
   parts.omissions = &unread;
+  if (poisoned != nullptr) poison(config, prepared, parts, *poisoned);
   try {
-    const auto record = run_mission(config, prepared, nullptr, std::move(parts));
+    auto record = run_mission(config, prepared, nullptr, std::move(parts));
     if (!record.ok()) return record.error().str();
     if (!record->outcome) return "no outcome";
     if (*record->outcome == Outcome::kAutonomyFault) return "the autonomy: " + record->failure->detail;
+    static_cast<RunRecord&>(run) = *std::move(record);
   } catch (const std::exception& thrown) {
     return std::string("thrown: ") + thrown.what();
   }
@@ -128,32 +174,63 @@ std::string wrong_with(const MissionConfig& config, const PreparedMission& prepa
   return {};
 }
 
-/// Draws until a drive can be, and drives it. What cannot be, a way that turns back at a waypoint or a unit without
-/// figures for the chain that is drawn, is refused with its key.
-std::string driven(std::uint64_t number) {
+/// Empty where the truth that a run was poisoned with changed no bit of it.
+std::string poison_shows(const RecordedRun& sound, const RecordedRun& poisoned) {
+  if (sound.outcome != poisoned.outcome || sound.nav.size() != poisoned.nav.size()) return "poisoned it ends otherwise";
+  for (std::size_t i = 0; i < sound.nav.size(); ++i) {
+    const NavRow &a = sound.nav[i], &b = poisoned.nav[i];
+    if (a.X_WB_true.p != b.X_WB_true.p || a.estimate.X_WB.p != b.estimate.X_WB.p ||
+        a.command.speed_m_s != b.command.speed_m_s || a.command.curvature_1_m != b.command.curvature_1_m)
+      return "poisoned it is another after " + std::to_string(a.t - sound.start) + " s";
+  }
+  return {};
+}
+
+/// What many drives have had in them.
+struct DrivesMet {
+  std::set<std::string> rarer;
+  int poisoned_returns = 0;
+};
+
+/// Draws until a drive can be, and drives it; of all parts every tenth once more, its truth poisoned. What cannot be, a
+/// way that turns back at a waypoint or a unit without figures for the chain that is drawn, is refused with its key.
+std::string driven(std::uint64_t number, PartsDrawn parts, DrivesMet& met) {
   for (std::uint64_t draw = 0; draw < 50; ++draw) {
-    const RandomDrive drive(number + 100000 * draw);
+    const RandomDrive drive(number + 100000 * draw, parts);
     SceneCache own;
     const auto prepared = prepare(drive.config(), own);
-    if (prepared.ok()) return wrong_with(drive.config(), *prepared);
-    if (prepared.error().key.empty()) return "refused without a key: " + prepared.error().str();
+    if (!prepared.ok()) {
+      if (prepared.error().key.empty()) return "refused without a key: " + prepared.error().str();
+      continue;
+    }
+    met.rarer.insert(drive.rarer().begin(), drive.rarer().end());
+    RecordedRun sound, poisoned;
+    std::string wrong = wrong_with(drive.config(), *prepared, sound);
+    if (!wrong.empty() || parts == PartsDrawn::kUsual || number % 10 != 0) return wrong;
+    wrong = wrong_with(drive.config(), *prepared, poisoned, &met.poisoned_returns);
+    return wrong.empty() ? poison_shows(sound, poisoned) : "poisoned, " + wrong;
   }
   return "none of 50 draws can be driven";
 }
 
-void drive_all(std::uint64_t from, std::uint64_t to) {
-  for (std::uint64_t number = from; number < to; ++number) EXPECT_EQ(driven(number), "") << number;
+DrivesMet drive_all(std::uint64_t from, std::uint64_t to, PartsDrawn parts) {
+  DrivesMet met;
+  for (std::uint64_t number = from; number < to; ++number) EXPECT_EQ(driven(number, parts, met), "") << number;
+  return met;
 }
 
 TEST(RandomScenes, AHandfulEndsInOutcomes) {
-  drive_all(1, 13);
+  drive_all(1, 13, PartsDrawn::kUsual);
 }
 
 /// A thousand, a hundred each.
 class RandomScenesNightly : public ::testing::TestWithParam<int> {};
 TEST_P(RandomScenesNightly, AHundredEndInOutcomes) {
   const auto block = static_cast<std::uint64_t>(GetParam());
-  drive_all(100 * block + 1, 100 * block + 101);
+  const DrivesMet met = drive_all(100 * block + 1, 100 * block + 101, PartsDrawn::kAll);
+  // One in ten at least has each: of all ten hundreds one lacks one with a chance of 10 x 8 x 0.9^100 = 0.2 %.
+  EXPECT_EQ(met.rarer, rarer_parts());
+  EXPECT_GT(met.poisoned_returns, 1000) << "the poison must be there";
 }
 INSTANTIATE_TEST_SUITE_P(Hundreds, RandomScenesNightly, ::testing::Range(0, 10));
 

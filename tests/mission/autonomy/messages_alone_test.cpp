@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "canyon/gnss/sensor/sensor.h"
+#include "canyon/tests/mission/poisoned_truth.h"
 #include "canyon/tests/mission/short_mission.h"
 
 namespace canyon::mission::testing {
@@ -51,63 +51,6 @@ class Listening final : public Autonomy {
   std::vector<Call>& calls_;
 };
 
-constexpr double kPoison_m = 1e5;
-
-/// A receiver whose truth is poisoned; what it tells is as it was.
-class PoisonedReceiver final : public gnss::GnssSensor {
- public:
-  explicit PoisonedReceiver(std::unique_ptr<gnss::GnssSensor> sensor) : sensor_(std::move(sensor)) {}
-  gnss::GnssOutput measure(std::int64_t index, GpsTime t, const Eigen::Vector3d& p, const Eigen::Vector3d& v,
-                           const scene::SceneAt& scene) override {
-    gnss::GnssOutput output = sensor_->measure(index, t, p, v, scene);
-    for (GnssObservationTruth& satellite : output.truth.satellites) {
-      satellite.multipath_m = kPoison_m;
-      satellite.noise_m = satellite.ephemeris_m = satellite.ionosphere_m = satellite.troposphere_m = -kPoison_m;
-      satellite.range_m *= 0.5;
-      satellite.range_rate_m_s += 100.0;
-      satellite.line_of_sight = !satellite.line_of_sight;
-      satellite.tracked = !satellite.tracked;
-      satellite.reflections = 7;
-    }
-    output.truth.p_A_E += Eigen::Vector3d(300.0, -200.0, 100.0);
-    output.truth.v_A_E *= -1.0;
-    output.truth.receiver_clock_m += 1e3;
-    std::reverse(output.truth.satellites.begin(), output.truth.satellites.end());
-    return output;
-  }
-  gnss::GnssCounters counters() const override { return sensor_->counters(); }
-  bool has_satellites() const override { return sensor_->has_satellites(); }
-
- private:
-  std::unique_ptr<gnss::GnssSensor> sensor_;
-};
-
-/// A LIDAR whose truth is poisoned: every return has been off the scene's first thing, a metre away.
-class PoisonedScanner final : public lidar::Scanner {
- public:
-  PoisonedScanner(std::unique_ptr<lidar::Scanner> scanner, int& poisoned)
-      : scanner_(std::move(scanner)), poisoned_(poisoned) {}
-  void scan(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
-            const InstancesAt& moving, lidar::LidarOutput& out) override {
-    scanner_->scan(index, t, truth, scene, moving, out);
-    for (LidarPointTruth& point : out.truth) {
-      poisoned_ += point.object != 0 ? 1 : 0;
-      point = {.range_m = 1.0f, .cos_incidence = 1.0f, .material = 0, .object = 0};
-    }
-  }
-  void true_ranges(std::int64_t index, GpsTime t, const Trajectory& truth, const scene::SceneAt& scene,
-                   std::vector<float>& out) override {
-    scanner_->true_ranges(index, t, truth, scene, out);
-  }
-  double reach_s(std::int64_t index) const override { return scanner_->reach_s(index); }
-  void keep(const lidar::KeptRoom* room) override { scanner_->keep(room); }
-  std::int64_t rays() const override { return scanner_->rays(); }
-
- private:
-  std::unique_ptr<lidar::Scanner> scanner_;
-  int& poisoned_;  ///< returns that were off something else
-};
-
 RecordedRun drive_and_listen(const MissionConfig& config, std::vector<Call>& calls, int* poisoned = nullptr) {
   const auto mission = prepare(config, scenes());
   EXPECT_TRUE(mission.ok());
@@ -115,16 +58,7 @@ RecordedRun drive_and_listen(const MissionConfig& config, std::vector<Call>& cal
   RunParts parts;
   parts.recorder = &run;
   parts.autonomy = std::make_unique<Listening>(make_autonomy(config.autonomy, mission->prior, mission->start), calls);
-  if (poisoned != nullptr) {
-    const auto seed = static_cast<std::uint64_t>(config.run.seed);
-    auto sensor = gnss::make_gnss_sensor(config.gnss, seed, mission->start, mission->start + mission->time_limit_s,
-                                         *mission->scene);
-    EXPECT_TRUE(sensor.ok());
-    parts.receiver = std::make_unique<PoisonedReceiver>(*std::move(sensor));
-    auto scanner = lidar::make_scanner(config.lidar, seed);
-    EXPECT_TRUE(scanner.ok());
-    parts.scanner = std::make_unique<PoisonedScanner>(*std::move(scanner), *poisoned);
-  }
+  if (poisoned != nullptr) poison(config, *mission, parts, *poisoned);
   auto record = run_mission(config, *mission, nullptr, std::move(parts));
   EXPECT_TRUE(record.ok()) << (record.ok() ? "" : record.error().str());
   static_cast<RunRecord&>(run) = *std::move(record);
