@@ -16,7 +16,11 @@ struct Plant {
   enum class Kind { kOwnSwitch, kNoSwitch, kTwoTogether, kNone } kind;
   std::vector<const char*> toml;  ///< laid over the drive, in this order
 };
+/// Those of kNone fail whatever is drawn and whatever is taken away: a cause is hardly named of them by mistake.
 const std::vector<Plant>& plants();
+/// Failures that no source of navigation is to blame for and that hang on the draws, so that some redraws succeed and
+/// a removal, whatever it is of, may seem to rescue.
+const std::vector<Plant>& plants_of_chance();
 
 /// The drive with a plant and a seed. All but the plant is as good as perfect.
 Result<Comparison> planted(const Plant& plant, std::int64_t seed);
