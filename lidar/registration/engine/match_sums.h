@@ -45,8 +45,8 @@ std::vector<double> missed_by_point(const Matching& matching, const Pose& X_TS, 
 
 /// Of the points that `before` matches to planes, the share that lie on a surface at `X_TS` too: by a match of
 /// `matches`, or within reach of the plane that they were matched to. A plane may go on where the target's beams left a
-/// gap, as it does between rings on level ground; whether the surface of a point does that was matched to none, as
-/// those of a ring by itself are, nobody knows. 1 where there is no plane.
+/// gap, as it does between rings on level ground. Points that were matched to no plane, as those of a ring by itself,
+/// tell neither way and are not counted; 1 where all are such.
 double share_still_on_surfaces(const Matching& matching, const Pose& X_TS, std::span<const LastMatch> matches,
                                std::span<const LastMatch> before);
 
