@@ -8,7 +8,8 @@
 Without blockage satellites that a clear sky would show are received, without reflections echoes leave no error, without drift the inertial
 sensor has none. An effect is the difference of the shares of success with a source and without it, over all settings of the other two; an
 interaction of two is half the difference of one's effect with and without the other, and of three likewise. Intervals: 95 % of 10,000 bootstrap draws of whole seeds, all eight
-runs of one together. With --remedies single ones beside them: a gate, an odometer, the filter that knows the vehicle, both, a better unit, another receiver, truth as pose.
+runs of one together. Beside them single ones: --remedies (a gate, an odometer, the filter that knows the vehicle, both, a better unit, another receiver, truth as
+pose), --controls (hidden signals dropped) and --parts (of that filter).
 """
 import argparse
 import concurrent.futures
@@ -23,21 +24,35 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SOURCES = {"blockage": ("gnss", 'hidden_signals = "in_sight"'), "reflections": ("gnss", "multipath_scale = 0.0"), "drift": ("imu", 'errors = "none"')}
-REMEDIES = {"gate of 3 sigma": ("", "fusion", 'acceptance = "gate"\ngate_sigma = 3'),
-            "unit of tactical grade": ("", "imu", 'sensor = "hg4930_class"'),
-            "odometer, same filter": ("", "fusion", 'states = ["biases", "gains", "wheel_scale"]\nmeasurements = ["position", "odometer"]'),
-            "`vehicle` filter, no odometer": ("", "fusion", 'filter = "vehicle"\nmeasurements = ["position", "velocity", "non_holonomic", "standstill"]'),
-            "odometer, `vehicle` filter": ("high_aided", None, ""),
-            "`modern`": ("modern", None, ""),
-            "truth as pose": ("", "run", "truth_as_pose = true")}
+# Single ones beside the eight, by what the table calls them: the fidelity they are made of (none: the base), and keys of its sections.
+REMEDIES = {"all, gate of 3 sigma": ("", {"fusion": 'acceptance = "gate"\ngate_sigma = 3'}),
+            "all, unit of tactical grade": ("", {"imu": 'sensor = "hg4930_class"'}),
+            "all, odometer, same filter": ("", {"fusion": 'states = ["biases", "gains", "wheel_scale"]\nmeasurements = ["position", "odometer"]'}),
+            "all, `vehicle` filter, no odometer": ("", {"fusion": 'filter = "vehicle"\nmeasurements = ["position", "velocity", "non_holonomic", "standstill"]'}),
+            "all, odometer, `vehicle` filter": ("high_aided", {}),
+            "all, `modern`": ("modern", {}),
+            "all, truth as pose": ("", {"run": "truth_as_pose = true"})}
+# Blockage with the hidden satellites' signals not received at all, in place of received without error.
+DROPPED = 'multipath_scale = 0.0\nhidden_signals = "dropped"'
+CONTROLS = {"blockage, hidden signals dropped": ("", {"gnss": DROPPED, "imu": 'errors = "none"'}),
+            "blockage, hidden signals dropped, drift": ("", {"gnss": DROPPED})}
+
+
+def without(part, states='"biases", "gains", "mounting", "wheel_scale", "fix_error", "velocity_error"', measurements='"position", "velocity", "non_holonomic", "standstill"'):
+    """The `vehicle` filter without wheels, and without that part."""
+    kept = [", ".join(one for one in of.split(", ") if one != f'"{part}"') for of in (states, measurements)]
+    return ("", {"fusion": f'filter = "vehicle"\nstates = [{kept[0]}]\nmeasurements = [{kept[1]}]'})
+
+
+PARTS = {f"all, `vehicle` filter, no odometer, no `{part}`": without(part) for part in ("fix_error", "velocity", "non_holonomic", "standstill")}
 
 
 def name_of(there):
     return "f" + "".join("1" if one else "0" for one in there)
 
 
-def mission(base, remedies):
-    """A fidelity for each of the eight settings, f111 being the base itself, and for each remedy."""
+def mission(base, singles):
+    """A fidelity for each of the eight settings, f111 being the base itself, and for each single one."""
     text = 'base = "vicksburg"\n'
     for there in itertools.product((False, True), repeat=3):
         sections = {}
@@ -46,17 +61,17 @@ def mission(base, remedies):
                 sections.setdefault(section, []).append(keys)
         text += f'[fidelity.{name_of(there)}]\nbase = "{base}"\n'
         text += "".join(f"[fidelity.{name_of(there)}.{section}]\n" + "\n".join(keys) + "\n" for section, keys in sections.items())
-    for k, (own, section, keys) in enumerate(remedies.values()):
-        text += f'[fidelity.r{k}]\nbase = "{own or base}"\n' + (f"[fidelity.r{k}.{section}]\n{keys}\n" if section else "")
+    for k, (own, sections) in enumerate(singles.values()):
+        text += f'[fidelity.r{k}]\nbase = "{own or base}"\n' + "".join(f"[fidelity.r{k}.{section}]\n{keys}\n" for section, keys in sections.items())
     return text
 
 
-def outcomes(options, folder, remedies, seed):
+def outcomes(options, folder, singles, seed):
     """Outcome of each fidelity with that seed."""
     kept = folder / f"{options.base}-{seed}.json"
-    labels = {f"r{k}": label for k, label in enumerate(remedies)}
-    names = [name_of(there) for there in itertools.product((False, True), repeat=3)] + [f"r{k}" for k in range(len(remedies))]
-    # Kept by label: the list of remedies may grow in between.
+    labels = {f"r{k}": label for k, label in enumerate(singles)}
+    names = [name_of(there) for there in itertools.product((False, True), repeat=3)] + [f"r{k}" for k in range(len(singles))]
+    # Kept by label: the list of single ones may be another one next time.
     found = json.loads(kept.read_text()) if kept.exists() else {}
     missing = [name for name in names if labels.get(name, name) not in found]
     if missing:
@@ -106,13 +121,13 @@ def share_row(label, name, seeds):
     return f"| {label} | {count} of {len(seeds)} | {low:.2f} to {high:.2f} | {ends} |"
 
 
-def report(seeds, remedies):
+def report(seeds, singles):
     print("| what is there | success | 95 % interval | other outcomes |\n|---|---|---|---|")
     for there in itertools.product((False, True), repeat=3):
         label = ", ".join(source for source, present in zip(SOURCES, there) if present) or "none of the three"
         print(share_row(label, name_of(there), seeds))
-    for k, label in enumerate(remedies):
-        print(share_row("all, " + label, f"r{k}", seeds))
+    for k, label in enumerate(singles):
+        print(share_row(label, f"r{k}", seeds))
     print("\n| effect on the share of success | | 95 % interval |\n|---|---|---|")
     for label, weights in contrasts().items():
         low, high = interval(lambda drawn, w=weights: effect(w, drawn), seeds)
@@ -133,17 +148,19 @@ def main():
     parser.add_argument("--seeds", type=seeds_of, default=seeds_of("1-20"), metavar="FIRST-LAST")
     parser.add_argument("--base", default="high", help="fidelity whose sources are taken away")
     parser.add_argument("--remedies", action="store_true", help="the single remedies too")
+    parser.add_argument("--controls", action="store_true", help="blockage by itself with hidden signals dropped too, in place of kept without their errors")
+    parser.add_argument("--parts", action="store_true", help="the `vehicle` filter without each of its parts too")
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()
-    remedies = REMEDIES if options.remedies else {}
+    singles = (REMEDIES if options.remedies else {}) | (CONTROLS if options.controls else {}) | (PARTS if options.parts else {})
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.keep or pathlib.Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / f"{options.base}.toml").write_text(mission(options.base, remedies))
+        (folder / f"{options.base}.toml").write_text(mission(options.base, singles))
         with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-            seeds = list(pool.map(lambda seed: outcomes(options, folder, remedies, seed), options.seeds))
-    report(seeds, remedies)
+            seeds = list(pool.map(lambda seed: outcomes(options, folder, singles, seed), options.seeds))
+    report(seeds, singles)
 
 
 if __name__ == "__main__":

@@ -106,10 +106,11 @@ Result<std::vector<PaperPart>> mission_parts(const mission::MissionFile& file, s
           "The built-in mission: a city of the paper's size at its place. Shares of missions each of which drives "
           "by itself; all else on the mission's own route, driven on truth, the same for all, over seeds. Drawn: the "
           "first seed on that route; fixes are the antenna's, which is mounted above the vehicle's own point.",
-      .difference = {"The paper's scene, route and autonomy are not published.",
-                     "Why missions fail is another question than how often: docs/paper.md and the README name what "
-                     "has been shown with a control.",
-                     kOverSeeds},
+      .difference =
+          {"The paper's scene, route and autonomy are not published.",
+           "Why missions fail is another question than how often: docs/ablations.md names what has been shown with a "
+           "control.",
+           kOverSeeds},
       .x_label = "Time, s",
       .rows = {success_row(driven_closed), figure_row(driven_open, "error of the fixes, RMS", "m", "fix_error_rms_m"),
                figure_row(driven_open, "east error of the output, RMS", "m", "position_error_e_rms_m"),

@@ -34,7 +34,8 @@ constexpr double kTiltsAlike = 2.0;
 constexpr double kWidest_m = 0.2 / 3.0;
 constexpr double kWidest_rad = 0.5 / 3.0 * kDegree;
 constexpr double kProbability = 1e-3;
-constexpr int kMostOpenings = 6;  // each opens a direction
+constexpr int kMostOpenings = 6;      // each opens a direction
+constexpr double kClosedShare = 0.5;  // of a way; what has less is open
 
 }  // namespace
 
@@ -150,39 +151,75 @@ std::vector<double> Aligner::unexplained(const FoundPose& at) const {
 
 /// Whether a leaves so many more points without a match than b that it is no rival: where a cloud shifted by the prior
 /// leaves the target it loses some, but not a fifth.
-bool Aligner::explains_less(const FoundPose& a, const FoundPose& b) {
-  return static_cast<double>(a.equations.matched) < kAsWellMatched * static_cast<double>(b.equations.matched);
+bool Aligner::explains_less(const Fit& a, const Fit& b) {
+  return static_cast<double>(a.matched) < kAsWellMatched * static_cast<double>(b.matched);
 }
 
 /// How much less probable b is than a, as twice the logarithm of the odds: by what they leave unexplained, of which the
 /// sigma counts as one of a normal distribution, and by the prior.
 double Aligner::odds(const Place& a, const Place& b) const {
-  const double sigma = evidence_against(a.missed, b.missed, source_, kTellingBlock_leaves * own_.leaf_m);
-  return sigma * std::abs(sigma) + search_.improbable(b.found.X) - search_.improbable(a.found.X);
+  const double sigma = evidence_against(a.fit.by_point, b.fit.by_point, source_, kTellingBlock_leaves * own_.leaf_m);
+  return sigma * std::abs(sigma) + search_.improbable(b.fit.X) - search_.improbable(a.fit.X);
 }
 
-/// Whether b is the better answer.
+/// Whether b is the better answer: one that is none loses to any.
 bool Aligner::loses_to(const Place& a, const Place& b) const {
-  if (a.missed.empty() || explains_less(a.found, b.found)) return true;
-  return !explains_less(b.found, a.found) && odds(a, b) < 0;
+  if (a.determined != b.determined) return b.determined;
+  if (a.fit.by_point.empty() || explains_less(a.fit, b.fit)) return !b.fit.by_point.empty();
+  return !b.fit.by_point.empty() && !explains_less(b.fit, a.fit) && odds(a, b) < 0;
 }
 
-/// Whether b is another place, and explains what is seen nearly as well as a.
+/// Whether b is another place, and explains what is seen nearly as well as a, or better. Whether it could be the answer
+/// is not asked: that a true place leaves too much open to be told makes a false one no truer.
 bool Aligner::rivals(const Place& a, const Place& b) const {
-  if (a.missed.empty() || b.missed.empty() || explains_less(b.found, a.found)) return false;
-  return are_apart(a.open.closed_part((a.found.X.inverse() * b.found.X).log())) && odds(a, b) < kDecided;
+  if (a.fit.by_point.empty() || b.fit.by_point.empty() || explains_less(b.fit, a.fit)) return false;
+  return are_apart(a.open.closed_part((a.fit.X.inverse() * b.fit.X).log())) && odds(a, b) < kDecided;
 }
 
-/// Places that may be it, each as far as it can be determined, and what it leaves unexplained if there are several.
+/// As far as it can be determined, and how it fits if there may be several; what led to the same place once more, and
+/// fits no better, is left out.
+void Aligner::take_in(FoundPose found, std::vector<Place>& places) {
+  search_.refine(found);
+  Fit fit{.X = found.X, .matched = found.equations.matched, .missed = found.equations.missed};
+  if (search_.several() && found.matches.size() == source_.points.size()) fit.by_point = unexplained(found);
+  for (const Place& known : places)
+    if (!are_apart((known.fit.X.inverse() * fit.X).log()) && known.fit.missed <= fit.missed) return;
+  Place place{.found = std::move(found), .fit = std::move(fit), .open = OpenDirections(search_.radius_m())};
+  if (search_.prior()) place.determined = keep_open_at_prior(place);
+  places.push_back(std::move(place));
+}
+
+std::size_t Aligner::likeliest(const std::vector<Place>& places) const {
+  std::size_t first = 0;
+  for (std::size_t k = 1; k < places.size(); ++k)
+    if (loses_to(places[first], places[k])) first = k;
+  return first;
+}
+
+/// The horizontal way, source frame, along which the surfaces hold a place the least, of length 1; nothing where it is
+/// open there.
+std::optional<Vector6d> Aligner::weakest_way(Place& place) const {
+  const CovarianceSums& sums = sums_at(place.found);
+  const Matrix6d spread = sums.A.ldlt().solve(Matrix6d::Identity());
+  if (!spread.allFinite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> plane(spread.block<2, 2>(3, 3));
+  Vector6d way = Vector6d::Zero();
+  way.segment<2>(3) = plane.eigenvectors().col(1);
+  if (!way.allFinite() || place.open.closed_part(way).tail<3>().norm() < kClosedShare) return std::nullopt;
+  return way;
+}
+
+/// Places that may be it. Where things repeat, a start ends at what is nearest to it, and with few beams at where their
+/// rings on the ground fit one another, off any of the repeats: so along the way that the likeliest place leaves the
+/// weakest others are looked for, with all else as it is there.
 std::vector<Aligner::Place> Aligner::places() {
   std::vector<Place> out;
-  for (FoundPose& found : search_.coarse())
-    out.push_back({.found = std::move(found), .open = OpenDirections(search_.radius_m()), .missed = {}});
-  for (Place& place : out) {
-    search_.refine(place.found);
-    if (search_.prior()) place.determined = keep_open_at_prior(place);
-    if (out.size() > 1 && place.determined && place.found.matches.size() == source_.points.size())
-      place.missed = unexplained(place.found);
+  for (FoundPose& found : search_.coarse()) take_in(std::move(found), out);
+  if (!search_.several()) return out;
+  Place& first = out[likeliest(out)];
+  if (!first.determined) return out;
+  if (const auto way = weakest_way(first)) {
+    for (FoundPose& found : search_.along(first.fit.X, *way)) take_in(std::move(found), out);
   }
   return out;
 }
@@ -233,10 +270,7 @@ RegistrationResult Aligner::align() {
   const auto n = static_cast<std::int64_t>(source_.points.size());
   if (n < kFewestPoints || static_cast<std::int64_t>(target_.size()) < kFewestPoints) return result;
   auto found = places();
-  std::size_t first = 0;
-  for (std::size_t k = 0; k < found.size(); ++k)
-    if (!found[k].missed.empty() && loses_to(found[first], found[k])) first = k;
-  Place& best = found[first];
+  Place& best = found[likeliest(found)];
   FoundPose& at = best.found;
   bool ambiguous = false;
   for (const Place& other : found) ambiguous |= &other != &best && rivals(best, other);

@@ -17,20 +17,31 @@ class Aligner {
   RegistrationResult align();
 
  private:
+  /// What a place is weighed by against others: how it fits where nothing is held. A place that is held at the prior
+  /// fits worse the more of it is open, which tells nothing against it.
+  struct Fit {
+    Pose X;
+    std::int64_t matched = 0;
+    double missed = 1.0;             ///< as NormalEquations::missed
+    std::vector<double> by_point{};  ///< what it leaves unexplained; empty where it was not asked for, or no answer
+  };
   struct Place {
     FoundPose found;
+    Fit fit;
     OpenDirections open;  ///< held at the prior
     bool determined = true;
-    std::vector<double> missed;  ///< of each point; empty where it is the only one, or no answer
   };
 
   std::vector<Place> places();
+  void take_in(FoundPose found, std::vector<Place>& places);
+  std::size_t likeliest(const std::vector<Place>& places) const;
+  std::optional<Vector6d> weakest_way(Place& place) const;
   const CovarianceSums& sums_at(FoundPose& at) const;
   RegistrationPrecision precision_at(FoundPose& at, const CovarianceForm& form, const OpenDirections& open);
   bool keep_open_at_prior(Place& place);
   Pose by_surfaces(const FoundPose& at, const OpenDirections& open);
   std::vector<double> unexplained(const FoundPose& at) const;
-  static bool explains_less(const FoundPose& a, const FoundPose& b);
+  static bool explains_less(const Fit& a, const Fit& b);
   double odds(const Place& a, const Place& b) const;
   bool loses_to(const Place& a, const Place& b) const;
   bool rivals(const Place& a, const Place& b) const;

@@ -33,6 +33,8 @@ constexpr double kBasin_rad = 8.0 * kDegree;
 constexpr int kMostStarts = 1200;
 constexpr std::size_t kRefined = 6;
 constexpr double kCoarsePieces = 100.0;  // of the cloud, that speak for themselves, against the prior
+constexpr double kScan_reaches = 0.5;    // a step of a scan: a place is then within half the reach of one
+constexpr int kMostScanned = 500;        // either way
 constexpr double kAlternative = 1e-3;    // a start that the prior has beyond its ellipsoid of so much is left out
 // Another minimum counts as another place from here on.
 constexpr double kApart_m = 0.3;
@@ -198,6 +200,7 @@ std::vector<Pose> PoseSearch::starts() const {
 std::vector<FoundPose> PoseSearch::coarse() {
   const std::size_t stride = coarse_stride();
   const auto places = starts();
+  several_ = places.size() > 1;
   const std::size_t first = places.size() > 8 ? 4 * stride : stride;
   const double reach_m = first_reach_m();
   std::vector<FoundPose> found;
@@ -239,6 +242,41 @@ std::vector<FoundPose> PoseSearch::coarse() {
     if (!known(best, kept[k].X)) best.push_back(std::move(kept[k]));
   }
   return best;
+}
+
+std::vector<FoundPose> PoseSearch::along(const Pose& X, const Vector6d& way) {
+  struct Fit {
+    int steps;
+    double missed;
+  };
+  const double step_m = kScan_reaches * own_.max_correspondence_m, farthest = chi_square_threshold(kAlternative, 6.0);
+  const auto moved = [&](int steps) {
+    return X * Pose{Eigen::Quaterniond::Identity(), steps * step_m * way.tail<3>()};
+  };
+  const auto missed_at = [&](int steps) {
+    std::vector<LastMatch> matches;
+    const auto e = normal_equations(matching_at(own_.max_correspondence_m), moved(steps), coarse_stride(), matches);
+    ++rounds_;
+    matched_ += e.matched;
+    return e.missed;
+  };
+  int from = 0, to = 0;
+  while (-from < kMostScanned && !(improbable(moved(from - 1)) > farthest)) --from;
+  while (to < kMostScanned && !(improbable(moved(to + 1)) > farthest)) ++to;
+  std::vector<Fit> line, minima;
+  for (int k = from; k <= to; ++k) line.push_back({k, missed_at(k)});
+  for (std::size_t k = 1; k + 1 < line.size(); ++k) {
+    if (line[k].missed < line[k - 1].missed && line[k].missed <= line[k + 1].missed && std::abs(line[k].steps) > 1)
+      minima.push_back(line[k]);
+  }
+  std::stable_sort(minima.begin(), minima.end(), [](const Fit& a, const Fit& b) { return a.missed < b.missed; });
+  minima.resize(std::min(minima.size(), kRefined));
+  std::vector<FoundPose> out(minima.size());
+  for (std::size_t k = 0; k < minima.size(); ++k) {
+    out[k].X = moved(minima[k].steps);
+    descend({coarse_stride(), own_.max_correspondence_m, 15, kCoarse_m, kCoarse_rad}, out[k], {});
+  }
+  return out;
 }
 
 void PoseSearch::refine(FoundPose& at, const Held& how) {

@@ -46,6 +46,11 @@ class PoseSearch {
 
   /// Some places that may be it, the likeliest first, each from a part of the points.
   std::vector<FoundPose> coarse();
+  /// More of them, with all as at X but moved along `way`, a shift of length 1 in the source frame, to where a part of
+  /// the points fits better than a step either side; as far as the prior reaches.
+  std::vector<FoundPose> along(const Pose& X, const Vector6d& way);
+  /// Whether the prior reaches so far that there may be several; without one it does not.
+  bool several() const { return several_; }
   /// On with all points.
   void refine(FoundPose& at, const Held& how = {});
   /// From where it is, without its matches: so many coarse rounds, and all points.
@@ -88,6 +93,7 @@ class PoseSearch {
   std::optional<PriorLaw> prior_;
   double radius_m_ = 1.0;
   std::size_t blocks_ = 1;  ///< independent pieces of the source
+  bool several_ = false;
   int rounds_ = 0;
   std::int64_t matched_ = 0;
 };

@@ -18,6 +18,7 @@ std::unique_ptr<Registration> method_of(const std::string& name, const std::stri
 Outcome run_one(const Trial& trial, std::span<const std::unique_ptr<Registration>> forms, const Registration* pcl) {
   Outcome out;
   out.ambiguous = trial.ambiguous;
+  out.open_in_truth = static_cast<int>(trial.open.size());
   const auto source = forms[0]->prepare(trial.source);
   const Registration::Placed target{forms[0]->prepare(trial.target), Pose{}};
   const double radius_m = rms_radius(source->points);
@@ -28,6 +29,7 @@ Outcome run_one(const Trial& trial, std::span<const std::unique_ptr<Registration
     if (out.forms.size() > 1) continue;
     out.status = result.status;
     out.overlap = result.overlap;
+    out.all_right = right_where_determined(trial, result.X_TS, radius_m);
   }
   out.verdict = out.forms[0];
   if (pcl == nullptr) return out;

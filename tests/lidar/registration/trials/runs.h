@@ -20,6 +20,8 @@ struct Outcome {
   Verdict verdict;
   RegistrationStatus status = RegistrationStatus::kNotConverged;
   bool ambiguous = false;  ///< as Trial's
+  int open_in_truth = 0;   ///< directions that the place leaves open
+  bool all_right = false;  ///< within the bounds in all others, whatever is called open
   bool pcl_converged = false, pcl_right = false;
   std::vector<Verdict> forms;  ///< as asked
   double overlap = kNaN;

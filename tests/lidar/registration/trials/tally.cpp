@@ -30,6 +30,8 @@ void Tally::add(const Outcome& o) {
     recalled += v.undecided ? 1 : 0;
   }
   wide += v.converged && v.widest_3_sigma_m > 0.5 ? 1 : 0;
+  all_closed += v.converged && v.closed + o.open_in_truth >= 6 ? 1 : 0;
+  all_right += v.converged && o.all_right ? 1 : 0;
   pcl_converged += o.pcl_converged ? 1 : 0;
   pcl_right += o.pcl_right ? 1 : 0;
   pcl_silent += o.pcl_converged && !o.pcl_right ? 1 : 0;
@@ -39,6 +41,7 @@ void Tally::add(const Outcome& o) {
 void Tally::add(const Tally& o) {
   trials += o.trials, converged += o.converged, silent += o.silent, outside += o.outside;
   right += o.right, refused_good += o.refused_good, ambiguous += o.ambiguous, recalled += o.recalled, wide += o.wide;
+  all_closed += o.all_closed, all_right += o.all_right;
   pcl_converged += o.pcl_converged, pcl_right += o.pcl_right, pcl_silent += o.pcl_silent;
   nees += o.nees, judged += o.judged, within_95 += o.within_95;
 }
@@ -51,15 +54,15 @@ Tally of_form(std::span<const Outcome> outcomes, std::size_t form) {
 
 std::string table_head() {
   return "                                        trials conv right refused silent outside wide  ambiguous    NEES   "
-         "95 % | "
+         "95 % | all: closed right "
          "pcl right silent\n";
 }
 
 std::string table_row(const std::string& name, const Tally& t) {
   char line[256];
-  std::snprintf(line, sizeof line, "%-39s %6d %4d %5d %7d %6d %7d %4d %4d / %4d %7.2f %6.1f | %9d %6d\n", name.c_str(),
-                t.trials, t.converged, t.right, t.refused_good, t.silent, t.outside, t.wide, t.recalled, t.ambiguous,
-                t.nees_mean(), 100 * t.coverage(), t.pcl_right, t.pcl_silent);
+  std::snprintf(line, sizeof line, "%-39s %6d %4d %5d %7d %6d %7d %4d %4d / %4d %7.2f %6.1f | %11d %5d %9d %6d\n",
+                name.c_str(), t.trials, t.converged, t.right, t.refused_good, t.silent, t.outside, t.wide, t.recalled,
+                t.ambiguous, t.nees_mean(), 100 * t.coverage(), t.all_closed, t.all_right, t.pcl_right, t.pcl_silent);
   return line;
 }
 

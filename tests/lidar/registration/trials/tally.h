@@ -13,6 +13,9 @@ struct Tally {
   int right = 0, refused_good = 0;                         ///< of the right, not converged and not ambiguous in truth
   int ambiguous = 0, recalled = 0;                         ///< in truth; and said so, or directions called open
   int wide = 0;                                            ///< converged with 3 sigma over 0.5 m
+  /// Converged with no more directions open than the place leaves open; and with the pose itself within the bounds in
+  /// all that the place determines, as pcl_right is judged.
+  int all_closed = 0, all_right = 0;
   int pcl_converged = 0, pcl_right = 0, pcl_silent = 0;
   double nees = 0;  ///< per closed direction, sum over converged
   int judged = 0, within_95 = 0;

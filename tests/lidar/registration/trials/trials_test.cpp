@@ -1,6 +1,9 @@
 // Silent failures and honest covariance of the own methods, by simulated trials. What the figures mean stands in
 // docs/registration.md.
+#include <algorithm>
 #include <cstdio>
+#include <map>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -18,10 +21,11 @@ class Lines {
  public:
   Lines() : file_(std::fopen(setting("CANYON_TRIALS_CSV", "/dev/null").c_str(), "w")) {
     if (file_)
-      std::fprintf(file_,
-                   "place,sensor,ring,trial,status,error_m,error_deg,inside,open,nees,closed,widest_3_sigma_m,"
-                   "overlap,points,ambiguous,pcl_right,error_roll,error_pitch,"
-                   "error_yaw,error_x,error_y,error_z,sigma_roll,sigma_pitch,sigma_yaw,sigma_x,sigma_y,sigma_z\n");
+      std::fprintf(
+          file_,
+          "place,sensor,ring,trial,status,error_m,error_deg,inside,open,nees,closed,widest_3_sigma_m,"
+          "overlap,points,ambiguous,pcl_right,error_roll,error_pitch,"
+          "error_yaw,error_x,error_y,error_z,sigma_roll,sigma_pitch,sigma_yaw,sigma_x,sigma_y,sigma_z,all_right\n");
   }
   ~Lines() {
     if (file_) std::fclose(file_);
@@ -36,7 +40,7 @@ class Lines {
       for (const Vector6d& column : {v.error, v.sigma}) {
         for (const double x : column) std::fprintf(file_, ",%.5f", x);
       }
-      std::fprintf(file_, "\n");
+      std::fprintf(file_, ",%d\n", o.all_right);
     }
   }
 
@@ -73,6 +77,7 @@ TEST(TrialsNightly, SilentFailures) {
   std::printf("%s, %zu trials per place, sensor and ring\n%s", asked.method.c_str(), count, table_head().c_str());
   Tally all;
   std::vector<Tally> by_ring(rings().size());
+  std::map<std::string, Tally> by_place;
   every_cell([&](const Place& place, const Sensor& sensor) {
     for (std::size_t r = 0; r < rings().size(); ++r) {
       const Ring& ring = rings()[r];
@@ -85,6 +90,7 @@ TEST(TrialsNightly, SilentFailures) {
       std::fflush(stdout);
       EXPECT_LE(cell.silent, binomial_most(cell.converged, 0.02, kAlarm)) << name;  // the requirement: 2 %
       by_ring[r].add(cell);
+      by_place[place.name].add(cell);
       all.add(cell);
     }
   });
@@ -94,11 +100,14 @@ TEST(TrialsNightly, SilentFailures) {
       EXPECT_GE(by_ring[r].converged, by_ring[r].pcl_right) << rings()[r].name;
     }
   }
+  for (const auto& [name, tally] : by_place) {
+    std::printf("%s", table_row(name, tally).c_str());
+    EXPECT_GE(tally.recalled, binomial_fewest(tally.ambiguous, 0.9, kAlarm)) << name;  // the requirement
+  }
   std::printf("%s", table_row("all", all).c_str());
   // The requirements, with room for chance.
   EXPECT_LE(all.silent, binomial_most(all.converged, 0.005, kAlarm));
   EXPECT_LE(by_ring[0].refused_good, binomial_most(by_ring[0].right, 0.05, kAlarm));
-  EXPECT_GE(all.recalled, binomial_fewest(all.ambiguous, 0.9, kAlarm));
   EXPECT_EQ(all.wide, 0);
 }
 
@@ -184,6 +193,27 @@ TEST(TrialsNightly, ASubsetFailsSilentlyNoMoreOftenThanPromised) {
   EXPECT_LE(all.silent, binomial_most(all.converged, 0.005, kAlarm));
   EXPECT_LE(near.refused_good, binomial_most(near.right, 0.05, kAlarm));
   EXPECT_GE(all.recalled, binomial_fewest(all.ambiguous, 0.9, kAlarm));
+}
+
+/// Between facades that repeat: each of these converged 5 to 6 m off, a period, while places were weighed as they were
+/// held at the prior and nobody looked along the street for others.
+TEST(Trials, APeriodOffIsNoAnswer) {
+  struct Case {
+    std::size_t sensor, ring;
+    std::uint64_t number;
+  };
+  const auto facades = std::find_if(places().begin(), places().end(), [](const Place& p) { return p.period_m > 0; });
+  ASSERT_NE(facades, places().end());
+  const auto method = *make_registration({});
+  for (const Case& c : {Case{0, 1, 56}, Case{0, 2, 27}, Case{0, 2, 127}, Case{0, 2, 135}, Case{2, 1, 11}}) {
+    const Trial trial = make_trial(*facades, sensors()[c.sensor], rings()[c.ring], 2027, c.number);
+    const auto source = method->prepare(trial.source);
+    const Registration::Placed target{method->prepare(trial.target), Pose{}};
+    const auto result = method->align_with_prior(*source, {&target, 1}, trial.prior);
+    const Verdict verdict = judge(trial, result, rms_radius(source->points));
+    EXPECT_FALSE(verdict.silent()) << sensors()[c.sensor].name << ' ' << rings()[c.ring].name << ' ' << c.number << ": "
+                                   << verdict.error_m << " m off";
+  }
 }
 
 TEST(Trials, SameOutcomesForAnyNumberOfThreads) {
