@@ -51,8 +51,15 @@ Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, 
 /// Which of several one-sided p are significant together at `level` (Holm 1979).
 std::vector<bool> holm(const std::vector<double>& p, double level);
 
+/// What an explanation comes to: a source that is to blame; no source of navigation, since no replay with the true pose
+/// succeeds; or neither can be said.
+enum class VerdictKind { kCause, kNotNavigation, kUndetermined };
+VerdictKind verdict_kind(const Explanation& explanation);
 /// The verdict in one or two sentences.
 std::string verdict(const Explanation& explanation);
+/// "0 of 12 repeats, so in at most 24 % of such drives (95 %)": what replays of one drive say of all that differ as
+/// they do. The upper end of wilson_interval; 0 <= successes <= draws, draws > 0.
+std::string replays_bound(int successes, int draws);
 /// The chain of events before the failure, one a line.
 std::vector<std::string> chain(const Explanation& explanation);
 /// why.json.

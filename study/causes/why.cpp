@@ -52,6 +52,18 @@ std::string words(const Event& event) {
 
 }  // namespace
 
+VerdictKind verdict_kind(const Explanation& e) {
+  if (e.cause != nullptr) return VerdictKind::kCause;
+  const RemovalOutcome& navigation = e.outcomes.back();  // the widest is the last row
+  return navigation.successes == 0 ? VerdictKind::kNotNavigation : VerdictKind::kUndetermined;
+}
+
+std::string replays_bound(int successes, int draws) {
+  char most[32];
+  std::snprintf(most, sizeof most, "%.2g %%", 100.0 * wilson_interval(successes, draws).high);
+  return out_of(successes, draws) + " repeats, so in at most " + most + " of such drives (95 %)";
+}
+
 std::string verdict(const Explanation& e) {
   const std::string as_it_was = "with nothing but the noise changed from " + seconds(e.from_s) + " on, in " +
                                 out_of(e.successes_as_it_was, e.draws);
@@ -62,10 +74,9 @@ std::string verdict(const Explanation& e) {
              ") it succeeds in " + out_of(outcome.successes, e.draws) + " repeats, " + as_it_was;
     }
   }
-  const RemovalOutcome& navigation = e.outcomes.back();  // the widest is the last row
-  if (!navigation.rescues && navigation.successes == 0)
-    return "navigation is not to blame. Told its true position it succeeds in none of " + std::to_string(e.draws) +
-           " repeats, " + as_it_was;
+  if (verdict_kind(e) == VerdictKind::kNotNavigation)
+    return "navigation is not to blame. Told its true position it succeeds in " + replays_bound(0, e.draws) + "; " +
+           as_it_was;
   return "undetermined. Nothing that was taken away helps more often than other noise does; it succeeds, " + as_it_was;
 }
 
