@@ -15,7 +15,7 @@ Result<Results> read_results(const std::string& directory);
 /// Parts of it. `file` is named in errors.
 Status read_summary(std::string_view json, const std::string& file, Results& results);
 Status read_scene_drawing(std::string_view json, const std::string& file, SceneDrawing& drawing);
-/// Reads why.json into the runs that it names.
+/// Reads why.json into the runs that it names; summary.json must have been read. What is of further seeds stands apart.
 Status read_why(std::string_view json, const std::string& file, Results& results);
 
 Status read_manifest(std::string_view json, const std::string& file, Results& results);

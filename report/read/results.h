@@ -84,6 +84,25 @@ struct Why {
   std::vector<Removal> removals;
 };
 
+/// The same of a run with a seed that its epochs are not of.
+struct SeedWhy {
+  std::string run, seed;
+  Why why;
+};
+
+/// Over several seeds, what the failures of one run come from.
+struct CauseTally {
+  struct Count {
+    std::string words;  ///< the verdict
+    std::string note;   ///< how much the replays bear; may be empty
+    double n = 0.0;     ///< of those explained
+    Interval interval;
+  };
+  std::string run;
+  double failed = 0.0, explained = 0.0;
+  std::vector<Count> counts;
+};
+
 /// One run's summary and whatever of its epochs and clouds the directory holds.
 struct Run {
   std::string fidelity, gnss, imu, outcome;
@@ -206,7 +225,9 @@ struct Results {
   SceneDrawing drawing;
   MapGrid grid;  ///< over the scene; the clouds' cells
   std::vector<Run> runs;
-  std::vector<TwoByTwo> two_by_two;  ///< one for each filter; empty where the mixed runs were not made
+  std::vector<SeedWhy> further_why;     ///< where it was asked for, in the order of why.json
+  std::vector<CauseTally> cause_tally;  ///< where that was over several seeds
+  std::vector<TwoByTwo> two_by_two;     ///< one for each filter; empty where the mixed runs were not made
   std::string hash;
   double wall_s = 0.0, cpu_s = 0.0, peak_memory_mb = 0.0, threads = 0.0;
   std::string version, commit, command_line, instruction_set, scene_hash;  ///< of manifest.json

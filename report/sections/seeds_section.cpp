@@ -7,6 +7,7 @@
 #include "canyon/report/read/run_story.h"
 #include "canyon/report/sections/figures.h"
 #include "canyon/report/sections/sections.h"
+#include "canyon/report/sections/why_details.h"
 
 namespace canyon::report {
 namespace {
@@ -106,6 +107,33 @@ std::string medians(const Results& results) {
          scrolled("Medians over seeds", "figures", body + "</tbody>");
 }
 
+/// What failures over seeds come from; of each that the verdict above does not speak of its own account.
+std::string causes(const Results& results) {
+  std::string body =
+      "<thead><tr><th scope=\"col\" class=\"text\">run</th><th scope=\"col\" class=\"text\">verdict</th><th "
+      "scope=\"col\">failures</th><th scope=\"col\">share</th><th scope=\"col\">95 % "
+      "interval</th></tr></thead>\n<tbody>";
+  std::vector<std::string> explained;
+  for (const CauseTally& tally : results.cause_tally) {
+    explained.push_back(show_count(tally.explained) + " of " + count_of(tally.failed, "failure", "failures") +
+                        " of run " + tally.run);
+    for (const CauseTally::Count& count : tally.counts)
+      body += "<tr><th scope=\"row\">" + tag_of(results, tally.run) + "</th><td class=\"text\">" +
+              escape_html(count.words) +
+              (count.note.empty() ? "" : "<span class=\"def\">" + escape_html(count.note) + "</span>") + "</td><td>" +
+              show_count(count.n) + " of " + show_count(tally.explained) + "</td><td>" +
+              show_share(count.n / tally.explained) + "</td><td>" + show_share(count.interval.low) + " to " +
+              show_share(count.interval.high) + "</td></tr>\n";
+  }
+  std::string out = "<h3>What failures come from</h3>\n<p>Explained by replays: " + escape_html(listed(explained)) +
+                    ", the first ones by seed. What is said of seed " + escape_html(results.over_seeds->first) +
+                    " stands with its verdict, of the others beneath.</p>\n" +
+                    scrolled("What failures come from", "shares", body + "</tbody>");
+  for (const SeedWhy& further : results.further_why)
+    out += why_details(further.why, further.run + ", seed " + further.seed + ": " + further.why.verdict + ".");
+  return out;
+}
+
 }  // namespace
 
 std::string seeds_section(const Results& results) {
@@ -119,6 +147,7 @@ std::string seeds_section(const Results& results) {
                                "Newcombe\xE2\x80\x99s; p is McNemar\xE2\x80\x99s, exact.";
   std::string body;
   if (!over.shares.empty()) body += shares(results);
+  if (!results.cause_tally.empty()) body += causes(results);
   if (!over.paired.empty()) body += differences(results);
   if (!over.medians.empty()) body += medians(results);
   return section("seeds", "Over " + show_count(over.count) + " seeds", intro, body);

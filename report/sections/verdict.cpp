@@ -7,6 +7,7 @@
 #include "canyon/report/format.h"
 #include "canyon/report/read/run_story.h"
 #include "canyon/report/sections/sections.h"
+#include "canyon/report/sections/why_details.h"
 
 namespace canyon::report {
 namespace {
@@ -205,21 +206,8 @@ std::string open_loop_section(const Results& results) {
 
 /// What replays say of why it failed.
 std::string why_of(const Why& why) {
-  std::string body = "<p class=\"more\"><strong>Why:</strong> " + escape_html(why.verdict) +
-                     ".</p>\n<details class=\"more\"><summary>" +
-                     "Chain of events, and what each removal does</summary>\n<ul>\n";
-  for (const std::string& line : why.chain) body += "<li>" + escape_html(line) + "</li>\n";
-  body +=
-      "</ul>\n<table><thead><tr><th scope=\"col\" class=\"text\">taken away</th><th scope=\"col\">succeeds</th><th "
-      "scope=\"col\">difference, 95 %</th><th scope=\"col\">p</th></tr></thead>\n<tbody><tr><th scope=\"row\">nothing, "
-      "other noise</th><td>" +
-      show_count(why.successes_as_it_was) + " of " + show_count(why.draws) + "</td><td></td><td></td></tr>\n";
-  for (const Why::Removal& removal : why.removals)
-    body += "<tr><th scope=\"row\">" + escape_html(removal.name) + "</th><td>" + show_count(removal.successes) +
-            " of " + show_count(why.draws) + "</td><td>" + show_number(100.0 * removal.difference.low, 2) + " to " +
-            show_number(100.0 * removal.difference.high, 2) + " %</td><td>" + show_number(removal.p, 2) +
-            (removal.rescues ? ", rescues" : "") + "</td></tr>\n";
-  return body + "</tbody></table>\n</details>\n";
+  return "<p class=\"more\"><strong>Why:</strong> " + escape_html(why.verdict) + ".</p>\n" +
+         why_details(why, "Chain of events, and what each removal does");
 }
 
 }  // namespace

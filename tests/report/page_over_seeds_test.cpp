@@ -10,6 +10,7 @@ namespace {
 
 using canyon::testing::edit_json;
 using canyon::testing::section;
+using canyon::testing::store;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -53,6 +54,42 @@ TEST_F(PageOverSeeds, SharesDifferencesAndMediansAreShown) {
   EXPECT_THAT(seeds, HasSubstr("<td>0.0039</td><td>10</td>"));
   EXPECT_THAT(seeds, HasSubstr("<td>8.50<span class=\"def\">5.00 to 12.0</span></td>"));
   EXPECT_EQ(html.find("show run low", html.find("show run low") + 1), std::string::npos);
+}
+
+// The first seed's explanation stands with its run's verdict, those of the others stand here, and all are counted.
+TEST_F(PageOverSeeds, WhatFailuresComeFromIsCountedAndToldSeedBySeed) {
+  edit_json(file("summary.json"),
+            [](auto& json) { study::write_over_seeds(study::over_seeds(ten_seeds(false)), json); });
+  EXPECT_THAT(section(page(), "seeds"), Not(HasSubstr("What failures come from")));
+  store(file("why.json"), R"({"failures": [
+    {"run": "high", "seed": 42, "verdict": "of the first <seed>", "chain": [], "draws": 12, "success_as_it_was": 0,
+     "removals": []},
+    {"run": "high", "seed": 43, "verdict": "because of <something>", "chain": ["3.0 s: no <fix>"], "draws": 12,
+     "success_as_it_was": 1, "removals": [
+       {"removal": "imu", "success": 11, "p": 0.001, "low": 0.4, "high": 0.95, "rescues": true}]}],
+    "tally": [{"run": "high", "failed": 9, "explained": 2, "verdicts": [
+      {"verdict": "imu", "words": "because of <something>", "n": 1, "low": 0.0945, "high": 0.9055},
+      {"verdict": "not_navigation", "words": "navigation is not to blame", "n": 1, "low": 0.0945, "high": 0.9055,
+       "note": "in 0 of <12>"}]}]})");
+  const std::string html = page(), verdict = section(html, "verdict"), seeds = section(html, "seeds");
+  EXPECT_THAT(verdict, HasSubstr("<strong>Why:</strong> of the first &lt;seed&gt;."));
+  EXPECT_THAT(verdict, Not(HasSubstr("because of")));
+  EXPECT_THAT(seeds, HasSubstr("Explained by replays: 2 of 9\xC2\xA0"
+                               "failures of run high, the first ones by seed."));
+  EXPECT_THAT(seeds, HasSubstr("<td class=\"text\">because of &lt;something&gt;</td><td>1 of 2</td>"));
+  EXPECT_THAT(seeds,
+              HasSubstr("navigation is not to blame<span class=\"def\">in 0 of &lt;12&gt;</span></td><td>1 of 2"));
+  EXPECT_THAT(seeds, HasSubstr("<summary>high, seed 43: because of &lt;something&gt;.</summary>"));
+  EXPECT_THAT(seeds, HasSubstr("<li>3.0 s: no &lt;fix&gt;</li>"));
+  EXPECT_THAT(seeds, HasSubstr("<td>11 of 12</td>"));
+  EXPECT_THAT(seeds, Not(HasSubstr("of the first")));
+
+  store(file("why.json"),
+        R"({"failures": [], "tally": [{"run": "nobody", "failed": 1, "explained": 1, "verdicts": []}]})");
+  EXPECT_EQ(error(), "why.json:1: tally[0].run: no run \"nobody\", expected a run of summary.json");
+  store(file("why.json"), R"({"failures": [], "tally": [{"run": "high", "failed": 1, "explained": 1, "verdicts": [
+    {"verdict": "imu", "words": "", "n": 1, "low": 0.2, "high": 1.5}]}]})");
+  EXPECT_EQ(error(), "why.json:2: tally[0].verdicts[0].high: number 1.5, expected a share between 0 and 1");
 }
 
 TEST_F(PageOverSeeds, AnOpenLoopHasNoShares) {
