@@ -16,7 +16,6 @@
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/report/html_report.h"
-#include "canyon/study/causes/causes.h"
 #include "canyon/study/plan/follow.h"
 #include "canyon/study/results/over_seeds.h"
 #include "canyon/study/results/results.h"
@@ -28,10 +27,9 @@ namespace canyon::apps {
 namespace {
 
 constexpr const char* kMakePlan = "make";
-constexpr std::int64_t kWhyDraws = 12;
 
-void print_json(const study::Results& results, const std::vector<study::Explanation>& explanations,
-                const std::string& directory, const std::string& hash) {
+void print_json(const study::Results& results, const WhyAnswer& why, const std::string& directory,
+                const std::string& hash) {
   nlohmann::ordered_json out = study::summary_json(results);
   // The contract's figures of cost stand beside the others, not under `timing`.
   const auto show_cost = [](nlohmann::ordered_json& runs) {
@@ -42,7 +40,9 @@ void print_json(const study::Results& results, const std::vector<study::Explanat
   };
   show_cost(out["runs"]);
   if (results.open_loop) show_cost(out["open_loop"]["runs"]);
-  if (!explanations.empty()) out["why"] = study::why_json(explanations)["failures"];
+  const Json explained = why_answer_json(why);
+  if (!why.explanations.empty()) out["why"] = explained["failures"];
+  if (!why.tally.empty()) out["why_tally"] = explained["tally"];
   out["seed"] = out["mission"]["seed"];
   out["results_dir"] = directory;
   out["hash"] = hash;
@@ -114,37 +114,7 @@ void declare_plan_options(Arguments& arguments, PlanOptions& options) {
                    "or what the file's plan was made for");
 }
 
-void declare_why_options(Arguments& arguments, WhyOptions& options) {
-  arguments.flag(
-      "--why", options.why,
-      "for each run that fails (of the first seed): its chain of events, and replays without each source of error, "
-      "beside replays with other noise alone: which source's removal rescues the mission");
-  arguments.option("--why-draws", options.draws, "replays with and without each source; without it 12")
-      .within(std::int64_t{10}, std::int64_t{10'000});
-}
-
 namespace {
-
-Status check_why(const WhyOptions& why, const LoopOptions& loop, const PlanOptions& leave_out) {
-  if (why.draws && !why.why)
-    return Error{.file = "--why-draws", .what = "is for replays", .expected = "--why beside it"};
-  if (why.why && loop.open_loop)
-    return Error{.file = "--why", .what = "an open loop has no outcome", .expected = "no --open-loop beside it"};
-  if (why.why && !leave_out.plan.empty())
-    return Error{.file = "--why", .what = "replays leave nothing out by a plan", .expected = "no --plan beside it"};
-  return Ok{};
-}
-
-void print_why(const std::vector<study::Explanation>& explanations) {
-  for (const study::Explanation& explanation : explanations) {
-    std::printf("Why %s failed: %s.\n", explanation.run.c_str(), study::verdict(explanation).c_str());
-    for (const std::string& line : study::chain(explanation)) std::printf("  %s\n", line.c_str());
-    for (const study::RemovalOutcome& outcome : explanation.outcomes)
-      std::printf("  without %-20s %2d of %d%s\n", outcome.removal->name, outcome.successes, explanation.draws,
-                  outcome.rescues ? "  rescues it" : "");
-    std::printf("\n");
-  }
-}
 
 Status check_plan(const PlanOptions& options, const LoopOptions& loop) {
   if (options.plan.empty() || !loop.both) return Ok{};
@@ -173,7 +143,8 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   const auto keys = figures.figures.empty() ? std::vector<std::string>() : split_list(figures.figures);
   CANYON_TRY_STATUS(study::choose_figures(keys, "--figures"));
   CANYON_TRY_STATUS(check_loop_options(loop));
-  CANYON_TRY_STATUS(check_why(why, loop, leave_out));
+  CANYON_TRY_STATUS(check_why(
+      why, {.open_loop = loop.open_loop, .plan = !leave_out.plan.empty(), .several_seeds = figures.seeds.has_value()}));
   CANYON_TRY_STATUS(check_plan(leave_out, loop));
   CANYON_TRY(auto comparison, study::prepare_comparison(file, plan));
   if (figures.seeds) CANYON_TRY_STATUS(study::check_seeds(comparison, *figures.seeds));
@@ -195,14 +166,11 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
     results.wall_s += results.open_loop->wall_s;
     results.peak_memory_mb = study::peak_memory_mb();
   }
-  std::vector<study::Explanation> explanations;
-  if (why.why) {
-    CANYON_TRY(explanations,
-               study::explain_failures(comparison, results, static_cast<int>(why.draws.value_or(kWhyDraws)),
-                                       !options.common.json));
+  CANYON_TRY(const WhyAnswer explained,
+             explain(why, figures.seeds.has_value(), comparison, results, !options.common.json));
+  if (explained.asked)
     CANYON_TRY_STATUS(
-        write_text_file(staged.staging_path() + "/why.json", json_text(study::why_json(explanations)) + "\n"));
-  }
+        write_text_file(staged.staging_path() + "/why.json", json_text(why_answer_json(explained)) + "\n"));
   results.command_line = invocation().command_line;
   results.commit = invocation().commit;
   CANYON_TRY(const std::string hash, study::write_results(staged.staging_path(), results));
@@ -212,7 +180,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
 
   print_warnings(results);
   if (options.common.json) {
-    print_json(results, explanations, staged.final_path(), hash);
+    print_json(results, explained, staged.final_path(), hash);
     return 0;
   }
   const auto& mission = *results.mission;
@@ -226,7 +194,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
                                           : study::comparison_table(results, keys);
   std::printf("%s\n", table.c_str());
   if (results.open_loop) std::printf("%s\n", study::both_loops_table(results, keys).c_str());
-  print_why(explanations);
+  print_why(explained);
   const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();
   std::printf("Driven in %.1f s.\nResults: %s\nReport:  %s\n", results.wall_s, place.c_str(),
               (place / "report.html").c_str());

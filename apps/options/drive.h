@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "canyon/apps/options/mission_options.h"
+#include "canyon/apps/options/why_options.h"
 #include "canyon/study/compare.h"
 
 namespace canyon::apps {
@@ -35,13 +36,6 @@ struct PlanOptions {
   std::string outputs;  ///< that somebody will read; empty: not said
 };
 void declare_plan_options(Arguments& arguments, PlanOptions& options);
-
-/// Whether failed runs are explained by replays (study/causes/causes.h).
-struct WhyOptions {
-  bool why = false;
-  std::optional<std::int64_t> draws;  ///< replays of each kind; none: 10
-};
-void declare_why_options(Arguments& arguments, WhyOptions& options);
 
 /// Drives the planned runs, writes results directory and report, prints the table or --json: what compare and run
 /// share.

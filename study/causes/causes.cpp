@@ -7,6 +7,7 @@
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/mission/run.h"
+#include "canyon/study/causes/failed_runs.h"
 
 namespace canyon::study {
 namespace {
@@ -20,6 +21,19 @@ mission::Omissions unread(const mission::MissionConfig& config, bool told) {
   mission::Omissions more = omissions;
   more.registration = more.keyframes = true;
   return can_leave_out(config, more) ? more : omissions;
+}
+
+/// One failed run and what is known of it.
+struct Failed {
+  std::size_t run;  ///< of the comparison
+  Explanation explanation;
+};
+
+/// Its configuration: all seeds have the comparison's but for the seed.
+mission::MissionConfig config_of(const Comparison& comparison, const Failed& failed) {
+  mission::MissionConfig config = comparison.configs[failed.run];
+  config.run.seed = failed.explanation.seed;
+  return config;
 }
 
 /// Drives one run of a comparison without recording anything but what `recorder` wants.
@@ -40,16 +54,17 @@ Result<mission::RunRecord> drive(const Comparison& comparison, std::size_t run, 
 }
 
 /// One replay; `removal` may be null: nothing taken away. True: success.
-Result<bool> replay(const Comparison& comparison, std::size_t run, const Removal* removal, double from_s, int draw,
+Result<bool> replay(const Comparison& comparison, const Failed& failed, const Removal* removal, int draw,
                     Progress& progress) {
-  mission::MissionConfig config = comparison.configs[run];
-  mission::LaterParts later{.config = config, .from_s = from_s, .noise_seed = 0};
-  // Any number that no run has as its seed: those end at 9e15.
+  mission::MissionConfig config = config_of(comparison, failed);
+  mission::LaterParts later{.config = config, .from_s = failed.explanation.from_s, .noise_seed = 0};
+  // Any number that no run has as its seed: those end at 9e15. Of seeds beside one another the draws differ, up to a
+  // thousand of each.
   constexpr std::uint64_t kBeyondSeeds = 10'000'000'000'000'000u;
   later.noise_seed =
       kBeyondSeeds + static_cast<std::uint64_t>(config.run.seed) * 1000u + static_cast<std::uint64_t>(draw);
   if (removal != nullptr) removal->remove(removal->from_start ? config : later.config);
-  CANYON_TRY(const auto record, drive(comparison, run, std::move(config), nullptr, &later, progress));
+  CANYON_TRY(const auto record, drive(comparison, failed.run, std::move(config), nullptr, &later, progress));
   return record.outcome == mission::Outcome::kSuccess;
 }
 
@@ -87,11 +102,27 @@ void judge(Explanation& explanation) {
   if (cause != nullptr) explanation.cause = cause->removal;
 }
 
-/// One failed run and what is known of it.
-struct Failed {
-  std::size_t run;  ///< of the comparison
-  Explanation explanation;
-};
+/// Drives each again, to see its events and where its replays begin to differ.
+Status see_events(const Comparison& comparison, std::vector<Failed>& failed, Progress& progress) {
+  std::vector<std::optional<Error>> errors(failed.size());
+  parallel_for(failed.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      RunEvents events;
+      const auto record =
+          drive(comparison, failed[i].run, config_of(comparison, failed[i]), &events, nullptr, progress);
+      if (!record) {
+        errors[i] = record.error();
+        continue;
+      }
+      Explanation& explanation = failed[i].explanation;
+      explanation.events = events.events();
+      explanation.from_s = chain_start_s(explanation.events, explanation.failure.t_s);
+    }
+  });
+  for (const auto& error : errors)
+    if (error) return *error;
+  return Ok{};
+}
 
 /// Drives the replays of each from its from_s on, and judges.
 Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress& progress) {
@@ -105,7 +136,7 @@ Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress&
       const Failed& of = failed[i / each];
       const std::size_t arm = i % each / draws;
       const Removal* removal = arm == 0 ? nullptr : &rows[arm - 1].make;
-      auto result = replay(comparison, of.run, removal, of.explanation.from_s, static_cast<int>(i % draws), progress);
+      auto result = replay(comparison, of, removal, static_cast<int>(i % draws), progress);
       if (result)
         success[i] = *result ? 1 : 0;
       else
@@ -148,7 +179,7 @@ std::vector<bool> holm(const std::vector<double>& p, double level) {
 }
 
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
-                                                  bool show_progress) {
+                                                  bool show_progress, std::optional<std::int64_t> most_seeds) {
   std::vector<Failed> failed;
   const auto each = (removals().size() + 1) * static_cast<std::size_t>(draws);
   const auto replays_s = [&](const std::vector<Failed>& of) {
@@ -156,24 +187,18 @@ Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, 
     for (const Failed& f : of) sum_s += static_cast<double>(each) * comparison.missions[f.run].nominal_s;
     return sum_s;
   };
-  for (std::size_t i = 0; i < results.records.size(); ++i) {
-    if (!results.records[i].failure || results.records[i].outcome == mission::Outcome::kStopped) continue;
+  for (FailedRun& run : failed_runs(results, most_seeds)) {
     Explanation explanation;
-    explanation.run = comparison.plan[i].name;
-    explanation.seed = comparison.configs[i].run.seed;
-    explanation.failure = *results.records[i].failure;
+    explanation.run = comparison.plan[run.run].name;
+    explanation.seed = run.seed;
+    explanation.failure = std::move(run.failure);
     explanation.draws = draws;
-    failed.push_back({i, std::move(explanation)});
+    failed.push_back({run.run, std::move(explanation)});
   }
   if (failed.empty()) return std::vector<Explanation>();
   Progress progress("driving " + std::to_string(failed.size() * each) + " replays of what failed", replays_s(failed),
                     show_progress);
-  for (auto& [run, explanation] : failed) {
-    RunEvents events;
-    CANYON_TRY_STATUS(drive(comparison, run, comparison.configs[run], &events, nullptr, progress));
-    explanation.events = events.events();
-    explanation.from_s = chain_start_s(explanation.events, explanation.failure.t_s);
-  }
+  CANYON_TRY_STATUS(see_events(comparison, failed, progress));
   CANYON_TRY_STATUS(look(comparison, failed, progress));
 
   // Where no one error is to blame from there on, it may have been at work before, as a drift is.

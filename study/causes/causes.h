@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,10 +44,12 @@ struct Explanation {
 /// Holm's correction over all removals (S. Holm, Scand. J. Stat. 6 (1979) 65). Closed loops are chaotic: without the
 /// paired redraws, any perturbation might rescue. Where no one error is named from the chain's beginning on, a second
 /// look takes sources away from the start on, for what had been at work before, as a drift has; each look has 2.5 %, so
-/// that where nothing helps something is named in 5 % at most. Explained are the runs in `results`, of the comparison's
-/// own seed.
+/// that where nothing helps something is named in 5 % at most. Explained are the failed_runs() in `results`, which may
+/// have several seeds, by seed; with `most_seeds` no more than so many of each run, the first ones. What is said of one
+/// run and seed depends on no other.
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
-                                                  bool show_progress);
+                                                  bool show_progress,
+                                                  std::optional<std::int64_t> most_seeds = std::nullopt);
 
 /// Which of several one-sided p are significant together at `level` (Holm 1979).
 std::vector<bool> holm(const std::vector<double>& p, double level);

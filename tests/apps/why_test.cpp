@@ -46,6 +46,7 @@ TEST_F(WhyTest, AMissionThatNobodyCouldFinishIsNotBlamedOnNavigation) {
     EXPECT_EQ(removal["rescues"], false);
   }
   EXPECT_THAT(read("stdout"), HasSubstr(" s: it got stuck (stood still for 5.0 s)\n"));
+  EXPECT_FALSE(why.contains("tally")) << "of one seed there is nothing to count";
   EXPECT_THAT(read("out/report.html"), HasSubstr("navigation is not to blame. Told its true position it succeeds in 0 "
                                                  "of 10 repeats, so in at most 28 % of such drives (95 %); "));
   // The same question again, on another number of threads: the same answer.
@@ -91,6 +92,12 @@ TEST_F(WhyTest, Mistakes) {
                  "--why: replays leave nothing out by a plan, expected no --plan beside it\n");
   expect_mistake("compare mission.toml --why --why-draws 9 --out out",
                  "--why-draws: \"9\", expected a whole number from 10 to 10000\n");
+  expect_mistake("compare mission.toml --seeds 2 --why --why-seeds 0 --out out",
+                 "--why-seeds: \"0\", expected a whole number from 1 to 100000\n");
+  expect_mistake("compare mission.toml --seeds 2 --why-seeds 1 --out out",
+                 "--why-seeds: is for replays, expected --why beside it\n");
+  expect_mistake("compare mission.toml --why --why-seeds 1 --out out",
+                 "--why-seeds: is for failures of several seeds, expected --seeds beside it\n");
   EXPECT_FALSE(std::filesystem::exists(path("out")));
 }
 
