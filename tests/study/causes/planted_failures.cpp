@@ -76,15 +76,31 @@ lidar.rate_hz = 5.0
 )";
 // Somebody who stands 0.75 m to the right of the lane's middle: body and person together are 1.0 m wide to either side,
 // so that the vehicle hits from 0.25 m left of the middle to 1.75 m right of it. Whoever knows where it is hits;
-// whoever errs passes on about every third draw, by the sign of its error: 0.31 to 0.38 for fixes of 2 to 8 m (a filter
-// of position, velocity and heading across the street, as sure at the start as this one).
+// whoever errs may pass, by the sign of its error: of draws 0.34 to 0.47 for fixes that err across the street by 1 to 2
+// m, for some two seconds alike (a filter of position, velocity, heading, tilt and bias, as sure at the start as this
+// one). So nothing that is taken away helps, and each is at work: six or seven of eight satellites are in sight here,
+// one of them beside its reflection; the unit errs by its datasheet, the start is askew by less than the filter allows
+// for. Who drives takes for a wall what is 1.8 m high within a cell. A person of 1.75 m it sees only where its height
+// has moved by the rest within its memory: on its true height it would hit that one too.
 constexpr const char* kBesideTheMiddle = R"(
-gnss.model = "truth_plus_white"
-gnss.white_sigma_m = 4.0
-autonomy.waypoint = [{name = "goal", p_m = [213.9, 105.0]}]
-scene.moving = [{name = "somebody", shape = "person", path_m = [214.65, 90.0, 214.65, 91.0], start_s = 1e5}]
-lidar.azimuth_steps = 90
+vehicle.start_m = [112.9, -146.0]
+autonomy.waypoint = [{name = "goal", p_m = [112.9, -78.0]}]
+scene.moving = [{name = "somebody", shape = "person", path_m = [113.65, -91.0, 113.65, -90.0], start_s = 1e5}]
+gnss.paths = "specular1"
+gnss.thermal_noise_scale = 2.0
+gnss.solver_sigma_m = 2.0
+imu.errors = "datasheet"
+run.initial_attitude_error_deg = [0.02, 0.02, 0.3]
+autonomy.model = "reference_2012"
+autonomy.max_offset_m = 1.5
+autonomy.choice.horizon_m = 12.0
+autonomy.grid.half_size_m = 15.0
+autonomy.grid.obstacle_step_m = 1.8
+lidar.azimuth_steps = 360
+lidar.rate_hz = 5.0
 success.waypoint_radius_m = 6.0
+success.limit_factor = 3.0
+success.stuck_after_s = 10.0
 )";
 
 }  // namespace
@@ -199,7 +215,7 @@ const std::vector<Plant>& plants_of_chance() {
   using Kind = Plant::Kind;
   static const std::vector<Plant> all{
       // The true pose never passes: who asked for a difference, not for help, would name navigation each time.
-      {"somebody whom only an error passes by", {}, Kind::kNone, {kAligned, kBesideTheMiddle}},
+      {"somebody whom only an error passes by", {}, Kind::kNone, {kReceiver, kBesideTheMiddle}},
   };
   return all;
 }

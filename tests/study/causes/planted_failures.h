@@ -18,8 +18,8 @@ struct Plant {
 };
 /// Those of kNone fail whatever is drawn and whatever is taken away: a cause is hardly named of them by mistake.
 const std::vector<Plant>& plants();
-/// Failures that no source of navigation is to blame for and that hang on the draws, so that some redraws succeed and
-/// a removal, whatever it is of, may seem to rescue.
+/// Failures that no source of navigation is to blame for and that hang on the draws, so that some redraws succeed. Each
+/// removal changes what comes of some of them, and may so seem to rescue.
 const std::vector<Plant>& plants_of_chance();
 
 /// The drive with a plant and a seed. All but the plant is as good as perfect.
