@@ -4,20 +4,27 @@
 namespace canyon::mission::testing {
 namespace {
 
+/// Drives them among whatever may stand in the lane; what was drawn for them.
+std::set<std::string> all_succeed(std::uint64_t from, std::uint64_t to, const char* planner) {
+  std::set<std::string> drawn;
+  for (std::uint64_t number = from; number < to; ++number) {
+    const RandomMission mission(number, planner, Standing::kAll);
+    drawn.insert(mission.drawn().begin(), mission.drawn().end());
+    EXPECT_EQ(drive_random(mission), "success") << number << " " << planner;
+  }
+  return drawn;
+}
+
 TEST(RandomMissions, OnTruthAHandfulSucceed) {
-  for (std::uint64_t number = 1; number <= 3; ++number)
-    for (const char* planner : {"offsets", "hybrid_a_star"})
-      EXPECT_EQ(drive_random(number, planner), "success") << number << " " << planner;
+  for (const char* planner : {"offsets", "hybrid_a_star"}) all_succeed(1, 5, planner);
 }
 
 TEST(RandomMissionsNightly, OnTruthTwoHundredSucceed) {
-  for (std::uint64_t number = 1; number <= 200; ++number)
-    EXPECT_EQ(drive_random(number, "offsets"), "success") << number;
+  EXPECT_EQ(all_succeed(1, 201, "offsets"), whatever_stands());
 }
 
 TEST(RandomMissionsNightly, OnTruthTwoHundredSucceedByASearch) {
-  for (std::uint64_t number = 1; number <= 200; ++number)
-    EXPECT_EQ(drive_random(number, "hybrid_a_star"), "success") << number;
+  EXPECT_EQ(all_succeed(1, 201, "hybrid_a_star"), whatever_stands());
 }
 
 // 2026-11-23: it drove into the car before it. Standing so near, its lowest beam passes over the boot.
