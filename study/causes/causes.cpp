@@ -124,6 +124,12 @@ Status see_events(const Comparison& comparison, std::vector<Failed>& failed, Pro
   return Ok{};
 }
 
+/// What acts at the start alone can only be taken away there; a run that goes its own way from the start on is no
+/// replay of one that failed later, whatever it was that went.
+bool asked(const Removal& removal, const Failed& failed) {
+  return !removal.from_start || failed.explanation.from_s <= 0.0;
+}
+
 /// Drives the replays of each from its from_s on, and judges.
 Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress& progress) {
   const auto rows = removals();
@@ -136,6 +142,7 @@ Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress&
       const Failed& of = failed[i / each];
       const std::size_t arm = i % each / draws;
       const Removal* removal = arm == 0 ? nullptr : &rows[arm - 1].make;
+      if (removal != nullptr && !asked(*removal, of)) continue;
       auto result = replay(comparison, of, removal, static_cast<int>(i % draws), progress);
       if (result)
         success[i] = *result ? 1 : 0;
@@ -153,8 +160,10 @@ Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress&
     Explanation& explanation = failed[k].explanation;
     const std::vector<bool> as_it_was = arm(0);
     explanation.successes_as_it_was = static_cast<int>(std::count(as_it_was.begin(), as_it_was.end(), true));
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      explanation.outcomes.push_back(compare_replays(rows[r], as_it_was, arm(r + 1)));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      if (asked(rows[r].make, failed[k]))
+        explanation.outcomes.push_back(compare_replays(rows[r], as_it_was, arm(r + 1)));
+    }
     judge(explanation);
   }
   return Ok{};
