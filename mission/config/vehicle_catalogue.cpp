@@ -161,10 +161,13 @@ Status lay_vehicle_below(ConfigNode& tree, const ConfigNode& over) {
   const ConfigNode* named = over.find("vehicle.preset");
   const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->value_);
   if (name == nullptr || name->empty()) return Ok{};
-  const auto sheet = load_vehicle(from_its_folder(*named, *name));
+  const std::string vehicle = from_its_folder(*named, *name);
+  const auto sheet = load_vehicle(vehicle);
   if (!sheet) {
     const Error& error = sheet.error();
-    return error.file.empty() ? named->error(error.key, error.what, error.expected) : error;
+    if (error.file.empty()) return named->error(error.key, error.what, error.expected);
+    const bool unreadable = error.line == 0 && error.key.empty();
+    return unreadable ? named->error("vehicle.preset", "\"" + vehicle + "\" " + error.what, error.expected) : error;
   }
   ConfigNode below;
   below.value_ = ConfigNode::Table{{"vehicle", sheet->figures}};

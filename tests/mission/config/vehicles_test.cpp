@@ -1,10 +1,14 @@
 // A vehicle of the catalogue in a mission.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "canyon/core/config/config.h"
+#include "canyon/core/process/embedded.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/config/vehicle_catalogue.h"
 #include "canyon/mission/motion/plan/dynamic_bicycle.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::mission {
 namespace {
@@ -47,6 +51,56 @@ TEST(MissionVehicles, WhatStandsBesideTheNameOverrides) {
   EXPECT_EQ(config->vehicle.model.own.get<DynamicBicycleParameters>().tyre_friction, 0.3);
   EXPECT_EQ(config->vehicle.wheelbase_m, 2.578);
   EXPECT_EQ(config->vehicle.start_m, with_vehicle("")->vehicle.start_m) << "the mission's own";
+}
+
+/// A folder with a mission that names a vehicle's file beside it, and that file: the Husky's with one text replaced.
+struct MissionWithVehicle {
+  MissionWithVehicle(const std::string& named, const std::string& replaced, const std::string& by) {
+    std::string vehicle(*embedded_file("mission/vehicles/husky_a200.toml"));
+    vehicle.replace(vehicle.find(replaced), replaced.size(), by);
+    canyon::testing::write(folder.file("mine.toml"), vehicle);
+    canyon::testing::write(folder.file("m.toml"), "base = \"vicksburg\"\n[vehicle]\npreset = \"" + named +
+                                                      "\"\nwidth_m = 0.75\n[scene]\nempty = true\n[autonomy]\n"
+                                                      "cruise_m_s = 0.8\n");
+  }
+  Result<MissionConfig> config() const {
+    const auto file = MissionFile::load(folder.file("m.toml"));
+    if (!file.ok()) return file.error();
+    return file->resolve("low");
+  }
+  canyon::testing::TemporaryFolder folder;
+};
+
+TEST(MissionVehicles, AFileBesideTheMissionIsAVehicleToo) {
+  const MissionWithVehicle mine("mine.toml", "\nwheelbase_m = 0.512\n", "\nwheelbase_m = 0.6\n");
+  const auto config = mine.config();
+  ASSERT_TRUE(config.ok()) << config.error().str();
+  EXPECT_EQ(config->vehicle.model.name, "skid_steer");
+  EXPECT_EQ(config->vehicle.wheelbase_m, 0.6) << "its own";
+  EXPECT_EQ(config->vehicle.length_m, 0.99) << "the Husky's";
+  EXPECT_EQ(config->vehicle.width_m, 0.75) << "what stands beside its name";
+  EXPECT_EQ(config->vehicle.start_m, with_vehicle("")->vehicle.start_m) << "the mission's own";
+  SceneCache scenes;
+  const auto mission = prepare(*config, scenes);
+  ASSERT_TRUE(mission.ok()) << mission.error().str();
+  const std::string path = mine.folder.file("mine.toml");
+  EXPECT_TRUE(std::any_of(mission->files.begin(), mission->files.end(), [&](const InputFile& file) {
+    return file.path == path;
+  })) << "it is among the files that the manifest lists";
+}
+
+TEST(MissionVehicles, AWrongFileBesideTheMissionIsToldWithItsPlace) {
+  const MissionWithVehicle absent("yours.toml", "\nwheelbase_m = ", "\nwheelbase_m = ");
+  EXPECT_EQ(absent.config().error().str(),
+            absent.folder.file("m.toml") + ":3: vehicle.preset: \"" + absent.folder.file("yours.toml") +
+                "\" cannot be read (No such file or directory), expected a readable file");
+}
+
+TEST(MissionVehicles, AMistakeInAFileBesideTheMissionIsToldWithItsLine) {
+  const MissionWithVehicle misspelt("mine.toml", "\nwheelbase_m = ", "\nweelbase_m = ");
+  EXPECT_EQ(
+      misspelt.config().error().str(),
+      misspelt.folder.file("mine.toml") + ":31: weelbase_m: is not a figure of a vehicle, expected \"wheelbase_m\"?");
 }
 
 TEST(MissionVehicles, MistakesAreOneLineEach) {
