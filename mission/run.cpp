@@ -196,6 +196,7 @@ bool MissionRun::score() {
   const bool on_purpose = state == AutonomyState::kObserving || state == AutonomyState::kDone;
   const bool go_on = clock_.charge(Part::kScoring, [&] {
     scorer_.follow(node.motion, node.speed_m_s, command_, state, answers_.next_waypoint);
+    scorer_.follow_lane(node.motion, [&] { return as_told(estimate(node.motion.t)).X_WB.p; });
     return scorer_.step(node.motion, node.speed_m_s, source_->on_terrain(), on_purpose);
   });
   return go_on && state != AutonomyState::kDone;
@@ -209,6 +210,7 @@ Result<RunRecord> MissionRun::finish() {
     record_.failure = scorer_.failure();
     record_.waypoints = scorer_.waypoints();
     record_.encounters = scorer_.encounters();
+    record_.needless_lane_departures = scorer_.needless_lane_departures();
   }
   while (!fixes_.empty()) CANYON_TRY_STATUS(record_fix());  // the filter did not come there any more
   record_.simulated_s = elapsed_s();

@@ -34,7 +34,8 @@ struct RunRecord {
   std::optional<Outcome> outcome;  ///< none in an open loop
   std::optional<Failure> failure;
   std::vector<WaypointScore> waypoints;
-  Encounters::Numbers encounters;  ///< nothing in an open loop
+  Encounters::Numbers encounters;    ///< nothing in an open loop
+  int needless_lane_departures = 0;  ///< the same
 
   Pose initial_X_WB;  ///< what the filter started from
   Eigen::Vector3d initial_v_WB_W = Eigen::Vector3d::Zero();

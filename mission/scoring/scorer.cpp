@@ -31,6 +31,7 @@ Scorer::Scorer(const MissionConfig& config, const PreparedMission& mission, cons
       collision_(
           model_row(collision_checks(), config_.collision.name).make(config_.collision.own, config.vehicle, scene)),
       encounters_(config_, config.vehicle, scene),
+      departures_(config.vehicle, mission.prior.route, scene),
       last_t_(mission.start) {
   for (const Waypoint& place : places_) {
     waypoints_.push_back({.name = place.name, .mission = place.is_mission()});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/mission/motion/vehicle.h"
 #include "canyon/mission/scoring/encounters.h"
+#include "canyon/mission/scoring/lane_departures.h"
 #include "canyon/mission/scoring/outcome.h"
 #include "canyon/mission/scoring/sightings.h"
 #include "canyon/scene/scene_at.h"
@@ -52,6 +54,10 @@ class Scorer {
   /// What the autonomy takes for the next waypoint, 0-based, and what it does, at every step.
   void follow(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state,
               int next_waypoint);
+  /// Whether it keeps to its lane, at every step (LaneDepartures).
+  void follow_lane(const KinematicState& truth, const std::function<Eigen::Vector3d()>& believed_W) {
+    departures_.look(truth, believed_W);
+  }
   /// What a scan's returns were off.
   void scan(GpsTime t, const std::vector<LidarPointTruth>& returns) {
     if (!first_scan_) first_scan_ = t;
@@ -67,6 +73,7 @@ class Scorer {
   const std::optional<Failure>& failure() const { return failure_; }
   const std::vector<WaypointScore>& waypoints() const { return waypoints_; }
   const Encounters::Numbers& encounters() const { return encounters_.numbers(); }
+  int needless_lane_departures() const { return departures_.needless(); }
   bool phantom() const { return encounters_.phantom(); }  ///< as of Encounters, now
   Outcome outcome() const { return failure_ ? failure_->kind : Outcome::kSuccess; }
 
@@ -88,6 +95,7 @@ class Scorer {
   std::optional<Failure> failure_;
   std::unique_ptr<CollisionCheck> collision_;
   Encounters encounters_;
+  LaneDepartures departures_;
   Sightings sightings_;
   std::optional<GpsTime> first_scan_;
   GpsTime last_t_;

@@ -78,6 +78,9 @@ constexpr Figure timing(Figure figure) {
 
 static_assert(lidar::kMapErrorCap_m == 5.0, "the words below say 5 m");
 static_assert(mission::Encounters::kFar_m == 3.0, "the words below say 3 m");
+static_assert(mission::LaneDepartures::kBeside_m == 0.5 && mission::LaneDepartures::kClear_m == 1.0 &&
+                  mission::LaneDepartures::kAhead_m == 30.0 && mission::LaneDepartures::kBack_m == 30.0,
+              "the words below say 0.5 m, 1 m and 30 m");
 
 constexpr const char *kMission = "Mission", *kPosition = "Position error", *kAttitude = "Attitude error",
                      *kSky = "Satellites", *kMap = "Registration and map", *kCost = "Cost";
@@ -111,7 +114,11 @@ constexpr auto kFigures = std::to_array<Figure>({
      "times that a thing was nearer than [success] near_miss_m to the true body, without being touched"},
     {kMission, "phantoms_per_km", "1/km", "phantoms", kLower, kQuantity, 2,
      [](const Run& r) { return if_driven(r, r.per_km(r.encounters.phantoms)); },
-     "times that the autonomy found no way with [success] phantom_free_m ahead of the true body free; one that it only steers around does not show here"},
+     "times that the autonomy found no way with [success] phantom_free_m ahead of the true body free; one that it only steers around is a needless lane departure"},
+    {kMission, "needless_lane_departures_per_km", "1/km", "needless lane departures", kLower, kQuantity, 2,
+     [](const Run& r) { return if_driven(r, r.per_km(r.needless_lane_departures)); },
+     "times that the true vehicle was more than 0.5 m beside its route, beyond what the error of its pose explains, with nothing within 1 m of "
+     "the body's way along it for 30 m ahead, nor over the 30 m before: a phantom steered around, or a lane put elsewhere by what is seen of the street"},
     {kMission, "missed_obstacles_per_km", "1/km", "missed obstacles", kLower, kQuantity, 2,
      [](const Run& r) { return if_driven(r, r.per_km(r.encounters.missed_obstacles)); },
      "times that a thing lay on the arc truly driven, nearer than full braking stops, and no less speed was asked for"},

@@ -54,6 +54,7 @@ Result<RunSummary> summarize(const mission::RunRecord& record, const RunStatisti
     out.believed_not_reached += waypoint.believed && !waypoint.reached ? 1 : 0;
   }
   out.encounters = record.encounters;
+  out.needless_lane_departures = record.needless_lane_departures;
   out.duration_s = record.simulated_s;
   out.distance_m = record.distance_m;
   CANYON_TRY_STATUS(statistics.fill(out, record.registers()));

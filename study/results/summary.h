@@ -25,6 +25,7 @@ struct RunSummary {
   int waypoints_reached = 0, mission_waypoints_reached = 0;
   int believed_not_reached = 0;  ///< waypoints that the autonomy took for reached
   mission::Encounters::Numbers encounters;
+  int needless_lane_departures = 0;
   double duration_s = 0, distance_m = 0;
 
   ErrorStatistics position_m, east_m, north_m, up_m;

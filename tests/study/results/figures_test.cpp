@@ -31,6 +31,7 @@ RunSummary full_run() {
   run.waypoints[0].facade_seen_share = 0.625;
   run.believed_not_reached = 3;
   run.encounters = {.clearance_min_m = 0.125, .near_misses = 7, .phantoms = 9, .missed_obstacles = 11};
+  run.needless_lane_departures = 13;
   run.failure = mission::Failure{.kind = mission::Outcome::kCollision,
                                  .detail = "a car",
                                  .seen = mission::Sighting{.range_m = 4.5, .stood_s = 1.75, .ago_s = 0.05}};
