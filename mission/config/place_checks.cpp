@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
 #include "canyon/core/config/text.h"
 #include "canyon/mission/autonomy/facade.h"
 #include "canyon/mission/collision/collision.h"
 #include "canyon/mission/config/mission_file.h"
+#include "canyon/mission/config/waypoint_reach.h"
 #include "canyon/mission/motion/vehicle.h"
 
 namespace canyon::mission {
@@ -146,6 +149,35 @@ Status check_start_is_free(const MissionConfig& config, const PreparedMission& m
   return Error{.key = "vehicle.start_m",
                .what = place(config.vehicle.start_m) + ": the body touches " + at.object(*touched).name + " there",
                .expected = "a place where it stands free"};
+}
+
+Status check_waypoints_are_free(const MissionConfig& config, const PreparedMission& mission) {
+  const double radius_m = config.success.waypoint_radius_m;
+  const double limit_s = config.success.limit_factor * mission.nominal_s;
+  for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
+    const Waypoint& waypoint = config.autonomy.waypoints[i];
+    const double s_m = mission.prior.waypoint_s_m[i];
+    const double soonest_s = std::max(0.0, s_m - radius_m) / config.vehicle.max_speed_m_s;
+    const std::vector<std::size_t> standing = mission.traffic.standing(soonest_s, limit_s);
+    const std::vector<scene::Instance> moving = mission.traffic.at(soonest_s);
+    std::vector<scene::Instance> still;
+    for (const std::size_t k : standing) still.push_back(moving[k]);
+    scene::SceneAt at(*mission.scene);
+    if (!still.empty()) at.set_instances(std::move(still));
+
+    const WaypointReach reach(config.vehicle, radius_m, at);
+    const auto met = reach.met_before(mission.prior.route, s_m);
+    if (!met || reach.comes_near(waypoint.p_m)) continue;
+    const std::size_t fixed = mission.scene->objects().size();
+    const std::string of_thing =
+        *met < fixed ? "" : ", scene.moving[" + std::to_string(standing[*met - fixed] + 1) + "].path_m";
+    return Error{.key = waypoint_key(i) + of_thing + ", success.waypoint_radius_m",
+                 .what = quoted(waypoint) + " at " + place(waypoint.p_m) + ": " + at.object(*met).name +
+                         " stands in the way, and the body comes to no place within success.waypoint_radius_m = " +
+                         number_text(radius_m) + " m of it",
+                 .expected = "a place that it can come to"};
+  }
+  return Ok{};
 }
 
 }  // namespace canyon::mission

@@ -144,6 +144,7 @@ Result<PreparedMission> prepare(const MissionConfig& config, SceneCache& scenes)
   CANYON_TRY_STATUS(check_ground(config, scene));
   CANYON_TRY(mission.traffic, scene::Traffic::make(config.scene.moving, scene));
   CANYON_TRY_STATUS(check_start_is_free(config, mission));
+  CANYON_TRY_STATUS(check_waypoints_are_free(config, mission));
   CANYON_TRY_STATUS(check_sight(config, mission.prior, scene));
   return mission;
 }

@@ -137,6 +137,18 @@ std::vector<Instance> Traffic::at(double t_s) const {
   return out;
 }
 
+std::vector<std::size_t> Traffic::standing(double from_s, double to_s) const {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    const Moving& m = moving_[i];
+    double way_m = 0.0;
+    for (std::size_t k = 0; k + 1 < m.path_W.size(); ++k) way_m += (m.path_W[k + 1] - m.path_W[k]).norm();
+    const bool goes = way_m > 0.0 && m.speed_m_s > 0.0;
+    if (!goes || to_s <= m.start_s || from_s >= m.start_s + way_m / m.speed_m_s) out.push_back(i);
+  }
+  return out;
+}
+
 Eigen::AlignedBox2d SweptRoom::around() const {
   const Eigen::Vector2d wide = Eigen::Vector2d::Constant(radius_m);
   return {from_W.cwiseMin(to_W) - wide, from_W.cwiseMax(to_W) + wide};

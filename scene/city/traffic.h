@@ -47,6 +47,8 @@ class Traffic {
 
   bool empty() const { return moving_.empty(); }
   std::vector<Instance> at(double t_s) const;
+  /// Those that stay where they are from one time to a later one, by their place in the list, counted from 0.
+  std::vector<std::size_t> standing(double from_s, double to_s) const;
   /// All that they ever take, whichever way they are tilted.
   std::vector<SweptRoom> swept() const;
 

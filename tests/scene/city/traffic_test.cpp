@@ -34,6 +34,26 @@ TEST(Traffic, GoesAlongItsWayOnTheGround) {
   EXPECT_NEAR(30.0 - hit.range_m, 3.0 + 1.75, 1e-5);  // people stand upright on slopes
 }
 
+// Its way of 70 m takes 14 s from 2 s on.
+TEST(Traffic, StandsBeforeItsWayAndAfterIt) {
+  SceneParts parts = empty_parts();
+  add_plane(parts, 100.0, 0.0);
+  const Scene scene(std::move(parts));
+  const auto traffic = Traffic::make({{"goes", "car", {-20, 0, 20, 0, 20, 30}, 5.0, 2.0},
+                                      {"there and back", "car", {0, 20, 10, 20, 0, 20}, 5.0, 2.0},
+                                      {"has no way", "car", {0, 10}, 5.0, 2.0},
+                                      {"has no speed", "person", {0, 40, 10, 40}, 0.0, 2.0}},
+                                     scene);
+  ASSERT_TRUE(traffic.ok()) << traffic.error().str();
+  using Places = std::vector<std::size_t>;
+  EXPECT_EQ(traffic->standing(0.0, 2.0), (Places{0, 1, 2, 3})) << "none has started";
+  EXPECT_EQ(traffic->standing(0.0, 3.0), (Places{2, 3}));
+  EXPECT_EQ(traffic->standing(0.0, 100.0), (Places{2, 3})) << "one is at the same place both times";
+  EXPECT_EQ(traffic->standing(6.0, 100.0), (Places{1, 2, 3}));
+  EXPECT_EQ(traffic->standing(16.0, 100.0), (Places{0, 1, 2, 3})) << "all have come to their ends";
+  EXPECT_EQ(traffic->standing(15.9, 100.0), (Places{1, 2, 3}));
+}
+
 TEST(Traffic, MistakesAreTold) {
   SceneParts parts = empty_parts();
   add_plane(parts, 100.0, 0.0);
