@@ -173,14 +173,16 @@ bool Aligner::loses_to(const Place& a, const Place& b) const {
 /// is not asked: that a true place leaves too much open to be told makes a false one no truer.
 bool Aligner::rivals(const Place& a, const Place& b) const {
   if (a.fit.by_point.empty() || b.fit.by_point.empty() || explains_less(b.fit, a.fit)) return false;
-  return are_apart(a.open.closed_part((a.fit.X.inverse() * b.fit.X).log())) && odds(a, b) < kDecided;
+  if (!are_apart(a.open.closed_part((a.fit.X.inverse() * b.fit.X).log()))) return false;
+  // One that fits better though it has not settled yet is not known at the scale that tells.
+  return (!b.fit.settled && b.fit.missed < a.fit.missed) || odds(a, b) < kDecided;
 }
 
 /// As far as it can be determined, and how it fits if there may be several; what led to the same place once more, and
 /// fits no better, is left out.
 void Aligner::take_in(FoundPose found, std::vector<Place>& places) {
   search_.refine(found);
-  Fit fit{.X = found.X, .matched = found.equations.matched, .missed = found.equations.missed};
+  Fit fit{.X = found.X, .matched = found.equations.matched, .missed = found.equations.missed, .settled = found.settled};
   if (search_.several() && found.matches.size() == source_.points.size()) fit.by_point = unexplained(found);
   for (const Place& known : places)
     if (!are_apart((known.fit.X.inverse() * fit.X).log()) && known.fit.missed <= fit.missed) return;

@@ -22,7 +22,8 @@ class Aligner {
   struct Fit {
     Pose X;
     std::int64_t matched = 0;
-    double missed = 1.0;             ///< as NormalEquations::missed
+    double missed = 1.0;  ///< as NormalEquations::missed
+    bool settled = false;
     std::vector<double> by_point{};  ///< what it leaves unexplained; empty where it was not asked for, or no answer
   };
   struct Place {
