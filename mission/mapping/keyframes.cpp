@@ -58,6 +58,7 @@ Result<KeyframeRow> Keyframes::placed_row(const Scan& scan, const Pose& X_LL_tru
                   .prior_covariance = keyframe.prior_covariance,
                   .covariance = keyframe.covariance,
                   .placed = keyframe.placed,
+                  .alone = keyframe.alone,
                   .X_LL_true = X_LL_true};
   CANYON_TRY_STATUS(boundaries_.check(row));
   maps_.add(*scan.deskewed, keyframe);

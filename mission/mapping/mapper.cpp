@@ -136,7 +136,9 @@ lidar::PosePrior Mapper::align(const lidar::PreparedCloud& cloud, const lidar::P
   keyframe.rms_m = result.rms_m;
   keyframe.overlap = result.overlap;
   if (result.status != lidar::RegistrationStatus::kConverged) return predicted;
-  if (result.surfaces) keyframe.open = static_cast<int>(result.open.size());
+  if (result.surfaces) keyframe.open = result.open;
+  keyframe.alone =
+      RelativePose{.source = keyframe.t, .target = last_.t, .X_TS = alone.X_TS, .covariance = alone.covariance};
   const Pose X_LB = X_BL_.inverse();
   keyframe.aligned = RelativePose{.source = keyframe.t,
                                   .target = last_.t,

@@ -23,14 +23,15 @@ struct Keyframe {
   int iterations = 0;
   double rms_m = kNaN;
   std::size_t points = 0;
-  double overlap = kNaN;               ///< as of lidar::RegistrationResult
-  std::optional<int> open;             ///< directions that the surfaces leave open, where it is known
-  std::optional<RelativePose> placed;  ///< L in L at the keyframe before, by alignment and predicted motion
+  double overlap = kNaN;                      ///< as of lidar::RegistrationResult
+  std::optional<std::vector<Vector6d>> open;  ///< as of lidar::RegistrationResult, of xi in L; none: it is not known
+  std::optional<RelativePose> placed;         ///< L in L at the keyframe before, by alignment and predicted motion
+  std::optional<RelativePose> alone;          ///< the same by the alignment alone, where it converged
+  std::optional<RelativePose> aligned;        ///< that of B, for the filter
   Matrix6d prior_covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_prior
   Matrix6d covariance = Matrix6d::Constant(kNaN);        ///< of X_WL_registered
-  std::optional<RelativePose> aligned;  ///< B in B at the keyframe before, by the alignment alone, where it converged
-  std::optional<lidar::RegistrationStatus> map_status;  ///< of the alignment onto the prior map; none: there is no map
-  std::optional<PoseInMap> in_map;                      ///< B by that alignment alone, where it converged
+  std::optional<lidar::RegistrationStatus> map_status;   ///< of the alignment onto the prior map; none: there is no map
+  std::optional<PoseInMap> in_map;                       ///< B by that alignment alone, where it converged
 };
 
 /// Chooses keyframes, registers each onto the ones before it, and fuses the result with the filter's pose.

@@ -1,10 +1,13 @@
 #include "canyon/mission/recorder/epoch_files.h"
 
 #include <cmath>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/fix_status.h"
 #include "canyon/core/units.h"
@@ -133,7 +136,10 @@ const char* const kKeyframeColumns =
     "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
     "status,"
     "iterations,rms_m,error_roll_deg,error_pitch_deg,error_yaw_deg,sigma_e_m,sigma_n_m,sigma_u_m,sigma_roll_deg,"
-    "sigma_pitch_deg,sigma_yaw_deg,nees,step_error_m,step_error_deg,step_nees,overlap,open_directions,map_status";
+    "sigma_pitch_deg,sigma_yaw_deg,nees,step_error_m,step_error_deg,step_nees,overlap,open_directions,map_status,"
+    "align_error_roll_deg,align_error_pitch_deg,align_error_yaw_deg,align_error_x_m,align_error_y_m,align_error_z_m,"
+    "align_sigma_roll_deg,align_sigma_pitch_deg,align_sigma_yaw_deg,align_sigma_x_m,align_sigma_y_m,align_sigma_z_m,"
+    "align_nees,align_covariance,covariance,open_vectors";
 
 namespace {
 
@@ -141,6 +147,39 @@ namespace {
 double nees(const Pose& X, const Pose& X_true, const Matrix6d& covariance) {
   const Vector6d xi = (X.inverse() * X_true).log();
   return xi.dot(covariance.ldlt().solve(xi));
+}
+
+/// The upper triangle row by row, in one field, with as many digits as give the same bits; empty where there is none.
+std::string upper_triangle(const Matrix6d& covariance) {
+  std::string text;
+  if (!covariance.allFinite()) return text;
+  for (int i = 0; i < 6; ++i)
+    for (int j = i; j < 6; ++j)
+      text += (text.empty() ? "" : " ") + number_text(0.5 * (covariance(i, j) + covariance(j, i)));
+  return text;
+}
+
+/// Six numbers each, in one field.
+std::string open_vectors(const std::vector<Vector6d>& directions) {
+  std::string text;
+  for (const Vector6d& v : directions) {
+    if (!text.empty()) text += ';';
+    for (int i = 0; i < 6; ++i) text += (i > 0 ? " " : "") + number_text(v[i]);
+  }
+  return text;
+}
+
+/// Of the alignment alone, about and along L's axes.
+void alignment_columns(CsvWriter& csv, const KeyframeRow& row) {
+  const RelativePose alone = row.alone.value_or(RelativePose{});
+  const Pose off = row.X_LL_true.inverse() * alone.X_TS;
+  const double known = row.alone ? 1.0 : kNaN;
+  const Vector6d sigma = alone.covariance.diagonal().cwiseSqrt();
+  const Eigen::Vector3d turned_deg = known * so3_log(off.R) / kDegree, moved_m = known * off.p,
+                        sigma_deg = sigma.head<3>() / kDegree, sigma_m = sigma.tail<3>();
+  for (const Eigen::Vector3d* of : {&turned_deg, &moved_m, &sigma_deg, &sigma_m})
+    for (const double value : *of) csv.number(value, 4);
+  csv.number(nees(alone.X_TS, row.X_LL_true, alone.covariance), 3).word(upper_triangle(alone.covariance));
 }
 
 }  // namespace
@@ -164,7 +203,10 @@ void write(CsvWriter& csv, const KeyframeRow& row, const RowPlace& run) {
   const double placed = row.placed ? 1.0 : kNaN;
   csv.number(placed * step.p.norm(), 4).number(placed * so3_log(step.R).norm() / kDegree, 4);
   csv.number(row.placed ? nees(row.placed->X_TS, row.X_LL_true, row.placed->covariance) : kNaN, 3);
-  csv.number(row.overlap, 4).number(row.open ? *row.open : kNaN, 0).word(row.map_status ? word(row.map_status) : "");
+  csv.number(row.overlap, 4).number(row.open ? static_cast<double>(row.open->size()) : kNaN, 0);
+  csv.word(row.map_status ? word(row.map_status) : "");
+  alignment_columns(csv, row);
+  csv.word(run.registers ? upper_triangle(row.covariance) : "").word(row.open ? open_vectors(*row.open) : "");
   csv.end_row();
 }
 

@@ -47,14 +47,15 @@ struct KeyframeRow {
   std::optional<lidar::RegistrationStatus> status;  ///< none: not registered
   int iterations = 0;
   double rms_m = kNaN;
-  double overlap = kNaN;                                 ///< share of the points that were matched
-  std::optional<int> open;                               ///< directions that the surfaces leave open
+  double overlap = kNaN;  ///< share of the points that were matched
+  /// Directions that the surfaces leave open, as of lidar::RegistrationResult, of xi in L; none: it is not known.
+  std::optional<std::vector<Vector6d>> open;
   std::optional<lidar::RegistrationStatus> map_status;   ///< onto the prior map; none: there is no such map
   Matrix6d prior_covariance = Matrix6d::Constant(kNaN);  ///< of X_WL_prior
   Matrix6d covariance = Matrix6d::Constant(kNaN);        ///< of X_WL_registered
-  /// Since the keyframe before, as the map took it and as it was; none: not registered.
-  std::optional<RelativePose> placed;
-  Pose X_LL_true;
+  std::optional<RelativePose> placed;  ///< L in L at the keyframe before, as the map took it; none: not registered
+  std::optional<RelativePose> alone;   ///< the same by the alignment alone; none: it did not converge
+  Pose X_LL_true;                      ///< the same as it was
 };
 
 /// What a keyframe was made of, as the mapper was given it; holds while it is handed on.

@@ -152,6 +152,7 @@ StressFigure keyframes(const std::string& kind) {
         alike(told.targets[i], kept.back().inverse() * kept[kept.size() - told.targets.size() + i], 1e-9);
       lidar::PosePrior by = predicted;
       looks.right(found->aligned.has_value() == (kind != "failed") && found->iterations == 7 && found->overlap == 0.8);
+      looks.right(found->alone.has_value() == (kind != "failed"));
       if (kind != "failed") {
         const Matrix6d floor = floors(config.alignment_floor_deg, config.alignment_floor_m);
         const lidar::PosePrior alone = kind == "surfaces"
@@ -161,7 +162,10 @@ StressFigure keyframes(const std::string& kind) {
         by = kind == "surfaces" ? both_of(predicted, alone) : alone;
         alike(found->aligned->X_TS, X_BL * alone.X_TS * X_BL.inverse(), 1e-12);
         same(found->aligned->covariance, in_frame(alone.covariance, X_BL.inverse()));
-        looks.right((kind == "surfaces") == found->open.has_value() && (!found->open || *found->open == 2));
+        alike(found->alone->X_TS, alone.X_TS, 1e-12);
+        same(found->alone->covariance, alone.covariance);
+        looks.right((kind == "surfaces") == found->open.has_value() &&
+                    (!found->open || *found->open == told.answer.open));
       }
       alike(found->placed->X_TS, by.X_TS, 1e-9);
       same(found->placed->covariance, by.covariance);

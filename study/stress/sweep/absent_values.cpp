@@ -10,7 +10,15 @@ constexpr const char *kFix = "fix_x_m,fix_y_m,fix_z_m,sigma_e_m,sigma_n_m,sigma_
                      *kFixFigures = "gdop_median,gdop_max,pdop_median,satellites_mean,nlos_share,multipath_share",
                      *kRegistered =
                          "registered_error_m,registered_error_up_m,error_roll_deg,error_pitch_deg,error_yaw_deg,"
-                         "sigma_e_m,sigma_n_m,sigma_u_m,sigma_roll_deg,sigma_pitch_deg,sigma_yaw_deg,nees",
+                         "sigma_e_m,sigma_n_m,sigma_u_m,sigma_roll_deg,sigma_pitch_deg,sigma_yaw_deg,nees,covariance",
+                     *kAlignment =
+                         "align_error_roll_deg,align_error_pitch_deg,align_error_yaw_deg,align_error_x_m,"
+                         "align_error_y_m,align_error_z_m,align_sigma_roll_deg,align_sigma_pitch_deg,"
+                         "align_sigma_yaw_deg,align_sigma_x_m,align_sigma_y_m,align_sigma_z_m,align_nees,"
+                         "align_covariance",
+                     *kNotConverged =
+                         "not_registered,not_converged,too_few_points,degenerate,diverged,ambiguous,"
+                         "too_little_overlap,beyond_prior",
                      *kPriorMap = "map_error_prior_rms_m,map_error_p95_prior_m,map_capped_prior_share",
                      *kErrors =
                          "position_error_rms_m,position_error_p95_m,position_error_max_m,"
@@ -36,8 +44,11 @@ constexpr MayBeAbsent kRows[] = {
     {"keyframes", kRegistered, "status", "not_registered", "`[registration] method = \"none\"`"},
     {"keyframes", "step_error_m,step_error_deg,step_nees", "status", "not_registered",
      "no keyframe before it to be registered to"},
+    {"keyframes", kAlignment, "status", kNotConverged, "the alignment gave no pose"},
     {"keyframes", "map_status", "", "", "there is no `[registration] prior_map`"},
     {"keyframes", "overlap,open_directions", "", "", "the own methods alone tell them, of what they matched"},
+    {"keyframes", "open_vectors", "open_directions", "0", "none is open"},
+    {"keyframes", "open_vectors", "open_directions", "", "the own methods alone tell them"},
     {"keyframes", "rms_m", "overlap", "", "PCL's own methods do not tell it"},
     {"keyframes", "rms_m", "iterations", "0", "nothing was matched"},
     {"keyframes", "rms_m", "status", "too_little_overlap", "less was matched than determines a pose"},

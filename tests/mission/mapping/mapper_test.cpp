@@ -176,6 +176,7 @@ TEST_F(MapperTest, WhereRegistrationDoesNotConvergeThePredictedMotionCarriesOn) 
   EXPECT_NEAR(keyframe->X_WL_registered.p.x(), 7.0 + 3.0 * P_Z / (P_Z + P_Y), 1e-6);
   EXPECT_NEAR(keyframe->covariance(3, 3), P_Z * P_Y / (P_Z + P_Y), 1e-6);
   EXPECT_FALSE(keyframe->aligned) << "what was predicted tells the filter nothing";
+  EXPECT_FALSE(keyframe->alone);
   ASSERT_TRUE(keyframe->placed);
   EXPECT_LT((keyframe->placed->X_TS.p - at(3).p).norm(), 1e-12);
 }
@@ -195,6 +196,9 @@ TEST_F(MapperTest, WhatTheSurfacesAloneSayGoesBackToTheFilter) {
   EXPECT_NEAR(keyframe->placed->X_TS.p.x(), 3.0 + 0.5 * motion_m2 / (motion_m2 + surfaces_m2), 1e-12);
   EXPECT_NEAR(keyframe->aligned->X_TS.p.x(), 3.5, 1e-12);
   EXPECT_NEAR(keyframe->aligned->covariance(3, 3), 0.03 * 0.03 + 0.02 * 0.02, 1e-12);
+  ASSERT_TRUE(keyframe->alone);
+  EXPECT_NEAR(keyframe->alone->X_TS.p.x(), 3.5, 1e-12);
+  EXPECT_NEAR(keyframe->alone->covariance(3, 3), 0.03 * 0.03 + 0.02 * 0.02, 1e-12);
 }
 
 TEST_F(MapperTest, AnAlignmentIsToldTheMotionWithItsCovariance) {

@@ -1,7 +1,5 @@
 #include "canyon/mission/recorder/epoch_files.h"
 
-#include <algorithm>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,9 +9,14 @@
 #include <Eigen/Geometry>
 
 #include "canyon/core/units.h"
+#include "canyon/tests/mission/recorder/keyframe_columns.h"
 
 namespace canyon::mission {
 namespace {
+
+using testing::cells;
+using testing::keyframe_columns;
+using testing::numbers_in;
 
 /// The last three columns of epochs/RUN_gnss.csv: accepted, nis, reason.
 std::string filter_columns(const GnssRow& row) {
@@ -47,33 +50,6 @@ TEST(EpochFiles, AnEmptyNisHasItsReason) {
   GnssRow none;
   none.fix.reason = "3 satellites, needed 4";
   EXPECT_EQ(filter_columns(none), "0,,3 satellites; needed 4");
-}
-
-std::vector<std::string> cells(std::string_view line) {
-  std::vector<std::string> out(1);
-  for (const char c : line)
-    if (c == ',')
-      out.emplace_back();
-    else
-      out.back() += c;
-  return out;
-}
-
-/// What stands in epochs/RUN_keyframes.csv, by column.
-std::map<std::string, std::string> keyframe_columns(const KeyframeRow& row, bool registers = true) {
-  CsvWriter csv(kKeyframeColumns);
-  write(csv, row,
-        {.frame = LocalFrame(Geodetic{0.56, -1.58, 60.0}),
-         .start = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0),
-         .registers = registers});
-  const std::string& text = csv.text();
-  const std::size_t header = text.find('\n');
-  const std::vector<std::string> names = cells(text.substr(0, header)),
-                                 values = cells(text.substr(header + 1, text.size() - header - 2));
-  EXPECT_EQ(values.size(), names.size()) << text;
-  std::map<std::string, std::string> out;
-  for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) out[names[i]] = values[i];
-  return out;
 }
 
 /// A turn about one axis of the frame and a shift along the same one: the shift is then that of SE(3)'s logarithm too.
@@ -113,6 +89,7 @@ KeyframeRow screwed(Eigen::Index axis, double turns, double shifts, double step_
   row.placed.emplace();
   row.placed->X_TS = before(row.X_LL_true, {axis, step_turns * turn_rad, step_shifts * kShiftSigma_m});
   row.placed->covariance = row.covariance;
+  row.alone = row.placed;
   return row;
 }
 
@@ -153,33 +130,92 @@ TEST(EpochFiles, AKeyframesAttitudeErrorIsAboutTheSensorsAxes) {
   }
 }
 
+// The first 28 stand where they stood on 2026-11-29, for those who count columns.
+TEST(EpochFiles, NewColumnsOfAKeyframeAreTheLast) {
+  const std::vector<std::string> names = cells(kKeyframeColumns);
+  const std::vector<std::string> older = cells(
+      "t_s,points,true_x_m,true_y_m,true_z_m,prior_error_m,prior_error_up_m,registered_error_m,registered_error_up_m,"
+      "status,iterations,rms_m,error_roll_deg,error_pitch_deg,error_yaw_deg,sigma_e_m,sigma_n_m,sigma_u_m,"
+      "sigma_roll_deg,sigma_pitch_deg,sigma_yaw_deg,nees,step_error_m,step_error_deg,step_nees,overlap,"
+      "open_directions,map_status");
+  ASSERT_EQ(names.size(), 44U);
+  EXPECT_EQ(std::vector<std::string>(names.begin(), names.begin() + 28), older);
+}
+
+// The step has one error and the alignment another. Of (2, -1) sigma with correlation 0.8 the square is 8.2 / 0.36, of
+// (1, 3) it is 5.2 / 0.36, as above. The registered pose is half as sure as both.
+TEST(EpochFiles, TheAlignmentAloneHasItsOwnErrorSigmasAndSquare) {
+  const char* const turns[3] = {"align_error_roll_deg", "align_error_pitch_deg", "align_error_yaw_deg"};
+  const char* const shifts[3] = {"align_error_x_m", "align_error_y_m", "align_error_z_m"};
+  const char* const turn_sigmas[3] = {"align_sigma_roll_deg", "align_sigma_pitch_deg", "align_sigma_yaw_deg"};
+  const char* const shift_sigmas[3] = {"align_sigma_x_m", "align_sigma_y_m", "align_sigma_z_m"};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    KeyframeRow row = screwed(axis, 0.0, 0.0, 1.0, 3.0);
+    row.alone->X_TS = before(row.X_LL_true, {axis, 2.0 * kTurnSigma_deg * kDegree, -1.0 * kShiftSigma_m});
+    row.covariance *= 4.0;
+    auto of = keyframe_columns(row);
+    EXPECT_EQ(of["align_nees"], "22.778") << axis;
+    EXPECT_EQ(of["step_nees"], "14.444") << axis;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const double half_a_digit = 0.5e-4;
+      EXPECT_NEAR(std::stod(of[turns[k]]), k == axis ? -1.0 : 0.0, half_a_digit) << axis;
+      EXPECT_NEAR(std::stod(of[shifts[k]]), k == axis ? 0.2 : 0.0, half_a_digit) << axis;
+      EXPECT_EQ(of[turn_sigmas[k]], k == axis ? "0.5000" : "2.5000") << axis;
+      EXPECT_EQ(of[shift_sigmas[k]], k == axis ? "0.2000" : "1.0000") << axis;
+    }
+    // To the last bit: turned about x, y, z, moved along x, y, z, row by row.
+    const std::vector<double> alone = numbers_in(of["align_covariance"]), fused = numbers_in(of["covariance"]);
+    ASSERT_EQ(alone.size(), 21U) << of["align_covariance"];
+    ASSERT_EQ(fused.size(), 21U) << of["covariance"];
+    std::size_t at = 0;
+    for (Eigen::Index i = 0; i < 6; ++i)
+      for (Eigen::Index j = i; j < 6; ++j, ++at) {
+        EXPECT_EQ(alone[at], row.alone->covariance(i, j)) << axis << ": " << i << ", " << j;
+        EXPECT_EQ(fused[at], row.covariance(i, j)) << axis << ": " << i << ", " << j;
+      }
+  }
+}
+
+TEST(EpochFiles, OpenDirectionsAreListed) {
+  KeyframeRow row = screwed(0, 0.0, 0.0, 0.0, 0.0);
+  row.open = std::vector<Vector6d>{Vector6d::Unit(3), (Vector6d() << 0.0, -0.125, 0.0, 0.0, 0.0, 0.0625).finished()};
+  auto of = keyframe_columns(row);
+  EXPECT_EQ(of["open_directions"], "2");
+  EXPECT_EQ(of["open_vectors"], "0 0 0 1 0 0;0 -0.125 0 0 0 0.0625");
+}
+
 TEST(EpochFiles, WhatTheMethodSaysOfAKeyframeStandsInItsColumns) {
   KeyframeRow row = screwed(2, 1.0, 1.0, 1.0, 1.0);
   row.overlap = 0.8125;
-  row.open = 2;
+  row.open.emplace(2, Vector6d::Unit(0));
   row.map_status = lidar::RegistrationStatus::kTooLittleOverlap;
   auto of = keyframe_columns(row);
   EXPECT_EQ(of["status"], "converged");
   EXPECT_EQ(of["overlap"], "0.8125");
   EXPECT_EQ(of["open_directions"], "2");
   EXPECT_EQ(of["map_status"], "too_little_overlap");
-  row.open = 0;
-  EXPECT_EQ(keyframe_columns(row)["open_directions"], "0") << "none are open, which is not that nobody says";
+  row.open->clear();
+  of = keyframe_columns(row);
+  EXPECT_EQ(of["open_directions"], "0") << "none are open, which is not that nobody says";
+  EXPECT_EQ(of["open_vectors"], "");
 }
 
 TEST(EpochFiles, WhatNobodyKnowsOfAKeyframeIsEmpty) {
   KeyframeRow row = screwed(0, 2.0, 1.0, 2.0, -1.0);
   auto of = keyframe_columns(row, false);
   for (const char* column : {"registered_error_m", "registered_error_up_m", "error_roll_deg", "error_pitch_deg",
-                             "error_yaw_deg", "sigma_e_m", "sigma_yaw_deg", "nees"})
+                             "error_yaw_deg", "sigma_e_m", "sigma_yaw_deg", "nees", "covariance"})
     EXPECT_EQ(of[column], "") << column << ", though nothing registers";
   row = screwed(0, 2.0, 1.0, 2.0, -1.0);
   row.covariance.setConstant(kNaN);
   row.placed.reset();
+  row.alone.reset();
   of = keyframe_columns(row);
   EXPECT_EQ(of["error_roll_deg"], "-1.0000");
-  for (const char* column : {"sigma_roll_deg", "sigma_n_m", "nees", "step_error_m", "step_error_deg", "step_nees",
-                             "overlap", "open_directions", "map_status"})
+  for (const char* column :
+       {"sigma_roll_deg", "sigma_n_m", "nees", "step_error_m", "step_error_deg", "step_nees", "overlap",
+        "open_directions", "map_status", "align_error_roll_deg", "align_error_x_m", "align_sigma_yaw_deg",
+        "align_sigma_z_m", "align_nees", "align_covariance", "covariance", "open_vectors"})
     EXPECT_EQ(of[column], "") << column;
 }
 

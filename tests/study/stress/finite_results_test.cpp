@@ -38,6 +38,14 @@ TEST(FiniteResults, AFieldIsEmptyOnlyWhereItsRowSaysSo) {
   };
   EXPECT_EQ(keyframe("degenerate,29,"), "") << "matched, but nothing that determines a pose";
   EXPECT_EQ(keyframe("converged,29,"), "2: rms_m is empty");
+  const auto alignment = [](const std::string& row) {
+    return not_finite_in_csv("status,open_directions,align_nees,open_vectors\n" + row + "\n", "keyframes");
+  };
+  EXPECT_EQ(alignment("ambiguous,,,"), "");
+  EXPECT_EQ(alignment("converged,0,5.1,"), "");
+  EXPECT_EQ(alignment("converged,,5.1,"), "") << "a method that tells of no directions";
+  EXPECT_EQ(alignment("converged,0,,"), "2: align_nees is empty");
+  EXPECT_EQ(alignment("converged,1,5.1,"), "2: open_vectors is empty");
 }
 
 TEST(FiniteResults, ANullStandsOnlyWhereItsObjectSaysSo) {
