@@ -8,24 +8,29 @@ namespace canyon::lidar {
 namespace {
 
 #ifdef CANYON_WITH_PCL
-#define CANYON_ON_PCL(make) \
-  { make, "CANYON_WITH_PCL" }
+#define CANYON_ON_PCL(make, engine) \
+  { make, "CANYON_WITH_PCL", engine }
 #else
-#define CANYON_ON_PCL(make) \
-  { nullptr, "CANYON_WITH_PCL" }
+#define CANYON_ON_PCL(make, engine) \
+  { nullptr, "CANYON_WITH_PCL", engine }
 #endif
 
 constexpr ModelRow<RegistrationMethod> kMethods[] = {
-    {"none", {make_no_registration, "", false}, "believes the prior pose"},
-    {"point_to_plane", {make_point_to_plane, ""}, "distances across the target's planes", engine_parameters},
-    {"gicp", {make_gicp, ""}, "generalized ICP, plane to plane", engine_parameters},
-    {"vgicp", {make_vgicp, ""}, "the same onto means over voxels of 2 leaf_m", engine_parameters},
-    {"pcl_shell_gicp", CANYON_ON_PCL(make_pcl_shell_gicp), "PCL's generalized ICP with our search and Newton step",
+    {"none", {make_no_registration, "", "none", false}, "believes the prior pose"},
+    {"point_to_plane", {make_point_to_plane, "", "own"}, "distances across the target's planes", engine_parameters},
+    {"gicp",
+     {make_gicp, "", "own; the method that had this name before is pcl_shell_gicp"},
+     "generalized ICP, plane to plane",
+     engine_parameters},
+    {"vgicp", {make_vgicp, "", "own"}, "the same onto means over voxels of 2 leaf_m", engine_parameters},
+    {"pcl_shell_gicp",
+     CANYON_ON_PCL(make_pcl_shell_gicp, "PCL's with own search and Newton step; had the name gicp before"),
+     "PCL's generalized ICP with our search and Newton step", parameters_of<MatchingParameters>},
+    {"pcl_icp_normals", CANYON_ON_PCL(make_pcl_icp_normals, "PCL's"), "PCL's ICP of points to planes",
      parameters_of<MatchingParameters>},
-    {"pcl_icp_normals", CANYON_ON_PCL(make_pcl_icp_normals), "PCL's ICP of points to planes",
+    {"pcl_gicp", CANYON_ON_PCL(make_pcl_gicp, "PCL's"), "PCL's generalized ICP", parameters_of<MatchingParameters>},
+    {"pcl_ndt", CANYON_ON_PCL(make_pcl_ndt, "PCL's"), "PCL's normal distributions transform",
      parameters_of<MatchingParameters>},
-    {"pcl_gicp", CANYON_ON_PCL(make_pcl_gicp), "PCL's generalized ICP", parameters_of<MatchingParameters>},
-    {"pcl_ndt", CANYON_ON_PCL(make_pcl_ndt), "PCL's normal distributions transform", parameters_of<MatchingParameters>},
 };
 
 constexpr ModelRow<RegistrationStatus> kStatuses[] = {

@@ -22,7 +22,8 @@ class Registration;
 struct RegistrationMethod {
   std::unique_ptr<Registration> (*make)(const ModelParameters& own);  ///< nullptr: left out when Canyon was built
   const char* build_option;                                           ///< that puts it in
-  bool registers = true;                                              ///< false: the prior pose stands
+  const char* engine;     ///< whose it is, and what else its name has meant; for manifest.json
+  bool registers = true;  ///< false: the prior pose stands
 };
 /// Every known method, whether it was compiled in or not.
 ModelTable<RegistrationMethod> registration_methods();

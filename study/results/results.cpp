@@ -14,6 +14,7 @@
 #include "canyon/core/files/json_text.h"
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
+#include "canyon/lidar/registration/registration.h"
 #include "canyon/scene/tracing/ray_tracer_instructions.h"
 #include "canyon/study/plan/plan_file.h"
 #include "canyon/study/results/figures.h"
@@ -145,7 +146,8 @@ Json made_json(const scene::Scene& scene) {
 }
 
 Json manifest_json(const Results& results) {
-  Json runs = Json::object(), files = Json::object(), initial = Json::object(), mountings = Json::object();
+  Json runs = Json::object(), files = Json::object(), initial = Json::object(), mountings = Json::object(),
+       registrations = Json::object();
   for (const mission::RunRecord& record : results.records) {
     for (const mission::InputFile& file : record.files) files[file.path] = file.sha256;
     mission::MissionConfig config = record.config;
@@ -156,6 +158,9 @@ Json manifest_json(const Results& results) {
                             {"velocity_m_s", {v.x(), v.y(), v.z()}}};
     const Eigen::Vector3d askew_deg = so3_log(record.imu_R_BU) / kDegree;
     mountings[record.name] = {{"imu_deg", {askew_deg.x(), askew_deg.y(), askew_deg.z()}}};
+    const std::string& method = config.registration.method.name;
+    registrations[record.name] = {{"name", method},
+                                  {"engine", model_row(lidar::registration_methods(), method).make.engine}};
     runs[record.name] = Json::parse(fields_as_json([&config](FieldVisitor& f) { visit(f, config); }));
   }
   Json left_out = Json::object();
@@ -173,6 +178,7 @@ Json manifest_json(const Results& results) {
           {"files", files},
           {"initial_estimates", initial},
           {"true_mountings", mountings},
+          {"registration_method", registrations},
           {"configuration", runs}};
 }
 

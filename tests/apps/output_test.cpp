@@ -136,6 +136,19 @@ TEST_F(OutputTest, TheManifestSaysWhatMadeIt) {
   EXPECT_EQ(read("stderr"), "CANYON_RAY_TRACER_MAX_ISA: \"neon\", expected one of sse2, sse4.2, avx, avx2, avx512\n");
 }
 
+// 2026-11-29: gicp was the name of another method before, and no manifest said which of the two had run.
+TEST_F(OutputTest, TheManifestSaysWhoseRegistrationEachRunHad) {
+  write("given.toml", std::string(testing::kMission) + "[fidelity.high.registration]\nmethod = \"gicp\"\n");
+  ASSERT_EQ(canyon("compare given.toml --fidelities low,high --no-2x2 --set time.limit_s=1 --out given_out"), 0)
+      << read("stderr");
+  const auto methods = nlohmann::json::parse(read("given_out/manifest.json"))["registration_method"];
+  ASSERT_EQ(methods.size(), 2U) << methods;
+  EXPECT_EQ(methods["low"]["name"], "none");
+  EXPECT_EQ(methods["low"]["engine"], "none");
+  EXPECT_EQ(methods["high"]["name"], "gicp");
+  EXPECT_EQ(methods["high"]["engine"], "own; the method that had this name before is pcl_shell_gicp");
+}
+
 // The kinds of docs/results.md, scan for scan. What the CPU does not have is limited to what it has.
 TEST_F(OutputTest, ScansDifferByInstructionSetAtEdgesAlone) {
   struct Scan {

@@ -81,6 +81,16 @@ TEST(Registration, UnknownMethodsAndMethodsLeftOut) {
   }
 }
 
+TEST(Registration, EachMethodSaysWhoseItIs) {
+  for (const auto& row : registration_methods()) {
+    const std::string name = row.name, engine = row.make.engine;
+    const char* const whose = !row.make.registers ? "none" : name.starts_with("pcl_") ? "PCL's" : "own";
+    EXPECT_TRUE(engine.starts_with(whose)) << name << ": " << engine;
+  }
+  EXPECT_STREQ(model_row(registration_methods(), "gicp").make.engine,
+               "own; the method that had this name before is pcl_shell_gicp");
+}
+
 TEST(Gicp, RecoversHalfAMetreAndTwoDegreesAtAStreetCrossing) {
   CANYON_NEEDS_GICP();
   Views views(testing::street_crossing());
