@@ -56,7 +56,8 @@ void visit(FieldVisitor& f, MatchingParameters& c) {
 void visit(FieldVisitor& f, RegistrationConfig& c) {
   // Every known method is a valid choice here; make_registration says what this build can do.
   visit_choice(f, "method", c.method, "how keyframes are registered onto the map");
-  f.integer("submap_keyframes", c.submap_keyframes, {1, 1000}, "keyframes that form the target");
+  f.integer("submap_keyframes", c.submap_keyframes, {1, 1000},
+            "keyframes that form the target: 1 is scan to scan registration, more is scan to map");
   f.number("keyframe_distance_m", c.keyframe_distance_m, {0, 1e4}, "a new keyframe after this way");
   f.number("keyframe_angle_deg", c.keyframe_angle_deg, {0, 360}, "or after this turn");
   f.number("alignment_floor_m", c.alignment_floor_m, {1e-6, 10},
