@@ -328,12 +328,16 @@ Result<CloudPlaces> read_pcd_places(const std::string& path) {
     // Two lengths, then all values of the first field, of the second, ...
     std::uint32_t lengths[2] = {0, 0};
     if (bytes.size() >= sizeof lengths) std::memcpy(lengths, bytes.data(), sizeof lengths);
-    const std::uintmax_t wanted = static_cast<std::uintmax_t>(header.points) * header.point_bytes;
-    if (bytes.size() < sizeof lengths || bytes.size() - sizeof lengths < lengths[0] || lengths[1] != wanted)
+    const bool as_long = header.points <= lengths[1] / header.point_bytes &&  // their product may be beyond 64 bits
+                         header.points * header.point_bytes == lengths[1];
+    if (bytes.size() < sizeof lengths || bytes.size() - sizeof lengths < lengths[0] || !as_long)
       return Error{path, 0, "DATA", "the compressed data end early or are not as long as the header says",
                    std::to_string(header.points) + " points"};
-    bytes = unpacked_lzf(std::string_view(bytes).substr(sizeof lengths, lengths[0]), lengths[1]);
-    if (bytes.size() != wanted)
+    // Three bytes give 264 at most: a short file cannot ask for gigabytes.
+    constexpr std::uint32_t kMostPerByte = 88;
+    const bool possible = lengths[1] / kMostPerByte <= lengths[0];
+    if (possible) bytes = unpacked_lzf(std::string_view(bytes).substr(sizeof lengths, lengths[0]), lengths[1]);
+    if (!possible || bytes.size() != lengths[1])
       return Error{path, 0, "DATA", "the compressed data are damaged", "LZF as PCL writes it"};
   }
   out.points.resize(header.points);

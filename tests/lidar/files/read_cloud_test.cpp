@@ -127,6 +127,34 @@ TEST_F(ReadCloud, PcdOfTextAndOfOtherTypes) {
             kPoints);
 }
 
+/// Compressed data of floats x, y, z, four points by their header, and so many unpacked bytes by their second length.
+std::string compressed(const std::string& points, std::uint32_t unpacked, const std::string& packed) {
+  return "VERSION 0.7\nFIELDS x y z w\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nPOINTS " + points +
+         "\nDATA binary_compressed\n" + bytes_of(static_cast<std::uint32_t>(packed.size())) + bytes_of(unpacked) +
+         packed;
+}
+
+// Four bytes as they are and a copy of what is 4 bytes back, over and over: LZF by hand.
+TEST_F(ReadCloud, PcdOfCompressedData) {
+  const std::string run = '\3' + bytes_of(2.5F);
+  const std::string copy{'\xe0', static_cast<char>(60 - 2 - 7), '\3'};
+  EXPECT_EQ(points("a.pcd", compressed("4", 64, run + copy)), Points(4, Eigen::Vector3d::Constant(2.5)));
+}
+
+// 2026-11-29: 2^60 points of 16 bytes are 0 bytes in 64 bits, and the same file of 8 bytes of data was believed; one of
+// 300 bytes could ask for 4 GB.
+TEST_F(ReadCloud, CompressedDataThatPromiseTooMuchAreRefused) {
+  const std::string too_long =
+      "a.pcd: DATA: the compressed data end early or are not as long as the header says, expected ";
+  EXPECT_EQ(refusal("a.pcd", compressed("1152921504606846976", 0, "")), too_long + "1152921504606846976 points");
+  EXPECT_EQ(refusal("a.pcd", compressed("18446744073709551615", 4294967280U, "abc")),
+            too_long + "18446744073709551615 points");
+  EXPECT_EQ(refusal("a.pcd", compressed("268435455", 4294967280U, std::string(300, '\0'))),
+            "a.pcd: DATA: the compressed data are damaged, expected LZF as PCL writes it");
+  EXPECT_EQ(refusal("a.pcd", compressed("4", 64, std::string("\3abc", 4))),
+            "a.pcd: DATA: the compressed data are damaged, expected LZF as PCL writes it");
+}
+
 // Of a capture the first whole revolution: 600 rpm of 16 beams, 18.08 a millisecond, and of 32, 28.9 at 543 rpm.
 TEST_F(ReadCloud, CapturesOfAVelodyne) {
   CANYON_REAL_DATA(vlp16, "lidar/velodyne/sample_velodyne_vlp16_gps.pcap");
