@@ -7,9 +7,12 @@
 #include "canyon/core/files/pcd.h"
 #include "canyon/lidar/beam/beam_table.h"
 #include "canyon/lidar/files/clouds/read_cloud.h"
+#include "canyon/lidar/ouster/recording.h"
 #include "canyon/lidar/velodyne/packet_reader.h"
 #include "canyon/lidar/velodyne/pcap.h"
+#include "canyon/tests/lidar/ouster/made_recording.h"
 #include "canyon/tests/mutation/format.h"
+#include "canyon/tests/mutation/packed_pcd.h"
 #include "canyon/tests/support/test_data.h"
 
 namespace canyon::testing {
@@ -133,6 +136,49 @@ std::vector<Seed> clouds_to_register() {
   return out;
 }
 
+int read_any_cloud(const std::string& path) {
+  const auto cloud = lidar::read_cloud(path);
+  return cloud ? 0 : status_of(cloud.error());
+}
+
+/// All values of a column one after the other.
+template <class T>
+void add_column(std::string& columns, std::size_t points, const T& value_at) {
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto value = value_at(static_cast<int>(i));
+    columns.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+}
+
+/// Runs, short copies and long ones in the one, columns of other widths in the other.
+std::vector<Seed> compressed_clouds() {
+  constexpr std::size_t kPoints = 90;
+  std::string floats, mixed;
+  add_column(floats, kPoints, [](int i) { return 0.37F * static_cast<float>(i * i); });
+  add_column(floats, kPoints, [](int i) { return static_cast<float>(i % 5); });
+  for (int column = 0; column < 2; ++column) add_column(floats, kPoints, [](int) { return -1.75F; });
+  add_column(mixed, kPoints, [](int i) { return static_cast<std::uint8_t>(i / 30); });
+  for (const double step : {0.5, 0.25, 0.0}) add_column(mixed, kPoints, [step](int i) { return step * i; });
+  const auto wide = [](const char* name) { return PcdField{.name = name, .size = 8}; };
+  return {{"a.pcd", packed_pcd({{.name = "x"}, {.name = "y"}, {.name = "z"}, {.name = "intensity"}}, kPoints, floats)},
+          {"b.pcd",
+           packed_pcd({{.name = "label", .type = 'U', .size = 1}, wide("x"), wide("y"), wide("z")}, kPoints, mixed)}};
+}
+
+std::string ouster_capture() {
+  using lidar::ouster::testing::packet;
+  return lidar::ouster::testing::capture(
+      {packet(7, 0), "an inertial packet", packet(7, 2), packet(8, 0), packet(8, 2, false), packet(9, 0)});
+}
+
+/// Of a metadata file all that is made of it, with the capture beside it.
+int read_ouster_metadata(const std::string& path) {
+  const auto metadata = lidar::ouster::read_metadata(path);
+  if (!metadata) return status_of(metadata.error());
+  const auto frames = lidar::ouster::read_frames("whole.pcap", *metadata);
+  return frames ? 0 : status_of(frames.error());
+}
+
 constexpr const char* kBeams =
     "# a made-up sensor\ncycle_us,50\nlaser,elevation_deg,azimuth_offset_deg,origin_up_mm,firing_us\n0,-10,0,0,0\n"
     "1,0,1.5,11,2.3\n2,5,-1.5,-11,4.6\n3,10,0,7,6.9\n";
@@ -164,14 +210,30 @@ std::vector<Format> lidar_formats() {
                  return std::vector<Seed>{{"rosette.csv", kRosette}};
                },
            .beside = yard},
-          {.name = "Cloud",
+          {.name = "Cloud", .command = {}, .read = read_any_cloud, .seeds = clouds_to_register},
+          {.name = "CompressedPcd", .command = {}, .read = read_any_cloud, .seeds = compressed_clouds},
+          {.name = "OusterCapture",
            .command = {},
-           .read =
-               [](const std::string& path) {
-                 const auto cloud = lidar::read_cloud(path);
-                 return cloud ? 0 : status_of(cloud.error());
+           .read = read_any_cloud,
+           .seeds =
+               [] {
+                 return std::vector<Seed>{{"a_b.pcap", ouster_capture()}};
                },
-           .seeds = clouds_to_register},
+           .beside =
+               [] {
+                 return std::vector<Companion>{{"a.json", lidar::ouster::testing::kMetadata}};
+               }},
+          {.name = "OusterMetadata",
+           .command = {},
+           .read = read_ouster_metadata,
+           .seeds =
+               [] {
+                 return std::vector<Seed>{{"a.json", lidar::ouster::testing::kMetadata}};
+               },
+           .beside =
+               [] {
+                 return std::vector<Companion>{{"whole.pcap", ouster_capture()}};
+               }},
           {.name = "Pcap", .command = {}, .read = read_capture, .seeds = captures},
           {.name = "Pcd",
            .command = {},
