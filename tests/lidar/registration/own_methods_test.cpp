@@ -19,80 +19,23 @@
 #include "canyon/lidar/registration/engine/match_sums.h"
 #include "canyon/lidar/registration/engine/prior_law.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
+#include "canyon/tests/lidar/registration/made_clouds.h"
 #include "canyon/tests/support/test_data.h"
 
 namespace canyon::lidar {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
-constexpr const char* kOwnMethods[] = {"point_to_plane", "gicp", "vgicp"};
-
-std::unique_ptr<Registration> own_method(const std::string& name, double leaf_m = 0.5) {
-  RegistrationConfig config;
-  config.method.name = name;
-  config.method.own.get<MatchingParameters>().leaf_m = leaf_m;
-  config.method.own.get<MatchingParameters>().max_iterations = 50;
-  return *make_registration(config);
-}
-
-/// Points of rectangles with 1 cm of noise across. `number` chooses the noise.
-class Walls {
- public:
-  explicit Walls(std::uint64_t number) : draws_(number, "test.walls") {}
-  Walls& add(const Eigen::Vector3d& corner, const Eigen::Vector3d& u, const Eigen::Vector3d& v, int n) {
-    const Eigen::Vector3d normal = u.cross(v).normalized();
-    for (int k = 0; k < n; ++k, ++drawn_)
-      points_.push_back((corner + draws_.uniform(0, 1, 0, drawn_) * u + draws_.uniform(0, 1, 1, drawn_) * v +
-                         0.01 * draws_.normal(2, drawn_) * normal)
-                            .cast<float>());
-    return *this;
-  }
-  Points take() { return std::move(points_); }
-
- private:
-  RandomStream draws_;
-  std::uint64_t drawn_ = 0;
-  Points points_;
-};
-
-Points closed_room(std::uint64_t number) {
-  return Walls(number)
-      .add({-8, -6, -2}, {16, 0, 0}, {0, 12, 0}, 6000)
-      .add({-8, -6, -2}, {16, 0, 0}, {0, 0, 4}, 3000)
-      .add({-8, 6, -2}, {16, 0, 0}, {0, 0, 4}, 3000)
-      .add({-8, -6, -2}, {0, 12, 0}, {0, 0, 4}, 3000)
-      .add({8, -6, -2}, {0, 12, 0}, {0, 0, 4}, 3000)
-      .add({2, 1, -2}, {1.5, 0, 0}, {0, 0, 3}, 600)
-      .take();
-}
-Points long_corridor(std::uint64_t number) {
-  return Walls(number)
-      .add({-40, -3, -2}, {80, 0, 0}, {0, 6, 0}, 12000)
-      .add({-40, -3, -2}, {80, 0, 0}, {0, 0, 4}, 8000)
-      .add({-40, 3, -2}, {80, 0, 0}, {0, 0, 4}, 8000)
-      .take();
-}
-Points level_ground(std::uint64_t number) {
-  return Walls(number).add({-20, -20, -2}, {40, 0, 0}, {0, 40, 0}, 16000).take();
-}
-
-Matrix6d law(double sigma_m, double sigma_deg) {
-  Matrix6d P = Matrix6d::Zero();
-  P.diagonal() << Eigen::Vector3d::Constant(std::pow(sigma_deg * kDegree, 2)),
-      Eigen::Vector3d::Constant(sigma_m * sigma_m);
-  return P;
-}
-
-Pose offset(double x, double y, double z, double yaw_deg) {
-  return {so3_exp({0, 0, yaw_deg * kDegree}), {x, y, z}};
-}
-
-RegistrationResult place(const Registration& method, const Points& source, const Points& target,
-                         const PosePrior& prior) {
-  const auto s = method.prepare(source);
-  const Registration::Placed placed{method.prepare(target), Pose{}};
-  return method.align_with_prior(*s, {&placed, 1}, prior);
-}
+using testing::closed_room;
+using testing::expect_promise;
+using testing::kOwnMethods;
+using testing::law;
+using testing::level_ground;
+using testing::long_corridor;
+using testing::offset;
+using testing::own_method;
+using testing::place;
+using testing::Walls;
 
 struct RealPair {
   CloudPlaces source, target;
@@ -131,11 +74,11 @@ TEST(OwnMethods, RealScansAgreeWithTheirReference) {
   }
 }
 
-TEST(OwnMethods, RealScansFromRingsOfGuesses) {
-  CANYON_REAL_PAIR(pair);
-  const auto gicp = own_method("gicp", 0.25);
-  const auto source = gicp->prepare(floats(pair.source));
-  const Registration::Placed placed{gicp->prepare(floats(pair.target)), Pose{}};
+/// 200 starts off by so much each: right to 0.1 m and 1 degree are as many as are asked for.
+void expect_right_from_rings_on_the_pair(const RealPair& pair, const std::string& name) {
+  const auto method = own_method(name, 0.25);
+  const auto source = method->prepare(floats(pair.source));
+  const Registration::Placed placed{method->prepare(floats(pair.target)), Pose{}};
   struct Ring {
     double m, deg;
     int wanted;  // of 200, as required
@@ -146,14 +89,23 @@ TEST(OwnMethods, RealScansFromRingsOfGuesses) {
     for (std::uint64_t k = 0; k < 200; ++k) {
       Vector6d off;
       off << ring.deg * kDegree * random.direction(0, k), ring.m * random.direction(1, k);
-      const auto result = gicp->align(*source, {&placed, 1}, pair.reference * Pose::exp(off));
+      const auto result = method->align(*source, {&placed, 1}, pair.reference * Pose::exp(off));
       const Vector6d error = (pair.reference.inverse() * result.X_TS).log();
       right += error.tail<3>().norm() < 0.1 && error.head<3>().norm() < kDegree ? 1 : 0;
     }
-    RecordProperty("right_of_200_from_" + std::to_string(ring.m) + "_m", right);
-    std::printf("from %.1f m, %.0f deg: %d of 200 right\n", ring.m, ring.deg, right);
-    EXPECT_GE(right, ring.wanted) << ring.m;
+    std::printf("%s from %.1f m, %.0f deg: %d of 200 right\n", name.c_str(), ring.m, ring.deg, right);
+    EXPECT_GE(right, ring.wanted) << name << ' ' << ring.m;
   }
+}
+
+TEST(OwnMethods, RealScansFromRingsOfGuesses) {
+  CANYON_REAL_PAIR(pair);
+  expect_right_from_rings_on_the_pair(pair, "gicp");
+}
+
+TEST(OwnMethodsNightly, RealScansFromRingsOfGuessesByTheOthers) {
+  CANYON_REAL_PAIR(pair);
+  for (const char* name : {"point_to_plane", "vgicp"}) expect_right_from_rings_on_the_pair(pair, name);
 }
 
 TEST(OwnMethods, SameBitsForAnyNumberOfThreads) {
@@ -340,6 +292,16 @@ TEST(OwnMethods, RingsOnLevelGroundLeaveItOpen) {
     expect_prior_along(name, rings_on_level_ground(1), rings_on_level_ground(2), prior, {2, 3, 4});
 }
 
+// The means of its voxels of 1 m follow the rings. A status, or converged with the prior's own doubt along what the
+// ground leaves open; which of the two is not asked, as nothing is known of how far such means lead.
+TEST(OwnMethodsNightly, RingsOnLevelGroundMakeVoxelsSureOfNothing) {
+  const PosePrior prior{offset(1.2, -0.9, 0.05, 3), law(1, 3)};
+  const auto r = place(*own_method("vgicp"), rings_on_level_ground(1), rings_on_level_ground(2), prior);
+  expect_promise(r, prior.X_TS, "vgicp");
+  for (const int k : {2, 3, 4})
+    EXPECT_TRUE(r.status != RegistrationStatus::kConverged || r.covariance(k, k) > 0.5 * prior.covariance(k, k)) << k;
+}
+
 TEST(OwnMethods, SwappedCloudsAgree) {
   int within = 0;
   const auto gicp = own_method("gicp");
@@ -355,13 +317,6 @@ TEST(OwnMethods, SwappedCloudsAgree) {
         round.dot((there.covariance + back.covariance).ldlt().solve(round)) < chi_square_threshold(0.01, 6) ? 1 : 0;
   }
   EXPECT_GE(within, 97);  // the requirement
-}
-
-/// A pose that is finite where the prior was; a covariance that is finite as a whole or NaN as a whole.
-void expect_promise(const RegistrationResult& r, const Pose& prior, const std::string& what) {
-  EXPECT_TRUE(r.X_TS.matrix().allFinite() || !prior.matrix().allFinite()) << what;
-  EXPECT_TRUE(r.covariance.allFinite() || r.covariance.array().isNaN().all()) << what;
-  EXPECT_TRUE(r.status != RegistrationStatus::kConverged || r.covariance.allFinite()) << what;
 }
 
 TEST(OwnMethods, OddCloudsAndPriorsAreStatuses) {
