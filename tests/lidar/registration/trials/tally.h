@@ -32,6 +32,8 @@ Tally of_form(std::span<const Outcome> outcomes, std::size_t form);
 std::string table_head();
 std::string table_row(const std::string& name, const Tally& tally);
 
+/// Of each assertion that leaves room for chance.
+inline constexpr double kAlarm = 1e-4;
 /// The most successes in n of probability p that come up but for a false alarm of probability `alarm`.
 int binomial_most(int n, double p, double alarm);
 /// The fewest.

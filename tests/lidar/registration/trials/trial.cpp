@@ -28,16 +28,6 @@ std::vector<Eigen::Vector3f> cloud_from(const scene::Scene& scene, const Sensor&
   return testing::positions(scanner->scan(0, testing::kStart, testing::standing(X_WL), scene::SceneAt(scene)).scan);
 }
 
-/// truth = guess Exp(xi).
-Vector6d draw_guess(Draws& draws, const Ring& ring) {
-  const double distance_m = draws.uniform(ring.from_m, ring.to_m), azimuth = draws.uniform(-kPi, kPi);
-  Vector6d xi;
-  xi << draws.normal(kGuessTilt_deg * kDegree), draws.normal(kGuessTilt_deg * kDegree),
-      draws.side() * draws.uniform(ring.from_deg, ring.to_deg) * kDegree, distance_m * std::cos(azimuth),
-      distance_m * std::sin(azimuth), draws.normal(kGuessUp_m);
-  return xi;
-}
-
 /// Whether a step of the place's period leads from the truth to where the prior reaches.
 bool repeats_within(const PosePrior& prior, const Pose& X_WT, const Pose& X_WS, double period_m) {
   bool within = false;
@@ -51,6 +41,15 @@ bool repeats_within(const PosePrior& prior, const Pose& X_WT, const Pose& X_WS, 
 }
 
 }  // namespace
+
+Vector6d draw_guess(Draws& draws, const Ring& ring) {
+  const double distance_m = draws.uniform(ring.from_m, ring.to_m), azimuth = draws.uniform(-kPi, kPi);
+  Vector6d xi;
+  xi << draws.normal(kGuessTilt_deg * kDegree), draws.normal(kGuessTilt_deg * kDegree),
+      draws.side() * draws.uniform(ring.from_deg, ring.to_deg) * kDegree, distance_m * std::cos(azimuth),
+      distance_m * std::sin(azimuth), draws.normal(kGuessUp_m);
+  return xi;
+}
 
 Trial make_trial(const Place& place, const Sensor& sensor, const Ring& ring, std::uint64_t seed, std::uint64_t number) {
   const std::string stream = std::string("trials.") + place.name + '.' + sensor.name + '.' + ring.name;

@@ -18,6 +18,8 @@ struct Trial {
   /// Other poses within the prior's 3 sigma see the same: a step of the facades on, or anywhere on level ground.
   bool ambiguous = false;
 };
+/// How far a guess of the ring is off: truth = guess Exp(xi).
+Vector6d draw_guess(Draws& draws, const Ring& ring);
 Trial make_trial(const Place& place, const Sensor& sensor, const Ring& ring, std::uint64_t seed, std::uint64_t number);
 
 }  // namespace canyon::lidar::trials
