@@ -152,17 +152,17 @@ void add_column(std::string& columns, std::size_t points, const T& value_at) {
 
 /// Runs, short copies and long ones in the one, columns of other widths in the other.
 std::vector<Seed> compressed_clouds() {
-  constexpr std::size_t kPoints = 90;
+  constexpr std::size_t kPacked = 90;
   std::string floats, mixed;
-  add_column(floats, kPoints, [](int i) { return 0.37F * static_cast<float>(i * i); });
-  add_column(floats, kPoints, [](int i) { return static_cast<float>(i % 5); });
-  for (int column = 0; column < 2; ++column) add_column(floats, kPoints, [](int) { return -1.75F; });
-  add_column(mixed, kPoints, [](int i) { return static_cast<std::uint8_t>(i / 30); });
-  for (const double step : {0.5, 0.25, 0.0}) add_column(mixed, kPoints, [step](int i) { return step * i; });
+  add_column(floats, kPacked, [](int i) { return 0.37F * static_cast<float>(i * i); });
+  add_column(floats, kPacked, [](int i) { return static_cast<float>(i % 5); });
+  for (int column = 0; column < 2; ++column) add_column(floats, kPacked, [](int) { return -1.75F; });
+  add_column(mixed, kPacked, [](int i) { return static_cast<std::uint8_t>(i / 30); });
+  for (const double step : {0.5, 0.25, 0.0}) add_column(mixed, kPacked, [step](int i) { return step * i; });
   const auto wide = [](const char* name) { return PcdField{.name = name, .size = 8}; };
-  return {{"a.pcd", packed_pcd({{.name = "x"}, {.name = "y"}, {.name = "z"}, {.name = "intensity"}}, kPoints, floats)},
+  return {{"a.pcd", packed_pcd({{.name = "x"}, {.name = "y"}, {.name = "z"}, {.name = "intensity"}}, kPacked, floats)},
           {"b.pcd",
-           packed_pcd({{.name = "label", .type = 'U', .size = 1}, wide("x"), wide("y"), wide("z")}, kPoints, mixed)}};
+           packed_pcd({{.name = "label", .type = 'U', .size = 1}, wide("x"), wide("y"), wide("z")}, kPacked, mixed)}};
 }
 
 std::string ouster_capture() {

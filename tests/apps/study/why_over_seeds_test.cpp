@@ -172,8 +172,10 @@ TEST_F(WhyOverSeedsTest, EverySeedThatFailsIsExplainedAndCounted) {
   EXPECT_THAT(page, Not(HasSubstr("<summary>cheap, seed 1: "))) << "it stands with its verdict";
 }
 
+class WhyOverSeedsNightly : public WhyOverSeedsTest {};
+
 // Replays are of the run with that seed and no other, whoever else is explained and on however many threads.
-TEST_F(WhyOverSeedsTest, WhatIsSaidOfASeedIsTheSameAsAlone) {
+TEST_F(WhyOverSeedsNightly, WhatIsSaidOfASeedIsTheSameAsAlone) {
   const Json both = explained("--seed 1 --seeds 2 --fidelities cheap", "both");
   ASSERT_EQ(runs_with_seeds(both.at("failures")), (RunsWithSeeds{{"cheap", 1}, {"cheap", 2}}));
   const Json alone = explained("--seed 2 --fidelities cheap --threads 1", "alone");

@@ -79,26 +79,30 @@ std::string is_in_the_way(const std::string& name, double radius_m) {
 }
 
 // Thicker than the lines through the body are apart, 0.375 m.
-const StandingThing kLamp{"lamp 1", scene::ObjectKind::kPole, {20.0, 0.0, 1.5}, {0.2, 0.2, 1.5}};
-const StandingThing kTrunk{"tree 1", scene::ObjectKind::kTree, {20.0, 0.0, 2.0}, {0.25, 0.25, 2.0}};
+const StandingThing kLamp{"lamp 1", scene::ObjectKind::kPole, {20.0, 0.0, 1.5}, {0.4, 0.4, 1.5}};
+const StandingThing kTrunk{"tree 1", scene::ObjectKind::kTree, {20.0, 0.0, 2.0}, {0.45, 0.45, 2.0}};
 const StandingThing kParked{"vehicle 1", scene::ObjectKind::kVehicle, {20.0, 0.0, 0.75}, {2.25, 0.9, 0.55}};
-const StandingThing kGate{"building 1", scene::ObjectKind::kBuilding, {21.5, 0.0, 2.0}, {1.0, 1.0, 2.0}};
+const StandingThing kGate{"building 1", scene::ObjectKind::kBuilding, {18.0, 0.0, 2.0}, {1.0, 1.0, 2.0}};
 
-// The front bumper is 2.2 m ahead of the rear axle, which is what comes to the goal: before a pole the axle stands 2.4
-// m from its middle, before the car's 4.45 m, and 1.7 m before a goal that is half a metre before a wall.
+// The rear axle is what comes to the goal, and it comes nearest in reverse: the rear bumper is 0.4 m behind it, 0.2 m
+// of the smaller body that is held against what stands. Before the lamp's middle it stands 0.6 m then, the trunk's 0.65
+// m, 2.45 m before the car's middle, and 3.2 m before a goal a metre behind the gate.
 TEST(BlockedWaypoints, InADeadEndWhateverStandsIsInTheWay) {
   for (const StandingThing& thing : {kLamp, kTrunk, kParked, kGate})
-    EXPECT_EQ(told_of_goal(thing, Alley::kDeadEnd, 0.8), is_in_the_way(thing.name, 0.8));
-  EXPECT_EQ(told_of_goal(kParked, Alley::kDeadEnd, 3.0), is_in_the_way("vehicle 1", 3.0));
+    EXPECT_EQ(told_of_goal(thing, Alley::kDeadEnd, 0.4), is_in_the_way(thing.name, 0.4));
+  EXPECT_EQ(told_of_goal(kParked, Alley::kDeadEnd, 2.0), is_in_the_way("vehicle 1", 2.0));
 }
 
 TEST(BlockedWaypoints, AFreePlaceWithinTheRadiusIsEnough) {
+  // In reverse.
+  EXPECT_EQ(told_of_goal(kLamp, Alley::kDeadEnd, 0.8), "no mistake");
+  EXPECT_EQ(told_of_goal(kParked, Alley::kDeadEnd, 3.0), "no mistake");
   EXPECT_EQ(told_of_goal(kLamp, Alley::kDeadEnd, 2.6), "no mistake");
-  EXPECT_EQ(told_of_goal(kGate, Alley::kDeadEnd, 2.0), "no mistake");
+  EXPECT_EQ(told_of_goal(kGate, Alley::kDeadEnd, 4.0), "no mistake");
   EXPECT_EQ(told_of_goal(kParked, Alley::kDeadEnd, 4.8), "no mistake");
 }
 
-// Beyond the pole the axle stands 0.6 m from its middle: the other end of the alley leads there. Beside a parked car it
+// Beyond the lamp the axle stands 0.8 m from its middle: the other end of the alley leads there. Beside a parked car it
 // stands 1.65 m from its middle.
 TEST(BlockedWaypoints, AnotherWayThereIsEnough) {
   EXPECT_EQ(told_of_goal(kLamp, Alley::kOpen, 0.8), "no mistake");

@@ -65,7 +65,7 @@ constexpr double kLane_m = 213.9;
 constexpr const char* kPastACar = R"(
 base = "vicksburg"
 [run]
-name = "past a car"
+name = "past_a_car"
 [registration]
 method = "none"
 [vehicle]
