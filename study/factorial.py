@@ -9,7 +9,7 @@ Without blockage satellites that a clear sky would show are received, without re
 sensor has none. An effect is the difference of the shares of success with a source and without it, over all settings of the other two; an
 interaction of two is half the difference of one's effect with and without the other, and of three likewise. Intervals: 95 % of 10,000 bootstrap draws of whole seeds, all eight
 runs of one together. Beside them single ones: --remedies (a gate, an odometer, the filter that knows the vehicle, both, a better unit, another receiver, truth as
-pose), --controls (hidden signals dropped) and --parts (of that filter).
+pose), --controls (hidden signals dropped) and --parts (that filter without one of its parts).
 """
 import argparse
 import concurrent.futures
@@ -149,7 +149,7 @@ def main():
     parser.add_argument("--base", default="high", help="fidelity whose sources are taken away")
     parser.add_argument("--remedies", action="store_true", help="the single remedies too")
     parser.add_argument("--controls", action="store_true", help="blockage by itself with hidden signals dropped too, in place of kept without their errors")
-    parser.add_argument("--parts", action="store_true", help="the `vehicle` filter without each of its parts too")
+    parser.add_argument("--parts", action="store_true", help="the `vehicle` filter without fix_error, velocity, non_holonomic or standstill too")
     parser.add_argument("--keep", type=pathlib.Path)
     parser.add_argument("--jobs", type=int, default=1)
     options = parser.parse_args()

@@ -157,7 +157,9 @@ Status check_waypoints_are_free(const MissionConfig& config, const PreparedMissi
   for (std::size_t i = 0; i < config.autonomy.waypoints.size(); ++i) {
     const Waypoint& waypoint = config.autonomy.waypoints[i];
     const double s_m = mission.prior.waypoint_s_m[i];
-    const double soonest_s = std::max(0.0, s_m - radius_m) / config.vehicle.max_speed_m_s;
+    // On the straight line, which no way is shorter than: nobody has to keep to the route.
+    const double line_m = (waypoint.p_m - config.vehicle.start_m).norm();
+    const double soonest_s = std::max(0.0, line_m - radius_m) / config.vehicle.max_speed_m_s;
     const std::vector<std::size_t> standing = mission.traffic.standing(soonest_s, limit_s);
     const std::vector<scene::Instance> moving = mission.traffic.at(soonest_s);
     std::vector<scene::Instance> still;

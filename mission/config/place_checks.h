@@ -28,7 +28,7 @@ Status check_sight(const MissionConfig& config, const PriorKnowledge& prior, con
 /// That the vehicle touches nothing where it starts, by the check that scores it; things move as they do at the start.
 Status check_start_is_free(const MissionConfig& config, const PreparedMission& mission);
 /// The vehicle can come to within success.waypoint_radius_m of every waypoint, past what stands. Of moving things these
-/// are those that stand from when the vehicle is there at the soonest, at its highest speed along the route, to the
+/// are those that stand from when the vehicle is there at the soonest, at its highest speed on a straight line, to the
 /// mission's own limit. Only what cannot be is refused (mission/config/waypoint_reach.h).
 Status check_waypoints_are_free(const MissionConfig& config, const PreparedMission& mission);
 

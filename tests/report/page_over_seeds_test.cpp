@@ -89,7 +89,7 @@ TEST_F(PageOverSeeds, WhatFailuresComeFromIsCountedAndToldSeedBySeed) {
   EXPECT_EQ(error(), "why.json:1: tally[0].run: no run \"nobody\", expected a run of summary.json");
   store(file("why.json"), R"({"failures": [], "tally": [{"run": "high", "failed": 1, "explained": 1, "verdicts": [
     {"verdict": "imu", "words": "", "n": 1, "low": 0.2, "high": 1.5}]}]})");
-  EXPECT_EQ(error(), "why.json:2: tally[0].verdicts[0].high: number 1.5, expected a share between 0 and 1");
+  EXPECT_EQ(error(), "why.json:2: tally[0].verdicts[0].high: number 1.50000, expected a share between 0 and 1");
 }
 
 TEST_F(PageOverSeeds, AnOpenLoopHasNoShares) {

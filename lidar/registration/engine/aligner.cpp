@@ -198,8 +198,8 @@ std::size_t Aligner::likeliest(const std::vector<Place>& places) const {
   return first;
 }
 
-/// The horizontal way, source frame, along which the surfaces hold a place the least, of length 1; nothing where it is
-/// open there.
+/// The way in the source's x-y plane (level as the sensor is) along which the surfaces hold a place the least, of
+/// length 1; nothing where it is open there.
 std::optional<Vector6d> Aligner::weakest_way(Place& place) const {
   const CovarianceSums& sums = sums_at(place.found);
   const Matrix6d spread = sums.A.ldlt().solve(Matrix6d::Identity());
@@ -207,7 +207,9 @@ std::optional<Vector6d> Aligner::weakest_way(Place& place) const {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> plane(spread.block<2, 2>(3, 3));
   Vector6d way = Vector6d::Zero();
   way.segment<2>(3) = plane.eigenvectors().col(1);
-  if (!way.allFinite() || place.open.closed_part(way).tail<3>().norm() < kClosedShare) return std::nullopt;
+  if (!way.allFinite() || !(plane.eigenvalues()[0] > 0.0) ||
+      place.open.closed_part(way).tail<3>().norm() < kClosedShare)
+    return std::nullopt;
   return way;
 }
 
@@ -218,11 +220,11 @@ std::vector<Aligner::Place> Aligner::places() {
   std::vector<Place> out;
   for (FoundPose& found : search_.coarse()) take_in(std::move(found), out);
   if (!search_.several()) return out;
-  Place& first = out[likeliest(out)];
-  if (!first.determined) return out;
-  if (const auto way = weakest_way(first)) {
-    for (FoundPose& found : search_.along(first.fit.X, *way)) take_in(std::move(found), out);
+  std::vector<FoundPose> others;
+  if (Place& first = out[likeliest(out)]; first.determined) {
+    if (const auto way = weakest_way(first)) others = search_.along(first.fit.X, *way);
   }
+  for (FoundPose& found : others) take_in(std::move(found), out);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "canyon/lidar/registration/engine/covariance_forms.h"

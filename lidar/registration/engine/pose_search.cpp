@@ -33,7 +33,7 @@ constexpr double kBasin_rad = 8.0 * kDegree;
 constexpr int kMostStarts = 1200;
 constexpr std::size_t kRefined = 6;
 constexpr double kCoarsePieces = 100.0;  // of the cloud, that speak for themselves, against the prior
-constexpr double kScan_reaches = 0.5;    // a step of a scan: a place is then within half the reach of one
+constexpr double kScan_reaches = 0.5;    // a step of a scan: a place is then within a quarter of the reach of one
 constexpr int kMostScanned = 500;        // either way
 constexpr double kAlternative = 1e-3;    // a start that the prior has beyond its ellipsoid of so much is left out
 // Another minimum counts as another place from here on.

@@ -49,7 +49,7 @@ class PoseSearch {
   /// More of them, with all as at X but moved along `way`, a shift of length 1 in the source frame, to where a part of
   /// the points fits better than a step either side; as far as the prior reaches.
   std::vector<FoundPose> along(const Pose& X, const Vector6d& way);
-  /// Whether the prior reaches so far that there may be several; without one it does not.
+  /// After coarse(): whether the prior reaches so far that there may be several; without one it does not.
   bool several() const { return several_; }
   /// On with all points.
   void refine(FoundPose& at, const Held& how = {});
