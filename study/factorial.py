@@ -40,7 +40,8 @@ CONTROLS = {"blockage, hidden signals dropped": ("", {"gnss": DROPPED, "imu": 'e
 
 def without(part, states='"biases", "gains", "mounting", "wheel_scale", "fix_error", "velocity_error"', measurements='"position", "velocity", "non_holonomic", "standstill"'):
     """The `vehicle` filter without wheels, and without that part."""
-    kept = [", ".join(one for one in of.split(", ") if one != f'"{part}"') for of in (states, measurements)]
+    gone = {f'"{part}"', '"velocity_error"'} if part == "velocity" else {f'"{part}"'}  # whose state nothing else observes
+    kept = [", ".join(one for one in of.split(", ") if one not in gone) for of in (states, measurements)]
     return ("", {"fusion": f'filter = "vehicle"\nstates = [{kept[0]}]\nmeasurements = [{kept[1]}]'})
 
 

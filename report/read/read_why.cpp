@@ -36,6 +36,7 @@ CauseTally read_tally(const JsonFields& fields, const JsonFile& tree, std::optio
   tally.run = fields.required_text("run");
   tally.failed = fields.required_number("failed");
   tally.explained = fields.required_number("explained");
+  if (!(tally.explained > 0.0)) fields.fail(fields.find("explained"), "explained", "nothing explained", "1 or more");
   for (const auto& [node, path] : fields.list("verdicts", true)) {
     const JsonFields count(node, tree, path, error);
     tally.counts.push_back({.words = count.required_text("words"),

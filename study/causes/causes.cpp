@@ -103,7 +103,10 @@ void judge(Explanation& explanation) {
 }
 
 /// Drives each again, to see its events and where its replays begin to differ.
-Status see_events(const Comparison& comparison, std::vector<Failed>& failed, Progress& progress) {
+Status see_events(const Comparison& comparison, std::vector<Failed>& failed, bool show_progress) {
+  double whole_s = 0.0;
+  for (const Failed& f : failed) whole_s += comparison.missions[f.run].nominal_s;
+  Progress progress("driving " + std::to_string(failed.size()) + " failed runs again", whole_s, show_progress);
   std::vector<std::optional<Error>> errors(failed.size());
   parallel_for(failed.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -130,11 +133,20 @@ bool asked(const Removal& removal, const Failed& failed) {
   return !removal.from_start || failed.explanation.from_s <= 0.0;
 }
 
-/// Drives the replays of each from its from_s on, and judges.
-Status look(const Comparison& comparison, std::vector<Failed>& failed, Progress& progress) {
+/// Drives the replays of each from its from_s on, and judges. `title`: what they are, for people.
+Status look(const Comparison& comparison, std::vector<Failed>& failed, const char* title, bool show_progress) {
   const auto rows = removals();
   const auto draws = static_cast<std::size_t>(failed.front().explanation.draws);
   const std::size_t each = (rows.size() + 1) * draws;
+  std::size_t replays = 0;
+  double whole_s = 0.0;
+  for (const Failed& f : failed) {
+    const auto arms = 1 + std::count_if(rows.begin(), rows.end(), [&](const auto& row) { return asked(row.make, f); });
+    const std::size_t of_it = static_cast<std::size_t>(arms) * draws;
+    replays += of_it;
+    whole_s += static_cast<double>(of_it) * comparison.missions[f.run].nominal_s;
+  }
+  Progress progress("driving " + std::to_string(replays) + " " + title, whole_s, show_progress);
   std::vector<std::optional<Error>> errors(failed.size() * each);
   std::vector<char> success(errors.size(), 0);  // by run, arm and draw
   parallel_for(errors.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -190,12 +202,6 @@ std::vector<bool> holm(const std::vector<double>& p, double level) {
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
                                                   bool show_progress, std::optional<std::int64_t> most_seeds) {
   std::vector<Failed> failed;
-  const auto each = (removals().size() + 1) * static_cast<std::size_t>(draws);
-  const auto replays_s = [&](const std::vector<Failed>& of) {
-    double sum_s = 0.0;
-    for (const Failed& f : of) sum_s += static_cast<double>(each) * comparison.missions[f.run].nominal_s;
-    return sum_s;
-  };
   for (FailedRun& run : failed_runs(results, most_seeds)) {
     Explanation explanation;
     explanation.run = comparison.plan[run.run].name;
@@ -205,10 +211,8 @@ Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, 
     failed.push_back({run.run, std::move(explanation)});
   }
   if (failed.empty()) return std::vector<Explanation>();
-  Progress progress("driving " + std::to_string(failed.size() * each) + " replays of what failed", replays_s(failed),
-                    show_progress);
-  CANYON_TRY_STATUS(see_events(comparison, failed, progress));
-  CANYON_TRY_STATUS(look(comparison, failed, progress));
+  CANYON_TRY_STATUS(see_events(comparison, failed, show_progress));
+  CANYON_TRY_STATUS(look(comparison, failed, "replays of what failed", show_progress));
 
   // Where no one error is to blame from there on, it may have been at work before, as a drift is.
   std::vector<Failed> again;
@@ -223,9 +227,7 @@ Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, 
     of.push_back(k);
   }
   if (!again.empty()) {
-    Progress more("driving " + std::to_string(again.size() * each) + " of them from the start", replays_s(again),
-                  show_progress);
-    CANYON_TRY_STATUS(look(comparison, again, more));
+    CANYON_TRY_STATUS(look(comparison, again, "replays from the start", show_progress));
   }
   for (std::size_t i = 0; i < again.size(); ++i) {
     Explanation &first = failed[of[i]].explanation, &second = again[i].explanation;

@@ -60,9 +60,9 @@ enum class VerdictKind { kCause, kNotNavigation, kUndetermined };
 VerdictKind verdict_kind(const Explanation& explanation);
 /// The verdict in one or two sentences.
 std::string verdict(const Explanation& explanation);
-/// "0 of 12 repeats, so in at most 24 % of such drives (95 %)": what replays of one drive say of all that differ as
-/// they do. The upper end of wilson_interval; 0 <= successes <= draws, draws > 0.
-std::string replays_bound(int successes, int draws);
+/// "0 of 12 repeats, so in at most 24 % of such drives (95 %)": what replays of one drive, of which none succeeds, say
+/// of all that differ as they do. The upper end of wilson_interval; draws > 0.
+std::string replays_bound(int draws);
 /// The chain of events before the failure, one a line.
 std::vector<std::string> chain(const Explanation& explanation);
 /// why.json.

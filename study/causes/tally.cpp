@@ -33,7 +33,7 @@ CauseTally tally_of_run(const std::string& run, int failed, const std::vector<Ex
       case VerdictKind::kNotNavigation:
         ++not_navigation.n;
         // The same of each: nothing but no success at all comes to this verdict, and all have as many replays.
-        not_navigation.note = "told its true position each succeeds in " + replays_bound(0, e.draws);
+        not_navigation.note = "told its true position each succeeds in " + replays_bound(e.draws);
         break;
       case VerdictKind::kUndetermined:
         ++undetermined.n;

@@ -58,10 +58,10 @@ VerdictKind verdict_kind(const Explanation& e) {
   return navigation.successes == 0 ? VerdictKind::kNotNavigation : VerdictKind::kUndetermined;
 }
 
-std::string replays_bound(int successes, int draws) {
+std::string replays_bound(int draws) {
   char most[32];
-  std::snprintf(most, sizeof most, "%.2g %%", 100.0 * wilson_interval(successes, draws).high);
-  return out_of(successes, draws) + " repeats, so in at most " + most + " of such drives (95 %)";
+  std::snprintf(most, sizeof most, "%.2g %%", 100.0 * wilson_interval(0, draws).high);
+  return out_of(0, draws) + " repeats, so in at most " + most + " of such drives (95 %)";
 }
 
 std::string verdict(const Explanation& e) {
@@ -75,7 +75,7 @@ std::string verdict(const Explanation& e) {
     }
   }
   if (verdict_kind(e) == VerdictKind::kNotNavigation)
-    return "navigation is not to blame. Told its true position it succeeds in " + replays_bound(0, e.draws) + "; " +
+    return "navigation is not to blame. Told its true position it succeeds in " + replays_bound(e.draws) + "; " +
            as_it_was;
   return "undetermined. Nothing that was taken away helps more often than other noise does; it succeeds, " + as_it_was;
 }

@@ -100,6 +100,18 @@ class Arithmetic(unittest.TestCase):
                                                     "imu": {"errors": "none"}})
         self.assertEqual(tree["fidelity"]["r5"], {"base": "modern"})
 
+    def test_controls_drop_and_parts_lack_one_each(self):
+        tree = tomllib.loads(factorial.mission("high", factorial.CONTROLS | factorial.PARTS))["fidelity"]
+        dropped = {"multipath_scale": 0.0, "hidden_signals": "dropped"}
+        self.assertEqual([tree["r0"], tree["r1"]], [{"base": "high", "gnss": dropped, "imu": {"errors": "none"}}, {"base": "high", "gnss": dropped}])
+        states = ["biases", "gains", "mounting", "wheel_scale", "fix_error", "velocity_error"]
+        measurements = ["position", "velocity", "non_holonomic", "standstill"]
+        gone = [({"fix_error"}, set()), ({"velocity_error"}, {"velocity"}), (set(), {"non_holonomic"}), (set(), {"standstill"})]
+        for k, (of_states, of_measurements) in enumerate(gone):
+            self.assertEqual(tree[f"r{k + 2}"], {"base": "high", "fusion": {
+                "filter": "vehicle", "states": [s for s in states if s not in of_states],
+                "measurements": [m for m in measurements if m not in of_measurements]}})
+
 
 class Script(ScriptCase):
     SCRIPT, PROGRAM = "factorial.py", CANYON

@@ -131,10 +131,10 @@ TEST(CauseTally, WhoNeverFailsHasNone) {
 
 // Of 0 successes in n the upper end is z^2 / (n + z^2), z^2 = 3.8415.
 TEST(ReplaysBound, IsWilsonsUpperEnd) {
-  EXPECT_EQ(replays_bound(0, 12), "0 of 12 repeats, so in at most 24 % of such drives (95 %)");
-  EXPECT_EQ(replays_bound(0, 10), "0 of 10 repeats, so in at most 28 % of such drives (95 %)");
-  EXPECT_EQ(replays_bound(0, 100), "0 of 100 repeats, so in at most 3.7 % of such drives (95 %)");
-  EXPECT_EQ(replays_bound(0, 10000), "0 of 10000 repeats, so in at most 0.038 % of such drives (95 %)");
+  EXPECT_EQ(replays_bound(12), "0 of 12 repeats, so in at most 24 % of such drives (95 %)");
+  EXPECT_EQ(replays_bound(10), "0 of 10 repeats, so in at most 28 % of such drives (95 %)");
+  EXPECT_EQ(replays_bound(100), "0 of 100 repeats, so in at most 3.7 % of such drives (95 %)");
+  EXPECT_EQ(replays_bound(10000), "0 of 10000 repeats, so in at most 0.038 % of such drives (95 %)");
 }
 
 // Without a rescue it hangs on the replays with the true pose, whatever else succeeds now and then.

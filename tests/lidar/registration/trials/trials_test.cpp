@@ -290,6 +290,13 @@ TEST(Trials, APeriodOffIsNoAnswer) {
     EXPECT_FALSE(verdict.silent()) << sensors()[c.sensor].name << ' ' << rings()[c.ring].name << ' ' << c.number << ": "
                                    << verdict.error_m << " m off";
   }
+  // Who is near enough is not refused for it.
+  int converged = 0;
+  for (const Outcome& o : run_trials({}, *facades, sensors()[1], rings()[0], 2027, 5)) {
+    converged += o.verdict.converged ? 1 : 0;
+    EXPECT_TRUE(o.verdict.right);
+  }
+  EXPECT_EQ(converged, 5);
 }
 
 TEST(Trials, SameOutcomesForAnyNumberOfThreads) {
