@@ -17,10 +17,10 @@ namespace canyon::gnss {
 namespace {
 
 using stress::kEpsilon;
-const GpsTime kStart = GpsTime::from_week_sow(1617, 388800.0);
-const Geodetic kHere{0.5646, -1.586, 60.0};
+const GpsTime kFirstEpoch = GpsTime::from_week_sow(1617, 388800.0);
+const Geodetic kReceiverAt{0.5646, -1.586, 60.0};
 const Eigen::Vector3d kVelocity_E(6.0, -8.0, 3.0);
-constexpr double kClock_m = 3e4, kDrift_m_s = 12.0;
+constexpr double kReceiverClock_m = 3e4, kDrift_m_s = 12.0;
 
 struct Measured {
   std::vector<RangeMeasurement> ranges;
@@ -31,9 +31,9 @@ struct Measured {
 /// Eight satellites that stand still over the receiver's start; it moves straight on; nothing has an error.
 Measured exact(double t_s, double sigma_m) {
   Measured out;
-  const Eigen::Vector3d start_E = ecef_from_geodetic(kHere);
+  const Eigen::Vector3d start_E = ecef_from_geodetic(kReceiverAt);
   out.truth_E = start_E + t_s * kVelocity_E;
-  const Eigen::Matrix3d R = rotation_E_from_enu(kHere);
+  const Eigen::Matrix3d R = rotation_E_from_enu(kReceiverAt);
   for (int k = 0; k < 8; ++k) {
     const double e = 0.25 + 0.15 * k, a = 2.4 * k;
     const Eigen::Vector3d p_E =
@@ -41,7 +41,7 @@ Measured exact(double t_s, double sigma_m) {
     const double range_m = (p_E - out.truth_E).norm();
     RangeMeasurement r;
     r.p_E = turned_by_earth(p_E, -range_m / kSpeedOfLight);
-    r.range_m = range_m + kClock_m + kDrift_m_s * t_s;
+    r.range_m = range_m + kReceiverClock_m + kDrift_m_s * t_s;
     r.sigma_m = sigma_m;
     out.ranges.push_back(r);
     // At rest in E of reception: its velocity in E of transmission is none.
@@ -73,7 +73,7 @@ StressFigure covariance(double sigma_m, double interval_s, int updates) {
   for (int k = 0; k < updates; ++k) {
     const Measured now = exact(interval_s * (k % 50), sigma_m);
     if (k % 50 == 0) filter.reset();
-    const auto found = filter.update(kStart + interval_s * k, now.ranges, now.rates, now.truth_E);
+    const auto found = filter.update(kFirstEpoch + interval_s * k, now.ranges, now.rates, now.truth_E);
     if (!found.ok) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
     take_worst(out, not_positive(found.covariance) / (64.0 * kEpsilon));
     take_worst(out, (found.p_E - now.truth_E).norm() / (2.0 * kPositionRounding_m));
@@ -88,7 +88,7 @@ StressFigure exact_position(double sigma_m, double interval_s) {
   StressFigure out{0.0, 2.0 * kPositionRounding_m};
   for (int k = 0; k < 50; ++k) {
     const Measured now = exact(interval_s * k, sigma_m);
-    const auto found = filter.update(kStart + interval_s * k, now.ranges, now.rates, now.truth_E);
+    const auto found = filter.update(kFirstEpoch + interval_s * k, now.ranges, now.rates, now.truth_E);
     take_worst(out, found.ok ? (found.p_E - now.truth_E).norm() : kNaN);
   }
   return out;
@@ -101,8 +101,8 @@ StressFigure odd_times() {
   for (const double dt : {0.0, -1.0, -1e6, 121.0, 1e8}) {
     PvtFilter filter{{}};
     const Measured first = exact(0.0, 1.0), second = exact(1.0, 1.0);
-    filter.update(kStart, first.ranges, first.rates, first.truth_E);
-    const auto found = filter.update(kStart + dt, second.ranges, second.rates, second.truth_E);
+    filter.update(kFirstEpoch, first.ranges, first.rates, first.truth_E);
+    const auto found = filter.update(kFirstEpoch + dt, second.ranges, second.rates, second.truth_E);
     const bool good = found.ok && found.begun_anew && found.covariance.allFinite() && found.p_E.allFinite();
     out.figure += good ? 0.0 : 1.0;
   }
@@ -112,14 +112,14 @@ StressFigure odd_times() {
 /// Field by field, what is not finite among seven good ranges and rates: a filter that runs leaves it out by its gate,
 /// one that begins refuses it by a check. A figure counts estimates that are not finite or took it, and what is let
 /// through.
-StressFigure not_finite() {
+StressFigure no_number_filtered() {
   StressFigure out;
   for (const bool running : {true, false})
     for (const double bad : {kNaN, std::numeric_limits<double>::infinity()})
       for (int field = 0; field < 6; ++field) {
         PvtFilter filter{{}};
         const Measured first = exact(0.0, 1.0);
-        if (running) filter.update(kStart, first.ranges, first.rates, first.truth_E);
+        if (running) filter.update(kFirstEpoch, first.ranges, first.rates, first.truth_E);
         Measured next = exact(1.0, 1.0);
         if (field == 0) next.ranges[3].range_m = bad;
         if (field == 1) next.ranges[3].p_E.x() = bad;
@@ -127,7 +127,7 @@ StressFigure not_finite() {
         if (field == 3) next.rates[3].rate_m_s = bad;
         if (field == 4) next.rates[3].v_E.z() = bad;
         if (field == 5) next.rates[3].sigma_m_s = bad;
-        const auto update = [&] { return filter.update(kStart + 1.0, next.ranges, next.rates, next.truth_E); };
+        const auto update = [&] { return filter.update(kFirstEpoch + 1.0, next.ranges, next.rates, next.truth_E); };
         if (!running) {
           out.figure += stress::not_refused(update, field < 3 ? "range_m = " : "rate_m_s = ");
           continue;
@@ -147,10 +147,10 @@ StressFigure predictions(double interval_s) {
   const PvtFilterParameters p{.longest_gap_s = 1e9};
   PvtFilter filter{p};
   const Measured first = exact(0.0, 1.0);
-  const auto begun = filter.update(kStart, first.ranges, first.rates, first.truth_E);
+  const auto begun = filter.update(kFirstEpoch, first.ranges, first.rates, first.truth_E);
   PvtFilter::Estimate last;
   const auto steps = static_cast<int>(std::lround(kSpan_s / interval_s));
-  for (int k = 1; k <= steps; ++k) last = filter.update(kStart + k * (kSpan_s / steps), {}, {}, first.truth_E);
+  for (int k = 1; k <= steps; ++k) last = filter.update(kFirstEpoch + k * (kSpan_s / steps), {}, {}, first.truth_E);
   const Eigen::Matrix3d expected =
       begun.covariance.topLeftCorner<3, 3>() + kSpan_s * kSpan_s * begun.covariance.bottomRightCorner<3, 3>() +
       Eigen::Matrix3d::Identity() * std::pow(p.acceleration_m_s2, 2) * std::pow(kSpan_s, 3) / 3.0;
@@ -171,7 +171,7 @@ StressFigure long_arc(int epochs, double time_constant_s) {
   StressFigure out{0.0, unit_m * (5.0 * std::sqrt(std::min<double>(epochs, time_constant_s) / 24.0) + 2.0)};
   for (int k = 0; k < epochs; ++k) {
     const double range_m = 2.2e7 + 700.0 * std::sin(1e-4 * k) + 0.3 * k;
-    const auto got = smoothing.smooth(sv(), kStart + k, {.code_m = range_m, .phase_m = range_m - 1e8});
+    const auto got = smoothing.smooth(sv(), kFirstEpoch + k, {.code_m = range_m, .phase_m = range_m - 1e8});
     take_worst(out, std::abs(got.code_m - range_m));
   }
   return out;
@@ -186,9 +186,10 @@ StressFigure divergence(double rate_m_s) {
   double bias_m = 0.0;
   for (int k = 0; k <= kEpochs; ++k) {
     const double ionosphere_m = rate_m_s * k, range_m = 2.2e7;
-    bias_m = smoothing.smooth(sv(), kStart + k, {.code_m = range_m + ionosphere_m, .phase_m = range_m - ionosphere_m})
-                 .code_m -
-             range_m - ionosphere_m;
+    bias_m =
+        smoothing.smooth(sv(), kFirstEpoch + k, {.code_m = range_m + ionosphere_m, .phase_m = range_m - ionosphere_m})
+            .code_m -
+        range_m - ionosphere_m;
   }
   const double closed_m = -2.0 * rate_m_s * (kN - 1.0);
   return {std::abs(bias_m - closed_m),
@@ -225,7 +226,7 @@ std::vector<StressCase> filter_cases() {
   rows.of({StressGroup::kData, "a range or rate that is not finite, in a filter that runs",
            "a gate that compares NaN lets it pass, and every later estimate is NaN",
            "left out where it runs, refused where it begins, field by field", "taken"});
-  rows.add("filter/not_finite_field_by_field", not_finite);
+  rows.add("filter/not_finite_field_by_field", no_number_filtered);
 
   rows.of({StressGroup::kStiff, "predictions in many small steps or one",
            "a noise that is scaled by the wrong power of the step", "P_p + P_v t^2 + q t^3 / 3 to (64 + 8 n) eps", ""});

@@ -13,7 +13,7 @@
 namespace canyon::gnss {
 namespace {
 
-const SatelliteId kSv{GnssSystem::kGps, 9};
+const SatelliteId kG09{GnssSystem::kGps, 9};
 
 /// Exactly at the threshold a signal is held, a rounding below it is not; lost, it is found again exactly
 /// ceil(reacquisition / interval) epochs after it stands a margin above, and not a rounding below that margin.
@@ -27,7 +27,7 @@ StressFigure at_threshold(double rate_hz, double reacquisition_s, std::int64_t e
   std::int64_t index = 0;
   const auto tracked = [&](double cn0) {
     locks.begin_epoch(index++);
-    return locks.update(kSv, cn0, 0).tracked;
+    return locks.update(kG09, cn0, 0).tracked;
   };
   StressFigure out;
   out.figure += tracked(25.0) ? 0.0 : 1.0;
@@ -77,8 +77,8 @@ StressFigure slip_share(double cn0_dbhz, double interval_s) {
   int slips = 0;
   for (int k = 0; k <= kEpochs; ++k) {
     locks.begin_epoch(k);
-    slips += k > 0 && locks.update(kSv, cn0_dbhz, 0).slipped;
-    if (k == 0) locks.update(kSv, cn0_dbhz, 0);
+    slips += k > 0 && locks.update(kG09, cn0_dbhz, 0).slipped;
+    if (k == 0) locks.update(kG09, cn0_dbhz, 0);
   }
   const double p = 1.0 - std::exp(-interval_s / mean_time_to_slip_s(cn0_dbhz, 15.0, 0.02));
   return {std::abs(static_cast<double>(slips) / kEpochs - p), 5.0 * std::sqrt(p * (1.0 - p) / kEpochs) + 1e-9};

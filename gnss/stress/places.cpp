@@ -19,7 +19,7 @@ namespace {
 
 using stress::kEpsilon;
 using stress::kInfinity;
-const GpsTime kStart = GpsTime::from_week_sow(1617, 604790.0);  // the week ends in ten seconds
+const GpsTime kWeekEndsSoon = GpsTime::from_week_sow(1617, 604790.0);  // the week ends in ten seconds
 
 std::unique_ptr<scene::Scene> empty_scene(const Geodetic& origin) {
   scene::SceneParts parts;
@@ -45,12 +45,12 @@ GnssConfig errors_off() {
 StressFigure fix_at(double lat_deg, double lon_deg, double h_m) {
   const Geodetic origin{lat_deg * kDegree, lon_deg * kDegree, h_m};
   const auto scene = empty_scene(origin);
-  auto sensor = make_gnss_sensor(errors_off(), 1, kStart, kStart + 60.0, *scene);
+  auto sensor = make_gnss_sensor(errors_off(), 1, kWeekEndsSoon, kWeekEndsSoon + 60.0, *scene);
   if (!sensor.ok()) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   StressFigure out{0.0, 1.0};
   for (std::int64_t k = 0; k < 30; ++k) {
-    const GnssOutput got = (*sensor)->measure(k, tick(kStart, k, 2.0), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(),
-                                              scene::SceneAt(*scene));
+    const GnssOutput got = (*sensor)->measure(k, tick(kWeekEndsSoon, k, 2.0), Eigen::Vector3d::Zero(),
+                                              Eigen::Vector3d::Zero(), scene::SceneAt(*scene));
     if (got.fix.status == FixStatus::kNone) return {kInfinity, 1.0};
     const double error_m = (got.fix.p_A_E - scene->frame().origin_E()).norm();
     take_worst(out, error_m / (got.fix.dop.gdop * 2.0 * (1e-5 + 0.5e-9 * 900.0)));
@@ -67,12 +67,12 @@ StressFigure all_errors_at(double lat_deg, double lon_deg, double h_m) {
   c.mode.name = "dual";
   c.ionosphere.name = "klobuchar";
   c.reception.multipath_rule.name = "correlator";
-  auto sensor = make_gnss_sensor(c, 1, kStart, kStart + 60.0, *scene);
+  auto sensor = make_gnss_sensor(c, 1, kWeekEndsSoon, kWeekEndsSoon + 60.0, *scene);
   if (!sensor.ok()) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   StressFigure out;
   const auto finite = [&](double x) { out.figure += std::isfinite(x) ? 0.0 : 1.0; };
   for (std::int64_t k = 0; k < 20; ++k) {
-    const GnssOutput got = (*sensor)->measure(k, tick(kStart, k, 2.0), Eigen::Vector3d::Zero(),
+    const GnssOutput got = (*sensor)->measure(k, tick(kWeekEndsSoon, k, 2.0), Eigen::Vector3d::Zero(),
                                               Eigen::Vector3d(50.0, -50.0, 5.0), scene::SceneAt(*scene));
     out.figure += got.fix.status == FixStatus::kNone || got.fix.p_A_E.allFinite() ? 0.0 : 1.0;
     for (const auto& t : got.truth.satellites) {
@@ -117,7 +117,7 @@ StressFigure horizon(double lat_deg) {
   for (const double e : {0.0, 1e-12, 0.3, 1.5, 0.5 * kPi})
     for (const double a : {0.0, 0.5 * kPi, kPi, 6.28}) {
       const Eigen::Vector3d enu(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
-      const SkyView v = here.view(kStart, p + 2e7 * (R * enu));
+      const SkyView v = here.view(kWeekEndsSoon, p + 2e7 * (R * enu));
       const double rounding = 16.0 * kEpsilon;
       take_worst(out, std::abs(v.elevation_rad - e) /
                           std::min(rounding / std::max(std::cos(e), 1e-300), std::sqrt(2.0 * rounding)));
@@ -129,7 +129,7 @@ StressFigure horizon(double lat_deg) {
 
 /// A place or velocity that is not finite is refused by the check of the antenna, by every sensor; a figure counts what
 /// is let through.
-StressFigure not_finite() {
+StressFigure no_number_placed() {
   const auto scene = empty_scene({0.5, 1.0, 50.0});
   StressFigure out;
   for (const char* model : {"pseudorange", "truth_plus_isotropic", "truth_plus_white", "satellite_count"})
@@ -137,11 +137,11 @@ StressFigure not_finite() {
       for (int field = 0; field < 6; ++field) {
         GnssConfig c = errors_off();
         c.model.name = model;
-        auto sensor = make_gnss_sensor(c, 1, kStart, kStart + 60.0, *scene);
+        auto sensor = make_gnss_sensor(c, 1, kWeekEndsSoon, kWeekEndsSoon + 60.0, *scene);
         if (!sensor.ok()) return {kNaN, 0.0};
         Eigen::Vector3d p = Eigen::Vector3d::Zero(), v = Eigen::Vector3d::Zero();
         (field < 3 ? p : v)[field % 3] = bad;
-        const auto measure = [&] { (*sensor)->measure(0, kStart, p, v, scene::SceneAt(*scene)); };
+        const auto measure = [&] { (*sensor)->measure(0, kWeekEndsSoon, p, v, scene::SceneAt(*scene)); };
         out.figure += stress::not_refused(measure, "antenna at ");
       }
   return out;
@@ -183,7 +183,7 @@ std::vector<StressCase> place_cases() {
   rows.of({StressGroup::kData, "a place or velocity that is not finite",
            "NaN compares false everywhere and ends as a fix", "refused by every sensor, field by field",
            "let through"});
-  rows.add("places/not_finite_field_by_field", not_finite);
+  rows.add("places/not_finite_field_by_field", no_number_placed);
   return rows.take();
 }
 

@@ -15,8 +15,8 @@ namespace {
 
 using stress::kEpsilon;
 constexpr double kRadius_m = 26559.7e3, kRate = 2.0 * 7.2921151467e-5;  // of the built-in GPS, within 1e-4 of it
-const GpsTime kStart = GpsTime::from_week_sow(1617, 600000.0);          // so that the week ends inside
-const SatelliteId kSv{GnssSystem::kGps, 1};
+const GpsTime kFirstOrbit = GpsTime::from_week_sow(1617, 600000.0);     // so that the week ends inside
+const SatelliteId kG01{GnssSystem::kGps, 1};
 
 PreciseOrbits sampled(double interval_s, int count) {
   const auto truth = make_nominal_gps();
@@ -24,12 +24,12 @@ PreciseOrbits sampled(double interval_s, int count) {
   orbits.files = {"made.sp3"};
   orbits.interval_s = interval_s;
   for (int k = 0; k < count; ++k) {
-    const GpsTime t = kStart + k * interval_s;
+    const GpsTime t = kFirstOrbit + k * interval_s;
     PreciseSample sample;
     sample.t = t;
-    sample.p_E = truth->state(kSv, t)->p_E;
+    sample.p_E = truth->state(kG01, t)->p_E;
     sample.clock_s = 1e-4 + 1e-9 * k;
-    orbits.satellites[kSv].push_back(sample);
+    orbits.satellites[kG01].push_back(sample);
   }
   return orbits;
 }
@@ -53,13 +53,13 @@ std::array<double, 2> nodes_at(double x) {
 StressFigure interpolated(double interval_s, double place) {
   constexpr int kCount = 40;
   const auto precise = make_precise(sampled(interval_s, kCount));
-  const GpsTime t = kStart + place * interval_s;
-  const auto found = precise->state(kSv, t);
+  const GpsTime t = kFirstOrbit + place * interval_s;
+  const auto found = precise->state(kG01, t);
   if (!found) return {std::numeric_limits<double>::quiet_NaN(), 0.0};
   const double first = std::clamp(std::floor(place) - 4.0, 0.0, kCount - 10.0);
   const auto [product, lebesgue] = nodes_at(place - first);
   const double truncation = product / 3628800.0 * std::pow(1.0002 * kRate * interval_s, 10) * kRadius_m;
-  return {(found->p_E - make_nominal_gps()->state(kSv, t)->p_E).norm(),
+  return {(found->p_E - make_nominal_gps()->state(kG01, t)->p_E).norm(),
           truncation + 16.0 * kEpsilon * kRadius_m * std::max(lebesgue, 1.0)};
 }
 
@@ -67,13 +67,13 @@ StressFigure interpolated(double interval_s, double place) {
 StressFigure beside() {
   StressFigure out;
   const auto some = [&](const PreciseOrbits& orbits, double place) {
-    return make_precise(orbits)->state(kSv, kStart + place * 900.0).has_value();
+    return make_precise(orbits)->state(kG01, kFirstOrbit + place * 900.0).has_value();
   };
   const PreciseOrbits whole = sampled(900.0, 30);
   for (const double place : {-0.5000001, 29.5000001, -1e6, 1e6}) out.figure += some(whole, place) ? 1.0 : 0.0;
   for (const double place : {-0.5, 29.5}) out.figure += some(whole, place) ? 0.0 : 1.0;
   PreciseOrbits gap = whole;
-  auto& samples = gap.satellites[kSv];
+  auto& samples = gap.satellites[kG01];
   samples.erase(samples.begin() + 15);
   out.figure += some(gap, 15.0) ? 1.0 : 0.0;
   out.figure += some(gap, 14.6) ? 1.0 : 0.0;
@@ -81,12 +81,12 @@ StressFigure beside() {
   out.figure += some(sampled(900.0, 9), 4.0) ? 1.0 : 0.0;
   out.figure += some(sampled(900.0, 10), 4.0) ? 0.0 : 1.0;
   PreciseOrbits moved = whole;
-  moved.satellites[kSv][12].manoeuvre = true;
+  moved.satellites[kG01][12].manoeuvre = true;
   // From 12 samples before it and 18 after it each side stands by itself.
   out.figure += some(moved, 11.4) && some(moved, 12.0) ? 0.0 : 1.0;
   PreciseOrbits jumped = whole;
-  jumped.satellites[kSv][12].clock_event = true;
-  jumped.satellites[kSv][20].clock_s = std::numeric_limits<double>::quiet_NaN();
+  jumped.satellites[kG01][12].clock_event = true;
+  jumped.satellites[kG01][20].clock_s = std::numeric_limits<double>::quiet_NaN();
   out.figure += some(jumped, 11.5) || some(jumped, 19.5) || some(jumped, 20.5) ? 1.0 : 0.0;
   out.figure += some(jumped, 12.5) && some(jumped, 18.9) ? 0.0 : 1.0;
   return out;
@@ -98,8 +98,8 @@ StressFigure at_samples() {
   const auto precise = make_precise(sampled(900.0, 30));
   StressFigure out{0.0, 2e-9 * 4000.0 + 32.0 * kEpsilon * kRadius_m};
   for (int k = 1; k < 29; ++k) {
-    const std::int64_t ns = (kStart + k * 900.0).ns;
-    const auto a = precise->state(kSv, GpsTime{ns - 1}), b = precise->state(kSv, GpsTime{ns + 1});
+    const std::int64_t ns = (kFirstOrbit + k * 900.0).ns;
+    const auto a = precise->state(kG01, GpsTime{ns - 1}), b = precise->state(kG01, GpsTime{ns + 1});
     take_worst(out, a && b ? (a->p_E - b->p_E).norm() : std::numeric_limits<double>::quiet_NaN());
   }
   return out;

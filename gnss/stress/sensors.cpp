@@ -25,7 +25,7 @@ using stress::kEpsilon;
 using stress::kInfinity;
 using stress::Worst;
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
+const GpsTime kFirstFix = GpsTime::from_week_sow(1590, 396000.0);
 
 /// Level ground far below, so that a scene has something in it.
 std::unique_ptr<scene::Scene> open_place() {
@@ -36,7 +36,7 @@ std::unique_ptr<GnssSensor> sensor_of(const std::string& keys, const scene::Scen
   GnssConfig config;
   const auto node = ConfigNode::parse(keys, "stress");
   CANYON_CHECK(node && read_config(&*node, "gnss", config).ok(), keys);
-  auto made = make_gnss_sensor(config, seed, kStart, kStart + 7200.0, place);
+  auto made = make_gnss_sensor(config, seed, kFirstFix, kFirstFix + 7200.0, place);
   CANYON_CHECK(made.ok(), made.ok() ? "" : made.error().what);
   return std::move(*made);
 }
@@ -56,7 +56,7 @@ StressFigure budget(const std::string& keys, bool error_free) {
   Worst worst;
   const double ulp_m = 8.0 * kEpsilon * 4e7;
   for (std::int64_t k = 0; k < 40; ++k) {
-    const GpsTime t = kStart + 0.5 * static_cast<double>(k);
+    const GpsTime t = kFirstFix + 0.5 * static_cast<double>(k);
     const GnssOutput out = sensor->measure(k, t, p + 0.5 * static_cast<double>(k) * v, v, at);
     std::size_t i = 0;
     for (const GnssObservationTruth& truth : out.truth.satellites) {
@@ -124,7 +124,7 @@ StressFigure street_budget(const std::string& keys, bool own_covariance) {
   int bent = 0, second = 0, fixes = 0;
   double sigma_low_m = kInfinity, sigma_high_m = 0.0;
   for (std::int64_t k = 0; k < 30; ++k) {
-    const GpsTime t = kStart + 0.5 * static_cast<double>(k);
+    const GpsTime t = kFirstFix + 0.5 * static_cast<double>(k);
     const GnssOutput out = sensor->measure(k, t, Vector3d(-4.0, -40.0, 1.5) + 0.5 * static_cast<double>(k) * v, v, at);
     std::size_t i = 0;
     Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
@@ -179,7 +179,7 @@ StressFigure noise(const std::string& keys, const Vector3d& sigma_m, const Vecto
   const Eigen::Matrix3d R_WE = place->frame().R_EW().transpose();
   for (std::int64_t k = 0; k < kCount; ++k) {
     const GnssOutput out =
-        sensor->measure(k, kStart + 0.5 * static_cast<double>(k), {1.0, 2.0, 3.0}, {4.0, 5.0, 0.0}, at);
+        sensor->measure(k, kFirstFix + 0.5 * static_cast<double>(k), {1.0, 2.0, 3.0}, {4.0, 5.0, 0.0}, at);
     if (out.fix.status == FixStatus::kNone) return {kInfinity, 1.0};
     const Vector3d e = R_WE * (out.fix.p_A_E - place->frame().to_E({1.0, 2.0, 3.0}));
     s.mean += e / kCount;
@@ -218,7 +218,8 @@ StressFigure counted() {
     const double half = 0.25 * width * width;
     mesh.quad({-half, -half, 20}, {-half, half, 20}, {half, half, 20}, {half, -half, 20}, mesh.material("metal"));
     const scene::Scene covered(std::move(parts));
-    const GnssOutput out = sensor->measure(width, kStart + 60.0 * width, {0, 0, 1}, {0, 0, 0}, scene::SceneAt(covered));
+    const GnssOutput out =
+        sensor->measure(width, kFirstFix + 60.0 * width, {0, 0, 1}, {0, 0, 0}, scene::SceneAt(covered));
     int seen = 0;
     for (const GnssObservationTruth& truth : out.truth.satellites) {
       // The roof ends where its rim is seen under atan(19 / distance along it).
@@ -251,7 +252,7 @@ StressFigure repeated(const std::string& keys) {
   const auto run = [&](GnssSensor& sensor, std::int64_t from) {
     std::vector<Vector3d> out;
     for (std::int64_t k = from; k < from + 6; ++k)
-      out.push_back(sensor.measure(k, kStart + 0.5 * static_cast<double>(k), {1, 2, 3}, {4, 0, 0}, at).fix.p_A_E);
+      out.push_back(sensor.measure(k, kFirstFix + 0.5 * static_cast<double>(k), {1, 2, 3}, {4, 0, 0}, at).fix.p_A_E);
     return out;
   };
   const auto one = sensor_of(keys, *place), two = sensor_of(keys, *place), other = sensor_of(keys, *place, 2);
@@ -262,14 +263,14 @@ StressFigure repeated(const std::string& keys) {
 }
 
 /// Keys that contradict one another are refused, and the ends of those that do not are taken.
-StressFigure contradictions() {
+StressFigure contradicting_keys() {
   const auto place = open_place();
   int wrong = 0;
   const auto made = [&](const std::string& keys) {
     GnssConfig config;
     const auto node = ConfigNode::parse(keys, "stress");
     CANYON_CHECK(node && read_config(&*node, "gnss", config).ok(), keys);
-    return make_gnss_sensor(config, 1, kStart, kStart + 10.0, *place).ok();
+    return make_gnss_sensor(config, 1, kFirstFix, kFirstFix + 10.0, *place).ok();
   };
   wrong += made("model = \"satellite_count\"\ncount_noise_max_m = 2\ncount_noise_min_m = 3") ? 1 : 0;
   wrong += made("model = \"satellite_count\"\ncount_noise_max_m = 3\ncount_noise_min_m = 3") ? 0 : 1;
@@ -329,7 +330,7 @@ std::vector<StressCase> sensor_cases() {
   rows.add("sensors/beside_a_base_again", [] { return repeated("mode = \"dgps_base\"\nsmoothing_s = 20\n"); });
   rows.of({StressGroup::kData, "keys of a receiver that contradict one another", "a guard the wrong way round",
            "refused, and equal ends taken", "wrong"});
-  rows.add("sensors/contradictions", contradictions);
+  rows.add("sensors/contradictions", contradicting_keys);
   return rows.take();
 }
 

@@ -14,8 +14,8 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr std::size_t kChunk = 1024;
-static_assert(MapCloud::kBlock % kChunk == 0);
+constexpr std::size_t kErrorsChunk = 1024;
+static_assert(MapCloud::kBlock % kErrorsChunk == 0);
 const double kLevel = std::cos(30.0 * kDegree);
 
 struct Sums {
@@ -60,10 +60,10 @@ void measure_block(std::span<const MapPoint> points, const scene::Scene& scene, 
   places.reserve(points.size());
   for (const MapPoint& point : points) places.push_back(point.p_W);
   const auto surfaces = scene::nearest_surfaces(scene, places, cap_m);
-  parallel_for(points.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  parallel_for(points.size(), kErrorsChunk, [&](std::size_t begin, std::size_t end) {
     const std::size_t n = end - begin;
-    chunks[begin / kChunk] = measure(points.subspan(begin, n), std::span(surfaces).subspan(begin, n), scene, cap_m,
-                                     error_m.subspan(begin, n));
+    chunks[begin / kErrorsChunk] = measure(points.subspan(begin, n), std::span(surfaces).subspan(begin, n), scene,
+                                           cap_m, error_m.subspan(begin, n));
   });
 }
 
@@ -83,9 +83,10 @@ MapScore evaluate_map(const MapCloud& cloud, const scene::SceneAt& scene, double
   if (cloud.empty()) return score;
   score.error_m.resize(cloud.size());
   // The nearest surfaces of one block at a time: of all they would be more than twice the map itself.
-  std::vector<Sums> chunks((cloud.size() + kChunk - 1) / kChunk);
+  std::vector<Sums> chunks((cloud.size() + kErrorsChunk - 1) / kChunk);
   for (std::size_t k = 0; k < cloud.blocks(); ++k)
-    measure_block(cloud.block(k), scene.scene(), cap_m, std::span(chunks).subspan(k * (MapCloud::kBlock / kChunk)),
+    measure_block(cloud.block(k), scene.scene(), cap_m,
+                  std::span(chunks).subspan(k * (MapCloud::kBlock / kErrorsChunk)),
                   std::span(score.error_m).subspan(k * MapCloud::kBlock));
   Sums total;
   for (const Sums& s : chunks) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPatch_m = 2.0;
 constexpr double kSteepest = 0.5;  // |z| of the normal: 30 degrees from the vertical
-constexpr std::size_t kFewestPoints = 20;
+constexpr std::size_t kFewestOfAWall = 20;
 constexpr double kTwoLayers = 0.85, kLeastShare = 0.1, kLeastGap_m = 0.1;
 
 /// A patch: object, direction of the wall in steps of 5 degrees, place along it and height.
@@ -73,7 +73,7 @@ WallThickness wall_thickness(std::span<const WallPoint> points, const scene::Sce
   }
   std::vector<double> thickness, gaps;
   for (auto& [patch, distances] : patches) {
-    if (distances.size() < kFewestPoints) continue;
+    if (distances.size() < kFewestOfAWall) continue;
     std::sort(distances.begin(), distances.end());
     thickness.push_back(quantile(distances, 0.95) - quantile(distances, 0.05));
     if (const double gap = layer_gap_m(distances); gap > 0.0) gaps.push_back(gap);

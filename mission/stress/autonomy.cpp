@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector2d;
 
-const GpsTime kStart = GpsTime::from_week_sow(1600, 0.0);
+const GpsTime kBegin = GpsTime::from_week_sow(1600, 0.0);
 constexpr double kStep_s = 0.01, kSensor_m = 1.8;
 
 /// A straight street along x of 120 m, with the walls of its houses 8 m to either side, and what stands in it.
@@ -83,7 +83,7 @@ std::unique_ptr<Autonomy> driver(const std::string& model) {
   PriorKnowledge prior;
   prior.route = Path({{0.0, 0.0}, {120.0, 0.0}}, config.corner_radius_m);
   prior.waypoint_s_m = {110.0};
-  return make_autonomy(config, prior, kStart);
+  return make_autonomy(config, prior, kBegin);
 }
 
 /// Where a car ends that is driven for some seconds, and how near its body has come to what stands there.
@@ -96,7 +96,7 @@ Driven drive(const std::string& model, const Street& street, double last_s, doub
   const auto autonomy = driver(model);
   Driven out;
   for (int k = 0; k * kStep_s <= last_s; ++k) {
-    const GpsTime t = kStart + kStep_s * k;
+    const GpsTime t = kBegin + kStep_s * k;
     const NavEstimate estimate = out.car.estimate(t);
     const Pose X_WL{estimate.X_WB.R, estimate.X_WB.p + Eigen::Vector3d(0.0, 0.0, kSensor_m)};
     if (k % 10 == 0 && k * kStep_s <= last_scan_s) {
@@ -131,7 +131,7 @@ StressFigure empty_street(const std::string& model) {
 
 /// Posts in the middle of the street are passed without touching any, aside by what the body needs, and after 60 s it
 /// is at its end; of `reference`, to which the way back always pays, in the middle to half a metre.
-StressFigure posts(const std::string& model) {
+StressFigure past_posts(const std::string& model) {
   const Driven found = drive(model, {.posts = {{25.0, 0.0}, {55.0, 0.5}, {80.0, -0.5}}}, 60.0);
   StressFigure out;
   out.figure += found.nearest_m > 0.0 ? 0.0 : 1.0;
@@ -166,15 +166,15 @@ StressFigure halfway(double v_m_s) {
   const auto autonomy = driver("reference_2012");
   Car car;
   car.x = 30.0, car.y = 1.0, car.speed = v_m_s;
-  const NavEstimate estimate = car.estimate(kStart);
+  const NavEstimate estimate = car.estimate(kBegin);
   // The vehicle is where it is from the start: route and place are looked for within 5 m of the last.
   DriveCommand command;
   for (double x = 0.0; x <= 30.0; x += 2.0) {
     car.x = x;
-    autonomy->drive(car.estimate(kStart));
+    autonomy->drive(car.estimate(kBegin));
   }
   const Pose X_WL{Eigen::Quaterniond::Identity(), {30.0, 1.0, kSensor_m}};
-  autonomy->see(Street{}.seen_from({30.0, 1.0}, kStart), X_WL, estimate);
+  autonomy->see(Street{}.seen_from({30.0, 1.0}, kBegin), X_WL, estimate);
   command = autonomy->drive(estimate);
   const double ahead = 0.8 * v_m_s;
   stress::Worst worst;
@@ -194,7 +194,7 @@ std::vector<StressCase> autonomy_cases() {
     const std::string of = std::string("autonomy/") + model + "_";
     rows.of(street)
         .add(of + "on_an_empty_street", [model] { return empty_street(model); })
-        .add(of + "among_posts", [model] { return posts(model); })
+        .add(of + "among_posts", [model] { return past_posts(model); })
         .add(of + "before_a_wall", [model] { return wall(model); })
         .add(of + "blind", [model] { return blind(model); });
   }

@@ -48,16 +48,16 @@ struct Rows : Recorder {
   }
 };
 
-struct Driven {
+struct DrivenMission {
   MissionConfig config;
   PreparedMission mission;
   RunRecord record;
   Rows rows;
 };
 
-std::unique_ptr<Driven> driven(const std::string& fidelity, const std::string& more) {
+std::unique_ptr<DrivenMission> driven(const std::string& fidelity, const std::string& more) {
   static SceneCache scenes;
-  auto out = std::make_unique<Driven>();
+  auto out = std::make_unique<DrivenMission>();
   auto file = MissionFile::parse(kOpenStreet, "open.toml");
   CANYON_CHECK(file.ok(), file.ok() ? "" : file.error().str());
   auto config = file->resolve(fidelity);
@@ -198,7 +198,7 @@ StressFigure couplings_cut() {
   Worst worst;
   const auto right = [&](bool holds) { worst.look(holds ? 0.0 : kInfinity, 1.0); };
   const GpsTime start = whole->record.start;
-  const auto same_until = [&](const Driven& other, double seconds) {
+  const auto same_until = [&](const DrivenMission& other, double seconds) {
     std::size_t k = 0;
     for (; k < whole->rows.rows.size() && whole->rows.rows[k].t - start < seconds - 1e-9; ++k)
       right(k < other.rows.rows.size() && other.rows.rows[k].estimate.X_WB.p == whole->rows.rows[k].estimate.X_WB.p &&

@@ -12,12 +12,12 @@ namespace {
 
 using stress::kEpsilon;
 
-const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
+const GpsTime kFirstSample = GpsTime::from_week_sow(1610, 305000.0);
 
 /// A unit at rest at W's origin, its filter, and its samples at a rate of their own.
 struct Stage {
   LocalFrame frame{Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0}};
-  Boundaries boundaries{kStart};
+  Boundaries boundaries{kFirstSample};
   PartClock clock;
   Localizer localizer;
   double rate_hz;
@@ -25,7 +25,7 @@ struct Stage {
   explicit Stage(double rate, double accel_white = 1e-5, const fusion::FilterConfig& config = {})
       : localizer(fusion::ErrorStateFilter(config, noise(accel_white), frame, Eigen::Vector3d::Zero(),
                                            Eigen::Vector3d::Zero()),
-                  kStart, boundaries, clock),
+                  kFirstSample, boundaries, clock),
         rate_hz(rate) {
     localizer.initialize(Pose{}, Eigen::Vector3d::Zero());
   }
@@ -37,8 +37,8 @@ struct Stage {
   }
   ImuSample sample(std::int64_t k) const {
     ImuSample s;
-    s.t = tick(kStart, k, rate_hz);
-    s.dt_s = s.t - tick(kStart, k - 1, rate_hz);
+    s.t = tick(kFirstSample, k, rate_hz);
+    s.dt_s = s.t - tick(kFirstSample, k - 1, rate_hz);
     s.dtheta_U = s.dt_s * (frame.R_EW().transpose() * earth_rate_E());
     s.dv_U = -s.dt_s * (frame.R_EW().transpose() * gravity_E(frame.origin_E()));
     return s;
@@ -62,9 +62,9 @@ StressFigure divided_samples(double imu_hz, double fix_hz) {
   std::int64_t next = 1;
   constexpr std::int64_t kSamples = 1000;
   for (std::int64_t k = 1; k <= kSamples; ++k) {
-    const GpsTime end = tick(kStart, k, imu_hz);
-    for (; tick(kStart, next, fix_hz) <= end; ++next) {
-      const GpsTime t = tick(kStart, next, fix_hz);
+    const GpsTime end = tick(kFirstSample, k, imu_hz);
+    for (; tick(kFirstSample, next, fix_hz) <= end; ++next) {
+      const GpsTime t = tick(kFirstSample, next, fix_hz);
       const auto work = [&stage, &wrong, &taken, t]() -> Status {
         wrong += stage.localizer.at() == t ? 0 : 1;
         const auto report = stage.localizer.update(stage.fix(t));
@@ -125,7 +125,7 @@ StressFigure early_and_late_work() {
   int wrong = 0;
   const auto ask = [&](double t_s, int number) {
     wrong += stage.localizer
-                     .once_at(kStart + t_s,
+                     .once_at(kFirstSample + t_s,
                               [&done, number]() -> Status {
                                 done.push_back(number);
                                 return Ok{};
@@ -135,7 +135,7 @@ StressFigure early_and_late_work() {
                  : 1;
   };
   const auto take = [&](std::int64_t k) {
-    wrong += stage.localizer.take(stage.sample(k), tick(kStart, k, 100.0)).ok() ? 0 : 1;
+    wrong += stage.localizer.take(stage.sample(k), tick(kFirstSample, k, 100.0)).ok() ? 0 : 1;
   };
   ask(0.0, 0);  // at once
   wrong += done == std::vector<int>{0} ? 0 : 1;
@@ -146,7 +146,7 @@ StressFigure early_and_late_work() {
   ask(0.012, 4);  // together
   wrong += done == std::vector<int>{0, 1} ? 0 : 1;
   take(2);
-  wrong += done == std::vector<int>{0, 1, 2, 3, 4} && stage.localizer.at() == kStart + 0.02 ? 0 : 1;
+  wrong += done == std::vector<int>{0, 1, 2, 3, 4} && stage.localizer.at() == kFirstSample + 0.02 ? 0 : 1;
   return {1.0 * wrong, 0.0};
 }
 

@@ -159,7 +159,7 @@ StressFigure seen_street(double turn_rad) {
 /// within the step across that it is looked for in, and a street without kerbs has none.
 StressFigure kerbs(double turn_rad, double height_m) {
   Looks looks;
-  constexpr double kAbove_m = 1.8, kHalf_m = 6.0;
+  constexpr double kAbove_m = 1.8, kToKerb_m = 6.0;
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
   LidarScan scan;
   for (int ring = 0; ring < 16; ++ring)
@@ -168,8 +168,8 @@ StressFigure kerbs(double turn_rad, double height_m) {
       const Eigen::Vector3d d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
       if (d.z() >= 0.0) continue;
       double way_m = kAbove_m / -d.z();
-      if (way_m * std::abs(d.y()) > kHalf_m) {
-        const double face_m = kHalf_m / std::abs(d.y());
+      if (way_m * std::abs(d.y()) > kToKerb_m) {
+        const double face_m = kToKerb_m / std::abs(d.y());
         way_m = (kAbove_m - height_m) / -d.z();
         if (way_m < face_m) way_m = face_m;
       }
@@ -181,7 +181,7 @@ StressFigure kerbs(double turn_rad, double height_m) {
   int sides[2] = {0, 0};
   for (const Vector2d& p : kerb_rises({.scan = scan, .X_OL = X_OL, .origin = X_OL.p.head<2>(), .along = u})) {
     const double aside_m = left.dot(p - X_OL.p.head<2>());
-    looks.near(std::abs(aside_m), kHalf_m, 0.12);
+    looks.near(std::abs(aside_m), kToKerb_m, 0.12);
     ++sides[aside_m > 0.0 ? 0 : 1];
   }
   for (const int count : sides) looks.near(count >= 3 ? 1.0 : 0.0, height_m > 0.0 ? 1.0 : 0.0, 1e-12);

@@ -50,11 +50,11 @@ std::shared_ptr<const scene::Scene> yard(double wall_to_x_m) {
   return std::make_shared<const scene::Scene>(std::move(parts));
 }
 
-struct Stage {
+struct ScoredStage {
   MissionConfig config;
   PreparedMission mission;
 
-  explicit Stage(double wall_to_x_m = -30.0) {
+  explicit ScoredStage(double wall_to_x_m = -30.0) {
     mission.scene = yard(wall_to_x_m);
     mission.start = GpsTime::from_week_sow(1590, 1000.0);
     mission.nominal_s = 100.0, mission.time_limit_s = 150.0;
@@ -75,7 +75,7 @@ struct Stage {
 /// where the autonomy believed itself to be. Sums of 10 ms steps: their roundings, and one step.
 StressFigure halts(std::uint64_t seed) {
   Looks looks;
-  const Stage stage;
+  const ScoredStage stage;
   const scene::SceneAt scene(*stage.mission.scene);
   const RandomStream draws(seed, "stress.scores");
   Scorer scorer(stage.config, stage.mission, scene);
@@ -129,7 +129,7 @@ StressFigure halts(std::uint64_t seed) {
 /// sees it from the camera; range and angle to its middle, and pixels. A better halt counts, a worse one does not.
 StressFigure facade_in_sight(double wall_to_x_m) {
   Looks looks;
-  const Stage stage(wall_to_x_m);
+  const ScoredStage stage(wall_to_x_m);
   const scene::SceneAt scene(*stage.mission.scene);
   Scorer scorer(stage.config, stage.mission, scene);
   double best = -1.0, t = 0.0, range = 0.0, obliquity = 0.0;
@@ -174,10 +174,10 @@ StressFigure facade_in_sight(double wall_to_x_m) {
 /// counts, whatever comes later.
 StressFigure ends() {
   Looks looks;
-  Stage stage;
+  ScoredStage stage;
   stage.config.success.stuck_after_s = 4.0;
   const scene::SceneAt scene(*stage.mission.scene);
-  const auto run = [&](const Stage& of, const auto& act) {
+  const auto run = [&](const ScoredStage& of, const auto& act) {
     Scorer scorer(of.config, of.mission, scene);
     act(scorer);
     return std::pair(scorer.outcome(), scorer.failure());
@@ -213,7 +213,7 @@ StressFigure ends() {
     s.finish(stage.at(150.0, {5, 5}), false);
   });
   looks.right(late.first == Outcome::kTimeout);
-  Stage cut = stage;
+  ScoredStage cut = stage;
   cut.config.time.limit_s = 20.0, cut.mission.time_limit_s = 20.0;
   const auto stopped = run(cut, [&](Scorer& s) {
     looks.right(!s.step(stage.at(20.0, {5, 5}), 3.0, true, false));

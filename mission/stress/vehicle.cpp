@@ -19,7 +19,7 @@ namespace {
 
 using stress::kEpsilon;
 
-const GpsTime kStart = GpsTime::from_week_sow(1610, 305000.0);
+const GpsTime kSetOff = GpsTime::from_week_sow(1610, 305000.0);
 
 /// Amplitudes of the 24 waves of a road of class E together: each is the root of twice the variance of its band, whose
 /// ends have the same ratio from 0.05 to 1.4 cycles/m (ISO 8608: 4096e-6 m^3 at 0.1 cycles/m, falling with n^2).
@@ -73,8 +73,8 @@ StressFigure roughest_road(double hz, double damping) {
   config.suspension_damping = damping;
   config.roughness = "E";
   config.max_speed_m_s = 30.0;
-  Vehicle vehicle(config, scene::flat_ground(), 3, kStart);
-  const Boundaries boundaries(kStart);
+  Vehicle vehicle(config, scene::flat_ground(), 3, kSetOff);
+  const Boundaries boundaries(kSetOff);
   const double level_m = scene::flat_ground().ground(0.0, 0.0)->height_m;
   stress::Worst worst;
   double lowest_m = stress::kInfinity, highest_m = -stress::kInfinity;
@@ -126,7 +126,7 @@ StressFigure gain_of_turns(double hz, double r, bool turned) {
   config.max_acceleration_m_s2 = 10.0;
   config.start_heading_deg = 90.0;
   const scene::Scene ground = waves(0.5 * config.track_m, turned);
-  Vehicle vehicle(config, ground, 3, kStart);
+  Vehicle vehicle(config, ground, 3, kSetOff);
   const double met_hz = r * hz, speed_m_s = kWaveLength_m * met_hz, k = 2.0 * kPi / kWaveLength_m;
   const double settled_s = 5.0 + speed_m_s / config.max_acceleration_m_s2;
   double pitch_rad = 0.0, roll_rad = 0.0;
@@ -157,7 +157,7 @@ StressFigure gain_of_turns(double hz, double r, bool turned) {
 StressFigure wild_commands() {
   VehicleConfig config;
   config.roughness = "none";
-  Vehicle vehicle(config, scene::flat_ground(), 3, kStart);
+  Vehicle vehicle(config, scene::flat_ground(), 3, kSetOff);
   stress::Worst worst;
   const double most_curvature = std::tan(config.max_steering_deg * kDegree) / config.wheelbase_m;
   const double rate = config.max_steering_rate_deg_s * kDegree * 0.01;
@@ -188,13 +188,13 @@ StressFigure wild_commands() {
 
 StressFigure refused_commands() {
   int passed = 0;
-  Vehicle vehicle({}, scene::flat_ground(), 3, kStart);
+  Vehicle vehicle({}, scene::flat_ground(), 3, kSetOff);
   const Eigen::Vector3d before = vehicle.state().X_WB.p;
   for (const double bad : {std::nan(""), stress::kInfinity, -stress::kInfinity}) {
     passed += stress::not_refused([&] { vehicle.advance({bad, 0.0}); });
     passed += stress::not_refused([&] { vehicle.advance({1.0, bad}); });
   }
-  passed += vehicle.state().X_WB.p == before && vehicle.state().t == kStart ? 0 : 1;
+  passed += vehicle.state().X_WB.p == before && vehicle.state().t == kSetOff ? 0 : 1;
   return {1.0 * passed, 0.0};
 }
 
@@ -235,8 +235,8 @@ StressFigure wildest_slip() {
   config.max_acceleration_m_s2 = config.max_deceleration_m_s2 = 10.0;
   config.max_steering_deg = 60.0;
   config.max_steering_rate_deg_s = 360.0;
-  Vehicle vehicle(config, scene::flat_ground(), 3, kStart);
-  const Boundaries boundaries(kStart);
+  Vehicle vehicle(config, scene::flat_ground(), 3, kSetOff);
+  const Boundaries boundaries(kSetOff);
   stress::Worst worst;
   double most_m_s = 0.0;
   for (int k = 0; k < 4000; ++k) {

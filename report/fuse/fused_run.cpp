@@ -48,7 +48,7 @@ std::vector<FusedOutage> read_outages(const JsonFields& f, const Start& start) {
   return out;
 }
 
-std::vector<std::string> read_names(const JsonFields& f, const char* key) {
+std::vector<std::string> names_of(const JsonFields& f, const char* key) {
   std::vector<std::string> out;
   for (const auto& [node, path] : f.list(key))
     if (node->is_string()) out.push_back(node->get<std::string>());
@@ -140,8 +140,8 @@ Result<FusedRun> read_fused_run(const std::string& directory) {
   out.imu = inputs.text("imu");
   out.gnss = inputs.text("gnss");
   out.truth = inputs.text("truth");
-  out.states = read_names(f, "states");
-  out.measurements = read_names(f, "measurements");
+  out.states = names_of(f, "states");
+  out.measurements = names_of(f, "measurements");
   out.duration_s = f.required_number("duration_s");
   out.samples = f.number("samples");
   out.fixes = f.number("fixes");

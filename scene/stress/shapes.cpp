@@ -207,7 +207,7 @@ StressFigure tree() {
 }
 
 /// Ways over a graph of streets against all pairs (Floyd and Warshall), from feet on the nearest street.
-StressFigure streets() {
+StressFigure ways_over_streets() {
   Looks looks;
   StreetGraph graph;
   for (int k = 0; k < 24; ++k) graph.nodes_W.emplace_back(any(-200, 200, 0, k), any(-200, 200, 1, k));
@@ -384,7 +384,7 @@ std::vector<StressCase> shape_cases() {
            .why = "a way over the other end of a street, a thing of another size, on the road, or of another zone",
            .expected = "all pairs of nodes; measures as they are said: single precision of coordinates",
            .unit = "of the bound"});
-  rows.add("shapes/ways_over_streets", streets);
+  rows.add("shapes/ways_over_streets", ways_over_streets);
   for (const std::uint64_t seed : {3U, 5U})
     rows.add("shapes/things_of_city_" + std::to_string(seed), [seed] { return city_things(seed); });
   return rows.take();

@@ -31,7 +31,7 @@ void visit(FieldVisitor& f, Road& c) {
   f.optional_number("limit_m_s", c.limit_m_s, -1.0, {0.0, 100.0}, "largest speed; -1 = none");
 }
 
-Result<Road> read(const std::string& toml) {
+Result<Road> road_of(const std::string& toml) {
   CANYON_TRY(const ConfigNode node, ConfigNode::parse(toml, "my.toml"));
   Road road;
   CANYON_TRY_STATUS(read_config(&node, "road", road));
@@ -56,28 +56,28 @@ TEST(ModelTable, AnUnknownNameIsOneMessageThatNamesTheNearest) {
             "--law: unknown name \"exponential\", expected one of \"square\", \"cube\"");
   EXPECT_THROW((void)model_row(kTable, "qube"), ProgramError);
   // A file's mistake reads the same, with its place before it.
-  EXPECT_EQ(read("side = \"rihgt\"").error().str(),
+  EXPECT_EQ(road_of("side = \"rihgt\"").error().str(),
             "my.toml:1: road.side: unknown name \"rihgt\", expected one of \"left\", \"right\"; nearest is \"right\"");
 }
 
 TEST(ModelTable, AChoiceIsAnEnumerationAfterTheReader) {
-  EXPECT_EQ(read("")->side, Side::kRight);
-  EXPECT_EQ(read("side = \"left\"")->side, Side::kLeft);
+  EXPECT_EQ(road_of("")->side, Side::kRight);
+  EXPECT_EQ(road_of("side = \"left\"")->side, Side::kLeft);
   Road left{.side = Side::kLeft, .limit_m_s = {}};
   EXPECT_EQ(fields_as_json([&](FieldVisitor& f) { visit(f, left); }), R"({"side":"left","limit_m_s":-1.0})");
 }
 
 TEST(ModelTable, ANumberThatIsNotSetIsNone) {
-  EXPECT_FALSE(read("")->limit_m_s.has_value());
-  EXPECT_FALSE(read("limit_m_s = -1")->limit_m_s.has_value());
-  EXPECT_EQ(read("limit_m_s = 0")->limit_m_s, 0.0);
+  EXPECT_FALSE(road_of("")->limit_m_s.has_value());
+  EXPECT_FALSE(road_of("limit_m_s = -1")->limit_m_s.has_value());
+  EXPECT_EQ(road_of("limit_m_s = 0")->limit_m_s, 0.0);
   for (const std::string other : {"-0.5", "-2", "101"})
-    EXPECT_EQ(read("limit_m_s = " + other).error().str(),
+    EXPECT_EQ(road_of("limit_m_s = " + other).error().str(),
               "my.toml:1: road.limit_m_s: " + other + " is out of range, expected a number from 0 to 100, or -1");
 }
 
 TEST(ModelTable, AnOldKeyNamesWhatTookItsPlace) {
-  EXPECT_EQ(read("side = \"left\"\nspeed_kmh = 50").error().str(),
+  EXPECT_EQ(road_of("side = \"left\"\nspeed_kmh = 50").error().str(),
             "my.toml:2: road.speed_kmh: is a key of an earlier version, expected road.limit_m_s, in m/s");
 }
 

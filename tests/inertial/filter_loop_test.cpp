@@ -23,7 +23,7 @@ using fusion::ConsistencyMean;
 using fusion::ErrorStateFilter;
 using fusion::FilterConfig;
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
+const GpsTime kLoopStart = GpsTime::from_week_sow(1590, 396000.0);
 const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
 const Eigen::Vector3d kAntenna(-0.3, 0.0, 1.2);
 constexpr double kFixSigma_m = 0.4;
@@ -63,14 +63,14 @@ void initialize(ErrorStateFilter& filter, const FilterConfig& c, const Kinematic
 }
 
 Outcome drive(const DriveSetup& setup, std::uint64_t seed) {
-  const testing::SmoothPath path(kStart);
+  const testing::SmoothPath path(kLoopStart);
   inertial::ImuConfig imu_config;
   imu_config.sensor = setup.sensor;
   imu_config.errors = setup.errors;
   imu_config.rate_hz = setup.rate_hz;
   auto imu = *inertial::make_imu(imu_config, seed, kFrame);
   ErrorStateFilter filter(setup.filter, imu->noise(), kFrame, imu_config.lever_arm_m, kAntenna);
-  initialize(filter, setup.filter, path.at(kStart), seed);
+  initialize(filter, setup.filter, path.at(kLoopStart), seed);
 
   Outcome out;
   const auto samples = static_cast<std::int64_t>(setup.seconds * setup.rate_hz);
@@ -79,7 +79,7 @@ Outcome drive(const DriveSetup& setup, std::uint64_t seed) {
     filter.predict(imu->sample(k, path.nodes(k, setup.rate_hz, 2)));
     if ((k + 1) % per_fix != 0) continue;
     const GpsTime now = filter.nav_state().t;
-    if (now - kStart > setup.last_fix_s) continue;
+    if (now - kLoopStart > setup.last_fix_s) continue;
     GnssFix fix;
     fix.t = now;
     fix.status = FixStatus::kDifferential;
@@ -104,19 +104,19 @@ struct Ensemble {
   double position_rms_m = 0.0, position_sigma_rms_m = 0.0;
 };
 
-constexpr int kRuns = 100;
+constexpr int kLoopRuns = 100;
 
 /// `first_seed`: ensembles of seeds apart from one another's have nothing in common.
 Ensemble ensemble(const char* name, const DriveSetup& setup, std::uint64_t first_seed) {
   Ensemble e;
   e.name = name;
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < kLoopRuns; ++run) {
     const Outcome o = drive(setup, first_seed + static_cast<std::uint64_t>(run));
     e.pose.add(o.pose_nees, 6);
     e.velocity.add(o.velocity_nees, 3);
     for (const double nis : o.nis) e.nis.add(nis, 3);
-    e.position_rms_m += o.position_error_m * o.position_error_m / kRuns;
-    e.position_sigma_rms_m += o.position_sigma_m * o.position_sigma_m / kRuns;
+    e.position_rms_m += o.position_error_m * o.position_error_m / kLoopRuns;
+    e.position_sigma_rms_m += o.position_sigma_m * o.position_sigma_m / kLoopRuns;
   }
   e.position_rms_m = std::sqrt(e.position_rms_m);
   e.position_sigma_rms_m = std::sqrt(e.position_sigma_rms_m);
@@ -203,7 +203,7 @@ TEST(FilterCoasting, DriftsWithoutFixes) {
 /// Gain errors that the filter is not told of make it too confident, which is why it estimates them.
 TEST(FilterGains, IgnoredScaleFactorsMakeItTooConfident) {
   const Ensemble ignored = ensemble("coarse unit, gains ignored", coarse({"biases"}), 3001);
-  EXPECT_GT(ignored.pose.per_state(), fusion::mean_chi_square_band(6, kRuns, 1e-4).high / 6);
+  EXPECT_GT(ignored.pose.per_state(), fusion::mean_chi_square_band(6, kLoopRuns, 1e-4).high / 6);
 }
 
 }  // namespace

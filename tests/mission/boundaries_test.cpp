@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kFirstTick = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string told(const Status& status) {
@@ -28,11 +28,11 @@ std::string told(const Status& status) {
 
 // 2026-11-22: what was not finite passed from part to part until some library ended the process.
 TEST(Boundaries, WhatIsNotFiniteIsRefusedWithItsProducersName) {
-  const Boundaries boundaries(kStart);
+  const Boundaries boundaries(kFirstTick);
   const std::string could_not = "the computation could not finish: ";
 
   KinematicState motion;
-  motion.t = kStart + 2.5;
+  motion.t = kFirstTick + 2.5;
   EXPECT_EQ(told(boundaries.check(motion)), "passes");
   motion.X_WB.p.z() = -1e6;
   EXPECT_EQ(told(boundaries.check(motion)), could_not + "the vehicle gave a position of -1e+06 at 2.5 s");
@@ -41,14 +41,14 @@ TEST(Boundaries, WhatIsNotFiniteIsRefusedWithItsProducersName) {
   EXPECT_EQ(told(boundaries.check(motion)), could_not + "the vehicle gave an angular acceleration of nan at 2.5 s");
 
   ImuSample sample;
-  sample.t = kStart + 1.0;
+  sample.t = kFirstTick + 1.0;
   sample.dt_s = 0.01;
   EXPECT_EQ(told(boundaries.check(sample)), "passes");
   sample.dv_U.x() = kInfinity;
   EXPECT_EQ(told(boundaries.check(sample)), could_not + "the IMU gave a velocity increment of inf at 1 s");
 
   gnss::GnssOutput gnss;
-  gnss.fix.t = kStart + 0.5;
+  gnss.fix.t = kFirstTick + 0.5;
   EXPECT_EQ(told(boundaries.check(gnss)), "passes") << "no fix is no fault";
   gnss.fix.status = FixStatus::kSingle;
   EXPECT_EQ(told(boundaries.check(gnss)), could_not + "the GNSS receiver gave a position of nan at 0.5 s");
@@ -64,7 +64,7 @@ TEST(Boundaries, WhatIsNotFiniteIsRefusedWithItsProducersName) {
   EXPECT_EQ(told(boundaries.check(gnss)), could_not + "the GNSS receiver gave a pseudorange of nan at 0.5 s");
 
   lidar::LidarOutput scan;
-  scan.scan.t = kStart + 0.1;
+  scan.scan.t = kFirstTick + 0.1;
   scan.scan.points.resize(3);
   EXPECT_EQ(told(boundaries.check(scan)), "passes");
   scan.scan.points[2].y = std::numeric_limits<float>::quiet_NaN();
@@ -74,19 +74,19 @@ TEST(Boundaries, WhatIsNotFiniteIsRefusedWithItsProducersName) {
   EXPECT_EQ(told(boundaries.check(scan)), could_not + "the LIDAR gave an intensity or a time of inf at 0.1 s");
 
   NavEstimate estimate;
-  estimate.t = kStart + 7.0;
+  estimate.t = kFirstTick + 7.0;
   EXPECT_EQ(told(boundaries.check(estimate)), "passes");
   estimate.pose_covariance(2, 3) = kNaN;
   EXPECT_EQ(told(boundaries.check(estimate)), could_not + "the filter gave a covariance of nan at 7 s");
 
   Keyframe keyframe;
-  keyframe.t = kStart + 3.0;
+  keyframe.t = kFirstTick + 3.0;
   EXPECT_EQ(told(boundaries.check(keyframe)), "passes");
   keyframe.X_WL_registered.R.x() = kNaN;
   EXPECT_EQ(told(boundaries.check(keyframe)), could_not + "the registration gave an attitude of nan at 3 s");
 
   NavRow row;
-  row.t = kStart + 9.0;
+  row.t = kFirstTick + 9.0;
   EXPECT_EQ(told(boundaries.check(row)), "passes");
   row.true_speed_m_s = kNaN;
   EXPECT_EQ(told(boundaries.check(row)), could_not + "the recorder gave a true speed of nan at 9 s");

@@ -11,7 +11,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kSummary = R"({"verdict": ["consistent"], "evidence": {"tests": 1, "states": [
+constexpr const char* kVerdictSummary = R"({"verdict": ["consistent"], "evidence": {"tests": 1, "states": [
   {"block": "attitude", "name": "roll", "share": 0.1, "halved_after_s": 5.0},
   {"block": "attitude", "name": "yaw", "share": 0.4, "halved_after_s": 20.0},
   {"block": "antenna_lever", "name": "antenna_lever x", "share": 0.9, "halved_after_s": null}],
@@ -26,7 +26,7 @@ FilterVerdict read(const std::string& text, std::optional<Error>& error) {
 
 TEST(ObservabilityChart, HasAPanelForEachBlockAndALineForEachState) {
   std::optional<Error> error;
-  const FilterVerdict verdict = read(kSummary, error);
+  const FilterVerdict verdict = read(kVerdictSummary, error);
   ASSERT_FALSE(error.has_value()) << error->str();
   EXPECT_THAT(verdict.looked_s, ElementsAre(0.0, 10.0, 20.0));
   ASSERT_EQ(verdict.states.size(), 3U);

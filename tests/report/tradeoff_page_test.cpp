@@ -33,7 +33,7 @@ const std::string kDriven =
     R"({"success": 2, "n": 3, "low": 0.208, "high": 0.938, "outcomes": {"success": 2, "collision": 1}, )"
     R"("mission_cpu_s": 21.0, "mission_cpu_low_s": 20.0, "mission_cpu_high_s": 22.0})";
 
-std::string page_of(const TemporaryDirectory& folder, const std::string& runs) {
+std::string tradeoff_page_of(const TemporaryDirectory& folder, const std::string& runs) {
   EXPECT_TRUE(write_text_file(folder.file("summary.json"), summary(runs)).ok());
   auto page = report::tradeoff_page(folder.file("summary.json"));
   EXPECT_TRUE(page.ok()) << page.error().str();
@@ -42,9 +42,9 @@ std::string page_of(const TemporaryDirectory& folder, const std::string& runs) {
 
 TEST(TradeoffPage, DrawsErrorsAndOutcomesOfMissionsOverTheirTime) {
   const TemporaryDirectory folder;
-  const std::string page =
-      page_of(folder, run("low", "0.16", "0.05", 0.099, kDriven) + "," + run("high", "0.45", "0.15", 0.105, kDriven) +
-                          "," + run("high_planned", "0.45", "null", 0.04, kDriven));
+  const std::string page = tradeoff_page_of(folder, run("low", "0.16", "0.05", 0.099, kDriven) + "," +
+                                                        run("high", "0.45", "0.15", 0.105, kDriven) + "," +
+                                                        run("high_planned", "0.45", "null", 0.04, kDriven));
   EXPECT_THAT(page, HasSubstr("id=\"runs-errors\""));
   EXPECT_THAT(page, HasSubstr("Position error, RMS"));
   EXPECT_THAT(page, HasSubstr("Map error, RMS"));
@@ -57,7 +57,7 @@ TEST(TradeoffPage, DrawsErrorsAndOutcomesOfMissionsOverTheirTime) {
 
 TEST(TradeoffPage, MissionsThatWereNotDrivenHaveNoOutcomes) {
   const TemporaryDirectory folder;
-  const std::string page = page_of(folder, run("high", "0.45", "0.15", 0.105, "null"));
+  const std::string page = tradeoff_page_of(folder, run("high", "0.45", "0.15", 0.105, "null"));
   EXPECT_THAT(page, HasSubstr("id=\"runs-errors\""));
   EXPECT_THAT(page, Not(HasSubstr("id=\"runs-outcomes\"")));
 }
@@ -65,8 +65,8 @@ TEST(TradeoffPage, MissionsThatWereNotDrivenHaveNoOutcomes) {
 TEST(TradeoffPage, ABrowserOpensItWithoutAnyMessage) {
   CANYON_BROWSER(chromium);
   const TemporaryDirectory folder;
-  const std::string page =
-      page_of(folder, run("low", "0.16", "0.05", 0.099, kDriven) + "," + run("high", "0.45", "0.15", 0.105, kDriven));
+  const std::string page = tradeoff_page_of(
+      folder, run("low", "0.16", "0.05", 0.099, kDriven) + "," + run("high", "0.45", "0.15", 0.105, kDriven));
   ASSERT_TRUE(write_text_file(folder.file("report.html"), page).ok());
   const BrowserVisit visit = visit_page(chromium, folder.file("report.html"));
   EXPECT_EQ(visit.exit_status, 0);

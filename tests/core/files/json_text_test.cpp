@@ -6,7 +6,7 @@
 namespace canyon {
 namespace {
 
-std::string error_of(std::string_view text, const JsonReading& reading = {}) {
+std::string json_error_of(std::string_view text, const JsonReading& reading = {}) {
   const auto tree = parse_json(text, "f.json", reading);
   return tree.ok() ? "no error" : tree.error().str();
 }
@@ -61,17 +61,17 @@ TEST(JsonText, OfTheSameKeyTwiceTheLastCounts) {
   EXPECT_EQ(tree->dump(), "{\"a\":[3]}");
   ASSERT_EQ(members.size(), 1u);
   EXPECT_EQ(members[0].line, 2);
-  EXPECT_EQ(error_of(text, {.same_key_twice = false}), "f.json:2: a: key given twice, expected each key once");
+  EXPECT_EQ(json_error_of(text, {.same_key_twice = false}), "f.json:2: a: key given twice, expected each key once");
 }
 
 TEST(JsonText, TellsWhereTheTextIsNoJson) {
-  EXPECT_EQ(error_of("{\"a\": 1,\n\"b\": }"), "f.json:2: not JSON near '\"b\": }', expected a JSON value");
-  EXPECT_EQ(error_of("{\n\"a\": [1, 2"), "f.json:2: the JSON text ends too early, expected a complete JSON value");
-  EXPECT_EQ(error_of(""), "f.json:1: the JSON text ends too early, expected a complete JSON value");
-  EXPECT_EQ(error_of("{\"a\": NaN}"), "f.json:1: not JSON near '\"a\": N', expected a JSON value");
-  EXPECT_EQ(error_of("[1e999]"), "f.json:1: number 1e999, expected one that a double can hold");
-  EXPECT_EQ(error_of(std::string(100, '[') + std::string(100, ']')), "no error");
-  EXPECT_EQ(error_of(std::string(101, '[')), "f.json:1: nested more than 100 deep, expected at most 100 levels");
+  EXPECT_EQ(json_error_of("{\"a\": 1,\n\"b\": }"), "f.json:2: not JSON near '\"b\": }', expected a JSON value");
+  EXPECT_EQ(json_error_of("{\n\"a\": [1, 2"), "f.json:2: the JSON text ends too early, expected a complete JSON value");
+  EXPECT_EQ(json_error_of(""), "f.json:1: the JSON text ends too early, expected a complete JSON value");
+  EXPECT_EQ(json_error_of("{\"a\": NaN}"), "f.json:1: not JSON near '\"a\": N', expected a JSON value");
+  EXPECT_EQ(json_error_of("[1e999]"), "f.json:1: number 1e999, expected one that a double can hold");
+  EXPECT_EQ(json_error_of(std::string(100, '[') + std::string(100, ']')), "no error");
+  EXPECT_EQ(json_error_of(std::string(101, '[')), "f.json:1: nested more than 100 deep, expected at most 100 levels");
 }
 
 }  // namespace

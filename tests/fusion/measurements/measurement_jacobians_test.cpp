@@ -13,8 +13,8 @@
 namespace canyon::fusion {
 namespace {
 
-const LocalFrame kFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
-const Eigen::Vector3d kImu(0.3, -0.1, 0.9), kAntenna(-0.4, 0.2, 1.7);
+const LocalFrame kJacobianFrame(Geodetic{32.35 * kDegree, -90.88 * kDegree, 60.0});
+const Eigen::Vector3d kJacobianImu(0.3, -0.1, 0.9), kJacobianAntenna(-0.4, 0.2, 1.7);
 const GpsTime kNow = GpsTime::from_week_sow(1590, 396000.0);
 /// What the unit puts out: a bend, braked, over a bump.
 const Eigen::Vector3d kRate(0.05, -0.08, 0.4), kForce(-1.2, 2.1, 10.4);
@@ -33,8 +33,9 @@ class Stage {
   Stage() : state_(model_names(state_blocks()), FilterConfig().own, {.noise = noise()}) {
     NavState nav;
     nav.t = kNow;
-    nav.R_EU = Eigen::Quaterniond(kFrame.R_EW()) * rotation_from({.yaw_rad = 0.7, .pitch_rad = 0.05, .roll_rad = -0.1});
-    nav.p_EU_E = kFrame.to_E({30.0, -20.0, 2.0});
+    nav.R_EU = Eigen::Quaterniond(kJacobianFrame.R_EW()) *
+               rotation_from({.yaw_rad = 0.7, .pitch_rad = 0.05, .roll_rad = -0.1});
+    nav.p_EU_E = kJacobianFrame.to_E({30.0, -20.0, 2.0});
     nav.v_EU_E = nav.R_EU * Eigen::Vector3d(9.0, 0.3, -0.2);
     state_.start(nav);
     state_.take_clone();
@@ -55,8 +56,13 @@ class Stage {
     state_.feeds(in);
     const Eigen::Vector3d w = in.dtheta_U / in.dt_s - state_.nav.R_EU.conjugate() * earth_rate_E(),
                           f = in.dv_U / in.dt_s;
-    const FilterView view{
-        .state = state_, .frame = kFrame, .lever_U_B = kImu, .lever_A_B = kAntenna, .imu = imu, .w_EU_U = w, .f_U = f};
+    const FilterView view{.state = state_,
+                          .frame = kJacobianFrame,
+                          .lever_U_B = kJacobianImu,
+                          .lever_A_B = kJacobianAntenna,
+                          .imu = imu,
+                          .w_EU_U = w,
+                          .f_U = f};
     if (message) {
       const AidingMessage m = message();
       EXPECT_GT(model.parts(view, m), part);
@@ -76,8 +82,8 @@ AidingMessage fix() {
   GnssFix fix;
   fix.t = kNow + 0.03;
   fix.status = FixStatus::kSingle;
-  fix.p_A_E = kFrame.to_E({31.0, -19.0, 4.0});
-  fix.v_A_E = kFrame.R_EW() * Eigen::Vector3d(5.0, 7.0, 0.1);
+  fix.p_A_E = kJacobianFrame.to_E({31.0, -19.0, 4.0});
+  fix.v_A_E = kJacobianFrame.R_EW() * Eigen::Vector3d(5.0, 7.0, 0.1);
   fix.covariance_E = 4.0 * Eigen::Matrix3d::Identity();
   fix.velocity_covariance_E = 0.01 * Eigen::Matrix3d::Identity();
   return fix;
@@ -115,8 +121,8 @@ AidingMessage field() {
 AidingMessage epoch() {
   GnssObservation o;
   o.sv = {GnssSystem::kGalileo, 3};
-  o.p_E = kFrame.to_E({8e6, 6e6, 2e7});
-  o.v_E = kFrame.R_EW() * Eigen::Vector3d(2000.0, -1500.0, 700.0);
+  o.p_E = kJacobianFrame.to_E({8e6, 6e6, 2e7});
+  o.v_E = kJacobianFrame.R_EW() * Eigen::Vector3d(2000.0, -1500.0, 700.0);
   o.pseudorange_m = 2.24e7;
   o.sigma_m = 2.0;
   o.cn0_dbhz = 37.0;

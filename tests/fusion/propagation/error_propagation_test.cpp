@@ -32,7 +32,7 @@ NavState some_state() {
   return s;
 }
 
-Vector9d error_of(const NavState& truth, const NavState& estimate) {
+Vector9d error_vector(const NavState& truth, const NavState& estimate) {
   Vector9d e;
   e << so3_log(estimate.R_EU.conjugate() * truth.R_EU), truth.p_EU_E - estimate.p_EU_E, truth.v_EU_E - estimate.v_EU_E;
   return e;
@@ -120,7 +120,7 @@ TEST(ErrorPropagation, TransitionIsTheDerivativeOfTheStep) {
     VectorXd e = VectorXd::Zero(state.padded_size());
     e[j] = step;
     const Vector9d numeric =
-        (error_of(step_with_error(e), nominal) - error_of(step_with_error(-e), nominal)) / (2.0 * step);
+        (error_vector(step_with_error(e), nominal) - error_vector(step_with_error(-e), nominal)) / (2.0 * step);
     const double scale = j < kGyroBias ? 1.0 : j < kGains ? kDt : std::max(turn, push);
     const double attitude = scale * turn * turn + 1e-9;
     const double velocity = scale * turn * std::max(turn, push) + 1e-9;

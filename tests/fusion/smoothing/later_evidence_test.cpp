@@ -59,12 +59,12 @@ Chain chain() {
 // with covariance C - C H' (H C H' + R)^-1 H C.
 TEST(LaterEvidence, IsBatchLeastSquaresOfALinearChain) {
   const Chain c = chain();
-  constexpr Eigen::Index kAll = kStates * (kSteps + 1);
-  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(kAll, kAll);
+  constexpr Eigen::Index kAllStates = kStates * (kSteps + 1);
+  Eigen::MatrixXd prior = Eigen::MatrixXd::Zero(kAllStates, kAllStates);
   prior.topLeftCorner<kStates, kStates>() = c.P0;
   Eigen::Index rows = 0;
   for (const auto& z : c.z) rows += z.size();
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(rows, kAll), R = Eigen::MatrixXd::Zero(rows, rows);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(rows, kAllStates), R = Eigen::MatrixXd::Zero(rows, rows);
   Eigen::VectorXd z(rows);
   Eigen::Index row = 0;
   for (Eigen::Index k = 0; k < kSteps; ++k) {

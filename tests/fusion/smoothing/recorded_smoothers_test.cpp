@@ -20,17 +20,18 @@
 namespace canyon::fusion {
 namespace {
 
-struct Unit {
+struct RecordedUnit {
   const char *name, *label;
   const char* file;
   double arw_deg_per_sqrt_hr, vrw_m_s_per_sqrt_hr, gyro_bias_deg_per_hr, accel_bias_mgal, scale_ppm, tau_s;
 };
 constexpr const char* kSwitchable = "graph_robustness = \"switchable\"";
-constexpr Unit kA15{"Leador A15", "LeadorA15", "imu_a15_100hz.f32", 0.003, 0.03, 0.027, 15.0, 300.0, 4.0 * kHour};
-constexpr Unit kAdis{"ADIS16465", "Adis16465", "imu_adis16465_100hz.f32", 0.1, 0.1, 25.0, 200.0, 1000.0, kHour};
+constexpr RecordedUnit kA15{"Leador A15", "LeadorA15", "imu_a15_100hz.f32", 0.003, 0.03, 0.027,
+                            15.0,         300.0,       4.0 * kHour};
+constexpr RecordedUnit kAdis{"ADIS16465", "Adis16465", "imu_adis16465_100hz.f32", 0.1, 0.1, 25.0, 200.0, 1000.0, kHour};
 
 /// As the recordings were made.
-ImuNoise noise_of(const Unit& u) {
+ImuNoise noise_of(const RecordedUnit& u) {
   ImuNoise n;
   n.gyro.white_per_sqrt_hz = u.arw_deg_per_sqrt_hr * kDegree / 60.0;
   n.gyro.in_run_bias_sigma = u.gyro_bias_deg_per_hr * kDegree / kHour;
@@ -41,7 +42,7 @@ ImuNoise noise_of(const Unit& u) {
   return n;
 }
 
-FilterConfig config_of(const Unit& u) {
+FilterConfig config_of(const RecordedUnit& u) {
   FilterConfig config = configured("imu_gain_tau_s = " + number_text(u.tau_s));
   config.initial_attitude_sigma_deg_roll_pitch = 0.05;
   config.initial_attitude_sigma_deg_heading = 0.1;
@@ -63,14 +64,14 @@ struct Outages {
 };
 constexpr Outages kNone{}, kShort{.length_s = 30.0, .every_s = 75.0}, kLong{.length_s = 60.0, .every_s = 150.0};
 
-struct Score {
+struct SmootherScore {
   double rms_m = 0.0, nees = 0.0;
   double horizontal_m = 0.0, vertical_m = 0.0;  // RMS of the largest error of each outage
 };
 
 /// Against the reference wherever both have a state, from 60 s on.
-Score score(const std::vector<SmoothedState>& states, const testing::RecordedRun& run, const Outages& outages) {
-  Score s;
+SmootherScore score(const std::vector<SmoothedState>& states, const testing::RecordedRun& run, const Outages& outages) {
+  SmootherScore s;
   ConsistencyMean nees;
   std::map<int, Eigen::Vector2d> largest;
   std::size_t ref = 0;
@@ -99,13 +100,13 @@ Score score(const std::vector<SmoothedState>& states, const testing::RecordedRun
 
 /// The run with the fixes that outages leave, a share of them off by so much in any direction.
 struct RecordedStage {
-  Unit unit;
+  RecordedUnit unit;
   testing::RecordedRun run;
   Outages outages;
   std::vector<GnssFix> fixes;
 
-  RecordedStage(const Unit& u, const testing::RecordedRun& r, const Outages& without, double outlier_share = 0.0,
-                double outlier_m = 0.0)
+  RecordedStage(const RecordedUnit& u, const testing::RecordedRun& r, const Outages& without,
+                double outlier_share = 0.0, double outlier_m = 0.0)
       : unit(u), run(r), outages(without) {
     const RandomStream stream(17, "test.outliers");
     for (std::uint64_t i = 0; i < run.fixes.size(); ++i) {
@@ -115,7 +116,7 @@ struct RecordedStage {
     }
   }
 
-  Score of(const char* smoother, const std::string& keys = "") const {
+  SmootherScore of(const char* smoother, const std::string& keys = "") const {
     Drive drive;
     drive.config = config_of(unit);
     drive.noise = noise_of(unit);
@@ -129,7 +130,7 @@ struct RecordedStage {
     drive.v_WB_W = R_WE * first.state.v_EU_E;
     drive.imu = run.imu;
     drive.fixes = fixes;
-    const Score s = score(smoothed_by(smoother, drive, keys).states, run, outages);
+    const SmootherScore s = score(smoothed_by(smoother, drive, keys).states, run, outages);
     std::printf(
         "%s, outages of %g s, %s %s: %.4f m 3-D RMS, NEES %.2f; in outages %.3f m horizontal, %.3f m vertical\n",
         unit.name, outages.length_s, smoother, keys.c_str(), s.rms_m, s.nees, s.horizontal_m, s.vertical_m);
@@ -137,7 +138,7 @@ struct RecordedStage {
   }
 };
 
-class RecordedSmoothers : public ::testing::TestWithParam<Unit> {};
+class RecordedSmoothers : public ::testing::TestWithParam<RecordedUnit> {};
 
 #define CANYON_SIM_LEADOR(run)                                                           \
   CANYON_REAL_DATA(gnss_file, "inertial/sim_leador_a15/gnss_1hz.csv");                   \
@@ -147,7 +148,7 @@ class RecordedSmoothers : public ::testing::TestWithParam<Unit> {};
 
 // Errors last for some 30 s: of as many independent draws as the run has of these, the mean leaves this band once in a
 // thousand.
-void expect_consistent(const Score& s) {
+void expect_honest(const SmootherScore& s) {
   const Band band = mean_chi_square_band(9, 18, 1e-3);
   EXPECT_TRUE(band.contains(9.0 * s.nees)) << s.nees;
 }
@@ -157,10 +158,10 @@ TEST_P(RecordedSmoothers, AreThreeTimesBetterThanTheFilterInOutages) {
   CANYON_SIM_LEADOR(run);
   for (const Outages& outages : {kNone, kShort, kLong}) {
     const RecordedStage stage(GetParam(), run, outages);
-    const Score filter = stage.of("none"), rts = stage.of("rts"), graph = stage.of("batch_graph");
+    const SmootherScore filter = stage.of("none"), rts = stage.of("rts"), graph = stage.of("batch_graph");
     stage.of("fixed_lag_graph");
-    expect_consistent(rts);
-    expect_consistent(graph);
+    expect_honest(rts);
+    expect_honest(graph);
     EXPECT_LT(rts.rms_m, filter.rms_m);
     // No worse, but for where it is linearized and for the instants at which it is looked at.
     EXPECT_LT(graph.rms_m, 1.02 * rts.rms_m);

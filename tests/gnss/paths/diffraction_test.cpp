@@ -18,7 +18,7 @@ namespace {
 using testing::direction;
 using testing::WallScene;
 
-const Eigen::Vector3d kAntenna(0.0, 0.0, 2.0);
+const Eigen::Vector3d kEdgeAntenna(0.0, 0.0, 2.0);
 
 SignalPaths trace(const scene::Scene& scene, const Eigen::Vector3d& s, const char* diffraction,
                   const PathParameters& p = {}, bool ground = false) {
@@ -26,7 +26,7 @@ SignalPaths trace(const scene::Scene& scene, const Eigen::Vector3d& s, const cha
                                       find_model(diffraction_models(), diffraction)->make({}, p), ground, p);
   std::vector<SignalPaths> out(1);
   GnssCounters counters;
-  model->trace(kAntenna, std::vector{s}, scene::SceneAt(scene), out, counters);
+  model->trace(kEdgeAntenna, std::vector{s}, scene::SceneAt(scene), out, counters);
   return out[0];
 }
 
@@ -127,7 +127,7 @@ TEST(Diffraction, ObliqueWaysObeyFermat) {
   const auto paths = trace(*scene, s, "knife_edge");
   ASSERT_EQ(paths.echoes.size(), 1u);
   const auto detour = [&](double y) {
-    const Eigen::Vector3d way = Eigen::Vector3d(-20, y, 22) - kAntenna;
+    const Eigen::Vector3d way = Eigen::Vector3d(-20, y, 22) - kEdgeAntenna;
     return way.norm() - way.dot(s);
   };
   double least = 1e9;
@@ -166,7 +166,7 @@ TEST(Diffraction, TwoEdges) {
   ASSERT_NE(path, nullptr);
   const Eigen::Vector3d near(-10, 0, 7.5), far(-50, 0, 29.0);
   // Level with its roof's west edge, the wave passes the high house over its east edge.
-  const double whole_m = (near - kAntenna).norm() + (far - near).norm() - (far - kAntenna).dot(s);
+  const double whole_m = (near - kEdgeAntenna).norm() + (far - near).norm() - (far - kEdgeAntenna).dot(s);
   EXPECT_NEAR(path->excess_m, whole_m, 0.02);  // legs pass 3 cm outside of the edges
   EXPECT_LT(std::abs(path->copolar), 0.5);
   for (const SignalPath& e : trace(*scene, s, "knife_edge", p).echoes) EXPECT_EQ(e.diffractions, 1);
@@ -192,10 +192,10 @@ TEST(Diffraction, TwoEdgesAddUpOnBothSidesOfTheLine) {
     std::complex<double> sum = 0.0;
     for (const SignalPath& e : trace(*scene, s, "double_knife_edge", p).echoes)
       sum += e.copolar * std::polar(1.0, -2.0 * kPi * e.excess_m / kL1WavelengthM);
-    const double more_m = (far - near).norm() + (near - kAntenna).norm() - (far - kAntenna).norm();
+    const double more_m = (far - near).norm() + (near - kEdgeAntenna).norm() - (far - kEdgeAntenna).norm();
     const double nu = std::copysign(knife_edge_nu(more_m, kL1WavelengthM), elevation_deg - 28.4);
     // The roofs' far sides are edges too, at 14 and 60 m; level roofs hide them from below but for their ripples.
-    EXPECT_LT(std::abs(sum - over_far(nu > 0.0 ? near : kAntenna) * knife_edge_field(nu)), 0.02) << elevation_deg;
+    EXPECT_LT(std::abs(sum - over_far(nu > 0.0 ? near : kEdgeAntenna) * knife_edge_field(nu)), 0.02) << elevation_deg;
   }
 }
 

@@ -35,7 +35,8 @@ std::vector<Eigen::Vector3d> whole_sky() {
   return out;
 }
 
-std::vector<SignalPaths> trace(const PathModel& model, const scene::Scene& scene, const Eigen::Vector3d& antenna_W) {
+std::vector<SignalPaths> traced_at(const PathModel& model, const scene::Scene& scene,
+                                   const Eigen::Vector3d& antenna_W) {
   const auto sky = whole_sky();
   std::vector<SignalPaths> out(sky.size());
   GnssCounters counters;
@@ -61,7 +62,7 @@ TEST(PathExtremes, InsideABuildingNothingArrives) {
   const auto scene = WallScene().box({-20, -20, 0}, {20, 20, 30}).box({-60, -20, 0}, {-30, 20, 60}, "glass").build();
   for (const auto& [name, model] : all_models()) {
     if (name.starts_with("none")) continue;  // leaves the scene out altogether
-    const auto paths = trace(*model, *scene, {1.0, 2.0, 3.0});
+    const auto paths = traced_at(*model, *scene, {1.0, 2.0, 3.0});
     expect_sound(name, paths);
     for (const auto& p : paths) {
       EXPECT_FALSE(p.line_of_sight) << name;
@@ -77,7 +78,7 @@ TEST(PathExtremes, AntennaOnASurface) {
   for (const Eigen::Vector3d& antenna :
        {Eigen::Vector3d(20, 0, 10), Eigen::Vector3d(20.0005, 0, 10), Eigen::Vector3d(20, 20, 30),
         Eigen::Vector3d(0, 0, 30), Eigen::Vector3d(20, 20, 0)})
-    for (const auto& [name, model] : all_models()) expect_sound(name, trace(*model, *scene, antenna));
+    for (const auto& [name, model] : all_models()) expect_sound(name, traced_at(*model, *scene, antenna));
 }
 
 // From 400 m below the sea to 20 km up, over the built scene and far from it.
@@ -85,7 +86,7 @@ TEST(PathExtremes, HeightsFromBelowTheSeaTo20Km) {
   const auto scene = WallScene({0.0, kPi, -400.0}).box({-20, -20, 0}, {20, 20, 30}).build();
   for (const double up_m : {0.5, 400.0, 20400.0}) {
     for (const auto& [name, model] : all_models()) {
-      const auto paths = trace(*model, *scene, {60.0, 0.0, up_m});
+      const auto paths = traced_at(*model, *scene, {60.0, 0.0, up_m});
       expect_sound(name, paths);
       if (up_m < 30.0) continue;
       for (const auto& p : paths) EXPECT_TRUE(p.line_of_sight) << name << " at " << up_m;
@@ -97,7 +98,7 @@ TEST(PathExtremes, HeightsFromBelowTheSeaTo20Km) {
 TEST(PathExtremes, AnEmptySceneHasNothingButTheDirectWay) {
   const auto scene = WallScene().wall({1e4, 1e4, -100}, {1, 0, 0}, {0, 0, 1}).build();
   for (const auto& [name, model] : all_models())
-    for (const auto& p : trace(*model, *scene, {0, 0, 2})) {
+    for (const auto& p : traced_at(*model, *scene, {0, 0, 2})) {
       EXPECT_TRUE(p.line_of_sight) << name;
       EXPECT_TRUE(p.echoes.empty()) << name;
     }

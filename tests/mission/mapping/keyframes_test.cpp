@@ -18,7 +18,7 @@
 namespace canyon::mission::testing {
 namespace {
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kFirstKeyframe = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 /// Answers one after the other, as an own method does: what the surfaces alone say, and what they leave open.
 class AnsweringRegistration final : public lidar::Registration {
@@ -89,12 +89,12 @@ struct AlignedDrive {
       answer.open = open;
     }
     PartClock clock;
-    const Boundaries boundaries(kStart);
+    const Boundaries boundaries(kFirstKeyframe);
     Keyframes keyframes(config, std::make_unique<AnsweringRegistration>(std::move(answers)), nullptr, false, boundaries,
                         clock, recorder);
     for (int k = 0; k <= kSteps; ++k) {
       const auto scan = std::make_shared<LidarScan>();
-      scan->t = kStart + double(k);
+      scan->t = kFirstKeyframe + double(k);
       scan->points.push_back({1, 0, 0, 0.5f, 0, 0, 0});
       NavEstimate estimate;
       estimate.t = scan->t;

@@ -78,7 +78,7 @@ FuseInputs part_of(const FuseInputs& all, GpsTime from, GpsTime to) {
 
 /// The drive of recorded_test.cpp, but that the unit is known to sit upside down and backwards, and no better: its
 /// clock to 0.1 s, its axes to 10 degrees, both 1-sigma. Its noise is the public filter's (MANIFEST.md).
-constexpr const char* kDrive = R"(
+constexpr const char* kCalibratingDrive = R"(
 [fusion]
 states = ["biases", "gains", "mounting", "time_offset"]
 measurements = ["position", "non_holonomic"]
@@ -156,7 +156,7 @@ ImuNoise as_at_rest(const FuseInputs& inputs, ImuNoise given) {
 TEST_F(CalibratingDrive, OfALowCostUnitIsWhatItsSourceStates) {
   CANYON_REAL_DATA(gnss, "inertial/drive_mems_ppk/gnss_ppk_4hz.csv");
   CANYON_REAL_DATA(imu, "inertial/drive_mems_ppk/imu_raw_100hz.csv");
-  FuseConfig config = config_of(kDrive);
+  FuseConfig config = config_of(kCalibratingDrive);
   const auto inputs = read(imu, gnss, config);
   ASSERT_TRUE(inputs.ok()) << inputs.error().str();
   const ImuNoise noise = as_at_rest(*inputs, *fuse_noise(config));
@@ -196,7 +196,7 @@ TEST_F(CalibratingDrive, OfALowCostUnitIsWhatItsSourceStates) {
 TEST_F(CalibratingDrive, OutagesOfALowCostUnit) {
   CANYON_REAL_DATA(gnss, "inertial/drive_mems_ppk/gnss_ppk_4hz.csv");
   CANYON_REAL_DATA(imu, "inertial/drive_mems_ppk/imu_raw_100hz.csv");
-  FuseConfig config = config_of(kDrive);
+  FuseConfig config = config_of(kCalibratingDrive);
   const auto inputs = read(imu, gnss, config);
   ASSERT_TRUE(inputs.ok()) << inputs.error().str();
   const OutagePlan plans[] = {{15.0, 40.0, 100.0}, {30.0, 50.0, 100.0}};

@@ -15,7 +15,7 @@
 namespace canyon::fusion {
 namespace {
 
-const GpsTime kStart = GpsTime::from_week_sow(1590, 396000.0);
+const GpsTime kPreintegrationStart = GpsTime::from_week_sow(1590, 396000.0);
 
 /// Integral from t to t + dt of a + b sin(c t), exactly.
 double integral(double a, double b, double c, double t, double dt) {
@@ -25,7 +25,7 @@ double integral(double a, double b, double c, double t, double dt) {
 /// Increments of a unit that turns and is pushed, its rate and force smooth in time, exactly.
 ImuSample moving(double t, double dt) {
   ImuSample s;
-  s.t = kStart + (t + dt);
+  s.t = kPreintegrationStart + (t + dt);
   s.dt_s = dt;
   s.dtheta_U = {integral(0.1, 0.3, 2.0, t, dt), integral(-0.05, 0.2, 3.0, t, dt), integral(0.4, 0.3, 1.0, t, dt)};
   s.dv_U = {integral(0.5, 2.0, 1.5, t, dt), integral(0.3, 1.0, 2.5, t, dt), integral(9.8, 0.5, 4.0, t, dt)};
@@ -49,7 +49,7 @@ NavState integrated(const char* row, const NavState& start, double seconds, doub
 
 NavState driving() {
   NavState s = resting_at(48.0, 11.0, 500.0);
-  s.t = kStart;
+  s.t = kPreintegrationStart;
   s.v_EU_E = s.R_EU * Eigen::Vector3d(15.0, 3.0, -1.0);
   return s;
 }

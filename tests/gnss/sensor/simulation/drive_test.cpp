@@ -17,7 +17,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const GpsTime kStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
+const GpsTime kDriveStart = GpsTime::from_calendar(2010, 11, 17, 13, 0, 0.0);
 
 /// Level ground at 10 m, 200 m wide.
 class DriveTest : public ::testing::Test {
@@ -35,11 +35,11 @@ class DriveTest : public ::testing::Test {
   Drive drive(double height_m, double reach_m = 50.0) const {
     std::vector<StampedPlace> places;
     for (int k = 0; k <= 10; ++k)
-      places.push_back({kStart + k, scene_->frame().to_E({reach_m * (k / 5.0 - 1.0), 0.0, height_m})});
-    return {PlacePath(std::move(places)), "way.csv", kStart, 10.0, 2.0};
+      places.push_back({kDriveStart + k, scene_->frame().to_E({reach_m * (k / 5.0 - 1.0), 0.0, height_m})});
+    return {PlacePath(std::move(places)), "way.csv", kDriveStart, 10.0, 2.0};
   }
   std::unique_ptr<GnssSensor> sensor(const GnssConfig& config = {}) const {
-    auto made = make_gnss_sensor(config, 1, kStart, kStart + 10.0, *scene_);
+    auto made = make_gnss_sensor(config, 1, kDriveStart, kDriveStart + 10.0, *scene_);
     EXPECT_TRUE(made.ok());
     return std::move(*made);
   }
@@ -53,8 +53,8 @@ TEST_F(DriveTest, MeasuresFromTheStartToTheEnd) {
       simulate_drive(drive(12.0), *receiver, *scene_, [&](const GnssOutput& o) { outputs.push_back(o); });
   ASSERT_TRUE(totals.ok());
   ASSERT_EQ(outputs.size(), 21u);
-  EXPECT_EQ(outputs.front().fix.t, kStart);
-  EXPECT_EQ(outputs.back().fix.t, kStart + 10.0);
+  EXPECT_EQ(outputs.front().fix.t, kDriveStart);
+  EXPECT_EQ(outputs.back().fix.t, kDriveStart + 10.0);
   EXPECT_EQ(totals->epochs, 21);
   EXPECT_EQ(totals->fixes, 21);
   EXPECT_EQ(totals->below_ground, 0);
@@ -81,7 +81,7 @@ TEST_F(DriveTest, AHeightThatNoModelCoversIsAnError) {
   const auto totals = simulate_drive(drive(25e3), *receiver, *scene_, [](const GnssOutput&) {});
   ASSERT_FALSE(totals.ok());
   EXPECT_EQ(totals.error().file, "way.csv");
-  EXPECT_EQ(totals.error().key, kStart.iso());
+  EXPECT_EQ(totals.error().key, kDriveStart.iso());
 }
 
 TEST_F(DriveTest, FilesHoldEveryEpoch) {
@@ -92,7 +92,7 @@ TEST_F(DriveTest, FilesHoldEveryEpoch) {
   const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
   EXPECT_EQ(lines(files.fixes_csv()), 22);
   EXPECT_THAT(files.nmea(), HasSubstr("$GPGGA,125945.50,"));
-  const auto source = make_satellite_source({}, kStart, kStart + 10.0);
+  const auto source = make_satellite_source({}, kDriveStart, kDriveStart + 10.0);
   ASSERT_TRUE(source.ok());
   const auto rinex = files.rinex_observations(way, *source, "x.rnx");
   ASSERT_TRUE(rinex.ok());
@@ -100,17 +100,17 @@ TEST_F(DriveTest, FilesHoldEveryEpoch) {
   ASSERT_TRUE(read.ok()) << read.error().str();
   EXPECT_EQ(read->epochs.size(), 21u);
   std::vector<std::string> warnings;
-  EXPECT_TRUE(rinex_navigation(*source, "G", kStart, kStart + 10.0, warnings).ok());
+  EXPECT_TRUE(rinex_navigation(*source, "G", kDriveStart, kDriveStart + 10.0, warnings).ok());
 }
 
 TEST_F(DriveTest, TheSkyIsFollowedInSteps) {
   const GnssConfig config;
   const auto receiver = sensor(config);
   const scene::SceneAt now(*scene_);
-  const auto sky = follow_sky(*receiver, config, kStart, 9.0, 3.0, {0.0, 0.0, 12.0}, now);
+  const auto sky = follow_sky(*receiver, config, kDriveStart, 9.0, 3.0, {0.0, 0.0, 12.0}, now);
   ASSERT_EQ(sky.size(), 4u);
   EXPECT_EQ(sky[3].t_s, 9.0);
-  EXPECT_EQ(sky[3].output.fix.t, kStart + 9.0);
+  EXPECT_EQ(sky[3].output.fix.t, kDriveStart + 9.0);
   const GnssObservation& first = sky[0].output.epoch.observations.front();
   EXPECT_EQ(cn0_of(sky[0].output, first.sv), first.cn0_dbhz);
   EXPECT_TRUE(std::isnan(cn0_of(sky[0].output, {GnssSystem::kGlonass, 1})));
