@@ -40,32 +40,18 @@ Vehicle::Vehicle(const VehicleConfig& config, const scene::Scene& scene, std::ui
       scene_(scene),
       roughness_(config.roughness, seed),
       plan_(model_row(plan_models(), config.model.name).make(config.model.own, config)),
-      last_inputs_(terrain_inputs(plan_->state())),
-      heave_(2.0 * kPi * config.suspension_hz, config.suspension_damping, last_inputs_.heave_m),
-      pitch_(2.0 * kPi * config.suspension_hz, config.suspension_damping, last_inputs_.pitch_rad),
-      roll_(2.0 * kPi * config.suspension_hz, config.suspension_damping, last_inputs_.roll_rad) {
+      contact_(follow_ground({})),
+      heave_(2.0 * kPi * config.suspension_hz, config.suspension_damping, contact_.heave_m),
+      pitch_(2.0 * kPi * config.suspension_hz, config.suspension_damping, contact_.pitch_rad),
+      roll_(2.0 * kPi * config.suspension_hz, config.suspension_damping, contact_.roll_rad) {
   state_ = state_at(start);
 }
 
-Vehicle::Inputs Vehicle::terrain_inputs(const PlanState& plan) {
-  const double yaw = plan.yaw_rad;
-  const Eigen::Vector2d forward(std::cos(yaw), std::sin(yaw)), left(-forward.y(), forward.x());
-  double height[4];
-  for (int wheel = 0; wheel < 4; ++wheel) {
-    const double along = wheel < 2 ? 0.0 : config_.wheelbase_m;
-    const double across = (wheel % 2 == 0 ? 0.5 : -0.5) * config_.track_m;
-    const Eigen::Vector2d contact = plan.p_W + along * forward + across * left;
-    const auto ground = scene_.ground(contact.x(), contact.y());
-    if (!ground) {
-      on_terrain_ = false;
-      return last_inputs_;
-    }
-    height[wheel] = ground->height_m + roughness_.height_m(contact);
-  }
-  const double rear = 0.5 * (height[0] + height[1]), front = 0.5 * (height[2] + height[3]);
-  const double left_side = 0.5 * (height[0] + height[2]), right_side = 0.5 * (height[1] + height[3]);
-  // Pitch is positive nose down (right-handed about y left).
-  return {rear, std::atan2(rear - front, config_.wheelbase_m), std::atan2(left_side - right_side, config_.track_m)};
+GroundContact Vehicle::follow_ground(const GroundContact& before) {
+  const PlanState& plan = plan_->state();
+  const auto contact = ground_contact(config_, scene_, &roughness_, plan.p_W, plan.yaw_rad);
+  if (!contact) on_terrain_ = false;
+  return contact.value_or(before);
 }
 
 KinematicState Vehicle::state_at(GpsTime t) const {
@@ -102,10 +88,10 @@ const KinematicState& Vehicle::advance(const DriveCommand& command) {
                "drive command from autonomy: speed ", command.speed_m_s, ", curvature ", command.curvature_1_m);
   constexpr double dt_s = 1e-9 * static_cast<double>(kStep_ns);
   plan_->advance(command, dt_s);
-  last_inputs_ = terrain_inputs(plan_->state());
-  heave_.advance(last_inputs_.heave_m, dt_s);
-  pitch_.advance(last_inputs_.pitch_rad, dt_s);
-  roll_.advance(last_inputs_.roll_rad, dt_s);
+  contact_ = follow_ground(contact_);
+  heave_.advance(contact_.heave_m, dt_s);
+  pitch_.advance(contact_.pitch_rad, dt_s);
+  roll_.advance(contact_.roll_rad, dt_s);
   state_ = state_at({state_.t.ns + kStep_ns});
   return state_;
 }

@@ -5,6 +5,7 @@
 
 #include "canyon/core/messages.h"
 #include "canyon/core/truth.h"
+#include "canyon/mission/motion/ground_contact.h"
 #include "canyon/mission/motion/plan/plan_model.h"
 #include "canyon/mission/motion/road_roughness.h"
 #include "canyon/mission/motion/sprung_mass.h"
@@ -37,10 +38,8 @@ class Vehicle {
   const VehicleConfig& config() const { return config_; }
 
  private:
-  struct Inputs {
-    double heave_m, pitch_rad, roll_rad;
-  };
-  Inputs terrain_inputs(const PlanState& plan);
+  /// Off the terrain it stays as it was `before`.
+  GroundContact follow_ground(const GroundContact& before);
   KinematicState state_at(GpsTime t) const;
 
   VehicleConfig config_;
@@ -49,7 +48,7 @@ class Vehicle {
   std::unique_ptr<PlanModel> plan_;
   KinematicState state_;
   bool on_terrain_ = true;
-  Inputs last_inputs_;
+  GroundContact contact_;
   SprungMass heave_, pitch_, roll_;
 };
 
