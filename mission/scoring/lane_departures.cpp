@@ -8,6 +8,11 @@
 #include "canyon/mission/collision/body_box.h"
 
 namespace canyon::mission {
+namespace {
+
+constexpr double kRounding_m = 1e-3;  // of a mesh, whose places are in single precision
+
+}  // namespace
 
 LaneDepartures::LaneDepartures(const VehicleConfig& vehicle, Path lane, const scene::SceneAt& scene)
     : vehicle_(vehicle), lane_(std::move(lane)), scene_(scene), near_(scene) {}
@@ -60,6 +65,17 @@ bool LaneDepartures::is_free(const Eigen::Vector2d& most_moved_m) {
   return true;
 }
 
+/// Whether a triangle is of no known kind and nowhere higher above the ground under its corners than the body begins,
+/// as a pavement is. Above the body's own plane it may be higher all the same, where the ground beside the lane rises.
+bool LaneDepartures::is_kerb(const NearTriangle& triangle) const {
+  if (scene_.object(scene_.surface(triangle.index).object).kind != scene::ObjectKind::kOther) return false;
+  for (const Eigen::Vector3d& p : {triangle.corners.a, triangle.corners.b, triangle.corners.c}) {
+    const auto ground = scene_.scene().ground(p.x(), p.y());
+    if (!ground || p.z() - ground->height_m > vehicle_.ground_clearance_m + kRounding_m) return false;
+  }
+  return true;
+}
+
 /// After its end a lane goes straight on, where whoever drives there looks, too.
 bool LaneDepartures::is_free_at(const Eigen::Vector2d& moved_m) {
   for (double s = s_m_; s <= s_m_ + kAhead_m; s += kBodies_m) {
@@ -67,11 +83,13 @@ bool LaneDepartures::is_free_at(const Eigen::Vector2d& moved_m) {
     const Eigen::Vector2d there = lane_.at(s) + std::max(0.0, s - lane_.length_m()) * along + moved_m;
     const auto X_WB = body_at_rest(vehicle_, scene_.scene(), there, std::atan2(along.y(), along.x()));
     if (!X_WB) return false;
-    OrientedBox body = body_box(vehicle_, *X_WB);
-    body.half_m += Eigen::Vector3d(kClear_m, kClear_m, 0.0);
-    for (const NearTriangle& triangle : near_.near(body.X_WC.p, body.radius_m())) {
+    const OrientedBox body = body_box(vehicle_, *X_WB);
+    OrientedBox with_room = body;
+    with_room.half_m += Eigen::Vector3d(kClear_m, kClear_m, 0.0);
+    for (const NearTriangle& triangle : near_.near(body.X_WC.p, with_room.radius_m())) {
       const scene::ObjectKind kind = scene_.object(scene_.surface(triangle.index).object).kind;
-      if (kind != scene::ObjectKind::kTerrain && touch(body, triangle.corners)) return false;
+      if (kind == scene::ObjectKind::kTerrain || !touch(with_room, triangle.corners)) continue;
+      if (!is_kerb(triangle) || touch(body, triangle.corners)) return false;
     }
   }
   return true;

@@ -15,7 +15,8 @@ namespace canyon::mission {
 /// How often the true vehicle leaves its lane without need, as for a phantom that it steers around. Its lane is the
 /// route, where that truly is, where it is by the estimate that the vehicle drives by, or between the two: what the
 /// estimate's error explains is no departure. There is need where a thing, which is all but the ground, stands or moves
-/// in the lane. Looked at after every 0.2 m of the way.
+/// in the lane. Kerbs and pavements, which lanes run along, are in it only where the body itself would touch them.
+/// Looked at after every 0.2 m of the way.
 class LaneDepartures {
  public:
   static constexpr double kBeside_m = 0.5;  ///< farther beside its lane it has left it
@@ -45,6 +46,7 @@ class LaneDepartures {
   /// Whether nothing stands in the lane ahead, moved by up to so much.
   bool is_free(const Eigen::Vector2d& most_moved_m);
   bool is_free_at(const Eigen::Vector2d& moved_m);
+  bool is_kerb(const NearTriangle& triangle) const;
 
   VehicleConfig vehicle_;
   Path lane_;

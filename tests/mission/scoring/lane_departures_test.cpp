@@ -164,6 +164,58 @@ TEST(LaneDepartures, WhatHasJustGoneWasAReason) {
   EXPECT_EQ(needless(lane, out_and_back(40.0, 80.0, 1.5), Vector2d::Zero(), stands_to(40.0)), 1);
 }
 
+/// A slab from x = -10 to 160 m, from 1.5 to 4 m to the right of the lane, on ground that rises by 0.2 from 0.9 m on,
+/// or on level ground; or across the lane from x = 59 to 61 m.
+enum class Slab { kOnLevelGround, kOnRisingGround, kAcross };
+struct LaneWithSlab : LaneWithPosts {
+  LaneWithSlab(Slab where, double height_m, scene::ObjectKind kind) : LaneWithPosts({}) {
+    scene::SceneParts parts;
+    parts.materials = scene::builtin_materials();
+    scene::MeshBuilder mesh(parts);
+    const std::uint16_t concrete = mesh.material("concrete");
+    const double rise = where == Slab::kOnRisingGround ? 0.2 : 0.0;
+    const auto at_place = [&](double x, double y, double above_m) {
+      return Eigen::Vector3d(x, y, rise * std::max(0.0, -0.9 - y) + above_m);
+    };
+    const auto sheet = [&](const Vector2d& low, const Vector2d& high, double above_m) {
+      mesh.quad(at_place(low.x(), low.y(), above_m), at_place(high.x(), low.y(), above_m),
+                at_place(high.x(), high.y(), above_m), at_place(low.x(), high.y(), above_m), concrete);
+    };
+    mesh.begin_object("ground", scene::ObjectKind::kTerrain);
+    sheet({-50, -60}, {250, -0.9}, 0.0);
+    sheet({-50, -0.9}, {250, 60}, 0.0);
+    mesh.begin_object("slab", kind);
+    const Vector2d low = where == Slab::kAcross ? Vector2d(59, -4) : Vector2d(-10, -4);
+    const Vector2d high = where == Slab::kAcross ? Vector2d(61, 4) : Vector2d(160, -1.5);
+    sheet(low, high, height_m);
+    mesh.quad(at_place(low.x(), high.y(), 0.0), at_place(high.x(), high.y(), 0.0),
+              at_place(high.x(), high.y(), height_m), at_place(low.x(), high.y(), height_m), concrete);
+    at.reset();
+    scene = std::make_unique<scene::Scene>(std::move(parts));
+    at = std::make_unique<scene::SceneAt>(*scene);
+  }
+};
+
+// 2026-11-30: kerbs beside the lane made every departure a needful one. The body begins 0.2 m above the ground, and a
+// mission's kerbs may be as high; on ground that rises beside the lane lower ones stand as high beside the body.
+TEST(LaneDepartures, AKerbBesideTheLaneIsNoReason) {
+  const Beside aside = out_and_back(40.0, 80.0, 1.5);
+  using scene::ObjectKind;
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kOnLevelGround, 0.12, ObjectKind::kOther), aside), 1);
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kOnLevelGround, 0.2, ObjectKind::kOther), aside), 1);
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kOnRisingGround, 0.12, ObjectKind::kOther), aside), 1);
+}
+
+TEST(LaneDepartures, WhatIsHigherThanAKerbOrKnownIsAReason) {
+  const Beside aside = out_and_back(40.0, 80.0, 1.5);
+  using scene::ObjectKind;
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kOnLevelGround, 0.25, ObjectKind::kOther), aside), 0);
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kOnRisingGround, 0.25, ObjectKind::kOther), aside), 0);
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kOnRisingGround, 0.12, ObjectKind::kWall), aside), 0);
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kAcross, 0.25, ObjectKind::kOther), aside), 0);
+  EXPECT_EQ(needless(LaneWithSlab(Slab::kAcross, 0.12, ObjectKind::kOther), aside), 1) << "it drives over it";
+}
+
 TEST(LaneDepartures, WithoutALaneNothingIsCounted) {
   const LaneWithPosts free({});
   LaneDepartures departures(VehicleConfig{}, Path(), *free.at);
