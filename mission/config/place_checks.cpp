@@ -169,7 +169,7 @@ Status check_waypoints_are_free(const MissionConfig& config, const PreparedMissi
 
     const WaypointReach reach(config.vehicle, radius_m, at);
     const auto met = reach.met_before(mission.prior.route, s_m);
-    if (!met || reach.comes_near(waypoint.p_m)) continue;
+    if (!met || reach.way_to(waypoint.p_m).may_be) continue;
     const std::size_t fixed = mission.scene->objects().size();
     const std::string of_thing =
         *met < fixed ? "" : ", scene.moving[" + std::to_string(standing[*met - fixed] + 1) + "].path_m";

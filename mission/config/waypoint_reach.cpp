@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "canyon/core/process/progress.h"
 #include "canyon/core/truth.h"
 #include "canyon/core/units.h"
 #include "canyon/mission/collision/body_at_rest.h"
@@ -26,11 +27,15 @@ Eigen::Vector2d unit(double yaw_rad) {
   return {std::cos(yaw_rad), std::sin(yaw_rad)};
 }
 
+double shorter_m(const VehicleConfig& body) {
+  return std::min(body.length_m, body.width_m);
+}
+
 /// By how much the body is smaller on each side: half a diagonal between places, and what its corners go sideways
 /// within half a step of the heading.
 double smaller_by_m(const VehicleConfig& body, double step_m) {
   const double turning_m = 0.5 * std::hypot(body.length_m, body.width_m) * std::sin(kPi / kHeadings);
-  return std::min(step_m / std::sqrt(2.0) + turning_m, kMostSmaller * std::min(body.length_m, body.width_m));
+  return step_m / std::sqrt(2.0) + turning_m;
 }
 
 /// A square of places around one in its middle.
@@ -46,14 +51,17 @@ struct Places {
 
 }  // namespace
 
-WaypointReach::WaypointReach(const VehicleConfig& vehicle, double radius_m, const scene::SceneAt& scene)
+WaypointReach::WaypointReach(const VehicleConfig& vehicle, double radius_m, const scene::SceneAt& scene,
+                             std::int64_t most_checks)
     : vehicle_(vehicle),
       smaller_(vehicle),
       radius_m_(radius_m),
-      step_m_(kPlacesShare * std::min(vehicle.length_m, vehicle.width_m)),
-      near_m_(radius_m + step_m_ / std::sqrt(2.0)),
+      step_m_(kPlacesShare * shorter_m(vehicle)),
+      near_m_(radius_m + step_m_ / std::sqrt(2.0) + vehicle.wheelbase_m * std::sin(kPi / (2 * kHeadings))),
+      most_checks_(most_checks),
       scene_(scene) {
   const double by_m = smaller_by_m(vehicle, step_m_);
+  is_judged_ = by_m <= kMostSmaller * shorter_m(vehicle);
   smaller_.length_m -= 2.0 * by_m;
   smaller_.width_m -= 2.0 * by_m;
 }
@@ -79,13 +87,15 @@ std::optional<std::uint32_t> WaypointReach::met_before(const Path& route, double
   return met;
 }
 
-WaypointReach::Stand WaypointReach::stand(const Eigen::Vector2d& middle_W, const Eigen::Vector2d& place_W) const {
+WaypointReach::Stand WaypointReach::stand(const Eigen::Vector2d& middle_W, const Eigen::Vector2d& place_W,
+                                          std::int64_t& checks) const {
   const double before_axle_m = 0.5 * smaller_.wheelbase_m;
   const bool may_be_near = (middle_W - place_W).norm() <= near_m_ + before_axle_m;
   Stand best = Stand::kNowhere;
   for (int k = 0; k < kHeadings; ++k) {
     const double yaw_rad = 2.0 * kPi * k / kHeadings;
     const Eigen::Vector2d rear_axle = middle_W - before_axle_m * unit(yaw_rad);
+    ++checks;
     if (!is_free(smaller_, rear_axle, yaw_rad)) continue;
     if ((rear_axle - place_W).norm() <= near_m_) return Stand::kNear;
     best = Stand::kFree;
@@ -94,23 +104,23 @@ WaypointReach::Stand WaypointReach::stand(const Eigen::Vector2d& middle_W, const
   return best;
 }
 
-bool WaypointReach::comes_near(const Eigen::Vector2d& place_W) const {
+WaypointReach::Way WaypointReach::way_to(const Eigen::Vector2d& place_W) const {
+  Way way;
+  if (!is_judged_) return way;
   const Places places{static_cast<int>(std::ceil((radius_m_ + kAround_m) / step_m_))};
-  std::vector<bool> seen(places.count(), false);
-  using Open = std::pair<double, std::pair<int, int>>;  // way left, place: the nearest is looked at first
+  std::vector<bool> known(places.count(), false);
+  // Way left, place: the nearest is looked at first, so that a way that there is takes few looks.
+  using Open = std::pair<double, std::pair<int, int>>;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
-  bool near = false;
   const auto middle = [&](int i, int j) { return Eigen::Vector2d(place_W + step_m_ * Eigen::Vector2d(i, j)); };
-  const auto look_at = [&](int i, int j) {
-    if (near || !places.contain(i, j) || seen[places.index(i, j)]) return;
-    seen[places.index(i, j)] = true;
-    const Stand found = stand(middle(i, j), place_W);
-    near = found == Stand::kNear;
-    if (found == Stand::kFree) open.push({(middle(i, j) - place_W).norm(), {i, j}});
+  const auto add = [&](int i, int j) {
+    if (!places.contain(i, j) || known[places.index(i, j)]) return;
+    known[places.index(i, j)] = true;
+    open.push({(middle(i, j) - place_W).norm(), {i, j}});
   };
 
   const auto from_outside = [&](int i, int j) {
-    if (scene::building_at(scene_.scene().buildings(), middle(i, j)) == nullptr) look_at(i, j);
+    if (scene::building_at(scene_.scene().buildings(), middle(i, j)) == nullptr) add(i, j);
   };
   for (int k = -places.half; k <= places.half; ++k)
     for (const int edge : {-places.half, places.half}) {
@@ -121,15 +131,21 @@ bool WaypointReach::comes_near(const Eigen::Vector2d& place_W) const {
       vehicle_.start_m + 0.5 * vehicle_.wheelbase_m * unit(yaw_from_heading(vehicle_.start_heading_deg * kDegree));
   const Eigen::Vector2d start = (start_W - place_W) / step_m_;
   if (start.cwiseAbs().maxCoeff() <= places.half)
-    look_at(static_cast<int>(std::lround(start.x())), static_cast<int>(std::lround(start.y())));
+    add(static_cast<int>(std::lround(start.x())), static_cast<int>(std::lround(start.y())));
 
-  while (!near && !open.empty()) {
+  while (!open.empty()) {
+    throw_if_cancelled();
+    if (way.checks >= most_checks_) return way;
     const auto [i, j] = open.top().second;
     open.pop();
+    const Stand found = stand(middle(i, j), place_W, way.checks);
+    if (found == Stand::kNear) return way;
+    if (found == Stand::kNowhere) continue;
     for (int di = -1; di <= 1; ++di)
-      for (int dj = -1; dj <= 1; ++dj) look_at(i + di, j + dj);
+      for (int dj = -1; dj <= 1; ++dj) add(i + di, j + dj);
   }
-  return near;
+  way.may_be = false;
+  return way;
 }
 
 }  // namespace canyon::mission

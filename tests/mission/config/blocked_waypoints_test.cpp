@@ -100,6 +100,7 @@ TEST(BlockedWaypoints, AFreePlaceWithinTheRadiusIsEnough) {
   EXPECT_EQ(told_of_goal(kLamp, Alley::kDeadEnd, 2.6), "no mistake");
   EXPECT_EQ(told_of_goal(kGate, Alley::kDeadEnd, 4.0), "no mistake");
   EXPECT_EQ(told_of_goal(kParked, Alley::kDeadEnd, 4.8), "no mistake");
+  EXPECT_EQ(told_of_goal(kParked, Alley::kDeadEnd, 100.0), "no mistake") << "from where it starts it is there";
 }
 
 // Beyond the lamp the axle stands 0.8 m from its middle: the other end of the alley leads there. Beside a parked car it
@@ -142,9 +143,9 @@ TEST(BlockedWaypoints, AMovingThingThatMayBePassed) {
 TEST(BlockedWaypoints, OfAnInheritedWaypointTheThingIsNamed) {
   EXPECT_EQ(message(std::string(kEmptyScene) +
                     "[[scene.moving]]\nname = \"coach\"\nshape = \"bus\"\npath_m = [112.9, -187.9]\n[autonomy]\n"
-                    "corner_radius_m = 2.9\n[success]\nwaypoint_radius_m = 1.3\n"),
+                    "corner_radius_m = 2.9\n[success]\nwaypoint_radius_m = 1.25\n"),
             "my.toml:4: scene.moving[1].path_m: waypoint \"1\" at (112.9, -187.9): coach stands in the way, and the "
-            "body comes to no place within success.waypoint_radius_m = 1.3 m of it, expected a place that it can come "
+            "body comes to no place within success.waypoint_radius_m = 1.25 m of it, expected a place that it can come "
             "to");
 }
 
