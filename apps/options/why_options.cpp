@@ -18,7 +18,7 @@ void declare_why_options(Arguments& arguments, WhyOptions& options) {
                  "source of error, beside replays with other noise alone: which source's removal rescues the mission; "
                  "with --seeds also how many failures come from what");
   arguments.option("--why-draws", options.draws, "replays with and without each source; without it 12")
-      .within(std::int64_t{10}, std::int64_t{10'000});
+      .within(std::int64_t{10}, std::int64_t{study::kMostDraws});
   arguments
       .option(
           "--why-seeds", options.seeds,

@@ -4,10 +4,12 @@
 #include <numeric>
 #include <optional>
 
+#include "canyon/core/check.h"
 #include "canyon/core/process/parallel.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/mission/run.h"
 #include "canyon/study/causes/failed_runs.h"
+#include "canyon/study/seeds/further_seeds.h"
 
 namespace canyon::study {
 namespace {
@@ -57,12 +59,8 @@ Result<mission::RunRecord> drive(const Comparison& comparison, std::size_t run, 
 Result<bool> replay(const Comparison& comparison, const Failed& failed, const Removal* removal, int draw,
                     Progress& progress) {
   mission::MissionConfig config = config_of(comparison, failed);
-  mission::LaterParts later{.config = config, .from_s = failed.explanation.from_s, .noise_seed = 0};
-  // Any number that no run has as its seed: those end at 9e15. Of seeds beside one another the draws differ, up to a
-  // thousand of each.
-  constexpr std::uint64_t kBeyondSeeds = 10'000'000'000'000'000u;
-  later.noise_seed =
-      kBeyondSeeds + static_cast<std::uint64_t>(config.run.seed) * 1000u + static_cast<std::uint64_t>(draw);
+  mission::LaterParts later{
+      .config = config, .from_s = failed.explanation.from_s, .noise_seed = replay_seed(config.run.seed, draw)};
   if (removal != nullptr) removal->remove(removal->from_start ? config : later.config);
   CANYON_TRY(const auto record, drive(comparison, failed.run, std::move(config), nullptr, &later, progress));
   return record.outcome == mission::Outcome::kSuccess;
@@ -187,6 +185,14 @@ bool names_one_error(const Explanation& e) {
 
 }  // namespace
 
+std::uint64_t replay_seed(std::int64_t run_seed, int draw) {
+  constexpr std::int64_t kBeyondSeeds = 10'000'000'000'000'000;
+  static_assert(kBeyondSeeds > kLargestSeed);
+  CANYON_CHECK(run_seed >= 0 && run_seed <= kLargestSeed && draw >= 0 && draw < kMostDraws, "seed ", run_seed,
+               ", draw ", draw);
+  return static_cast<std::uint64_t>(kBeyondSeeds + run_seed * kMostDraws + draw);
+}
+
 std::vector<bool> holm(const std::vector<double>& p, double level) {
   std::vector<std::size_t> order(p.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -201,6 +207,7 @@ std::vector<bool> holm(const std::vector<double>& p, double level) {
 
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
                                                   bool show_progress, std::optional<std::int64_t> most_seeds) {
+  CANYON_CHECK(draws > 0 && draws <= kMostDraws, "draws ", draws);
   std::vector<Failed> failed;
   for (FailedRun& run : failed_runs(results, most_seeds)) {
     Explanation explanation;

@@ -38,15 +38,22 @@ struct Explanation {
   const ModelRow<Removal>* cause = nullptr;  ///< the narrowest that rescues; null: undetermined
 };
 
-/// Drives each failed run of a closed-loop comparison again: `draws` times with the noise that follows the last chain
-/// of events (chain_start_s) drawn anew, and as often, on the same draws, without each source of removals(). A source
-/// is the cause if its removal rescues the mission more often than the redraws alone: the paired exact test of McNemar,
-/// Holm's correction over all removals (S. Holm, Scand. J. Stat. 6 (1979) 65). Closed loops are chaotic: without the
-/// paired redraws, any perturbation might rescue. Where no one error is named from the chain's beginning on, a second
-/// look takes sources away from the start on, for what had been at work before, as a drift has; each look has 2.5 %, so
-/// that where nothing helps something is named in 5 % at most. Explained are the failed_runs() in `results`, which may
-/// have several seeds, by seed; with `most_seeds` no more than so many of each run, the first ones. What is said of one
-/// run and seed depends on no other.
+/// So many replays with and without each source a run can have at most.
+inline constexpr int kMostDraws = 1000;
+/// The noise seed of a replay, with and without a source the same. No two runs of different seeds, nor two draws of
+/// one, have the same, and none is the seed of any run. The run's seed is 0 to kLargestSeed, the draw 0 to kMostDraws -
+/// 1; throws outside of these.
+std::uint64_t replay_seed(std::int64_t run_seed, int draw);
+
+/// Drives each failed run of a closed-loop comparison again: `draws` times, 1 to kMostDraws, with the noise that
+/// follows the last chain of events (chain_start_s) drawn anew, and as often, on the same draws, without each source of
+/// removals(). A source is the cause if its removal rescues the mission more often than the redraws alone: the paired
+/// exact test of McNemar, Holm's correction over all removals (S. Holm, Scand. J. Stat. 6 (1979) 65). Closed loops are
+/// chaotic: without the paired redraws, any perturbation might rescue. Where no one error is named from the chain's
+/// beginning on, a second look takes sources away from the start on, for what had been at work before, as a drift has;
+/// each look has 2.5 %, so that where nothing helps something is named in 5 % at most. Explained are the failed_runs()
+/// in `results`, which may have several seeds, by seed; with `most_seeds` no more than so many of each run, the first
+/// ones. What is said of one run and seed depends on no other.
 Result<std::vector<Explanation>> explain_failures(const Comparison& comparison, const Results& results, int draws,
                                                   bool show_progress,
                                                   std::optional<std::int64_t> most_seeds = std::nullopt);

@@ -12,8 +12,6 @@ namespace canyon::study {
 
 namespace {
 
-constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;  // of [run] seed
-
 Result<RunSummary> drive(const Comparison& comparison, std::size_t run, std::int64_t further,
                          const std::string& scratch, Progress& progress) {
   mission::MissionConfig config = comparison.configs[run];

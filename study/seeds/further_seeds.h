@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstdint>
+
 #include "canyon/core/result.h"
 #include "canyon/study/compare.h"
 
 namespace canyon::study {
+
+inline constexpr std::int64_t kLargestSeed = 9'000'000'000'000'000;  ///< of [run] seed
 
 /// An Error if a comparison with that many seeds, the mission's own the first, asked for one that is too large.
 Status check_seeds(const Comparison& comparison, std::int64_t seeds);

@@ -91,7 +91,9 @@ TEST_F(WhyTest, Mistakes) {
   expect_mistake("compare mission.toml --why --plan=none.plan --out out",
                  "--why: replays leave nothing out by a plan, expected no --plan beside it\n");
   expect_mistake("compare mission.toml --why --why-draws 9 --out out",
-                 "--why-draws: \"9\", expected a whole number from 10 to 10000\n");
+                 "--why-draws: \"9\", expected a whole number from 10 to 1000\n");
+  expect_mistake("compare mission.toml --why --why-draws 1001 --out out",
+                 "--why-draws: \"1001\", expected a whole number from 10 to 1000\n");
   expect_mistake("compare mission.toml --seeds 2 --why --why-seeds 0 --out out",
                  "--why-seeds: \"0\", expected a whole number from 1 to 100000\n");
   expect_mistake("compare mission.toml --seeds 2 --why-seeds 1 --out out",
