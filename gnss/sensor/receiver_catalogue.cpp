@@ -345,10 +345,13 @@ Status lay_with_receiver(ConfigNode& tree, const ConfigNode& over) {
   const ConfigNode* named = over.find("gnss.receiver");
   const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->value_);
   if (name != nullptr && !name->empty()) {
-    const auto sheet = load_receiver(beside(*named, *name));
+    const std::string receiver = beside(*named, *name);
+    const auto sheet = load_receiver(receiver);
     if (!sheet) {
       const Error& error = sheet.error();
-      return error.file.empty() ? named->error(error.key, error.what, error.expected) : error;
+      if (error.file.empty()) return named->error(error.key, error.what, error.expected);
+      const bool unreadable = error.line == 0 && error.key.empty();
+      return unreadable ? named->error("gnss.receiver", "\"" + receiver + "\" " + error.what, error.expected) : error;
     }
     ConfigNode below;
     below.value_ = ConfigNode::Table{{"gnss", sheet->figures}};

@@ -27,7 +27,8 @@ Result<ReceiverSheet> load_receiver(const std::string& receiver);
 Result<ReceiverSheet> parse_receiver(std::string_view toml, const std::string& file_name);
 
 /// Lays `over`, a mission's layer, on `tree`; the figures of the receiver that `over` names in gnss.receiver come
-/// first, so that they replace what was set below and give way to what stands beside the name.
+/// first, so that they replace what was set below and give way to what stands beside the name. A file that cannot be
+/// read is an error of `gnss.receiver` where `over` names it.
 Status lay_with_receiver(ConfigNode& tree, const ConfigNode& over);
 
 }  // namespace canyon::gnss

@@ -286,6 +286,23 @@ TEST(MissionFileMessages, FilesThatCannotBeReadAreToldWhereTheyAreNamed) {
             "file");
 }
 
+// 2026-11-30: of a receiver's file line and key were missing. Asked are all keys that say they take a path.
+TEST(MissionFileMessages, EveryKeyThatNamesAFileThatCannotBeReadIsTold) {
+  const std::string named = "a name, or a path that ends in ";
+  MissionConfig config;
+  int keys = 0;
+  for (const FieldDoc& field : documented_fields("", [&config](FieldVisitor& f) { visit(f, config); })) {
+    const bool is_list = field.range == "a list of paths", is_named = field.range.starts_with(named);
+    if (field.range != "a path" && !is_list && !is_named) continue;
+    ++keys;
+    const std::string file = "\"mine/none" + (is_named ? field.range.substr(named.size()) : ".any") + "\"";
+    EXPECT_EQ(message("base = \"vicksburg\"\n\n" + field.key + " = " + (is_list ? "[" + file + "]" : file) + "\n"),
+              "my.toml:3: " + field.key + ": " + file +
+                  " cannot be read (No such file or directory), expected a readable file");
+  }
+  EXPECT_EQ(keys, 18) << "scene 4, vehicle 1, gnss 8, imu 2, lidar, fusion and registration 1 each";
+}
+
 TEST(Prepare, TheShorterOfTheTwoLimitsHolds) {
   SceneCache scenes;
   const auto prepared = [&](const std::string& time) {
