@@ -1,5 +1,6 @@
 #include "canyon/study/fuse/config.h"
 
+#include "canyon/core/files/files.h"
 #include "canyon/core/units.h"
 #include "canyon/fusion/alignment/alignment.h"
 #include "canyon/fusion/smoothing/smoother.h"
@@ -154,6 +155,9 @@ Result<FuseConfig> config_from(ConfigNode node) {
   config.imu.sensor_given = node.find("imu.sensor") != nullptr || node.find("fusion.imu") != nullptr;
   for (const auto& figure : config.imu.figures) config.imu.sensor_given |= figure.has_value();
   config.file = std::move(node);
+  for (const NamedFile& named : named_files([&config](FieldVisitor& f) { visit(f, config); }))
+    if (const auto text = read_text_file(named.path); !text)
+      return at_key(config, named.key, "\"" + named.path + "\" " + text.error().what, text.error().expected);
   for (const auto& [key, origin] : {std::pair{"truth.origin_deg_deg_m", &config.truth.origin_deg_deg_m},
                                     std::pair{"poses.origin_deg_deg_m", &config.poses.origin_deg_deg_m}})
     if (!origin->empty() && origin->size() != 3)

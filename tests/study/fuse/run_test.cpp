@@ -403,6 +403,10 @@ TEST(FuseConfig, MistakesWordForWord) {
   EXPECT_THAT(error("[fusion]\nstates = [\"bises\"]\n"), HasSubstr("nearest is \"biases\""));
   EXPECT_THAT(error("[imu]\nlever = 3\n"), HasSubstr("f.toml:2: imu.lever: unknown key"));
   EXPECT_THAT(error("[imu]\nsensor = \"adis1646\"\n"), HasSubstr("f.toml:2: imu.sensor: "));
+  const std::string unreadable = " cannot be read (No such file or directory), expected a readable file";
+  EXPECT_EQ(error("[imu]\nsensor = \"mine/imu.toml\"\n"), "f.toml:2: imu.sensor: \"mine/imu.toml\"" + unreadable);
+  EXPECT_EQ(error("[fusion]\nimu = \"mine/imu.toml\"\n"), "f.toml:2: fusion.imu: \"mine/imu.toml\"" + unreadable);
+  EXPECT_EQ(error("[gnss]\nsolve = \"solve.toml\"\n"), "f.toml:2: gnss.solve: \"solve.toml\"" + unreadable);
   EXPECT_THAT(error("[start]\nfrom = \"moving\"\n"), HasSubstr("f.toml:2: start.from: unknown name \"moving\""));
   EXPECT_EQ(error("[truth]\norigin_deg_deg_m = [1, 2]\n"),
             "f.toml:2: truth.origin_deg_deg_m: 2 numbers, expected latitude, longitude, height");
