@@ -103,13 +103,12 @@ def judged(fidelity, seeds):
     return Judged(steps, [one for one in steps if is_beyond(one[1])], [one for one in steps if is_far(one[1])], [ratio(rows) for rows in seeds.values()])
 
 
-def report(fidelity, seeds):
+def report(fidelity, found):
     """A row of the table, and what the worst steps are."""
-    found = judged(fidelity, seeds)
     n, beyond = len(found.steps), len(found.beyond)
     low, high = wilson(beyond, n)
     asked = f"; asked: {ASKED[fidelity]}" if fidelity in ASKED else ""
-    print(f"| `{fidelity}` | {len(seeds)} | {n - len(unconverged(found.steps))} of {n} | "
+    print(f"| `{fidelity}` | {len(found.ratios)} | {n - len(unconverged(found.steps))} of {n} | "
           f"{100 * beyond / n:.2f} % ({beyond}; {100 * low:.2f} to {100 * high:.2f} %), {len(unconverged(found.beyond))} | {len(found.far)}, {len(unflagged(found.far))} | "
           f"{statistics.median(found.ratios):.2f} ({min(found.ratios):.2f} to {max(found.ratios):.2f}{asked}) |")
     if not unflagged(found.steps):
@@ -130,9 +129,8 @@ def most_by_chance(n, share):
     return k
 
 
-def broken(fidelity, seeds):
+def broken(fidelity, found):
     """The claims that do not hold, a line each."""
-    found = judged(fidelity, seeds)
     out = []
     for what, beyond, steps in (("steps", found.beyond, found.steps), ("steps that did not converge", unconverged(found.beyond), unconverged(found.steps))):
         most = most_by_chance(len(steps), CLAIMED)
@@ -165,9 +163,9 @@ def main():
         for fidelity in options.fidelities:
             with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
                 found = pool.map(lambda seed, name=fidelity: keyframes(options, folder, name, seed), options.seeds)
-            seeds = dict(zip(options.seeds, found))
-            told.append(report(fidelity, seeds))
-            wrong += broken(fidelity, seeds)
+            judgement = judged(fidelity, dict(zip(options.seeds, found)))
+            told.append(report(fidelity, judgement))
+            wrong += broken(fidelity, judgement)
             sys.stdout.flush()
     print("\n" + "\n".join(told))
     if options.check and wrong:

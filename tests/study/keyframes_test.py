@@ -36,7 +36,7 @@ def rows(*lines):
 def reported(fidelity, seeds):
     out = io.StringIO()
     with contextlib.redirect_stdout(out):
-        told = keyframes.report(fidelity, seeds)
+        told = keyframes.report(fidelity, keyframes.judged(fidelity, seeds))
     return out.getvalue().strip(), told
 
 
@@ -71,6 +71,10 @@ class Rows(unittest.TestCase):
         self.assertEqual(stopped.exception.code, "low: no step converged")
 
 
+def broken(seeds):
+    return keyframes.broken("high", keyframes.judged("high", seeds))
+
+
 def steps(count, line):
     return [dict(rows(line)[0], t_s=str(k)) for k in range(count)]
 
@@ -82,7 +86,7 @@ class Claims(unittest.TestCase):
     LOST, LOST_BEYOND = "1.0,not_converged,3.0,0.2,6.0,,0.1,1.0,2.0", "1.0,not_converged,3.0,0.2,23.0,,0.1,1.0,2.0"
 
     def broken(self, *parts):
-        return keyframes.broken("high", {1: rows(FIRST) + [row for part in parts for row in part]})
+        return broken({1: rows(FIRST) + [row for part in parts for row in part]})
 
     def test_chance(self):
         for n, most in ((0, 0), (1, 1), (10, 1), (1000, 6), (2148, 9)):
@@ -106,7 +110,7 @@ class Claims(unittest.TestCase):
 
     def test_registration_that_is_of_no_use_or_better_than_it_was(self):
         def of(*errors):
-            return keyframes.broken("high", {k: rows(FIRST, f"1.0,converged,0.1,0.2,6.0,0,0.9,{error},2.0") for k, error in enumerate(errors)})
+            return broken({k: rows(FIRST, f"1.0,converged,0.1,0.2,6.0,0,0.9,{error},2.0") for k, error in enumerate(errors)})
         self.assertEqual(of(0.5, 1.9, 2.1), [])
         self.assertEqual(of(0.5, 2.0, 2.1), ["high: registered over prior is 1.000 (median of 3), expected 0.23 to 1.0"])
         self.assertEqual(of(0.4, 0.4, 2.1), ["high: registered over prior is 0.200 (median of 3), expected 0.23 to 1.0"])
