@@ -21,7 +21,7 @@ class Aligner {
   /// What a place is weighed by against others: how it fits where nothing is held. A place that is held at the prior
   /// fits worse the more of it is open, which tells nothing against it.
   struct Fit {
-    Pose X;
+    Pose X;  ///< of the source in the target's frame, X_TS
     std::int64_t matched = 0;
     double missed = 1.0;  ///< as NormalEquations::missed
     bool settled = false;

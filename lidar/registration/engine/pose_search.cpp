@@ -263,8 +263,11 @@ std::vector<FoundPose> PoseSearch::along(const Pose& X, const Vector6d& way) {
   int from = 0, to = 0;
   while (-from < kMostScanned && !(improbable(moved(from - 1)) > farthest)) --from;
   while (to < kMostScanned && !(improbable(moved(to + 1)) > farthest)) ++to;
+  // A step farther than the prior reaches, so that its last places have a neighbour on either side as well: a minimum
+  // near one of them is within its ellipsoid, and may be a rival. Where it falls off towards that step there is none:
+  // the minimum lies where the prior has nothing, and coarse() takes no such place either.
   std::vector<Fit> line, minima;
-  for (int k = from; k <= to; ++k) line.push_back({k, missed_at(k)});
+  for (int k = from - 1; k <= to + 1; ++k) line.push_back({k, missed_at(k)});
   for (std::size_t k = 1; k + 1 < line.size(); ++k) {
     if (line[k].missed < line[k - 1].missed && line[k].missed <= line[k + 1].missed && std::abs(line[k].steps) > 1)
       minima.push_back(line[k]);

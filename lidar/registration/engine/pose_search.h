@@ -13,7 +13,7 @@ namespace canyon::lidar {
 
 /// Where a search has come to.
 struct FoundPose {
-  Pose X;
+  Pose X;               ///< of the source in the target's frame, X_TS
   double missed = 1.0;  ///< as NormalEquations::missed
   bool settled = false;
   Vector6d last_step = Vector6d::Zero();  ///< where it settled with a step that still tells
@@ -47,7 +47,8 @@ class PoseSearch {
   /// Some places that may be it, the likeliest first, each from a part of the points.
   std::vector<FoundPose> coarse();
   /// More of them, with all as at X but moved along `way`, a shift of length 1 in the source frame, to where a part of
-  /// the points fits better than a step either side; as far as the prior reaches.
+  /// the points fits better than a step either side; as far as the prior reaches (its 99.9 % ellipsoid), its last steps
+  /// included. At most six, those that fit best.
   std::vector<FoundPose> along(const Pose& X, const Vector6d& way);
   /// After coarse(): whether the prior reaches so far that there may be several; without one it does not.
   bool several() const { return several_; }
