@@ -138,6 +138,28 @@ class Script(ScriptCase):
         self.assertEqual((self.root / "calls").read_text(encoding="utf-8").splitlines(), calls)
         self.assertEqual(json.loads((self.root / "kept/high-4.json").read_text())["f100"], {"outcome": "collision", "seen_s": 1.5})
 
+    def test_controls_and_parts_stand_beside_the_eight(self):
+        # r0 to r5; in canyon's place all but r0 collide. Wilson's interval of 1 of 1 begins at 1 / (1 + 3.84).
+        arguments = ["--canyon", self.root / "canyon", "--seeds", "4", "--keep", self.root / "kept"]
+        plain = self.call(*arguments)
+        self.assertEqual((plain.returncode, plain.stderr), (0, ""))
+        self.assertNotIn("dropped", plain.stdout)
+        done = self.call(*arguments, "--controls", "--parts")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        lines = done.stdout.splitlines()
+        own = lines[10:16]
+        self.assertEqual(own[0], "| blockage, hidden signals dropped | 1 of 1 | 0.21 to 1.00 |  |")
+        rest = ["blockage, hidden signals dropped, drift"] + [f"all, `vehicle` filter, no odometer, no `{part}`"
+                                                              for part in ("fix_error", "velocity", "non_holonomic", "standstill")]
+        self.assertEqual(own[1:], [f"| {label} | 0 of 1 | 0.00 to 0.79 | collision 1 |" for label in rest])
+        self.assertEqual(lines[-1], "Of 14 runs 9 collide, 9 with what had stood in the scans for over a second.")
+        # The eight are kept, so only the six are driven; what they are is in the mission that canyon is given.
+        calls = (self.root / "calls").read_text(encoding="utf-8").splitlines()
+        self.assertEqual([call.split(" --fidelities ")[1].split()[0] for call in calls],
+                         ["f000,f001,f010,f011,f100,f101,f110,f111", "r0,r1,r2,r3,r4,r5"])
+        given = pathlib.Path(calls[1].split()[1])
+        self.assertEqual(given.read_text(encoding="utf-8"), factorial.mission("high", factorial.CONTROLS | factorial.PARTS))
+
     def test_what_canyon_says_is_passed_on(self):
         self.make_canyon(2)
         done = self.call("--canyon", self.root / "canyon", "--seeds", "1")
