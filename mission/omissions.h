@@ -23,11 +23,12 @@ struct PlannedPlace {
 /// What a run leaves out (study/plan decides it): nothing, unless it is told otherwise.
 struct Omissions {
   // Because nobody reads it.
-  bool registration = false;  ///< keyframes are not aligned; only where no one works with registered poses
-  bool maps = false;          ///< no cells are kept, and nothing is scored
-  bool keyframes = false;     ///< none are chosen; nothing may be made of them
-  bool autonomy = false;      ///< it is neither shown nor asked anything; only on a tape
-  bool unkept_rays = false;   ///< those whose returns the autonomy would drop; only where it alone takes scans
+  bool registration = false;   ///< keyframes are not aligned; only where no one works with registered poses
+  bool maps = false;           ///< no cells are kept, and nothing is scored
+  bool map_by_filter = false;  ///< the same of the map by the filter's pose alone; no plan asks for it
+  bool keyframes = false;      ///< none are chosen; nothing may be made of them
+  bool autonomy = false;       ///< it is neither shown nor asked anything; only on a tape
+  bool unkept_rays = false;    ///< those whose returns the autonomy would drop; only where it alone takes scans
 
   // Because it acts by less than is asked for.
   fusion::StrapdownOmissions strapdown;  ///< of the filter's integrator
@@ -42,8 +43,8 @@ struct Omissions {
   /// Whether any of it moves an estimate.
   bool moves() const { return ranges.bound_m > 0.0 || strapdown.any(); }
   bool any() const {
-    return registration || maps || keyframes || autonomy || unkept_rays || !corridor.empty() || ranges.any() ||
-           strapdown.any();
+    return registration || maps || map_by_filter || keyframes || autonomy || unkept_rays || !corridor.empty() ||
+           ranges.any() || strapdown.any();
   }
 };
 

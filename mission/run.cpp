@@ -58,6 +58,11 @@ fusion::ErrorStateFilter filter_of(const MissionConfig& config, const PreparedMi
   return filter;
 }
 
+ScoredMaps::Wanted wanted_maps(const MissionConfig& config, const Omissions& omissions) {
+  return {.by_filter = !omissions.maps && !omissions.map_by_filter,
+          .registered = !omissions.maps && lidar::registers(config.registration)};
+}
+
 }  // namespace
 
 MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock)
@@ -86,8 +91,8 @@ MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& missi
       schedule_(mission.start, rates_of(config)),
       X_BL_(lidar::sensor_in_body(config.lidar)),
       recorder_(parts.recorder != nullptr ? *parts.recorder : nobody_),
-      keyframes_(config_, std::move(parts.registration), std::move(parts.prior_map), !omissions_.maps, boundaries_,
-                 clock, recorder_) {
+      keyframes_(config_, std::move(parts.registration), std::move(parts.prior_map), wanted_maps(config_, omissions_),
+                 boundaries_, clock, recorder_) {
   CANYON_CHECK(open_loop_ || !omissions_.autonomy, "nobody drives");
   gnss_->leave_out(omissions_.ranges);
   record_.config = config;
@@ -132,7 +137,10 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
   if (parts.scanner == nullptr) {
     CANYON_TRY(parts.scanner, lidar::make_scanner(config.lidar, seed));
   }
-  CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
+  parts.registration = std::move(given.registration);
+  if (parts.registration == nullptr) {
+    CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
+  }
   CANYON_TRY(parts.prior_map, lidar::make_prior_map(config.registration, *parts.registration));
   parts.autonomy =
       given.autonomy ? std::move(given.autonomy) : make_autonomy(config.autonomy, mission.prior, mission.start);

@@ -5,6 +5,7 @@
 #include "canyon/core/process/progress.h"
 #include "canyon/core/result.h"
 #include "canyon/gnss/sensor/sensor.h"
+#include "canyon/lidar/registration/registration.h"
 #include "canyon/lidar/scanner.h"
 #include "canyon/mission/autonomy/autonomy.h"
 #include "canyon/mission/config/mission_file.h"
@@ -35,6 +36,8 @@ struct RunParts {
   std::unique_ptr<gnss::GnssSensor> receiver = nullptr;
   /// Its LIDAR, as one that adds what no model does; null: made of the configuration.
   std::unique_ptr<lidar::Scanner> scanner = nullptr;
+  /// How it registers, as one that hands out clouds that were prepared before; null: made of the configuration.
+  std::unique_ptr<lidar::Registration> registration = nullptr;
 };
 
 /// Drives one mission. The master step is the vehicle's own (Vehicle::kStep_ns); within it everything else is due at

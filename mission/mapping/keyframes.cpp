@@ -13,7 +13,7 @@ constexpr std::size_t kMostWaiting = 2;
 }  // namespace
 
 Keyframes::Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration,
-                     std::shared_ptr<const lidar::PreparedCloud> prior_map, bool maps_made,
+                     std::shared_ptr<const lidar::PreparedCloud> prior_map, ScoredMaps::Wanted maps,
                      const Boundaries& boundaries, PartClock& clock, Recorder& recorder)
     : X_BL_(lidar::sensor_in_body(config.lidar)),
       at_once_(takes_registered_poses(config)),
@@ -21,7 +21,7 @@ Keyframes::Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registr
       clock_(clock),
       recorder_(recorder),
       mapper_(config.registration, std::move(registration), X_BL_, std::move(prior_map)),
-      maps_(config.run, maps_made, lidar::registers(config.registration), clock),
+      maps_(config.run, maps, clock),
       work_(kMostWaiting) {}
 
 Status Keyframes::take(Scan scan) {

@@ -26,8 +26,8 @@ class Keyframes {
   };
   /// All that is given by reference outlives it. `recorder` is asked by the thread of take() and finish() alone.
   Keyframes(const MissionConfig& config, std::unique_ptr<lidar::Registration> registration,
-            std::shared_ptr<const lidar::PreparedCloud> prior_map, bool maps_made, const Boundaries& boundaries,
-            PartClock& clock, Recorder& recorder);
+            std::shared_ptr<const lidar::PreparedCloud> prior_map, ScoredMaps::Wanted maps,
+            const Boundaries& boundaries, PartClock& clock, Recorder& recorder);
 
   /// Whether a scan there would become a keyframe, if it has returns.
   bool wants(const NavEstimate& estimate) const { return mapper_.wants(estimate); }

@@ -13,17 +13,17 @@ constexpr int kKeyframesToTidy = 64;
 
 }  // namespace
 
-ScoredMaps::ScoredMaps(const RunConfig& config, bool wanted, bool registers, PartClock& clock)
+ScoredMaps::ScoredMaps(const RunConfig& config, Wanted wanted, PartClock& clock)
     : range2_m2_(static_cast<float>(config.map_range_m * config.map_range_m)), clock_(clock) {
-  if (wanted) prior_.emplace(config.map_leaf_m);
-  if (wanted && registers) registered_.emplace(config.map_leaf_m);
+  if (wanted.by_filter) prior_.emplace(config.map_leaf_m);
+  if (wanted.registered) registered_.emplace(config.map_leaf_m);
 }
 
 void ScoredMaps::add(const LidarScan& deskewed, const Keyframe& keyframe) {
-  if (!prior_) return;
+  if (!prior_ && !registered_) return;
   if (++keyframes_ % kKeyframesToTidy == 0) give_back_free_memory();
   clock_.charge(Part::kScoring, [&] {
-    add(deskewed, keyframe.X_WL_prior, *prior_);
+    if (prior_) add(deskewed, keyframe.X_WL_prior, *prior_);
     if (registered_) add(deskewed, keyframe.X_WL_registered, *registered_);
   });
 }

@@ -13,10 +13,13 @@
 namespace canyon::mission {
 
 /// The two maps of a run's keyframes that are scored at its end: with the filter's pose alone, and registered. Without
-/// registration there is no second one; of a run whose maps nobody reads there are none.
+/// registration there is no second one; a map that nobody reads is not made.
 class ScoredMaps {
  public:
-  ScoredMaps(const RunConfig& config, bool wanted, bool registers, PartClock& clock);
+  struct Wanted {
+    bool by_filter = true, registered = true;
+  };
+  ScoredMaps(const RunConfig& config, Wanted wanted, PartClock& clock);
 
   /// `deskewed` in L at the keyframe's time.
   void add(const LidarScan& deskewed, const Keyframe& keyframe);

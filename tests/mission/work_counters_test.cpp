@@ -33,6 +33,27 @@ TEST(WorkCounters, WithoutRegistrationThereIsNoSecondMapAndNothingOfPcl) {
   EXPECT_GE(on["registration_correspondences"], on["registration_iterations"] * 50) << "fewer give no solution";
 }
 
+TEST(WorkCounters, TheFiltersMapCanBeLeftOutAndTheRegisteredOneIsTheSame) {
+  const MissionConfig config = short_config("low", "low", "[time]\nlimit_s = 6.0\n[registration]\nmethod = \"gicp\"\n");
+  const RecordedRun both = drive(config);
+  auto mission = prepare(config, scenes());
+  ASSERT_TRUE(mission.ok());
+  Omissions unread;
+  unread.map_by_filter = true;
+  RecordedRun one;
+  auto record = run_mission(config, *mission, nullptr, {.recorder = &one, .autonomy = nullptr, .omissions = &unread});
+  ASSERT_TRUE(record.ok()) << record.error().str();
+  EXPECT_GT(both.counters.at("map_cells_prior"), 0);
+  EXPECT_EQ(record->counters.at("map_cells_prior"), 0);
+  EXPECT_TRUE(one.prior_map.empty());
+  EXPECT_GT(record->registered_quality.points, 0);
+  EXPECT_EQ(record->registered_quality.points, both.registered_quality.points);
+  EXPECT_EQ(record->registered_quality.map_error_rms_m, both.registered_quality.map_error_rms_m);
+  ASSERT_EQ(one.registered_map.size(), both.registered_map.size());
+  for (std::size_t i = 0; i < one.registered_map.size(); ++i)
+    ASSERT_EQ(one.registered_map[i].p_W, both.registered_map[i].p_W) << i;
+}
+
 TEST(WorkCounters, FixesWithoutSatellitesSearchNoPaths) {
   const Work low(""), high("", "high");
   for (const char* made : {"gnss_path_searches", "gnss_occlusion_rays", "gnss_facets_tested"}) {

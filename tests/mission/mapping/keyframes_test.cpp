@@ -90,8 +90,9 @@ struct AlignedDrive {
     }
     PartClock clock;
     const Boundaries boundaries(kFirstKeyframe);
-    Keyframes keyframes(config, std::make_unique<AnsweringRegistration>(std::move(answers)), nullptr, false, boundaries,
-                        clock, recorder);
+    const ScoredMaps::Wanted no_maps{.by_filter = false, .registered = false};
+    Keyframes keyframes(config, std::make_unique<AnsweringRegistration>(std::move(answers)), nullptr, no_maps,
+                        boundaries, clock, recorder);
     for (int k = 0; k <= kSteps; ++k) {
       const auto scan = std::make_shared<LidarScan>();
       scan->t = kFirstKeyframe + double(k);
