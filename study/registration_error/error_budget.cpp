@@ -63,13 +63,13 @@ SeedRuns plan_seed(const mission::MissionConfig& config, const BudgetOptions& op
   return out;
 }
 
-Status replay_all(const mission::PreparedMission& mission, const Tape& tape, SeedRuns& seed, FixStore& fixes,
+Status replay_all(const mission::PreparedMission& mission, const Tape& tape, SeedRuns& seed, ReplayStores& stores,
                   Progress& progress) {
   seed.runs.resize(seed.configs.size());
   std::vector<std::optional<Error>> errors(seed.configs.size());
   parallel_for(seed.configs.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      auto run = replay_run(seed.configs[i], mission, tape, fixes, i == 0);
+      auto run = replay_run(seed.configs[i], mission, tape, stores, i == 0 ? Replay::kPlain : Replay::kThrifty);
       if (run)
         seed.runs[i] = *run;
       else
@@ -80,6 +80,13 @@ Status replay_all(const mission::PreparedMission& mission, const Tape& tape, See
   for (const auto& error : errors)
     if (error) return *error;
   return Ok{};
+}
+
+void add_counts(const ScanStore::Counts& of_seed, ScanStore::Counts& sum) {
+  sum.scans_made += of_seed.scans_made;
+  sum.scans_taken += of_seed.scans_taken;
+  sum.clouds_taken += of_seed.clouds_taken;
+  sum.kept_bytes = std::max(sum.kept_bytes, of_seed.kept_bytes);
 }
 
 /// Shares of one figure in one seed, by source; 0 of those that the mission is without.
@@ -161,9 +168,11 @@ Result<ErrorBudget> make_error_budget(const mission::MissionConfig& config, cons
   Progress progress("replaying " + std::to_string(out.runs) + " runs", static_cast<double>(out.runs),
                     options.show_progress);
   for (SeedRuns& seed : seeds) {
-    FixStore fixes;  // of one seed: another one's receivers draw otherwise
-    CANYON_TRY_STATUS(replay_all(mission, tape, seed, fixes, progress));
-    out.receivers += fixes.measured();
+    // Of one seed: another one's sensors draw otherwise.
+    ReplayStores stores{.fixes = {}, .scans = ScanStore(options.keep_mb * 1'000'000)};
+    CANYON_TRY_STATUS(replay_all(mission, tape, seed, stores, progress));
+    out.receivers += stores.fixes.measured();
+    add_counts(stores.scans.counts(), out.scans);
     for (const ReplayedRun& run : seed.runs) out.cpu_s += run.cpu_s;
     out.plain_cpu_s += seed.runs.front().cpu_s;
     seed.configs.clear();

@@ -9,6 +9,7 @@
 #include "canyon/core/output/json.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/study/registration_error/error_sources.h"
+#include "canyon/study/registration_error/scan_store.h"
 #include "canyon/study/statistics/interval.h"
 
 namespace canyon::study {
@@ -18,6 +19,9 @@ struct BudgetOptions {
   std::int64_t seeds = 1;         ///< the mission's own the first
   std::int64_t permutations = 8;  ///< orders in which sources are taken away, for each seed; rounded up to even
   std::vector<HiddenRemoval> hidden{HiddenRemoval::kHealed, HiddenRemoval::kDropped};
+  /// Memory for scans and clouds that replays of one seed hand on to one another; 0: each makes its own. What comes
+  /// once it is full each makes for itself.
+  std::int64_t keep_mb = 1024;
   bool show_progress = true;
 };
 
@@ -50,6 +54,7 @@ struct ErrorBudget {
   std::vector<Budget> budgets;            ///< one for each meaning of hidden signals that was asked for
   std::int64_t runs = 0;                  ///< that were replayed, of all seeds
   std::int64_t receivers = 0;             ///< that measured anew; the other runs took their fixes
+  ScanStore::Counts scans;                ///< of all seeds but the plain runs; kept_bytes: the most of one seed
   double cpu_s = 0.0, plain_cpu_s = 0.0;  ///< of everything; of one plain run of each seed
   double cost_factor() const { return plain_cpu_s > 0.0 ? cpu_s / plain_cpu_s : kNaN; }
 };
@@ -61,7 +66,8 @@ struct ErrorBudget {
 /// Every run is replayed on one true motion, the tape, with some of the sources taken away and the same draws
 /// (error_sources.h). A source's share is its Shapley value: by how much its going lowers the mean square error, in the
 /// mean over the orders in which sources go (shapley.h). Roots do not add up, mean squares need interactions to be
-/// given to somebody; this gives each its half of what two do together. Same bits for any number of threads.
+/// given to somebody; this gives each its half of what two do together. Same bits for any number of threads and
+/// whatever is kept.
 Result<ErrorBudget> make_error_budget(const mission::MissionConfig& config, const mission::PreparedMission& mission,
                                       const Tape& tape, const BudgetOptions& options);
 

@@ -60,7 +60,11 @@ Json error_budget_json(const ErrorBudget& budget) {
   out["timing"] = {{"cpu_s", budget.cpu_s},
                    {"plain_run_cpu_s", budget.plain_cpu_s},
                    {"cost_factor", or_null(budget.cost_factor())},
-                   {"receivers_measured", budget.receivers}};
+                   {"receivers_measured", budget.receivers},
+                   {"scans_made", budget.scans.scans_made},
+                   {"scans_taken", budget.scans.scans_taken},
+                   {"clouds_taken", budget.scans.clouds_taken},
+                   {"kept_mb", 1e-6 * static_cast<double>(budget.scans.kept_bytes)}};
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "canyon/study/registration_error/replayed_run.h"
 
 #include <cmath>
+#include <utility>
 
 #include "canyon/core/units.h"
 #include "canyon/mission/run.h"
@@ -35,18 +36,19 @@ class KeyframeSquares final : public mission::Recorder {
 }  // namespace
 
 Result<ReplayedRun> replay_run(const mission::MissionConfig& config, const mission::PreparedMission& mission,
-                               const Tape& tape, FixStore& fixes, bool with_autonomy) {
+                               const Tape& tape, ReplayStores& stores, Replay replay) {
   const bool registered = lidar::registers(config.registration);
   KeyframeSquares keyframes(registered);
-  mission::Omissions nobody_drives;
-  nobody_drives.autonomy = !with_autonomy;
-  CANYON_TRY(auto receiver, fixes.sensor(config, mission, mission.start + tape.duration_s()));
-  CANYON_TRY(const mission::RunRecord record, mission::run_mission(config, mission, nullptr,
-                                                                   {.tape = &tape,
-                                                                    .recorder = &keyframes,
-                                                                    .autonomy = nullptr,
-                                                                    .omissions = &nobody_drives,
-                                                                    .receiver = std::move(receiver)}));
+  mission::Omissions unread;
+  mission::RunParts parts{.tape = &tape, .recorder = &keyframes, .autonomy = nullptr, .omissions = &unread};
+  CANYON_TRY(parts.receiver, stores.fixes.sensor(config, mission, mission.start + tape.duration_s()));
+  if (replay == Replay::kThrifty) {
+    unread.autonomy = true;
+    unread.map_by_filter = registered;
+    CANYON_TRY(parts.scanner, stores.scans.scanner(config));
+    CANYON_TRY(parts.registration, stores.scans.registration(config));
+  }
+  CANYON_TRY(const mission::RunRecord record, mission::run_mission(config, mission, nullptr, std::move(parts)));
   const lidar::MapQuality& map = registered ? record.registered_quality : record.prior_quality;
   const Eigen::Vector3d &p = keyframes.position_m2(), &r = keyframes.turned_deg2();
   ReplayedRun out;

@@ -5,6 +5,7 @@
 #include "canyon/core/files/tape.h"
 #include "canyon/mission/config/mission_file.h"
 #include "canyon/study/registration_error/fix_store.h"
+#include "canyon/study/registration_error/scan_store.h"
 
 namespace canyon::study {
 
@@ -28,9 +29,20 @@ struct ReplayedRun {
   double cpu_s = 0.0;
 };
 
-/// One run on the tape, of whose maps and keyframes the errors are kept; nobody drives unless `with_autonomy`, which
-/// changes nothing but the cost.
+/// What replays of one seed on one tape need not make twice.
+struct ReplayStores {
+  FixStore fixes;
+  ScanStore scans;
+};
+
+/// Who replays. It changes nothing but the cost.
+enum class Replay {
+  kPlain,   ///< a run as it is by itself: with its autonomy, both maps, scans and clouds of its own
+  kThrifty  ///< nobody drives, only the map that is judged is made, scans and clouds come from the store
+};
+
+/// One run on the tape, of whose maps and keyframes the errors are kept.
 Result<ReplayedRun> replay_run(const mission::MissionConfig& config, const mission::PreparedMission& mission,
-                               const Tape& tape, FixStore& fixes, bool with_autonomy);
+                               const Tape& tape, ReplayStores& stores, Replay replay);
 
 }  // namespace canyon::study

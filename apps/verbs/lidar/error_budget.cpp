@@ -47,6 +47,11 @@ VerbAction declare(Arguments& arguments) {
               "what a world without multipath does with hidden signals: healed, dropped, or both budgets")
       .default_shown()
       .among({"healed", "dropped", "both"});
+  arguments
+      .option("--keep-mb", options->budget.keep_mb,
+              "memory for scans and clouds that replays hand on to one another; 0: each makes its own")
+      .default_shown()
+      .within(std::int64_t{0}, std::int64_t{1000000});
   declare_tape_option(arguments, options->study);
   return [options] { return run(*options); };
 }

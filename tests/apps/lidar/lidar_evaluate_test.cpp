@@ -193,6 +193,7 @@ TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {
           "command line: --estimate without the true way, expected --trajectory FILE");
   EXPECT_EQ(canyon("lidar error-budget mission.toml --fidelity hihg"), 2);
   EXPECT_EQ(canyon("lidar error-budget mission.toml --permutations 1"), 2);
+  EXPECT_EQ(canyon("lidar error-budget mission.toml --keep-mb=-1"), 2);
   EXPECT_EQ(canyon("lidar close-loops --set 'registration.method=\"none\"' --fidelity low"), 2);
   EXPECT_EQ(read("stderr"), "registration.method: \"none\" gives no map to close, expected a method that registers\n");
   EXPECT_EQ(canyon("lidar close-loops --tape given.tape"), 2);

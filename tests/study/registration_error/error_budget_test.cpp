@@ -46,11 +46,13 @@ Taped taped(const mission::MissionConfig& config) {
 
 ErrorBudget budget_of(const mission::MissionConfig& config, const Taped& on, std::int64_t permutations = 2,
                       std::int64_t seeds = 1,
-                      std::vector<HiddenRemoval> hidden = {HiddenRemoval::kHealed, HiddenRemoval::kDropped}) {
+                      std::vector<HiddenRemoval> hidden = {HiddenRemoval::kHealed, HiddenRemoval::kDropped},
+                      std::int64_t keep_mb = BudgetOptions{}.keep_mb) {
   BudgetOptions how;
   how.permutations = permutations;
   how.seeds = seeds;
   how.hidden = std::move(hidden);
+  how.keep_mb = keep_mb;
   how.show_progress = false;
   auto budget = make_error_budget(config, on.mission, on.tape, how);
   EXPECT_TRUE(budget.ok()) << (budget.ok() ? "" : budget.error().str());
@@ -207,6 +209,48 @@ TEST(ErrorBudget, SameBitsWithRegistrationForOneAndTwoThreads) {
   }
   set_threads(0);
   EXPECT_EQ(numbers[1], numbers[0]);
+}
+
+std::vector<double> totals_and_shares(const ErrorBudget& budget) {
+  std::vector<double> out;
+  for (const Budget& b : budget.budgets)
+    for (const BudgetFigure& figure : b.figures) {
+      out.insert(out.end(), {figure.total, figure.floor});
+      for (const SourceShare& source : figure.shares) out.push_back(source.share);
+    }
+  return out;
+}
+
+// Scans that are late, so that there are four kinds of them: beam and latency there or not. A scan or a cloud that was
+// handed to a run of another kind would change what beam, latency and deskewing have for their shares.
+TEST(ErrorBudget, KeptScansAndCloudsChangeNoBit) {
+  const mission::MissionConfig config =
+      short_config("low", "low",
+                   "[time]\nlimit_s = 6.0\n[lidar]\nbeams = \"grid:8:-15:5\"\nazimuth_steps = 720\nlatency_s = 0.05\n"
+                   "[registration]\nmethod = \"gicp\"\nkeyframe_distance_m = 1.0\n");
+  const Taped on = taped(config);
+  set_threads(1);  // one run after the other: what is taken does not depend on who comes first
+  const auto keeping = [&](std::int64_t keep_mb) {
+    return budget_of(config, on, 2, 1, {HiddenRemoval::kHealed}, keep_mb);
+  };
+  const ErrorBudget scratch = keeping(0), full = keeping(1), kept = keeping(1000);
+  set_threads(0);
+  EXPECT_EQ(totals_and_shares(kept), totals_and_shares(scratch));
+  EXPECT_EQ(totals_and_shares(full), totals_and_shares(scratch));
+  for (const char* acts : {"beam", "time_offset", "deskewing"})
+    EXPECT_NE(share_of(kept.budgets.front().figures.front(), acts).share, 0.0) << acts;
+
+  EXPECT_EQ(scratch.scans.scans_taken, 0);
+  EXPECT_EQ(scratch.scans.clouds_taken, 0);
+  EXPECT_EQ(scratch.scans.kept_bytes, 0);
+  for (const ErrorBudget* budget : {&full, &kept}) {
+    EXPECT_GT(budget->scans.scans_taken, 0);
+    EXPECT_EQ(budget->scans.scans_made + budget->scans.scans_taken, scratch.scans.scans_made);
+  }
+  EXPECT_GT(kept.scans.clouds_taken, 0);
+  EXPECT_GT(kept.scans.kept_bytes, 1'000'000) << "too little to fill a megabyte";
+  EXPECT_LE(full.scans.kept_bytes, 1'000'000);
+  EXPECT_LT(full.scans.scans_taken, kept.scans.scans_taken);
 }
 
 /// A source that is planted on top of all others has the largest share of what it raises. The share is not the rise
