@@ -11,7 +11,7 @@
 namespace canyon::lidar {
 namespace {
 
-constexpr std::size_t kReturnsChunk = 4096;  // returns
+constexpr std::size_t kChunk = 4096;  // returns
 
 bool is_finite(const LidarPoint& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
@@ -38,23 +38,22 @@ LidarScan deskew(const LidarScan& scan, const Trajectory& motion, const Pose& X_
   // Lasers that run free may begin their first cycle a little before the period.
   const double first_s = scan.points.empty() ? 0.0 : double{scan.points.front().time_s};
   const SweepMotion sweep(motion, scan.t, std::min(-scan.period_s, first_s), 0.0, X_LW, X_BL);
-  parallel_keep(scan.points.size(), kReturnsChunk, out.points,
-                [&](std::size_t begin, std::size_t end, LidarPoint* moved) {
-                  SweepMotion::Reader reader(sweep);
-                  for (std::size_t k = begin; k < end; ++k) {
-                    const LidarPoint& point = scan.points[k];
-                    if (!sweep.covers(point.time_s) || !is_finite(point)) continue;
-                    const SweepMotion::Placement X = reader.at(point.time_s);
-                    const Eigen::Vector3d p = turned(X.R, Eigen::Vector3d(point.x, point.y, point.z)) + X.p;
-                    *moved = point;
-                    moved->x = static_cast<float>(p.x());
-                    moved->y = static_cast<float>(p.y());
-                    moved->z = static_cast<float>(p.z());
-                    moved->time_s = 0;
-                    ++moved;
-                  }
-                  return moved;
-                });
+  parallel_keep(scan.points.size(), kChunk, out.points, [&](std::size_t begin, std::size_t end, LidarPoint* moved) {
+    SweepMotion::Reader reader(sweep);
+    for (std::size_t k = begin; k < end; ++k) {
+      const LidarPoint& point = scan.points[k];
+      if (!sweep.covers(point.time_s) || !is_finite(point)) continue;
+      const SweepMotion::Placement X = reader.at(point.time_s);
+      const Eigen::Vector3d p = turned(X.R, Eigen::Vector3d(point.x, point.y, point.z)) + X.p;
+      *moved = point;
+      moved->x = static_cast<float>(p.x());
+      moved->y = static_cast<float>(p.y());
+      moved->z = static_cast<float>(p.z());
+      moved->time_s = 0;
+      ++moved;
+    }
+    return moved;
+  });
   return out;
 }
 

@@ -83,7 +83,7 @@ MapScore evaluate_map(const MapCloud& cloud, const scene::SceneAt& scene, double
   if (cloud.empty()) return score;
   score.error_m.resize(cloud.size());
   // The nearest surfaces of one block at a time: of all they would be more than twice the map itself.
-  std::vector<Sums> chunks((cloud.size() + kErrorsChunk - 1) / kChunk);
+  std::vector<Sums> chunks((cloud.size() + kErrorsChunk - 1) / kErrorsChunk);
   for (std::size_t k = 0; k < cloud.blocks(); ++k)
     measure_block(cloud.block(k), scene.scene(), cap_m,
                   std::span(chunks).subspan(k * (MapCloud::kBlock / kErrorsChunk)),
