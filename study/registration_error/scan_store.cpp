@@ -8,6 +8,7 @@
 #include "canyon/core/files/files.h"
 #include "canyon/lidar/deskew.h"
 #include "canyon/lidar/registration/prepared_cloud.h"
+#include "canyon/study/registration_error/forwarded_registration.h"
 
 namespace canyon::study {
 namespace {
@@ -124,10 +125,10 @@ class ScanStore::KeepingScanner final : public lidar::Scanner {
   bool whole_ = true;  ///< its readers keep all of a scan
 };
 
-class ScanStore::KeepingRegistration final : public lidar::Registration {
+class ScanStore::KeepingRegistration final : public ForwardedRegistration {
  public:
   KeepingRegistration(std::unique_ptr<lidar::Registration> method, ScanStore& store, Clouds& clouds)
-      : method_(std::move(method)), store_(store), clouds_(clouds) {}
+      : ForwardedRegistration(std::move(method)), store_(store), clouds_(clouds) {}
 
   std::shared_ptr<const lidar::PreparedCloud> prepare(std::span<const Eigen::Vector3f> points) const override {
     static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
@@ -137,21 +138,12 @@ class ScanStore::KeepingRegistration final : public lidar::Registration {
       store_.count(&Counts::clouds_taken);
       return kept;
     }
-    auto cloud = method_->prepare(points);
+    auto cloud = method().prepare(points);
     store_.keep(clouds_, key, bytes_of(*cloud), [&] { return cloud; });
     return cloud;
   }
-  lidar::RegistrationResult align(const lidar::PreparedCloud& source, std::span<const Placed> targets,
-                                  const Pose& guess) const override {
-    return method_->align(source, targets, guess);
-  }
-  lidar::RegistrationResult align_with_prior(const lidar::PreparedCloud& source, std::span<const Placed> targets,
-                                             const lidar::PosePrior& prior) const override {
-    return method_->align_with_prior(source, targets, prior);
-  }
 
  private:
-  std::unique_ptr<lidar::Registration> method_;
   ScanStore& store_;
   Clouds& clouds_;
 };

@@ -5,32 +5,24 @@
 
 #include "canyon/core/process/progress.h"
 #include "canyon/mission/mapping/mapper.h"
+#include "canyon/study/registration_error/forwarded_registration.h"
 #include "canyon/study/registration_error/scan_error.h"
 
 namespace canyon::study {
 namespace {
 
 /// A method whose clouds are ready: it hands them out in their order, from one of them on.
-class ReadyClouds final : public lidar::Registration {
+class ReadyClouds final : public ForwardedRegistration {
  public:
   ReadyClouds(std::unique_ptr<lidar::Registration> method, const MethodClouds& ready, std::size_t first)
-      : method_(std::move(method)), ready_(ready), next_(first) {}
+      : ForwardedRegistration(std::move(method)), ready_(ready), next_(first) {}
 
   std::shared_ptr<const lidar::PreparedCloud> prepare(std::span<const Eigen::Vector3f>) const override {
     CANYON_CHECK(next_ < ready_.clouds.size(), "cloud ", next_, " of ", ready_.clouds.size());
     return ready_.clouds[next_++];
   }
-  lidar::RegistrationResult align(const lidar::PreparedCloud& source, std::span<const Placed> targets,
-                                  const Pose& guess) const override {
-    return method_->align(source, targets, guess);
-  }
-  lidar::RegistrationResult align_with_prior(const lidar::PreparedCloud& source, std::span<const Placed> targets,
-                                             const lidar::PosePrior& prior) const override {
-    return method_->align_with_prior(source, targets, prior);
-  }
 
  private:
-  std::unique_ptr<lidar::Registration> method_;
   const MethodClouds& ready_;
   mutable std::size_t next_;  // one replay on one thread
 };
