@@ -21,9 +21,8 @@ endfunction()
 
 # canyon_join(TARGET): where headers are precompiled, files that follow one another are compiled as one, which more than halves the
 # work: most of it is Eigen's templates, which they share. So names in the unnamed namespaces of a folder differ. Rooms whose files
-# are alike by design (verbs) stay apart, and files with definitions of their own.
+# are alike by design (verbs) stay apart, and files with definitions of their own. Eight at a time: more save nothing.
 set(CANYON_APART verbs verbs/lidar verbs/study tables contributing)
-set(CANYON_JOINED 8 CACHE STRING "How many files are compiled as one; more than eight save nothing")
 function(canyon_join target)
   if(NOT CANYON_PRECOMPILED_HEADERS)
     return()
@@ -35,7 +34,7 @@ function(canyon_join target)
     if(IS_ABSOLUTE ${source} OR room IN_LIST CANYON_APART)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     else()
-      math(EXPR part "${joined} / ${CANYON_JOINED}")
+      math(EXPR part "${joined} / 8")
       math(EXPR joined "${joined} + 1")
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${target}_${part})
     endif()

@@ -78,6 +78,10 @@ BLIND_TO_TRUTH = [
 # Random numbers come from core/random/random.h: the standard's distributions differ from library to library.
 OTHER_RANDOMNESS = r"std::(\w+_distribution|mt19937(_64)?|default_random_engine|random_device)\b"
 
+# What defines a type at the level of a namespace: no indent.
+NAMESPACE = re.compile(r"namespace (canyon(?:::\w+)*) \{")
+TYPE = re.compile(r"(?:struct|class|enum class|enum|using) (\w+)\b[^;(]*(?:\{|=)|using (\w+) =")
+
 # How the tree's own headers are included, in the tree as where they are installed.
 PREFIX = "canyon/"
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)')
@@ -158,6 +162,7 @@ class Tree:
             if matches(name, BLIND_TO_TRUTH):
                 self.check_truth(name)
         self.check_registration_files()
+        self.check_hidden_types()
         self.check_folder_sizes()
         for folder in FLOORS:
             self.check_circles(folder)
@@ -242,6 +247,25 @@ class Tree:
         heavy = [name for name in self.lines if any(a and a.startswith("pcl/registration/") for _, _, a in self.includes[name])]
         for name in heavy[REGISTRATION_FILES_MAX:]:
             self.breach(name, 1, f"more than {REGISTRATION_FILES_MAX} files include PCL's registration headers (18 s each)")
+
+    def types(self, name):
+        """(line number, namespace, type) for what a file defines at the level of a namespace."""
+        space = None
+        for number, line in enumerate(self.lines[name], 1):
+            opened, found = NAMESPACE.match(line), TYPE.match(line)
+            space = opened[1] if opened else space
+            if space and found:
+                yield number, space, found[1] or found[2]
+
+    def check_hidden_types(self):
+        """A type of canyon::mission that is named as one of canyon takes its place in every header read after it: files that
+        are joined in another order then disagree about what a structure holds."""
+        folders = [name for name in self.lines if name.split("/")[0] in FLOORS]
+        common = {kind: name for name in folders if name.endswith(".h") for _, space, kind in self.types(name) if space == "canyon"}
+        for name in folders:
+            for number, space, kind in self.types(name):
+                if kind in common and space != "canyon":
+                    self.breach(name, number, f"{space}::{kind} hides canyon::{kind} of {common[kind]}: it wants a name of its own")
 
     def check_folder_sizes(self):
         sizes = collections.Counter(name.rsplit("/", 1)[0] for name in self.lines)

@@ -101,11 +101,11 @@ build_as_owner() {
   fi
 }
 
-# As many compilers as there are processors, but no more than memory allows: a file with PCL's registration takes 1.4 GB.
+# As many compilers as there are processors, but no more than memory allows: the largest joined files take 2.4 GB.
 parallelism() {
   local processors memory_gb
   processors=$(nproc)
-  memory_gb=$(awk '/MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo 2>/dev/null || true)
+  memory_gb=$(awk '/MemAvailable/ { print int($2 / 2500000) }' /proc/meminfo 2>/dev/null || true)
   if [ -n "$memory_gb" ] && ((memory_gb < processors)); then processors=$memory_gb; fi
   ((processors > 0)) && echo "$processors" || echo 1
 }

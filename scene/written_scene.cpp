@@ -10,14 +10,13 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/json.h"
 #include "canyon/core/process/progress.h"
 #include "canyon/scene/importers/far_points.h"
 #include "canyon/scene/importers/importer.h"
 
 namespace canyon::scene {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kKinds[] = {"terrain", "building", "vehicle", "tree", "wall", "pole", "other", "person"};
 

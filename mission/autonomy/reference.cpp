@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "canyon/mission/autonomy/perception/local_frame.h"
+#include "canyon/mission/autonomy/perception/odometry_frame.h"
 #include "canyon/mission/autonomy/route_driver.h"
 
 namespace canyon::mission {
@@ -78,11 +78,11 @@ class Reference final : public Autonomy {
   /// After so long without being asked to go, it stands.
   double halting_s() const { return config_.cruise_m_s / vehicle_.max_deceleration_m_s2 + 1.0; }
 
-  std::optional<LocalFrame::Counted> counted(GpsTime t) {
+  std::optional<OdometryFrame::Counted> counted(GpsTime t) {
     if (!wheel_) return std::nullopt;
     const double now_m = wheel_->way_m + (t - wheel_->t) * wheel_->speed_m_s;
-    return LocalFrame::Counted{now_m - std::exchange(wheel_->told_m, now_m), wheel_->speed_m_s,
-                               vehicle_.counted_wheel_left_m};
+    return OdometryFrame::Counted{now_m - std::exchange(wheel_->told_m, now_m), wheel_->speed_m_s,
+                                  vehicle_.counted_wheel_left_m};
   }
 
   MovingBody moving() const { return {frame_.body(), frame_.speed_m_s(), steering_rad_}; }
@@ -162,7 +162,7 @@ class Reference final : public Autonomy {
   GpsTime start_, last_seen_, standing_since_;
   GpsTime last_drive_ = start_;
   RouteDriver driver_;
-  LocalFrame frame_;
+  OdometryFrame frame_;
   /// What the odometer has counted; none: the frame goes by the estimate.
   struct Wheel {
     GpsTime t;  ///< of its last sample

@@ -44,8 +44,8 @@ bool counts_wheel(const AutonomyConfig& config);
 /// The reference autonomy, in parts that can be exchanged one by one: perception of what blocks the way, where the lane
 /// is, a plan that is driven in thought with the vehicle's own body and limits, a tracker, a speed from which it halts
 /// within what it sees, what it does where nothing is free, and whether it still believes its estimate. What it sees it
-/// remembers in a local frame that fixes do not move (perception/local_frame.h); route and waypoints it knows in W, by
-/// the estimate.
+/// remembers in an odometry frame that fixes do not move (perception/odometry_frame.h); route and waypoints it knows in
+/// W, by the estimate.
 std::unique_ptr<Autonomy> make_reference(const ModelParameters& own, const AutonomyConfig& config,
                                          const PriorKnowledge& prior, GpsTime start);
 

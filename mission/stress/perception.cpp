@@ -14,7 +14,7 @@
 #include "canyon/mission/autonomy/perception/blocked_cells.h"
 #include "canyon/mission/autonomy/perception/kerb_rises.h"
 #include "canyon/mission/autonomy/perception/lane_reference.h"
-#include "canyon/mission/autonomy/perception/local_frame.h"
+#include "canyon/mission/autonomy/perception/odometry_frame.h"
 #include "canyon/mission/autonomy/perception/polar_ground.h"
 #include "canyon/mission/autonomy/reference.h"
 #include "canyon/mission/stress/autonomy_parts.h"
@@ -32,7 +32,7 @@ using stress::Looks;
 StressFigure local_frames() {
   Looks looks;
   const RandomStream draws(15, "stress.plans");
-  LocalFrame frame;
+  OdometryFrame frame;
   Vector2d place(0.0, 0.0);
   double before = 0.0, driven = 0.0, at_s = 0.0;
   for (int k = 0; k < 300; ++k) {

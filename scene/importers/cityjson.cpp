@@ -13,7 +13,7 @@
 namespace canyon::scene {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
 struct Row {
   const char* type;
@@ -57,11 +57,11 @@ class CityJsonReader {
     int line = 1;
     const std::size_t first_end = text.find('\n');
     const std::string_view first = std::string_view(text).substr(0, first_end);
-    const bool sequence =
-        first_end != std::string::npos && Json::accept(first) && text.find("\"CityJSONFeature\"") != std::string::npos;
+    const bool sequence = first_end != std::string::npos && ParsedJson::accept(first) &&
+                          text.find("\"CityJSONFeature\"") != std::string::npos;
     if (!sequence) {
       std::vector<JsonMember> members;
-      CANYON_TRY(const Json document, parse_json(text, path_, {.key = "CityObjects", .members = &members}));
+      CANYON_TRY(const ParsedJson document, parse_json(text, path_, {.key = "CityObjects", .members = &members}));
       CANYON_TRY_STATUS(header(document));
       for (const JsonMember& member : members) line_of_[member.name] = member.line;
       CANYON_TRY_STATUS(city_objects(document, 0));
@@ -70,7 +70,7 @@ class CityJsonReader {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
       const std::string_view record = std::string_view(text).substr(begin, end - begin);
       if (record.find_first_not_of(" \t\r") != std::string_view::npos) {
-        CANYON_TRY(const Json document, parse_json(record, path_, {.first_line = line}));
+        CANYON_TRY(const ParsedJson document, parse_json(record, path_, {.first_line = line}));
         if (line == 1) CANYON_TRY_STATUS(header(document));
         CANYON_TRY_STATUS(city_objects(document, line));
       }
@@ -86,7 +86,7 @@ class CityJsonReader {
   }
 
  private:
-  Status header(const Json& document) {
+  Status header(const ParsedJson& document) {
     if (!document.is_object() || json_string(document, "type") != "CityJSON")
       return Error{path_, 0, "type", "not a CityJSON file", "\"type\": \"CityJSON\""};
     const std::string version = json_string(document, "version");
@@ -101,25 +101,25 @@ class CityJsonReader {
         translate_[static_cast<Eigen::Index>(k)] = *translate;
       }
     }
-    const Json::json_pointer crs("/metadata/referenceSystem");
+    const ParsedJson::json_pointer crs("/metadata/referenceSystem");
     if (document.contains(crs) && document[crs].is_string())
       scene_.frame = frame_by_name(document[crs].get<std::string>());
     return Ok{};
   }
 
-  static std::optional<double> number(const Json& object, const char* key, std::size_t k) {
+  static std::optional<double> number(const ParsedJson& object, const char* key, std::size_t k) {
     const auto list = object.find(key);
     if (list == object.end() || !list->is_array() || list->size() <= k || !(*list)[k].is_number()) return std::nullopt;
     return (*list)[k].get<double>();
   }
 
-  Status city_objects(const Json& document, int line) {
+  Status city_objects(const ParsedJson& document, int line) {
     vertices_.clear();
     const auto vertices = document.find("vertices");
     const auto objects = document.find("CityObjects");
     if (vertices == document.end() || !vertices->is_array() || objects == document.end() || !objects->is_object())
       return Error{path_, line, "CityObjects", "no vertices or no city objects", "a CityJSON file"};
-    for (const Json& v : *vertices) {
+    for (const ParsedJson& v : *vertices) {
       throw_if_cancelled();
       if (!v.is_array() || v.size() != 3 || !v[0].is_number() || !v[1].is_number() || !v[2].is_number())
         return Error{path_, line, "vertices[" + std::to_string(vertices_.size()) + "]", "not understood",
@@ -132,7 +132,7 @@ class CityJsonReader {
     std::map<std::string, double> finest;
     for (const auto& [id, object] : objects->items()) {
       if (!object.is_object()) return Error{path_, line, "CityObjects." + id, "not an object", "a city object"};
-      for (const Json* g : geometries_of(object)) {
+      for (const ParsedJson* g : geometries_of(object)) {
         double& level = finest.try_emplace(root_of(*objects, id), -1.0).first->second;
         level = std::max(level, level_of_detail(*g));
       }
@@ -140,10 +140,11 @@ class CityJsonReader {
     for (const auto& [id, object] : objects->items()) {
       throw_if_cancelled();
       if (const auto list = object.find("geometry"); list != object.end() && list->is_array())
-        templates_ += static_cast<int>(std::count_if(
-            list->begin(), list->end(), [](const Json& g) { return json_string(g, "type") == "GeometryInstance"; }));
+        templates_ += static_cast<int>(std::count_if(list->begin(), list->end(), [](const ParsedJson& g) {
+          return json_string(g, "type") == "GeometryInstance";
+        }));
       const std::string root = root_of(*objects, id);
-      for (const Json* g : geometries_of(object))
+      for (const ParsedJson* g : geometries_of(object))
         if (level_of_detail(*g) == finest[root]) {
           CANYON_TRY_STATUS(add(root, id, json_string(object, "type"), *g, line));
           break;
@@ -153,17 +154,17 @@ class CityJsonReader {
   }
 
   /// Of what an object's geometry holds, that which has boundaries.
-  static std::vector<const Json*> geometries_of(const Json& object) {
-    std::vector<const Json*> out;
+  static std::vector<const ParsedJson*> geometries_of(const ParsedJson& object) {
+    std::vector<const ParsedJson*> out;
     const auto geometry = object.find("geometry");
     if (geometry == object.end() || !geometry->is_array()) return out;
-    for (const Json& g : *geometry)
+    for (const ParsedJson& g : *geometry)
       if (g.is_object() && g.contains("boundaries") && json_string(g, "type") != "GeometryInstance") out.push_back(&g);
     return out;
   }
 
   /// The object that a part belongs to in the end.
-  static std::string root_of(const Json& objects, std::string id) {
+  static std::string root_of(const ParsedJson& objects, std::string id) {
     for (int depth = 0; depth < 16; ++depth) {
       const auto object = objects.find(id);
       if (object == objects.end()) return id;
@@ -174,13 +175,13 @@ class CityJsonReader {
     return id;
   }
 
-  static double level_of_detail(const Json& geometry) {
+  static double level_of_detail(const ParsedJson& geometry) {
     const auto lod = geometry.find("lod");
     if (lod == geometry.end()) return 0.0;
     return lod->is_number() ? lod->get<double>() : lod->is_string() ? std::atof(lod->get<std::string>().c_str()) : 0.0;
   }
 
-  Status add(const std::string& root, const std::string& id, const std::string& object_type, const Json& geometry,
+  Status add(const std::string& root, const std::string& id, const std::string& object_type, const ParsedJson& geometry,
              int line) {
     const Row row = row_of(object_type);
     if (row.kind == ObjectKind::kBuilding && level_of_detail(geometry) < 1.0 && geometry.contains("lod")) {
@@ -193,8 +194,8 @@ class CityJsonReader {
     const auto known = line_of_.find(id);
     line_ = line > 0 ? line : known != line_of_.end() ? known->second : 0;
     material_ = scene_.material(row.material);
-    const Json none;
-    const Json::json_pointer values("/semantics/values"), surfaces("/semantics/surfaces");
+    const ParsedJson none;
+    const ParsedJson::json_pointer values("/semantics/values"), surfaces("/semantics/surfaces");
     surfaces_ = geometry.contains(surfaces) ? &geometry[surfaces] : nullptr;
     const std::string type = json_string(geometry, "type");
     const int depth = type == "Solid" ? 1 : type == "MultiSolid" || type == "CompositeSolid" ? 2 : 0;
@@ -207,10 +208,10 @@ class CityJsonReader {
   }
 
   /// Boundaries `depth` levels above the list of faces; semantic values run along.
-  bool faces(const Json& boundaries, const Json& values, int depth) {
+  bool faces(const ParsedJson& boundaries, const ParsedJson& values, int depth) {
     if (!boundaries.is_array()) return false;
     for (std::size_t i = 0; i < boundaries.size(); ++i) {
-      const Json value = values.is_array() && i < values.size() ? values[i] : Json();
+      const ParsedJson value = values.is_array() && i < values.size() ? values[i] : ParsedJson();
       if (depth > 0) {
         if (!faces(boundaries[i], value, depth - 1)) return false;
       } else if (!face(boundaries[i], value)) {
@@ -220,7 +221,7 @@ class CityJsonReader {
     return true;
   }
 
-  bool face(const Json& rings, const Json& value) {
+  bool face(const ParsedJson& rings, const ParsedJson& value) {
     if (!rings.is_array()) return false;
     RawPolygon polygon{.object = object_, .material = material_};
     polygon.from.line = static_cast<std::uint32_t>(line_);
@@ -231,11 +232,11 @@ class CityJsonReader {
       for (const Surface& s : kSurfaces)
         if (type == s.type) polygon.material = scene_.material(s.material);
     }
-    for (const Json& ring : rings) {
+    for (const ParsedJson& ring : rings) {
       if (!ring.is_array()) return false;
       std::vector<Eigen::Vector3d> points;
       bool complete = true;
-      for (const Json& index : ring) {
+      for (const ParsedJson& index : ring) {
         if (!index.is_number_unsigned()) return false;
         complete = complete && index.get<std::size_t>() < vertices_.size();
         if (complete) points.push_back(vertices_[index.get<std::size_t>()]);
@@ -259,7 +260,7 @@ class CityJsonReader {
   std::map<std::string, int> line_of_;  ///< of city objects, where the file is one object
   int line_ = 0;
   std::uint32_t object_ = 0, material_ = 0;
-  const Json* surfaces_ = nullptr;
+  const ParsedJson* surfaces_ = nullptr;
   int templates_ = 0, dangling_ = 0, flat_ = 0;
 };
 

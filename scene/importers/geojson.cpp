@@ -11,7 +11,7 @@
 namespace canyon::scene {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Where publishers keep what matters. The first layout with a property that a feature has is taken.
@@ -65,7 +65,7 @@ const char* bd_topo_roof(char code) {
   }
 }
 
-double number_of(const Json& properties, const std::string& key) {
+double number_of(const ParsedJson& properties, const std::string& key) {
   if (key.empty()) return kUnknown;
   const auto value = properties.find(key);
   if (value == properties.end()) return kUnknown;
@@ -78,7 +78,7 @@ double number_of(const Json& properties, const std::string& key) {
 }
 
 /// A text or a number as text.
-std::string words_of(const Json& properties, const std::string& key) {
+std::string words_of(const ParsedJson& properties, const std::string& key) {
   const auto value = key.empty() ? properties.end() : properties.find(key);
   if (value == properties.end()) return "";
   return value->is_string() ? value->get<std::string>() : value->is_number() ? value->dump() : "";
@@ -90,15 +90,15 @@ class GeoJsonReader {
 
   Result<RawScene> read() {
     CANYON_TRY(const std::string text, read_text_or_gzip_file(path_));
-    CANYON_TRY(const Json document, parse_json(text, path_, {.key = "features", .members = &members_}));
+    CANYON_TRY(const ParsedJson document, parse_json(text, path_, {.key = "features", .members = &members_}));
     if (!document.is_object() || json_string(document, "type") != "FeatureCollection" ||
         !document.contains("features") || !document["features"].is_array())
       return Error{path_, 0, "type", "not a collection of features", "\"type\": \"FeatureCollection\""};
-    const Json::json_pointer crs("/crs/properties/name");
+    const ParsedJson::json_pointer crs("/crs/properties/name");
     scene_.frame =
         frame_by_name(document.contains(crs) && document[crs].is_string() ? document[crs].get<std::string>() : "CRS84");
     scene_.frame.authority_order = false;  // GeoJSON's order is always east, north
-    for (const Json& feature : document["features"]) {
+    for (const ParsedJson& feature : document["features"]) {
       throw_if_cancelled();
       if (!feature.is_object() || !feature.contains("geometry")) return mistake("geometry", "no geometry", "a feature");
       if (!feature["geometry"].is_null()) CANYON_TRY_STATUS(add(feature));
@@ -122,32 +122,32 @@ class GeoJsonReader {
   int line() const { return number_ < members_.size() ? members_[number_].line : 0; }
   RawPlace from() const { return {0, static_cast<std::uint32_t>(line())}; }
 
-  Status add(const Json& feature) {
-    const Json& geometry = feature["geometry"];
-    const Json none = Json::object();
+  Status add(const ParsedJson& feature) {
+    const ParsedJson& geometry = feature["geometry"];
+    const ParsedJson none = ParsedJson::object();
     const auto found = feature.find("properties");
-    const Json& properties = found != feature.end() && found->is_object() ? *found : none;
+    const ParsedJson& properties = found != feature.end() && found->is_object() ? *found : none;
     const std::string type = json_string(geometry, "type");
     if (!geometry.is_object() || !geometry.contains("coordinates") || !geometry["coordinates"].is_array())
       return mistake("geometry", "no coordinates", "a list");
-    const Json& coordinates = geometry["coordinates"];
+    const ParsedJson& coordinates = geometry["coordinates"];
     if (type == "LineString") return street(coordinates, properties);
     if (type == "MultiLineString") {
-      for (const Json& line : coordinates) CANYON_TRY_STATUS(street(line, properties));
+      for (const ParsedJson& line : coordinates) CANYON_TRY_STATUS(street(line, properties));
       return Ok{};
     }
-    if (type == "Polygon") return surfaces(Json::array({coordinates}), properties);
+    if (type == "Polygon") return surfaces(ParsedJson::array({coordinates}), properties);
     if (type == "MultiPolygon") return surfaces(coordinates, properties);
     ++other_;
     return Ok{};
   }
 
   /// A ring or line; z is NaN where the file has none.
-  Result<std::vector<Eigen::Vector3d>> points(const Json& list) const {
+  Result<std::vector<Eigen::Vector3d>> points(const ParsedJson& list) const {
     std::vector<Eigen::Vector3d> out;
     if (!list.is_array())
       return mistake("geometry.coordinates", "not a list of points", "lists of two or three numbers");
-    for (const Json& p : list) {
+    for (const ParsedJson& p : list) {
       if (!p.is_array() || p.size() < 2 || !p[0].is_number() || !p[1].is_number())
         return mistake("geometry.coordinates", "a point that is not understood", "two or three numbers");
       out.emplace_back(p[0].get<double>(), p[1].get<double>(),
@@ -156,7 +156,7 @@ class GeoJsonReader {
     return out;
   }
 
-  Status street(const Json& line, const Json& properties) {
+  Status street(const ParsedJson& line, const ParsedJson& properties) {
     CANYON_TRY(const auto way, points(line));
     RawStreet street;
     street.from = from();
@@ -166,22 +166,22 @@ class GeoJsonReader {
     return Ok{};
   }
 
-  Layout layout_of(const Json& properties) const {
+  Layout layout_of(const ParsedJson& properties) const {
     for (const Layout& layout : kLayouts)
       if (properties.contains(layout.height)) return layout;
     return {"id", "", "", "", "", ""};
   }
 
-  Status surfaces(const Json& polygons, const Json& properties) {
+  Status surfaces(const ParsedJson& polygons, const ParsedJson& properties) {
     const Layout layout = layout_of(properties);
     const std::string height_key = options_.height_property.empty() ? layout.height : options_.height_property;
     std::string name = words_of(properties, layout.id);
     std::vector<std::vector<std::vector<Eigen::Vector3d>>> rings;
     double low_m = 1e300, high_m = -1e300;
-    for (const Json& polygon : polygons) {
+    for (const ParsedJson& polygon : polygons) {
       if (!polygon.is_array()) return mistake("geometry.coordinates", "not a list of rings", "a polygon");
       rings.emplace_back();
-      for (const Json& ring : polygon) {
+      for (const ParsedJson& ring : polygon) {
         CANYON_TRY(auto corner, points(ring));
         if (corner.size() > 1 && corner.front().head<2>() == corner.back().head<2>()) corner.pop_back();
         for (const Eigen::Vector3d& p : corner) low_m = std::min(low_m, p.z()), high_m = std::max(high_m, p.z());

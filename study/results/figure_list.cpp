@@ -4,11 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/config/config.h"
+#include "canyon/core/output/json.h"
 #include "canyon/study/results/figures.h"
 
 namespace canyon::study {
-
-using Json = nlohmann::ordered_json;
 
 const char* name(Better better) {
   switch (better) {

@@ -2,11 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/core/output/json.h"
 #include "canyon/study/results/over_seeds.h"
 
 namespace canyon::study {
-
-using Json = nlohmann::ordered_json;
 
 namespace {
 

@@ -12,6 +12,7 @@
 #include "canyon/core/files/file_hash.h"
 #include "canyon/core/files/files.h"
 #include "canyon/core/files/json_text.h"
+#include "canyon/core/output/json.h"
 #include "canyon/core/process/version.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/registration/registration.h"
@@ -22,8 +23,6 @@
 #include "canyon/study/results/verdict_json.h"
 
 namespace canyon::study {
-
-using Json = nlohmann::ordered_json;
 
 namespace {
 

@@ -163,6 +163,19 @@ class CheckLayers(unittest.TestCase):
         for pattern in [*rules.BLIND_TO_TRUTH, *(place for row in rules.LIBRARIES for place in row[2])]:
             self.assertTrue(fnmatch.filter(names, pattern), pattern)
 
+    # 2026-11-30: mission::LocalFrame stood where run_record.h means canyon::LocalFrame, in one joined file and not in the next.
+    def test_a_type_is_not_named_as_a_common_one(self):
+        named = {"core/frame.h": "#pragma once\nnamespace canyon {\nclass Frame {\n};\nstruct Axes;\nusing Rows = int;\n}  // namespace canyon\n"}
+        for kind in ("class Frame final : public Axes {\n};", "struct Frame {\n};", "enum class Frame { kOne };", "using Frame = int;"):
+            self.assert_breach(
+                {**named, "mission/frame.h": f"#pragma once\nnamespace canyon::mission {{\n{kind}\n}}\n"},
+                "mission/frame.h:3: canyon::mission::Frame hides canyon::Frame of core/frame.h: it wants a name of its own")
+        self.assert_breach(
+            {**named, "mission/run.cpp": "namespace canyon::mission {\nnamespace {\nusing Rows = long;\n}  // namespace\n}\n"},
+            "mission/run.cpp:3: canyon::mission::Rows hides canyon::Rows of core/frame.h: it wants a name of its own")
+        others = "struct Axes { int x; };\nstruct Frames {};\nstruct Scan {\n  struct Frame {};\n};\nclass Frame;\nusing canyon::Rows;\n"
+        self.assertEqual(check({**named, "mission/frame.h": f"#pragma once\nnamespace canyon::mission {{\n{others}}}\n"})[0], 0)
+
     def test_no_other_random_numbers(self):
         self.assert_breach(
             {"gnss/noise.cpp": "#include <random>\nstd::normal_distribution<double> noise; // std::mt19937\n"},

@@ -5,7 +5,7 @@
 
 #include "canyon/core/units.h"
 #include "canyon/mission/autonomy/perception/lane_reference.h"
-#include "canyon/mission/autonomy/perception/local_frame.h"
+#include "canyon/mission/autonomy/perception/odometry_frame.h"
 #include "canyon/mission/autonomy/reference.h"
 #include "canyon/tests/mission/autonomy/box_scan.h"
 
@@ -135,15 +135,15 @@ TEST(GroundGrid, ErrorsOfTheEstimatesHeightNeverMatter) {
 }
 
 // 2026-11-27: a filter had a standing vehicle drive at 0.7 m/s, and what its LIDAR could not see any more moved on.
-TEST(LocalFrame, AWheelKeepsItWhereItIs) {
-  LocalFrame frame;
+TEST(OdometryFrame, AWheelKeepsItWhereItIs) {
+  OdometryFrame frame;
   NavEstimate estimate;
   estimate.X_WB.R = rotation_from({0.5 * kPi, 0.0, 0.0});
   for (int k = 0; k <= 100; ++k) {
     estimate.t = GpsTime{} + 0.1 * k;
     estimate.v_WB_W = {0.3, 0.7, 0.0};
     // It stands for five seconds, and then goes back by 0.02 m each time.
-    frame.follow(estimate, false, LocalFrame::Counted{k > 50 ? -0.02 : 0.0, k > 50 ? -0.2 : 0.0});
+    frame.follow(estimate, false, OdometryFrame::Counted{k > 50 ? -0.02 : 0.0, k > 50 ? -0.2 : 0.0});
     if (k == 50) {
       EXPECT_EQ(frame.body().p_m, Eigen::Vector2d(0.0, 0.0));
     }
@@ -154,15 +154,15 @@ TEST(LocalFrame, AWheelKeepsItWhereItIs) {
 }
 
 // A quarter turn to the left about a point 5 m off: a wheel 0.8 m to the left goes 4.2 / 5 of B's way.
-TEST(LocalFrame, AWheelBesideTheAxisGoesAnotherWay) {
-  LocalFrame frame;
+TEST(OdometryFrame, AWheelBesideTheAxisGoesAnotherWay) {
+  OdometryFrame frame;
   NavEstimate estimate;
   constexpr int kSteps = 900;
   const double step_rad = 0.5 * kPi / kSteps;
   for (int k = 0; k <= kSteps; ++k) {
     estimate.t = GpsTime{} + 0.01 * k;
     estimate.X_WB.R = rotation_from({step_rad * k, 0.0, 0.0});
-    frame.follow(estimate, false, LocalFrame::Counted{k > 0 ? 4.2 * step_rad : 0.0, 420.0 * step_rad, 0.8});
+    frame.follow(estimate, false, OdometryFrame::Counted{k > 0 ? 4.2 * step_rad : 0.0, 420.0 * step_rad, 0.8});
   }
   // To the left end of each step's chord: first order of its angle.
   EXPECT_LT((frame.body().p_m - Eigen::Vector2d(5.0, 5.0)).norm(), 5.0 * step_rad);
@@ -171,8 +171,8 @@ TEST(LocalFrame, AWheelBesideTheAxisGoesAnotherWay) {
 }
 
 // A fix moves the estimate by 2 m: what was seen stays where it stands, and the route moves.
-TEST(LocalFrame, AJumpOfTheEstimateDoesNotMoveIt) {
-  LocalFrame frame;
+TEST(OdometryFrame, AJumpOfTheEstimateDoesNotMoveIt) {
+  OdometryFrame frame;
   NavEstimate estimate;
   estimate.v_WB_W = {3.0, 0.0, 0.0};
   for (int k = 0; k <= 100; ++k) {

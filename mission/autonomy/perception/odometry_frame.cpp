@@ -1,10 +1,10 @@
-#include "canyon/mission/autonomy/perception/local_frame.h"
+#include "canyon/mission/autonomy/perception/odometry_frame.h"
 
 #include <cmath>
 
 namespace canyon::mission {
 
-void LocalFrame::follow(const NavEstimate& estimate, bool stands, const std::optional<Counted>& counted) {
+void OdometryFrame::follow(const NavEstimate& estimate, bool stands, const std::optional<Counted>& counted) {
   const double dt_s = started_ ? estimate.t - t_ : 0.0;
   const double yaw_before = body_.yaw_rad;
   body_.yaw_rad = yaw_pitch_roll(estimate.X_WB.R).yaw_rad;
@@ -25,7 +25,7 @@ void LocalFrame::follow(const NavEstimate& estimate, bool stands, const std::opt
   started_ = true;
 }
 
-PlanPose LocalFrame::at(const NavEstimate& estimate) const {
+PlanPose OdometryFrame::at(const NavEstimate& estimate) const {
   PlanPose pose = body_;
   pose.yaw_rad = yaw_pitch_roll(estimate.X_WB.R).yaw_rad;
   if (started_) pose.p_m += (estimate.t - t_) * speed_ * pose.forward();

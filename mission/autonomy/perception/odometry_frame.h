@@ -11,8 +11,9 @@ namespace canyon::mission {
 /// correction of the estimate moves. In it the vehicle goes where its estimated speed and attitude take it, forwards
 /// along its own axis, since a wheel rolls where it points: a fix that moves the estimate by metres then leaves what
 /// was seen where it stands. While the vehicle is known to stand it does not go at all. Where its wheel is counted,
-/// that tells the way instead: an estimated speed that is wrong moves what is remembered.
-class LocalFrame {
+/// that tells the way instead: an estimated speed that is wrong moves what is remembered. (REP 105 calls such a frame
+/// `odom`.)
+class OdometryFrame {
  public:
   /// By a wheel: since the last call, and now; negative in reverse. It rolls beside B's axis.
   struct Counted {
