@@ -63,6 +63,11 @@ endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 # g++ looks for garbage of its own from 128 MB on, which takes a tenth of its time and frees little.
 target_compile_options(canyon_flags INTERFACE $<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=1048576>>)
+# The largest joined files take 2.4 GB: Ninja runs no more compilers than memory holds.
+cmake_host_system_information(RESULT memory_mb QUERY TOTAL_PHYSICAL_MEMORY)
+math(EXPR compilers "${memory_mb} / 2500 + 1")
+set_property(GLOBAL PROPERTY JOB_POOLS compilers=${compilers})
+set(CMAKE_JOB_POOL_COMPILE compilers)
 # Of a file with loops over plain arrays.
 set(CANYON_VECTOR_LOOPS "-O3;$<$<CXX_COMPILER_ID:GNU>:-ftree-loop-vectorize>")
 

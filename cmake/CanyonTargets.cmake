@@ -90,6 +90,21 @@ endfunction()
 # The parts of canyon_part, for programs that are to have them all from the start.
 add_library(canyon_parts INTERFACE)
 
+# canyon_open_parts(TARGET): this program opens parts when it first uses them, or, where the build opens none late, is linked with them.
+# A start with all of them costs 0.15 s.
+function(canyon_open_parts target)
+  if(CANYON_OPEN_LATE)
+    # What a part shares with the program, such as the thread pool, is the program's.
+    set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON)
+    get_property(modules GLOBAL PROPERTY canyon_modules)
+    if(modules)  # a build may leave all of them out
+      add_dependencies(${target} ${modules})
+    endif()
+  else()
+    target_link_libraries(${target} PRIVATE canyon_parts)
+  endif()
+endfunction()
+
 # canyon_part(NAME OF folder SOURCES files... PRIVATE libs...): what of a folder stands on a large library, with its table of
 # functions canyon_NAME_part (core/process/library_part.h). As a static library canyon_NAME for programs that want it linked; as
 # a shared object in lib/canyon, which the program `canyon` opens when it is first used.

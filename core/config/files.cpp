@@ -1,4 +1,7 @@
+#include <filesystem>
+
 #include "canyon/core/config/config.h"
+#include "canyon/core/config/named_file.h"
 
 namespace canyon {
 namespace {
@@ -50,6 +53,18 @@ std::vector<NamedFile> named_files(const VisitFunction& visit_fields) {
   FileCollector collector("", files);
   visit_fields(collector);
   return files;
+}
+
+std::string path_as_named(const ConfigNode& node, const std::string& path) {
+  const std::filesystem::path given(path);
+  if (path.empty() || given.is_absolute() || node.line_ <= 0) return path;
+  return (std::filesystem::path(node.file_).parent_path() / given).lexically_normal().string();
+}
+
+Error error_as_named(const ConfigNode& node, const std::string& key, const std::string& path, const Error& error) {
+  if (error.file.empty()) return node.error(error.key, error.what, error.expected);
+  const bool unreadable = error.line == 0 && error.key.empty();
+  return unreadable ? node.error(key, "\"" + path + "\" " + error.what, error.expected) : error;
 }
 
 }  // namespace canyon

@@ -1,22 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "canyon/core/config/config.h"
+#include "canyon/core/config/named_file.h"
 #include "canyon/core/config/text.h"
 
 namespace canyon {
 namespace {
 
 constexpr std::size_t kListedKeys = 8;  // more of them tell nobody anything
-
-/// A relative path starts where the file that names it lies; an option of the command line has no line.
-std::string resolved(const ConfigNode& node, const std::string& path) {
-  const std::filesystem::path given(path);
-  if (path.empty() || given.is_absolute() || node.line_ <= 0) return path;
-  return (std::filesystem::path(node.file_).parent_path() / given).lexically_normal().string();
-}
 
 /// Mistakes found so far. What is missing is told last: it may be missing because it is misspelt.
 struct Mistakes {
@@ -122,7 +115,7 @@ class Reader final : public FieldVisitor {
     const ConfigNode* node = take(key);
     if (!node) return;
     if (const auto v = typed<std::string>(*node, path(key), "a string"))
-      value = v->ends_with(suffix) ? resolved(*node, *v) : *v;
+      value = v->ends_with(suffix) ? path_as_named(*node, *v) : *v;
   }
 
   void texts(const char* key, std::vector<std::string>& value, const char*) override {
@@ -130,7 +123,7 @@ class Reader final : public FieldVisitor {
   }
 
   void files(const char* key, std::vector<std::string>& value, const char*) override {
-    read_texts(key, value, resolved);
+    read_texts(key, value, path_as_named);
   }
 
   void old_key(const char* key, const char* instead) override {

@@ -1,8 +1,8 @@
 #include "canyon/gnss/sensor/receiver_catalogue.h"
 
 #include <algorithm>
-#include <filesystem>
 
+#include "canyon/core/config/named_file.h"
 #include "canyon/core/config/text.h"
 #include "canyon/core/process/embedded.h"
 #include "canyon/gnss/sensor/gnss_config.h"
@@ -304,13 +304,6 @@ Result<ReceiverSheet> sheet_from(const ConfigNode& sheet) {
   return out;
 }
 
-/// As the reader does it: from the folder of the file that names it.
-std::string beside(const ConfigNode& node, const std::string& path) {
-  const std::filesystem::path given(path);
-  if (!path.ends_with(kTomlSuffix) || given.is_absolute() || node.line_ <= 0) return path;
-  return (std::filesystem::path(node.file_).parent_path() / given).lexically_normal().string();
-}
-
 }  // namespace
 
 std::vector<std::string> receiver_names() {
@@ -345,14 +338,9 @@ Status lay_with_receiver(ConfigNode& tree, const ConfigNode& over) {
   const ConfigNode* named = over.find("gnss.receiver");
   const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->value_);
   if (name != nullptr && !name->empty()) {
-    const std::string receiver = beside(*named, *name);
+    const std::string receiver = name->ends_with(kTomlSuffix) ? path_as_named(*named, *name) : *name;
     const auto sheet = load_receiver(receiver);
-    if (!sheet) {
-      const Error& error = sheet.error();
-      if (error.file.empty()) return named->error(error.key, error.what, error.expected);
-      const bool unreadable = error.line == 0 && error.key.empty();
-      return unreadable ? named->error("gnss.receiver", "\"" + receiver + "\" " + error.what, error.expected) : error;
-    }
+    if (!sheet) return error_as_named(*named, "gnss.receiver", receiver, sheet.error());
     ConfigNode below;
     below.value_ = ConfigNode::Table{{"gnss", sheet->figures}};
     tree.overlay(below);

@@ -1,10 +1,10 @@
 #include "canyon/mission/config/vehicle_catalogue.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
+#include "canyon/core/config/named_file.h"
 #include "canyon/core/config/text.h"
 #include "canyon/core/process/embedded.h"
 #include "canyon/mission/motion/vehicle_config.h"
@@ -120,13 +120,6 @@ Result<VehicleSheet> sheet_of(const ConfigNode& sheet) {
   return out;
 }
 
-/// As the reader does it: from the folder of the file that names it.
-std::string from_its_folder(const ConfigNode& node, const std::string& path) {
-  const std::filesystem::path given(path);
-  if (!path.ends_with(kVehicleSuffix) || given.is_absolute() || node.line_ <= 0) return path;
-  return (std::filesystem::path(node.file_).parent_path() / given).lexically_normal().string();
-}
-
 }  // namespace
 
 std::vector<std::string> vehicle_names() {
@@ -161,14 +154,9 @@ Status lay_vehicle_below(ConfigNode& tree, const ConfigNode& over) {
   const ConfigNode* named = over.find("vehicle.preset");
   const auto* name = named == nullptr ? nullptr : std::get_if<std::string>(&named->value_);
   if (name == nullptr || name->empty()) return Ok{};
-  const std::string vehicle = from_its_folder(*named, *name);
+  const std::string vehicle = name->ends_with(kVehicleSuffix) ? path_as_named(*named, *name) : *name;
   const auto sheet = load_vehicle(vehicle);
-  if (!sheet) {
-    const Error& error = sheet.error();
-    if (error.file.empty()) return named->error(error.key, error.what, error.expected);
-    const bool unreadable = error.line == 0 && error.key.empty();
-    return unreadable ? named->error("vehicle.preset", "\"" + vehicle + "\" " + error.what, error.expected) : error;
-  }
+  if (!sheet) return error_as_named(*named, "vehicle.preset", vehicle, sheet.error());
   ConfigNode below;
   below.value_ = ConfigNode::Table{{"vehicle", sheet->figures}};
   tree.overlay(below);

@@ -119,13 +119,10 @@ WaypointReach::Way WaypointReach::way_to(const Eigen::Vector2d& place_W) const {
     open.push({(middle(i, j) - place_W).norm(), {i, j}});
   };
 
-  const auto from_outside = [&](int i, int j) {
-    if (scene::building_at(scene_.scene().buildings(), middle(i, j)) == nullptr) add(i, j);
-  };
   for (int k = -places.half; k <= places.half; ++k)
     for (const int edge : {-places.half, places.half}) {
-      from_outside(k, edge);
-      from_outside(edge, k);
+      add(k, edge);
+      add(edge, k);
     }
   const Eigen::Vector2d start_W =
       vehicle_.start_m + 0.5 * vehicle_.wheelbase_m * unit(yaw_from_heading(vehicle_.start_heading_deg * kDegree));
@@ -138,6 +135,9 @@ WaypointReach::Way WaypointReach::way_to(const Eigen::Vector2d& place_W) const {
     if (way.checks >= most_checks_) return way;
     const auto [i, j] = open.top().second;
     open.pop();
+    // Nothing comes from inside a building.
+    const bool on_edge = std::max(std::abs(i), std::abs(j)) == places.half;
+    if (on_edge && scene::building_at(scene_.scene().buildings(), middle(i, j)) != nullptr) continue;
     const Stand found = stand(middle(i, j), place_W, way.checks);
     if (found == Stand::kNear) return way;
     if (found == Stand::kNowhere) continue;

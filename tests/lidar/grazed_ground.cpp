@@ -14,6 +14,7 @@ namespace canyon::lidar::testing {
 namespace {
 
 constexpr double kJudgedFrom_m = 10.0, kJudgedShots = 200.0, kJudgedFactor = 1.5;
+constexpr double kJudgedReturns = 20.0;  // for a median intensity
 
 double begin_of(std::size_t bin) {
   return GroundBin::kWidth_m * static_cast<double>(bin);
@@ -119,15 +120,8 @@ void print_table(const GroundComparison& both, const std::vector<GroundScan>& sc
   }
 }
 
-template <class Value>
-std::vector<double> misses(const GroundComparison& both, std::size_t scan, const Value& value) {
-  std::vector<double> out;
-  for (std::size_t k = 0; k < kGroundBins; ++k) {
-    const double ours = value(both.scanned[scan][k]), theirs = value(both.recorded[k]);
-    const bool near = std::max(ours / theirs, theirs / ours) < kJudgedFactor;
-    if (is_judged(both.recorded[k], k) && !near) out.push_back(begin_of(k));
-  }
-  return out;
+bool is_off(double ours, double theirs) {
+  return !(std::max(ours / theirs, theirs / ours) < kJudgedFactor);
 }
 
 }  // namespace
@@ -145,11 +139,27 @@ std::vector<double> GroundComparison::judged_m() const {
 }
 
 std::vector<double> GroundComparison::misses_m(std::size_t scan) const {
-  return misses(*this, scan, [](const GroundBin& bin) { return bin.share(); });
+  std::vector<double> out;
+  for (std::size_t k = 0; k < kGroundBins; ++k)
+    if (is_judged(recorded[k], k) && is_off(scanned[scan][k].share(), recorded[k].share())) out.push_back(begin_of(k));
+  return out;
+}
+
+std::vector<double> GroundComparison::intensities_judged_m(std::size_t scan) const {
+  std::vector<double> out;
+  for (std::size_t k = 0; k < kGroundBins; ++k)
+    if (is_judged(recorded[k], k) && std::min(scanned[scan][k].returned, recorded[k].returned) >= kJudgedReturns)
+      out.push_back(begin_of(k));
+  return out;
 }
 
 std::vector<double> GroundComparison::intensity_misses_m(std::size_t scan) const {
-  return misses(*this, scan, [](const GroundBin& bin) { return bin.median_intensity(); });
+  std::vector<double> out;
+  for (const double from_m : intensities_judged_m(scan)) {
+    const auto k = static_cast<std::size_t>(from_m / GroundBin::kWidth_m);
+    if (is_off(scanned[scan][k].median_intensity(), recorded[k].median_intensity())) out.push_back(from_m);
+  }
+  return out;
 }
 
 void GroundComparison::expect_as_much_ground() const {

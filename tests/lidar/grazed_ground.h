@@ -39,7 +39,9 @@ struct GroundComparison {
   std::vector<double> judged_m() const;
   /// Those of them where the share that a scan returns is off by a factor of 1.5 or more.
   std::vector<double> misses_m(std::size_t scan) const;
-  /// And those where the median intensity is, of what comes back.
+  /// Those where 20 shots and more came back both in the recording and in a scan, and of these the ones where the
+  /// median intensity of what came back is off by that factor.
+  std::vector<double> intensities_judged_m(std::size_t scan) const;
   std::vector<double> intensity_misses_m(std::size_t scan) const;
   /// Expects of every bin beyond 10 m that as many simulated shots are bound for free ground as were recorded, up to
   /// what lies between columns (GroundBin::least, most).

@@ -22,6 +22,7 @@ namespace {
 
 using testing::beam_of_high;
 using testing::compare_ground;
+using testing::free_ground_m;
 using testing::GroundComparison;
 using testing::GroundRecording;
 using testing::ShotColumn;
@@ -105,6 +106,82 @@ std::vector<HdlColumn> pair_columns(const std::string& path) {
     if (any) out.push_back(column);
   }
   return out;
+}
+
+// A street of walls 8 m to the left, open ahead of a corner, and 5 m to the right, whose walls are painted; of what
+// comes back from the road every third shot is lost. By what can be written down beside what the columns tell.
+TEST(FreeGround, EndsAtTheWallsOfAMadeStreet) {
+  constexpr double kUp_m = 2.0, kLeft_m = 8.0, kRight_m = 5.0, kCorner_m = 6.0, kSeen_m = 20.0,
+                   kStep_rad = 2.0 * kDegree;
+  constexpr double kRing_rad = 0.25 * kDegree, kPaint = 90.0, kRoad = 7.0;
+  const testing::GroundPlane ground{Eigen::Vector3d::UnitZ(), kUp_m};
+  std::vector<ShotColumn> turn;
+  std::vector<double> free_m, told_m;
+  testing::GroundBins expected, found;
+  int shots = 0;
+  for (int c = 0; c < 180; ++c) {
+    const double azimuth_rad = (c + 0.5) * kStep_rad, ahead = std::cos(azimuth_rad), left = std::sin(azimuth_rad);
+    double wall_m = left > 0.0 ? kLeft_m / left : -kRight_m / left;  // across the axis
+    if (wall_m > kSeen_m || (left > 0.0 && wall_m * ahead > kCorner_m)) wall_m = testing::kOpen_m;
+    ShotColumn column{azimuth_rad, {}};
+    for (int ring = 0; ring < 120; ++ring) {
+      const double down_rad = 25.0 * kDegree - ring * kRing_rad;
+      testing::AimedShot shot;
+      shot.along_L = {ahead * std::cos(down_rad), left * std::cos(down_rad), -std::sin(down_rad)};
+      const double ground_m = down_rad > 0.1 * kRing_rad ? kUp_m / std::tan(down_rad) : testing::kOpen_m;
+      const bool is_road = ground_m < wall_m;
+      const double range_m = std::min(ground_m, wall_m) / std::cos(down_rad);
+      const bool is_lost = is_road && shots % 3 == 0;
+      shots += is_road ? 1 : 0;
+      shot.returned = !is_lost && range_m < testing::kFarthestGround_m;
+      shot.p_L = range_m * shot.along_L;
+      shot.intensity = is_road ? kRoad : kPaint;
+      if (is_road && range_m < testing::kFarthestGround_m) {
+        testing::GroundBin& bin = expected[static_cast<std::size_t>(range_m / testing::GroundBin::kWidth_m)];
+        bin.shots += 1.0;
+        bin.returned += is_lost ? 0.0 : 1.0;
+      }
+      column.shots.push_back(shot);
+    }
+    turn.push_back(column);
+    free_m.push_back(wall_m);
+    told_m.push_back(free_ground_m(column, ground));
+  }
+  // The wall is told by a return above its foot, as far off as the foot.
+  for (std::size_t c = 0; c < turn.size(); ++c)
+    EXPECT_NEAR(told_m[c], free_m[c], 1e-9) << turn[c].azimuth_rad / kDegree;
+  testing::count_ground(turn, told_m, ground, kStep_rad, 0, found);
+  for (std::size_t k = 0; k < testing::kGroundBins; ++k) {
+    EXPECT_EQ(found[k].shots, expected[k].shots) << k;
+    EXPECT_EQ(found[k].returned, expected[k].returned) << k;
+    EXPECT_LE(found[k].least, found[k].shots);
+    EXPECT_GE(found[k].most, found[k].shots);
+    // Paint at the foot of a wall lies within what counts as ground, and is not counted.
+    if (found[k].returned > 0.0) {
+      EXPECT_EQ(found[k].mean_intensity(), kRoad) << k;
+    }
+  }
+  EXPECT_GT(found[1].shots, 1000.0);
+}
+
+// Where a beam meets what lies below the ground, the edge is somewhere between it and the beam before.
+TEST(FreeGround, EndsWhereTheGroundFallsAway) {
+  constexpr double kUp_m = 2.0, kEdge_m = 12.0, kDeeper_m = 1.0;
+  ShotColumn column;
+  double before_m = 0.0, behind_m = 0.0;
+  for (int ring = 0; ring < 80; ++ring) {
+    const double down_rad = (25.0 - 0.25 * ring) * kDegree, ground_m = kUp_m / std::tan(down_rad);
+    const bool is_road = ground_m < kEdge_m;
+    (is_road ? before_m : behind_m) = is_road || behind_m == 0.0 ? ground_m : behind_m;
+    testing::AimedShot shot;
+    shot.along_L = {std::cos(down_rad), 0.0, -std::sin(down_rad)};
+    shot.returned = true;
+    shot.p_L = shot.along_L * ((is_road ? kUp_m : kUp_m + kDeeper_m) / std::sin(down_rad));
+    column.shots.push_back(shot);
+  }
+  EXPECT_NEAR(free_ground_m(column, {Eigen::Vector3d::UnitZ(), kUp_m}), 0.5 * (before_m + behind_m), 1e-9);
+  for (testing::AimedShot& shot : column.shots) shot.returned = false;
+  EXPECT_EQ(free_ground_m(column, {Eigen::Vector3d::UnitZ(), kUp_m}), testing::kOpen_m);
 }
 
 // Their ground leans against the sensor by 6 degrees, so a ring meets it at many ranges: bins are by range.

@@ -264,8 +264,8 @@ std::vector<FoundPose> PoseSearch::along(const Pose& X, const Vector6d& way) {
   while (-from < kMostScanned && !(improbable(moved(from - 1)) > farthest)) --from;
   while (to < kMostScanned && !(improbable(moved(to + 1)) > farthest)) ++to;
   // A step farther than the prior reaches, so that its last places have a neighbour on either side as well: a minimum
-  // near one of them is within its ellipsoid, and may be a rival. Where it falls off towards that step there is none:
-  // the minimum lies where the prior has nothing, and coarse() takes no such place either.
+  // near one of them is within its ellipsoid, and may be a rival. A place beyond the last step that still is in the
+  // ellipsoid, by up to a step, is passed over where the step outside of it fits better.
   std::vector<Fit> line, minima;
   for (int k = from - 1; k <= to + 1; ++k) line.push_back({k, missed_at(k)});
   for (std::size_t k = 1; k + 1 < line.size(); ++k) {

@@ -48,7 +48,7 @@ class PoseSearch {
   std::vector<FoundPose> coarse();
   /// More of them, with all as at X but moved along `way`, a shift of length 1 in the source frame, to where a part of
   /// the points fits better than a step either side; as far as the prior reaches (its 99.9 % ellipsoid), its last steps
-  /// included. At most six, those that fit best.
+  /// included, but not what lies between these and its border. At most six, those that fit best.
   std::vector<FoundPose> along(const Pose& X, const Vector6d& way);
   /// After coarse(): whether the prior reaches so far that there may be several; without one it does not.
   bool several() const { return several_; }

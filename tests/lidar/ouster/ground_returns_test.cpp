@@ -97,8 +97,10 @@ TEST(OusterScans, GroundComesBackFromWhereALambertianOneWouldNot) {
   EXPECT_EQ(both.misses_m(3), bins(32.5, 42.5));
   // A Lambertian street is lost from 15 m on.
   EXPECT_EQ(both.misses_m(1), bins(15.0, 42.5));
-  // The sensor's reflectivity is of the linear part of its scale: per cent. From 37.5 m on nothing of ours comes back.
-  EXPECT_EQ(both.intensity_misses_m(0), bins(37.5, 42.5));
+  // The sensor's reflectivity is of the linear part of its scale: per cent. From 32.5 m on hardly anything of ours
+  // comes back.
+  EXPECT_EQ(both.intensities_judged_m(0), bins(10.0, 30.0));
+  EXPECT_EQ(both.intensity_misses_m(0), std::vector<double>{});
 }
 
 }  // namespace
