@@ -103,10 +103,10 @@ build_as_owner() {
 
 # As many compilers as there are processors, but no more than memory allows: the largest joined files take 2.4 GB.
 parallelism() {
-  local processors memory_gb
+  local processors fit
   processors=$(nproc)
-  memory_gb=$(awk '/MemAvailable/ { print int($2 / 2500000) }' /proc/meminfo 2>/dev/null || true)
-  if [ -n "$memory_gb" ] && ((memory_gb < processors)); then processors=$memory_gb; fi
+  fit=$(awk '/MemAvailable/ { print int($2 / 2500000) }' /proc/meminfo 2>/dev/null || true)
+  if [ -n "$fit" ] && ((fit < processors)); then processors=$fit; fi
   ((processors > 0)) && echo "$processors" || echo 1
 }
 
