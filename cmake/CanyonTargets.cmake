@@ -151,11 +151,12 @@ function(canyon_embed out_variable)
   set(${out_variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# canyon_test(FOLDER LINK libs... [EXCLUDE patterns...] [SHARED_OUT suites...]): every .cpp of tests/FOLDER and its rooms in one
-# executable, one ctest entry per test case; but the many small cases of a suite that is shared out are done by eight processes.
+# canyon_test(FOLDER LINK libs... [EXCLUDE patterns...] [SHARED_OUT suites...] [TOGETHER suites...]): every .cpp of tests/FOLDER
+# and its rooms in one executable, one ctest entry per test case; but the many small cases of a suite that is shared out are done
+# by eight processes, and those of a suite that goes together, which share what takes long to make, by one.
 # A name that contains "Nightly" gets the label nightly and is left out of ./test.sh.
 function(canyon_test folder)
-  cmake_parse_arguments(ARG "" "" "LINK;EXCLUDE;SHARED_OUT" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINK;EXCLUDE;SHARED_OUT;TOGETHER" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   foreach(pattern IN LISTS ARG_EXCLUDE)
     list(FILTER sources EXCLUDE REGEX ${pattern})
@@ -177,6 +178,11 @@ function(canyon_test folder)
       set_tests_properties(${suite}.Share${share}Of8 PROPERTIES LABELS ${folder} TIMEOUT 900
                            ENVIRONMENT "GTEST_TOTAL_SHARDS=8;GTEST_SHARD_INDEX=${index}")
     endforeach()
+  endforeach()
+  foreach(suite IN LISTS ARG_TOGETHER)
+    string(APPEND alone ":${suite}.*")
+    add_test(NAME ${suite}.All COMMAND ${target} --gtest_filter=${suite}.*-*Nightly*)
+    set_tests_properties(${suite}.All PROPERTIES LABELS ${folder} TIMEOUT 900)
   endforeach()
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "${alone}" PROPERTIES LABELS ${folder} TIMEOUT 900)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_FILTER "*Nightly*" TEST_LIST ${target}_nightly

@@ -1,5 +1,7 @@
 #include "canyon/apps/line/arguments.h"
 
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 
 namespace canyon::apps {
@@ -29,6 +31,11 @@ Argument Argument::excludes(Argument other) const {
   return *this;
 }
 
+Argument Argument::needs(Argument other) const {
+  option_->needs(other.option_);
+  return *this;
+}
+
 Argument Argument::among(const std::vector<std::string>& words) const {
   option_->check(CLI::IsMember(words));
   return *this;
@@ -41,6 +48,12 @@ Argument Argument::whole_within(std::int64_t lowest, std::int64_t highest) const
 
 Argument Argument::number_within(double lowest, double highest) const {
   option_->check(CLI::Range(lowest, highest));
+  // For that a NaN is neither too low nor too high.
+  option_->check([](const std::string& value) {
+    double number = 0.0;
+    const bool none = CLI::detail::lexical_cast(value, number) && std::isnan(number);
+    return none ? std::string("not a number") : std::string();
+  });
   return *this;
 }
 

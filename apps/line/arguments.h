@@ -24,6 +24,7 @@ class Argument {
   /// The value may be left away, and is then this one. It stands last, or after "=": what follows is taken for it.
   Argument value_optional(const std::string& value) const;
   Argument excludes(Argument other) const;
+  Argument needs(Argument other) const;  ///< means nothing without it, and is refused where it is not given
   Argument among(const std::vector<std::string>& words) const;
 
   template <class T>

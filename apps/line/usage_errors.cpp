@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <optional>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -94,6 +95,34 @@ std::string words_of(const std::string& type) {
   return words;
 }
 
+/// a, b of CLI11's "TEXT:{a,b}"; none of other types.
+std::vector<std::string> choices_of(const std::string& type) {
+  const std::size_t open = type.find('{'), close = type.find('}');
+  if (open >= close || close == std::string::npos) return {};
+  return split_list(type.substr(open + 1, close - open - 1));
+}
+
+/// What such an option takes, in answer to `value`.
+std::string expected_of(const CLI::Option& option, const std::string& value) {
+  const std::string type = option.get_type_name();
+  const std::vector<std::string> choices = choices_of(type);
+  return choices.empty() ? words_of(type) : "one of " + plain_list(choices) + nearest_hint(value, choices);
+}
+
+/// An option that has one value and was given several: whichever of them is refused, that is what is wrong.
+std::optional<Error> given_again(const CLI::App& app, const std::string& verb) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::size_t times = option->count();
+    if (option->get_items_expected_max() != 1 || times < 2) continue;
+    return Error{.file = verb,
+                 .what = option->get_name() + " given " + (times == 2 ? "twice" : std::to_string(times) + " times"),
+                 .expected = "it once"};
+  }
+  for (const CLI::App* group : option_groups_of(app))
+    if (auto again = given_again(*group, verb)) return again;
+  return std::nullopt;
+}
+
 /// Whether a message speaks of this option, not of one whose name only begins with it.
 bool speaks_of(const std::string& message, const std::string& name) {
   for (std::size_t at = message.find(name); at != std::string::npos; at = message.find(name, at + 1)) {
@@ -114,8 +143,11 @@ std::optional<Error> refused_value(const CLI::App& verb, const std::string& mess
     if (option == nullptr || !speaks_of(message, name)) continue;
     const bool inside = name.size() < word.size();
     if (!inside && i + 1 >= arguments.size()) continue;
-    const std::string value = inside ? word.substr(name.size() + 1) : arguments[i + 1];
-    return Error{.file = name, .what = "\"" + value + "\"", .expected = words_of(option->get_type_name())};
+    // Of a list it may be a later one.
+    const std::string value = message.ends_with(": empty") ? ""
+                              : inside                     ? word.substr(name.size() + 1)
+                                                           : arguments[i + 1];
+    return Error{.file = name, .what = "\"" + value + "\"", .expected = expected_of(*option, value)};
   }
   return std::nullopt;
 }
@@ -137,7 +169,8 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error, const std::
 
   const std::string message = error.what();
   // What nobody knows is told before what is missing: it may be missing because it is misspelt.
-  const bool missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  const bool alone = dynamic_cast<const CLI::RequiresError*>(&error) != nullptr;
+  const bool missing = alone || dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   if (missing || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     const std::vector<std::string> extras = app.remaining(true);
     for (const std::string& word : arguments) {
@@ -150,17 +183,28 @@ Error usage_error(const CLI::App& app, const CLI::ParseError& error, const std::
               .expected = nearest.empty() ? "one that " + verb + " --help names" : "\"" + nearest + "\"?"};
     }
   }
-  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr ||
-      dynamic_cast<const CLI::ValidationError*>(&error) != nullptr)
-    if (const auto refused = refused_value(*place.app, message, arguments)) return *refused;
-  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+  const bool refused = dynamic_cast<const CLI::ConversionError*>(&error) != nullptr ||
+                       dynamic_cast<const CLI::ValidationError*>(&error) != nullptr;
+  const bool mismatch = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+  if (refused || mismatch)
+    if (const auto again = given_again(*place.app, verb)) return *again;
+  if (refused)
+    if (const auto value = refused_value(*place.app, message, arguments)) return *value;
+  if (mismatch) {
     for (const std::string& name : options_of(*place.app))
       if (message.rfind(name + ":", 0) == 0 || message.rfind(name + " ", 0) == 0)
         return {.file = verb, .what = name + " has no value", .expected = "one"};
   }
+  if (alone) {  // "--for requires --plan"
+    constexpr std::string_view kBetween = " requires ";
+    const std::size_t between = message.find(kBetween);
+    return {.file = message.substr(0, between),
+            .what = "stands alone",
+            .expected = message.substr(between + kBetween.size()) + " beside it"};
+  }
   if (missing && message.find('[') != std::string::npos)  // a list of options, one of which it is about
     if (const auto wrong = not_one_of_a_group(*place.app)) return *wrong;
-  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+  if (missing)
     return {.file = verb,
             .what = message.substr(0, message.find(' ')) + " is missing; " + verb + " --help shows an example"};
   return {.file = verb, .what = message};

@@ -69,14 +69,16 @@ void declare_loop_options(Arguments& arguments, LoopOptions& options) {
   const auto tape =
       arguments.option("--tape", options.tape.tape, "true motion to drive on: a .tape, or a results directory")
           .type("RUN_DIR");
-  arguments
-      .option("--trajectory", options.tape.trajectory,
-              "true motion to drive on: poses in the scene's frame (.tum, .kitti, .csv) or a geodetic reference")
-      .type("FILE")
-      .excludes(tape);
+  const auto trajectory =
+      arguments
+          .option("--trajectory", options.tape.trajectory,
+                  "true motion to drive on: poses in the scene's frame (.tum, .kitti, .csv) or a geodetic reference")
+          .type("FILE")
+          .excludes(tape);
   arguments.option("--trajectory-rate", options.tape.trajectory_rate_hz, "poses per second of a file without times")
       .default_shown()
-      .within(1e-3, 1e4);
+      .within(1e-3, 1e4)
+      .needs(trajectory);
 }
 
 void declare_both_loops(Arguments& arguments, LoopOptions& options) {
@@ -102,16 +104,18 @@ void declare_figures_option(Arguments& arguments, FigureOptions& options) {
 }
 
 void declare_plan_options(Arguments& arguments, PlanOptions& options) {
+  const auto plan =
+      arguments
+          .option("--plan", options.plan,
+                  "leave out what a plan says that is not needed: a file of canyon plan --write, or without one a plan "
+                  "made here for each run")
+          .type("FILE")
+          .value_optional(kMakePlan);
   arguments
-      .option(
-          "--plan", options.plan,
-          "leave out what a plan says that is not needed: a file of canyon plan --write, or without one a plan made "
-          "here for each run")
-      .type("FILE")
-      .value_optional(kMakePlan);
-  arguments.option("--for", options.outputs,
-                   "what somebody will read, with commas between: outcome, position, map, clouds; without it all four, "
-                   "or what the file's plan was made for");
+      .option("--for", options.outputs,
+              "what somebody will read, with commas between: outcome, position, map, clouds; without it all four, or "
+              "what the file's plan was made for")
+      .needs(plan);
 }
 
 namespace {
@@ -190,9 +194,14 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   std::printf("Mission %s, seed %lld, %s: %.0f m planned, nominal %.0f s, limit %.0f s\n\n",
               comparison.configs.front().run.name.c_str(), static_cast<long long>(comparison.configs.front().run.seed),
               mission.start.iso(0).c_str(), mission.prior.route.length_m(), mission.nominal_s, mission.time_limit_s);
-  const std::string table = figures.seeds ? study::over_seeds_table(study::over_seeds(runs_by_seed(results)), keys)
-                                          : study::comparison_table(results, keys);
-  std::printf("%s\n", table.c_str());
+  if (figures.seeds) {
+    const study::OverSeeds found = study::over_seeds(runs_by_seed(results));
+    std::printf("%s\n", study::over_seeds_table(found, keys).c_str());
+    const std::string squares = keys.empty() ? study::squares_over_seeds(found, results.summaries) : std::string();
+    if (!squares.empty()) std::printf("%s\n", squares.c_str());
+  } else {
+    std::printf("%s\n", study::comparison_table(results, keys).c_str());
+  }
   if (results.open_loop) std::printf("%s\n", study::both_loops_table(results, keys).c_str());
   print_why(explained);
   const auto place = std::filesystem::absolute(staged.final_path()).lexically_normal();

@@ -1,5 +1,7 @@
 #include "canyon/apps/options/lidar_drive.h"
 
+#include <vector>
+
 #include "canyon/apps/options/gnss_setup.h"
 #include "canyon/core/output/printed.h"
 #include "canyon/core/units.h"
@@ -24,34 +26,57 @@ Result<Trajectory> read_trajectory(const std::string& path) {
   return path.ends_with(".csv") ? read_csv_trajectory(path) : read_tum(path);
 }
 
-}  // namespace
-
-void declare_lidar_drive(Arguments& arguments, LidarDriveOptions& o) {
+void declare_scene(Arguments& arguments, LidarDriveOptions& o) {
   o.scene.scene = mission::kDefaultMission;
   arguments
       .option("--scene", o.scene.scene, "a mission file's scene and LIDAR, a scene file, or \"vicksburg\" (built in)")
       .default_shown();
   declare_import_options(arguments, o.scene.from);
-  arguments
-      .option("--fidelity", o.fidelity,
-              "whose LIDAR: low, paper, high, high_aided, modern, or one of the mission file's own")
-      .default_shown();
+}
+
+Argument declare_trajectory(Arguments& arguments, LidarDriveOptions& o) {
+  return arguments.option("--trajectory", o.trajectory, "drive along poses of the vehicle in the scene (TUM, or .csv)");
+}
+
+/// The LIDAR; returns its options.
+std::vector<Argument> declare_lidar(Arguments& arguments, LidarDriveOptions& o) {
+  return {
+      arguments
+          .option("--fidelity", o.fidelity,
+                  "whose LIDAR: low, paper, high, high_aided, modern, or one of the mission file's own")
+          .default_shown(),
+      arguments.option("--beams", o.beams, "beam table; all [lidar] keys can be set in the mission file"),
+      arguments.option("--model", o.model, "single_ray or footprint"),
+      arguments.option("--detector", o.detector, "ideal or radiometric"),
+      arguments.option("--returns", o.returns, "strongest, first, last, dual or all"),
+      arguments.option("--see-through", o.see_through, "what light goes on behind: nothing, glass, leaves or both"),
+      arguments.option("--rate", o.rate_hz, "revolutions per second"),
+      arguments.option("--azimuth-steps", o.azimuth_steps, "firings per revolution; 0 = as fast as the lasers can"),
+  };
+}
+
+}  // namespace
+
+void declare_lidar_drive(Arguments& arguments, LidarDriveOptions& o) {
+  declare_scene(arguments, o);
   const auto at =
       arguments.option("--at", o.at, "X,Y,H,YAW of the vehicle: metres in the scene, metres above ground, degrees");
-  const auto trajectory =
-      arguments.option("--trajectory", o.trajectory, "drive along poses of the vehicle in the scene (TUM, or .csv)");
-  at.excludes(trajectory);
+  at.excludes(declare_trajectory(arguments, o));
   arguments.option("--scans", o.scans, "with --at: how many revolutions")
       .default_shown()
-      .within(std::int64_t{1}, std::int64_t{1'000'000});
-  arguments.option("--beams", o.beams, "beam table; all [lidar] keys can be set in the mission file");
-  arguments.option("--model", o.model, "single_ray or footprint");
-  arguments.option("--detector", o.detector, "ideal or radiometric");
-  arguments.option("--returns", o.returns, "strongest, first, last, dual or all");
-  arguments.option("--see-through", o.see_through, "what light goes on behind: nothing, glass, leaves or both");
-  arguments.option("--rate", o.rate_hz, "revolutions per second");
-  arguments.option("--azimuth-steps", o.azimuth_steps, "firings per revolution; 0 = as fast as the lasers can");
+      .within(std::int64_t{1}, std::int64_t{1'000'000})
+      .needs(at);
+  declare_lidar(arguments, o);
   arguments.option("--start", o.start, "stamp of the first scan, with --at");
+}
+
+Argument declare_lidar_way(Arguments& arguments, LidarDriveOptions& o) {
+  declare_scene(arguments, o);
+  const Argument trajectory = declare_trajectory(arguments, o);
+  for (const Argument& option : declare_lidar(arguments, o)) option.needs(trajectory);
+  arguments.option("--start", o.start, "when what moves in the scene begins to; without it the mission's start")
+      .needs(trajectory);
+  return trajectory;
 }
 
 Result<lidar::ScanDrive> lidar_drive(const LidarDriveOptions& options) {

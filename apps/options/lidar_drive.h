@@ -8,7 +8,7 @@
 
 namespace canyon::apps {
 
-/// Options that say which LIDAR scans what from where, for the verb that scans by itself.
+/// Options that say which LIDAR scans what from where, for the verbs that scan by themselves.
 struct LidarDriveOptions {
   SceneOptions scene;
   std::string fidelity = "high";
@@ -18,6 +18,9 @@ struct LidarDriveOptions {
   std::int64_t scans = 1;
 };
 void declare_lidar_drive(Arguments& arguments, LidarDriveOptions& options);
+/// Of these the scene, and along --trajectory alone, which may be left away, the LIDAR: its options are refused without
+/// a way. Returns --trajectory, for more that needs it.
+Argument declare_lidar_way(Arguments& arguments, LidarDriveOptions& options);
 
 Result<lidar::ScanDrive> lidar_drive(const LidarDriveOptions& options);
 

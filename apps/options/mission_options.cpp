@@ -29,6 +29,22 @@ void declare_mission_options(Arguments& arguments, MissionOptions& options) {
                  "replace the results directory if it exists; only one that canyon wrote, or an empty one");
 }
 
+namespace {
+
+/// A key that has an option of its own, with two values: which of them is meant is not to be guessed.
+Status check_set_once(const ConfigNode& setting, bool option_given, const char* option, const char* key) {
+  if (!option_given || setting.find(key) == nullptr) return Ok{};
+  return Error{.file = option, .what = std::string("stands beside --set ") + key, .expected = "one of the two"};
+}
+
+Status check_set_once(const ConfigNode& setting, const MissionOptions& options) {
+  CANYON_TRY_STATUS(check_set_once(setting, options.seed.has_value(), "--seed", "run.seed"));
+  CANYON_TRY_STATUS(check_set_once(setting, !options.nav.empty(), "--nav", "gnss.nav_file"));
+  return check_set_once(setting, !options.start.empty(), "--start", "time.start");
+}
+
+}  // namespace
+
 Result<mission::MissionFile> load_mission(const MissionOptions& options) {
   CANYON_TRY(auto file, mission::MissionFile::load(options.mission));
   if (options.seed) file.set_option("run.seed", ConfigNode::of(*options.seed), "--seed");
@@ -36,6 +52,7 @@ Result<mission::MissionFile> load_mission(const MissionOptions& options) {
   if (!options.start.empty()) file.set_option("time.start", ConfigNode::of(options.start), "--start");
   for (const std::string& setting : options.settings) {
     CANYON_TRY(const ConfigNode tree, ConfigNode::parse(setting, "--set"));
+    CANYON_TRY_STATUS(check_set_once(tree, options));
     file.lay_over(tree);
   }
   return file;

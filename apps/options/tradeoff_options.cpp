@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "canyon/apps/line/usage_errors.h"
+#include "canyon/core/config/text.h"
 
 namespace canyon::apps {
 
@@ -13,6 +14,17 @@ std::string joined(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : ",") + word;
   return out;
+}
+
+/// What only an answer has a use for, where nothing is asked.
+Status check_asked(const TradeoffCall& call) {
+  const bool write = !call.write.empty(), validate = call.validate.has_value();
+  if (!write && !validate && !call.question_s) return Ok{};
+  return Error{.file = write      ? "--write"
+                       : validate ? "--validate"
+                                  : "--seconds",
+               .what = "nothing is chosen",
+               .expected = "--tolerance or --budget-cpu beside it"};
 }
 
 /// The recorded drive, if one is given; nullptr where none is.
@@ -37,7 +49,7 @@ Result<AskedTradeoff> asked_tradeoff(const TradeoffCall& call) {
              .fidelity = call.fidelity,
              .samples = static_cast<std::size_t>(call.samples),
              .repetitions = static_cast<int>(call.repetitions),
-             .question_s = call.question_s,
+             .question_s = call.question_s.value_or(options.question_s),
              .seeds = call.seeds,
              .show_progress = !call.mission.common.json};
   CANYON_TRY_STATUS(study::check_parts(options.parts, "--part"));
@@ -45,8 +57,8 @@ Result<AskedTradeoff> asked_tradeoff(const TradeoffCall& call) {
   CANYON_TRY(asked.recording, recording_of(call));
   options.recording = asked.recording.get();
   CANYON_TRY(asked.question, study::read_question(call.tolerance, call.budget_cpu_s, call.figure));
-  if (!asked.question && !call.write.empty())
-    return Error{.file = "--write", .what = "nothing is chosen", .expected = "--tolerance or --budget-cpu beside it"};
+  if (!asked.question) CANYON_TRY_STATUS(check_asked(call));
+  asked.validate = static_cast<int>(call.validate.value_or(asked.validate));
   return asked;
 }
 
@@ -80,14 +92,19 @@ void declare_tradeoff_options(Arguments& arguments, TradeoffCall& call) {
   arguments.option("--tolerance", call.tolerance,
                    "FIGURE=VALUE: the cheapest settings that change this figure of a run by no more (canyon keys "
                    "--figures lists them)");
-  arguments.option("--budget-cpu", call.budget_cpu_s,
-                   "the settings that change --figure least for so many CPU seconds per simulated second");
-  arguments.option("--figure", call.figure, "what --budget-cpu is to keep").default_shown();
-  arguments.option("--validate", call.validate, "seeds that the answer must hold on, which have not chosen it")
-      .default_shown()
+  const auto budget =
+      arguments.option("--budget-cpu", call.budget_cpu_s,
+                       "the settings that change --figure least for so many CPU seconds per simulated second");
+  arguments.option("--figure", call.figure, "what --budget-cpu is to keep").default_shown().needs(budget);
+  arguments
+      .option("--validate", call.validate,
+              "seeds that the answer must hold on, which have not chosen it; without it " +
+                  std::to_string(AskedTradeoff{}.validate))
       .within(std::int64_t{1}, std::int64_t{10'000});
-  arguments.option("--seconds", call.question_s, "of the true motion, from its start, that it is answered on")
-      .default_shown()
+  arguments
+      .option("--seconds", call.question_s,
+              "of the true motion, from its start, that it is answered on; without it " +
+                  number_text(study::TradeoffOptions{}.question_s))
       .within(1.0, 1e6);
   arguments.option("--write", call.write, "mission file to write, with the answer as the fidelity \"tradeoff\"")
       .type("FILE");

@@ -18,9 +18,10 @@ struct TradeoffCall {
   study::TapeChoice tape;
   std::string recording, parts, fidelity = "high", tolerance, figure = "position_error_rms_m", write;
   std::optional<double> budget_cpu_s;
-  std::int64_t samples = 60, repetitions = 5, seeds = 3, validate = 20;
+  std::int64_t samples = 60, repetitions = 5, seeds = 3;
+  std::optional<std::int64_t> validate;  ///< none: as AskedTradeoff has it
+  std::optional<double> question_s;      ///< none: as study::TradeoffOptions has it
   std::string outputs = "outcome,position,map,clouds";
-  double question_s = 30.0;
 };
 void declare_tradeoff_options(Arguments& arguments, TradeoffCall& call);
 
@@ -29,6 +30,7 @@ struct AskedTradeoff {
   study::TradeoffOptions options;
   std::unique_ptr<const study::RecordedDrive> recording;  ///< nullptr: none is given
   std::optional<study::Question> question;
+  int validate = 20;  ///< seeds that have not chosen the answer, and that it must hold on
 };
 Result<AskedTradeoff> asked_tradeoff(const TradeoffCall& call);
 

@@ -58,6 +58,7 @@ Json why_answer_json(const WhyAnswer& answer) {
 }
 
 void print_why(const WhyAnswer& answer) {
+  if (answer.asked && answer.explanations.empty()) std::printf("No run failed, so there is nothing to explain.\n\n");
   for (const study::Explanation& explanation : answer.explanations) {
     const std::string seed = answer.several_seeds ? " with seed " + std::to_string(explanation.seed) : "";
     std::printf("Why %s failed%s: %s.\n", explanation.run.c_str(), seed.c_str(), study::verdict(explanation).c_str());

@@ -18,10 +18,10 @@ namespace canyon::apps {
 
 namespace {
 
-Result<study::Tradeoff> answer(const TradeoffCall& call, const AskedTradeoff& asked, const mission::MissionFile& file,
+Result<study::Tradeoff> answer(const AskedTradeoff& asked, const mission::MissionFile& file,
                                const study::Comparison& comparison) {
   if (!asked.question) return study::measure_tradeoff(file, asked.options, comparison);
-  return study::choose_and_describe(*asked.question, file, asked.options, comparison, static_cast<int>(call.validate));
+  return study::choose_and_describe(*asked.question, file, asked.options, comparison, asked.validate);
 }
 
 Result<int> run(const TradeoffCall& call) {
@@ -40,7 +40,7 @@ Result<int> run(const TradeoffCall& call) {
     CANYON_TRY(StagedFile staged, StagedFile::create(call.write, call.mission.force));
     written.emplace(std::move(staged));
   }
-  CANYON_TRY(const study::Tradeoff tradeoff, answer(call, asked, file, comparison));
+  CANYON_TRY(const study::Tradeoff tradeoff, answer(asked, file, comparison));
   std::vector<Staged*> outputs{&directory};
   if (written && tradeoff.chosen && tradeoff.chosen->found) {
     CANYON_TRY(const std::string text,

@@ -17,11 +17,13 @@ void NormalSeries::add(GpsTime t, const Eigen::Ref<const Eigen::VectorXd>& z) {
   if (!z.allFinite()) return;
   if (samples_++ == 0) first_ = t;
   last_ = t;
-  squares_ += z.squaredNorm();
-  add(0, z);
+  const double squares = z.squaredNorm();
+  squares_ += squares;
+  add(0, z, squares);
 }
 
-void NormalSeries::add(std::size_t index, const Eigen::VectorXd& z) {
+/// `squares`: mean of the squares of the samples that z is the mean of.
+void NormalSeries::add(std::size_t index, const Eigen::VectorXd& z, double squares) {
   if (index == levels_.size()) {
     levels_.emplace_back();
     levels_.back().ring.resize(static_cast<std::size_t>(kLags * dimension_));
@@ -32,16 +34,21 @@ void NormalSeries::add(std::size_t index, const Eigen::VectorXd& z) {
   };
   const auto reach = std::min<std::int64_t>(kLags, level.count);
   for (std::int64_t k = index == 0 ? 1 : kLags / 2 + 1; k <= reach; ++k) {
-    level.sums[static_cast<std::size_t>(k - 1)] += at(level.count - k).dot(z);
-    ++level.pairs[static_cast<std::size_t>(k - 1)];
+    const auto lag = static_cast<std::size_t>(k - 1);
+    level.sums[lag] += at(level.count - k).dot(z);
+    level.earlier_squares[lag] += level.ring_squares[static_cast<std::size_t>((level.count - k) % kLags)];
+    level.later_squares[lag] += squares;
+    ++level.pairs[lag];
   }
   at(level.count) = z;
+  level.ring_squares[static_cast<std::size_t>(level.count % kLags)] = squares;
   if (++level.count % 2 == 1) {
     level.half = z;
+    level.half_squares = squares;
     return;
   }
   const Eigen::VectorXd mean = 0.5 * (level.half + z);
-  add(index + 1, mean);
+  add(index + 1, mean, 0.5 * (level.half_squares + squares));
 }
 
 double NormalSeries::interval_s() const {
@@ -54,17 +61,16 @@ double NormalSeries::mean_square() const {
 
 std::vector<NormalSeries::Lag> NormalSeries::lags() const {
   std::vector<Lag> out;
-  const double unit = mean_square() * dimension_;
-  bool known = unit > 0.0;
+  bool known = squares_ > 0.0;
   double step = 1.0;
   for (std::size_t l = 0; known && l < levels_.size(); ++l, step *= 2.0) {
     for (std::size_t k = l == 0 ? 1 : kLags / 2 + 1; known && k <= kLags; ++k) {
-      const std::int64_t pairs = levels_[l].pairs[k - 1];
-      known = pairs > 0;
-      if (known)
-        out.push_back({.samples = static_cast<double>(k) * step,
-                       .r = levels_[l].sums[k - 1] / static_cast<double>(pairs) / unit,
-                       .pairs = pairs});
+      const Level& level = levels_[l];
+      known = level.pairs[k - 1] > 0;
+      if (!known) break;
+      const double unit = std::sqrt(level.earlier_squares[k - 1]) * std::sqrt(level.later_squares[k - 1]);
+      const double r = unit > 0.0 ? std::clamp(level.sums[k - 1] / unit, -1.0, 1.0) : 0.0;  // 1 but for rounding
+      out.push_back({.samples = static_cast<double>(k) * step, .r = r, .pairs = level.pairs[k - 1]});
     }
   }
   // The trapezoidal rule over lags that lie farther and farther apart.

@@ -37,7 +37,10 @@ class NormalSeries {
   struct Lag {
     double samples = 0.0;     ///< how far apart
     double stands_for = 1.0;  ///< of so many lags
-    double r = 0.0;           ///< normalized autocorrelation about zero, all elements together
+    /// Normalized autocorrelation about zero, all elements together: the sum over the pairs by the root of the two sums
+    /// of squares of what is in them, that of the earlier samples and that of the later ones. So it is 1 at most, in
+    /// magnitude, however few they are; 0 where one of these sums is nothing.
+    double r = 0.0;
     std::int64_t pairs = 0;
   };
   /// From the shortest on.
@@ -59,13 +62,15 @@ class NormalSeries {
 
  private:
   struct Level {
-    std::vector<double> ring;  ///< the last kLags vectors
+    std::vector<double> ring;                  ///< the last kLags vectors
+    std::array<double, kLags> ring_squares{};  ///< mean of the squares of the samples that each is the mean of
     std::int64_t count = 0;
     Eigen::VectorXd half;  ///< the first of a pair
-    std::array<double, kLags> sums{};
+    double half_squares = 0.0;
+    std::array<double, kLags> sums{}, earlier_squares{}, later_squares{};
     std::array<std::int64_t, kLags> pairs{};
   };
-  void add(std::size_t level, const Eigen::VectorXd& z);
+  void add(std::size_t level, const Eigen::VectorXd& z, double squares);
   double chance() const;
 
   int dimension_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
 #include "canyon/core/math/median.h"
@@ -48,29 +49,52 @@ Centred centred(const std::vector<PosePair>& pairs) {
 }
 
 /// Least squares over the positions (Umeyama, IEEE Trans. PAMI 13 (1991) 376, without scale).
-Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance, bool& determined) {
+Eigen::Matrix3d best_rotation(const Eigen::Matrix3d& covariance) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d values = svd.singularValues();
-  determined = values[1] > 1e-12 * values[0] && values[0] > 0.0;
   Eigen::Vector3d signs(1, 1, 1);
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs[2] = -1.0;
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
 /// The same with one angle free.
-Eigen::Matrix3d best_yaw(const Eigen::Matrix3d& c, bool& determined) {
+Eigen::Matrix3d best_yaw(const Eigen::Matrix3d& c) {
   const double sine = c(1, 0) - c(0, 1), cosine = c(0, 0) + c(1, 1);
-  determined = std::hypot(sine, cosine) > 0.0;
-  const double yaw = determined ? std::atan2(sine, cosine) : 0.0;
+  const double yaw = std::hypot(sine, cosine) > 0.0 ? std::atan2(sine, cosine) : 0.0;
   return rotation_from({.yaw_rad = yaw}).toRotationMatrix();
+}
+
+/// Of the true positions' largest spread.
+Eigen::Vector3d longest_axis(const std::vector<PosePair>& pairs, const Eigen::Vector3d& mean) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const PosePair& pair : pairs) spread += (pair.truth.p - mean) * (pair.truth.p - mean).transpose();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+}
+
+/// Whether the turn about an axis is: all poses count as one, so that as many more of the same drive, or of the same
+/// noise, make it no surer. Exact positions leave nothing of errors, and determine it by any distance from the axis
+/// that is more than rounding.
+bool turn_is_determined(const std::vector<PosePair>& pairs, const Pose& X, const Eigen::Vector3d& mean,
+                        const Eigen::Vector3d& axis) {
+  constexpr double kSurest_rad = 1.0 * kDegree, kRounding = 1e-12;
+  double away2 = 0.0, from_axis2 = 0.0, errors2 = 0.0;
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d from_mean = pair.truth.p - mean;
+    away2 += from_mean.squaredNorm();
+    from_axis2 += axis.cross(from_mean).squaredNorm();
+    errors2 += 0.5 * axis.cross(X * pair.estimate.p - pair.truth.p).squaredNorm();
+  }
+  return std::sqrt(from_axis2) > kRounding * std::sqrt(away2) &&
+         std::sqrt(errors2) < kSurest_rad * std::sqrt(from_axis2);
 }
 
 Pose aligned(const std::vector<PosePair>& pairs, TrajectoryAlignment alignment, bool& determined) {
   if (alignment == TrajectoryAlignment::kNone || pairs.empty()) return {};
   const Centred c = centred(pairs);
-  const Eigen::Matrix3d R = alignment == TrajectoryAlignment::kYaw ? best_yaw(c.covariance, determined)
-                                                                   : best_rotation(c.covariance, determined);
-  return {Eigen::Quaterniond(R), c.truth - R * c.estimate};
+  const bool yaw = alignment == TrajectoryAlignment::kYaw;
+  const Eigen::Matrix3d R = yaw ? best_yaw(c.covariance) : best_rotation(c.covariance);
+  const Pose out{Eigen::Quaterniond(R), c.truth - R * c.estimate};
+  determined = turn_is_determined(pairs, out, c.truth, yaw ? Eigen::Vector3d::UnitZ() : longest_axis(pairs, c.truth));
+  return out;
 }
 
 double angle_deg(const Eigen::Quaterniond& q) {
@@ -88,6 +112,7 @@ RelativeErrors relative_errors(const std::vector<PosePair>& pairs, const std::ve
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     while (j < pairs.size() && along[j] - along[i] < step - rounding) ++j;
     if (j == pairs.size()) break;
+    if (along[j] - along[i] > 2.0 * step - rounding) continue;  // poses too far apart: another stretch
     const Pose truth = pairs[i].truth.inverse() * pairs[j].truth;
     const Pose error = truth.inverse() * (pairs[i].estimate.inverse() * pairs[j].estimate);
     squares_m2 += error.p.squaredNorm();

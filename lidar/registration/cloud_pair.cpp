@@ -77,12 +77,20 @@ CloudPair register_pair(const Registration& method, const CloudPlaces& source, c
 }
 
 std::string cloud_doubt(const std::string& path, const CloudPlaces& cloud) {
-  if (!cloud.single_precision) return {};
-  for (const Eigen::Vector3d& p : cloud.points) {
-    if (p.allFinite() && p.cwiseAbs().maxCoeff() > kFineTo_m && p.cwiseAbs().maxCoeff() < 1e8)
-      return path + ": coordinates in single precision beyond 10 km are no finer than 1 mm";
-  }
-  return {};
+  std::vector<std::string> doubts;
+  const auto& points = cloud.points;
+  const auto not_finite = std::count_if(points.begin(), points.end(), [](const auto& p) { return !p.allFinite(); });
+  if (not_finite > 0)
+    doubts.push_back(std::to_string(not_finite) + " of " + std::to_string(points.size()) +
+                     " points are not finite and left out");
+  const auto is_coarse = [](const Eigen::Vector3d& p) {
+    return p.allFinite() && p.cwiseAbs().maxCoeff() > kFineTo_m && p.cwiseAbs().maxCoeff() < 1e8;
+  };
+  if (cloud.single_precision && std::any_of(points.begin(), points.end(), is_coarse))
+    doubts.emplace_back("coordinates in single precision beyond 10 km are no finer than 1 mm");
+  std::string out;
+  for (const std::string& doubt : doubts) out += (out.empty() ? path + ": " : "; ") + doubt;
+  return out;
 }
 
 }  // namespace canyon::lidar

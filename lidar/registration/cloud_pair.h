@@ -20,8 +20,8 @@ struct CloudPair {
 CloudPair register_pair(const Registration& method, const CloudPlaces& source, const CloudPlaces& target,
                         const PosePrior& prior);
 
-/// What is to be doubted of a cloud before it is registered; empty: nothing. Coordinates in single precision beyond 10
-/// km are no finer than 1 mm.
+/// What is to be doubted of a cloud before it is registered, in one line; empty: nothing. Points that are not finite
+/// are left out. Coordinates in single precision beyond 10 km are no finer than 1 mm.
 std::string cloud_doubt(const std::string& path, const CloudPlaces& cloud);
 
 }  // namespace canyon::lidar

@@ -173,9 +173,10 @@ StressFigure any_map(std::uint64_t seed, int n, double cap_m) {
   return looks.figure();
 }
 
-/// An estimate that wanders: absolute errors of every pose, and relative ones from every pose to the first so far on,
-/// by their definitions; under each alignment no small turn or shift makes the sum of squares less; poses beside the
-/// truth's time do not count. 64 eps of 180 m; of logarithms near no turn a millionth of what they are.
+/// An estimate that wanders: absolute errors of every pose, and relative ones from every pose to the first so far on
+/// and less than twice as far, by their definitions; under each alignment no small turn or shift makes the sum of
+/// squares less; poses beside the truth's time do not count. 64 eps of 180 m; of logarithms near no turn a millionth of
+/// what they are.
 StressFigure wandering(const std::string& alignment, std::uint64_t seed) {
   Looks looks;
   const RandomStream draws(seed, "stress.trajectories");
@@ -190,7 +191,7 @@ StressFigure wandering(const std::string& alignment, std::uint64_t seed) {
   for (int k = -10; k <= 320; ++k) {
     const auto i = static_cast<std::uint64_t>(k + 10);
     const double t = 0.2 * k;
-    const Pose off{so3_exp(0.02 * draws.normal3(i)), 0.5 * draws.normal3(i, 1)};
+    const Pose off{so3_exp(0.02 * draws.normal3(i)), 0.1 * draws.normal3(i, 1)};
     estimate.append({start + t, whole * true_pose(t < 0.0 ? 0.0 : t) * off});
   }
   const auto& row = model_row(trajectory_alignments(), alignment);
@@ -247,7 +248,7 @@ StressFigure wandering(const std::string& alignment, std::uint64_t seed) {
     for (std::size_t i = 0; i < a.size(); ++i) {
       std::size_t j = i;
       while (j < a.size() && along[j] - along[i] < stretches[r].second * (1.0 - 1e-9)) ++j;
-      if (j == a.size()) continue;
+      if (j == a.size() || along[j] - along[i] >= stretches[r].second * (2.0 - 1e-9)) continue;
       const Pose error = (a[i].inverse() * a[j]).inverse() * (b[i].inverse() * b[j]);
       pairs += 1, m2 += error.p.squaredNorm(), deg2 += std::pow(so3_log(error.R).norm() / kDegree, 2);
     }

@@ -7,6 +7,9 @@
 #include "canyon/core/config/text.h"
 #include "canyon/core/units.h"
 #include "canyon/lidar/registration/registration.h"
+#include "canyon/mission/autonomy/perception/street_weight.h"
+#include "canyon/mission/autonomy/planning/plan_parameters.h"
+#include "canyon/mission/autonomy/planning/tracker.h"
 #include "canyon/mission/autonomy/reference.h"
 #include "canyon/mission/autonomy/reference_2012.h"
 #include "canyon/mission/autonomy/route_driver.h"
@@ -118,6 +121,15 @@ Status check_measurements(const MissionConfig& config) {
   return Ok{};
 }
 
+/// An autonomy that works with registered poses must be given some.
+Status check_registered_map(const MissionConfig& config) {
+  if (config.autonomy.map != MapPose::kRegistered || lidar::registers(config.registration)) return Ok{};
+  return Error{.key = "autonomy.map, registration.method",
+               .what = "the autonomy works with the registered pose, and with method \"" +
+                       config.registration.method.name + "\" nothing is registered",
+               .expected = "another registration.method, or autonomy.map = \"prior\""};
+}
+
 /// A prior map is registered onto, and the filter's pose in it comes from that.
 Status check_prior_map(const MissionConfig& config) {
   const bool given = !config.registration.prior_map.empty();
@@ -139,6 +151,36 @@ Status check_prior_map(const MissionConfig& config) {
 /// Keys of an autonomy that does not drive contradict nothing.
 bool is_2012(const AutonomyConfig& autonomy) {
   return autonomy.model.name == "reference_2012";
+}
+
+/// The least of each of the autonomy's own keys, against the most. Those of a part that is not chosen say nothing.
+Status check_ranges(const AutonomyConfig& autonomy) {
+  if (is_2012(autonomy)) {
+    const PathChoiceConfig& choice = autonomy.model.own.get<Reference2012Parameters>().choice;
+    return check_limit({"autonomy.choice.stop_margin_m", choice.stop_margin_m, "autonomy.choice.horizon_m",
+                        choice.horizon_m,
+                        "it halts " + number_text(choice.stop_margin_m) + " m before what it looks for only " +
+                            number_text(choice.horizon_m) + " m ahead"});
+  }
+  if (autonomy.model.name != "reference") return Ok{};
+  const auto& parts = autonomy.model.own.get<ReferenceParameters>();
+  if (parts.lane.model.name != "route") {
+    const auto& sides = parts.lane.model.own.get<StreetSidesParameters>();
+    CANYON_TRY_STATUS(
+        check_limit({"autonomy.lane.narrowest_m", sides.narrowest_m, "autonomy.lane.widest_m", sides.widest_m,
+                     "no street is " + number_text(sides.narrowest_m) + " m wide or more and " +
+                         number_text(sides.widest_m) + " m or less"}));
+  }
+  const auto& plan = parts.planner.model.own.get<PlanParameters>();
+  CANYON_TRY_STATUS(check_limit({"autonomy.planner.clearance_m", plan.clearance_m,
+                                 "autonomy.planner.comfort_clearance_m", plan.comfort_clearance_m,
+                                 "nearer than " + number_text(plan.comfort_clearance_m) +
+                                     " m costs, and no way is nearer than " + number_text(plan.clearance_m) + " m"}));
+  if (parts.tracker.model.name != "pure_pursuit") return Ok{};
+  const Lookahead ahead = pure_pursuit_lookahead(parts.tracker.model.own);
+  return check_limit({"autonomy.tracker.lookahead_min_m", ahead.min_m, "autonomy.tracker.lookahead_max_m", ahead.max_m,
+                      "it steers for a point no nearer than " + number_text(ahead.min_m) + " m and no farther than " +
+                          number_text(ahead.max_m) + " m"});
 }
 
 /// What the autonomy plans with, against what the vehicle can do.
@@ -200,8 +242,10 @@ Status check_consistency(const MissionConfig& config) {
   CANYON_TRY_STATUS(check_body(config.vehicle));
   CANYON_TRY_STATUS(check_grip(config.autonomy, config.vehicle));
   CANYON_TRY_STATUS(check_driving(config.autonomy, config.vehicle));
+  CANYON_TRY_STATUS(check_ranges(config.autonomy));
   CANYON_TRY_STATUS(check_measurements(config));
   CANYON_TRY_STATUS(check_prior_map(config));
+  CANYON_TRY_STATUS(check_registered_map(config));
   return check_seeing(config.autonomy, config.lidar.rate_hz);
 }
 

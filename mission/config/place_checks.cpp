@@ -67,9 +67,10 @@ Status check_building(const Waypoint& waypoint, std::size_t i, const scene::Site
   std::vector<std::string> names;
   for (const auto& building : site.buildings) names.push_back(building.name);
   if (std::find(names.begin(), names.end(), waypoint.observe) != names.end()) return Ok{};
+  const std::string nearest = nearest_word(waypoint.observe, names);
   return Error{.key = waypoint_key(i),
                .what = quoted(waypoint) + ": no building named \"" + waypoint.observe + "\"",
-               .expected = "a building of the scene; nearest is \"" + nearest_word(waypoint.observe, names) + "\""};
+               .expected = "a building of the scene" + (nearest.empty() ? "" : "; nearest is \"" + nearest + "\"")};
 }
 
 }  // namespace

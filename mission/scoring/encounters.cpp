@@ -31,6 +31,25 @@ bool Encounters::Times::begins(bool holds, GpsTime t) {
   return anew;
 }
 
+bool Encounters::Approaches::is_near_miss() const {
+  return std::any_of(things_.begin(), things_.end(), [](const Thing& thing) { return !thing.touched; });
+}
+
+void Encounters::Approaches::add(std::uint32_t object, bool touched, GpsTime t) {
+  if (!things_.empty() && t - last_ > kTimesApart_s) {
+    before_ = near_misses();
+    things_.clear();
+  }
+  last_ = t;
+  const auto known =
+      std::find_if(things_.begin(), things_.end(), [object](const Thing& thing) { return thing.object == object; });
+  if (known == things_.end()) {
+    things_.push_back({object, touched});
+  } else {
+    known->touched = known->touched || touched;
+  }
+}
+
 bool Encounters::is_thing(const NearTriangle& triangle) const {
   return scene_.object(scene_.surface(triangle.index).object).kind != scene::ObjectKind::kTerrain;
 }
@@ -44,13 +63,23 @@ bool Encounters::is_driven_over(const NearTriangle& triangle, const OrientedBox&
   return std::max({up.dot(t.a), up.dot(t.b), up.dot(t.c)}) < underside_m;
 }
 
-double Encounters::clearance_m(const Pose& X_WB) {
+double Encounters::clearance_m(const Pose& X_WB, GpsTime t) {
   const OrientedBox body = body_box(vehicle_, X_WB);
   double least_m = kFar_m;
-  for (const NearTriangle& triangle : near_.near(body.X_WC.p, body.radius_m() + kFar_m))
-    if (is_thing(triangle) && !is_driven_over(triangle, body))
-      least_m = std::min(least_m, distance_m(body, triangle.corners));
+  for (const NearTriangle& triangle : near_.near(body.X_WC.p, body.radius_m() + kFar_m)) {
+    if (!is_thing(triangle) || is_driven_over(triangle, body)) continue;
+    const double clear_m = distance_m(body, triangle.corners);
+    least_m = std::min(least_m, clear_m);
+    if (clear_m < near_miss_m_) approaches_.add(scene_.surface(triangle.index).object, clear_m <= 0.0, t);
+  }
   return least_m;
+}
+
+void Encounters::touched(std::uint32_t object, GpsTime t) {
+  if (scene_.object(object).kind == scene::ObjectKind::kTerrain) return;
+  numbers_.clearance_min_m = 0.0;
+  approaches_.add(object, true, t);
+  numbers_.near_misses = approaches_.near_misses();
 }
 
 bool Encounters::meets(const Pose& X_WB, double curvature_1_m, double way_m) {
@@ -74,11 +103,10 @@ void Encounters::look(const KinematicState& truth, double speed_m_s, const Drive
   looked_ = true;
   looked_at_ = truth.t;
   looked_from_ = p;
-  const double clear_m = clearance_m(truth.X_WB);
+  const double clear_m = clearance_m(truth.X_WB, truth.t);
   numbers_.clearance_min_m =
       std::isnan(numbers_.clearance_min_m) ? clear_m : std::min(numbers_.clearance_min_m, clear_m);
-  const bool near = clear_m > 0.0 && clear_m < near_miss_m_;
-  numbers_.near_misses += near_miss_.begins(near, truth.t) ? 1 : 0;
+  numbers_.near_misses = approaches_.near_misses();
 
   const bool finds_no_way = state == AutonomyState::kBlocked && command.speed_m_s <= 0.0;
   const bool phantom = finds_no_way && !meets(truth.X_WB, 0.0, phantom_free_m_);

@@ -64,7 +64,6 @@ void Scorer::observe(const Eigen::Vector3d& camera_W, const std::vector<Eigen::V
 
 void Scorer::follow(const KinematicState& truth, double speed_m_s, const DriveCommand& command, AutonomyState state,
                     int next_waypoint) {
-  constexpr double kFirstPlan_s = 0.5;  // before it has seen anything it finds no way, and is right
   const bool has_seen = first_scan_ && truth.t - *first_scan_ > kFirstPlan_s;
   encounters_.look(truth, speed_m_s, command, has_seen ? state : AutonomyState::kBlind);
   for (std::size_t i = 0; i < waypoints_.size() && static_cast<int>(i) < next_waypoint; ++i) {
@@ -108,6 +107,7 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
   if (const auto object = collision_->touched(truth)) {
     fail(Outcome::kCollision, truth, "hit " + name_with_kind(scene_, *object));
     failure_->seen = sightings_.of(*object, truth.t);
+    encounters_.touched(*object, truth.t);
     return false;
   }
   standing_s_ = standing && !observing ? standing_s_ + dt : 0.0;

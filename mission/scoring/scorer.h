@@ -46,6 +46,9 @@ struct WaypointScore {
 /// first in time counts; of those that only the end shows, that of the first waypoint.
 class Scorer {
  public:
+  /// So long after its first scan an autonomy may find no way, and is right: before it has seen anything it knows none.
+  static constexpr double kFirstPlan_s = 0.5;
+
   Scorer(const MissionConfig& config, const PreparedMission& mission, const scene::SceneAt& scene);
 
   /// One true step; `observing` (the autonomy stands on purpose) excuses standing still.

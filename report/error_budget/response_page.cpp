@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "canyon/core/files/files.h"
+#include "canyon/core/messages.h"
 #include "canyon/report/draw/chart.h"
 #include "canyon/report/draw/html.h"
 #include "canyon/report/draw/page.h"
@@ -24,12 +25,12 @@ struct HealedCurve {
   std::vector<double> size, healed, low, high;
 };
 
-/// A size, "never" or "beyond".
+/// A size, or "below" or "beyond" those that were tried.
 std::string half_shown(const JsonFields& series, const char* key) {
   const JsonNode* node = series.find(key);
   if (node != nullptr && node->is_string()) return "beyond";
   const double size = series.number(key);
-  return size == 0.0 ? "never" : show_number(size);
+  return size == 0.0 ? "below" : show_number(size);
 }
 
 HealedCurve read_curve(const JsonFields& f, const char* series_key) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "canyon/core/config/text.h"
 #include "canyon/scene/city/site.h"
@@ -43,8 +44,34 @@ std::shared_ptr<const RigidShape> make_shape(const Shape& shape, const Scene& sc
   return std::make_shared<const RigidShape>(shape.name, shape.kind, std::move(parts.mesh));
 }
 
+std::string thing_key(std::size_t i) {
+  return "scene.moving[" + std::to_string(i + 1) + "]";
+}
 std::string way_key(std::size_t i) {
-  return "scene.moving[" + std::to_string(i + 1) + "].path_m";
+  return thing_key(i) + ".path_m";
+}
+
+std::string moving_name(const MovingConfig& config, std::size_t i) {
+  return config.name.empty() ? config.shape + " " + std::to_string(i + 1) : config.name;
+}
+
+Error is_taken(std::size_t i, const std::string& name, const std::string& by) {
+  return Error{"", 0, thing_key(i) + ".name", "\"" + name + "\" is the name of " + by + " too", "a name of its own"};
+}
+
+/// Results tell things by their names. `standing`: what else the scene has.
+template <class Named>
+Status check_names(const std::vector<MovingConfig>& moving, const std::vector<Named>& standing) {
+  std::map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    const auto [first, is_new] = places.emplace(moving_name(moving[i], i), i);
+    if (!is_new) return is_taken(i, first->first, thing_key(first->second));
+  }
+  if (places.empty()) return Ok{};
+  for (const Named& thing : standing)
+    if (const auto taken = places.find(thing.name); taken != places.end())
+      return is_taken(taken->second, thing.name, "something that stands in the scene");
+  return Ok{};
 }
 
 Status check_size(const MovingConfig& config, std::size_t i) {
@@ -61,7 +88,7 @@ Error lies_outside(std::size_t i, const Eigen::Vector2d& p, const std::string& e
 }  // namespace
 
 void visit(FieldVisitor& f, MovingConfig& c) {
-  f.text("name", c.name, "of this moving thing; else its shape and number");
+  f.text("name", c.name, "of this moving thing, and of nothing else; else its shape and number");
   f.choice("shape", c.shape, moving_shapes(), "what it looks like");
   f.numbers("path_m", c.path_m, 0, {-1e5, 1e5}, "x, y, x, y, ... of its way in W");
   f.number("speed_m_s", c.speed_m_s, {0.0, 100.0}, "along the way");
@@ -75,6 +102,7 @@ std::vector<std::string> moving_shapes() {
 }
 
 Status check_ways(const std::vector<MovingConfig>& moving, const Site& site) {
+  CANYON_TRY_STATUS(check_names(moving, site.buildings));
   for (std::size_t i = 0; i < moving.size(); ++i) {
     CANYON_TRY_STATUS(check_size(moving[i], i));
     for (std::size_t k = 0; k + 1 < moving[i].path_m.size(); k += 2) {
@@ -88,14 +116,11 @@ Status check_ways(const std::vector<MovingConfig>& moving, const Site& site) {
 Result<Traffic> Traffic::make(const std::vector<MovingConfig>& moving, const Scene& scene) {
   Traffic out;
   out.scene_ = &scene;
+  CANYON_TRY_STATUS(check_names(moving, scene.objects()));
   for (std::size_t i = 0; i < moving.size(); ++i) {
     const MovingConfig& config = moving[i];
     CANYON_TRY_STATUS(check_size(config, i));
-    Moving m{config.name.empty() ? config.shape + " " + std::to_string(i + 1) : config.name,
-             nullptr,
-             {},
-             config.speed_m_s,
-             config.start_s};
+    Moving m{moving_name(config, i), nullptr, {}, config.speed_m_s, config.start_s};
     for (std::size_t k = 0; k + 1 < config.path_m.size(); k += 2) {
       m.path_W.emplace_back(config.path_m[k], config.path_m[k + 1]);
       if (!scene.ground(m.path_W.back().x(), m.path_W.back().y()))

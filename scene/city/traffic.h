@@ -26,7 +26,8 @@ void visit(FieldVisitor& f, MovingConfig& c);
 /// The shapes there are: "car" (4.5 x 1.8 x 1.5 m), "bus" (12 x 2.55 x 3 m), "person" (0.3 x 0.5 x 1.75 m).
 std::vector<std::string> moving_shapes();
 
-/// That each way has points, all of them within the site; what can be told before there is terrain.
+/// That each thing has a name of its own, which no building has, and each way points, all of them within the site; what
+/// can be told before there is terrain.
 Status check_ways(const std::vector<MovingConfig>& moving, const Site& site);
 
 /// Where a moving thing may ever be along one leg of its way: within a distance of the leg, and below a height in W.
@@ -42,7 +43,7 @@ struct SweptRoom {
 /// a scene meet the same traffic.
 class Traffic {
  public:
-  /// Paths must lie on the terrain. `scene` must outlive this.
+  /// Paths must lie on the terrain, names be those of nothing else that moves or stands. `scene` must outlive this.
   static Result<Traffic> make(const std::vector<MovingConfig>& moving, const Scene& scene);
 
   bool empty() const { return moving_.empty(); }

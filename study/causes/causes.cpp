@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "canyon/core/check.h"
 #include "canyon/core/process/parallel.h"
@@ -108,9 +109,9 @@ Status see_events(const Comparison& comparison, std::vector<Failed>& failed, boo
   std::vector<std::optional<Error>> errors(failed.size());
   parallel_for(failed.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      RunEvents events;
-      const auto record =
-          drive(comparison, failed[i].run, config_of(comparison, failed[i]), &events, nullptr, progress);
+      mission::MissionConfig config = config_of(comparison, failed[i]);
+      RunEvents events(first_plan_by_s(config));
+      const auto record = drive(comparison, failed[i].run, std::move(config), &events, nullptr, progress);
       if (!record) {
         errors[i] = record.error();
         continue;

@@ -7,6 +7,7 @@
 
 #include "canyon/core/math/chi_square.h"
 #include "canyon/core/truth.h"
+#include "canyon/mission/scoring/scorer.h"
 #include "canyon/study/results/run_statistics.h"
 
 namespace canyon::study {
@@ -25,6 +26,10 @@ ModelTable<EventKind> event_kinds() {
       {"stopped", EventKind::kStopped, "the autonomy stands before something, or sees nothing"},
   };
   return kRows;
+}
+
+double first_plan_by_s(const mission::MissionConfig& config) {
+  return 2.0 / config.lidar.rate_hz + config.lidar.latency_s + mission::Scorer::kFirstPlan_s;
 }
 
 void RunEvents::see(EventKind kind, GpsTime t, double size) {
@@ -72,9 +77,18 @@ Status RunEvents::epoch(const mission::NavRow& row) {
     if (square > bound) see(EventKind::kOverconfident, row.t, std::sqrt(square / bound));
   }
   if (row.phantom) see(EventKind::kPhantom, row.t, 1.0);
-  if (row.state == mission::AutonomyState::kBlocked || row.state == mission::AutonomyState::kBlind)
-    see(EventKind::kStopped, row.t, 1.0);
+  see_standing(row.state == mission::AutonomyState::kBlocked || row.state == mission::AutonomyState::kBlind, row.t);
   return Ok{};
+}
+
+void RunEvents::see_standing(bool stands, GpsTime t) {
+  if (waits_ && stands && t - start_ < first_plan_by_s_) {
+    if (!waited_) waited_ = t;
+    return;
+  }
+  if (waits_ && stands && waited_) see(EventKind::kStopped, *waited_, 1.0);  // that was no wait
+  waits_ = false;
+  if (stands) see(EventKind::kStopped, t, 1.0);
 }
 
 Status RunEvents::keyframe(const mission::KeyframeRow& row) {

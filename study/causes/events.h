@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "canyon/core/model_table.h"
+#include "canyon/mission/config/mission_config.h"
 #include "canyon/mission/recorder/recorder.h"
 
 namespace canyon::study {
@@ -36,9 +38,17 @@ struct Event {
                       ///< bound; position error over its own 3 sigma; m between the two copies; epochs: 1
 };
 
+/// By when the autonomy of a mission has seen something and planned, s after the start: a first scan must have begun
+/// after the start, and there is one in every period; mission::Scorer::kFirstPlan_s more.
+double first_plan_by_s(const mission::MissionConfig& config);
+
 /// Sees a run's events as it goes. Two of a kind that are less than kEventGap_s apart are one.
 class RunEvents final : public mission::Recorder {
  public:
+  /// Who stands from the start on and no longer than until `first_plan_by_s` waits for its first scan, and has not
+  /// stopped.
+  explicit RunEvents(double first_plan_by_s = 0.0) : first_plan_by_s_(first_plan_by_s) {}
+
   Status gnss(const mission::GnssRow& row) override;
   Status epoch(const mission::NavRow& row) override;
   Status keyframe(const mission::KeyframeRow& row) override;
@@ -48,12 +58,16 @@ class RunEvents final : public mission::Recorder {
 
  private:
   void see(EventKind kind, GpsTime t, double size);
+  void see_standing(bool stands, GpsTime t);
 
   /// Where keyframes truly were, and how far off they were placed.
   struct Placed {
     Eigen::Vector3d p_W, off_W;
   };
 
+  double first_plan_by_s_;
+  bool waits_ = true;              ///< it has stood since its first epoch, and may wait for its first scan
+  std::optional<GpsTime> waited_;  ///< that epoch
   std::vector<Event> events_;
   std::map<std::pair<int, int>, std::vector<Placed>> placed_;  ///< by cells of kSameSurfaces_m
   bool started_ = false, had_fix_ = true;

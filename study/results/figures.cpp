@@ -165,7 +165,7 @@ constexpr auto kFigures = std::to_array<Figure>({
     {kSky, "multipath_share", "%", "multipath share of tracked", kLower, kShare, 1, [](const Run& r) { return r.multipath_share; },
      "tracked satellites received directly and by reflection"},
     {kSky, "fix_error_rms_m", "m", "fix error, RMS", kLower, kQuantity, 3, [](const Run& r) { return r.fix_error_rms_m; },
-     "3-D, receiver's fix against truth"},
+     "3-D, receiver's fix against truth; fixes.rms_m of evidence is per axis"},
     {kSky, "fixes_due", "", "fixes due", kNeither, kCount, 0, [](const Run& r) -> double { return r.fixes_due; }},
     {kSky, "fixes_lost", "", "fixes lost", kLower, kCount, 0, [](const Run& r) -> double { return r.fixes_lost; },
      "due epochs without a solution", "fixes_due"},

@@ -62,7 +62,10 @@ std::vector<std::vector<RunSummary>> runs_by_seed(const Results& results);
 /// `seeds`, `shares` (null in an open loop), `paired` and `over_seeds` as members of summary.json.
 void write_over_seeds(const OverSeeds& found, nlohmann::ordered_json& out);
 
-/// The same for a terminal: medians of the figures with these keys, or of all; shares and differences.
+/// The same for a terminal: medians of the figures with these keys, or of all that any run has; shares and differences.
 std::string over_seeds_table(const OverSeeds& found, const std::vector<std::string>& keys = {});
+/// The 2 x 2 of GNSS and IMU, one for each filter, of medians; empty where the runs of a seed, in the order of `found`,
+/// make none.
+std::string squares_over_seeds(const OverSeeds& found, const std::vector<RunSummary>& runs);
 
 }  // namespace canyon::study

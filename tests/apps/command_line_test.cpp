@@ -215,8 +215,64 @@ TEST_F(CommandLineTest, UsageMistakesNameTheArgumentAsItWasTyped) {
     expect_mistake(std::string("run mission.toml --seed ") + seed,
                    std::string("--seed: \"") + seed + "\", expected a whole number from 0 to 9000000000000000\n");
   expect_mistake("run mission.toml --out", "canyon run: --out has no value, expected one\n");
+  // 2026-11-30: "has no value", or the first one was blamed.
+  expect_mistake("compare mission.toml --threads 1 --threads 2",
+                 "canyon compare: --threads given twice, expected it once\n");
+  expect_mistake("compare mission.toml --threads 1 --threads 2 --threads x",
+                 "canyon compare: --threads given 3 times, expected it once\n");
+  expect_mistake("gnss solve --obs a --nav b --nav ''", "--nav: \"\", expected another value\n");
+  // 2026-11-30: "expected another value".
+  expect_mistake("lidar scan --frame world", "--frame: \"world\", expected one of sensor, scene\n");
+  expect_mistake("lidar error-budget --hidden=heeled",
+                 "--hidden: \"heeled\", expected one of healed, dropped, both; nearest is \"healed\"\n");
   // 2026-11-22: "is missing, expected it".
   expect_mistake("report", "canyon report: directory is missing; canyon report --help shows an example\n");
+}
+
+// 2026-11-30: nan passed every range, to end a computation in a check, or a drive in garbage.
+TEST_F(CommandLineTest, WhatIsNoNumberIsInNoRange) {
+  for (const char* none : {"nan", "NaN", "nan(7)", "inf", "1e999"})
+    expect_mistake("lidar evaluate map.pcd --cap '" + std::string(none) + "'",
+                   "--cap: \"" + std::string(none) + "\", expected a number from 0.1 to 100\n");
+  expect_mistake("lidar evaluate map.pcd --cap=-nan", "--cap: \"-nan\", expected a number from 0.1 to 100\n");
+  expect_mistake("lidar evaluate map.pcd --trajectory a.tum --estimate b.tum --estimate-rate nan",
+                 "--estimate-rate: \"nan\", expected a number from 0.001 to 10000\n");
+  expect_mistake("lidar evaluate map.pcd --trajectory a.tum --reach nan",
+                 "--reach: \"nan\", expected a number from 1 to 1000\n");
+  expect_mistake("lidar register a.bin b.bin --leaf nan", "--leaf: \"nan\", expected a number from 0.01 to 100\n");
+  expect_mistake("lidar error-response --stretch nan", "--stretch: \"nan\", expected a number from 10 to 100000\n");
+  expect_mistake("compare --open-loop --trajectory x --trajectory-rate nan",
+                 "--trajectory-rate: \"nan\", expected a number from 0.001 to 10000\n");
+  expect_mistake("scene info a.obj --undulation nan", "--undulation: \"nan\", expected a number from -200 to 200\n");
+  // Those that are read in their own way.
+  for (const char* none : {"nan", "inf"}) {
+    const std::string word = none;
+    expect_mistake("tolerance --sizes 1," + word,
+                   "--sizes: \"" + word + "\", expected numbers from 0 to 1000, apart by commas\n");
+    expect_mistake("lidar error-response --sizes 1," + word,
+                   "--sizes: \"" + word + "\", expected numbers above 0, up to 1000, apart by commas\n");
+    expect_mistake("lidar register a.bin b.bin --sigma " + word + ",1",
+                   "--sigma: \"" + word + ",1\" cannot be read, expected METRES,DEGREES: of the guess, per axis\n");
+    expect_mistake("lidar register a.bin b.bin --guess=1,0,0,0,0,1,0,0,0,0,1,0,0,0,0," + word,
+                   "\" cannot be read, expected 16 numbers, row by row: T_target_source\n");
+    expect_mistake("lidar scan --at 0,0,0," + word,
+                   "--at: \"0,0,0," + word + "\" cannot be read, expected X,Y,H,YAW: ");
+    expect_mistake("lidar scan --at 0,0,0,0 --rate " + word,
+                   "--rate: lidar.rate_hz: " + word + " is not a finite number, expected a number from 0.1 to 100\n");
+    expect_mistake("tradeoff --budget-cpu " + word, "--budget-cpu: " + word + ", expected a positive number\n");
+  }
+}
+
+// 2026-11-30: --set won, silently.
+TEST_F(CommandLineTest, AKeyThatHasAnOptionIsSetByOneOfThem) {
+  expect_mistake("run mission.toml --seed 6 --set run.seed=5 --out out",
+                 "--seed: stands beside --set run.seed, expected one of the two\n");
+  expect_mistake("run mission.toml --set 'run={seed=5}' --seed 6 --out out",
+                 "--seed: stands beside --set run.seed, expected one of the two\n");
+  expect_mistake("compare mission.toml --nav a.10n --set 'gnss.nav_file=\"b.10n\"' --out out",
+                 "--nav: stands beside --set gnss.nav_file, expected one of the two\n");
+  expect_mistake("plan mission.toml --start 1590:0 --set 'time.start=\"1591:0\"'",
+                 "--start: stands beside --set time.start, expected one of the two\n");
 }
 
 TEST_F(CommandLineTest, PathsInAMissionFileStartAtItsFolder) {

@@ -150,6 +150,8 @@ TEST_F(LidarScanTest, PacketsGoOutAtTheSensorsPace) {
 
 TEST_F(LidarScanTest, MistakesAreNamed) {
   expect_mistake("lidar scan", "command line: no place given, expected --at X,Y,H,YAW or --trajectory FILE");
+  expect_mistake("lidar scan --trajectory given_short.tum --scans 5",
+                 "--scans: stands alone, expected --at beside it\n");
   expect_mistake("lidar scan --at 1,2,3",
                  "--at: \"1,2,3\" cannot be read, expected X,Y,H,YAW: metres in the scene, metres above ground, "
                  "degrees from east");

@@ -140,6 +140,7 @@ TEST_F(OpenLoopTest, WhatIsWrongWithATapeIsSaid) {
 }
 
 TEST_F(OpenLoopTest, WhatIsWrongWithADriveIsSaid) {
+  expect_refusal("--open-loop --trajectory-rate 5", "--trajectory-rate: stands alone, expected --trajectory beside it");
   write_drive("short.tum", 20);
   expect_refusal("--open-loop --trajectory short.tum",
                  "short.tum: is 1.9 s long, expected at least the 4 s of time.limit_s");

@@ -86,6 +86,14 @@ TEST_F(PlanVerbTest, BadInputIsOneLine) {
   expect_refusal("--fidelity hihg", "high");
   EXPECT_EQ(canyon("run --plan mission.toml"), 2);
   EXPECT_THAT(read("stderr"), HasSubstr("--plan: \"mission.toml\" is a mission file"));
+  // 2026-11-30: --for without --plan was not looked at.
+  for (const char* call : {"run", "compare"}) {
+    expect_mistake(std::string(call) + " mission.toml --for outcme --out out",
+                   "--for: stands alone, expected --plan beside it\n");
+    // Unless what it needs is misspelt.
+    expect_mistake(std::string(call) + " mission.toml --for outcome --pln --out out",
+                   "no option \"--pln\", expected \"--plan\"?\n");
+  }
 }
 
 }  // namespace

@@ -81,6 +81,12 @@ TEST_F(TradeoffTest, WhatIsWrongIsOneLine) {
                  "--tolerance: position_error_rms_m: \"0\", expected a number above 0");
   expect_mistake("tradeoff --fidelity medium", "--fidelity");
   expect_mistake("tradeoff --write x.toml", "--write: nothing is chosen, expected --tolerance or --budget-cpu");
+  expect_mistake("tradeoff --validate 5",
+                 "--validate: nothing is chosen, expected --tolerance or --budget-cpu beside it\n");
+  expect_mistake("tradeoff --seconds 5",
+                 "--seconds: nothing is chosen, expected --tolerance or --budget-cpu beside it\n");
+  expect_mistake("tradeoff --tolerance position_error_rms_m=1 --figure gdop_median",
+                 "--figure: stands alone, expected --budget-cpu beside it\n");
   expect_mistake("tradeoff --repetitions 4", "--repetitions");
   expect_mistake("tradeoff mission.toml --part fusion,imu --tolerance position_error_rms_m=1e-9 --validate 1",
                  "is below what high itself errs against its finest rungs, expected at least ");

@@ -81,6 +81,8 @@ TEST_F(WhyTest, AStoppedRunIsNotExplained) {
   ASSERT_EQ(canyon("compare mission.toml --fidelities low --no-2x2 --why --why-draws 10 --out out"), 0)
       << read("stderr");
   EXPECT_EQ(Json::parse(read("out/why.json"))["failures"].size(), 0U);
+  // 2026-11-30: nothing was said.
+  EXPECT_THAT(read("stdout"), HasSubstr("\nNo run failed, so there is nothing to explain.\n"));
 }
 
 TEST_F(WhyTest, Mistakes) {

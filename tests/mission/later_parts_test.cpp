@@ -14,6 +14,12 @@ MissionConfig driven() {
   return short_config("high", "high", "[time]\nlimit_s = 16.0\n");
 }
 
+/// That drive with nothing taken away, once for all tests.
+const RecordedRun& plain_drive() {
+  static const RecordedRun run = drive(driven());
+  return run;
+}
+
 RecordedRun drive_later(const MissionConfig& config, const LaterParts& later) {
   auto mission = prepare(config, scenes());
   EXPECT_TRUE(mission.ok());
@@ -21,6 +27,12 @@ RecordedRun drive_later(const MissionConfig& config, const LaterParts& later) {
   auto record = run_mission(config, *mission, nullptr, {.recorder = &run, .autonomy = nullptr, .later = &later});
   EXPECT_TRUE(record.ok()) << (record.ok() ? "" : record.error().str());
   static_cast<RunRecord&>(run) = *std::move(record);
+  return run;
+}
+
+/// That drive with other noise later on, once for all tests.
+const RecordedRun& other_noise_drive() {
+  static const RecordedRun run = drive_later(driven(), {.config = driven(), .from_s = kFrom_s, .noise_seed = 77});
   return run;
 }
 
@@ -42,25 +54,23 @@ std::uint64_t seed_of(const MissionConfig& config) {
 
 TEST(LaterParts, TheSameSensorsGiveTheSameBits) {
   const MissionConfig config = driven();
-  const RecordedRun plain = drive(config);
+  const RecordedRun& plain = plain_drive();
   const RecordedRun same = drive_later(config, {.config = config, .from_s = kFrom_s, .noise_seed = seed_of(config)});
   ASSERT_GT(plain.nav.size(), 100u);
   EXPECT_EQ(first_difference_s(plain, same), 1e9);
 }
 
 TEST(LaterParts, OtherNoiseBeginsWhereItIsTold) {
-  const MissionConfig config = driven();
-  const RecordedRun plain = drive(config);
-  const RecordedRun other = drive_later(config, {.config = config, .from_s = kFrom_s, .noise_seed = 77});
+  const RecordedRun& plain = plain_drive();
+  const RecordedRun& other = other_noise_drive();
   const double at_s = first_difference_s(plain, other);
   EXPECT_GE(at_s, kFrom_s);
   EXPECT_LT(at_s, kFrom_s + 0.2) << "the inertial sensor is sampled at 100 Hz";
 }
 
 TEST(LaterParts, OtherNoiseMovesNoDelayAndNoBias) {
-  const MissionConfig config = driven();
-  const RecordedRun plain = drive(config);
-  const RecordedRun other = drive_later(config, {.config = config, .from_s = kFrom_s, .noise_seed = 77});
+  const RecordedRun& plain = plain_drive();
+  const RecordedRun& other = other_noise_drive();
   int compared = 0;
   for (std::size_t i = 0; i < std::min(plain.gnss_rows.size(), other.gnss_rows.size()); ++i) {
     if (!is_later(plain.gnss_rows[i], plain)) continue;
@@ -80,7 +90,7 @@ TEST(LaterParts, TheTruthAsHeightIsTheTruthFromThenOn) {
   MissionConfig later = config;
   later.run.truth_as_height = true;
   const RecordedRun run = drive_later(config, {.config = later, .from_s = kFrom_s, .noise_seed = seed_of(config)});
-  const RecordedRun plain = drive(config);
+  const RecordedRun& plain = plain_drive();
   EXPECT_GE(first_difference_s(plain, run), kFrom_s);
 }
 

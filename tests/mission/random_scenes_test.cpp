@@ -258,7 +258,7 @@ DrivesMet drive_all(std::uint64_t from, std::uint64_t to, PartsDrawn parts) {
 }
 
 TEST(RandomScenes, AHandfulEndsInOutcomes) {
-  drive_all(1, 13, PartsDrawn::kUsual);
+  drive_all(1, 9, PartsDrawn::kUsual);
 }
 
 TEST(RandomScenes, WhatHangsIsTold) {

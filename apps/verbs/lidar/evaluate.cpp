@@ -80,26 +80,28 @@ VerbAction declare(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   declare_common(arguments, options->common);
   arguments.option("map", options->map, "a map in the scene's frame: PCD, PLY, LAS or .bin").required().type("MAP");
-  declare_lidar_drive(arguments, options->drive);
-  arguments.option("--estimate", options->estimate,
-                   "estimated poses of the vehicle, compared with --trajectory (TUM, .kitti or .csv)");
+  const Argument trajectory = declare_lidar_way(arguments, options->drive);
+  const auto estimate =
+      arguments.option("--estimate", options->estimate,
+                       "estimated poses of the vehicle, compared with --trajectory (TUM, .kitti or .csv)");
   arguments.option("--estimate-rate", options->rate_hz, "poses per second of an estimate without times")
       .default_shown()
-      .within(1e-3, 1e4);
+      .within(1e-3, 1e4)
+      .needs(estimate);
   arguments.option("--alignment", options->alignment, "how the estimate is laid over the truth: none, yaw or se3")
-      .default_shown();
+      .default_shown()
+      .needs(estimate);
   arguments.option("--aligned", options->aligned, "write the estimate as it was laid over the truth (.tum or .kitti)");
   arguments.option("--cap", options->cap_m, "larger distances count as this, m").default_shown().within(0.1, 100.0);
   arguments.option("--reach", options->reach_m, "with --trajectory: true beams count as far as this, m")
       .default_shown()
-      .within(1.0, 1000.0);
+      .within(1.0, 1000.0)
+      .needs(trajectory);
   arguments.option("--neighbourhood", options->neighbourhood_m, "radius of entropy and plane variance, m")
       .default_shown()
       .within(0.05, 5.0);
   arguments.flag("--force", options->force, "replace the file of --aligned if it exists");
   return [options]() -> Result<int> {
-    if (!options->drive.at.empty())
-      return Error{"", 0, "command line", "--at is of canyon lidar scan", "--trajectory FILE, or neither"};
     if (!options->estimate.empty() && options->drive.trajectory.empty())
       return Error{"", 0, "command line", "--estimate without the true way", "--trajectory FILE"};
     if (!options->aligned.empty() && options->estimate.empty())

@@ -79,12 +79,21 @@ Json rows(const Eigen::MatrixXd& m) {
   return out;
 }
 
+/// Where an alignment came to nothing the result holds the guess, which is no pose of the surfaces; others may have one
+/// and no covariance.
+bool has_pose(const lidar::RegistrationResult& r) {
+  using enum lidar::RegistrationStatus;
+  const bool nothing =
+      r.status == kTooFewPoints || r.status == kDegenerate || r.status == kDiverged || r.status == kTooLittleOverlap;
+  return !nothing || r.covariance.allFinite();
+}
+
 Json answer(const Options& options, const lidar::CloudPair& pair) {
   const lidar::RegistrationResult& r = pair.result;
   Json open = Json::array();
   for (const Vector6d& v : r.open) open.push_back(rows(v.transpose()));
   return {
-      {"T_target_source", rows(r.X_TS.matrix())},
+      {"T_target_source", has_pose(r) ? rows(r.X_TS.matrix()) : Json()},
       {"status", row_of(lidar::registration_statuses(), r.status).name},
       {"covariance", rows(r.covariance)},
       {"open_directions", open},
@@ -99,10 +108,14 @@ Json answer(const Options& options, const lidar::CloudPair& pair) {
 
 void print(const lidar::CloudPair& pair) {
   const lidar::RegistrationResult& r = pair.result;
-  const Eigen::Matrix4d T = r.X_TS.matrix();
   std::printf("%s after %d rounds, %zu points onto %zu, %.1f ms (%.1f to prepare, %.1f to align)\n",
               row_of(lidar::registration_statuses(), r.status).name, r.iterations, pair.source_points,
               pair.target_points, pair.preprocess_ms + pair.align_ms, pair.preprocess_ms, pair.align_ms);
+  if (!has_pose(r)) {
+    std::printf("no pose\n");
+    return;
+  }
+  const Eigen::Matrix4d T = r.X_TS.matrix();
   for (int i = 0; i < 4; ++i) std::printf("%15.9f %15.9f %15.9f %15.6f\n", T(i, 0), T(i, 1), T(i, 2), T(i, 3));
   if (!r.covariance.allFinite()) return;
   const Vector6d sigma = r.covariance.diagonal().cwiseSqrt();
@@ -137,13 +150,19 @@ VerbAction declare(Arguments& arguments) {
       .required();
   arguments.option("target", options->target, "cloud that stays, likewise").type("TARGET").required();
   arguments.option("--method", options->method, "row of [registration] method (docs/registration.md)").default_shown();
-  arguments.option("--leaf", options->leaf_m, "voxel size to which both clouds are thinned, metres")
+  arguments
+      .option("--leaf", options->leaf_m,
+              "voxel size to which both clouds are thinned, metres; clouds of 16 beams want 0.5")
       .default_shown()
       .within(0.01, 100.0);
   arguments.option("--reach", options->reach_m, "points farther apart are not matched in the end, metres")
       .default_shown()
       .within(0.01, 100.0);
-  arguments.option("--iterations", options->iterations, "rounds of matching")
+  arguments
+      .option(
+          "--iterations", options->iterations,
+          "most rounds of matching in one descent on all points; reported are the rounds of all starts and descents, "
+          "coarse ones too")
       .default_shown()
       .within(std::int64_t{1}, std::int64_t{1000});
   arguments.option("--guess", options->guess, "T_target_source to start from: 16 numbers, row by row");

@@ -81,21 +81,32 @@ RegistrationPrecision Aligner::precision_at(FoundPose& at, const CovarianceForm&
 
 /// Finds the open directions where `at` is, takes it to the prior along them, and goes on with the others; again, as
 /// what is open shows the better the closer the surfaces are. Where that leads off the surfaces, they do not leave it
-/// open: it stays where it was, unsettled. False: nothing is determined.
+/// open: it stays where it was, unsettled. So it does where nothing was open but by its width, and the others, which
+/// lean by as much as the prior is wide, all follow: the surfaces knew more than the prior. False: nothing is
+/// determined.
 bool Aligner::keep_open_at_prior(Place& place) {
   FoundPose& at = place.found;
   OpenDirections& open = place.open;
+  std::optional<FoundPose> closed;  // where the surfaces left nothing open but by its width
+  const auto as_it_was = [&] {
+    if (!closed) return false;
+    at = *std::move(closed);
+    at.settled = false;
+    open = OpenDirections(search_.radius_m());
+    return true;
+  };
   for (int pass = 0; pass < kMostOpenings; ++pass) {
     const CovarianceSums& sums = sums_at(at);
     if (sums.matched < kFewestPoints) return true;
     const RegistrationPrecision precision = precision_at(at, model_row(covariance_forms(), "calibrated").make, open);
-    if (!precision.covariance.allFinite() || precision.open.size() >= 6) return false;
+    if (!precision.covariance.allFinite() || precision.open.size() >= 6) return as_it_was();
     const std::size_t before = open.open().size();
     for (const Vector6d& v : precision.open) open.add(v);
     open.open_wide(precision.covariance, kWidest_m, kWidest_rad);
-    if (open.open().size() >= 6) return false;
+    if (open.open().size() >= 6) return as_it_was();
     if (open.open().size() == before) return true;
     FoundPose stays = at;
+    if (pass == 0 && precision.open.empty()) closed = at;
     at.X = search_.held(open, at.X);
     search_.refine(at, {.open = &open});
     const Matching matching = search_.matching_at(own_.max_correspondence_m);

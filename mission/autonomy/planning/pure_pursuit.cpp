@@ -48,6 +48,11 @@ std::unique_ptr<Tracker> make_pure_pursuit(const ModelParameters& own, const Kno
   return std::make_unique<PurePursuit>(own.get<PurePursuitParameters>());
 }
 
+Lookahead pure_pursuit_lookahead(const ModelParameters& own) {
+  const auto& p = own.get<PurePursuitParameters>();
+  return {p.lookahead_min_m, p.lookahead_max_m};
+}
+
 void pure_pursuit_parameters(ModelParameters& section) {
   section.add<PurePursuitParameters>();
 }

@@ -24,6 +24,11 @@ ModelTable<MakeTracker> trackers();
 /// Makers of the rows of the table in planning/trackers.cpp, and their parameters, each in the file of its model.
 std::unique_ptr<Tracker> make_pure_pursuit(const ModelParameters& own, const KnownVehicle& vehicle);
 void pure_pursuit_parameters(ModelParameters& section);
+/// How far ahead it steers for a point, whatever the speed.
+struct Lookahead {
+  double min_m, max_m;
+};
+Lookahead pure_pursuit_lookahead(const ModelParameters& own);
 std::unique_ptr<Tracker> make_stanley(const ModelParameters& own, const KnownVehicle& vehicle);
 void stanley_parameters(ModelParameters& section);
 

@@ -56,10 +56,10 @@ void add_rows(const ResponseCurve& curve, const char* series, const std::vector<
            response_cell(point.healed.interval.high) + ',' + response_cell(point.unaligned) + '\n';
 }
 
-/// "never" and "beyond": not within the sizes that were tried.
+/// "below" and "beyond" the sizes that were tried.
 std::string half_word(double size) {
   if (std::isnan(size)) return "-";
-  if (size == 0.0) return "never";
+  if (size == 0.0) return "below";
   return std::isinf(size) ? "beyond" : printed("%.2g", size);
 }
 
@@ -84,7 +84,7 @@ std::string sweep_head(const ResponseCurve& curve) {
   return out + "   half up to\n";
 }
 
-/// "by place, half up to: 0 m never, 100 m 3.1, ...".
+/// "by place, half up to: 0 m below, 100 m 3.1, ...".
 std::string places_line(const std::vector<ResponseCurve>& curves, const ResponseCurve& of) {
   std::string out;
   for (const ResponseCurve& curve : curves)

@@ -183,6 +183,24 @@ TEST_F(LidarEvaluateTest, ClosedLoopsLeaveTheirFiles) {
   EXPECT_TRUE(leftovers().empty());
 }
 
+// 2026-11-30: they were not looked at, whatever their values.
+TEST_F(LidarEvaluateTest, WhatMeansNothingByItselfIsRefused) {
+  for (const char* option : {"--fidelity nope", "--beams nope", "--model nope", "--detector nope", "--returns nope",
+                             "--see-through nope", "--rate 1e9", "--azimuth-steps=-5", "--start nope", "--reach 50"}) {
+    const std::string given = option;
+    refused("given.pcd --scene given.obj " + given,
+            given.substr(0, given.find_first_of(" =")) + ": stands alone, expected --trajectory beside it");
+  }
+  refused("given.pcd --scene given.obj --alignment yaw", "--alignment: stands alone, expected --estimate beside it");
+  refused("given.pcd --scene given.obj --trajectory given.tum --estimate-rate 5",
+          "--estimate-rate: stands alone, expected --estimate beside it");
+  // What canyon lidar scan has alone.
+  refused("given.pcd --at 0,0,0,0",
+          "canyon lidar evaluate: no option \"--at\", expected one that canyon lidar evaluate --help names");
+  ASSERT_EQ(canyon("lidar evaluate --help"), 0);
+  for (const char* option : {"--at ", "--scans "}) EXPECT_EQ(read("stdout").find(option), std::string::npos) << option;
+}
+
 TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {
   write("given.txt", "no cloud");
   write("given_empty.pcd", pcd({}));
@@ -191,6 +209,8 @@ TEST_F(LidarEvaluateTest, BadInputsAreOneLine) {
   refused("given_empty.pcd --scene given.obj", "given_empty.pcd: holds no points, expected a cloud of points");
   refused("given.pcd --scene given.obj --estimate given.txt",
           "command line: --estimate without the true way, expected --trajectory FILE");
+  refused("given.pcd --scene given.obj --aligned given_aligned.tum",
+          "command line: --aligned without an estimate, expected --estimate FILE");
   EXPECT_EQ(canyon("lidar error-budget mission.toml --fidelity hihg"), 2);
   EXPECT_EQ(canyon("lidar error-budget mission.toml --permutations 1"), 2);
   EXPECT_EQ(canyon("lidar error-budget mission.toml --keep-mb=-1"), 2);

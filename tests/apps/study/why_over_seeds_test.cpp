@@ -172,6 +172,16 @@ TEST_F(WhyOverSeedsTest, EverySeedThatFailsIsExplainedAndCounted) {
   EXPECT_THAT(page, Not(HasSubstr("<summary>cheap, seed 1: "))) << "it stands with its verdict";
 }
 
+TEST_F(WhyOverSeedsTest, WhereNoRunFailsThatIsSaid) {
+  for (const char* seeds : {"", " --seeds 2"}) {
+    const Json why = explained(std::string("--seed 1 --fidelities sound") + seeds, *seeds == 0 ? "one" : "two");
+    EXPECT_TRUE(why["failures"].empty());
+    EXPECT_THAT(read("stdout"), HasSubstr("\nNo run failed, so there is nothing to explain.\n"));
+  }
+  explained("--seed 1 --fidelities sound --json", "json");
+  EXPECT_THAT(read("stdout"), Not(HasSubstr("No run failed")));
+}
+
 class WhyOverSeedsNightly : public WhyOverSeedsTest {};
 
 // Replays are of the run with that seed and no other, whoever else is explained and on however many threads.

@@ -1,5 +1,6 @@
 #include "canyon/lidar/map_quality/trajectory_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -146,6 +147,92 @@ TEST(TrajectoryErrors, WhatIsNotDeterminedIsSaid) {
   const TrajectoryErrors none = trajectory_errors(straight, {}, TrajectoryAlignment::kSe3);
   EXPECT_EQ(none.poses, 0);
   EXPECT_TRUE(std::isnan(none.ate_rms_m));
+}
+
+/// A zigzag along x whose ways from it are `wide_m`, and an estimate that is `off_m` too high or too low by turns that
+/// have nothing in common with x or with the zigzag: by least squares it stays as it is.
+Drive zigzag(double wide_m, double off_m) {
+  constexpr double kSide[] = {1, -1, -1, 1, 1, -1, -1, 1}, kOff[] = {1, -1, -1, 1, -1, 1, 1, -1};
+  Drive out;
+  for (int k = 0; k < 800; ++k) {
+    const Eigen::Vector3d p(0.25 * k, wide_m * kSide[k % 8], 0.0), off(0.0, 0.0, off_m * kOff[k % 8]);
+    out.truth.append({kBegin + 0.1 * k, {Eigen::Quaterniond::Identity(), p}});
+    out.estimate.append({kBegin + 0.1 * k, {Eigen::Quaterniond::Identity(), p + off}});
+  }
+  return out;
+}
+
+// 2026-11-30: of a straight drive that was estimated with noise SE(3) was "determined", and turned about it by 20
+// degrees. Of the zigzag the turn about its line is known to errors across it over its width: off / sqrt(2), rms over
+// both directions, by wide. How many poses there are says nothing.
+TEST(TrajectoryErrors, ATurnThatIsKnownToADegreeIsDetermined) {
+  const auto determined = [](const Drive& drive, TrajectoryAlignment alignment = TrajectoryAlignment::kSe3) {
+    return trajectory_errors(drive.truth, drive.estimate, alignment).alignment_determined;
+  };
+  const double wide_m = 2.0, just_m = std::sqrt(2.0) * kDegree * wide_m;
+  EXPECT_TRUE(determined(zigzag(wide_m, 0.99 * just_m)));
+  EXPECT_FALSE(determined(zigzag(wide_m, 1.01 * just_m)));
+  EXPECT_TRUE(determined(zigzag(wide_m, 0.0)));
+  EXPECT_TRUE(determined(zigzag(wide_m, 1.01 * just_m), TrajectoryAlignment::kYaw)) << "by the way's whole length";
+}
+
+TEST(TrajectoryErrors, AStraightWayDeterminesNoTurnAboutItWhateverItsNoise) {
+  const RandomStream random(7, "test.straight");
+  const auto noisy = [&](const std::function<Eigen::Vector3d(double)>& place, double truth_m, double estimate_m,
+                         TrajectoryAlignment alignment) {
+    Trajectory truth, estimate;
+    for (std::uint64_t k = 0; k < 120; ++k) {
+      const GpsTime t = kBegin + 0.1 * static_cast<double>(k);
+      const Eigen::Vector3d p = place(static_cast<double>(k) / 119.0);
+      truth.append({t, {Eigen::Quaterniond::Identity(), p + truth_m * random.normal3(k, 0)}});
+      estimate.append({t, kLaid * Pose{Eigen::Quaterniond::Identity(), p + estimate_m * random.normal3(k, 1)}});
+    }
+    return trajectory_errors(truth, estimate, alignment).alignment_determined;
+  };
+  const auto straight = [](double share) { return Eigen::Vector3d(60.0 * share, 0.0, 0.0); };
+  const auto quarter = [](double share) {
+    return Eigen::Vector3d(40.0 * std::sin(1.5 * share), 40.0 * std::cos(1.5 * share), 0.0);
+  };
+  const auto square = [](double share) {
+    const double s = 4.0 * share, x = std::clamp(s, 0.0, 1.0) - std::clamp(s - 2.0, 0.0, 1.0),
+                 y = std::clamp(s - 1.0, 0.0, 1.0) - std::clamp(s - 3.0, 0.0, 1.0);
+    return Eigen::Vector3d(30.0 * x, 30.0 * y, 0.0);
+  };
+  const auto standing = [](double) { return Eigen::Vector3d(5.0, 6.0, 7.0); };
+  using enum TrajectoryAlignment;
+  for (const double truth_m : {0.0, 0.01}) {
+    EXPECT_FALSE(noisy(straight, truth_m, 0.01, kSe3)) << truth_m;
+    EXPECT_TRUE(noisy(quarter, truth_m, 0.01, kSe3)) << truth_m;
+    EXPECT_TRUE(noisy(square, truth_m, 0.01, kSe3)) << truth_m;
+    EXPECT_FALSE(noisy(standing, truth_m, 0.01, kYaw)) << truth_m;
+  }
+  EXPECT_FALSE(noisy(straight, 0.0, 0.0, kSe3));
+  EXPECT_TRUE(noisy(quarter, 0.0, 0.0, kSe3)) << "nothing but rounding is left, and far less than its width";
+  EXPECT_TRUE(noisy(square, 0.0, 0.0, kSe3));
+  EXPECT_FALSE(noisy(standing, 0.0, 0.0, kSe3));
+}
+
+// 2026-11-30: of poses 25 m apart "over 1 m" was of pairs 25 m apart. What is twice as far or farther is another
+// stretch.
+TEST(TrajectoryErrors, StretchesAreLessThanTwiceWhatIsSaid) {
+  const auto relative = [](double apart_m, double apart_s) {
+    Trajectory truth;
+    for (int k = 0; k < 9; ++k)
+      truth.append({kBegin + apart_s * k, {Eigen::Quaterniond::Identity(), {apart_m * k, 0, 0}}});
+    return trajectory_errors(truth, truth, TrajectoryAlignment::kNone).relative;
+  };
+  using Pairs = std::vector<std::int64_t>;
+  const auto pairs = [&](double apart_m, double apart_s) {
+    Pairs out;
+    for (const RelativeErrors& r : relative(apart_m, apart_s)) out.push_back(r.pairs);
+    return out;
+  };
+  // Over 1, 10, 100 m, 1 s and 10 s, of nine poses.
+  EXPECT_EQ(pairs(25.0, 5.0), (Pairs{0, 0, 5, 0, 7}));
+  EXPECT_EQ(pairs(1.9, 1.5), (Pairs{8, 3, 0, 8, 2}));
+  EXPECT_EQ(pairs(2.0, 2.0), (Pairs{0, 4, 0, 0, 4}));
+  EXPECT_TRUE(std::isnan(relative(25.0, 5.0)[0].translation_rms_m));
+  EXPECT_TRUE(std::isnan(relative(25.0, 5.0)[0].rotation_rms_deg));
 }
 
 TEST(TrajectoryErrors, TumAndKittiReadBack) {

@@ -150,6 +150,18 @@ TEST(OwnMethods, FloatsBeyond10KmAreDoubted) {
   EXPECT_EQ(cloud_doubt("a.las", cloud), "");
 }
 
+// 2026-11-30: nobody said how much of a cloud was left out.
+TEST(OwnMethods, PointsThatAreNotFiniteAreTold) {
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  CloudPlaces cloud{{{1, 2, 3}, {nan, 2, 3}, {1, 2, -infinite}, {4, 5, 6}}, true};
+  EXPECT_EQ(cloud_doubt("a.pcd", cloud), "a.pcd: 2 of 4 points are not finite and left out");
+  cloud.points.emplace_back(20e3, 0, 0);
+  EXPECT_EQ(
+      cloud_doubt("a.pcd", cloud),
+      "a.pcd: 2 of 5 points are not finite and left out; coordinates in single precision beyond 10 km are no finer "
+      "than 1 mm");
+}
+
 /// Along what the surfaces leave open the result is the most probable one by the prior, given all others: its slope is
 /// nothing there, to 1e-3 of a sigma.
 void expect_prior_along(const char* name, const Points& source, const Points& target, const PosePrior& prior,

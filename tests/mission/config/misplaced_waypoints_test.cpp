@@ -153,9 +153,16 @@ TEST(MissionFileMessages, AMisplacedWaypointIsToldBeforeTheTerrainIsMade) {
 }
 
 TEST(MissionFileMessages, UnknownBuilding) {
-  EXPECT_THAT(message("base = \"vicksburg\"\n[[autonomy.waypoint]]\nname = \"x\"\np_m = [213.9, 100.0]\nobserve = "
-                      "\"buildin 247\"\n"),
-              HasSubstr("my.toml:2: autonomy.waypoint[1]: waypoint \"x\": no building named \"buildin 247\""));
+  EXPECT_THAT(
+      message("base = \"vicksburg\"\n[[autonomy.waypoint]]\nname = \"x\"\np_m = [213.9, 100.0]\nobserve = "
+              "\"buildin 247\"\n"),
+      HasSubstr("my.toml:2: autonomy.waypoint[1]: waypoint \"x\": no building named \"buildin 247\", expected a "
+                "building of the scene; nearest is \"building 247\""));
+  // 2026-11-30: nearest is "".
+  EXPECT_EQ(message("base = \"vicksburg\"\n[[autonomy.waypoint]]\nname = \"x\"\np_m = [213.9, 100.0]\nobserve = \"tree "
+                    "1\"\n"),
+            "my.toml:2: autonomy.waypoint[1]: waypoint \"x\": no building named \"tree 1\", expected a building of the "
+            "scene");
 }
 
 TEST(MissionFileMessages, AnInheritedWaypointInAnotherCity) {

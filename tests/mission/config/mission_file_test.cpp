@@ -157,6 +157,52 @@ TEST(MissionFileMessages, KeysThatContradictOneAnother) {
       "autonomy.blind_after_s of 1 / lidar.rate_hz or more");
 }
 
+// 2026-11-30: each of these ran: as if it said "prior", without any middle of a street, with one of the two keys left
+// out.
+TEST(MissionFileMessages, AnAutonomyThatContradictsItself) {
+  const auto told = [](const std::string& lines) { return message(std::string(kEmptyScene) + lines); };
+  EXPECT_EQ(told("[autonomy]\nmap = \"registered\"\n[registration]\nmethod = \"none\"\n"),
+            "my.toml:5: autonomy.map: the autonomy works with the registered pose, and with method \"none\" nothing is "
+            "registered, expected another registration.method, or autonomy.map = \"prior\"");
+  EXPECT_EQ(told("[autonomy]\nmap = \"registered\"\n"), "no mistake");
+  EXPECT_EQ(told("[autonomy.lane]\nwidest_m = 4.0\n"),
+            "my.toml:5: autonomy.lane.widest_m: no street is 5 m wide or more and 4 m or less, expected "
+            "autonomy.lane.narrowest_m not above autonomy.lane.widest_m");
+  EXPECT_EQ(told("[autonomy.lane]\nmodel = \"seen_kerbs\"\nnarrowest_m = 30.0\n"),
+            "my.toml:6: autonomy.lane.narrowest_m: no street is 30 m wide or more and 25 m or less, expected "
+            "autonomy.lane.narrowest_m not above autonomy.lane.widest_m");
+  EXPECT_EQ(told("[autonomy.lane]\nwidest_m = 5.0\n"), "no mistake");
+  EXPECT_EQ(told("[autonomy.lane]\nmodel = \"route\"\nwidest_m = 4.0\n"), "no mistake") << "nobody reads it";
+  EXPECT_EQ(told("[autonomy.tracker]\nlookahead_min_m = 6.0\n"),
+            "my.toml:5: autonomy.tracker.lookahead_min_m: it steers for a point no nearer than 6 m and no farther than "
+            "5 m, expected autonomy.tracker.lookahead_min_m not above autonomy.tracker.lookahead_max_m");
+  EXPECT_EQ(told("[autonomy.tracker]\nmodel = \"stanley\"\nlookahead_min_m = 6.0\n"), "no mistake");
+  EXPECT_EQ(told("[autonomy.planner]\nclearance_m = 1.0\n"),
+            "my.toml:5: autonomy.planner.clearance_m: nearer than 0.8 m costs, and no way is nearer than 1 m, expected "
+            "autonomy.planner.clearance_m not above autonomy.planner.comfort_clearance_m");
+  EXPECT_EQ(
+      told("[autonomy.planner]\nmodel = \"hybrid_a_star\"\ncomfort_clearance_m = 0.2\n"),
+      "my.toml:6: autonomy.planner.comfort_clearance_m: nearer than 0.2 m costs, and no way is nearer than 0.3 m, "
+      "expected autonomy.planner.clearance_m not above autonomy.planner.comfort_clearance_m");
+  const std::string of_2012 = "[autonomy]\nmodel = \"reference_2012\"\n[autonomy.choice]\n";
+  EXPECT_EQ(
+      told(of_2012 + "stop_margin_m = 19.0\n"),
+      "my.toml:7: autonomy.choice.stop_margin_m: it halts 19 m before what it looks for only 18 m ahead, expected "
+      "autonomy.choice.stop_margin_m not above autonomy.choice.horizon_m");
+  EXPECT_EQ(told(of_2012 + "stop_margin_m = 18.0\n"), "no mistake");
+  EXPECT_EQ(told("[autonomy.choice]\nstop_margin_m = 19.0\n"), "no mistake") << "who drives has no such key";
+  // Of another autonomy than the one that drives.
+  EXPECT_EQ(told(of_2012 + "[autonomy.lane]\nwidest_m = 4.0\n"), "no mistake");
+}
+
+// 2026-11-30: accepted, and results told neither from the other.
+TEST(MissionFileMessages, TwoMovingThingsOfOneName) {
+  const std::string bus = "[[scene.moving]]\nname = \"line 9\"\npath_m = [112.9, -187.9]\n";
+  EXPECT_EQ(
+      message(kEmptyScene + bus + bus),
+      "my.toml:7: scene.moving[2].name: \"line 9\" is the name of scene.moving[1] too, expected a name of its own");
+}
+
 // Keys of earlier versions are told by name, with what took their place.
 TEST(MissionFileMessages, AnOldKey) {
   EXPECT_EQ(message("base = \"vicksburg\"\n[imu]\nvibration_g = [0.0, 0.0, 1.0]\n"),

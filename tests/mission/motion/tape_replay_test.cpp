@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kShort = "[time]\nlimit_s = 12.0\n[registration]\nmethod = \"pcl_shell_gicp\"\n";
+const std::string kShort = "[time]\nlimit_s = 8.0\n[registration]\nmethod = \"gicp\"\n";
 
 Tape tape_of(const RecordedRun& record, const MissionConfig& config) {
   Tape tape{.source = record.name,

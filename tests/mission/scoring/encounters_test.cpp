@@ -1,6 +1,8 @@
 #include "canyon/mission/scoring/encounters.h"
 
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -12,9 +14,11 @@
 namespace canyon::mission {
 namespace {
 
-/// A lane along x with a post of 20 cm at x = 20 m, so far beside the axis.
+/// A lane along x with a post of 20 cm at x = 20 m, so far beside the axis, and maybe a second one elsewhere.
 struct Lane {
-  explicit Lane(double post_y_m) {
+  static constexpr std::uint32_t kGround = 0, kPost = 1, kSecond = 2;  // objects
+
+  explicit Lane(double post_y_m, std::optional<Eigen::Vector2d> second = std::nullopt) {
     scene::SceneParts parts;
     parts.materials = scene::builtin_materials();
     scene::MeshBuilder mesh(parts);
@@ -22,6 +26,10 @@ struct Lane {
     mesh.quad({-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}, 0);
     mesh.begin_object("post", scene::ObjectKind::kPole);
     mesh.box({20, post_y_m, 1}, Eigen::Matrix3d::Identity(), {0.1, 0.1, 1}, 0);
+    if (second) {
+      mesh.begin_object("second post", scene::ObjectKind::kPole);
+      mesh.box({second->x(), second->y(), 1}, Eigen::Matrix3d::Identity(), {0.1, 0.1, 1}, 0);
+    }
     scene = std::make_unique<scene::Scene>(std::move(parts));
     at = std::make_unique<scene::SceneAt>(*scene);
   }
@@ -53,6 +61,61 @@ TEST(Encounters, ANearMissIsCountedOnceAndTheClearanceIsTheSurfaces) {
   EXPECT_NEAR(far.clearance_min_m, 1.15, 1e-6);
   EXPECT_EQ(far.near_misses, 0);
   EXPECT_EQ(drive(Lane(9.0), 30.0, {5.0, 0.0}, AutonomyState::kDriving).clearance_min_m, Encounters::kFar_m);
+}
+
+/// Along the lane at 5 m/s until x = `to_m`, where an object is touched.
+Encounters::Numbers run_into(const Lane& lane, double to_m, std::uint32_t object) {
+  Encounters encounters(SuccessConfig{}, VehicleConfig{}, *lane.at);
+  double t_s = 0.0;
+  for (; 5.0 * t_s < to_m; t_s += 0.01)
+    encounters.look(state_at(5.0 * t_s, t_s), 5.0, {5.0, 0.0}, AutonomyState::kDriving);
+  encounters.touched(object, state_at(to_m, t_s).t);
+  return encounters.numbers();
+}
+
+// 2026-11-30: who drove into a thing had a near miss, and the least distance was what was left of the 0.2 m between two
+// looks. The body's front is 2.2 m ahead of the rear axle, so the post is met at 17.7 m.
+TEST(Encounters, WhatIsTouchedIsNoNearMissAndNoDistanceIsLeft) {
+  const double met_m = 17.7;
+  const auto before = drive(Lane(0.0), met_m - 0.05, {5.0, 0.0}, AutonomyState::kDriving);
+  EXPECT_EQ(before.near_misses, 1);
+  EXPECT_GT(before.clearance_min_m, 0.0);
+  const auto hit = run_into(Lane(0.0), met_m - 0.05, Lane::kPost);
+  EXPECT_EQ(hit.near_misses, 0);
+  EXPECT_EQ(hit.clearance_min_m, 0.0);
+  // However far off it was at the last look.
+  EXPECT_EQ(run_into(Lane(9.0), 10.0, Lane::kPost).clearance_min_m, 0.0);
+  EXPECT_EQ(run_into(Lane(9.0), 10.0, Lane::kPost).near_misses, 0);
+  // The ground is no thing.
+  const auto grounded = run_into(Lane(1.0), 30.0, Lane::kGround);
+  EXPECT_NEAR(grounded.clearance_min_m, 0.15, 1e-6);
+  EXPECT_EQ(grounded.near_misses, 1);
+}
+
+// Another post is passed at 0.15 m: more than a second, 5 m, before the one that is hit; and just before it.
+TEST(Encounters, WhatWasPassedBeforeStaysANearMiss) {
+  for (const double before_m : {12.0, 1.0}) {
+    const auto passed = run_into(Lane(0.0, Eigen::Vector2d(20.0 - before_m, 1.0)), 17.65, Lane::kPost);
+    EXPECT_EQ(passed.near_misses, 1) << before_m;
+    EXPECT_EQ(passed.clearance_min_m, 0.0) << before_m;
+  }
+  // The same thing, passed well before it is touched: the first time was a near miss, the second is none.
+  const Lane lane(1.0);
+  Encounters encounters(SuccessConfig{}, VehicleConfig{}, *lane.at);
+  double t_s = 0.0;
+  for (; 5.0 * t_s < 40.0; t_s += 0.01)
+    encounters.look(state_at(5.0 * t_s, t_s), 5.0, {5.0, 0.0}, AutonomyState::kDriving);
+  encounters.look(state_at(20.0, t_s), 5.0, {5.0, 0.0}, AutonomyState::kDriving);
+  EXPECT_EQ(encounters.numbers().near_misses, 2);
+  encounters.touched(Lane::kPost, state_at(20.0, t_s + 0.01).t);
+  EXPECT_EQ(encounters.numbers().near_misses, 1);
+}
+
+// What a look itself finds touched, as a low wall that the collision check by lines passes over.
+TEST(Encounters, WhatALookFindsTouchedIsNoNearMiss) {
+  const auto through = drive(Lane(0.0), 30.0, {5.0, 0.0}, AutonomyState::kDriving);
+  EXPECT_EQ(through.clearance_min_m, 0.0);
+  EXPECT_EQ(through.near_misses, 0);
 }
 
 /// A slab beside the way, from half a metre off, as a pavement or a low wall.

@@ -92,6 +92,33 @@ TEST_F(ScorerTest, DrivingIntoAHouseIsACollisionWithItsName) {
   EXPECT_TRUE(std::isnan(told.last_range_m));
 }
 
+// 2026-11-30: the house that it hit was a near miss, and some centimetres off at the least. By either collision check.
+TEST(ScorerContact, WhatIsHitIsNoNearMissAndAtNoDistance) {
+  const auto house = screened_house(0.0);
+  const scene::SceneAt scene(*house);
+  for (const std::string check : {"lines", "box"}) {
+    const MissionConfig config = short_config("low", "low", "[success]\ncollision = \"" + check + "\"");
+    const auto mission = prepare(config, scenes());
+    ASSERT_TRUE(mission.ok());
+    Scorer scorer(config, *mission, scene);
+    KinematicState state;
+    state.t = mission->start;
+    bool on = true, was_near = false;
+    for (int k = 0; k < 2000 && on; ++k) {
+      state.t = mission->start + 0.01 * k;
+      state.X_WB.p = {0.03 * k, 0.0, 0.0};
+      scorer.follow(state, 3.0, {.speed_m_s = 3.0}, AutonomyState::kDriving, 0);
+      was_near = was_near || scorer.encounters().near_misses > 0;
+      on = scorer.step(state, 3.0, true, false);
+    }
+    ASSERT_EQ(scorer.outcome(), Outcome::kCollision) << check;
+    EXPECT_EQ(scorer.failure()->detail, "hit building house");
+    EXPECT_TRUE(was_near) << check;
+    EXPECT_EQ(scorer.encounters().clearance_min_m, 0.0) << check;
+    EXPECT_EQ(scorer.encounters().near_misses, 0) << check;
+  }
+}
+
 // What a thing is stands before its name, unless the name says it.
 TEST(NameWithKind, SaysWhatItIs) {
   const auto scene = screened_house(3.0);

@@ -69,5 +69,39 @@ TEST(Traffic, MistakesAreTold) {
       "scene.moving[1].path_m: (501, 0) lies outside the scene, expected a point on the terrain (scene.extent_m)");
 }
 
+// 2026-11-30: two buses of one name were told apart by nobody: "hit other vehicle bus".
+TEST(Traffic, NamesAreThoseOfNothingElse) {
+  SceneParts parts = empty_parts();
+  add_plane(parts, 100.0, 0.0);
+  const std::string ground = parts.objects.front().name;
+  const Scene scene(std::move(parts));
+  const auto thing = [](const std::string& name, const std::string& shape = "car") {
+    return MovingConfig{.name = name, .shape = shape, .path_m = {1.0, 2.0}, .speed_m_s = 5.0, .start_s = 0.0};
+  };
+  const auto told = [&](const std::vector<MovingConfig>& things) {
+    const auto traffic = Traffic::make(things, scene);
+    return traffic.ok() ? "no mistake" : traffic.error().str();
+  };
+  const SceneConfig city;
+  const auto told_beforehand = [&](const std::vector<MovingConfig>& things) {
+    const Status checked = check_ways(things, *planned_site(city));
+    return checked.ok() ? "no mistake" : checked.error().str();
+  };
+  const std::string twice =
+      "scene.moving[3].name: \"line 9\" is the name of scene.moving[1] too, expected a name of its own";
+  EXPECT_EQ(told({thing("line 9", "bus"), thing(""), thing("line 9", "bus")}), twice);
+  EXPECT_EQ(told_beforehand({thing("line 9", "bus"), thing(""), thing("line 9", "bus")}), twice);
+  // Those without a name are named by their shape and number.
+  EXPECT_EQ(told({thing("car 2"), thing("")}),
+            "scene.moving[2].name: \"car 2\" is the name of scene.moving[1] too, expected a name of its own");
+  EXPECT_EQ(told({thing("car 2"), thing("", "bus"), thing("")}), "no mistake");
+  EXPECT_EQ(told({thing(""), thing(ground)}),
+            "scene.moving[2].name: \"" + ground +
+                "\" is the name of something that stands in the scene too, expected a name of its own");
+  EXPECT_EQ(told_beforehand({thing("building 1")}),
+            "scene.moving[1].name: \"building 1\" is the name of something that stands in the scene too, expected a "
+            "name of its own");
+}
+
 }  // namespace
 }  // namespace canyon::scene::testing

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "canyon/study/causes/causes.h"
@@ -107,6 +109,41 @@ TEST(RunEvents, APhantomIsSeenAndIsNoBeginningOfAChain) {
   EXPECT_EQ(events.events()[0].from_s, 4.0);
   EXPECT_EQ(events.events()[0].to_s, 5.5);
   EXPECT_EQ(chain_start_s(events.events(), 30.0), 20.0);
+}
+
+/// Epochs every 0.1 s of a run whose autonomy stands in these times, and sees by 0.7 s; the stops that are seen.
+std::vector<std::pair<double, double>> stops(const std::vector<std::pair<double, double>>& stands_s) {
+  RunEvents events(0.7);
+  for (int k = 0; k < 60; ++k) {
+    mission::NavRow row;
+    row.t = GpsTime{} + 0.1 * k;
+    row.state = mission::AutonomyState::kDriving;
+    for (const auto& [from_s, to_s] : stands_s)
+      if (0.1 * k > from_s - 0.01 && 0.1 * k < to_s + 0.01) row.state = mission::AutonomyState::kBlind;
+    EXPECT_TRUE(events.epoch(row).ok());
+  }
+  std::vector<std::pair<double, double>> out;
+  for (const Event& event : events.events()) {
+    EXPECT_EQ(event.kind, EventKind::kStopped);
+    out.emplace_back(std::round(10.0 * event.from_s) / 10.0, std::round(10.0 * event.to_s) / 10.0);
+  }
+  return out;
+}
+
+// 2026-11-30: every chain that went back to the start began with "0.0 s: the autonomy stands", which was the wait for
+// the first scan.
+TEST(RunEvents, WaitingForTheFirstScanIsNoStop) {
+  using Stops = std::vector<std::pair<double, double>>;
+  EXPECT_EQ(stops({{0.0, 0.0}}), Stops{});
+  EXPECT_EQ(stops({{0.0, 0.6}}), Stops{});
+  EXPECT_EQ(stops({{0.0, 0.8}}), (Stops{{0.0, 0.8}})) << "it had seen something by then";
+  EXPECT_EQ(stops({{0.0, 5.9}}), (Stops{{0.0, 5.9}}));
+  EXPECT_EQ(stops({{0.0, 0.1}, {0.4, 0.5}}), (Stops{{0.4, 0.5}})) << "it had driven before";
+  EXPECT_EQ(stops({{0.0, 0.1}, {3.0, 3.5}}), (Stops{{3.0, 3.5}}));
+  mission::MissionConfig config;
+  config.lidar.rate_hz = 5.0;
+  config.lidar.latency_s = 0.25;
+  EXPECT_DOUBLE_EQ(first_plan_by_s(config), 2 * 0.2 + 0.25 + 0.5);
 }
 
 TEST(ChainStart, GoesBackOverGapsOfTenSecondsAndNoFurtherThanAMinute) {

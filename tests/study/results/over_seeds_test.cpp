@@ -122,6 +122,40 @@ TEST(OverSeeds, TheTableHasMediansSharesAndDifferences) {
   EXPECT_THAT(open, ::testing::Not(HasSubstr("success")));
 }
 
+// 2026-11-30: some thirty rows of "-" stood in an open loop's table, and its 2 x 2 in summary.json alone.
+TEST(OverSeeds, ATableOfAllFiguresHasNoRowThatNoRunHas) {
+  const std::string table = over_seeds_table(over_seeds(twenty_seeds(true)));
+  EXPECT_THAT(table, HasSubstr("position error, RMS, m"));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("GDOP")));
+  const std::string asked = over_seeds_table(over_seeds(twenty_seeds(true)), {"gdop_median"});
+  EXPECT_THAT(asked, HasSubstr("GDOP")) << "who asks for it sees that there is none";
+}
+
+TEST(OverSeeds, TheTwoByTwoIsOfMedians) {
+  std::vector<std::vector<RunSummary>> seeds = twenty_seeds(true);
+  EXPECT_EQ(squares_over_seeds(over_seeds(seeds), seeds.front()), "") << "without the mixed runs";
+  for (const bool open_loop : {true, false}) {
+    seeds = twenty_seeds(open_loop);
+    for (std::vector<RunSummary>& runs : seeds) {
+      for (const bool gnss : {true, false}) {
+        RunSummary mixed = run_of(gnss ? "a" : "b", runs[0].seed, Outcome::kSuccess, gnss ? 6.0 : 1.0);
+        mixed.gnss = gnss ? "high" : "low";
+        mixed.imu = gnss ? "low" : "high";
+        mixed.open_loop = open_loop;
+        runs.push_back(mixed);
+      }
+    }
+    const std::string square = squares_over_seeds(over_seeds(seeds), seeds.front());
+    const std::string of = open_loop ? "" : "successes and ", all = open_loop ? "" : "20 of 20  ",
+                      three = open_loop ? "" : "3 of 20  ";
+    EXPECT_THAT(square, HasSubstr("2 x 2, " + std::string(open_loop ? "open" : "closed") + " loop: " + of +
+                                  "position error RMS, m, median over 20 seeds\n"));
+    const auto row = [](const std::string& text) { return ::testing::ContainsRegex(text); };
+    EXPECT_THAT(square, row("low GNSS +" + all + "0.500 .0.500, 0.500. +" + all + "1.000 .1.000, 1.000.\n"));
+    EXPECT_THAT(square, row("high GNSS +" + all + "6.000 .6.000, 6.000. +" + three + "17.000 .12.000, 22.000.\n"));
+  }
+}
+
 constexpr const char* kSeedsMission = R"(
 base = "vicksburg"
 [time]
