@@ -37,9 +37,9 @@ class NormalSeries {
   struct Lag {
     double samples = 0.0;     ///< how far apart
     double stands_for = 1.0;  ///< of so many lags
-    /// Normalized autocorrelation about zero, all elements together: the sum over the pairs by the root of the two sums
-    /// of squares of what is in them, that of the earlier samples and that of the later ones. So it is 1 at most, in
-    /// magnitude, however few they are; 0 where one of these sums is nothing.
+    /// Normalized autocorrelation about zero, all elements together: the sum over the pairs by the root of the product
+    /// of the two sums of squares of what is in them, that of the earlier samples and that of the later ones. So it is
+    /// 1 at most, in magnitude, however few they are; 0 where one of these sums is nothing.
     double r = 0.0;
     std::int64_t pairs = 0;
   };

@@ -81,29 +81,29 @@ RegistrationPrecision Aligner::precision_at(FoundPose& at, const CovarianceForm&
 
 /// Finds the open directions where `at` is, takes it to the prior along them, and goes on with the others; again, as
 /// what is open shows the better the closer the surfaces are. Where that leads off the surfaces, they do not leave it
-/// open: it stays where it was, unsettled. So it does where nothing was open but by its width, and the others, which
-/// lean by as much as the prior is wide, all follow: the surfaces knew more than the prior. False: nothing is
-/// determined.
+/// open: it stays where it was, unsettled. False: nothing is determined. Where nothing had been open but by its width,
+/// and the others, which lean by as much as the prior is wide, all followed, it stays where it was then too.
 bool Aligner::keep_open_at_prior(Place& place) {
   FoundPose& at = place.found;
   OpenDirections& open = place.open;
   std::optional<FoundPose> closed;  // where the surfaces left nothing open but by its width
-  const auto as_it_was = [&] {
+  const auto undetermined = [&] {
     if (!closed) return false;
     at = *std::move(closed);
     at.settled = false;
     open = OpenDirections(search_.radius_m());
-    return true;
+    place.kept = true;
+    return false;
   };
   for (int pass = 0; pass < kMostOpenings; ++pass) {
     const CovarianceSums& sums = sums_at(at);
     if (sums.matched < kFewestPoints) return true;
     const RegistrationPrecision precision = precision_at(at, model_row(covariance_forms(), "calibrated").make, open);
-    if (!precision.covariance.allFinite() || precision.open.size() >= 6) return as_it_was();
+    if (!precision.covariance.allFinite() || precision.open.size() >= 6) return undetermined();
     const std::size_t before = open.open().size();
     for (const Vector6d& v : precision.open) open.add(v);
     open.open_wide(precision.covariance, kWidest_m, kWidest_rad);
-    if (open.open().size() >= 6) return as_it_was();
+    if (open.open().size() >= 6) return undetermined();
     if (open.open().size() == before) return true;
     FoundPose stays = at;
     if (pass == 0 && precision.open.empty()) closed = at;
@@ -255,14 +255,16 @@ bool Aligner::turned_is_far_better(const FoundPose& at, double overlap) {
   return false;
 }
 
-void Aligner::judge(const FoundPose& best, bool ambiguous, RegistrationResult& result) const {
+void Aligner::judge(const Place& best, bool ambiguous, RegistrationResult& result) const {
   using Status = RegistrationStatus;
   result.status = Status::kConverged;
   if (result.overlap < engine_.least_overlap) {
     result.status = Status::kTooLittleOverlap;
+  } else if (best.kept) {
+    result.status = Status::kNotConverged;
   } else if (beyond_prior(result)) {
     result.status = Status::kBeyondPrior;
-  } else if (!best.settled) {
+  } else if (!best.found.settled) {
     result.status = Status::kNotConverged;
   } else if (ambiguous) {
     result.status = Status::kAmbiguous;
@@ -299,14 +301,14 @@ RegistrationResult Aligner::align() {
   const RegistrationPrecision precision =
       precision_at(at, model_row(covariance_forms(), engine_.covariance).make, best.open);
   result.status = RegistrationStatus::kDegenerate;
-  if (!best.determined || !precision.covariance.allFinite() || precision.open.size() >= 6) return result;
+  if (!(best.determined || best.kept) || !precision.covariance.allFinite() || precision.open.size() >= 6) return result;
   result.X_TS = at.X;
   const auto& prior = search_.prior();
   result.open = prior ? best.open.open() : precision.open;
   result.rms_m = precision.rms_m;
   result.covariance = precision.covariance;
   if (prior) result.surfaces = {.X_TS = by_surfaces(at, best.open), .covariance = precision.covariance};
-  judge(at, ambiguous, result);
+  judge(best, ambiguous, result);
   if (result.status == RegistrationStatus::kConverged && turned_is_far_better(at, result.overlap))
     result.status = RegistrationStatus::kAmbiguous;
   // Together: along open directions the prior's, in the others what both know.

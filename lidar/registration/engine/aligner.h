@@ -32,6 +32,9 @@ class Aligner {
     Fit fit;
     OpenDirections open;  ///< held at the prior
     bool determined = true;
+    /// Not determined, as by what was opened for its width alone all else followed: its pose is from before, where the
+    /// surfaces left nothing open.
+    bool kept = false;
   };
 
   std::vector<Place> places();
@@ -50,7 +53,7 @@ class Aligner {
   std::vector<Vector6d> restarts(const FoundPose& at);
   bool beyond_prior(const RegistrationResult& result) const;
   bool turned_is_far_better(const FoundPose& at, double overlap);
-  void judge(const FoundPose& best, bool ambiguous, RegistrationResult& result) const;
+  void judge(const Place& best, bool ambiguous, RegistrationResult& result) const;
 
   const PreparedCloud& source_;
   const SurfaceTarget& target_;
