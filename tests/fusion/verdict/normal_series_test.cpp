@@ -94,6 +94,32 @@ TEST(NormalSeries, IsNeverMoreAlikeThanTheSame) {
   for (const auto& lag : one_pulse.lags()) EXPECT_EQ(lag.r, 0.0) << "nothing before it to be like";
 }
 
+// Lags beyond the first sixteen are of means of pairs, by what the squares of their samples are in the mean: by hand.
+TEST(NormalSeries, FartherLagsAreOfMeansOfPairs) {
+  constexpr std::size_t kCount = 64, kFirst = 9;  // the first lag of pairs, 18 samples
+  const RandomStream stream(3, "test.pairs");
+  NormalSeries series(1);
+  std::vector<double> means, squares;
+  for (std::size_t j = 0; j < kCount / 2; ++j) {
+    double z[2];
+    for (std::size_t i : {0, 1}) {
+      z[i] = stream.normal(0, 2 * j + i) + std::sin(0.3 * static_cast<double>(2 * j + i));
+      series.add(at(static_cast<int>(2 * j + i)), Eigen::VectorXd::Constant(1, z[i]));
+    }
+    means.push_back(0.5 * (z[0] + z[1]));
+    squares.push_back(0.5 * (z[0] * z[0] + z[1] * z[1]));
+  }
+  double sum = 0.0, earlier = 0.0, later = 0.0;
+  for (std::size_t j = kFirst; j < means.size(); ++j) {
+    sum += means[j] * means[j - kFirst];
+    earlier += squares[j - kFirst];
+    later += squares[j];
+  }
+  const auto lag = series.lags().at(NormalSeries::kLags);
+  EXPECT_EQ(lag.samples, 2.0 * kFirst);
+  EXPECT_NEAR(lag.r, sum / std::sqrt(earlier * later), 1e-14);
+}
+
 TEST(NormalSeries, AMarkovProcessIsWorthWhatItsCorrelationSays) {
   // Of N samples of r_k = kept^k, N (1 - kept^2) / (1 + kept^2) are independent as far as squares go; 1 / e after
   // -dt / ln(kept).
