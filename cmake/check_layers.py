@@ -78,6 +78,9 @@ BLIND_TO_TRUTH = [
 # Random numbers come from core/random/random.h: the standard's distributions differ from library to library.
 OTHER_RANDOMNESS = r"std::(\w+_distribution|mt19937(_64)?|default_random_engine|random_device)\b"
 
+# Tests run side by side: a file that each of them names alike is taken away by one while another reads it.
+SHARED_FILE = r'TempDir\(\) \+ "[^"]*"(?! \+ std::to_string\((::)?getpid)(?<!XXXXXX")'
+
 # What defines a type at the level of a namespace: no indent.
 NAMESPACE = re.compile(r"namespace (canyon(?:::\w+)*) \{")
 TYPE = re.compile(r"(?:struct|class|enum class|enum|using) (\w+)\b[^;(]*(?:\{|=)|using (\w+) =")
@@ -158,6 +161,8 @@ class Tree:
                     self.check_angled(name, number, angled)
             if folder in FLOORS:
                 self.check_randomness(name)
+            if folder == "tests":
+                self.check_shared_files(name)
             self.check_vector_loops(name)
             if matches(name, BLIND_TO_TRUTH):
                 self.check_truth(name)
@@ -218,6 +223,11 @@ class Tree:
             found = re.search(OTHER_RANDOMNESS, line)
             if found:
                 self.breach(name, number, f"{found[0]}: random numbers come from core/random/random.h")
+
+    def check_shared_files(self, name):
+        for number, line in enumerate(self.lines[name], 1):
+            if re.search(SHARED_FILE, line):
+                self.breach(name, number, "tests that run side by side share this file: canyon::testing::temporary_file gives each its own")
 
     def check_vector_loops(self, name):
         """The compiler makes vectors of the loops of those files alone that are told to it."""

@@ -181,6 +181,15 @@ class CheckLayers(unittest.TestCase):
             {"gnss/noise.cpp": "#include <random>\nstd::normal_distribution<double> noise; // std::mt19937\n"},
             "gnss/noise.cpp:2: std::normal_distribution: random numbers come from core/random/random.h")
 
+    # 2026-11-30: one test took away the navigation file of another that ran beside it.
+    def test_files_of_tests_are_of_one_test_alone(self):
+        breach = "tests/gnss/a_test.cpp:1: tests that run side by side share this file: canyon::testing::temporary_file gives each its own"
+        path = 'const std::string path = ::testing::TempDir() + {};\n'.format
+        self.assert_breach({"tests/gnss/a_test.cpp": path('"drive.nav"')}, breach)
+        self.assert_breach({"tests/gnss/a_test.cpp": path('"of_" + name + ".toml"')}, breach)
+        for own in ('"of_" + std::to_string(getpid())', '"of_" + std::to_string(::getpid()) + ".boxes"', '"of-XXXXXX"'):
+            self.assertEqual(check({"tests/gnss/a_test.cpp": path(own)}), (0, ["layers: 11 files, no breach"]))
+
     # 2026-11-27: loops of gnss/ had stayed scalar since loops became vectors in files that are named alone.
     def test_loops_that_are_to_be_vectors_are_told_to_the_compiler(self):
         rows = {"gnss/rows.cpp": "\nstatic CANYON_VECTOR_CLONES void sum(const double* from, double* to) {}\n"}

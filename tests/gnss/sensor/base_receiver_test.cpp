@@ -12,6 +12,7 @@
 #include "canyon/gnss/rinex/observation/observation_writer.h"
 #include "canyon/gnss/single_point/single_point.h"
 #include "canyon/tests/gnss/sensor/pseudorange_sensor_fixture.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::gnss {
 namespace {
@@ -42,7 +43,7 @@ class BaseReceiverTest : public testing::PseudorangeSensorTest {
     std::string text(*embedded_file("gnss/receivers/" + name + ".toml"));
     const std::size_t from = text.find("\n" + key + " = ") + 1, to = text.find('\n', from);
     text.replace(from, to - from, key + " = " + value);
-    const std::string path = ::testing::TempDir() + "changed_" + name + "_" + key + ".toml";
+    const std::string path = canyon::testing::temporary_file("changed_" + name + "_" + key + ".toml");
     std::ofstream(path) << text;
     return path;
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 
 #include <gtest/gtest.h>
@@ -11,6 +10,7 @@
 
 #include "canyon/core/random/random.h"
 #include "canyon/core/units.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::lidar {
 namespace {
@@ -237,7 +237,7 @@ TEST(TrajectoryErrors, StretchesAreLessThanTwiceWhatIsSaid) {
 
 TEST(TrajectoryErrors, TumAndKittiReadBack) {
   const Drive drive = winding(kLaid, 0.2);
-  const std::string stem = ::testing::TempDir() + "canyon_trajectory";
+  const std::string stem = canyon::testing::temporary_file("trajectory");
   ASSERT_TRUE(write_tum(stem + ".tum", drive.estimate).ok());
   ASSERT_TRUE(write_kitti(stem + ".kitti", drive.estimate).ok());
   const auto tum = read_tum(stem + ".tum");
@@ -248,8 +248,6 @@ TEST(TrajectoryErrors, TumAndKittiReadBack) {
   };
   EXPECT_EQ(errors(*tum), errors(drive.estimate));
   EXPECT_NEAR(errors(*kitti), errors(drive.estimate), 1e-12) << "positions to the bit, rotations are no quaternions";
-  std::filesystem::remove(stem + ".tum");
-  std::filesystem::remove(stem + ".kitti");
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "canyon/study/drive_check/drive_check.h"
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -15,6 +14,7 @@
 #include "canyon/scene/scene_at.h"
 #include "canyon/study/drive_check/simulated_log.h"
 #include "canyon/tests/gnss/paths/wall_scene.h"
+#include "canyon/tests/support/temporary_folder.h"
 
 namespace canyon::study {
 namespace {
@@ -42,9 +42,8 @@ class DriveCheckTest : public ::testing::Test {
     source_ = *make_satellite_source(receiver_.satellites, kStart, kStart + 20.0);
     std::vector<std::string> warnings;
     const std::string text = *rinex_navigation(source_, "GR", kStart, kStart + 20.0, warnings);
-    file_ = ::testing::TempDir() + "drive_check_test.nav";
-    std::ofstream(file_) << text;
-    receiver_.satellites.nav_file = file_;
+    receiver_.satellites.nav_file = canyon::testing::temporary_file("drive.nav");
+    std::ofstream(receiver_.satellites.nav_file) << text;
     data_.observations.name = "drive.obs";
     for (int k = 0; k <= 20; ++k) {
       gnss::ObservationEpoch epoch;
@@ -52,7 +51,6 @@ class DriveCheckTest : public ::testing::Test {
       data_.observations.epochs.push_back(epoch);
     }
   }
-  ~DriveCheckTest() override { std::filesystem::remove(file_); }
 
   DriveCheckInputs inputs() const {
     return {.data = data_,
@@ -87,7 +85,6 @@ class DriveCheckTest : public ::testing::Test {
   gnss::SinglePointConfig solver_;
   gnss::SatelliteSource source_;
   gnss::RecordedData data_;
-  std::string file_;
 };
 
 // The same receiver on both sides: every figure is the same, to the bit.
