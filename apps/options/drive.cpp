@@ -197,7 +197,7 @@ Result<int> drive_and_report(const MissionOptions& options, const LoopOptions& l
   if (figures.seeds) {
     const study::OverSeeds found = study::over_seeds(runs_by_seed(results));
     std::printf("%s\n", study::over_seeds_table(found, keys).c_str());
-    const std::string squares = keys.empty() ? study::squares_over_seeds(found, results.summaries) : std::string();
+    const std::string squares = study::squares_over_seeds(found, results.summaries);
     if (!squares.empty()) std::printf("%s\n", squares.c_str());
   } else {
     std::printf("%s\n", study::comparison_table(results, keys).c_str());

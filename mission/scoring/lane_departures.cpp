@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "canyon/core/units.h"
 #include "canyon/mission/collision/body_at_rest.h"
 #include "canyon/mission/collision/body_box.h"
 
@@ -15,7 +16,11 @@ constexpr double kRounding_m = 1e-3;  // of a mesh, whose places are in single p
 }  // namespace
 
 LaneDepartures::LaneDepartures(const VehicleConfig& vehicle, Path lane, const scene::SceneAt& scene)
-    : vehicle_(vehicle), lane_(std::move(lane)), scene_(scene), near_(scene) {}
+    : vehicle_(vehicle),
+      most_curvature_1_m_(std::tan(vehicle.max_steering_deg * kDegree) / vehicle.wheelbase_m),
+      lane_(std::move(lane)),
+      scene_(scene),
+      near_(scene) {}
 
 /// As whoever follows the route does it: a lane that meets itself is not lost.
 double LaneDepartures::project(const Eigen::Vector2d& p_W, double near_s_m) const {
@@ -36,6 +41,7 @@ void LaneDepartures::look(const KinematicState& truth, const std::function<Eigen
   const double off_m = lane_.offset(p, s_m_), believed_off_m = lane_.offset(believed, believed_s_m_);
   const bool between = off_m * believed_off_m <= 0.0;
   const double beside_m = between ? 0.0 : std::min(std::abs(off_m), std::abs(believed_off_m));
+  if (!can_follow()) needed_to_m_ = std::max(needed_to_m_, way_m_ + kSwing_m);
 
   if (error.norm() > kMostError_m) {
     kept_m_ = 0.0;
@@ -73,6 +79,13 @@ bool LaneDepartures::is_kerb(const NearTriangle& triangle) const {
     const auto ground = scene_.scene().ground(p.x(), p.y());
     if (!ground || p.z() - ground->height_m > vehicle_.ground_clearance_m + kRounding_m) return false;
   }
+  return true;
+}
+
+bool LaneDepartures::can_follow() const {
+  constexpr double kEvery_m = 0.25;  // as its points are
+  for (double s = s_m_; s <= s_m_ + kTurn_m; s += kEvery_m)
+    if (std::abs(lane_.curvature(s)) > most_curvature_1_m_) return false;
   return true;
 }
 

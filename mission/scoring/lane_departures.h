@@ -15,14 +15,16 @@ namespace canyon::mission {
 /// How often the true vehicle leaves its lane without need, as for a phantom that it steers around. Its lane is the
 /// route, where that truly is, where it is by the estimate that the vehicle drives by, or between the two: what the
 /// estimate's error explains is no departure. There is need where a thing, which is all but the ground, stands or moves
-/// in the lane. Kerbs and pavements, which lanes run along, are in it only where the body itself would touch them.
-/// Looked at after every 0.2 m of the way.
+/// in the lane, or where the lane turns more sharply than the vehicle can. Kerbs and pavements, which lanes run along,
+/// are in it only where the body itself would touch them. Looked at after every 0.2 m of the way.
 class LaneDepartures {
  public:
   static constexpr double kBeside_m = 0.5;  ///< farther beside its lane it has left it
   static constexpr double kClear_m = 1.0;   ///< nearer to the body, on its way along the lane, a thing is in it
   static constexpr double kAhead_m = 30.0;  ///< so far ahead a thing is a reason to leave the lane
   static constexpr double kBack_m = 30.0;   ///< and for so long a way after it one not to be back
+  static constexpr double kTurn_m = 5.0;    ///< so far ahead a turn is one that the vehicle begins
+  static constexpr double kSwing_m = 15.0;  ///< and for so long a way after it may swing, where it is too sharp
 
   /// `lane`: the route in W, of rear axles; without one nothing is counted. The scene must outlive this.
   LaneDepartures(const VehicleConfig& vehicle, Path lane, const scene::SceneAt& scene);
@@ -47,8 +49,11 @@ class LaneDepartures {
   bool is_free(const Eigen::Vector2d& most_moved_m);
   bool is_free_at(const Eigen::Vector2d& moved_m);
   bool is_kerb(const NearTriangle& triangle) const;
+  /// Whether the vehicle can follow the lane over the next kTurn_m.
+  bool can_follow() const;
 
   VehicleConfig vehicle_;
+  double most_curvature_1_m_;  ///< that the vehicle can steer
   Path lane_;
   const scene::SceneAt& scene_;
   NearTriangles near_;

@@ -86,9 +86,10 @@ void RunEvents::see_standing(bool stands, GpsTime t) {
     if (!waited_) waited_ = t;
     return;
   }
-  if (waits_ && stands && waited_) see(EventKind::kStopped, *waited_, 1.0);  // that was no wait
+  const bool since_start = waits_ && stands && waited_;  // that was no wait
   waits_ = false;
   if (stands) see(EventKind::kStopped, t, 1.0);
+  if (since_start) events_.back().from_s = *waited_ - start_;
 }
 
 Status RunEvents::keyframe(const mission::KeyframeRow& row) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -50,7 +51,51 @@ std::string words(const Event& event) {
   return {};
 }
 
+/// Whether `size` says how bad an event was; of others that is how long they lasted.
+bool has_size(EventKind kind) {
+  return kind != EventKind::kFixLost && kind != EventKind::kPhantom && kind != EventKind::kStopped;
+}
+
+std::string span(const Event& event) {
+  return seconds(event.from_s) + (event.to_s > event.from_s ? " to " + seconds(event.to_s) : std::string());
+}
+
+/// Several events of a kind, by time, as one line.
+std::string joined(const std::vector<Event>& alike) {
+  if (alike.size() == 1) return span(alike.front()) + ": " + words(alike.front());
+  const auto badness = [](const Event& e) { return has_size(e.kind) ? e.size : e.to_s - e.from_s; };
+  const auto worst = std::max_element(alike.begin(), alike.end(),
+                                      [&](const Event& a, const Event& b) { return badness(a) < badness(b); });
+  double to_s = 0.0;
+  for (const Event& event : alike) to_s = std::max(to_s, event.to_s);
+  return std::to_string(alike.size()) + " times from " + seconds(alike.front().from_s) + " to " + seconds(to_s) +
+         (has_size(worst->kind) ? ", most" : ", longest") + " from " + span(*worst) + ": " + words(*worst);
+}
+
+/// Whether it is of the chain that is told.
+bool in_chain(const Explanation& e, const Event& event) {
+  return event.to_s >= e.from_s && event.from_s <= e.failure.t_s;
+}
+
+/// What else rescues alike, each by itself: removals as narrow as the cause.
+std::string alike_words(const Explanation& e) {
+  std::string words;
+  for (const RemovalOutcome* outcome : alike(e))
+    words += std::string(words.empty() ? "" : ", ") + outcome->removal->make.cause + " (" +
+             out_of(outcome->successes, e.draws) + ")";
+  return words.empty() ? words : "; each of these is enough to take away as well: " + words;
+}
+
 }  // namespace
+
+std::vector<const RemovalOutcome*> alike(const Explanation& e) {
+  std::vector<const RemovalOutcome*> others;
+  if (e.cause == nullptr) return others;
+  for (const RemovalOutcome& outcome : e.outcomes)
+    if (outcome.rescues && outcome.removal != e.cause && outcome.removal->make.breadth == e.cause->make.breadth)
+      others.push_back(&outcome);
+  return others;
+}
 
 VerdictKind verdict_kind(const Explanation& e) {
   if (e.cause != nullptr) return VerdictKind::kCause;
@@ -71,7 +116,7 @@ std::string verdict(const Explanation& e) {
     for (const RemovalOutcome& outcome : e.outcomes) {
       if (outcome.removal != e.cause) continue;
       return std::string("because of ") + e.cause->make.cause + ". Driven again without that (" + e.cause->doc +
-             ") it succeeds in " + out_of(outcome.successes, e.draws) + " repeats, " + as_it_was;
+             ") it succeeds in " + out_of(outcome.successes, e.draws) + " repeats, " + as_it_was + alike_words(e);
     }
   }
   if (verdict_kind(e) == VerdictKind::kNotNavigation)
@@ -81,12 +126,20 @@ std::string verdict(const Explanation& e) {
 }
 
 std::vector<std::string> chain(const Explanation& e) {
-  std::vector<std::string> lines;
+  std::vector<std::vector<Event>> groups;
+  std::size_t events = 0;
+  for (const Event& event : e.events) events += in_chain(e, event) ? 1 : 0;
   for (const Event& event : e.events) {
-    if (event.to_s < e.from_s || event.from_s > e.failure.t_s) continue;
-    lines.push_back(seconds(event.from_s) + (event.to_s > event.from_s ? " to " + seconds(event.to_s) : std::string()) +
-                    ": " + words(event));
+    if (!in_chain(e, event)) continue;
+    const auto same =
+        std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group.front().kind == event.kind; });
+    if (events <= kMostChainLines || same == groups.end())
+      groups.push_back({event});
+    else
+      same->push_back(event);
   }
+  std::vector<std::string> lines;
+  for (const auto& group : groups) lines.push_back(joined(group));
   lines.push_back(seconds(e.failure.t_s) + ": it " + failure_line(told_failure(e.failure)));
   return lines;
 }
@@ -95,6 +148,8 @@ nlohmann::ordered_json why_json(const std::vector<Explanation>& explanations) {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const Explanation& e : explanations) {
     nlohmann::ordered_json events = nlohmann::ordered_json::array(), removed = nlohmann::ordered_json::array();
+    nlohmann::ordered_json others = nlohmann::ordered_json::array();
+    for (const RemovalOutcome* outcome : alike(e)) others.push_back(outcome->removal->name);
     for (const Event& event : e.events)
       events.push_back({{"kind", row_of(event_kinds(), event.kind).name},
                         {"from_s", event.from_s},
@@ -119,6 +174,7 @@ nlohmann::ordered_json why_json(const std::vector<Explanation>& explanations) {
                    {"draws", e.draws},
                    {"success_as_it_was", e.successes_as_it_was},
                    {"cause", e.cause != nullptr ? nlohmann::ordered_json(e.cause->name) : nlohmann::ordered_json()},
+                   {"alike", std::move(others)},
                    {"verdict", verdict(e)},
                    {"chain", chain(e)},
                    {"events", std::move(events)},

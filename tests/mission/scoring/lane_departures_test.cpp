@@ -143,6 +143,28 @@ TEST(LaneDepartures, WhatStandsAfterTheLanesEndIsAReason) {
   EXPECT_EQ(needless(LaneWithPosts({}), out_and_back(135.0, 200.0, 1.5)), 1);
 }
 
+// 2026-11-30: `low` left its lane five times in the built-in mission, each time where it swung out behind a corner of
+// its route that is sharper than its own turning circle.
+TEST(LaneDepartures, WhoCannotTurnSoSharplySwingsOut) {
+  const LaneWithPosts free({});
+  const auto swings = [&](double corner_radius_m, double from_s_m) {
+    const Path lane({{0.0, 0.0}, {60.0, 0.0}, {60.0, 55.0}}, corner_radius_m);
+    LaneDepartures departures(VehicleConfig{}, lane, *free.at);
+    const Beside aside = out_and_back(from_s_m, from_s_m + 22.0, 1.2);
+    for (double s = 0.0; s < lane.length_m(); s += 0.05) {
+      const Vector2d along = lane.direction(s), p = lane.at(s) + aside(s) * Vector2d(along.y(), -along.x());
+      KinematicState truth;
+      truth.X_WB.p = {p.x(), p.y(), 0.0};
+      truth.X_WB.R = rotation_from({std::atan2(along.y(), along.x()), 0.0, 0.0});
+      departures.look(truth, [&] { return truth.X_WB.p; });
+    }
+    return departures.needless();
+  };
+  EXPECT_EQ(swings(0.5, 61.0), 0);
+  EXPECT_EQ(swings(6.5, 61.0), 1) << "that it could have followed";
+  EXPECT_EQ(swings(0.5, 80.0), 1) << "20 m after it";
+}
+
 // A box that stands in the lane until the vehicle is at x = 50 m.
 TEST(LaneDepartures, WhatHasJustGoneWasAReason) {
   const LaneWithPosts lane({});

@@ -111,9 +111,11 @@ TEST(RunEvents, APhantomIsSeenAndIsNoBeginningOfAChain) {
   EXPECT_EQ(chain_start_s(events.events(), 30.0), 20.0);
 }
 
-/// Epochs every 0.1 s of a run whose autonomy stands in these times, and sees by 0.7 s; the stops that are seen.
-std::vector<std::pair<double, double>> stops(const std::vector<std::pair<double, double>>& stands_s) {
-  RunEvents events(0.7);
+/// Epochs every 0.1 s of a run whose autonomy stands in these times, and has planned by `first_plan_by_s`; the stops
+/// that are seen.
+std::vector<std::pair<double, double>> stops(const std::vector<std::pair<double, double>>& stands_s,
+                                             double first_plan_by_s = 0.7) {
+  RunEvents events(first_plan_by_s);
   for (int k = 0; k < 60; ++k) {
     mission::NavRow row;
     row.t = GpsTime{} + 0.1 * k;
@@ -138,6 +140,7 @@ TEST(RunEvents, WaitingForTheFirstScanIsNoStop) {
   EXPECT_EQ(stops({{0.0, 0.6}}), Stops{});
   EXPECT_EQ(stops({{0.0, 0.8}}), (Stops{{0.0, 0.8}})) << "it had seen something by then";
   EXPECT_EQ(stops({{0.0, 5.9}}), (Stops{{0.0, 5.9}}));
+  EXPECT_EQ(stops({{0.0, 5.9}}, 2.5), (Stops{{0.0, 5.9}})) << "a scan every second";
   EXPECT_EQ(stops({{0.0, 0.1}, {0.4, 0.5}}), (Stops{{0.4, 0.5}})) << "it had driven before";
   EXPECT_EQ(stops({{0.0, 0.1}, {3.0, 3.5}}), (Stops{{3.0, 3.5}}));
   mission::MissionConfig config;
@@ -194,6 +197,51 @@ TEST(Chain, IsToldInWordsThatNeedNoGlossary) {
                .p_W = Eigen::Vector3d::Zero(),
                .detail = "goal: came within 5.3 m"};
   EXPECT_EQ(chain(e).back(), "20.0 s: it missed a waypoint (goal: came within 5.3 m)");
+}
+
+// 2026-11-30: of a run that failed after nine minutes the chain had 140 lines.
+TEST(Chain, OfManyEventsThoseOfAKindAreOneLine) {
+  Explanation e;
+  e.failure = {.kind = mission::Outcome::kTimeout,
+               .t_s = 100.0,
+               .p_W = Eigen::Vector3d::Zero(),
+               .detail = "not finished within 100 s",
+               .seen = {}};
+  for (int k = 0; k < 10; ++k) e.events.push_back({EventKind::kDilutionJump, 5.0 * k, 5.0 * k, 3.0});
+  EXPECT_EQ(chain(e).size(), kMostChainLines + 1) << "each by itself";
+  e.events[4] = {EventKind::kDilutionJump, 20.0, 21.0, 8.0};
+  e.events.insert(e.events.begin() + 5, {EventKind::kPhantom, 22.0, 23.0, 1.0});
+  e.events.push_back({EventKind::kPhantom, 60.0, 63.5, 1.0});
+  e.events.push_back({EventKind::kOverconfident, 70.0, 80.0, 1.5});
+  e.events.push_back({EventKind::kPhantom, 101.0, 150.0, 1.0});
+  EXPECT_EQ(chain(e),
+            (std::vector<std::string>{
+                "10 times from 0.0 s to 45.0 s, most from 20.0 s to 21.0 s: range errors suddenly weigh more or less "
+                "in the fix (GDOP jumps by up to 8.0)",
+                "2 times from 22.0 s to 63.5 s, longest from 60.0 s to 63.5 s: the autonomy sees no way on, though "
+                "there is one (phantom)",
+                "70.0 s to 80.0 s: the position is off by up to 1.5 times what the filter thinks possible (3 sigma)",
+                "100.0 s: it ran out of time (not finished within 100 s)"}));
+  EXPECT_LE(event_kinds().size(), kMostChainLines);
+}
+
+// 2026-11-30: reflections were named, where taking away blockage rescues as well.
+TEST(Verdict, NamesWhatIsEnoughToTakeAwayAsWell) {
+  const auto outcome = [](std::size_t row, int successes, bool rescues) {
+    return RemovalOutcome{.removal = &removals()[row], .successes = successes, .rescues = rescues};
+  };
+  Explanation e;
+  e.draws = 12;
+  e.outcomes = {outcome(0, 0, false), outcome(2, 12, true), outcome(4, 11, true), outcome(6, 12, true)};
+  ASSERT_TRUE(alike(e).empty()) << "of no cause";
+  e.cause = &removals()[2];
+  EXPECT_EQ(verdict(e),
+            "because of errors of reflected signals. Driven again without that (reflections without error: hidden "
+            "satellites that are received stay so) it succeeds in 12 of 12 repeats, with nothing but the noise changed "
+            "from 0.0 s on, in 0 of 12; each of these is enough to take away as well: satellites that are blocked (11 "
+            "of 12)");
+  ASSERT_EQ(alike(e).size(), 1u) << "both buildings' errors are wider";
+  EXPECT_EQ(alike(e)[0]->removal, &removals()[4]);
 }
 
 TEST(Holm, StepsDownAsInHisPaper) {
