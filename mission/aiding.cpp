@@ -55,4 +55,10 @@ inertial::Magnetometer::Reading Aiding::field(std::int64_t k, const KinematicSta
   return magnetometer_->sample(k, truth.t, truth.X_WB.R * X_BU_.R);
 }
 
+void Aiding::draw_anew(std::uint64_t noise_seed) {
+  if (odometer_) odometer_->draw_anew(noise_seed);
+  if (barometer_) barometer_->draw_anew(noise_seed);
+  if (magnetometer_) magnetometer_->draw_anew(noise_seed);
+}
+
 }  // namespace canyon::mission

@@ -27,6 +27,9 @@ class Aiding {
   inertial::Barometer::Reading pressure(std::int64_t k, const KinematicState& truth);
   inertial::Magnetometer::Reading field(std::int64_t k, const KinematicState& truth) const;
 
+  /// From now on what each sample draws anew is another draw.
+  void draw_anew(std::uint64_t noise_seed);
+
   /// From when on the true motion is still needed, if all else needs it from t on.
   GpsTime needs_from(GpsTime t) const { return odometer_ ? std::min(t, counted_until_) : t; }
 

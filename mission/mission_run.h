@@ -28,6 +28,7 @@ namespace canyon::mission {
 /// it has a memory.
 struct LaterSensors {
   double from_s = 0.0;
+  std::uint64_t noise_seed = 0;
   bool truth_as_pose = false, truth_as_height = false;
   lidar::Deskewing deskewing;
   std::unique_ptr<gnss::GnssSensor> gnss;
@@ -78,6 +79,7 @@ class MissionRun {
   Status record_epoch(const Due& due);
   bool score();
   /// Has something asked of the autonomy, and what it is asked after every call; nothing once it has failed.
+  void make_autonomy_once();
   void ask(const std::function<void()>& call);
   void lose_autonomy(const std::string& why);
 

@@ -40,6 +40,7 @@ Result<std::unique_ptr<LaterSensors>> make_later(const LaterParts& later, const 
   const auto seed = static_cast<std::uint64_t>(config.run.seed);
   auto sensors = std::make_unique<LaterSensors>();
   sensors->from_s = later.from_s;
+  sensors->noise_seed = later.noise_seed;
   sensors->truth_as_pose = config.run.truth_as_pose;
   sensors->truth_as_height = config.run.truth_as_height;
   sensors->deskewing = deskewing_of(config);
@@ -142,8 +143,7 @@ Result<std::unique_ptr<MissionRun>> MissionRun::make(const MissionConfig& config
     CANYON_TRY(parts.registration, lidar::make_registration(config.registration));
   }
   CANYON_TRY(parts.prior_map, lidar::make_prior_map(config.registration, *parts.registration));
-  parts.autonomy =
-      given.autonomy ? std::move(given.autonomy) : make_autonomy(config.autonomy, mission.prior, mission.start);
+  parts.autonomy = std::move(given.autonomy);
   parts.open_loop = tape != nullptr;
   parts.recorder = given.recorder;
   if (given.omissions != nullptr) parts.omissions = *given.omissions;
@@ -165,6 +165,7 @@ void MissionRun::change_over() {
   gnss_ = std::move(later_->gnss);
   imu_ = std::move(later_->imu);
   scanner_ = std::move(later_->scanner);
+  aiding_.draw_anew(later_->noise_seed);
   deskewing_ = later_->deskewing;
   truth_as_pose_ = later_->truth_as_pose;
   truth_as_height_ = later_->truth_as_height;
@@ -173,7 +174,7 @@ void MissionRun::change_over() {
 
 Result<bool> MissionRun::step() {
   change_over();
-  if (!asked_) ask([] {});  // what it says of itself before the first call
+  if (!asked_) ask([this] { make_autonomy_once(); });  // and what it says of itself before the first call
   asked_ = true;
   const TapeNode& node = clock_.charge(Part::kVehicle, [&]() -> const TapeNode& { return source_->advance(command_); });
   CANYON_TRY_STATUS(boundaries_.check(node.motion));
@@ -187,6 +188,11 @@ Result<bool> MissionRun::step() {
   }
   place_traffic(node.motion.t);
   return score();
+}
+
+/// Within a watched call: one may fail already while it is made.
+void MissionRun::make_autonomy_once() {
+  if (autonomy_ == nullptr) autonomy_ = make_autonomy(config_.autonomy, mission_.prior, mission_.start);
 }
 
 /// Whether the run goes on.

@@ -37,12 +37,20 @@ Result<study::PaperSky> sky_of(const mission::MissionFile& file) {
   return sky;
 }
 
+/// Which satellites the parts see whose receiver this is.
+std::string told_satellites(const gnss::SatelliteSourceConfig& c) {
+  std::string files = c.nav_file;
+  for (const std::string& file : c.nav_files) files += (files.empty() ? "" : ", ") + file;
+  if (!c.almanac_file.empty()) files += (files.empty() ? "" : ", ") + ("almanac " + c.almanac_file);
+  return (files.empty() ? "the built-in constellation" : files) + ", systems " + c.systems;
+}
+
 Result<study::Reproduction> reproduce(const Options& options, const mission::MissionFile& file,
                                       const std::string& scratch) {
   CANYON_TRY(const study::PaperSky sky, sky_of(file));
   study::Reproduction all;
-  all.ephemeris =
-      sky.satellites.nav_file.empty() ? "the built-in constellation of 24 GPS slots" : sky.satellites.nav_file;
+  CANYON_TRY(const mission::MissionConfig high, file.resolve("high"));
+  all.ephemeris = told_satellites(sky.satellites) + " (high: " + high.gnss.satellites.systems + ")";
   all.start = sky.start.iso(0);
   all.draws = options.draws;
   all.missions = options.missions;

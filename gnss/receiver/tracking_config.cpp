@@ -60,8 +60,8 @@ void visit(FieldVisitor& f, TrackingConfig& c) {
            "what echoes make of code, carrier and Doppler, 1 = physical; C/N0 and tracking stay");
   f.choice(
       "hidden_signals", c.hidden_signals, ModelTable<HiddenSignals>(kHiddenSignals),
-      "satellites whose direct path is blocked: as received; not tracked; or, as all that is not tracked, received "
-      "as under a clear sky");
+      "satellites whose direct path is blocked: as received; not tracked; or, like all that is not tracked, received "
+      "as under a clear sky, while those that are tracked by echoes stay so");
 }
 
 CorrelatorDesign TrackingConfig::channel(Modulation modulation_of_channel) const {

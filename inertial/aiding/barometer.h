@@ -39,6 +39,9 @@ class Barometer {
   /// is below 0.
   Reading sample(std::int64_t k, GpsTime t, double h_m);
 
+  /// From the next sample on the white noise is another draw; drift and turn-on bias stay.
+  void draw_anew(std::uint64_t noise_seed) { noise_ = RandomStream(noise_seed, "barometer.noise"); }
+
  private:
   BarometerConfig config_;
   double bias_pa_;

@@ -41,6 +41,9 @@ class Magnetometer {
   /// The Earth's field in W (east, north, up), tesla.
   const Eigen::Vector3d& field_W_t() const { return field_W_t_; }
 
+  /// From the next sample on the white noise is another draw; the iron stays.
+  void draw_anew(std::uint64_t noise_seed) { noise_ = RandomStream(noise_seed, "magnetometer.noise"); }
+
  private:
   MagnetometerConfig config_;
   Eigen::Vector3d field_W_t_;

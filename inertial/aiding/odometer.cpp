@@ -20,6 +20,11 @@ double mean_over(std::span<const KinematicState> nodes, F f) {
   return sum / (3.0 * static_cast<double>(nodes.size() - 1));
 }
 
+MarkovProcess slip_process(const OdometerConfig& config, std::uint64_t seed) {
+  return MarkovProcess::gauss_markov(seed, "odometer.slip", 0, 0.01 * config.slip_percent, config.slip_tau_s,
+                                     1.0 / config.rate_hz);
+}
+
 }  // namespace
 
 void visit(FieldVisitor& f, OdometerConfig& c) {
@@ -32,11 +37,14 @@ void visit(FieldVisitor& f, OdometerConfig& c) {
   f.number("slip_percent_per_m_s2", c.slip_percent_per_m_s2, {0, 20}, "slip that acceleration needs");
 }
 
+void Odometer::draw_anew(std::uint64_t noise_seed) {
+  slip_ = slip_process(config_, noise_seed);
+}
+
 Odometer::Odometer(const OdometerConfig& config, std::uint64_t seed)
     : config_(config),
       scale_(0.01 * config.scale_percent * RandomStream(seed, "odometer.scale").normal(0, 0)),
-      slip_(MarkovProcess::gauss_markov(seed, "odometer.slip", 0, 0.01 * config.slip_percent, config.slip_tau_s,
-                                        1.0 / config.rate_hz)),
+      slip_(slip_process(config, seed)),
       turned_ticks_(RandomStream(seed, "odometer.phase").uniform(0, 0)) {}
 
 Odometer::Reading Odometer::sample(std::int64_t k, std::span<const KinematicState> nodes) {

@@ -37,6 +37,9 @@ class Odometer {
   /// turning so far, so samples must be asked for in order.
   Reading sample(std::int64_t k, std::span<const KinematicState> nodes);
 
+  /// From the next sample on the slip at steady speed is another draw; the wheel's radius stays.
+  void draw_anew(std::uint64_t noise_seed);
+
  private:
   OdometerConfig config_;
   double scale_;

@@ -4,18 +4,22 @@
 #include <cmath>
 
 #include "canyon/core/units.h"
+#include "canyon/mission/motion/plan/skid_steer.h"
 
 namespace canyon::mission {
 
 KnownVehicle known_vehicle(const VehicleConfig& config) {
   const double rear_m = -0.5 * (config.length_m - config.wheelbase_m);
+  const bool skids = config.model.name == "skid_steer";
   return {.rear_m = rear_m,
           .front_m = rear_m + config.length_m,
           .half_width_m = 0.5 * config.width_m,
           .wheelbase_m = config.wheelbase_m,
           .max_steering_rad = config.max_steering_deg * kDegree,
           .max_steering_rate_rad_s = config.max_steering_rate_deg_s * kDegree,
-          .max_deceleration_m_s2 = config.max_deceleration_m_s2};
+          .max_deceleration_m_s2 = config.max_deceleration_m_s2,
+          .max_turn_rate_rad_s = skids ? config.model.own.get<SkidSteerParameters>().max_turn_rate_deg_s * kDegree
+                                       : std::numeric_limits<double>::infinity()};
 }
 
 double KnownVehicle::distance_m(const PlanPose& body, const Eigen::Vector2d& point) const {

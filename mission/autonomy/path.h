@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,10 +35,11 @@ class Path {
   std::vector<double> s_;
 };
 
-/// Largest speeds along a path: curvature limited by lateral acceleration, then by braking ahead of slower places and
-/// accelerating behind them; zero at each of `stops_m`.
+/// Largest speeds along a path: in turns by lateral acceleration and turn rate, then by braking ahead of slower places
+/// and accelerating behind them; zero at each of `stops_m`.
 struct SpeedLimits {
   double cruise_m_s, lateral_m_s2, acceleration_m_s2, deceleration_m_s2;
+  double turn_rad_s = std::numeric_limits<double>::infinity();
 };
 /// Time to drive the path at those speeds, s; halts not included.
 double nominal_drive_time_s(const Path& path, const SpeedLimits& limits, const std::vector<double>& stops_m);

@@ -41,7 +41,7 @@ struct SuccessConfig {
   double camera_px_per_rad = 1000.0;
   double near_miss_m = 0.3;     ///< what comes nearer to the true body is a near miss
   double phantom_free_m = 5.0;  ///< who finds no way with so much truly free ahead has seen a phantom
-  ModelChoice<collision_checks> collision{"lines"};
+  ModelChoice<collision_checks> collision{"box"};
 };
 void visit(FieldVisitor& f, SuccessConfig& c);
 

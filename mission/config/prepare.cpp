@@ -42,10 +42,11 @@ Status plan(const MissionConfig& config, const scene::Site& site, PreparedMissio
     holds_s += config.autonomy.hold_s;
   }
   mission.nominal_s =
-      holds_s + nominal_drive_time_s(mission.prior.route,
-                                     {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2,
-                                      config.vehicle.max_acceleration_m_s2, config.autonomy.braking_m_s2},
-                                     stops);
+      holds_s + nominal_drive_time_s(
+                    mission.prior.route,
+                    {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2, config.vehicle.max_acceleration_m_s2,
+                     config.autonomy.braking_m_s2, mission.prior.vehicle.max_turn_rate_rad_s},
+                    stops);
   mission.time_limit_s = config.success.limit_factor * mission.nominal_s;
   if (config.time.limit_s > 0.0) mission.time_limit_s = std::min(mission.time_limit_s, config.time.limit_s);
   return Ok{};

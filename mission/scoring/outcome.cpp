@@ -18,7 +18,8 @@ constexpr ModelRow<Outcome> kOutcomes[] = {
      "`[time] limit_s` is over, and it is shorter than that: neither success nor failure"},
     {"missed_waypoint", Outcome::kMissedWaypoint,
      "the autonomy has finished, but the vehicle was not within `[success] waypoint_radius_m` of every waypoint, in "
-     "whatever order, and stood there for `stop_s` where it is a mission waypoint; `detail` names the first one missed "
+     "whatever order (a place that comes again wants as many visits), and stood there for `stop_s` where it is a "
+     "mission waypoint; `detail` names the first one missed "
      "and the nearest distance"},
     {"no_line_of_sight", Outcome::kNoLineOfSight,
      "the same, and at a mission waypoint less than `facade_share` of the facade was in sight"},

@@ -40,6 +40,20 @@ Scorer::Scorer(const MissionConfig& config, const PreparedMission& mission, cons
       if (building.name == place.observe) facades_.back() = facade_points(building, place.p_m);
   }
   halt_s_.assign(places_.size(), 0.0);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    visited_before_.push_back(visited_before(i));
+    awaited_.push_back(visited_before_.back() ? 0 : 1);
+  }
+}
+
+std::optional<std::size_t> Scorer::visited_before(std::size_t i) const {
+  bool been_elsewhere = false;
+  for (std::size_t j = i; j-- > 0;) {
+    const bool same = (places_[i].p_m - places_[j].p_m).norm() < config_.waypoint_radius_m;
+    if (same) return been_elsewhere ? std::optional(j) : visited_before_[j];
+    been_elsewhere = true;
+  }
+  return std::nullopt;
 }
 
 void Scorer::fail(Outcome kind, const KinematicState& truth, std::string detail) {
@@ -84,6 +98,10 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
     const double distance = (p - places_[i].p_m).norm();
     score.closest_m = std::min(score.closest_m, distance);
     const bool within = distance <= config_.waypoint_radius_m;
+    if (awaited_[i] == 0) {
+      awaited_[i] = !within && waypoints_[*visited_before_[i]].reached ? 1 : 0;
+      continue;
+    }
     if (!score.mission) {
       score.reached = score.reached || within;
       continue;
@@ -141,7 +159,9 @@ void Scorer::finish(const KinematicState& truth, bool done) {
   for (std::size_t i = 0; i < waypoints_.size(); ++i) {
     const WaypointScore& score = waypoints_[i];
     const std::string who = score.name.empty() ? "waypoint " + std::to_string(i + 1) : score.name;
-    if (!score.reached) {
+    if (awaited_[i] == 0) {
+      fail(Outcome::kMissedWaypoint, truth, who + ": came there no more often than for the waypoints before it");
+    } else if (!score.reached) {
       fail(Outcome::kMissedWaypoint, truth,
            who + ": came within " + number(score.closest_m, "m") +
                (score.mission ? ", stood there for " + number(score.stopped_s, "s") : ""));

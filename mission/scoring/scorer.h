@@ -42,7 +42,8 @@ struct WaypointScore {
 
 /// Scores a mission on truth while it runs. It is a success if the autonomy finished it in time without a failure on
 /// the way, having truly reached every waypoint, in whatever order: the mission waypoints with a halt of stop_s within
-/// the radius and enough of the facade in sight, the others by passing within the radius. Out of several failures the
+/// the radius and enough of the facade in sight, the others by passing within the radius. A waypoint where an earlier
+/// one is wants a visit of its own, after that one's. Out of several failures the
 /// first in time counts; of those that only the end shows, that of the first waypoint.
 class Scorer {
  public:
@@ -82,6 +83,8 @@ class Scorer {
 
  private:
   void fail(Outcome kind, const KinematicState& truth, std::string detail);
+  /// The last waypoint in the same place, if there is one in another between the two.
+  std::optional<std::size_t> visited_before(std::size_t i) const;
   /// How well a facade is seen, if that is better than before.
   void observe(const Eigen::Vector3d& camera_W, const std::vector<Eigen::Vector3d>& facade_W,
                WaypointScore& score) const;
@@ -95,6 +98,8 @@ class Scorer {
   std::vector<WaypointScore> waypoints_;
   std::vector<std::vector<Eigen::Vector3d>> facades_;
   std::vector<double> halt_s_;
+  std::vector<std::optional<std::size_t>> visited_before_;  ///< the waypoint whose visit comes before its own
+  std::vector<char> awaited_;                               ///< whether a visit is its own
   std::optional<Failure> failure_;
   std::unique_ptr<CollisionCheck> collision_;
   Encounters encounters_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "canyon/mission/autonomy/perception/perception.h"
+#include "canyon/mission/autonomy/reference.h"
 #include "canyon/mission/run.h"
 #include "canyon/study/reproduce/detections.h"
 
@@ -16,7 +16,7 @@ class Watch final : public mission::Autonomy {
   Watch(const mission::MissionConfig& config, const mission::PreparedMission& mission, const Tape& tape,
         Detections& found)
       : autonomy_(mission::make_autonomy(config.autonomy, mission.prior, mission.start)),
-        perception_(made_perception(mission.prior.vehicle)),
+        perception_(made_perception(config.autonomy, mission.prior.vehicle)),
         scene_(*mission.scene),
         tape_(tape),
         start_(mission.start),
@@ -40,8 +40,12 @@ class Watch final : public mission::Autonomy {
   int next_waypoint() const override { return autonomy_->next_waypoint(); }
 
  private:
-  static std::unique_ptr<mission::Perception> made_perception(const mission::KnownVehicle& vehicle) {
-    const ModelChoice<mission::perceptions> choice("ground_grid");
+  /// The autonomy's own, where it has one that is of the table.
+  static std::unique_ptr<mission::Perception> made_perception(const mission::AutonomyConfig& autonomy,
+                                                              const mission::KnownVehicle& vehicle) {
+    ModelChoice<mission::perceptions> choice("ground_grid");
+    if (autonomy.model.name == "reference")
+      choice = autonomy.model.own.get<mission::ReferenceParameters>().perception.model;
     return model_row(mission::perceptions(), choice.name).make(choice.own, vehicle);
   }
 

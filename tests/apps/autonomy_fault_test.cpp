@@ -28,6 +28,14 @@ base = "low"
 [fidelity.hangs.autonomy]
 model = "reference_2012"
 call_limit_s = 0.5
+[fidelity.throws_when_made]
+base = "throws"
+[fidelity.throws_when_made.autonomy]
+hold_s = 7
+[fidelity.hangs_when_made]
+base = "hangs"
+[fidelity.hangs_when_made.autonomy]
+hold_s = 7
 )";
 
 class FaultyProgramTest : public CommandLineTest {
@@ -81,6 +89,24 @@ TEST_F(FaultyProgramTest, OfAComparisonTheOthersGoOn) {
   EXPECT_EQ(runs[0]["duration_s"], 4.0);
   expect_fault(runs[1], "it threw: no <idea>");
   expect_fault(runs[2], "a call took longer than autonomy.call_limit_s = 0.5 s");
+  EXPECT_FALSE(read("out/report.html").empty());
+}
+
+// 2026-11-30: an autonomy that threw while it was made ended the whole comparison, one that did not return held it up.
+TEST_F(FaultyProgramTest, OneThatFailsWhileItIsMadeHasDrivenNowhere) {
+  ASSERT_EQ(faulty_canyon("compare mission.toml --fidelities low,throws_when_made,hangs_when_made --out out --json"), 0)
+      << read("stderr");
+  Json runs = Json::parse(read("stdout"))["runs"];
+  ASSERT_EQ(runs.size(), 3U);
+  EXPECT_EQ(runs[0]["outcome"], "stopped");
+  const char* const details[] = {"it threw: no <idea>", "a call took longer than autonomy.call_limit_s = 0.5 s"};
+  for (int i : {0, 1}) {
+    const Json& run = runs[static_cast<std::size_t>(1 + i)];
+    EXPECT_EQ(run.at("outcome"), "autonomy_fault") << i;
+    EXPECT_EQ(run.at("failure").at("detail"), details[i]);
+    EXPECT_LE(run.at("failure").at("t_s").get<double>(), 0.01) << i;
+    EXPECT_LE(run.at("distance_m").get<double>(), 1e-3) << i;
+  }
   EXPECT_FALSE(read("out/report.html").empty());
 }
 

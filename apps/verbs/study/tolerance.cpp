@@ -80,7 +80,7 @@ VerbAction declare(Arguments& arguments) {
 
 Verb tolerance_verb() {
   return {"tolerance", "how often a mission succeeds against one kind of error of navigation, by its size",
-          "canyon tolerance --error step_m --sizes 1,3,10 --seeds 20 --set autonomy.model=reference", declare};
+          "canyon tolerance --error step_m --sizes 1,3,10 --seeds 20", declare};
 }
 
 }  // namespace canyon::apps

@@ -32,7 +32,9 @@ class StoppingDistance final : public SpeedRule {
       const double kappa = std::abs(static_cast<double>(task.curvature_1_m[i]));
       if (kappa < 1e-4) continue;
       const double way_m = static_cast<double>(i) * task.step_m;
-      v = std::min(v, std::sqrt(task.lateral_m_s2 / kappa + 2.0 * task.braking_m_s2 * way_m));
+      const double turning_m_s = task.turn_rad_s / kappa;
+      const double in_bend2 = std::min(task.lateral_m_s2 / kappa, turning_m_s * turning_m_s);
+      v = std::min(v, std::sqrt(in_bend2 + 2.0 * task.braking_m_s2 * way_m));
     }
     constexpr double kCrawl_m_s = 0.1;  // slower is standing
     return v < kCrawl_m_s ? 0.0 : v;

@@ -122,7 +122,7 @@ blind_after_s=0.5; call_limit_s=10; waypoint=0 items; waypoint[].name=""; waypoi
 waypoint[].observe="";
 [success]
 waypoint_radius_m=3; stop_s=5; stopped_speed_m_s=0.1; facade_share=0.5; camera_height_m=1.5; limit_factor=1.5;
-stuck_after_s=90; camera_px_per_rad=1000; collision="lines"; near_miss_m=0.3; phantom_free_m=5;
+stuck_after_s=90; camera_px_per_rad=1000; collision="box"; near_miss_m=0.3; phantom_free_m=5;
 [run]
 name="mission"; seed=1; initial_attitude_error_deg=[0.1, 0.1, 1]; map_leaf_m=0.25; map_range_m=40;
 epoch_rate_hz=10; record_tape=true; record_filter_input=false; record_covariance=false; truth_as_height=false; truth_as_pose=false;

@@ -227,6 +227,44 @@ TEST(ScorerWaypoints, ReachedBelievedAndMissedAreThreeVerdicts) {
   EXPECT_EQ(summary.believed_not_reached, 1);
 }
 
+/// A scorer of these waypoints along x, plain ones, after a drive along these places, in steps of 1 m.
+Scorer scored_along_x(const std::vector<double>& waypoints_m, const std::vector<double>& places_m) {
+  static const auto scene = screened_house(0);
+  static const scene::SceneAt at(*scene);
+  MissionConfig config;
+  for (const double x_m : waypoints_m) config.autonomy.waypoints.push_back({"", {x_m, 0.0}, ""});
+  PreparedMission mission;
+  mission.scene = scene;
+  mission.time_limit_s = 600.0;
+  Scorer scorer(config, mission, at);
+  KinematicState moving;
+  moving.t = mission.start;
+  for (std::size_t i = 0; i + 1 < places_m.size(); ++i)
+    for (double way_m = 0.0; way_m <= std::abs(places_m[i + 1] - places_m[i]); way_m += 1.0) {
+      moving.t = moving.t + 0.2;
+      moving.X_WB.p.x() = places_m[i] + std::copysign(way_m, places_m[i + 1] - places_m[i]);
+      scorer.step(moving, 5.0, true, false);
+    }
+  scorer.finish(moving, true);
+  return scorer;
+}
+
+// 2026-11-30: of eight laps the first alone reached all waypoints of the parking lot's circle.
+TEST(ScorerWaypoints, APlaceThatComesAgainWantsAsManyVisits) {
+  const auto detail = [](const std::vector<double>& places_m) {
+    const Scorer scorer = scored_along_x({-20.0, -10.0, -20.0, -10.0}, places_m);
+    return scorer.failure() ? scorer.failure()->detail : std::string();
+  };
+  EXPECT_EQ(detail({-20.0, -10.0, -20.0, -10.0}), "");
+  EXPECT_EQ(detail({-20.0, -10.0, -20.0}), "waypoint 4: came there no more often than for the waypoints before it");
+  EXPECT_EQ(detail({-20.0, -10.0}), "waypoint 3: came there no more often than for the waypoints before it");
+  EXPECT_EQ(detail({-20.0, -17.0, -20.0}), "waypoint 2: came within 7.0 m") << "it never left the first";
+  // Two that follow one another in one place are of one visit.
+  const auto reached = scored_along_x({-20.0, -20.0, -10.0, -20.0, -20.0}, {-25.0, -5.0}).waypoints();
+  const bool expected[] = {true, true, true, false, false};
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(reached[i].reached, expected[i]) << i;
+}
+
 /// A stop of 6 s at W's origin, before a house behind a screen of that height.
 struct ScreenedStop {
   explicit ScreenedStop(double screen_m, double facade_share = 0.5) {
