@@ -83,8 +83,8 @@ bool LaneDepartures::is_kerb(const NearTriangle& triangle) const {
 }
 
 bool LaneDepartures::can_follow() const {
-  constexpr double kEvery_m = 0.25;  // as its points are
-  for (double s = s_m_; s <= s_m_ + kTurn_m; s += kEvery_m)
+  constexpr double kPoints_m = 0.25;  // apart, as its own are
+  for (double s = s_m_; s <= s_m_ + kTurn_m; s += kPoints_m)
     if (std::abs(lane_.curvature(s)) > most_curvature_1_m_) return false;
   return true;
 }
