@@ -82,8 +82,7 @@ Result<Capture> read_pcap(const std::string& path) {
     const std::size_t left = bytes.size() - at;
     const std::size_t length = left < kRecordHeader ? 0 : number(bytes, at + 8, 4, big_endian);
     if (left < kRecordHeader || length > left - kRecordHeader) {
-      capture.warning = path + ": ends inside packet " +
-                        std::to_string(capture.datagrams.size() + capture.skipped + 1) + "; the rest was read";
+      capture.warning = "ends inside packet " + std::to_string(capture.datagrams.size() + capture.skipped + 1);
       break;
     }
     Datagram datagram;

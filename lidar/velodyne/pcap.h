@@ -18,7 +18,7 @@ struct Datagram {
 
 /// UDP datagrams over IPv4 and Ethernet of a capture file in the classic pcap format, either byte order, microseconds
 /// or nanoseconds. Other packets are skipped; fragments too. A file that ends inside a packet gives what came before,
-/// and says so in `warning`.
+/// and says so in `warning`, without its name.
 struct Capture {
   std::vector<Datagram> datagrams;
   std::size_t skipped = 0;

@@ -255,8 +255,7 @@ TEST_F(Pcap, DamagedFilesAreToldAndNeverCrash) {
     const std::size_t whole = (length - 24) / (16 + 42 + 1206);
     EXPECT_EQ(capture->datagrams.size(), whole);
     const bool inside = (length - 24) % (16 + 42 + 1206) != 0;
-    EXPECT_EQ(capture->warning,
-              inside ? path_ + ": ends inside packet " + std::to_string(whole + 1) + "; the rest was read" : "");
+    EXPECT_EQ(capture->warning, inside ? "ends inside packet " + std::to_string(whole + 1) : "");
   }
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "canyon/core/files/files.h"
+#include "canyon/lidar/velodyne/pcap.h"
 #include "canyon/tests/support/temporary_folder.h"
 #include "canyon/tests/support/test_data.h"
 
@@ -192,6 +193,10 @@ TEST_F(ReadCloud, WhatIsWrongIsSaid) {
   EXPECT_EQ(refusal("a.las", las(4, 129, 30)), "a.las: holds points of format 129, expected 0 to 10, not compressed");
   EXPECT_EQ(refusal("a.las", las(2, 1, 28).substr(0, 227 + 2 * 28)),
             "a.las: the file holds 2 points, expected 3 as its header says");
+  // 2026-11-30: its name stood there twice, and "the rest was read".
+  const std::string capture = velodyne::pcap_text({{0, 2368, std::string(1206, 'x')}, {1, 2368, "position"}});
+  EXPECT_EQ(refusal("a.pcap", capture.substr(0, capture.size() - 1)),
+            "a.pcap: ends inside packet 2, expected a whole capture");
 }
 
 }  // namespace

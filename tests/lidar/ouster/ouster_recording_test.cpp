@@ -94,6 +94,11 @@ TEST_F(OusterRecording, WhatIsWrongIsSaid) {
   ASSERT_FALSE(none.ok());
   EXPECT_EQ(none.error().str().substr(folder_.path().string().size() + 1),
             "a.pcap: holds no packet of 120 bytes, expected packets as its metadata describes them");
+  const std::string whole = capture({packet(7, 0), packet(7, 2)});
+  const auto cut = read_frames(file("a.pcap", whole.substr(0, whole.size() - 1)), *metadata);
+  ASSERT_FALSE(cut.ok());
+  EXPECT_EQ(cut.error().str().substr(folder_.path().string().size() + 1),
+            "a.pcap: ends inside packet 2, expected a whole capture");
 }
 
 struct RealScans {
