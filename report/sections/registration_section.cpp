@@ -41,21 +41,24 @@ Panel run_panel(const Results& results, std::size_t i, const Axis& y) {
   return panel;
 }
 
-/// How keyframes ended, most frequent first; what of the converged steps is farther off than their own covariance has
-/// it; and how many do not determine every direction, where the method tells that.
+/// How keyframes ended, most frequent first; how many steps, converged or not, are farther off than their own
+/// covariance has it, as study/keyframes.py counts them: also those without one, which bounds nothing; and how many do
+/// not determine every direction, where the method tells that.
 std::string endings(const EpochTable& k) {
   const double bound = chi_square_threshold(1e-3, 6.0);
   std::map<std::string, double> count;
-  double steps = 0, beyond = 0, told = 0, open = 0;
+  double steps = 0, beyond = 0, beyond_unconverged = 0, told = 0, open = 0;
   for (std::size_t row = 0; row < k.rows; ++row) {
     const std::string& status = k.text("status")[row];
     if (status == "not_registered") continue;
     ++count[status];
-    if (status != "converged") continue;
+    ++steps;
     const double nees = k["step_nees"][row], directions = k["open_directions"][row];
-    if (std::isfinite(nees)) ++steps;
+    const bool converged = status == "converged", within = nees >= 0.0 && nees <= bound;
+    if (!within) ++beyond;
+    if (!within && !converged) ++beyond_unconverged;
+    if (!converged) continue;
     if (std::isfinite(directions)) ++told;
-    if (nees > bound) ++beyond;
     if (directions > 0.0) ++open;
   }
   if (count.empty()) return {};
@@ -67,9 +70,9 @@ std::string endings(const EpochTable& k) {
     text += (n == order.front().first && status == order.front().second ? "" : ", ") + escape_html(status) + ' ' +
             show_count(n);
   text += '.';
-  if (steps > 0)
-    text += " Of " + count_of(steps, "converged step", "converged steps") +
-            ", beyond their own 99.9 % bound: " + show_count(beyond) + '.';
+  text += " Of " + count_of(steps, "step", "steps") + ", beyond their own 99.9 % bound: " + show_count(beyond);
+  if (beyond_unconverged > 0) text += " (not converged: " + show_count(beyond_unconverged) + ')';
+  text += '.';
   if (told > 0) text += " Converged with a direction left open: " + show_count(open) + '.';
   return text;
 }

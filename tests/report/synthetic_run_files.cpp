@@ -239,7 +239,7 @@ std::string SyntheticRun::keyframes_csv() const {
   for (const Keyframe& k : keyframes_) {
     out << field(k.t_s) << ",14200," << field(k.p.x()) << "," << field(k.p.y()) << ",1.2," << field(k.prior.norm())
         << "," << field(k.prior.z()) << "," << field(k.registered.norm()) << "," << field(k.registered.z()) << ","
-        << (k.converged ? "converged,9,0.08,5,0" : "not_converged,9,0.08,,0") << "\n";
+        << (k.converged ? "converged,9,0.08,5,0" : "not_converged,9,0.08,5,") << "\n";
   }
   return out.str();
 }
