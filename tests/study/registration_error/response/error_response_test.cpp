@@ -1,6 +1,8 @@
 #include "canyon/study/registration_error/response/error_response.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -91,6 +93,93 @@ TEST(ErrorResponse, ARampIsItsRateTimesTheTimeSinceThePlaceBegan) {
       if (k > 0) {
         EXPECT_LT((before * given.motion.X_TS.p - given.estimate.X_WB.p).norm(), 10 * kRounding)
             << axis_name(axis) << ' ' << k;
+      }
+      before = given.estimate.X_WB;
+    }
+  }
+}
+
+/// From where the place begins each keyframe is off along the axis by a normal draw of its own, of the size in the
+/// mean square, and by nothing across it; the prediction knows nothing of that.
+TEST(ErrorResponse, NoiseIsWhiteAndOfItsSizeAlongItsAxis) {
+  const RecordedKeyframes recorded = winding_way();
+  const Stretch place{.first = 0, .begin = 2, .end = 6, .from_m = 0.0};
+  const double sigma_m = 0.4, yaw = 0.3 * 2;
+  const Eigen::Vector3d axes_W[] = {{std::cos(yaw), std::sin(yaw), 0}, {-std::sin(yaw), std::cos(yaw), 0}, {0, 0, 1}};
+  constexpr double kRounding = 1e-13;  // some eps of 100 m
+  constexpr std::uint64_t kSeeds = 1000;
+  std::vector<double> along;  // by axis, seed and keyframe, in sigma
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed)
+      for (std::size_t k = 0; k < recorded.keyframes.size(); ++k) {
+        const EstimateError noise{&model_row(estimate_errors(), "noise_m"), axis, sigma_m};
+        const DisturbedKeyframe given = disturbed_keyframe(recorded, place, k, noise, seed);
+        const Pose& truth = recorded.keyframes[k].X_WB_true;
+        const Eigen::Vector3d off = given.estimate.X_WB.p - truth.p;
+        const double this_far = off.dot(axes_W[axis]);
+        ASSERT_LT((off - this_far * axes_W[axis]).norm(), kRounding) << axis_name(axis) << ' ' << k;
+        ASSERT_EQ(given.estimate.X_WB.R.coeffs(), truth.R.coeffs()) << axis_name(axis) << ' ' << k;
+        const Pose from = recorded.keyframes[k > 0 ? k - 1 : 0].X_WB_true;
+        ASSERT_LT((from * given.motion.X_TS.p - truth.p).norm(), 10 * kRounding) << axis_name(axis) << ' ' << k;
+        if (k < place.begin) {
+          ASSERT_EQ(off.norm(), 0.0) << axis_name(axis) << ' ' << k;
+        } else {
+          along.push_back(this_far / sigma_m);
+        }
+      }
+  // 4.5 sigma of the means of so many independent draws, squares (variance 2) and products; 7e-6 each.
+  const auto n = static_cast<double>(along.size());
+  const auto mean_product = [&](std::size_t apart) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < along.size(); ++i) sum += along[i] * along[(i + apart) % along.size()];
+    return sum / n;
+  };
+  double mean = 0.0;
+  for (const double one : along) mean += one / n;
+  EXPECT_NEAR(mean, 0.0, 4.5 / std::sqrt(n));
+  EXPECT_NEAR(mean_product(0), 1.0, 4.5 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(mean_product(1), 0.0, 4.5 / std::sqrt(n)) << "keyframe after keyframe";
+  EXPECT_NEAR(mean_product(4), 0.0, 4.5 / std::sqrt(n)) << "seed after seed";
+  EXPECT_NEAR(mean_product(4 * kSeeds), 0.0, 4.5 / std::sqrt(n)) << "axis after axis";
+}
+
+/// A vehicle at constant speed along a line, turning at a constant rate: where it is at any time is known in closed
+/// form. Keyframes half a second apart from 0.2 s on.
+Pose evenly_moving(double t_s) {
+  return {rotation_from({.yaw_rad = 0.4 + 0.3 * t_s}), {100.0 + 5.0 * t_s, -20.0 + 2.0 * t_s, 3.0 - 0.1 * t_s}};
+}
+RecordedKeyframes even_way() {
+  constexpr GpsTime kStart{1'000'000'000'000'000'000};
+  RecordedKeyframes out = winding_way();
+  for (int i = 0; i <= 6; ++i)
+    out.motion.append(
+        {.t = kStart + 0.5 * i, .X_WB = evenly_moving(0.5 * i), .v_WB_W = {5.0, 2.0, -0.1}, .w_WB_B = {0.0, 0.0, 0.3}});
+  for (std::size_t k = 0; k < out.keyframes.size(); ++k) {
+    const double t_s = 0.2 + 0.5 * static_cast<double>(k);
+    out.keyframes[k].t = kStart + t_s;
+    out.keyframes[k].X_WB_true = evenly_moving(t_s);
+  }
+  return out;
+}
+
+/// The estimate is the true pose of so long ago, before the place too, and before the start that of the start; the
+/// prediction is the motion between two such poses.
+TEST(ErrorResponse, ALatencyIsTheTruePoseOfSoLongAgo) {
+  const RecordedKeyframes recorded = even_way();
+  const Stretch place{.first = 0, .begin = 2, .end = 6, .from_m = 0.0};
+  constexpr double kRounding = 1e-12;  // polynomials of positions of 100 m, over some pieces
+  for (const double late_s : {0.15, 0.3}) {
+    const EstimateError latency{&model_row(estimate_errors(), "latency_s"), 0, late_s};
+    Pose before;
+    for (std::size_t k = 0; k < recorded.keyframes.size(); ++k) {
+      const DisturbedKeyframe given = disturbed_keyframe(recorded, place, k, latency, 1);
+      const Pose then = evenly_moving(std::max(0.0, 0.2 + 0.5 * static_cast<double>(k) - late_s));
+      EXPECT_LT((given.estimate.X_WB.p - then.p).norm(), kRounding) << late_s << ' ' << k;
+      EXPECT_LT(so3_log(given.estimate.X_WB.R.conjugate() * then.R).norm(), kRounding) << late_s << ' ' << k;
+      if (k > 0) {
+        const Pose on = before * given.motion.X_TS;
+        EXPECT_LT((on.p - then.p).norm(), 2 * kRounding) << late_s << ' ' << k;
+        EXPECT_LT(so3_log(on.R.conjugate() * then.R).norm(), 2 * kRounding) << late_s << ' ' << k;
       }
       before = given.estimate.X_WB;
     }
