@@ -189,14 +189,14 @@ TEST(ErrorBudget, SameBitsForAnyNumberOfThreads) {
 }
 
 // Keyframe after keyframe is then aligned beside the drives by whichever thread is idle. `low`, whose runs are short.
-TEST(ErrorBudget, SameBitsWithRegistrationForOneAndTwoThreads) {
+TEST(ErrorBudget, SameBitsWithRegistrationForAnyNumberOfThreads) {
   const mission::MissionConfig config =
       short_config("low", "low",
                    "[time]\nlimit_s = 6.0\n[lidar]\nbeams = \"grid:8:-15:5\"\nazimuth_steps = 360\n"
                    "[registration]\nmethod = \"gicp\"\nkeyframe_distance_m = 1.0\n");
   const Taped on = taped(config);
   std::vector<std::vector<double>> numbers;
-  for (const int n : {1, 2}) {
+  for (const int n : {1, 2, 8}) {
     set_threads(n);
     const ErrorBudget budget = budget_of(config, on, 2, 1, {HiddenRemoval::kHealed});
     EXPECT_TRUE(budget.registered);
@@ -209,6 +209,7 @@ TEST(ErrorBudget, SameBitsWithRegistrationForOneAndTwoThreads) {
   }
   set_threads(0);
   EXPECT_EQ(numbers[1], numbers[0]);
+  EXPECT_EQ(numbers[2], numbers[0]);
 }
 
 std::vector<double> totals_and_shares(const ErrorBudget& budget) {
