@@ -1,4 +1,4 @@
-// The own generalized ICP beside PCL's, unchanged, in one process: a ratio of CPU times of one thread, never seconds.
+// The own generalized ICP beside PCL's, unchanged, in one process: ratios of CPU times of one thread, never seconds.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -17,9 +17,10 @@
 namespace canyon::lidar::trials {
 namespace {
 
-/// What was asked for: prepare and align of both clouds together. Apart they are no like for like, as PCL's align makes
-/// trees and covariances that the own methods have made before.
-constexpr double kTimesFaster = 3.0;
+/// What was asked for: prepare and align of both clouds together, and align alone. The former is the like for like, as
+/// PCL's align makes trees and covariances that the own methods have made before; the latter is what every further
+/// alignment of clouds that are ready takes.
+constexpr double kTimesFaster = 3.0, kTimesFasterToAlign = 4.5;
 
 struct TimedPair {
   std::vector<Eigen::Vector3f> source, target;
@@ -33,37 +34,50 @@ std::unique_ptr<Registration> timed_method(const char* name) {
   return *make_registration(config);
 }
 
-double cpu_s_of(const Registration& by, const TimedPair& pair, Pose* found = nullptr) {
+struct CpuOfPair {
+  double total_s = 0.0, align_s = 0.0;
+  void operator+=(const CpuOfPair& other) { total_s += other.total_s, align_s += other.align_s; }
+};
+
+CpuOfPair cpu_of(const Registration& by, const TimedPair& pair, Pose* found = nullptr) {
   const double before_s = canyon::testing::process_cpu_s();
   const auto source = by.prepare(pair.source);
   const Registration::Placed target{by.prepare(pair.target), Pose{}};
+  const double ready_s = canyon::testing::process_cpu_s();
   const auto result = by.align(*source, {&target, 1}, pair.guess);
-  const double took_s = canyon::testing::process_cpu_s() - before_s;
+  const double done_s = canyon::testing::process_cpu_s();
   if (found != nullptr) *found = result.X_TS;
-  return took_s;
+  return {done_s - before_s, done_s - ready_s};
 }
 
-/// PCL's time for all pairs over ours, the median of some repetitions in turns: what else the machine does, or how fast
-/// it is, then acts on both.
-double times_faster(const std::vector<TimedPair>& pairs) {
+double told_middle(const char* what, std::vector<double> ratios) {
+  std::sort(ratios.begin(), ratios.end());
+  const double middle = ratios[ratios.size() / 2];
+  std::printf("pcl_gicp takes %.2f times the CPU time of gicp (%.2f to %.2f) %s\n", middle, ratios.front(),
+              ratios.back(), what);
+  return middle;
+}
+
+/// PCL's times for all pairs over ours, the medians of some repetitions in turns: what else the machine does, or how
+/// fast it is, then acts on both.
+void expect_faster(const std::vector<TimedPair>& pairs) {
   constexpr int kRepetitions = 9;
   set_threads(1);
   const auto ours = timed_method("gicp"), pcls = timed_method("pcl_gicp");
-  for (const auto* method : {&ours, &pcls}) cpu_s_of(**method, pairs.front());  // what only a first call costs
-  std::vector<double> ratios;
+  for (const auto* method : {&ours, &pcls}) cpu_of(**method, pairs.front());  // what only a first call costs
+  std::vector<double> total, align;
   for (int k = 0; k < kRepetitions; ++k) {
-    double our_s = 0.0, pcl_s = 0.0;
+    CpuOfPair our, pcl;
     for (const TimedPair& pair : pairs) {
-      our_s += cpu_s_of(*ours, pair);
-      pcl_s += cpu_s_of(*pcls, pair);
+      our += cpu_of(*ours, pair);
+      pcl += cpu_of(*pcls, pair);
     }
-    ratios.push_back(pcl_s / our_s);
+    total.push_back(pcl.total_s / our.total_s);
+    align.push_back(pcl.align_s / our.align_s);
   }
   set_threads(0);
-  std::sort(ratios.begin(), ratios.end());
-  const double middle = ratios[ratios.size() / 2];
-  std::printf("pcl_gicp takes %.2f times the CPU time of gicp (%.2f to %.2f)\n", middle, ratios.front(), ratios.back());
-  return middle;
+  EXPECT_GE(told_middle("in all", total), kTimesFaster);
+  EXPECT_GE(told_middle("to align", align), kTimesFasterToAlign);
 }
 
 // Our side of a build that is not optimised says nothing beside a library that is.
@@ -85,11 +99,11 @@ TEST(FasterThanPclNightly, OnSimulatedPairs) {
     pairs.push_back({std::move(trial.source), std::move(trial.target), trial.prior.X_TS});
     // That it is fast must not be that it gives up.
     Pose found;
-    cpu_s_of(*timed_method("gicp"), pairs.back(), &found);
+    cpu_of(*timed_method("gicp"), pairs.back(), &found);
     EXPECT_TRUE(right_where_determined(trial, found, rms_radius(pairs.back().source))) << place.name;
   }
   ASSERT_EQ(pairs.size(), 4U);
-  EXPECT_GE(times_faster(pairs), kTimesFaster);
+  expect_faster(pairs);
 }
 
 TEST(FasterThanPclNightly, OnTwoRealScans) {
@@ -102,7 +116,7 @@ TEST(FasterThanPclNightly, OnTwoRealScans) {
     ASSERT_TRUE(cloud.ok()) << cloud.error().str();
     for (const Eigen::Vector3d& p : cloud->points) points->push_back(p.cast<float>());
   }
-  EXPECT_GE(times_faster({pair}), kTimesFaster);
+  expect_faster({pair});
 }
 
 }  // namespace
