@@ -37,7 +37,7 @@ p_m = [185.0, 109.9]
   const auto config = file->resolve("low");
   if (!config) return config.error().str();
   const RecordedRun run = drive(*config);
-  return name(run.outcome) + (run.failure ? ": " + run.failure->detail : std::string());
+  return name(run.outcome.value()) + (run.failure ? ": " + run.failure->detail : std::string());
 }
 
 TEST_P(VehiclesDrive, AroundACorner) {

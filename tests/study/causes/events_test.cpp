@@ -228,7 +228,11 @@ TEST(Chain, OfManyEventsThoseOfAKindAreOneLine) {
 // 2026-11-30: reflections were named, where taking away blockage rescues as well.
 TEST(Verdict, NamesWhatIsEnoughToTakeAwayAsWell) {
   const auto outcome = [](std::size_t row, int successes, bool rescues) {
-    return RemovalOutcome{.removal = &removals()[row], .successes = successes, .rescues = rescues};
+    RemovalOutcome of_row;
+    of_row.removal = &removals()[row];
+    of_row.successes = successes;
+    of_row.rescues = rescues;
+    return of_row;
   };
   Explanation e;
   e.draws = 12;
