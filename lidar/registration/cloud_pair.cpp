@@ -16,38 +16,47 @@ double ms_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// The median along each axis, in whole metres: a few points that are far off do not move it. Near the origin it is the
-/// origin, so that a sensor's own cloud stays as it is.
+/// What marks a missing return, in the cloud's own coordinates.
+bool is_missing(const Eigen::Vector3d& p) {
+  return p == Eigen::Vector3d::Zero();
+}
+
+/// The median along each axis: a few points that are far off do not move it. Of no points the origin.
 Eigen::Vector3d middle_of(const CloudPlaces& cloud) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (Eigen::Index a = 0; a < 3; ++a) {
     std::vector<double> along;
     along.reserve(cloud.points.size());
     for (const Eigen::Vector3d& p : cloud.points) {
-      if (p.allFinite()) along.push_back(p[a]);
+      if (p.allFinite() && !is_missing(p)) along.push_back(p[a]);
     }
     if (along.empty()) return Eigen::Vector3d::Zero();
     const auto half = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
     std::nth_element(along.begin(), half, along.end());
-    middle[a] = std::round(*half);
+    middle[a] = *half;
   }
-  return middle.norm() < 1000.0 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : middle;
+  return middle;
 }
 
-std::vector<Eigen::Vector3f> about(const CloudPlaces& cloud, const Eigen::Vector3d& middle) {
+/// The middle in whole metres; near the origin the origin, so that a sensor's own cloud stays as it is.
+Eigen::Vector3d origin_for(const Eigen::Vector3d& middle) {
+  const Eigen::Vector3d whole = middle.array().round();
+  return whole.norm() < 1000.0 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : whole;
+}
+
+std::vector<Eigen::Vector3f> about(const CloudPlaces& cloud, const Eigen::Vector3d& origin) {
   std::vector<Eigen::Vector3f> points;
   points.reserve(cloud.points.size());
-  // What marks a missing return is (0, 0, 0) in the cloud's own coordinates.
   for (const Eigen::Vector3d& p : cloud.points) {
-    if (p != Eigen::Vector3d::Zero()) points.push_back((p - middle).cast<float>());
+    if (!is_missing(p)) points.push_back((p - origin).cast<float>());
   }
   return points;
 }
 
-/// Adjoint of a shift: xi in a frame whose origin stands at `middle`, of xi in the cloud's own.
-Matrix6d shifted(const Eigen::Vector3d& middle) {
+/// Adjoint of a shift: xi in a frame whose origin stands at `origin`, of xi in the one that this is said in.
+Matrix6d shifted(const Eigen::Vector3d& origin) {
   Matrix6d adjoint = Matrix6d::Identity();
-  adjoint.bottomLeftCorner<3, 3>() = -skew(middle);
+  adjoint.bottomLeftCorner<3, 3>() = -skew(origin);
   return adjoint;
 }
 
@@ -57,18 +66,19 @@ CloudPair register_pair(const Registration& method, const CloudPlaces& source, c
                         const PosePrior& prior) {
   CloudPair out;
   const auto begin = std::chrono::steady_clock::now();
-  const Pose from_source{Eigen::Quaterniond::Identity(), middle_of(source)};
-  const Pose from_target{Eigen::Quaterniond::Identity(), middle_of(target)};
+  const Eigen::Vector3d middle = middle_of(source);
+  const Pose from_source{Eigen::Quaterniond::Identity(), origin_for(middle)};
+  const Pose from_target{Eigen::Quaterniond::Identity(), origin_for(middle_of(target))};
   const auto s = method.prepare(about(source, from_source.p));
   const Registration::Placed placed{method.prepare(about(target, from_target.p)), Pose{}};
   out.preprocess_ms = ms_since(begin);
   out.source_points = s->points.size();
   out.target_points = placed.cloud->points.size();
   const auto aligning = std::chrono::steady_clock::now();
-  const Matrix6d to_middle = shifted(from_source.p), back = shifted(-from_source.p);
-  PosePrior about_middles{from_target.inverse() * prior.X_TS * from_source, prior.covariance};
-  if (prior.covariance.allFinite()) about_middles.covariance = to_middle * prior.covariance * to_middle.transpose();
-  out.result = method.align_with_prior(*s, {&placed, 1}, about_middles);
+  const Matrix6d from_middle = shifted(from_source.p - middle), back = shifted(-from_source.p);
+  PosePrior about_origins{from_target.inverse() * prior.X_TS * from_source, prior.covariance};
+  if (prior.covariance.allFinite()) about_origins.covariance = from_middle * prior.covariance * from_middle.transpose();
+  out.result = method.align_with_prior(*s, {&placed, 1}, about_origins);
   out.align_ms = ms_since(aligning);
   out.result.X_TS = from_target * out.result.X_TS * from_source.inverse();
   if (out.result.covariance.allFinite()) out.result.covariance = back * out.result.covariance * back.transpose();

@@ -15,8 +15,10 @@ struct CloudPair {
   std::size_t source_points = 0, target_points = 0;  ///< after thinning
 };
 
-/// Works about each cloud's own middle, so that coordinates in doubles lose nothing; `prior` is in the clouds' own
-/// coordinates, its covariance in the source frame.
+/// Works about each cloud's own middle, so that coordinates in doubles lose nothing. `prior` is in the clouds' own
+/// coordinates; its covariance is of xi in a frame of the source's axes whose origin stands in the source's middle (the
+/// median along each axis, of what is no missing return): far from the origin a turn about that is a shift of as many
+/// kilometres.
 CloudPair register_pair(const Registration& method, const CloudPlaces& source, const CloudPlaces& target,
                         const PosePrior& prior);
 

@@ -166,7 +166,9 @@ VerbAction declare(Arguments& arguments) {
       .default_shown()
       .within(std::int64_t{1}, std::int64_t{1000});
   arguments.option("--guess", options->guess, "T_target_source to start from: 16 numbers, row by row");
-  arguments.option("--sigma", options->sigma, "METRES,DEGREES: how sure the guess is; with it the search goes as far");
+  arguments.option(
+      "--sigma", options->sigma,
+      "METRES,DEGREES: how sure the guess is, its turn about the middle of SOURCE; with it the search goes as far");
   arguments.option("--covariance", options->covariance, "row of [registration] covariance").default_shown();
   arguments.option("--kernel", options->kernel, "row of [registration] kernel").default_shown();
   return [options]() -> Result<int> { return run(*options); };

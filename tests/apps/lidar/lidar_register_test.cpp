@@ -199,6 +199,27 @@ TEST_F(LidarRegisterTest, FloatsBeyondTenKilometresAreWarnedOf) {
   EXPECT_EQ(read("stderr"), "");
 }
 
+// 2026-11-30: the turn's sigma was about the file's origin, so that of clouds in UTM coordinates 5 degrees were a shift
+// of 400 km, and the answer was too_little_overlap.
+TEST_F(LidarRegisterTest, SigmaIsAboutTheMiddleOfTheSource) {
+  const Eigen::Vector3d origin(500000.0, 4649776.0, 100.0);
+  std::vector<Eigen::Vector3d> target = yard(1, 20000), source = yard(2, 20000);
+  for (Eigen::Vector3d& p : target) p += origin;
+  for (Eigen::Vector3d& p : source) p = X_TS_.inverse() * p + origin;
+  write("given_utm_target.ply", ply(target));
+  write("given_utm_source.ply", ply(source));
+  const Json out = answer("given_utm_source.ply given_utm_target.ply --sigma 1,5");
+  EXPECT_EQ(out["status"], "converged");
+  EXPECT_TRUE(out["open_directions"].empty());
+  for (int i = 0; i < 3; ++i) {  // where the yard's middle comes to lie
+    double at = out["T_target_source"][4 * i + 3].get<double>();
+    for (int k = 0; k < 3; ++k) at += out["T_target_source"][4 * i + k].get<double>() * origin[k];
+    EXPECT_NEAR(at, origin[i] + X_TS_.translation()[i], 0.02) << i;  // as off() of the near ones
+  }
+  ASSERT_EQ(canyon("lidar register --help"), 0);
+  EXPECT_THAT(read("stdout"), ::testing::HasSubstr("about the middle of SOURCE"));
+}
+
 TEST_F(LidarRegisterTest, WhatIsWrongIsSaidInOneLine) {
   write("given_empty.ply", "");
   write("given_cut.bin", "12345");
