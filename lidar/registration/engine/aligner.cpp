@@ -23,8 +23,7 @@ constexpr double kTellingBlock_leaves = 8.0;
 // A pull of the prior below this leaves no doubt of what the surfaces alone would have.
 constexpr double kNoPull_m = 0.03;
 constexpr double kNoPull_rad = 3e-3;
-// Where nothing is known of a guess and less than kFew of the points found a match: half turned, at most this share of
-// what was missed is missed.
+// Where less than kFew of the points found a match: half turned, at most this share of what was missed is missed.
 constexpr double kFew = 0.8;
 constexpr double kFarBetter = 0.5;
 constexpr double kWellMatched = 0.9;  // of the points; fewer may be out of reach because the prior holds them there
@@ -239,18 +238,23 @@ std::vector<Aligner::Place> Aligner::places() {
   return out;
 }
 
-/// Whether nothing is known of the guess, many points have no match where it ended, and half turned about one of the
-/// source's axes, begun where the guess stood, far more is explained: a guess that was half turned ends on level ground
-/// or on one wall.
+/// Whether many points have no match where it ended, and half turned about one of the source's axes, begun where the
+/// guess stood, far more is explained: a guess that was half turned ends on level ground or on one wall, and a prior
+/// has its way in all that these leave open. What is held at a prior is compared by where the surfaces alone lead from
+/// there.
 bool Aligner::turned_is_far_better(const FoundPose& at, double overlap) {
-  if (search_.prior() || overlap > kFew) return false;
+  if (overlap > kFew) return false;
+  const auto missed_from = [this](const Pose& X) {
+    FoundPose alone;
+    alone.X = X;
+    search_.anew(alone, 20, {.surfaces_alone = true});
+    return alone.equations.missed;
+  };
+  const double missed = search_.prior() ? std::min(at.equations.missed, missed_from(at.X)) : at.equations.missed;
   for (const Eigen::Vector3d& axis :
        {Eigen::Vector3d(Eigen::Vector3d::UnitZ()), Eigen::Vector3d(Eigen::Vector3d::UnitX()),
         Eigen::Vector3d(Eigen::Vector3d::UnitY())}) {
-    FoundPose turned;
-    turned.X = Pose{at.X.R * so3_exp(kPi * axis), search_.guess().p};
-    search_.anew(turned, 20);
-    if (turned.equations.missed < kFarBetter * at.equations.missed) return true;
+    if (missed_from(Pose{at.X.R * so3_exp(kPi * axis), search_.guess().p}) < kFarBetter * missed) return true;
   }
   return false;
 }
