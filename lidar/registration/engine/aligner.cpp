@@ -101,7 +101,9 @@ bool Aligner::keep_open_at_prior(Place& place) {
     if (!precision.covariance.allFinite() || precision.open.size() >= 6) return undetermined();
     const std::size_t before = open.open().size();
     for (const Vector6d& v : precision.open) open.add(v);
+    const std::size_t without_scale = open.open().size();
     open.open_wide(precision.covariance, kWidest_m, kWidest_rad);
+    place.opened_wide |= open.open().size() > without_scale;
     if (open.open().size() >= 6) return undetermined();
     if (open.open().size() == before) return true;
     FoundPose stays = at;
@@ -266,7 +268,7 @@ void Aligner::judge(const Place& best, bool ambiguous, RegistrationResult& resul
     result.status = Status::kTooLittleOverlap;
   } else if (best.kept) {
     result.status = Status::kNotConverged;
-  } else if (beyond_prior(result)) {
+  } else if (result.surfaces && beyond_prior(result.surfaces->X_TS, result.surfaces->covariance)) {
     result.status = Status::kBeyondPrior;
   } else if (!best.found.settled) {
     result.status = Status::kNotConverged;
@@ -275,13 +277,49 @@ void Aligner::judge(const Place& best, bool ambiguous, RegistrationResult& resul
   }
 }
 
-/// Whether what the surfaces alone have and the prior do not agree.
-bool Aligner::beyond_prior(const RegistrationResult& result) const {
-  const auto& prior = search_.prior();
-  if (!prior) return false;
-  const Vector6d xi = prior->off(result.surfaces->X_TS);
-  const Matrix6d sum = prior->covariance_at(result.surfaces->X_TS) + result.surfaces->covariance;
+/// Whether what the surfaces alone have, with so much covariance, and the prior do not agree.
+bool Aligner::beyond_prior(const Pose& X, const Matrix6d& by_surfaces) const {
+  const Vector6d xi = search_.prior()->off(X);
+  const Matrix6d sum = search_.prior()->covariance_at(X) + by_surfaces;
   return !(xi.dot(sum.ldlt().solve(xi)) < chi_square_threshold(kProbability, 6.0));
+}
+
+/// From where the place was before anything was held at the prior.
+Aligner::Alone Aligner::by_themselves(const Place& best) {
+  Alone alone{.at = best.found, .open = OpenDirections(search_.radius_m()), .precision = {}};
+  alone.at.X = best.fit.X;
+  for (int pass = 0; pass < kMostOpenings; ++pass) {
+    search_.anew(alone.at, 30, {.open = &alone.open, .surfaces_alone = true});
+    alone.precision = precision_at(alone.at, model_row(covariance_forms(), engine_.covariance).make, alone.open);
+    const std::size_t before = alone.open.open().size();
+    for (const Vector6d& v : alone.precision.open) alone.open.add(v);
+    if (alone.open.open().size() == before || alone.open.open().size() >= 6) break;
+    alone.at.X = search_.held(alone.open, alone.at.X);
+  }
+  return alone;
+}
+
+/// Held by a prior that is wrong and sure of it, all points are off their surfaces: by such residuals every direction
+/// is wide, what is wide is open and the prior's, and nothing is left that contradicts it. So the two are compared
+/// where the surfaces have it by themselves, and with what they are sure of there.
+void Aligner::doubt_prior(const Place& best, RegistrationResult& result) {
+  using Status = RegistrationStatus;
+  if (result.status == Status::kTooLittleOverlap || result.status == Status::kAmbiguous) return;
+  // However sure surfaces are, they contradict nothing within the prior's own ellipsoid.
+  constexpr double kSurest = 1e-12;
+  if (!best.opened_wide &&
+      (result.status == Status::kBeyondPrior || !beyond_prior(result.surfaces->X_TS, kSurest * Matrix6d::Identity())))
+    return;
+  const Alone alone = by_themselves(best);
+  if (!alone.precision.covariance.allFinite() || alone.open.open().size() >= 6) return;
+  if (!beyond_prior(alone.at.X, alone.precision.covariance)) return;
+  if (!alone.at.settled) {  // where they have it is not known, nor that it is where the prior has it
+    if (result.status == Status::kConverged) result.status = Status::kNotConverged;
+    return;
+  }
+  result.status = Status::kBeyondPrior;
+  result.open = alone.open.open();
+  result.surfaces = {.X_TS = alone.at.X, .covariance = alone.precision.covariance};
 }
 
 RegistrationResult Aligner::align() {
@@ -305,14 +343,22 @@ RegistrationResult Aligner::align() {
   const RegistrationPrecision precision =
       precision_at(at, model_row(covariance_forms(), engine_.covariance).make, best.open);
   result.status = RegistrationStatus::kDegenerate;
-  if (!(best.determined || best.kept) || !precision.covariance.allFinite() || precision.open.size() >= 6) return result;
-  result.X_TS = at.X;
   const auto& prior = search_.prior();
+  if (!(best.determined || best.kept) || !precision.covariance.allFinite() || precision.open.size() >= 6) {
+    // That is where the prior holds it; by themselves the surfaces may be sure of another place.
+    if (best.opened_wide) doubt_prior(best, result);
+    if (result.status != RegistrationStatus::kBeyondPrior) return result;
+    result.X_TS = best.fit.X;
+    result.covariance = prior->with(best.fit.X, result.surfaces->covariance);
+    return result;
+  }
+  result.X_TS = at.X;
   result.open = prior ? best.open.open() : precision.open;
   result.rms_m = precision.rms_m;
   result.covariance = precision.covariance;
   if (prior) result.surfaces = {.X_TS = by_surfaces(at, best.open), .covariance = precision.covariance};
   judge(best, ambiguous, result);
+  if (prior) doubt_prior(best, result);
   if (result.status == RegistrationStatus::kConverged && turned_is_far_better(at, result.overlap))
     result.status = RegistrationStatus::kAmbiguous;
   // Together: along open directions the prior's, in the others what both know.

@@ -35,6 +35,13 @@ class Aligner {
     /// Not determined, as by what was opened for its width alone all else followed: its pose is from before, where the
     /// surfaces left nothing open.
     bool kept = false;
+    bool opened_wide = false;  ///< some of what is open is so for its width alone
+  };
+  /// Where the surfaces by themselves have it, and how sure they are there.
+  struct Alone {
+    FoundPose at;
+    OpenDirections open;  ///< without a scale; held at the prior
+    RegistrationPrecision precision;
   };
 
   std::vector<Place> places();
@@ -51,7 +58,9 @@ class Aligner {
   bool loses_to(const Place& a, const Place& b) const;
   bool rivals(const Place& a, const Place& b) const;
   std::vector<Vector6d> restarts(const FoundPose& at);
-  bool beyond_prior(const RegistrationResult& result) const;
+  bool beyond_prior(const Pose& X, const Matrix6d& by_surfaces) const;
+  Alone by_themselves(const Place& best);
+  void doubt_prior(const Place& best, RegistrationResult& result);
   bool turned_is_far_better(const FoundPose& at, double overlap);
   void judge(const Place& best, bool ambiguous, RegistrationResult& result) const;
 

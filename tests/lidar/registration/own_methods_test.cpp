@@ -231,6 +231,73 @@ TEST(OwnMethodsNightly, APriorThatTheCloudsContradictIsSaidToBe) {
   }
 }
 
+/// The pair from guesses that are 0.5 m and 0.8 degrees off either way, for a prior that is sure of them to so much.
+void expect_contradiction(const RealPair& pair, const char* name, double leaf_m, double sigma_m, double sigma_deg) {
+  const std::string what = std::string(name) + ", leaf " + std::to_string(leaf_m) + ", sigma " +
+                           std::to_string(sigma_m) + " m, " + std::to_string(sigma_deg) + " deg";
+  for (const double side : {1.0, -1.0}) {
+    Vector6d off;
+    off << 0.0, 0.0, 0.8 * kDegree, 0.4, -0.3, 0.0;
+    const PosePrior prior{pair.reference * Pose::exp(side * off), law(sigma_m, sigma_deg)};
+    const RegistrationResult r = register_pair(*own_method(name, leaf_m), pair.source, pair.target, prior).result;
+    EXPECT_EQ(r.status, RegistrationStatus::kBeyondPrior) << what << ", side " << side;
+    ASSERT_TRUE(r.surfaces) << what;
+    // The reference itself is good to about 1 cm, its roll to about 0.7 deg.
+    const Vector6d error = (pair.reference.inverse() * r.surfaces->X_TS).log();
+    EXPECT_LT(error.tail<3>().norm(), 0.05) << what;
+    EXPECT_LT(error.head<3>().norm(), 0.8 * kDegree) << what;
+  }
+}
+
+// Of up to 0.05 m and 0.5 degrees, so that the guesses are 10 sigma off and more. What the surfaces say by themselves
+// is told with it. 2026-11-30: a prior of up to 0.03 m and 0.3 degrees (leaf 0.25; 0.05 and 0.5 with leaf 0.5) was
+// believed. Held where it was, everything was off its surfaces, so that every direction was wide, and was opened for
+// that.
+TEST(OwnMethods, ASharpPriorThatTheRealPairContradictsIsNotBelieved) {
+  CANYON_REAL_PAIR(pair);
+  struct Sigma {
+    double m, deg;
+  };
+  for (const Sigma& sigma : {Sigma{0, 0}, Sigma{1e-3, 0.01}, Sigma{0.01, 0.1}, Sigma{0.03, 0.3}, Sigma{0.05, 0.5}})
+    for (const double leaf_m : {0.25, 0.5}) expect_contradiction(pair, "gicp", leaf_m, sigma.m, sigma.deg);
+  for (const char* name : {"point_to_plane", "vgicp"}) {
+    expect_contradiction(pair, name, 0.25, 0, 0);
+    expect_contradiction(pair, name, 0.25, 0.03, 0.3);
+  }
+}
+
+// Of the pair's own pose, by the surfaces alone, a prior may be as sure as it likes.
+TEST(OwnMethods, ASharpPriorThatIsRightIsBelieved) {
+  CANYON_REAL_PAIR(pair);
+  for (const double leaf_m : {0.25, 0.5}) {
+    const auto gicp = own_method("gicp", leaf_m);
+    const RegistrationResult alone = register_pair(*gicp, pair.source, pair.target, {pair.reference}).result;
+    for (const double sigma_m : {0.0, 1e-3, 0.01, 0.03, 0.1}) {
+      const PosePrior prior{alone.X_TS, law(sigma_m, 10.0 * sigma_m)};
+      const RegistrationResult r = register_pair(*gicp, pair.source, pair.target, prior).result;
+      EXPECT_EQ(r.status, RegistrationStatus::kConverged) << leaf_m << ' ' << sigma_m;
+      EXPECT_TRUE(r.open.empty()) << leaf_m << ' ' << sigma_m;
+    }
+  }
+}
+
+// What the corridor's walls contradict is found out though its length is open, and the length alone contradicts
+// nothing.
+TEST(OwnMethods, AnOpenDirectionContradictsNoPrior) {
+  const Points source = long_corridor(1), target = long_corridor(2);
+  for (const char* name : kOwnMethods) {
+    const auto method = own_method(name);
+    for (const double sigma_m : {0.0, 0.01, 0.05}) {
+      EXPECT_EQ(place(*method, source, target, {offset(3, 0, 0, 0), law(sigma_m, 10 * sigma_m)}).status,
+                RegistrationStatus::kConverged)
+          << name << ' ' << sigma_m;
+      EXPECT_EQ(place(*method, source, target, {offset(3, 0.5, 0, 0.8), law(sigma_m, 10 * sigma_m)}).status,
+                RegistrationStatus::kBeyondPrior)
+          << name << ' ' << sigma_m;
+    }
+  }
+}
+
 /// Two clouds of a shaft of 16 m, or higher: four walls and no floor, so that nothing tells of the height but their
 /// ends. What stands above the target's is pulled down to its edge by those points alone that are within 2 m of it,
 /// while all others have a neighbour level with them.
@@ -433,19 +500,19 @@ TEST(OwnMethods, AHalfTurnedGuessIsNoSilentSuccess) {
       const bool right = r.X_TS.p.norm() < 0.1 && so3_log(r.X_TS.R).norm() < 1.0 * kDegree;
       EXPECT_TRUE(right || r.status != RegistrationStatus::kConverged)
           << name << ": off by " << r.X_TS.p.norm() << " m, overlap " << r.overlap;
-    }
-    EXPECT_EQ(place(*method, source, target, {}).status, RegistrationStatus::kConverged) << name;
-  }
-}
-
-}  // namespace
-}  // namespace canyon::lidar
       for (const Matrix6d& P : {law(0, 0), law(0.01, 0.1), law(0.1, 1), law(1, 5), law(1, 15)}) {
         const auto held = place(*method, source, target, {guess, P});
         expect_promise(held, guess, name);
         EXPECT_NE(held.status, RegistrationStatus::kConverged)
             << name << ", sigma " << std::sqrt(P(5, 5)) << " m: overlap " << held.overlap;
       }
+    }
+    EXPECT_EQ(place(*method, source, target, {}).status, RegistrationStatus::kConverged) << name;
     for (const Matrix6d& P : {law(0.1, 1), law(1, 5)})
       EXPECT_EQ(place(*method, source, target, {offset(0.1, -0.1, 0, 1), P}).status, RegistrationStatus::kConverged)
           << name;
+  }
+}
+
+}  // namespace
+}  // namespace canyon::lidar
