@@ -78,8 +78,8 @@ class MissionRun {
   Status ask_autonomy(const Due& due);
   Status record_epoch(const Due& due);
   bool score();
-  /// Has something asked of the autonomy, and what it is asked after every call; nothing once it has failed.
   void make_autonomy_once();
+  /// Has something asked of the autonomy, and what it is asked after every call; nothing once it has failed.
   void ask(const std::function<void()>& call);
   void lose_autonomy(const std::string& why);
 
@@ -112,6 +112,7 @@ class MissionRun {
 
   const MissionConfig config_;
   const PreparedMission& mission_;
+  const PriorKnowledge prior_;  ///< of its own: an autonomy that never returns keeps it longer than the caller does
   PartClock& clock_;
   const bool open_loop_;
   lidar::Deskewing deskewing_;

@@ -69,6 +69,7 @@ ScoredMaps::Wanted wanted_maps(const MissionConfig& config, const Omissions& omi
 MissionRun::MissionRun(const MissionConfig& config, const PreparedMission& mission, Parts parts, PartClock& clock)
     : config_(config),
       mission_(mission),
+      prior_(mission.prior),
       clock_(clock),
       open_loop_(parts.open_loop),
       deskewing_(deskewing_of(config)),
@@ -192,7 +193,7 @@ Result<bool> MissionRun::step() {
 
 /// Within a watched call: one may fail already while it is made.
 void MissionRun::make_autonomy_once() {
-  if (autonomy_ == nullptr) autonomy_ = make_autonomy(config_.autonomy, mission_.prior, mission_.start);
+  if (autonomy_ == nullptr) autonomy_ = make_autonomy(config_.autonomy, prior_, mission_.start);
 }
 
 /// Whether the run goes on.

@@ -20,7 +20,7 @@ namespace canyon::mission {
 struct LaterParts {
   MissionConfig config;      ///< [gnss], [imu], run.truth_as_pose and run.truth_as_height hold from then on
   double from_s = 0.0;       ///< after the start, >= 0; what is measured then is still as it was
-  std::uint64_t noise_seed;  ///< of what all sensors draw anew, from then on; delays, biases, gains stay
+  std::uint64_t noise_seed;  ///< of noise and of wheels' slip from then on; delays, biases, gains stay
 };
 
 /// What a run takes from its caller instead of making it from the configuration.

@@ -37,7 +37,7 @@ Result<study::PaperSky> sky_of(const mission::MissionFile& file) {
   return sky;
 }
 
-/// Which satellites the parts see whose receiver this is.
+/// Files and systems of a receiver's satellites, for the head of the page.
 std::string told_satellites(const gnss::SatelliteSourceConfig& c) {
   std::string files = c.nav_file;
   for (const std::string& file : c.nav_files) files += (files.empty() ? "" : ", ") + file;
@@ -49,8 +49,12 @@ Result<study::Reproduction> reproduce(const Options& options, const mission::Mis
                                       const std::string& scratch) {
   CANYON_TRY(const study::PaperSky sky, sky_of(file));
   study::Reproduction all;
-  CANYON_TRY(const mission::MissionConfig high, file.resolve("high"));
-  all.ephemeris = told_satellites(sky.satellites) + " (high: " + high.gnss.satellites.systems + ")";
+  all.ephemeris = told_satellites(sky.satellites);
+  if (options.missions > 0) {
+    CANYON_TRY(const mission::MissionConfig high, file.resolve("high"));
+    const std::string of_high = told_satellites(high.gnss.satellites);
+    if (of_high != all.ephemeris) all.ephemeris += " (high: " + of_high + ")";
+  }
   all.start = sky.start.iso(0);
   all.draws = options.draws;
   all.missions = options.missions;

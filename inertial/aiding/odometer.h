@@ -33,11 +33,12 @@ class Odometer {
     OdometerTruth truth;
   };
   /// Sample k over (nodes.front().t, nodes.back().t]: `nodes` are equally spaced states of the true motion, an odd
-  /// number of at least 3 (Simpson's rule). Slip and scale depend on (seed, k) alone; the count goes on from the
-  /// turning so far, so samples must be asked for in order.
+  /// number of at least 3 (Simpson's rule). Slip (until draw_anew) and scale depend on (seed, k) alone; the count goes
+  /// on from the turning so far, so samples must be asked for in order.
   Reading sample(std::int64_t k, std::span<const KinematicState> nodes);
 
-  /// From the next sample on the slip at steady speed is another draw; the wheel's radius stays.
+  /// From the next sample on the slip at steady speed, correlated as it is, is another draw, and jumps to it by 0.3 %
+  /// or so (1-sigma); the wheel's radius stays.
   void draw_anew(std::uint64_t noise_seed);
 
  private:

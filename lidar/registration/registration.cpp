@@ -43,7 +43,9 @@ constexpr ModelRow<RegistrationStatus> kStatuses[] = {
     {"diverged", RegistrationStatus::kDiverged, "guess or solution are not finite"},
     {"ambiguous", RegistrationStatus::kAmbiguous, "another pose within the prior fits about as well"},
     {"too_little_overlap", RegistrationStatus::kTooLittleOverlap, "most of the source has nothing to be matched to"},
-    {"beyond_prior", RegistrationStatus::kBeyondPrior, "outside of the 99.9 % ellipsoid of prior and result together"},
+    {"beyond_prior", RegistrationStatus::kBeyondPrior,
+     "where the surfaces have it by themselves is outside of the 99.9 % ellipsoid of their covariance and the prior's "
+     "together"},
 };
 
 }  // namespace

@@ -18,8 +18,8 @@ KnownVehicle known_vehicle(const VehicleConfig& config) {
           .max_steering_rad = config.max_steering_deg * kDegree,
           .max_steering_rate_rad_s = config.max_steering_rate_deg_s * kDegree,
           .max_deceleration_m_s2 = config.max_deceleration_m_s2,
-          .max_turn_rate_rad_s = skids ? config.model.own.get<SkidSteerParameters>().max_turn_rate_deg_s * kDegree
-                                       : std::numeric_limits<double>::infinity()};
+          .max_yaw_rate_rad_s = skids ? config.model.own.get<SkidSteerParameters>().max_turn_rate_deg_s * kDegree
+                                      : std::numeric_limits<double>::infinity()};
 }
 
 double KnownVehicle::distance_m(const PlanPose& body, const Eigen::Vector2d& point) const {

@@ -27,7 +27,7 @@ struct KnownVehicle {
   double max_steering_rad = 0.5585;
   double max_steering_rate_rad_s = 0.7854;
   double max_deceleration_m_s2 = 3.0;
-  double max_turn_rate_rad_s = std::numeric_limits<double>::infinity();
+  double max_yaw_rate_rad_s = std::numeric_limits<double>::infinity();
   double counted_wheel_left_m = 0.0;  ///< of the wheel that its odometer counts, along B's y
 
   /// From the body's rectangle at a pose to a point, m; 0 within.

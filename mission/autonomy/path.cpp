@@ -116,7 +116,7 @@ double nominal_drive_time_s(const Path& path, const SpeedLimits& limits, const s
   for (std::size_t i = 0; i < n; ++i) {
     const double curvature = std::abs(path.curvature(static_cast<double>(i) * kStep));
     if (curvature > 1e-6)
-      v[i] = std::min({v[i], std::sqrt(limits.lateral_m_s2 / curvature), limits.turn_rad_s / curvature});
+      v[i] = std::min({v[i], std::sqrt(limits.lateral_m_s2 / curvature), limits.max_yaw_rate_rad_s / curvature});
   }
   for (const double stop : stops_m) v[std::min(n - 1, static_cast<std::size_t>(std::llround(stop / kStep)))] = 0.0;
   v.front() = 0.0;

@@ -39,7 +39,7 @@ class Path {
 /// and accelerating behind them; zero at each of `stops_m`.
 struct SpeedLimits {
   double cruise_m_s, lateral_m_s2, acceleration_m_s2, deceleration_m_s2;
-  double turn_rad_s = std::numeric_limits<double>::infinity();
+  double max_yaw_rate_rad_s = std::numeric_limits<double>::infinity();
 };
 /// Time to drive the path at those speeds, s; halts not included.
 double nominal_drive_time_s(const Path& path, const SpeedLimits& limits, const std::vector<double>& stops_m);

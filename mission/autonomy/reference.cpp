@@ -152,7 +152,7 @@ class Reference final : public Autonomy {
                                              .step_m = DrivenArc::kStep_m,
                                              .braking_m_s2 = config_.braking_m_s2,
                                              .lateral_m_s2 = config_.lateral_m_s2,
-                                             .turn_rad_s = vehicle_.max_turn_rate_rad_s});
+                                             .max_yaw_rate_rad_s = vehicle_.max_yaw_rate_rad_s});
     if (self_check_->trust() == Trust::kDoubtful)
       command.speed_m_s = std::min(command.speed_m_s, self_check_->speed_limit_m_s());
     return command;

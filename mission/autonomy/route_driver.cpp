@@ -67,7 +67,7 @@ double RouteDriver::allowed_speed_m_s() const {
     const double curvature = std::abs(prior_.route.curvature(s_ + x));
     if (curvature < 1e-4) continue;
     const double in_corner =
-        std::min(std::sqrt(config_.lateral_m_s2 / curvature), prior_.vehicle.max_turn_rate_rad_s / curvature);
+        std::min(std::sqrt(config_.lateral_m_s2 / curvature), prior_.vehicle.max_yaw_rate_rad_s / curvature);
     v = std::min(v, std::sqrt(in_corner * in_corner + 2.0 * config_.braking_m_s2 * std::max(0.0, x - 1.0)));
   }
   for (auto i = static_cast<std::size_t>(next_); i < config_.waypoints.size(); ++i) {

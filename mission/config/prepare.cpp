@@ -41,12 +41,13 @@ Status plan(const MissionConfig& config, const scene::Site& site, PreparedMissio
     stops.push_back(mission.prior.waypoint_s_m[i]);
     holds_s += config.autonomy.hold_s;
   }
-  mission.nominal_s =
-      holds_s + nominal_drive_time_s(
-                    mission.prior.route,
-                    {config.autonomy.cruise_m_s, config.autonomy.lateral_m_s2, config.vehicle.max_acceleration_m_s2,
-                     config.autonomy.braking_m_s2, mission.prior.vehicle.max_turn_rate_rad_s},
-                    stops);
+  mission.nominal_s = holds_s + nominal_drive_time_s(mission.prior.route,
+                                                     {.cruise_m_s = config.autonomy.cruise_m_s,
+                                                      .lateral_m_s2 = config.autonomy.lateral_m_s2,
+                                                      .acceleration_m_s2 = config.vehicle.max_acceleration_m_s2,
+                                                      .deceleration_m_s2 = config.autonomy.braking_m_s2,
+                                                      .max_yaw_rate_rad_s = mission.prior.vehicle.max_yaw_rate_rad_s},
+                                                     stops);
   mission.time_limit_s = config.success.limit_factor * mission.nominal_s;
   if (config.time.limit_s > 0.0) mission.time_limit_s = std::min(mission.time_limit_s, config.time.limit_s);
   return Ok{};

@@ -41,7 +41,7 @@ void LaneDepartures::look(const KinematicState& truth, const std::function<Eigen
   const double off_m = lane_.offset(p, s_m_), believed_off_m = lane_.offset(believed, believed_s_m_);
   const bool between = off_m * believed_off_m <= 0.0;
   const double beside_m = between ? 0.0 : std::min(std::abs(off_m), std::abs(believed_off_m));
-  if (!can_follow()) needed_to_m_ = std::max(needed_to_m_, way_m_ + kSwing_m);
+  if (!can_follow(s_m_) || !can_follow(believed_s_m_)) needed_to_m_ = std::max(needed_to_m_, way_m_ + kSwing_m);
 
   if (error.norm() > kMostError_m) {
     kept_m_ = 0.0;
@@ -82,9 +82,9 @@ bool LaneDepartures::is_kerb(const NearTriangle& triangle) const {
   return true;
 }
 
-bool LaneDepartures::can_follow() const {
+bool LaneDepartures::can_follow(double s_m) const {
   constexpr double kPoints_m = 0.25;  // apart, as its own are
-  for (double s = s_m_; s <= s_m_ + kTurn_m; s += kPoints_m)
+  for (double s = s_m; s <= s_m + kTurn_m; s += kPoints_m)
     if (std::abs(lane_.curvature(s)) > most_curvature_1_m_) return false;
   return true;
 }

@@ -24,7 +24,8 @@ class LaneDepartures {
   static constexpr double kAhead_m = 30.0;  ///< so far ahead a thing is a reason to leave the lane
   static constexpr double kBack_m = 30.0;   ///< and for so long a way after it one not to be back
   static constexpr double kTurn_m = 5.0;    ///< so far ahead a turn is one that the vehicle begins
-  static constexpr double kSwing_m = 15.0;  ///< and for so long a way after it may swing, where it is too sharp
+  static constexpr double kSwing_m =
+      15.0;  ///< so long after a turn sharper than the vehicle's own circle it may be beside
 
   /// `lane`: the route in W, of rear axles; without one nothing is counted. The scene must outlive this.
   LaneDepartures(const VehicleConfig& vehicle, Path lane, const scene::SceneAt& scene);
@@ -49,8 +50,8 @@ class LaneDepartures {
   bool is_free(const Eigen::Vector2d& most_moved_m);
   bool is_free_at(const Eigen::Vector2d& moved_m);
   bool is_kerb(const NearTriangle& triangle) const;
-  /// Whether the vehicle can follow the lane over the next kTurn_m.
-  bool can_follow() const;
+  /// Whether the vehicle can follow the lane over kTurn_m from there.
+  bool can_follow(double s_m) const;
 
   VehicleConfig vehicle_;
   double most_curvature_1_m_;  ///< that the vehicle can steer

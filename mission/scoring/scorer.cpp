@@ -99,8 +99,9 @@ bool Scorer::step(const KinematicState& truth, double speed_m_s, bool on_terrain
     score.closest_m = std::min(score.closest_m, distance);
     const bool within = distance <= config_.waypoint_radius_m;
     if (awaited_[i] == 0) {
-      awaited_[i] = !within && waypoints_[*visited_before_[i]].reached ? 1 : 0;
-      continue;
+      if (within || !waypoints_[*visited_before_[i]].reached) continue;
+      awaited_[i] = 1;
+      score.closest_m = distance;  // what comes now is this waypoint's
     }
     if (!score.mission) {
       score.reached = score.reached || within;
@@ -160,7 +161,7 @@ void Scorer::finish(const KinematicState& truth, bool done) {
     const WaypointScore& score = waypoints_[i];
     const std::string who = score.name.empty() ? "waypoint " + std::to_string(i + 1) : score.name;
     if (awaited_[i] == 0) {
-      fail(Outcome::kMissedWaypoint, truth, who + ": came there no more often than for the waypoints before it");
+      fail(Outcome::kMissedWaypoint, truth, who + ": did not leave the waypoint before it in the same place");
     } else if (!score.reached) {
       fail(Outcome::kMissedWaypoint, truth,
            who + ": came within " + number(score.closest_m, "m") +

@@ -42,9 +42,9 @@ struct WaypointScore {
 
 /// Scores a mission on truth while it runs. It is a success if the autonomy finished it in time without a failure on
 /// the way, having truly reached every waypoint, in whatever order: the mission waypoints with a halt of stop_s within
-/// the radius and enough of the facade in sight, the others by passing within the radius. A waypoint where an earlier
-/// one is wants a visit of its own, after that one's. Out of several failures the
-/// first in time counts; of those that only the end shows, that of the first waypoint.
+/// the radius and enough of the facade in sight, the others by passing within the radius. A waypoint that is nearer
+/// than the radius to an earlier one, with one elsewhere between the two, wants a visit of its own, after that one's.
+/// Out of several failures the first in time counts; of those that only the end shows, that of the first waypoint.
 class Scorer {
  public:
   /// So long after its first scan an autonomy may find no way, and is right: before it has seen anything it knows none.
@@ -99,7 +99,7 @@ class Scorer {
   std::vector<std::vector<Eigen::Vector3d>> facades_;
   std::vector<double> halt_s_;
   std::vector<std::optional<std::size_t>> visited_before_;  ///< the waypoint whose visit comes before its own
-  std::vector<char> awaited_;                               ///< whether a visit is its own
+  std::vector<char> awaited_;  ///< whether the vehicle has been there for the one before it, and left
   std::optional<Failure> failure_;
   std::unique_ptr<CollisionCheck> collision_;
   Encounters encounters_;

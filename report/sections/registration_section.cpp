@@ -71,7 +71,7 @@ std::string endings(const EpochTable& k) {
             show_count(n);
   text += '.';
   text += " Of " + count_of(steps, "step", "steps") + ", beyond their own 99.9 % bound: " + show_count(beyond);
-  if (beyond_unconverged > 0) text += " (not converged: " + show_count(beyond_unconverged) + ')';
+  if (beyond_unconverged > 0) text += " (" + show_count(beyond_unconverged) + " of them did not converge)";
   text += '.';
   if (told > 0) text += " Converged with a direction left open: " + show_count(open) + '.';
   return text;

@@ -70,8 +70,8 @@ std::string verdict(const Explanation& explanation);
 /// "0 of 12 repeats, so in at most 24 % of such drives (95 %)": what replays of one drive, of which none succeeds, say
 /// of all that differ as they do. The upper end of wilson_interval; draws > 0.
 std::string replays_bound(int draws);
-/// Removals that rescue as well and are as narrow as the cause, which is not among them: each by itself is enough to
-/// take away. Empty without a cause.
+/// Removals that rescue as well and are as narrow as the cause, which is neither among them nor part of them: each by
+/// itself is enough to take away. Empty without a cause.
 std::vector<const RemovalOutcome*> alike(const Explanation& explanation);
 /// Lines of a chain at most, beside how it ended.
 inline constexpr std::size_t kMostChainLines = 10;

@@ -12,8 +12,9 @@ enum class Breadth { kOneError, kSeveral, kNavigation };
 struct Removal {
   void (*remove)(mission::MissionConfig& config);
   Breadth breadth;
-  bool from_start;    ///< it acts at the start alone, so it is taken away there
-  const char* cause;  ///< what is to blame where its removal rescues: "errors of reflected signals"
+  bool from_start;       ///< it acts at the start alone, so it is taken away there
+  const char* contains;  ///< the row that it takes away as well; may be null
+  const char* cause;     ///< what is to blame where its removal rescues: "errors of reflected signals"
 };
 ModelTable<Removal> removals();
 

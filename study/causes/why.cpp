@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include <nlohmann/json.hpp>
 
@@ -61,15 +62,16 @@ std::string span(const Event& event) {
 }
 
 /// Several events of a kind, by time, as one line.
-std::string joined(const std::vector<Event>& alike) {
-  if (alike.size() == 1) return span(alike.front()) + ": " + words(alike.front());
+std::string joined(const std::vector<Event>& group) {
+  if (group.size() == 1) return span(group.front()) + ": " + words(group.front());
   const auto badness = [](const Event& e) { return has_size(e.kind) ? e.size : e.to_s - e.from_s; };
-  const auto worst = std::max_element(alike.begin(), alike.end(),
+  const auto worst = std::max_element(group.begin(), group.end(),
                                       [&](const Event& a, const Event& b) { return badness(a) < badness(b); });
   double to_s = 0.0;
-  for (const Event& event : alike) to_s = std::max(to_s, event.to_s);
-  return std::to_string(alike.size()) + " times from " + seconds(alike.front().from_s) + " to " + seconds(to_s) +
-         (has_size(worst->kind) ? ", most" : ", longest") + " from " + span(*worst) + ": " + words(*worst);
+  for (const Event& event : group) to_s = std::max(to_s, event.to_s);
+  return std::to_string(group.size()) + " times from " + seconds(group.front().from_s) + " to " + seconds(to_s) +
+         (has_size(worst->kind) ? ", the largest" : ", the longest") +
+         (worst->to_s > worst->from_s ? " from " : " at ") + span(*worst) + ": " + words(*worst);
 }
 
 /// Whether it is of the chain that is told.
@@ -86,13 +88,18 @@ std::string alike_words(const Explanation& e) {
   return words.empty() ? words : "; each of these is enough to take away as well: " + words;
 }
 
+bool contains(const Removal& removal, const ModelRow<Removal>& other) {
+  return removal.contains != nullptr && std::string_view(removal.contains) == other.name;
+}
+
 }  // namespace
 
 std::vector<const RemovalOutcome*> alike(const Explanation& e) {
   std::vector<const RemovalOutcome*> others;
   if (e.cause == nullptr) return others;
   for (const RemovalOutcome& outcome : e.outcomes)
-    if (outcome.rescues && outcome.removal != e.cause && outcome.removal->make.breadth == e.cause->make.breadth)
+    if (outcome.rescues && outcome.removal != e.cause && outcome.removal->make.breadth == e.cause->make.breadth &&
+        !contains(outcome.removal->make, *e.cause))
       others.push_back(&outcome);
   return others;
 }

@@ -20,9 +20,9 @@ struct SeenAndPlanned {
 };
 
 /// Drives the configuration on the tape twice, with its estimate and with the true pose, on the same draws. Obstacles
-/// are those of the reference autonomy's perception in a grid in W, where the pose puts each scan; looked at once a
-/// second, in directions 2 degrees apart up to 40 degrees to both sides, up to 20 m. Truth is the nearest of the
-/// scene's surfaces but the ground at three heights of a body.
+/// are those of the autonomy's perception (`ground_grid` where it has none) in a grid in W, where the pose puts each
+/// scan; looked at once a second, in directions 2 degrees apart up to 40 degrees to both sides, up to 20 m. Truth is
+/// the nearest of the scene's surfaces but the ground at three heights of a body.
 Result<SeenAndPlanned> seen_and_planned(const mission::MissionConfig& config, const mission::PreparedMission& mission,
                                         const Tape& tape);
 

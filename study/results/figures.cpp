@@ -118,7 +118,7 @@ constexpr auto kFigures = std::to_array<Figure>({
     {kMission, "needless_lane_departures_per_km", "1/km", "needless lane departures", kLower, kQuantity, 2,
      [](const Run& r) { return if_driven(r, r.per_km(r.needless_lane_departures)); },
      "times that the true vehicle was more than 0.5 m beside its route, beyond what the error of its pose explains, with nothing but kerbs within 1 m of "
-     "the body's way along it for 30 m ahead, nor over the 30 m before, and no turn sharper than its own over 5 m ahead or 15 m before: a phantom steered around, or a lane put elsewhere by what is seen of the street"},
+     "the body's way along it for 30 m ahead, nor over the 30 m before, and no turn sharper than the vehicle can steer over 5 m ahead or 15 m before: a phantom steered around, or a lane put elsewhere by what is seen of the street"},
     {kMission, "missed_obstacles_per_km", "1/km", "missed obstacles", kLower, kQuantity, 2,
      [](const Run& r) { return if_driven(r, r.per_km(r.encounters.missed_obstacles)); },
      "times that a thing lay on the arc truly driven, nearer than full braking stops, and no less speed was asked for"},

@@ -1,4 +1,5 @@
 // What is taken away from some moment on leaves everything before it, and all other draws, as they were.
+#include <array>
 #include <bit>
 
 #include "canyon/mission/route_tape.h"
@@ -83,6 +84,41 @@ TEST(LaterParts, OtherNoiseMovesNoDelayAndNoBias) {
       }
   }
   EXPECT_GT(compared, 20);
+}
+
+// 2026-11-30: wheels, barometer and magnetometer kept their noise, whatever the replay.
+TEST(LaterParts, OtherNoiseIsThatOfTheAidingSensorsToo) {
+  const MissionConfig config = short_config("low", "low",
+                                            "[time]\nlimit_s = 3.0\n[run]\ntruth_as_pose = "
+                                            "true\n[odometer]\nmetres_per_tick = 1e-5\n[fusion]\nmeasurements = "
+                                            "[\"position\", \"odometer\", \"barometer\", \"magnetometer\"]\n");
+  constexpr double kThen_s = 1.5;
+  const RecordedRun plain = drive(config);
+  const auto later = [&](std::uint64_t noise_seed) {
+    return drive_later(config, {.config = config, .from_s = kThen_s, .noise_seed = noise_seed});
+  };
+  const RecordedRun same = later(seed_of(config)), other = later(77);
+  // The first reading that is another one, as seconds after the start; 1e9: none is.
+  const auto differs_s = [&](const auto& a, const auto& b, const auto& value) {
+    EXPECT_GT(a.size(), 20u);
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
+      if (value(a[k].message) != value(b[k].message)) return a[k].message.t - plain.start;
+    return 1e9;
+  };
+  const auto first_s = [&](const RecordedRun& run) {
+    return std::array<double, 3>{
+        differs_s(plain.odometer_readings, run.odometer_readings, [](const auto& m) { return m.ticks; }),
+        differs_s(plain.barometer_readings, run.barometer_readings, [](const auto& m) { return m.pressure_pa; }),
+        differs_s(plain.magnetometer_readings, run.magnetometer_readings,
+                  [](const auto& m) { return Eigen::Vector3d(m.field_U_t); })};
+  };
+  for (const double t_s : first_s(same)) EXPECT_EQ(t_s, 1e9);
+  for (const double t_s : first_s(other)) {
+    EXPECT_GT(t_s, kThen_s + 1e-6);
+    EXPECT_LT(t_s, kThen_s + 0.15);
+  }
+  EXPECT_EQ(plain.odometer_readings.back().truth.scale_error, other.odometer_readings.back().truth.scale_error);
+  EXPECT_EQ(plain.barometer_readings.back().truth.drift_pa, other.barometer_readings.back().truth.drift_pa);
 }
 
 TEST(LaterParts, TheTruthAsHeightIsTheTruthFromThenOn) {

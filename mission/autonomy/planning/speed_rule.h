@@ -17,7 +17,7 @@ struct SpeedTask {
   std::span<const float> curvature_1_m{};  ///< of the arc from here on, at every step of step_m
   double step_m = 0.25;
   double braking_m_s2 = 1.2, lateral_m_s2 = 1.2;
-  double turn_rad_s = std::numeric_limits<double>::infinity();  ///< that the vehicle can do
+  double max_yaw_rate_rad_s = std::numeric_limits<double>::infinity();  ///< of the vehicle
 };
 
 /// How fast it may go. One-level interface; the models are in the table below, each in its own file with its own

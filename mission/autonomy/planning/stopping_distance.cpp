@@ -25,6 +25,7 @@ class StoppingDistance final : public SpeedRule {
   explicit StoppingDistance(const StoppingDistanceParameters& p) : p_(p) {}
 
   double allowed_m_s(const SpeedTask& task) const override {
+    constexpr double kCrawl_m_s = 0.1;  // slower is standing
     double v = task.route_m_s;
     if (!task.free_to_end) v = std::min(v, halting_within_m_s(task.free_m - p_.stop_margin_m, task.braking_m_s2));
     v = std::min(v, halting_within_m_s(std::max(task.seen_m, p_.assumed_seen_m), task.braking_m_s2));
@@ -32,11 +33,10 @@ class StoppingDistance final : public SpeedRule {
       const double kappa = std::abs(static_cast<double>(task.curvature_1_m[i]));
       if (kappa < 1e-4) continue;
       const double way_m = static_cast<double>(i) * task.step_m;
-      const double turning_m_s = task.turn_rad_s / kappa;
+      const double turning_m_s = std::max(kCrawl_m_s, task.max_yaw_rate_rad_s / kappa);
       const double in_bend2 = std::min(task.lateral_m_s2 / kappa, turning_m_s * turning_m_s);
       v = std::min(v, std::sqrt(in_bend2 + 2.0 * task.braking_m_s2 * way_m));
     }
-    constexpr double kCrawl_m_s = 0.1;  // slower is standing
     return v < kCrawl_m_s ? 0.0 : v;
   }
 

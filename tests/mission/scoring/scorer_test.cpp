@@ -256,8 +256,8 @@ TEST(ScorerWaypoints, APlaceThatComesAgainWantsAsManyVisits) {
     return scorer.failure() ? scorer.failure()->detail : std::string();
   };
   EXPECT_EQ(detail({-20.0, -10.0, -20.0, -10.0}), "");
-  EXPECT_EQ(detail({-20.0, -10.0, -20.0}), "waypoint 4: came there no more often than for the waypoints before it");
-  EXPECT_EQ(detail({-20.0, -10.0}), "waypoint 3: came there no more often than for the waypoints before it");
+  EXPECT_EQ(detail({-20.0, -10.0, -20.0}), "waypoint 4: came within 4.0 m") << "since it left it";
+  EXPECT_EQ(detail({-20.0, -10.0}), "waypoint 3: came within 4.0 m");
   EXPECT_EQ(detail({-20.0, -17.0, -20.0}), "waypoint 2: came within 7.0 m") << "it never left the first";
   // Two that follow one another in one place are of one visit.
   const auto reached = scored_along_x({-20.0, -20.0, -10.0, -20.0, -20.0}, {-25.0, -5.0}).waypoints();
