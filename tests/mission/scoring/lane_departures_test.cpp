@@ -150,7 +150,7 @@ TEST(LaneDepartures, WhoCannotTurnSoSharplySwingsOut) {
   const auto swings = [&](double corner_radius_m, double from_s_m) {
     const Path lane({{0.0, 0.0}, {60.0, 0.0}, {60.0, 55.0}}, corner_radius_m);
     LaneDepartures departures(VehicleConfig{}, lane, *free.at);
-    const Beside aside = out_and_back(from_s_m, from_s_m + 22.0, 1.2);
+    const Beside aside = out_and_back(from_s_m, from_s_m + 14.0, 1.2);
     for (double s = 0.0; s < lane.length_m(); s += 0.05) {
       const Vector2d along = lane.direction(s), p = lane.at(s) + aside(s) * Vector2d(along.y(), -along.x());
       KinematicState truth;
