@@ -59,6 +59,9 @@ std::optional<std::size_t> Scorer::visited_before(std::size_t i) const {
 void Scorer::fail(Outcome kind, const KinematicState& truth, std::string detail) {
   if (failure_) return;
   failure_ = Failure{kind, truth.t - start_, truth.X_WB.p, std::move(detail)};
+  // What fails in its first step has been nowhere but here.
+  for (std::size_t i = 0; i < waypoints_.size(); ++i)
+    waypoints_[i].closest_m = std::min(waypoints_[i].closest_m, (truth.X_WB.p.head<2>() - places_[i].p_m).norm());
 }
 
 void Scorer::observe(const Eigen::Vector3d& camera_W, const std::vector<Eigen::Vector3d>& facade_W,
