@@ -83,6 +83,10 @@ CloudPair register_pair(const Registration& method, const CloudPlaces& source, c
   out.result.X_TS = from_target * out.result.X_TS * from_source.inverse();
   if (out.result.covariance.allFinite()) out.result.covariance = back * out.result.covariance * back.transpose();
   for (Vector6d& v : out.result.open) v = back * v;
+  if (out.result.surfaces) {
+    RegistrationResult::Surfaces& alone = *out.result.surfaces;
+    alone = {from_target * alone.X_TS * from_source.inverse(), back * alone.covariance * back.transpose()};
+  }
   return out;
 }
 

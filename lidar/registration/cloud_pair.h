@@ -10,7 +10,7 @@ namespace canyon::lidar {
 
 /// One cloud registered onto another, each in coordinates of its own, however large.
 struct CloudPair {
-  RegistrationResult result;  ///< X_TS in the clouds' own coordinates; covariance of xi in the source frame
+  RegistrationResult result;  ///< poses in the clouds' own coordinates; covariances of xi in the source frame
   double preprocess_ms = 0, align_ms = 0;
   std::size_t source_points = 0, target_points = 0;  ///< after thinning
 };

@@ -61,9 +61,10 @@ bool registers(const RegistrationConfig& config);
 
 /// kDegenerate: what was matched does not determine a pose, as points on one line do not. kDiverged: the guess or the
 /// solution is not finite. In either case, as with too few points, the guess stands and there is no covariance.
-/// kAmbiguous: another pose within the prior fits about as well. kTooLittleOverlap: most of the source has nothing to
-/// be matched to. kBeyondPrior: prior and solution contradict one another by more than 99.9 % of what their covariances
-/// together allow. The last three are for the own methods to say.
+/// kAmbiguous: another pose within the prior fits about as well, or half turned far more is explained.
+/// kTooLittleOverlap: most of the source has nothing to be matched to. kBeyondPrior: the prior and where the surfaces
+/// have it by themselves contradict one another by more than 99.9 % of what their covariances together allow. The last
+/// three are for the own methods to say.
 enum class RegistrationStatus {
   kConverged,
   kNotConverged,

@@ -350,7 +350,7 @@ RegistrationResult Aligner::align() {
     if (result.status != RegistrationStatus::kBeyondPrior) return result;
     result.X_TS = best.fit.X;
     result.covariance = prior->with(best.fit.X, result.surfaces->covariance);
-    return result;
+    return finite_or_degenerate(std::move(result));
   }
   result.X_TS = at.X;
   result.open = prior ? best.open.open() : precision.open;
@@ -363,12 +363,16 @@ RegistrationResult Aligner::align() {
     result.status = RegistrationStatus::kAmbiguous;
   // Together: along open directions the prior's, in the others what both know.
   if (prior) result.covariance = prior->with(at.X, precision.covariance);
-  if (!result.covariance.allFinite()) {
-    result.X_TS = search_.guess();
-    result.covariance.setConstant(kNaN);
-    result.surfaces.reset();
-    result.status = RegistrationStatus::kDegenerate;
-  }
+  return finite_or_degenerate(std::move(result));
+}
+
+/// A covariance is finite, or there is none and the guess stands.
+RegistrationResult Aligner::finite_or_degenerate(RegistrationResult result) const {
+  if (result.covariance.allFinite()) return result;
+  result.X_TS = search_.guess();
+  result.covariance.setConstant(kNaN);
+  result.surfaces.reset();
+  result.status = RegistrationStatus::kDegenerate;
   return result;
 }
 

@@ -61,6 +61,7 @@ class Aligner {
   bool beyond_prior(const Pose& X, const Matrix6d& by_surfaces) const;
   Alone by_themselves(const Place& best);
   void doubt_prior(const Place& best, RegistrationResult& result);
+  RegistrationResult finite_or_degenerate(RegistrationResult result) const;
   bool turned_is_far_better(const FoundPose& at, double overlap);
   void judge(const Place& best, bool ambiguous, RegistrationResult& result) const;
 
